@@ -1,0 +1,69 @@
+# Compiler settings of every target and the two helpers that declare a library and a test program.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+set(SLEWRING_MARCH "x86-64-v3" CACHE STRING "Instruction set of all code of ours (-march)")
+set(SLEWRING_SANITIZE "" CACHE STRING "Value of -fsanitize=, empty for none")
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+# the same bits in every build: no contraction to fused multiply-add, no value-changing optimisation
+add_library(slewring_flags INTERFACE)
+target_compile_options(slewring_flags INTERFACE -march=${SLEWRING_MARCH} -ffp-contract=off)
+target_compile_options(slewring_flags INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Werror>)
+target_include_directories(slewring_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
+if(SLEWRING_SANITIZE)
+  target_compile_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE})
+endif()
+
+# slewring_library(NAME SOURCES ... DEPENDS lib ... LINK target ...)
+# DEPENDS names libraries of ours; tests/architecture/edges.txt must allow each of them.
+function(slewring_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
+  add_library(slewring_${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(slewring_${name} PUBLIC slewring_flags)
+  foreach(dependency ${ARG_DEPENDS})
+    target_link_libraries(slewring_${name} PUBLIC slewring_${dependency})
+  endforeach()
+  target_link_libraries(slewring_${name} PUBLIC ${ARG_LINK})
+endfunction()
+
+# slewring_program(NAME SOURCES ... DEPENDS lib ... LINK target ...)
+function(slewring_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE slewring_flags)
+  foreach(dependency ${ARG_DEPENDS})
+    target_link_libraries(${name} PRIVATE slewring_${dependency})
+  endforeach()
+  target_link_libraries(${name} PRIVATE ${ARG_LINK})
+endfunction()
+
+# slewring_test(NAME LABEL unit SOURCES ... DEPENDS lib ... LINK target ... TIMEOUT s)
+# One GoogleTest program; every case in it becomes one ctest entry with the label.
+function(slewring_test name)
+  cmake_parse_arguments(ARG "SERIAL" "LABEL;TIMEOUT" "SOURCES;DEPENDS;LINK" ${ARGN})
+  slewring_program(${name} SOURCES ${ARG_SOURCES} DEPENDS ${ARG_DEPENDS} LINK ${ARG_LINK} GTest::gtest_main)
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  target_compile_definitions(${name} PRIVATE SLEWRING_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             SLEWRING_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT}
+                       RUN_SERIAL $<BOOL:${ARG_SERIAL}>)
+endfunction()

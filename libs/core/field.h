@@ -1,0 +1,136 @@
+// Field tables: one row for every member of a Def that a scene file may set.
+//
+// The table stands beside the Def in the physics library. The scene reader parses by it, `slewring schema` and the
+// documentation print it, `param set` checks against it. A row binds to a member by pointer, so that a wrong name or
+// type does not compile:
+//
+//   constexpr Field kBodyFields[] = {
+//       field<&BodyDef::mass>("mass", {.dimension = Dimension::mass, .range = kPositive, .presence = Presence::required,
+//                                      .change = Change::live, .doc = "mass of the body"}),
+//   };
+//
+// Member types: double, std::int64_t, bool, std::string (text or reference), Triple, Table, std::vector<double>,
+// std::vector<std::string>, and any enum with underlying type int (with `choices`, whose order is the enum's).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "core/dimension.h"
+
+namespace slew {
+
+using Triple = std::array<double, 3>;              // x, y, z
+using Table = std::vector<std::array<double, 2>>;  // argument, value; arguments strictly increasing
+
+enum class FieldType : std::uint8_t {
+  number,
+  integer,
+  boolean,
+  text,       // free text, or the name of an element when `reference` is not empty
+  triple,
+  table,      // list of [argument, value]; argument in `dimension`, value in `value_dimension`
+  numbers,    // list of numbers
+  texts,      // list of texts or references
+  choice      // one of `choices`
+};
+
+enum class Presence : std::uint8_t { optional, required };
+enum class Change : std::uint8_t { restart, live };
+
+// Allowed interval; a NaN never lies in it.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_is_open = true;
+  bool max_is_open = true;
+  [[nodiscard]] constexpr bool contains(double x) const noexcept {
+    return (min_is_open ? x > min : x >= min) && (max_is_open ? x < max : x <= max);
+  }
+};
+
+inline constexpr Range kFinite{};
+inline constexpr Range kPositive{.min = 0};
+inline constexpr Range kNotNegative{.min = 0, .min_is_open = false};
+inline constexpr Range kFraction{.min = 0, .max = 1, .min_is_open = false, .max_is_open = false};
+inline constexpr Range kFractionAboveZero{.min = 0, .max = 1, .max_is_open = false};
+
+struct FieldOptions {
+  Dimension dimension = Dimension::none;
+  Dimension value_dimension = Dimension::none;  // of a table's values
+  Range range = kFinite;                        // of the number, of each element, of a table's values
+  Presence presence = Presence::optional;
+  Change change = Change::restart;
+  double ramp = 0;                              // s: a live change is spread over this time by default
+  std::string_view reference = {};              // kind of element the text must name: "body", "force", "volume", ...
+  std::span<const std::string_view> choices = {};
+  std::string_view doc = {};
+};
+
+struct Field : FieldOptions {
+  std::string_view key;
+  FieldType type = FieldType::number;
+  void* (*member)(void* def) = nullptr;         // address of the member (not for choices)
+  void (*set_choice)(void* def, int index) = nullptr;
+  int (*get_choice)(const void* def) = nullptr;
+};
+
+namespace detail {
+
+template <typename>
+struct MemberOf;
+template <typename Class, typename Value>
+struct MemberOf<Value Class::*> {
+  using class_type = Class;
+  using value_type = Value;
+};
+
+template <typename Value>
+constexpr FieldType field_type_of() {
+  if constexpr (std::is_same_v<Value, double>) {
+    return FieldType::number;
+  } else if constexpr (std::is_same_v<Value, std::int64_t>) {
+    return FieldType::integer;
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return FieldType::boolean;
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return FieldType::text;
+  } else if constexpr (std::is_same_v<Value, Triple>) {
+    return FieldType::triple;
+  } else if constexpr (std::is_same_v<Value, Table>) {
+    return FieldType::table;
+  } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
+    return FieldType::numbers;
+  } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+    return FieldType::texts;
+  } else {
+    static_assert(std::is_enum_v<Value>, "a field's member must have one of the types listed in core/field.h");
+    return FieldType::choice;
+  }
+}
+
+}  // namespace detail
+
+template <auto Member>
+[[nodiscard]] constexpr Field field(std::string_view key, const FieldOptions& options) {
+  using Class = typename detail::MemberOf<decltype(Member)>::class_type;
+  using Value = typename detail::MemberOf<decltype(Member)>::value_type;
+  Field row;
+  static_cast<FieldOptions&>(row) = options;
+  row.key = key;
+  row.type = detail::field_type_of<Value>();
+  row.member = [](void* def) -> void* { return &(static_cast<Class*>(def)->*Member); };
+  if constexpr (std::is_enum_v<Value>) {
+    row.set_choice = [](void* def, int index) { static_cast<Class*>(def)->*Member = static_cast<Value>(index); };
+    row.get_choice = [](const void* def) { return static_cast<int>(static_cast<const Class*>(def)->*Member); };
+  }
+  return row;
+}
+
+}  // namespace slew

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "core/allocation_guard.h"
+#include "core/arithmetic_self_test.h"
+#include "core/reductions.h"
+#include "core/state_hash.h"
+#include "core/static_vector.h"
+#include "core/time.h"
+
+namespace slew {
+namespace {
+
+// values whose sum depends on the order of addition
+std::vector<double> awkward_values(std::size_t n) {
+  std::vector<double> values(n);
+  double x = 0.37;
+  for (double& value : values) {
+    x = 3.9 * x * (1 - x);
+    value = std::ldexp(x - 0.5, static_cast<int>(40 * x) - 20);
+  }
+  return values;
+}
+
+TEST(Reductions, DoNotDependOnTheAddress) {
+  const std::vector<double> a = awkward_values(61);
+  const std::vector<double> b = awkward_values(61);
+  std::vector<double> storage(4 * 61 + 8);
+  double expected = 0;
+  for (std::size_t shift = 0; shift < 4; ++shift) {
+    double* moved = storage.data() + shift;
+    std::copy(a.begin(), a.end(), moved);
+    const double dot = fixed_dot({moved, a.size()}, b);
+    if (shift == 0) expected = dot;
+    EXPECT_EQ(dot, expected) << "shifted by " << 8 * shift << " bytes";
+  }
+}
+
+TEST(Reductions, SumAndProductAreRight) {
+  const std::vector<double> a = {1, 2, 3, 4, 5, 6, 7};
+  EXPECT_EQ(fixed_sum(a), 28);
+  EXPECT_EQ(fixed_dot(a, a), 140);
+  const std::vector<double> A = {1, 2, 3, 4, 5, 6};
+  const std::vector<double> x = {1, 10, 100};
+  std::vector<double> y(2);
+  fixed_multiply(A, x, y);
+  EXPECT_EQ(y, (std::vector<double>{321, 654}));
+}
+
+TEST(Reductions, LargestAbsoluteValueReportsNan) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(fixed_max_abs(std::vector<double>{1, nan, 2})));
+  EXPECT_EQ(fixed_max_abs(std::vector<double>{1, -3, 2}), 3);
+  EXPECT_FALSE(all_finite(std::vector<double>{1, nan}));
+}
+
+TEST(StateHash, ChangesWithOneUlpOrderAndSignOfZero) {
+  const auto hash = [](std::vector<double> values) {
+    StateHash h;
+    h.add(values);
+    return h.digest();
+  };
+  EXPECT_EQ(hash({1, 2}), hash({1, 2}));
+  EXPECT_NE(hash({1, 2}), hash({1, std::nextafter(2.0, 3.0)}));
+  EXPECT_NE(hash({1, 2}), hash({2, 1}));
+  EXPECT_NE(hash({0.0}), hash({-0.0}));
+}
+
+TEST(AllocationGuard, SeesEveryHeapCallOfThisThread) {
+  const AllocationGuard guard;
+  EXPECT_EQ(guard.allocations(), 0u);
+  auto owned = std::make_unique<int>(3);
+  void* volatile block = std::malloc(10);
+  EXPECT_EQ(guard.allocations(), 2u);
+  std::free(block);
+  EXPECT_EQ(guard.frees(), 1u);
+  EXPECT_EQ(*owned, 3);
+}
+
+TEST(ArithmeticSelfTest, IsRepeatable) { EXPECT_EQ(arithmetic_self_test(), arithmetic_self_test()); }
+
+TEST(Time, StepsAreExactInNanoseconds) {
+  EXPECT_EQ(start_of(3'000'000'000, milliseconds(1)).ns, 3'000'000'000'000'000);
+  EXPECT_EQ((start_of(7, microseconds(10)) - start_of(5, microseconds(10))).ns, 20'000);
+}
+
+TEST(StaticVector, ComparesByContent) {
+  StaticVector<double, 4> a{1, 2};
+  StaticVector<double, 4> b{1};
+  EXPECT_FALSE(a == b);
+  b.push_back(2);
+  EXPECT_TRUE(a == b);
+}
+
+}  // namespace
+}  // namespace slew
