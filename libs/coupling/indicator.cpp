@@ -1,0 +1,120 @@
+#include "coupling/indicator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slew::coupling {
+namespace {
+
+// enough for two digits of the largest eigenvalue; the figure is a warning level, not a result
+constexpr int kPowerIterations = 12;
+
+}  // namespace
+
+Lamp lamp_of(const PortDefects& defects) noexcept {
+  if (defects.creates_energy || !(defects.eta < kAmberBelow)) return Lamp::red;
+  return defects.eta < kGreenBelow ? Lamp::green : Lamp::amber;
+}
+
+Indicator::Indicator(std::size_t ports, SimDuration communication_step)
+    : ports_(ports),
+      H_(communication_step.seconds()),
+      steps_per_bucket_(std::max<std::int64_t>(
+          1, kIndicatorWindow.ns / (static_cast<std::int64_t>(kBuckets) * communication_step.ns))),
+      alarm_after_steps_(std::max<std::int64_t>(1, kNetAlarmAfter.ns / communication_step.ns)),
+      window_(ports),
+      steps_below_alarm_(ports, 0),
+      defects_(ports) {}
+
+void Indicator::reset() noexcept {
+  for (auto& buckets : window_) buckets.fill(Bucket{});
+  for (std::int64_t& steps : steps_below_alarm_) steps = 0;
+  for (PortDefects& defects : defects_) defects = PortDefects{};
+  steps_in_bucket_ = 0;
+  current_ = 0;
+  omega_H_ = 0;
+}
+
+void Indicator::start_bucket() noexcept {
+  if (++steps_in_bucket_ < steps_per_bucket_) return;
+  steps_in_bucket_ = 0;
+  current_ = (current_ + 1) % kBuckets;
+  for (auto& buckets : window_) buckets[current_] = Bucket{};
+}
+
+void Indicator::evaluate_window(std::size_t port) noexcept {
+  // window sums and the scale of (5)
+  Bucket sum;
+  for (const Bucket& bucket : window_[port]) {
+    sum.residual += bucket.residual;
+    sum.net += bucket.net;
+    sum.work += bucket.work;
+    sum.force = std::max(sum.force, bucket.force);
+    sum.stiffness = std::max(sum.stiffness, bucket.stiffness);
+  }
+  const double spring = sum.stiffness > 0 ? sum.force * sum.force / (2 * sum.stiffness) : 0.0;
+  const double scale = std::max(sum.work, spring);
+  PortDefects& defects = defects_[port];
+  defects.eta = scale > 0 ? sum.residual / scale : 0.0;
+  defects.net = scale > 0 ? sum.net / scale : 0.0;
+  // the alarm needs the net sum below its level for a while
+  steps_below_alarm_[port] = defects.net < kNetAlarm ? steps_below_alarm_[port] + 1 : 0;
+  defects.creates_energy = steps_below_alarm_[port] >= alarm_after_steps_;
+}
+
+void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& actuators) noexcept {
+  start_bucket();
+  for (std::size_t i = 0; i < ports_; ++i) {
+    PortDefects& defects = defects_[i];
+    const double K = actuators.K[i];
+    defects.e_x = mechanism.x[i] - actuators.x_ref[i];
+    defects.e_v = mechanism.v[i] - actuators.v_ref[i];
+    defects.e_F = (actuators.F[i] - K * defects.e_x) - mechanism.F_used[i];
+    defects.dE = actuators.work[i] - mechanism.work[i];
+    defects.dE_star = defects.dE + actuators.F[i] * defects.e_x - 0.5 * K * defects.e_x * defects.e_x;
+    Bucket& bucket = window_[i][current_];
+    bucket.residual += std::fabs(defects.dE_star);
+    bucket.net += defects.dE_star;
+    bucket.work += std::fabs(mechanism.work[i]);
+    bucket.force = std::max(bucket.force, std::fabs(actuators.F[i]));
+    bucket.stiffness = std::max(bucket.stiffness, K);
+    evaluate_window(i);
+  }
+  omega_H_ = coupling_frequency(mechanism.W, actuators.K, H_);
+}
+
+bool Indicator::creates_energy() const noexcept {
+  return std::any_of(defects_.begin(), defects_.end(), [](const PortDefects& d) { return d.creates_energy; });
+}
+
+double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept {
+  const std::size_t m = K.size();
+  if (m == 0) return 0;
+  // power iteration on S = sqrt(K) W sqrt(K), which has the eigenvalues of W K
+  std::array<double, kMaxPorts> root{}, vector{}, image{};
+  for (std::size_t i = 0; i < m; ++i) {
+    root[i] = std::sqrt(std::max(0.0, K[i]));
+    vector[i] = root[i];
+  }
+  double eigenvalue = 0;
+  for (int iteration = 0; iteration < kPowerIterations; ++iteration) {
+    double largest = 0;
+    for (std::size_t i = 0; i < m; ++i) {
+      double sum = 0;
+      for (std::size_t j = 0; j < m; ++j) sum += W[i * m + j] * root[j] * vector[j];
+      image[i] = root[i] * sum;
+      largest = std::max(largest, std::fabs(image[i]));
+    }
+    if (!(largest > 0)) return 0;
+    double numerator = 0, denominator = 0;
+    for (std::size_t i = 0; i < m; ++i) {
+      numerator += vector[i] * image[i];
+      denominator += vector[i] * vector[i];
+    }
+    eigenvalue = numerator / denominator;
+    for (std::size_t i = 0; i < m; ++i) vector[i] = image[i] / largest;
+  }
+  return eigenvalue > 0 ? H * std::sqrt(eigenvalue) : 0.0;
+}
+
+}  // namespace slew::coupling

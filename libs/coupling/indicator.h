@@ -1,0 +1,84 @@
+// Live error indicator of one port: defects at the exchange and the corrected power-bond residual
+// (coupling study, section 9).
+//
+//   e_x = x - x_ref,  e_v = v - v_ref                                                              (1)
+//   e_F = (F_n - K e_x) - F_used      hydraulics' force, moved to the true x, less mechanics' copy (2)
+//   dE  = W_hyd - W_mech              work of F over the finished step as each side saw it         (3)
+//   dE* = dE + F_n e_x - K e_x^2 / 2  after the work of the volume correction                      (4)
+//   eta = sum |dE*| / max(sum |W_mech|, F^2 / (2 K)),  net = sum dE* / the same scale, over 1 s    (5)
+//   omega_H = H sqrt(largest eigenvalue of W K)                                                    (6)
+//
+// eta times 10 to 30 is the relative force error (study). Lamps: green below 1e-4, amber below 1e-3, red above;
+// net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/time.h"
+#include "coupling/samples.h"
+
+namespace slew::coupling {
+
+enum class Lamp : std::uint8_t { green, amber, red };
+
+inline constexpr double kGreenBelow = 1e-4;
+inline constexpr double kAmberBelow = 1e-3;
+inline constexpr double kNetAlarm = -3e-3;
+inline constexpr SimDuration kIndicatorWindow = {1'000'000'000};
+inline constexpr SimDuration kNetAlarmAfter = {200'000'000};
+
+struct PortDefects {
+  double e_x = 0;         // [m]
+  double e_v = 0;         // [m/s]
+  double e_F = 0;         // [N]
+  double dE = 0;          // [J]
+  double dE_star = 0;     // [J]
+  double eta = 0;         // [-]
+  double net = 0;         // [-]
+  bool creates_energy = false;
+};
+
+[[nodiscard]] Lamp lamp_of(const PortDefects& defects) noexcept;
+
+// Follows all ports of a session. It never feeds back into the physics, so it is no part of a state hash.
+class Indicator {
+ public:
+  Indicator(std::size_t ports, SimDuration communication_step);
+
+  // Both samples of the same step n >= 0. No allocation.
+  void update(const MechanismSample& mechanism, const ActuatorSample& actuators) noexcept;
+  void reset() noexcept;
+
+  [[nodiscard]] const PortDefects& port(std::size_t i) const noexcept { return defects_[i]; }
+  [[nodiscard]] double omega_H() const noexcept { return omega_H_; }  // of the last update [-]
+  [[nodiscard]] bool creates_energy() const noexcept;
+
+ private:
+  // sums over one bucket of the window
+  struct Bucket {
+    double residual = 0, net = 0, work = 0, force = 0, stiffness = 0;
+  };
+  static constexpr std::size_t kBuckets = 20;
+
+  void start_bucket() noexcept;
+  void evaluate_window(std::size_t port) noexcept;
+
+  std::size_t ports_;
+  double H_;
+  std::int64_t steps_per_bucket_;
+  std::int64_t steps_in_bucket_ = 0;
+  std::size_t current_ = 0;
+  std::int64_t alarm_after_steps_;
+  std::vector<std::array<Bucket, kBuckets>> window_;  // by port
+  std::vector<std::int64_t> steps_below_alarm_;       // by port
+  std::vector<PortDefects> defects_;
+  double omega_H_ = 0;
+};
+
+// H sqrt(largest eigenvalue of W diag(K)) by power iteration on the similar symmetric matrix, ports <= kMaxPorts.
+[[nodiscard]] double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept;
+
+}  // namespace slew::coupling

@@ -1,0 +1,17 @@
+// How much of the partner's behaviour a subsystem uses inside a communication step (coupling study, section 2).
+#pragma once
+
+#include <cstdint>
+
+namespace slew::coupling {
+
+enum class Level : std::uint8_t {
+  hold,    // held pressure force, held speed, volume corrected at the exchange, friction local
+  linear,  // mechanics uses the hydraulics' linearisation; hydraulics holds the speed
+  two,     // both sides integrate against the partner's reduced model
+  tlm      // transmission line with one step of delay
+};
+
+enum class Quality : std::uint8_t { ok, extrapolated, degraded, invalid };
+
+}  // namespace slew::coupling

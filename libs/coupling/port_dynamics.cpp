@@ -1,0 +1,152 @@
+#include "coupling/port_dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace slew::coupling {
+namespace {
+
+// Alexander (1977), SIAM J. Numer. Anal. 14, 1006: gamma = 1 - 1/sqrt(2)
+constexpr double kGamma = 0.29289321881345247560;
+
+// a piecewise linear law needs one iteration per kink that is crossed; more means that the step is too long for it
+constexpr int kMaxIterations = 40;
+// from here on the Newton step is halved, which ends the cycles that kinks can cause
+constexpr int kDampedAfter = 12;
+// speeds are converged below this fraction of the speed scale: well under any physical resolution, above round-off
+constexpr double kRelativeTolerance = 1e-12;
+constexpr double kAbsoluteTolerance = 1e-15;
+
+}  // namespace
+
+PortDynamics::PortDynamics(std::size_t rows) : rows_(rows) {
+  SLEW_CHECK(rows <= kMaxRows);
+  for (std::vector<double>* values :
+       {&x_, &v_, &z_, &a_free_, &x_base_, &v_base_, &z_base_, &x_stage_, &v_stage_, &z_stage_, &f_, &slope_, &f_mean_,
+        &f_slope_, &f_end_, &work_, &impulse_, &residual_, &k_x_, &k_v_, &k_z_}) {
+    values->assign(rows, 0.0);
+  }
+  W_.assign(rows * rows, 0.0);
+  A_.assign(rows * rows, 0.0);
+  partner_.assign(rows, RowPartner{});
+}
+
+// stage values x, z from the stage speeds, then force f and its total slope with respect to the own speed
+void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const RowPartner& p = partner_[i];
+    const double shrink = 1 / (1 + weight * p.lambda);
+    x_stage_[i] = x_base_[i] + weight * v_stage_[i];
+    z_stage_[i] =
+        (z_base_[i] + weight * (p.F_dot - p.K * (v_stage_[i] - p.v_ref) + p.lambda * p.F_n)) * shrink;
+    const RowForce law = laws.evaluate(i, z_stage_[i] - p.D * (v_stage_[i] - p.v_ref), x_stage_[i], v_stage_[i]);
+    f_[i] = law.force;
+    slope_[i] = law.d_v + weight * law.d_x - law.d_z * (weight * p.K * shrink + p.D);
+  }
+}
+
+// Gaussian elimination with row pivoting in a fixed order; A_ and residual_ are overwritten, residual_ is the solution
+void PortDynamics::solve_linear() noexcept {
+  const std::size_t m = rows_;
+  for (std::size_t k = 0; k < m; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < m; ++i) {
+      if (std::fabs(A_[i * m + k]) > std::fabs(A_[pivot * m + k])) pivot = i;
+    }
+    if (pivot != k) {
+      for (std::size_t j = k; j < m; ++j) std::swap(A_[k * m + j], A_[pivot * m + j]);
+      std::swap(residual_[k], residual_[pivot]);
+    }
+    const double inverse = 1 / A_[k * m + k];
+    for (std::size_t i = k + 1; i < m; ++i) {
+      const double factor = A_[i * m + k] * inverse;
+      if (factor == 0) continue;
+      for (std::size_t j = k + 1; j < m; ++j) A_[i * m + j] -= factor * A_[k * m + j];
+      residual_[i] -= factor * residual_[k];
+    }
+  }
+  for (std::size_t k = m; k-- > 0;) {
+    double sum = residual_[k];
+    for (std::size_t j = k + 1; j < m; ++j) sum -= A_[k * m + j] * residual_[j];
+    residual_[k] = sum / A_[k * m + k];
+  }
+}
+
+// v = v_base + weight (a_free + W f(v)) for the stage speeds
+bool PortDynamics::solve_stage(double weight, const RowLaws& laws, PortStep& report) noexcept {
+  const std::size_t m = rows_;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    evaluate_rows(weight, laws);
+    double largest = 0;
+    double scale = 0;
+    for (std::size_t i = 0; i < m; ++i) {
+      double acceleration = a_free_[i];
+      for (std::size_t j = 0; j < m; ++j) acceleration += W_[i * m + j] * f_[j];
+      residual_[i] = v_base_[i] + weight * acceleration - v_stage_[i];
+      largest = std::max(largest, std::fabs(residual_[i]));
+      scale = std::max({scale, std::fabs(v_stage_[i]), std::fabs(weight * a_free_[i])});
+    }
+    ++report.iterations;
+    if (largest <= kAbsoluteTolerance + kRelativeTolerance * scale) {
+      report.residual = std::max(report.residual, largest);
+      return true;
+    }
+    for (std::size_t i = 0; i < m; ++i) {
+      for (std::size_t j = 0; j < m; ++j) {
+        A_[i * m + j] = (i == j ? 1.0 : 0.0) - weight * W_[i * m + j] * slope_[j];
+      }
+    }
+    solve_linear();
+    const double damping = iteration < kDampedAfter ? 1.0 : 0.5;
+    for (std::size_t i = 0; i < m; ++i) v_stage_[i] += damping * residual_[i];
+    if (iteration + 1 == kMaxIterations) report.residual = std::max(report.residual, largest);
+  }
+  evaluate_rows(weight, laws);
+  return false;
+}
+
+PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noexcept {
+  PortStep report;
+  const double delta = h / micro_steps;
+  const double weight = kGamma * delta;
+  for (std::size_t i = 0; i < rows_; ++i) f_mean_[i] = f_slope_[i] = work_[i] = impulse_[i] = 0;
+  for (int step = 0; step < micro_steps; ++step) {
+    for (int stage = 0; stage < 2; ++stage) {
+      // first stage at gamma delta, second at delta
+      const double carried = stage == 0 ? 0.0 : (1 - kGamma) * delta;
+      for (std::size_t i = 0; i < rows_; ++i) {
+        x_base_[i] = x_[i] + carried * k_x_[i];
+        v_base_[i] = v_[i] + carried * k_v_[i];
+        z_base_[i] = z_[i] + carried * k_z_[i];
+        if (stage == 0) v_stage_[i] = v_[i];
+      }
+      report.has_converged &= solve_stage(weight, laws, report);
+      const double share = (stage == 0 ? 1 - kGamma : kGamma) * delta;
+      const double time = step * delta + (stage == 0 ? kGamma : 1.0) * delta - 0.5 * h;
+      for (std::size_t i = 0; i < rows_; ++i) {
+        k_x_[i] = v_stage_[i];
+        k_v_[i] = (v_stage_[i] - v_base_[i]) / weight;
+        k_z_[i] = (z_stage_[i] - z_base_[i]) / weight;
+        f_mean_[i] += share * f_[i];
+        f_slope_[i] += share * time * f_[i];
+        const double pressure_force = z_stage_[i] - partner_[i].D * (v_stage_[i] - partner_[i].v_ref);
+        work_[i] += share * pressure_force * v_stage_[i];
+        impulse_[i] += share * pressure_force;
+      }
+    }
+    x_.swap(x_stage_);
+    z_.swap(z_stage_);
+    v_ = v_stage_;
+  }
+  for (std::size_t i = 0; i < rows_; ++i) {
+    f_mean_[i] /= h;
+    // least-squares slope of a line about the middle of the sub-step: integral of f (t - h/2) over h^3 / 12
+    f_slope_[i] *= 12 / (h * h * h);
+    f_end_[i] = f_[i];
+  }
+  return report;
+}
+
+}  // namespace slew::coupling

@@ -1,0 +1,87 @@
+// The small coupled problem at the ports, solved implicitly in the mechanics' sub-step (coupling study, section 8).
+//
+// A row is a scalar coordinate of the mechanism with a stiff force law: an actuator's stroke, or a joint coordinate
+// with friction and limits. Over a sub-step of length h the mechanism is its reduced model
+//   x' = v,   v' = a_free + W f                                                                    (1)
+// and each row's force f = f(z, x, v, t) follows the row's own law, where z is the partner's pressure force with
+//   z' = F_dot - K (v - v_ref) - lambda (z - F_n)                                                  (2)
+// (K = lambda = F_dot = 0 for rows without partner). (1), (2) are integrated with micro-steps of the L-stable,
+// stiffly accurate two-stage SDIRK method (Alexander 1977, gamma = 1 - 1/sqrt(2), order 2); each stage is a Newton
+// iteration on the m speeds. Friction slopes of 4e4 1/s and end stops are thus inside the implicit solve, while the
+// mechanism itself sees only the mean and the slope in time of f.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/static_vector.h"
+
+namespace slew::coupling {
+
+inline constexpr std::size_t kMaxRows = 32;
+
+using RowArray = StaticVector<double, kMaxRows>;
+
+// Partner's linearisation for one row, equation (2), and its feed-through -D (v - v_ref).
+struct RowPartner {
+  double F_dot = 0, K = 0, lambda = 0, D = 0, F_n = 0, v_ref = 0;
+};
+
+// Value and slopes of one row's force.
+struct RowForce {
+  double force = 0, d_z = 0, d_x = 0, d_v = 0;
+};
+
+// The rows' force laws; row i depends on its own z, x, v only.
+class RowLaws {
+ public:
+  virtual ~RowLaws() = default;
+  [[nodiscard]] virtual RowForce evaluate(std::size_t row, double z, double x, double v) const noexcept = 0;
+};
+
+struct PortStep {
+  double residual = 0;      // largest speed residual that was accepted [m/s or rad/s]
+  int iterations = 0;       // Newton iterations of all stages
+  bool has_converged = true;
+};
+
+class PortDynamics {
+ public:
+  // rows <= kMaxRows.
+  explicit PortDynamics(std::size_t rows);
+
+  // inputs of a sub-step, set by the owner; all arrays have one entry per row
+  std::span<double> x() noexcept { return {x_.data(), rows_}; }        // start positions, advanced by solve()
+  std::span<double> v() noexcept { return {v_.data(), rows_}; }        // start speeds, advanced by solve()
+  std::span<double> z() noexcept { return {z_.data(), rows_}; }        // pressure forces, advanced by solve()
+  std::span<double> a_free() noexcept { return {a_free_.data(), rows_}; }
+  std::span<double> W() noexcept { return {W_.data(), rows_ * rows_}; }  // row-major
+  std::span<RowPartner> partner() noexcept { return {partner_.data(), rows_}; }
+
+  // Integrates over h in `micro_steps` equal steps.
+  PortStep solve(double h, int micro_steps, const RowLaws& laws) noexcept;
+
+  // results of the last solve(): force over the sub-step is f_mean + (t - h/2) f_slope to first order
+  [[nodiscard]] std::span<const double> f_mean() const noexcept { return {f_mean_.data(), rows_}; }
+  [[nodiscard]] std::span<const double> f_slope() const noexcept { return {f_slope_.data(), rows_}; }
+  [[nodiscard]] std::span<const double> f_end() const noexcept { return {f_end_.data(), rows_}; }
+  [[nodiscard]] std::span<const double> work() const noexcept { return {work_.data(), rows_}; }        // of z [J]
+  [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }  // of z [N s]
+
+ private:
+  bool solve_stage(double weight, const RowLaws& laws, PortStep& report) noexcept;
+  void evaluate_rows(double weight, const RowLaws& laws) noexcept;
+  void solve_linear() noexcept;
+
+  std::size_t rows_;
+  std::vector<double> x_, v_, z_, a_free_, W_;
+  std::vector<RowPartner> partner_;
+  std::vector<double> x_base_, v_base_, z_base_;     // stage value = base + weight * slope
+  std::vector<double> x_stage_, v_stage_, z_stage_;  // stage values
+  std::vector<double> f_, slope_, f_mean_, f_slope_, f_end_, work_, impulse_;
+  std::vector<double> residual_, A_;
+  std::vector<double> k_x_, k_v_, k_z_;  // slopes of the first stage
+};
+
+}  // namespace slew::coupling

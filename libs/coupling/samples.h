@@ -1,0 +1,63 @@
+// What mechanics and hydraulics tell each other once per communication step (coupling study, sections 8 and 10).
+//
+// A port is one actuator: x is its stroke [m] (piston position), F the pressure force that pushes the stroke open [N].
+// Sample n holds at t_n = n H; it is published after step n-1 and used for step n. Arrays are in port order.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/static_vector.h"
+
+namespace slew::coupling {
+
+inline constexpr std::size_t kMaxPorts = 16;
+
+using PortArray = StaticVector<double, kMaxPorts>;
+using PortMatrix = StaticVector<double, kMaxPorts * kMaxPorts>;  // m x m, row-major, without gaps
+
+enum class MobilityKind : std::uint8_t {
+  instant,  // W = J M^-1 J^T
+  step      // rows with stiff laws behind the ports (joint friction, limits) condensed implicitly over H
+};
+
+// Mechanics to hydraulics.
+struct MechanismSample {
+  PortArray x;         // stroke [m]
+  PortArray v;         // speed [m/s]
+  PortArray a;         // acceleration with the line forces [m/s2]
+  PortArray a_free;    // acceleration without the line forces, J M^-1 h + Jdot u [m/s2]
+  PortMatrix W;        // interface mobility [1/kg]
+  MobilityKind W_kind = MobilityKind::instant;
+  PortArray F_used;    // mechanics' copy of the pressure force at t_n [N]
+  PortArray F_line;    // pressure force less friction plus end stop at t_n [N]
+  PortArray work;      // integral of F v dt over the finished step [J]
+  PortArray impulse;   // integral of F dt over the finished step [N s]
+  PortArray v_mean;    // mean speed of the finished step [m/s]
+  bool operator==(const MechanismSample&) const = default;
+};
+
+// Hydraulics to mechanics. F holds at (x_ref, v_ref), the hydraulics' own piston position and speed at t_n; near it
+//   F' = F_dot - K (v - v_ref) - lambda (F - F_n),  line contribution -D (v - v_ref).
+struct ActuatorSample {
+  PortArray F;               // pressure force pA AA - pB AB [N]
+  PortArray F_dot;           // [N/s]
+  PortArray K;               // oil-column stiffness, >= 0 [N/m]
+  PortArray lambda;          // leakage of the spring, >= 0 [1/s]
+  PortArray D;               // feed-through damping, >= 0 [N s/m]
+  PortArray x_ref;           // [m]
+  PortArray v_ref;           // [m/s]
+  PortArray friction_scale;  // |F| (1 - eta) [N]
+  PortArray work;            // integral of F v dt over the finished step [J]
+  PortArray impulse;         // integral of F dt over the finished step [N s]
+  PortArray p_A, p_B;        // chamber pressures, absolute [Pa]
+  PortArray Q_A, Q_B;        // flows into the A and B volumes from the circuit [m3/s]
+  std::uint32_t flags = 0;   // StepFlag bits of the finished step
+  bool operator==(const ActuatorSample&) const = default;
+};
+
+void resize(MechanismSample& sample, std::size_t ports);
+void resize(ActuatorSample& sample, std::size_t ports);
+
+}  // namespace slew::coupling

@@ -1,0 +1,73 @@
+// A physics subsystem: what a node steps, hashes, records and changes. One implementation per physics role.
+//
+// Life: built from a scene -> first_sample() -> start() -> step(), step(), ... ; reset() returns to before
+// first_sample(). Everything from start() on neither allocates nor locks nor throws.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/element_variable.h"
+#include "core/status.h"
+#include "core/step_report.h"
+#include "core/time.h"
+#include "coupling/samples.h"
+
+namespace slew::coupling {
+
+// The partners' samples of one step; null when the scene has no such partner.
+struct PartnerSamples {
+  const MechanismSample* mechanism = nullptr;
+  const ActuatorSample* actuators = nullptr;
+};
+
+// The sample that this subsystem publishes; the half that is not its own stays empty.
+struct OwnSample {
+  MechanismSample mechanism;
+  ActuatorSample actuators;
+};
+
+// A parameter change of a tick: the value is reached after `over`, linearly, beginning with this step.
+struct ParameterChange {
+  std::string_view path;  // "Bag.mass"
+  double value = 0;       // SI
+  SimDuration over;
+};
+
+class Subsystem {
+ public:
+  virtual ~Subsystem() = default;
+
+  // Sample 'INIT', known before the partner has started; false when this subsystem waits for the partner first.
+  [[nodiscard]] virtual bool first_sample(OwnSample& sample) noexcept = 0;
+
+  // Start state, from the partners' INIT (or sample 0 when they started first); then own sample 0.
+  // Error: no start state exists, with the reason.
+  virtual Status start(const PartnerSamples& partners, OwnSample& sample) = 0;
+
+  // Advances from t_n to t_{n+1} and gives sample n+1. controls: values of the input channels, by channel index.
+  // After a non-finite state the sample stays the last good one and every further report says so.
+  virtual StepReport step(StepIndex n, const PartnerSamples& partners, std::span<const double> controls,
+                          OwnSample& sample) noexcept = 0;
+
+  // True when the parameter is one of this subsystem's and the change is begun; it then takes part in the hash.
+  virtual bool change_parameter(StepIndex n, const ParameterChange& change) noexcept = 0;
+
+  // Back to the state before first_sample(), parameters as the scene gives them.
+  virtual void reset() = 0;
+
+  // Hash of the raw bits of all state that influences the future.
+  [[nodiscard]] virtual std::uint64_t state_hash() const noexcept = 0;
+
+  // Variables in a fixed order; values of the last published instant.
+  [[nodiscard]] virtual std::span<const ElementVariable> variables() const noexcept = 0;
+  virtual void read_variables(std::span<double> values) const noexcept = 0;
+
+  // Name of what a StepReport's offender index means.
+  [[nodiscard]] virtual std::string_view offender_name(std::int32_t index) const noexcept = 0;
+};
+
+}  // namespace slew::coupling
