@@ -1,0 +1,47 @@
+// One node's connection to the others: bytes out on a topic, bytes in with their topic.
+//
+// Two carriers behind it: Cyclone DDS (cyclone_transport.h) and the bus of one process (in_process_bus.h). Both carry
+// the same CDR bytes from one encoder (codec.h), so that a recording does not depend on the carrier.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+#include "transport/wire.h"
+
+namespace slew::transport {
+
+// A received message; the bytes stay valid until the next take() on the same transport.
+struct Received {
+  wire::Topic topic = wire::Topic::session;
+  std::span<const std::byte> bytes;  // encapsulation header (4 bytes) and CDR
+  std::int64_t source_ns = 0;        // writer's wall clock at the write
+};
+
+class Transport {
+ public:
+  virtual ~Transport() = default;
+
+  // Sends; never blocks longer than the carrier's own bound (stated in the implementation). Thread-safe.
+  virtual Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept = 0;
+
+  // Next received message of any subscribed topic; false when there is none now. One thread only.
+  virtual bool take(Received& message) = 0;
+
+  // Blocks until a message may be there, wake() is called, or the monotonic deadline passes.
+  virtual void wait_until(std::int64_t monotonic_deadline_ns) = 0;
+
+  // Ends a wait_until of another thread. Async-signal-safe is not required.
+  virtual void wake() noexcept = 0;
+
+  // For messages about a JOIN that does not come about: who writes a topic as the carrier sees it, e.g.
+  // "host:pid type slewring::Tick"; empty when the carrier cannot tell.
+  [[nodiscard]] virtual std::vector<std::string> discovered_writers(wire::Topic topic) = 0;
+};
+
+}  // namespace slew::transport

@@ -1,0 +1,264 @@
+// The messages between the processes of a session, as plain structs. idl/slewring.idl is the same on the wire.
+//
+// Caps are the constants below and of the same name in the IDL; exceeding one is an error at load. Every message starts
+// with a Header that says who speaks in which session; one that does not fit is counted per cause, never applied.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/static_vector.h"
+#include "core/time.h"
+#include "coupling/level.h"
+#include "coupling/samples.h"
+
+namespace slew::wire {
+
+inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::size_t kMaxChannels = 64;
+inline constexpr std::size_t kMaxCommandsPerTick = 16;
+inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
+inline constexpr std::size_t kMaxNameLength = 63;  // characters
+inline constexpr std::size_t kMaxReasonLength = 255;
+inline constexpr std::size_t kMaxAssets = 256;
+inline constexpr std::size_t kMaxSceneBytes = 4 * 1024 * 1024;
+
+using SessionId = std::array<std::uint8_t, 16>;
+
+enum class Role : std::uint8_t { io, mechanics, hydraulics, flex, recorder, observer, controller };
+inline constexpr std::size_t kRoles = 5;  // roles that can be required: io .. recorder
+
+[[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept { return 1u << static_cast<unsigned>(role); }
+
+enum class Phase : std::uint8_t { join, init, running, ended };
+
+struct Header {
+  SessionId session{};
+  Role role = Role::observer;      // of the writer
+  std::uint32_t incarnation = 0;   // of the writer's role in this session, from 1
+  std::uint32_t epoch = 0;         // grows by one with every reset
+  Phase phase = Phase::join;
+  StepIndex step = kJoinStep;
+  bool operator==(const Header&) const = default;
+};
+
+// What every physics sample carries beside the physics.
+struct SampleState {
+  coupling::Level level = coupling::Level::two;
+  coupling::Quality quality = coupling::Quality::ok;
+  StepIndex used_step = 0;         // partner step this sample was computed from
+  std::uint32_t lost = 0;          // partner samples that never came
+  std::uint64_t state_hash = 0;    // of the writer's whole state at t_step
+  std::uint32_t flags = 0;         // StepFlag bits of the finished step
+  std::int32_t offender = -1;
+  std::uint32_t substeps = 0;
+  bool operator==(const SampleState&) const = default;
+};
+
+struct MechanismMessage {
+  Header header;
+  SampleState state;
+  coupling::MechanismSample sample;
+  bool operator==(const MechanismMessage&) const = default;
+};
+
+struct ActuatorMessage {
+  Header header;
+  SampleState state;
+  coupling::ActuatorSample sample;
+  bool operator==(const ActuatorMessage&) const = default;
+};
+
+enum class TickFlag : std::uint32_t { end = 1u << 0, fault = 1u << 1 };
+
+// A parameter change that every node applies at the start of this step.
+struct Command {
+  std::uint64_t request = 0;      // id of the ControlRequest it came from; 0: from the script
+  std::string path;               // "Bag.mass"
+  double value = 0;               // SI
+  std::int64_t over_ns = 0;       // spread over this time
+  bool operator==(const Command&) const = default;
+};
+
+struct Tick {
+  Header header;
+  std::uint32_t flags = 0;                             // TickFlag bits
+  std::uint64_t state_hash = 0;                        // io_node's own state (gate, ramps, script position)
+  StaticVector<double, kMaxChannels> controls;         // value per channel after scale, dead zone and ramp
+  StaticVector<std::uint32_t, kMaxChannels> age;       // age in steps of the source's value per channel
+  std::vector<Command> commands;                       // at most kMaxCommandsPerTick
+  bool operator==(const Tick&) const = default;
+};
+
+struct Asset {
+  std::string name;
+  std::uint64_t size = 0;
+  std::array<std::uint8_t, 32> sha256{};
+  bool operator==(const Asset&) const = default;
+};
+
+enum class Pace : std::uint8_t { real, free };
+
+// Published by io_node, transient-local: all that another node needs to take part.
+struct SessionDescription {
+  Header header;
+  std::uint32_t protocol = kProtocolVersion;
+  std::string name;
+  std::string scene_name;
+  std::string scene_text;          // after includes and --set
+  std::vector<Asset> assets;
+  std::string build;
+  std::uint64_t self_test = 0;     // arithmetic fingerprint
+  std::int64_t step_ns = 0;        // H
+  Pace pace = Pace::real;
+  std::uint32_t window = 1;
+  std::uint32_t required_roles = 0;  // bit(Role)
+  std::string host;
+  std::uint32_t pid = 0;
+  std::int64_t started_ns = 0;     // wall clock
+  bool operator==(const SessionDescription&) const = default;
+};
+
+enum class NodeState : std::uint8_t { checking, joining, initialising, ready, running, holding, ended, fault };
+
+// One writer and topic that a node has heard: the evidence of JOIN.
+struct Heard {
+  Role role = Role::io;
+  std::uint32_t incarnation = 0;
+  std::uint8_t topic = 0;
+  bool operator==(const Heard&) const = default;
+};
+
+// Published by every node at each change, transient-local.
+struct NodeStatus {
+  Header header;
+  NodeState state = NodeState::checking;
+  std::string host;
+  std::uint32_t pid = 0;
+  std::int64_t started_ns = 0;
+  std::string build;
+  std::uint64_t self_test = 0;
+  std::vector<Heard> heard;
+  StepIndex recorded_step = kJoinStep;  // recorder: all steps up to here are stored
+  std::string reason;                   // why fault, at most kMaxReasonLength characters
+  std::int32_t exit_code = 0;
+  bool operator==(const NodeStatus&) const = default;
+};
+
+struct Health {
+  Header header;                   // step: last finished one
+  NodeState state = NodeState::checking;
+  bool is_waiting = false;
+  Role waiting_for = Role::io;
+  StepIndex waiting_step = 0;
+  std::uint64_t steps_done = 0;
+  std::uint64_t overruns = 0;
+  std::uint64_t resends_asked = 0;
+  std::uint64_t resends_answered = 0;
+  std::uint64_t refused_messages = 0;  // that did not fit session, epoch or order
+  double step_time_mean = 0;       // s, of Subsystem::step over the last second
+  double step_time_max = 0;        // s
+  std::int64_t slip_ns = 0;        // io_node: wall time given up so far
+  bool operator==(const Health&) const = default;
+};
+
+struct VariableEntry {
+  std::string name;
+  std::string unit;
+  bool operator==(const VariableEntry&) const = default;
+};
+
+// Names and units of a node's variables, transient-local; several messages when there are more than fit in one.
+struct VariableDirectory {
+  Header header;
+  std::uint32_t total = 0;
+  std::uint32_t first = 0;
+  std::vector<VariableEntry> entries;  // at most kMaxVariablesPerBlock
+  bool operator==(const VariableDirectory&) const = default;
+};
+
+// Values at t_step of the variables from `first` on.
+struct VariableBlock {
+  Header header;
+  std::uint32_t first = 0;
+  StaticVector<double, kMaxVariablesPerBlock> values;
+  bool operator==(const VariableBlock&) const = default;
+};
+
+enum class ControllerAction : std::uint8_t { acquire, write, release };
+
+// From a controller to one input channel. Only the lease holder's values are used.
+struct ControllerInput {
+  std::string session;             // session name: a controller need not know the id
+  std::string controller;          // its name, unique in the session
+  std::string channel;             // input name, "Input_Lift"
+  ControllerAction action = ControllerAction::write;
+  double value = 0;                // -1 .. 1 for analog, 0 or 1 for digital
+  std::uint64_t sequence = 0;
+  StepIndex based_on_step = kJoinStep;  // step of the variables it was computed from; -1: unknown
+  bool operator==(const ControllerInput&) const = default;
+};
+
+struct ControllerLease {
+  Header header;
+  std::string controller;          // whom this answers
+  std::string channel;
+  bool is_granted = false;
+  std::string holder;              // who holds the channel now; empty: nobody
+  std::string reason;
+  bool operator==(const ControllerLease&) const = default;
+};
+
+enum class ControlAction : std::uint8_t { set_parameter, pause, resume, step, reset, stop };
+
+struct ControlRequest {
+  std::string session;
+  std::uint64_t request = 0;       // drawn at random by the sender
+  ControlAction action = ControlAction::set_parameter;
+  std::string path;                // of the parameter
+  double value = 0;                // SI; `step`: number of steps
+  std::int64_t over_ns = -1;       // -1: the parameter's default ramp
+  bool operator==(const ControlRequest&) const = default;
+};
+
+struct ControlReply {
+  Header header;                   // step: from which it holds
+  std::uint64_t request = 0;
+  bool is_accepted = false;
+  std::string reason;
+  bool operator==(const ControlReply&) const = default;
+};
+
+// "I miss this step of your topic": answered by publishing the cached message again.
+struct ResendRequest {
+  Header header;                   // step: first one missing
+  Role role = Role::io;            // whose message is missing
+  std::uint8_t topic = 0;
+  StepIndex last_step = 0;         // last one missing
+  bool operator==(const ResendRequest&) const = default;
+};
+
+// Topics in the order in which messages of one step are recorded.
+enum class Topic : std::uint8_t {
+  session,
+  node_status,
+  tick,
+  mechanism,
+  actuators,
+  variable_directory,
+  variables,
+  controller_input,
+  controller_lease,
+  control_request,
+  control_reply,
+  health,
+  resend,
+  count
+};
+
+inline constexpr std::size_t kTopics = static_cast<std::size_t>(Topic::count);
+
+}  // namespace slew::wire
