@@ -1,0 +1,132 @@
+// What a scene says about mechanics: bodies, joints, forces and dummies, as plain structs.
+//
+// Frames. Right-handed. A body's pose is given relative to another body (or Ground): position of its origin, and
+// successive Euler rotations z-x'-z'' (phi, theta, psi). A joint has a frame in each body: a point and successive
+// rotations about x, y', z''. The joint's axis is the frames' z; its coordinate is the motion of frame 2 relative to
+// frame 1, and its value at the start follows from the bodies' poses. `Ground` is predefined.
+//
+// field_tables.h binds every member that a scene may set to its key, dimension, range and default.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/field.h"
+
+namespace slew::multibody {
+
+inline constexpr std::string_view kGroundName = "Ground";
+inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+enum class InertiaPoint : int { center_of_mass, body_origin };
+
+struct BodyDef {
+  std::string name;
+  std::string relative_to = "Ground";  // body that the pose refers to
+  Triple position{};                   // m, origin in relative_to's frame
+  Triple orientation{};                // rad, Euler z-x'-z''
+  double mass = 0;                     // kg, > 0
+  Triple center_of_mass{};             // m, body frame
+  Triple inertia{};                    // kg m2, Ixx Iyy Izz in body axes; 0 0 0 is a point mass
+  Triple products{};                   // kg m2, the tensor's elements Ixy Ixz Iyz (that is -integral x y dm, ...)
+  InertiaPoint inertia_about = InertiaPoint::center_of_mass;
+};
+
+enum class JointType : int { revolute, prismatic, spherical, fixed, floating };
+
+// One struct for every joint type; each type's field table lists the members that it has, in its own dimensions.
+struct JointDef {
+  std::string name;
+  JointType type = JointType::revolute;
+  std::string body1 = "Ground";
+  Triple point1{};        // m, body 1 frame
+  Triple orientation1{};  // rad, successive x, y', z''
+  std::string body2;
+  Triple point2{};                 // m, body 2 frame
+  Triple orientation2{};           // rad
+  double initial_velocity = 0;     // rad/s or m/s (revolute, prismatic)
+  Triple initial_translation{};    // m/s, of point 2 seen from body 1, in body 1 axes (floating)
+  Triple initial_rotation{};       // rad/s, of body 2 seen from body 1, in body 1 axes (spherical, floating)
+  double limit_min = -kUnlimited;  // rad or m
+  double limit_max = kUnlimited;   // rad or m
+  double limit_stiffness = 0;      // N m/rad or N/m
+  double limit_damping = 0;        // N m s/rad or N s/m; a limit pushes only
+  double coulomb_friction = 0;     // N m or N
+  double viscous_friction = 0;     // N m s/rad or N s/m
+  double friction_speed = 1e-3;    // rad/s or m/s, over which the Coulomb part is smoothed
+};
+
+// Force along the line between a point of body 1 and a point of body 2; positive pushes them apart.
+struct TranslationalForceDef {
+  std::string name;
+  std::string body1;
+  Triple point1{};  // m, body 1 frame
+  std::string body2;
+  Triple point2{};                  // m, body 2 frame
+  double spring_constant = 0;       // N/m
+  double damping_constant = 0;      // N s/m
+  double free_length = 0;           // m, length at which the spring carries nothing
+  double min_length = 0;            // m, below it the end damper pushes
+  double max_length = kUnlimited;   // m, above it the end damper pulls back
+  double end_spring_constant = 0;   // N/m, 0: no end dampers
+  double end_damping_constant = 0;  // N s/m
+};
+
+// Torque about the axis f1 x g1 of body 1; the angle is that of f2 in the plane of f1 and g1, counted from f1 to g1.
+struct RotationalForceDef {
+  std::string name;
+  std::string body1;
+  Triple f1{0, 0, 1};  // direction, body 1 frame
+  Triple g1{1, 0, 0};  // direction at a right angle to f1, body 1 frame
+  std::string body2;
+  Triple f2{0, 0, 1};               // direction, body 2 frame
+  double spring_constant = 0;       // N m/rad
+  double damping_constant = 0;      // N m s/rad
+  double free_angle = 0;            // rad
+  double min_angle = -kUnlimited;   // rad
+  double max_angle = kUnlimited;    // rad
+  double end_spring_constant = 0;   // N m/rad, 0: no end dampers
+  double end_damping_constant = 0;  // N m s/rad
+};
+
+// Mass of a cylinder (index 1) or of a piston with its rod (index 2), carried by a translational force without
+// degrees of freedom. Element frame: x = unit(P1 - P2), origin P1 for index 1 and P2 for index 2.
+struct ForceDummyDef {
+  std::string name;
+  std::string relative_to;  // translational force
+  std::int64_t index = 1;   // 1: at body 1's end, 2: at body 2's end
+  double mass = 0;          // kg
+  Triple center_of_mass{};  // m, element frame; on the x axis
+  Triple inertia{};         // kg m2 about the centre of mass, element frame; Iyy = Izz, Ixx has no effect
+};
+
+// Mass fixed to a body.
+struct StaticDummyDef {
+  std::string name;
+  std::string relative_to = "Ground";  // body
+  Triple position{};                   // m, in the body's frame
+  Triple orientation{};                // rad, Euler z-x'-z''
+  double mass = 0;                     // kg, 0: graphics only
+  Triple center_of_mass{};             // m, dummy's frame
+  Triple inertia{};                    // kg m2 about the centre of mass, dummy's frame
+};
+
+enum class Formulation : int { recursive, lagrange, augmented, penalty };
+
+struct MechanicsDef {
+  Triple gravity{0, -9.81, 0};                       // m/s2
+  Formulation formulation = Formulation::recursive;  // the only one in this version
+  double max_substep = 1e-3;                         // s, longest sub-step of the integrator
+
+  std::vector<BodyDef> bodies;
+  std::vector<JointDef> joints;
+  std::vector<TranslationalForceDef> translational_forces;
+  std::vector<RotationalForceDef> rotational_forces;
+  std::vector<ForceDummyDef> force_dummies;
+  std::vector<StaticDummyDef> static_dummies;
+};
+
+}  // namespace slew::multibody

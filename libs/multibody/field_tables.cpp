@@ -1,0 +1,319 @@
+#include "multibody/field_tables.h"
+
+#include <array>
+
+namespace slew::multibody {
+namespace {
+
+using enum Dimension;
+
+constexpr Range kSubstepRange{.min = 1e-6, .max = 20e-3, .min_is_open = false, .max_is_open = false};
+constexpr double kMassRamp = 1.0;  // s
+
+constexpr std::array<std::string_view, 2> kInertiaPoints = {"center_of_mass", "body_origin"};
+constexpr std::array<std::string_view, 4> kFormulations = {"recursive", "lagrange", "augmented", "penalty"};
+
+constexpr Field kMechanicsFields[] = {
+    field<&MechanicsDef::gravity>(
+        "gravity", {.dimension = acceleration, .change = Change::live, .doc = "acceleration of gravity, global axes"}),
+    field<&MechanicsDef::formulation>(
+        "formulation", {.choices = kFormulations, .doc = "equations of motion; this version has recursive only"}),
+    field<&MechanicsDef::max_substep>(
+        "max_substep",
+        {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step of the integrator inside a step"}),
+};
+
+constexpr Field kBodyFields[] = {
+    field<&BodyDef::relative_to>("relative_to",
+                                 {.reference = "body", .doc = "body that position and orientation refer to"}),
+    field<&BodyDef::position>("position", {.dimension = length, .doc = "origin of the body's frame"}),
+    field<&BodyDef::orientation>("orientation", {.dimension = angle, .doc = "successive Euler rotations z, x', z''"}),
+    field<&BodyDef::mass>("mass", {.dimension = mass,
+                                   .range = kPositive,
+                                   .presence = Presence::required,
+                                   .change = Change::live,
+                                   .ramp = kMassRamp,
+                                   .doc = "mass; a live change scales the inertia with it"}),
+    field<&BodyDef::center_of_mass>("center_of_mass", {.dimension = length, .doc = "centre of mass, body frame"}),
+    field<&BodyDef::inertia>("inertia", {.dimension = inertia,
+                                         .range = kNotNegative,
+                                         .presence = Presence::required,
+                                         .doc = "moments Ixx, Iyy, Izz in body axes; 0, 0, 0 is a point mass"}),
+    field<&BodyDef::products>(
+        "products",
+        {.dimension = inertia, .doc = "the tensor's elements Ixy, Ixz, Iyz (minus the integral of x y dm)"}),
+    field<&BodyDef::inertia_about>("inertia_about",
+                                   {.choices = kInertiaPoints, .doc = "point that inertia and products refer to"}),
+};
+
+constexpr Field kBody1 = field<&JointDef::body1>("body1", {.reference = "body", .doc = "first body"});
+constexpr Field kPoint1 = field<&JointDef::point1>("point1", {.dimension = length, .doc = "joint's point in body 1"});
+constexpr Field kOrientation1 = field<&JointDef::orientation1>(
+    "orientation1", {.dimension = angle, .doc = "joint frame in body 1: successive rotations about x, y', z''"});
+constexpr Field kBody2 =
+    field<&JointDef::body2>("body2", {.presence = Presence::required, .reference = "body", .doc = "second body"});
+constexpr Field kPoint2 = field<&JointDef::point2>("point2", {.dimension = length, .doc = "joint's point in body 2"});
+constexpr Field kOrientation2 = field<&JointDef::orientation2>(
+    "orientation2", {.dimension = angle, .doc = "joint frame in body 2: successive rotations about x, y', z''"});
+
+// limits and friction of a joint with one coordinate, in the dimensions of that coordinate
+struct AxisDimensions {
+  Dimension coordinate, speed, stiffness, damping, force;
+};
+
+constexpr Field initial_velocity_row(const AxisDimensions& d) {
+  return field<&JointDef::initial_velocity>("initial_velocity",
+                                            {.dimension = d.speed, .doc = "rate of the joint coordinate at the start"});
+}
+constexpr Field limit_min_row(const AxisDimensions& d) {
+  return field<&JointDef::limit_min>("limit_min",
+                                     {.dimension = d.coordinate, .doc = "lower limit of the joint coordinate"});
+}
+constexpr Field limit_max_row(const AxisDimensions& d) {
+  return field<&JointDef::limit_max>("limit_max",
+                                     {.dimension = d.coordinate, .doc = "upper limit of the joint coordinate"});
+}
+constexpr Field limit_stiffness_row(const AxisDimensions& d) {
+  return field<&JointDef::limit_stiffness>("limit_stiffness", {.dimension = d.stiffness,
+                                                               .range = kNotNegative,
+                                                               .change = Change::live,
+                                                               .doc = "spring of the limits; they push only"});
+}
+constexpr Field limit_damping_row(const AxisDimensions& d) {
+  return field<&JointDef::limit_damping>(
+      "limit_damping",
+      {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the limits"});
+}
+constexpr Field coulomb_row(const AxisDimensions& d) {
+  return field<&JointDef::coulomb_friction>(
+      "coulomb_friction",
+      {.dimension = d.force, .range = kNotNegative, .change = Change::live, .doc = "dry friction of the joint"});
+}
+constexpr Field viscous_row(const AxisDimensions& d) {
+  return field<&JointDef::viscous_friction>(
+      "viscous_friction",
+      {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "viscous friction of the joint"});
+}
+constexpr Field friction_speed_row(const AxisDimensions& d) {
+  return field<&JointDef::friction_speed>(
+      "friction_speed", {.dimension = d.speed,
+                         .range = kPositive,
+                         .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed)"});
+}
+
+constexpr AxisDimensions kRotation{angle, angular_velocity, rotational_stiffness, rotational_damping, torque};
+constexpr AxisDimensions kTranslation{length, velocity, stiffness, damping, force};
+
+constexpr Field kRevoluteFields[] = {kBody1,
+                                     kPoint1,
+                                     kOrientation1,
+                                     kBody2,
+                                     kPoint2,
+                                     kOrientation2,
+                                     initial_velocity_row(kRotation),
+                                     limit_min_row(kRotation),
+                                     limit_max_row(kRotation),
+                                     limit_stiffness_row(kRotation),
+                                     limit_damping_row(kRotation),
+                                     coulomb_row(kRotation),
+                                     viscous_row(kRotation),
+                                     friction_speed_row(kRotation)};
+
+constexpr Field kPrismaticFields[] = {kBody1,
+                                      kPoint1,
+                                      kOrientation1,
+                                      kBody2,
+                                      kPoint2,
+                                      kOrientation2,
+                                      initial_velocity_row(kTranslation),
+                                      limit_min_row(kTranslation),
+                                      limit_max_row(kTranslation),
+                                      limit_stiffness_row(kTranslation),
+                                      limit_damping_row(kTranslation),
+                                      coulomb_row(kTranslation),
+                                      viscous_row(kTranslation),
+                                      friction_speed_row(kTranslation)};
+
+constexpr Field kInitialRotation = field<&JointDef::initial_rotation>(
+    "initial_angular_velocity",
+    {.dimension = angular_velocity, .doc = "angular velocity of body 2 seen from body 1 at the start, body 1 axes"});
+constexpr Field kInitialTranslation = field<&JointDef::initial_translation>(
+    "initial_velocity",
+    {.dimension = velocity, .doc = "velocity of point 2 seen from body 1 at the start, body 1 axes"});
+
+constexpr Field kSphericalFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2, kInitialRotation};
+
+constexpr Field kFixedFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2};
+
+constexpr Field kFloatingFields[] = {kBody1,  kPoint1,       kOrientation1,       kBody2,
+                                     kPoint2, kOrientation2, kInitialTranslation, kInitialRotation};
+
+constexpr Field kTranslationalForceFields[] = {
+    field<&TranslationalForceDef::body1>("body1",
+                                         {.presence = Presence::required, .reference = "body", .doc = "first body"}),
+    field<&TranslationalForceDef::point1>("point1", {.dimension = length, .doc = "force's point P1 in body 1"}),
+    field<&TranslationalForceDef::body2>("body2",
+                                         {.presence = Presence::required, .reference = "body", .doc = "second body"}),
+    field<&TranslationalForceDef::point2>("point2", {.dimension = length, .doc = "force's point P2 in body 2"}),
+    field<&TranslationalForceDef::spring_constant>(
+        "spring_constant",
+        {.dimension = stiffness, .range = kNotNegative, .change = Change::live, .doc = "spring between the points"}),
+    field<&TranslationalForceDef::damping_constant>(
+        "damping_constant",
+        {.dimension = damping, .range = kNotNegative, .change = Change::live, .doc = "damper between the points"}),
+    field<&TranslationalForceDef::free_length>("free_length", {.dimension = length,
+                                                               .range = kNotNegative,
+                                                               .change = Change::live,
+                                                               .doc = "length at which the spring carries nothing"}),
+    field<&TranslationalForceDef::min_length>(
+        "min_length", {.dimension = length, .range = kNotNegative, .doc = "length below which the end damper pushes"}),
+    field<&TranslationalForceDef::max_length>(
+        "max_length",
+        {.dimension = length, .range = kNotNegative, .doc = "length above which the end damper pulls back"}),
+    field<&TranslationalForceDef::end_spring_constant>("end_spring_constant",
+                                                       {.dimension = stiffness,
+                                                        .range = kNotNegative,
+                                                        .change = Change::live,
+                                                        .doc = "spring of the end dampers; 0: no end dampers"}),
+    field<&TranslationalForceDef::end_damping_constant>(
+        "end_damping_constant",
+        {.dimension = damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the end dampers"}),
+};
+
+constexpr Field kRotationalForceFields[] = {
+    field<&RotationalForceDef::body1>("body1",
+                                      {.presence = Presence::required, .reference = "body", .doc = "first body"}),
+    field<&RotationalForceDef::f1>("f1", {.doc = "direction at a right angle to the axis, body 1"}),
+    field<&RotationalForceDef::g1>("g1", {.doc = "direction at a right angle to axis and f1, body 1"}),
+    field<&RotationalForceDef::body2>("body2",
+                                      {.presence = Presence::required, .reference = "body", .doc = "second body"}),
+    field<&RotationalForceDef::f2>("f2", {.doc = "direction whose angle from f1 towards g1 is measured, body 2"}),
+    field<&RotationalForceDef::spring_constant>("spring_constant", {.dimension = rotational_stiffness,
+                                                                    .range = kNotNegative,
+                                                                    .change = Change::live,
+                                                                    .doc = "spring about the axis"}),
+    field<&RotationalForceDef::damping_constant>("damping_constant", {.dimension = rotational_damping,
+                                                                      .range = kNotNegative,
+                                                                      .change = Change::live,
+                                                                      .doc = "damper about the axis"}),
+    field<&RotationalForceDef::free_angle>(
+        "free_angle", {.dimension = angle, .change = Change::live, .doc = "angle at which the spring carries nothing"}),
+    field<&RotationalForceDef::min_angle>("min_angle",
+                                          {.dimension = angle, .doc = "angle below which the end damper pushes"}),
+    field<&RotationalForceDef::max_angle>("max_angle",
+                                          {.dimension = angle, .doc = "angle above which the end damper pushes back"}),
+    field<&RotationalForceDef::end_spring_constant>("end_spring_constant",
+                                                    {.dimension = rotational_stiffness,
+                                                     .range = kNotNegative,
+                                                     .change = Change::live,
+                                                     .doc = "spring of the end dampers; 0: no end dampers"}),
+    field<&RotationalForceDef::end_damping_constant>("end_damping_constant", {.dimension = rotational_damping,
+                                                                              .range = kNotNegative,
+                                                                              .change = Change::live,
+                                                                              .doc = "damper of the end dampers"}),
+};
+
+constexpr Range kDummyIndex{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
+
+constexpr Field kForceDummyFields[] = {
+    field<&ForceDummyDef::relative_to>(
+        "relative_to",
+        {.presence = Presence::required, .reference = "force", .doc = "translational force that carries the mass"}),
+    field<&ForceDummyDef::index>("index", {.range = kDummyIndex,
+                                           .presence = Presence::required,
+                                           .doc = "1: cylinder, at body 1's point; 2: piston, at body 2's point"}),
+    field<&ForceDummyDef::mass>("mass",
+                                {.dimension = mass, .range = kPositive, .presence = Presence::required, .doc = "mass"}),
+    field<&ForceDummyDef::center_of_mass>(
+        "center_of_mass", {.dimension = length, .doc = "centre of mass on the element's x axis = unit(P1 - P2)"}),
+    field<&ForceDummyDef::inertia>("inertia", {.dimension = inertia,
+                                               .range = kNotNegative,
+                                               .doc = "moments about the centre of mass, element frame; Iyy = Izz, "
+                                                      "the axial Ixx has no effect"}),
+};
+
+constexpr Field kStaticDummyFields[] = {
+    field<&StaticDummyDef::relative_to>("relative_to", {.reference = "body", .doc = "body that carries the mass"}),
+    field<&StaticDummyDef::position>("position", {.dimension = length, .doc = "origin of the dummy in the body"}),
+    field<&StaticDummyDef::orientation>("orientation",
+                                        {.dimension = angle, .doc = "successive Euler rotations z, x', z''"}),
+    field<&StaticDummyDef::mass>("mass",
+                                 {.dimension = mass, .range = kNotNegative, .doc = "mass; 0 for graphics only"}),
+    field<&StaticDummyDef::center_of_mass>("center_of_mass",
+                                           {.dimension = length, .doc = "centre of mass, dummy's frame"}),
+    field<&StaticDummyDef::inertia>(
+        "inertia",
+        {.dimension = inertia, .range = kNotNegative, .doc = "moments about the centre of mass, dummy's axes"}),
+};
+
+template <auto List>
+void* append_to(MechanicsDef& mechanics, std::string_view element) {
+  auto& def = (mechanics.*List).emplace_back();
+  def.name = element;
+  return &def;
+}
+
+template <JointType Type>
+void* append_joint(MechanicsDef& mechanics, std::string_view element) {
+  JointDef& def = mechanics.joints.emplace_back();
+  def.name = element;
+  def.type = Type;
+  return &def;
+}
+
+constexpr ElementType kBodyTypes[] = {{"", "body", "rigid body", kBodyFields, append_to<&MechanicsDef::bodies>}};
+
+// in the order of JointType
+constexpr ElementType kJointTypes[] = {
+    {"revolute", "joint", "turns about z", kRevoluteFields, append_joint<JointType::revolute>},
+    {"prismatic", "joint", "slides along z", kPrismaticFields, append_joint<JointType::prismatic>},
+    {"spherical", "joint", "turns about a point", kSphericalFields, append_joint<JointType::spherical>},
+    {"fixed", "joint", "merges the two bodies", kFixedFields, append_joint<JointType::fixed>},
+    {"floating", "joint", "leaves body 2 free", kFloatingFields, append_joint<JointType::floating>},
+};
+
+constexpr ElementType kForceTypes[] = {
+    {"translational", "force", "spring-damper between two points, or a cylinder's line of force",
+     kTranslationalForceFields, append_to<&MechanicsDef::translational_forces>},
+    {"rotational", "force", "spring-damper about an axis, or a slewing drive's torque", kRotationalForceFields,
+     append_to<&MechanicsDef::rotational_forces>},
+};
+
+constexpr ElementType kDummyTypes[] = {
+    {"body_to_body_force", "dummy", "mass of a cylinder or piston, carried by a translational force", kForceDummyFields,
+     append_to<&MechanicsDef::force_dummies>},
+    {"static", "dummy", "mass fixed to a body", kStaticDummyFields, append_to<&MechanicsDef::static_dummies>},
+};
+
+constexpr Section kSections[] = {
+    {"bodies", kBodyTypes}, {"joints", kJointTypes}, {"forces", kForceTypes}, {"dummies", kDummyTypes}};
+
+template <typename Def>
+Def* find_in(std::vector<Def>& defs, std::string_view element) noexcept {
+  for (Def& def : defs) {
+    if (def.name == element) return &def;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::span<const Section> sections() noexcept {
+  return kSections;
+}
+
+std::span<const Field> mechanics_fields() noexcept {
+  return kMechanicsFields;
+}
+
+FoundElement find_element(MechanicsDef& mechanics, std::string_view element) noexcept {
+  if (BodyDef* def = find_in(mechanics.bodies, element)) return {&kBodyTypes[0], def};
+  if (JointDef* def = find_in(mechanics.joints, element)) return {&kJointTypes[static_cast<int>(def->type)], def};
+  if (auto* def = find_in(mechanics.translational_forces, element)) return {&kForceTypes[0], def};
+  if (auto* def = find_in(mechanics.rotational_forces, element)) return {&kForceTypes[1], def};
+  if (auto* def = find_in(mechanics.force_dummies, element)) return {&kDummyTypes[0], def};
+  if (auto* def = find_in(mechanics.static_dummies, element)) return {&kDummyTypes[1], def};
+  return {};
+}
+
+}  // namespace slew::multibody

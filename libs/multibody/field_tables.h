@@ -1,0 +1,42 @@
+// Field tables of the mechanics Defs: what a scene may set, by section and element type.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/field.h"
+#include "multibody/defs.h"
+
+namespace slew::multibody {
+
+// A type of element that a section of the scene may hold.
+struct ElementType {
+  std::string_view name;  // value of the key `type`; empty where the section has one type only (bodies)
+  std::string_view kind;  // what references call it (Field::reference): "body", "joint", "force", "dummy"
+  std::string_view doc;   // one line
+  std::span<const Field> fields;
+
+  // Appends a Def of this type with its defaults and the given name; returns its address for Field::member, which
+  // holds until the next append to the same MechanicsDef.
+  void* (*append)(MechanicsDef& mechanics, std::string_view element);
+};
+
+struct Section {
+  std::string_view name;  // "bodies", "joints", "forces", "dummies"
+  std::span<const ElementType> types;
+};
+
+// The sections of elements by name.
+[[nodiscard]] std::span<const Section> sections() noexcept;
+
+// Rows of the section `mechanics`; they bind to MechanicsDef itself.
+[[nodiscard]] std::span<const Field> mechanics_fields() noexcept;
+
+// A Def found by its name, with its type; def is nullptr when there is none. For live changes of parameters.
+struct FoundElement {
+  const ElementType* type = nullptr;
+  void* def = nullptr;
+};
+[[nodiscard]] FoundElement find_element(MechanicsDef& mechanics, std::string_view element) noexcept;
+
+}  // namespace slew::multibody
