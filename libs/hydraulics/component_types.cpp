@@ -1,0 +1,42 @@
+#include <array>
+
+#include "hydraulics/component_def.h"
+#include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/direct_relief_valve.h"
+#include "hydraulics/components/double_acting_cylinder.h"
+#include "hydraulics/components/hose.h"
+#include "hydraulics/components/l90ls_valve.h"
+#include "hydraulics/components/ls_pump.h"
+#include "hydraulics/components/ls_shuttle.h"
+#include "hydraulics/components/relief_valve.h"
+#include "hydraulics/components/restrictions.h"
+#include "hydraulics/components/slew_cylinder.h"
+
+namespace slew::hydraulics {
+
+std::span<const ComponentType> component_types() {
+  static const std::array types = {
+      hose_type(),
+      double_acting_cylinder_type(),
+      slew_cylinder_type(),
+      l90ls_valve_type(),
+      ls_shuttle_type(),
+      relief_valve_type(),
+      direct_relief_valve_type(),
+      compensated_orifice_type(),
+      ls_pump_type(),
+      bleed_type(),
+      orifice_type(),
+      laminar_restriction_type(),
+  };
+  return types;
+}
+
+const ComponentType* find_component_type(std::string_view name) {
+  for (const ComponentType& type : component_types()) {
+    if (type.name == name) return &type;
+  }
+  return nullptr;
+}
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,39 @@
+// Variable-displacement pump with load-sensing controller, driven at a given speed.
+//
+//   p_set = max(p_standby, min(p_LS, p_LSmax) + p_margin)                     relative to port B (tank)
+//   T alpha' = clip(K (p_set - (p_A - p_B)), 0, 1) - alpha                    swash 0..1
+//   Q_A = V_rad omega alpha eta_v - G (p_A - p_B),  Q_B = -Q_A                into the volumes
+//   torque = V_rad alpha (p_A - p_B) / eta_m,  power = torque omega
+// Steady droop: a flow Q lowers the outlet by alpha / K = Q / (V_rad omega eta_v K) below p_set.
+//
+// Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 21. Deviations: its controller gain 3.5e-5 is read
+// as % per Pa; the torque is not divided by the volumetric coefficient. Not covered: torque limiter, drive dynamics.
+#pragma once
+
+#include "hydraulics/component_def.h"
+
+namespace slew::hydraulics {
+
+struct LsPumpDef final : ComponentDef {
+  std::string port_a;                  // volume, outlet
+  std::string port_b;                  // volume, tank
+  std::string ls_port;                 // component with an LS port; empty: stand-by only
+  double speed = 0;                    // rad/s
+  double displacement = 0;             // m3/rad, full swash
+  double mechanical_coefficient = 1;   // eta_m
+  double volumetric_coefficient = 1;   // eta_v
+  double controller_gain = 3.5e-7;     // 1/Pa
+  double time_constant = 0.085;        // s
+  double set_pressure = 25e5;          // Pa, LS margin
+  double standby_pressure = 25e5;      // Pa above tank
+  double maximum_ls_pressure = 230e5;  // Pa above tank
+  double leak_flow = 0;                // m3/s ...
+  double leak_pressure = 100e5;        // Pa ... at this difference
+
+  [[nodiscard]] std::string_view type_name() const noexcept override { return "ls_pump"; }
+  [[nodiscard]] void* address() noexcept override { return this; }
+};
+
+[[nodiscard]] ComponentType ls_pump_type();
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,158 @@
+// What a scene says about its hydraulic circuit: oil, solver, start state, volumes, components, curves.
+//
+// Pressures are absolute. Settings of valves and pumps are relative to the tank they are connected to.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/field.h"
+#include "core/problem.h"
+#include "hydraulics/component_def.h"
+
+namespace slew::hydraulics {
+
+enum class Solver : int { rodas3, rk4, implicit_euler, cvode };
+enum class StartState : int { equilibrium, table13 };
+enum class Interpolation : int { linear, pchip };
+
+inline constexpr std::string_view kSolverChoices[] = {"rodas3", "rk4", "implicit_euler", "cvode"};
+inline constexpr std::string_view kStartChoices[] = {"equilibrium", "table13"};
+inline constexpr std::string_view kInterpolationChoices[] = {"linear", "pchip"};
+
+// A pressure node. Its oil content is its own rigid volume plus that of every hose and cylinder chamber connected to
+// it.
+struct VolumeDef {
+  std::string name;
+  double initial_pressure = 1e5;  // Pa absolute
+  double rigid_volume = 0;        // m3, oil in a rigid block at this node
+  bool fixed = false;             // true: a tank or an ideal pressure source, held at initial_pressure
+};
+
+// A function of one variable given by points; the last value is held beyond the ends.
+struct CurveDef {
+  std::string name;
+  Table points;  // argument (SI), value (SI)
+  Interpolation interpolation = Interpolation::linear;
+  bool odd = false;  // points are given for arguments >= 0, f(-x) = -f(x)
+};
+
+struct HydraulicsDef {
+  // oil: an ISO VG 46 mineral oil
+  double oil_bulk_modulus = 1.5e9;      // Pa, of the oil without air
+  double oil_density = 870;             // kg/m3
+  double oil_viscosity = 46e-6;         // m2/s, at working temperature
+  double entrained_air = 0.005;         // air volume / oil volume at the reference pressure
+  double air_reference_pressure = 1e5;  // Pa absolute
+  double polytropic_exponent = 1.2;     // of the entrained air
+  double pressure_floor = 5e3;          // Pa absolute; below it a volume is cavitating
+  double orifice_transition = 1e4;      // Pa; below it an orifice is laminar
+
+  // solver
+  Solver solver = Solver::rodas3;
+  double relative_tolerance = 1e-4;
+  double pressure_scale = 1e6;        // Pa, below it the error of a pressure is judged absolutely
+  double minimum_step = 1e-6;         // s
+  std::int64_t substep_budget = 200;  // sub-steps per communication step
+
+  // start state
+  StartState start = StartState::equilibrium;
+  double start_return_pressure = 5e5;  // Pa absolute, rod side of linear cylinders in equilibrium
+  double start_slew_pressure = 20e5;   // Pa absolute, mean of both sides of slew cylinders in equilibrium
+  double start_pump_pressure = 26e5;   // Pa absolute, volumes at a pump's outlet in equilibrium
+
+  std::vector<VolumeDef> volumes;
+  std::vector<std::unique_ptr<ComponentDef>> components;
+  std::vector<CurveDef> curves;
+};
+
+inline constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-1};
+inline constexpr Range kBudgetRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
+inline constexpr Range kAirRange{.min = 0, .max = 0.2, .min_is_open = false, .max_is_open = false};
+inline constexpr Range kPolytropicRange{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
+
+inline constexpr Field kHydraulicsFields[] = {
+    field<&HydraulicsDef::oil_bulk_modulus>(
+        "oil_bulk_modulus",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "bulk modulus of the oil without air"}),
+    field<&HydraulicsDef::oil_density>(
+        "oil_density", {.dimension = Dimension::density, .range = kPositive, .doc = "density of the oil"}),
+    field<&HydraulicsDef::oil_viscosity>("oil_viscosity",
+                                         {.dimension = Dimension::kinematic_viscosity,
+                                          .range = kPositive,
+                                          .doc = "kinematic viscosity of the oil at working temperature"}),
+    field<&HydraulicsDef::entrained_air>(
+        "entrained_air",
+        {.range = kAirRange, .doc = "volume of entrained air per volume of oil at the reference pressure"}),
+    field<&HydraulicsDef::air_reference_pressure>("air_reference_pressure",
+                                                  {.dimension = Dimension::pressure,
+                                                   .range = kPositive,
+                                                   .doc = "absolute pressure at which the air content is stated"}),
+    field<&HydraulicsDef::polytropic_exponent>("polytropic_exponent",
+                                               {.range = kPolytropicRange, .doc = "polytropic exponent of the air"}),
+    field<&HydraulicsDef::pressure_floor>(
+        "pressure_floor", {.dimension = Dimension::pressure,
+                           .range = kPositive,
+                           .doc = "absolute pressure below which the oil cavitates; vapour then fills the volume"}),
+    field<&HydraulicsDef::orifice_transition>(
+        "orifice_transition", {.dimension = Dimension::pressure,
+                               .range = kPositive,
+                               .doc = "pressure drop below which an orifice turns from square root to linear"}),
+    field<&HydraulicsDef::solver>(
+        "solver", {.choices = kSolverChoices, .doc = "integrator; this version has rodas3 (adaptive, L-stable)"}),
+    field<&HydraulicsDef::relative_tolerance>("relative_tolerance",
+                                              {.range = kToleranceRange, .doc = "relative error allowed per sub-step"}),
+    field<&HydraulicsDef::pressure_scale>(
+        "pressure_scale",
+        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure added to the scale of the error"}),
+    field<&HydraulicsDef::minimum_step>("minimum_step",
+                                        {.dimension = Dimension::time, .range = kPositive, .doc = "smallest sub-step"}),
+    field<&HydraulicsDef::substep_budget>(
+        "substep_budget",
+        {.dimension = Dimension::count,
+         .range = kBudgetRange,
+         .doc = "sub-steps allowed in one communication step; beyond, steps are accepted and flagged"}),
+    field<&HydraulicsDef::start>(
+        "start", {.choices = kStartChoices,
+                  .doc = "equilibrium: cylinders hold the static load; table13: every volume at its initial pressure"}),
+    field<&HydraulicsDef::start_return_pressure>(
+        "start_return_pressure", {.dimension = Dimension::pressure,
+                                  .range = kPositive,
+                                  .doc = "absolute rod-side pressure of linear cylinders at an equilibrium start"}),
+    field<&HydraulicsDef::start_slew_pressure>(
+        "start_slew_pressure", {.dimension = Dimension::pressure,
+                                .range = kPositive,
+                                .doc = "absolute mean pressure of slew cylinders at an equilibrium start"}),
+    field<&HydraulicsDef::start_pump_pressure>("start_pump_pressure",
+                                               {.dimension = Dimension::pressure,
+                                                .range = kPositive,
+                                                .doc = "absolute pressure of pump volumes at an equilibrium start"}),
+};
+
+inline constexpr Field kVolumeFields[] = {
+    field<&VolumeDef::initial_pressure>(
+        "initial_pressure", {.dimension = Dimension::pressure, .range = kPositive, .doc = "absolute start pressure"}),
+    field<&VolumeDef::rigid_volume>(
+        "rigid_volume",
+        {.dimension = Dimension::volume, .range = kNotNegative, .doc = "oil in a rigid block at this node"}),
+    field<&VolumeDef::fixed>("fixed", {.doc = "held at its initial pressure: a tank or an ideal pressure source"}),
+};
+
+inline constexpr Field kCurveFields[] = {
+    field<&CurveDef::points>("points", {.presence = Presence::required,
+                                        .doc = "list of [argument, value] in SI units, arguments increasing"}),
+    field<&CurveDef::interpolation>("interpolation",
+                                    {.choices = kInterpolationChoices, .doc = "straight lines or monotone cubics"}),
+    field<&CurveDef::odd>("odd", {.doc = "points are for positive arguments; f(-x) = -f(x)"}),
+};
+
+// Checks ranges and references by the field tables, then every rule between fields and elements. Problems are appended
+// with paths like "Cyl_Lift.rod_diameter"; a circuit builds only when errors stays empty. Warnings do not stop it.
+// Force elements are named here but live in the mechanics: the scene checks that they exist.
+void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings);
+
+}  // namespace slew::hydraulics
