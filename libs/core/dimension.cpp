@@ -5,7 +5,7 @@
 namespace slew {
 namespace {
 
-constexpr std::array<DimensionInfo, static_cast<std::size_t>(Dimension::count)> kTable = {{
+constexpr std::array<DimensionInfo, static_cast<std::size_t>(Dimension::number_of_dimensions)> kTable = {{
     {"number", "1", "0.5", {0, 0, 0, 0, 0}},
     {"length", "m", "1.5 m", {0, 1, 0, 0, 0}},
     {"area", "m2", "12 cm2", {0, 2, 0, 0, 0}},

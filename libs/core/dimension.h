@@ -46,7 +46,7 @@ enum class Dimension : std::uint8_t {
   force_rate,            // N/s
   mobility,              // 1/kg
   electric_signal,       // the valve's control signal, V or mA as the maker states it: a plain number
-  count
+  number_of_dimensions
 };
 
 struct DimensionInfo {

@@ -14,6 +14,7 @@
 #include "core/status.h"
 #include "core/step_report.h"
 #include "core/time.h"
+#include "coupling/level.h"
 #include "coupling/samples.h"
 
 namespace slew::coupling {
@@ -61,6 +62,8 @@ class Subsystem {
 
   // Hash of the raw bits of all state that influences the future.
   [[nodiscard]] virtual std::uint64_t state_hash() const noexcept = 0;
+
+  [[nodiscard]] virtual Level level() const noexcept = 0;
 
   // Variables in a fixed order; values of the last published instant.
   [[nodiscard]] virtual std::span<const ElementVariable> variables() const noexcept = 0;

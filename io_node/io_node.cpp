@@ -1,0 +1,550 @@
+#include "io_node/io_node.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slew::io {
+namespace {
+
+using node::to_text;
+using wire::NodeState;
+using wire::Phase;
+using wire::Role;
+using wire::Topic;
+
+constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
+constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+IoNode::IoNode(transport::Transport& transport, IoConfig config)
+    : member_(Role::io, transport, kOwnTopics),
+      config_(std::move(config)),
+      gate_(config_.channels, config_.gate, config_.step),
+      is_paused_(config_.starts_paused),
+      script_raw_(config_.channels.size(), kSaysNothing) {
+  window_ = config_.pace == wire::Pace::free ? kWindowFree : kWindowReal;
+  description_.header.session = node::random_session_id();
+  description_.header.role = Role::io;
+  description_.header.incarnation = 1;
+  description_.name = config_.session_name;
+  description_.scene_name = config_.scene_name;
+  description_.scene_text = config_.scene_text;
+  description_.assets = config_.assets;
+  description_.build = member_.identity().build;
+  description_.self_test = member_.identity().self_test;
+  description_.step_ns = config_.step.ns;
+  description_.pace = config_.pace;
+  description_.window = static_cast<std::uint32_t>(window_);
+  description_.required_roles = config_.required_roles;
+  description_.host = member_.identity().host;
+  description_.pid = member_.identity().pid;
+  description_.started_ns = member_.identity().started_ns;
+  member_.adopt(description_);
+}
+
+bool IoNode::poll(std::int64_t now_ns) {
+  bool any = false;
+  transport::Received message;
+  while (stage_ != Stage::finished && member_.transport().take(message)) {
+    receive(message, now_ns);
+    any = true;
+  }
+  any |= advance(now_ns);
+  watch(now_ns);
+  if (stage_ != Stage::checking_name) member_.publish_status_if_changed();
+  update_health();
+  return any;
+}
+
+std::int64_t IoNode::next_deadline(std::int64_t now_ns) const {
+  if (stage_ == Stage::joining) return now_ns + node::kProbeInterval.ns / 2;
+  if (stage_ != Stage::ticking) return now_ns + node::kProbeInterval.ns;
+  if (!is_paused_ && partners_allow(n_)) return std::max(now_ns, due_ns(n_));
+  return std::max(now_ns, resend_due_ns_);
+}
+
+void IoNode::request_stop(ExitCode code) {
+  if (stage_ == Stage::ending || stage_ == Stage::finished) return;
+  begin_ending(code, "", 0);
+}
+
+void IoNode::update_health() noexcept {
+  node::HealthState& h = health();
+  h.state = static_cast<std::uint8_t>(member_.state());
+  h.step = n_;
+  h.epoch = member_.epoch();
+  h.slip_ns = slip_ns_;
+  h.refused = member_.refusals().total();
+  h.is_waiting = stage_ == Stage::ticking && !partners_allow(n_);
+  const bool waits_for_mechanics = member_.requires_role(Role::mechanics) && mechanics_at_ < n_ - window_ + 1;
+  const bool waits_for_hydraulics = member_.requires_role(Role::hydraulics) && hydraulics_at_ < n_ - window_ + 1;
+  h.waiting_for = static_cast<std::uint8_t>(waits_for_mechanics    ? Role::mechanics
+                                            : waits_for_hydraulics ? Role::hydraulics
+                                                                   : Role::recorder);
+  h.waiting_step = n_;
+  h.has_session.store(stage_ != Stage::checking_name, std::memory_order_release);
+}
+
+// ---- receiving ------------------------------------------------------------------------------------------------
+
+void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
+  switch (message.topic) {
+    case Topic::session: return receive_session(message.bytes);
+    case Topic::node_status: {
+      const Status refusal = member_.on_node_status(message.bytes, now_ns);
+      if (!refusal.is_ok()) {
+        member_.fail(refusal.code, refusal.text);
+        stage_ = Stage::finished;
+      }
+      return;
+    }
+    case Topic::health: return member_.on_health(message.bytes, now_ns);
+    case Topic::mechanism:
+      if (transport::decode(message.bytes, mechanism_in_)) {
+        receive_sample(mechanism_in_.header, Topic::mechanism, now_ns);
+      } else {
+        ++member_.refusals().undecodable;
+      }
+      return;
+    case Topic::actuators:
+      if (transport::decode(message.bytes, actuators_in_)) {
+        receive_sample(actuators_in_.header, Topic::actuators, now_ns);
+      } else {
+        ++member_.refusals().undecodable;
+      }
+      return;
+    case Topic::controller_input: return receive_controller(message.bytes, now_ns);
+    case Topic::control_request: return receive_control(message.bytes, now_ns);
+    case Topic::resend: return receive_resend(message.bytes);
+    default: return;
+  }
+}
+
+// two sessions of one name: the one that runs stays; of two that start together the lower id stays
+void IoNode::receive_session(std::span<const std::byte> bytes) {
+  wire::SessionDescription other;
+  if (!transport::decode(bytes, other) || other.name != config_.session_name) return;
+  if (other.header.session == description_.header.session) return;
+  const bool is_starting = stage_ == Stage::checking_name || stage_ == Stage::joining;
+  const bool other_runs = stage_ == Stage::checking_name && other.started_ns < description_.started_ns;
+  if (!is_starting || (!other_runs && description_.header.session < other.header.session)) return;
+  member_.fail(ExitCode::bad_input, "session '" + config_.session_name + "' is held by process " +
+                                        std::to_string(other.pid) + " on " +
+                                        other.host.substr(0, other.host.find('#')) + ", started " +
+                                        node::time_text(other.started_ns) +
+                                        "; this second one ends; stop the first, or choose another --session name");
+  stage_ = Stage::finished;
+}
+
+void IoNode::receive_sample(const wire::Header& header, Topic topic, std::int64_t now_ns) {
+  if (!member_.fits(header)) return;
+  member_.heard(header, topic, now_ns);
+  if (header.phase != Phase::running) return;
+  StepIndex& at = topic == Topic::mechanism ? mechanics_at_ : hydraulics_at_;
+  // samples come in order from one writer; one that was lost and asked for again may close a gap
+  if (header.step == at + 1) {
+    at = header.step;
+    last_progress_ns_ = now_ns;
+    resend_due_ns_ = now_ns + node::kResendAfter.ns;
+  } else if (header.step > at) {
+    // a later sample proves the earlier ones: its writer needed every tick up to it
+    at = header.step;
+  } else {
+    ++member_.refusals().duplicate;
+  }
+}
+
+void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t now_ns) {
+  wire::ControllerInput input;
+  if (!transport::decode(bytes, input)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (input.session != config_.session_name) {
+    ++member_.refusals().other_session;
+    return;
+  }
+  wire::ControllerLease lease;
+  lease.controller = input.controller;
+  lease.channel = input.channel;
+  const int channel = gate_.find(input.channel);
+  if (channel < 0 || input.controller.empty()) {
+    lease.reason = channel < 0 ? "the scene has no input '" + input.channel + "'" : "a controller needs a name";
+  } else if (input.action == wire::ControllerAction::write) {
+    gate_.write(static_cast<std::size_t>(channel), input.controller, input.value, n_, now_ns);
+    return;
+  } else {
+    const auto index = static_cast<std::size_t>(channel);
+    LeaseAnswer answer = input.action == wire::ControllerAction::acquire
+                             ? gate_.acquire(index, input.controller, now_ns)
+                             : gate_.release(index, input.controller);
+    lease.is_granted = answer.is_granted;
+    lease.holder = std::move(answer.holder);
+    lease.reason = std::move(answer.reason);
+  }
+  lease.header = member_.header(Phase::running, n_);
+  member_.publish(Topic::controller_lease, lease);
+}
+
+void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_ns) {
+  wire::ControlRequest request;
+  if (!transport::decode(bytes, request)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (request.session != config_.session_name) return;
+  if (stage_ != Stage::ticking) return answer(request, false, "the session is not running yet", n_);
+  switch (request.action) {
+    case wire::ControlAction::set_parameter: return set_parameter(request);
+    case wire::ControlAction::pause:
+      is_paused_ = true;
+      single_steps_ = 0;
+      member_.set_state(NodeState::holding);
+      return answer(request, true, "", n_);
+    case wire::ControlAction::resume:
+      is_paused_ = false;
+      keep_time(now_ns);
+      member_.set_state(NodeState::running);
+      return answer(request, true, "", n_);
+    case wire::ControlAction::step:
+      if (!is_paused_) return answer(request, false, "pause the session first", n_);
+      if (!(request.value >= 1 && request.value <= 1e9)) {
+        return answer(request, false, "the number of steps must be 1 to 1e9", n_);
+      }
+      single_steps_ += static_cast<StepIndex>(request.value);
+      return answer(request, true, "", n_);
+    case wire::ControlAction::reset:
+      answer(request, true, "", 0);
+      return start_epoch(now_ns);
+    case wire::ControlAction::stop:
+      answer(request, true, "", n_);
+      return begin_ending(ExitCode::ok, "", now_ns);
+  }
+}
+
+void IoNode::set_parameter(const wire::ControlRequest& request) {
+  const ParameterVerdict verdict = config_.judge_parameter
+                                       ? config_.judge_parameter(request.path, request.value)
+                                       : ParameterVerdict{false, "this session has no live parameters", 0};
+  if (!verdict.is_accepted) return answer(request, false, verdict.reason, n_);
+  if (waiting_commands_.size() >= wire::kMaxCommandsPerTick) {
+    return answer(request, false,
+                  "more than " + std::to_string(wire::kMaxCommandsPerTick) + " changes wait for one tick; send again", n_);
+  }
+  wire::Command command;
+  command.request = request.request;
+  command.path = request.path;
+  command.value = request.value;
+  command.over_ns = request.over_ns >= 0 ? request.over_ns : verdict.default_over_ns;
+  waiting_commands_.push_back(command);
+  answer(request, true, "", n_);
+}
+
+void IoNode::answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step) {
+  wire::ControlReply reply;
+  reply.header = member_.header(Phase::running, step);
+  reply.request = request.request;
+  reply.is_accepted = accepted;
+  reply.reason = reason.substr(0, wire::kMaxReasonLength);
+  member_.publish(Topic::control_reply, reply);
+}
+
+void IoNode::receive_resend(std::span<const std::byte> bytes) {
+  wire::ResendRequest request;
+  if (!transport::decode(bytes, request) || request.role != Role::io) return;
+  if (request.header.session != description_.header.session) return;
+  if (request.topic != static_cast<std::uint8_t>(Topic::tick)) return;
+  // a node that missed a reset asks with the old epoch: it gets the tick that started the new one
+  const bool is_late_epoch = request.header.epoch < member_.epoch();
+  const StepIndex first = is_late_epoch ? kJoinStep : request.header.step;
+  const StepIndex last = is_late_epoch ? kJoinStep
+                                       : std::min(request.last_step, first + static_cast<StepIndex>(sent_.depth()));
+  for (StepIndex step = first; step <= last; ++step) {
+    const std::span<const std::byte> sent = sent_.find(step);
+    if (sent.empty()) continue;
+    member_.send(Topic::tick, sent);
+    ++health().resends_answered;
+  }
+}
+
+// ---- doing ----------------------------------------------------------------------------------------------------
+
+bool IoNode::advance(std::int64_t now_ns) {
+  switch (stage_) {
+    case Stage::checking_name: return advance_name_check(now_ns);
+    case Stage::joining: return advance_join(now_ns);
+    case Stage::initialising:
+      if (!member_.all_required(NodeState::ready)) {
+        if (now_ns > deadline_ns_) {
+          begin_ending(ExitCode::failed, "not every node became ready within 10 s: " + member_.missing_join_text(),
+                       now_ns);
+        }
+        return false;
+      }
+      publish_directory();
+      member_.set_state(is_paused_ ? NodeState::holding : NodeState::running);
+      stage_ = Stage::ticking;
+      base_ns_ = now_ns;
+      last_tick_ns_ = now_ns - config_.step.ns;
+      return true;
+    case Stage::ticking: return advance_ticks(now_ns);
+    case Stage::ending: return advance_ending(now_ns);
+    case Stage::finished: return false;
+  }
+  return false;
+}
+
+bool IoNode::advance_name_check(std::int64_t now_ns) {
+  if (deadline_ns_ == 0) {
+    deadline_ns_ = now_ns + config_.name_check.ns;
+    // of two that start together each must see the other
+    if (config_.name_check.ns > 0) member_.publish(Topic::session, description_);
+  }
+  if (now_ns < deadline_ns_) return false;
+  if (config_.name_check.ns == 0) member_.publish(Topic::session, description_);
+  member_.set_state(NodeState::joining);
+  stage_ = Stage::joining;
+  deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+  return true;
+}
+
+bool IoNode::advance_join(std::int64_t now_ns) {
+  if (member_.is_heard_by_all()) {
+    member_.set_state(NodeState::ready);
+    stage_ = Stage::initialising;
+    deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+    return true;
+  }
+  if (now_ns > deadline_ns_) {
+    begin_ending(ExitCode::failed, "JOIN did not come about within 10 s: " + member_.missing_join_text(), now_ns);
+    return true;
+  }
+  if (member_.probe_is_due(now_ns)) {
+    tick_ = wire::Tick{};
+    tick_.header = block_.header = member_.header(Phase::join, kJoinStep);
+    member_.publish(Topic::tick, tick_);
+    if (!member_.is_heard_on(Topic::variables)) member_.publish(Topic::variables, block_);
+  }
+  return false;
+}
+
+bool IoNode::partners_allow(StepIndex n) const noexcept {
+  const StepIndex needed = n - window_ + 1;
+  if (member_.requires_role(Role::mechanics) && mechanics_at_ < needed) return false;
+  if (member_.requires_role(Role::hydraulics) && hydraulics_at_ < needed) return false;
+  if (config_.pace == wire::Pace::free && member_.requires_role(Role::recorder)) {
+    const node::Peer& recorder = member_.peer(Role::recorder);
+    if (recorder.status.header.epoch == member_.epoch() && recorder.status.recorded_step < n - kRecorderWindow) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::int64_t IoNode::due_ns(StepIndex n) const noexcept {
+  if (config_.pace == wire::Pace::free) return 0;
+  // catching up at no more than twice real time
+  return std::max(base_ns_ + n * config_.step.ns, last_tick_ns_ + config_.step.ns / 2);
+}
+
+// a lag beyond the limit is given up: the time base moves and the slip is counted
+void IoNode::keep_time(std::int64_t now_ns) noexcept {
+  const std::int64_t lag = now_ns - (base_ns_ + n_ * config_.step.ns);
+  if (lag <= kLagLimit.ns) return;
+  base_ns_ += lag;
+  slip_ns_ += lag;
+}
+
+bool IoNode::advance_ticks(std::int64_t now_ns) {
+  bool any = false;
+  while (stage_ == Stage::ticking) {
+    if (config_.steps >= 0 && n_ >= config_.steps) {
+      begin_ending(ExitCode::ok, "", now_ns);
+      return true;
+    }
+    if (is_paused_ && single_steps_ == 0) return any;
+    if (!partners_allow(n_)) {
+      ask_for_missing(now_ns);
+      return any;
+    }
+    if (config_.pace == wire::Pace::real) {
+      if (!is_paused_) keep_time(now_ns);
+      if (now_ns < due_ns(n_)) return any;
+    }
+    issue_tick(now_ns);
+    any = true;
+  }
+  return any;
+}
+
+void IoNode::ask_for_missing(std::int64_t now_ns) {
+  if (now_ns < resend_due_ns_) return;
+  resend_due_ns_ = now_ns + std::min(std::max(node::kResendAfter.ns, now_ns - last_progress_ns_), node::kResendAtMost.ns);
+  const auto ask = [&](Role role, Topic topic, StepIndex at) {
+    if (!member_.requires_role(role) || at >= n_ - window_ + 1) return;
+    wire::ResendRequest request;
+    request.header = member_.header(Phase::running, at + 1);
+    request.role = role;
+    request.topic = static_cast<std::uint8_t>(topic);
+    request.last_step = n_ - window_ + 1;
+    member_.publish(Topic::resend, request);
+    ++health().resends_asked;
+  };
+  ask(Role::mechanics, Topic::mechanism, mechanics_at_);
+  ask(Role::hydraulics, Topic::actuators, hydraulics_at_);
+}
+
+void IoNode::issue_tick(std::int64_t now_ns) {
+  // inputs of this step
+  const SimTime t = start_of(n_, config_.step);
+  std::fill(script_raw_.begin(), script_raw_.end(), kSaysNothing);
+  tick_.commands.clear();
+  if (config_.source != nullptr) {
+    config_.source->values(t, script_raw_);
+    config_.source->changes(t, t + config_.step, tick_.commands);
+  }
+  for (double& raw : script_raw_) {
+    const auto channel = static_cast<std::size_t>(&raw - script_raw_.data());
+    if (std::isnan(raw)) raw = gate_.config(channel).neutral;
+  }
+  gate_.advance(n_, script_raw_, now_ns);
+  // commands of this step; what does not fit waits for the next tick
+  while (!waiting_commands_.empty() && tick_.commands.size() < wire::kMaxCommandsPerTick) {
+    tick_.commands.push_back(waiting_commands_.front());
+    waiting_commands_.erase(waiting_commands_.begin());
+  }
+  // the tick
+  tick_.header = member_.header(Phase::running, n_);
+  tick_.flags = 0;
+  tick_.controls.resize(gate_.size());
+  tick_.age.resize(gate_.size());
+  for (std::size_t i = 0; i < gate_.size(); ++i) {
+    tick_.controls[i] = gate_.control(i);
+    tick_.age[i] = gate_.age(i);
+  }
+  StateHash hash;
+  hash.add(n_);
+  gate_.add_to(hash);
+  tick_.state_hash = hash.digest();
+  transport::encode(tick_, buffer_);
+  sent_.keep(n_, buffer_);
+  member_.send(Topic::tick, buffer_);
+  if (n_ % config_.variables_every == 0) publish_variables();
+
+  ++n_;
+  ++health().steps_done;
+  member_.set_step(n_);
+  if (is_paused_) --single_steps_;
+  last_tick_ns_ = now_ns;
+  last_progress_ns_ = now_ns;
+  resend_due_ns_ = now_ns + node::kResendAfter.ns;
+}
+
+void IoNode::start_epoch(std::int64_t now_ns) {
+  member_.set_epoch(member_.epoch() + 1);
+  gate_.reset();
+  waiting_commands_.clear();
+  sent_.clear();
+  n_ = 0;
+  mechanics_at_ = hydraulics_at_ = kJoinStep;
+  tick_ = wire::Tick{};
+  tick_.header = member_.header(Phase::init, kJoinStep);
+  transport::encode(tick_, buffer_);
+  sent_.keep(kJoinStep, buffer_);
+  member_.send(Topic::tick, buffer_);
+  member_.set_step(0);
+  member_.set_state(NodeState::initialising);
+  member_.mark_status_changed();
+  stage_ = Stage::initialising;
+  deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+}
+
+// ---- ending ---------------------------------------------------------------------------------------------------
+
+void IoNode::send_end(std::uint32_t flags, ExitCode code) {
+  tick_.commands.clear();
+  tick_.header = member_.header(Phase::running, n_);
+  tick_.flags = static_cast<std::uint32_t>(wire::TickFlag::end) | flags | (static_cast<std::uint32_t>(code) << 8);
+  transport::encode(tick_, buffer_);
+  sent_.keep(n_, buffer_);
+  member_.send(Topic::tick, buffer_);
+}
+
+void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns) {
+  if (stage_ == Stage::ending || stage_ == Stage::finished) return;
+  const bool was_ticking = stage_ == Stage::ticking;
+  const bool is_orderly = code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated;
+  if (was_ticking) send_end(is_orderly ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault), code);
+  if (is_orderly && was_ticking) {
+    member_.end(code);
+  } else {
+    member_.fail(code, reason.empty() ? "ended before the first step" : reason);
+  }
+  stage_ = Stage::ending;
+  deadline_ns_ = now_ns == 0 ? 0 : now_ns + node::kLinger.ns;
+}
+
+bool IoNode::advance_ending(std::int64_t now_ns) {
+  if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns;
+  if (member_.all_required(NodeState::ended) || now_ns > deadline_ns_) stage_ = Stage::finished;
+  return false;
+}
+
+void IoNode::watch(std::int64_t now_ns) {
+  if (stage_ == Stage::checking_name || stage_ == Stage::finished || stage_ == Stage::ending) return;
+  for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
+    const node::Peer& peer = member_.peer(role);
+    if (!member_.requires_role(role) || !peer.is_known || peer.status.state != NodeState::fault) continue;
+    return begin_ending(static_cast<ExitCode>(peer.status.exit_code),
+                        std::string(to_text(role)) + ": " + peer.status.reason, now_ns);
+  }
+  Role about = Role::io;
+  switch (member_.watch_peers(now_ns, about)) {
+    case node::PeerEvent::lost:
+      return begin_ending(ExitCode::node_lost,
+                          member_.describe_peer(about) + " is gone; the session was held after step " +
+                              std::to_string(n_) + " and ended, what was recorded up to there is valid",
+                          now_ns);
+    case node::PeerEvent::silent:
+      if (stage_ == Stage::ticking) member_.set_state(NodeState::holding);
+      return;
+    case node::PeerEvent::back:
+      if (stage_ == Stage::ticking && !is_paused_) member_.set_state(NodeState::running);
+      return;
+    case node::PeerEvent::none: return;
+  }
+}
+
+// ---- variables ------------------------------------------------------------------------------------------------
+
+void IoNode::publish_directory() {
+  wire::VariableDirectory directory;
+  directory.header = member_.header(Phase::running, 0);
+  for (std::size_t i = 0; i < gate_.size(); ++i) {
+    const std::string& name = gate_.config(i).name;
+    directory.entries.push_back({name + ".raw", "1"});
+    directory.entries.push_back({name + ".control", "1"});
+    directory.entries.push_back({name + ".age", "1"});
+  }
+  directory.entries.push_back({"session.slip", "s"});
+  directory.entries.push_back({"session.rejected_inputs", "1"});
+  directory.total = static_cast<std::uint32_t>(directory.entries.size());
+  member_.publish(Topic::variable_directory, directory);
+}
+
+void IoNode::publish_variables() {
+  block_.header = member_.header(Phase::running, n_);
+  block_.values.clear();
+  for (std::size_t i = 0; i < gate_.size(); ++i) {
+    block_.values.push_back(gate_.raw(i));
+    block_.values.push_back(gate_.control(i));
+    block_.values.push_back(gate_.age(i));
+  }
+  block_.values.push_back(static_cast<double>(slip_ns_) * 1e-9);
+  block_.values.push_back(static_cast<double>(gate_.rejected_not_finite() + gate_.rejected_no_lease()));
+  member_.publish(Topic::variables, block_);
+}
+
+}  // namespace slew::io

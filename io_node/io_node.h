@@ -1,0 +1,136 @@
+// Owner of the session: its name and id, the ticks that are its clock and its log, the input gate, the commands.
+//
+// Tick n goes out when every physics node has published its sample n-W+1 (window W: 1 in `real` pace, 4 in `free`),
+// when a required recorder is less than 512 steps behind (`free` pace), and in `real` pace not before wall time n H.
+// After a hold, `real` pace catches up at no more than twice real time while the lag is below 50 ms; beyond that the
+// time base is moved and the slip counted. INIT and the ticks reproduce a lock-step run exactly.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io_node/input_gate.h"
+#include "node/node.h"
+#include "node/sent_cache.h"
+
+namespace slew::io {
+
+// Where the raw values come from when no controller holds a channel, and the timed parameter changes.
+class InputSource {
+ public:
+  virtual ~InputSource() = default;
+  // Raw value of each channel at t; NaN where the source says nothing about a channel.
+  virtual void values(SimTime t, std::span<double> raw) = 0;
+  // Parameter changes due in [from, to).
+  virtual void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) = 0;
+};
+
+// Answer to a parameter request, from the scene's parameter directory.
+struct ParameterVerdict {
+  bool is_accepted = false;
+  std::string reason;
+  std::int64_t default_over_ns = 0;
+};
+
+struct IoConfig {
+  std::string session_name;
+  std::string scene_name;
+  std::string scene_text;
+  std::vector<wire::Asset> assets;
+  SimDuration step = milliseconds(1);
+  wire::Pace pace = wire::Pace::real;
+  std::uint32_t required_roles = 0;         // includes io itself
+  StepIndex steps = -1;                     // END after so many; -1: until stopped
+  std::vector<ChannelConfig> channels;
+  GateConfig gate;
+  std::unique_ptr<InputSource> source;      // may be null
+  std::function<ParameterVerdict(const std::string& path, double value)> judge_parameter;
+  std::uint32_t variables_every = 10;
+  SimDuration name_check = milliseconds(300);  // listens so long for a holder of the name; 0 in one process
+  bool starts_paused = false;
+};
+
+// Window W and recorder window of architecture section 2.
+inline constexpr StepIndex kWindowReal = 1;
+inline constexpr StepIndex kWindowFree = 4;
+inline constexpr StepIndex kRecorderWindow = 512;
+inline constexpr SimDuration kLagLimit = milliseconds(50);
+
+class IoNode final : public node::Node {
+ public:
+  IoNode(transport::Transport& transport, IoConfig config);
+
+  bool poll(std::int64_t now_ns) override;
+  [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override;
+  [[nodiscard]] bool is_finished() const override { return stage_ == Stage::finished; }
+  void request_stop(ExitCode code) override;
+  [[nodiscard]] node::SessionMember& member() override { return member_; }
+
+  [[nodiscard]] StepIndex next_step() const noexcept { return n_; }
+  [[nodiscard]] bool is_paused() const noexcept { return is_paused_; }
+  [[nodiscard]] const InputGate& gate() const noexcept { return gate_; }
+
+ private:
+  enum class Stage : std::uint8_t { checking_name, joining, initialising, ticking, ending, finished };
+
+  void receive(const transport::Received& message, std::int64_t now_ns);
+  void receive_session(std::span<const std::byte> bytes);
+  void receive_sample(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
+  void receive_controller(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void receive_control(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void receive_resend(std::span<const std::byte> bytes);
+
+  bool advance(std::int64_t now_ns);
+  bool advance_name_check(std::int64_t now_ns);
+  bool advance_join(std::int64_t now_ns);
+  bool advance_ticks(std::int64_t now_ns);
+  bool advance_ending(std::int64_t now_ns);
+
+  [[nodiscard]] bool partners_allow(StepIndex n) const noexcept;
+  [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept;
+  void ask_for_missing(std::int64_t now_ns);
+  void issue_tick(std::int64_t now_ns);
+  void keep_time(std::int64_t now_ns) noexcept;
+  void send_end(std::uint32_t flags, ExitCode code);
+  void start_epoch(std::int64_t now_ns);
+  void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
+  void watch(std::int64_t now_ns);
+  void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step);
+  void set_parameter(const wire::ControlRequest& request);
+  void publish_directory();
+  void publish_variables();
+  void update_health() noexcept;
+
+  node::SessionMember member_;
+  IoConfig config_;
+  InputGate gate_;
+  Stage stage_ = Stage::checking_name;
+  wire::SessionDescription description_;
+  StepIndex window_ = kWindowReal;
+  StepIndex n_ = 0;                        // next tick
+  StepIndex mechanics_at_ = kJoinStep;     // highest sample seen without a gap
+  StepIndex hydraulics_at_ = kJoinStep;
+  std::vector<wire::Command> waiting_commands_;
+  bool is_paused_ = false;
+  StepIndex single_steps_ = 0;             // ticks still to issue while paused
+  std::int64_t base_ns_ = 0;               // wall time of tick 0 less slips
+  std::int64_t last_tick_ns_ = 0;
+  std::int64_t slip_ns_ = 0;
+  std::int64_t deadline_ns_ = 0;           // of the stage
+  std::int64_t resend_due_ns_ = 0;
+  std::int64_t last_progress_ns_ = 0;
+  std::vector<double> script_raw_;
+  wire::Tick tick_;
+  wire::VariableBlock block_;
+  std::vector<std::byte> buffer_;
+  node::SentCache sent_;
+  wire::MechanismMessage mechanism_in_;
+  wire::ActuatorMessage actuators_in_;
+};
+
+}  // namespace slew::io

@@ -1,0 +1,27 @@
+// Runs nodes: one in this process, or several together on one thread.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "core/status.h"
+#include "node/node.h"
+
+namespace slew::node {
+
+// Set by a signal handler: 0, or the exit code to end with.
+extern std::atomic<int> stop_requested;
+
+// SIGINT and SIGTERM set stop_requested; SIGPIPE is ignored.
+void install_signal_handlers();
+
+// Runs until the node has finished; sends its health every 100 ms from a thread of its own.
+ExitCode run_alone(Node& node);
+
+// Runs all nodes in turn on this thread until every one has finished. each_round is called between rounds, at most
+// every 20 ms (status line, keyboard); it may be empty.
+ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>& each_round);
+
+}  // namespace slew::node

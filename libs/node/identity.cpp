@@ -1,0 +1,119 @@
+#include "node/identity.h"
+
+#include <poll.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <utility>
+
+#include "core/arithmetic_self_test.h"
+#include "core/time.h"
+#include "node/build_id.h"
+
+namespace slew::node {
+
+Identity this_process() {
+  Identity identity;
+  char name[256] = {};
+  gethostname(name, sizeof name - 1);
+  identity.host = name;
+  // a pid means the same process only within one name space
+  struct stat name_space {};
+  if (stat("/proc/self/ns/pid", &name_space) == 0) identity.host += "#" + std::to_string(name_space.st_ino);
+  identity.pid = static_cast<std::uint32_t>(getpid());
+  identity.started_ns = wall_clock_ns();
+  identity.build = build_id();
+  identity.self_test = arithmetic_self_test();
+  return identity;
+}
+
+std::string build_id() { return kBuildId; }
+
+wire::SessionId random_session_id() {
+  wire::SessionId id{};
+  if (getrandom(id.data(), id.size(), 0) != static_cast<ssize_t>(id.size())) std::abort();
+  return id;
+}
+
+std::string to_text(const wire::SessionId& id) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : id) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
+std::string_view to_text(wire::Role role) noexcept {
+  switch (role) {
+    case wire::Role::io: return "io";
+    case wire::Role::mechanics: return "mechanics";
+    case wire::Role::hydraulics: return "hydraulics";
+    case wire::Role::flex: return "flex";
+    case wire::Role::recorder: return "recorder";
+    case wire::Role::observer: return "observer";
+    case wire::Role::controller: return "controller";
+  }
+  return "unknown role";
+}
+
+std::string_view to_text(wire::NodeState state) noexcept {
+  switch (state) {
+    case wire::NodeState::checking: return "checking";
+    case wire::NodeState::joining: return "joining";
+    case wire::NodeState::initialising: return "initialising";
+    case wire::NodeState::ready: return "ready";
+    case wire::NodeState::running: return "running";
+    case wire::NodeState::holding: return "holding";
+    case wire::NodeState::ended: return "ended";
+    case wire::NodeState::fault: return "fault";
+  }
+  return "unknown state";
+}
+
+std::string_view to_text(wire::Topic topic) noexcept {
+  constexpr std::string_view kNames[] = {"session",          "node_status",      "tick",
+                                         "mechanism",        "actuators",        "variable_directory",
+                                         "variables",        "controller_input", "controller_lease",
+                                         "control_request",  "control_reply",    "health",
+                                         "resend"};
+  static_assert(std::size(kNames) == wire::kTopics);
+  const auto index = static_cast<std::size_t>(topic);
+  return index < wire::kTopics ? kNames[index] : "unknown topic";
+}
+
+std::string time_text(std::int64_t wall_clock_ns) {
+  const std::time_t seconds = wall_clock_ns / 1'000'000'000;
+  std::tm local{};
+  localtime_r(&seconds, &local);
+  char text[32] = {};
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &local);
+  return text;
+}
+
+ProcessWatch::ProcessWatch(std::uint32_t pid)
+    : fd_(static_cast<int>(syscall(SYS_pidfd_open, static_cast<pid_t>(pid), 0))) {}
+
+ProcessWatch::~ProcessWatch() {
+  if (fd_ >= 0) close(fd_);
+}
+
+ProcessWatch::ProcessWatch(ProcessWatch&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+
+ProcessWatch& ProcessWatch::operator=(ProcessWatch&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  return *this;
+}
+
+bool ProcessWatch::has_exited() const noexcept {
+  if (fd_ < 0) return false;
+  pollfd request{fd_, POLLIN, 0};
+  return poll(&request, 1, 0) == 1 && (request.revents & POLLIN) != 0;
+}
+
+}  // namespace slew::node

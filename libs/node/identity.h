@@ -1,0 +1,52 @@
+// Who this process is, for messages, logs and the detection of a process that is gone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "transport/wire.h"
+
+namespace slew::node {
+
+struct Identity {
+  std::string host;          // host name and process name space: equal strings mean that a pid can be looked up
+  std::uint32_t pid = 0;
+  std::int64_t started_ns = 0;  // wall clock
+  std::string build;
+  std::uint64_t self_test = 0;
+};
+
+[[nodiscard]] Identity this_process();
+
+// Build id of this program: version, source revision, build type and compiler.
+[[nodiscard]] std::string build_id();
+
+// 128 random bits from the operating system.
+[[nodiscard]] wire::SessionId random_session_id();
+
+[[nodiscard]] std::string to_text(const wire::SessionId& id);
+[[nodiscard]] std::string_view to_text(wire::Role role) noexcept;
+[[nodiscard]] std::string_view to_text(wire::NodeState state) noexcept;
+[[nodiscard]] std::string_view to_text(wire::Topic topic) noexcept;
+
+// "2026-05-01 10:20:30" in local time.
+[[nodiscard]] std::string time_text(std::int64_t wall_clock_ns);
+
+// Watches one process of this host through a pidfd.
+class ProcessWatch {
+ public:
+  ProcessWatch() = default;
+  explicit ProcessWatch(std::uint32_t pid);
+  ~ProcessWatch();
+  ProcessWatch(ProcessWatch&& other) noexcept;
+  ProcessWatch& operator=(ProcessWatch&& other) noexcept;
+
+  // False when the process cannot be watched (another name space, no pidfd): silence is then the only sign.
+  [[nodiscard]] bool is_watching() const noexcept { return fd_ >= 0; }
+  [[nodiscard]] bool has_exited() const noexcept;
+
+ private:
+  int fd_ = -1;
+};
+
+}  // namespace slew::node

@@ -1,0 +1,56 @@
+// A node as a driver sees it: something to poll. The same node code runs in a process of its own, where the driver
+// waits on the carrier, and beside others on one thread, where the driver polls them in turn.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "core/status.h"
+#include "node/session_member.h"
+
+namespace slew::node {
+
+// What the health message says, kept in atomics: a thread of its own sends it, so that a node that computes or waits
+// long is still seen to be alive.
+struct HealthState {
+  std::atomic<std::uint8_t> state{0};
+  std::atomic<bool> is_waiting{false};
+  std::atomic<std::uint8_t> waiting_for{0};
+  std::atomic<std::int64_t> waiting_step{0};
+  std::atomic<std::int64_t> step{kJoinStep};
+  std::atomic<std::uint64_t> steps_done{0};
+  std::atomic<std::uint64_t> overruns{0};
+  std::atomic<std::uint64_t> resends_asked{0};
+  std::atomic<std::uint64_t> resends_answered{0};
+  std::atomic<std::uint64_t> refused{0};
+  std::atomic<std::int64_t> step_time_sum_ns{0};
+  std::atomic<std::int64_t> step_time_max_ns{0};  // since the last health message
+  std::atomic<std::int64_t> slip_ns{0};
+  std::atomic<bool> has_session{false};
+  std::atomic<std::uint32_t> epoch{0};
+};
+
+class Node {
+ public:
+  virtual ~Node() = default;
+
+  // Takes what has arrived and does what can be done now. True when anything was done.
+  virtual bool poll(std::int64_t now_ns) = 0;
+
+  // Monotonic time at which poll() has something to do even if nothing arrives.
+  [[nodiscard]] virtual std::int64_t next_deadline(std::int64_t now_ns) const = 0;
+
+  [[nodiscard]] virtual bool is_finished() const = 0;
+
+  // Orderly end from outside (signal): io ends the session, the others leave it.
+  virtual void request_stop(ExitCode code) = 0;
+
+  [[nodiscard]] virtual SessionMember& member() = 0;
+  [[nodiscard]] HealthState& health() noexcept { return health_; }
+
+ private:
+  HealthState health_;
+};
+
+}  // namespace slew::node

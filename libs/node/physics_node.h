@@ -1,0 +1,97 @@
+// The node around one physics subsystem: session, JOIN, INIT, and the lock-step loop of architecture section 2.
+//
+// Step n: with Tick n and the partner's sample n at hand, apply the tick's commands, advance the subsystem to t_{n+1}
+// and publish sample n+1 with the hash of its state. Message arrival order never matters: everything is taken by step.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coupling/subsystem.h"
+#include "node/node.h"
+#include "node/resend_clock.h"
+#include "node/step_ring.h"
+
+namespace slew::node {
+
+// What the program around a physics node makes of the session's scene.
+struct BuiltSubsystem {
+  std::unique_ptr<coupling::Subsystem> subsystem;
+  std::uint32_t variables_every = 10;              // steps between two variable blocks
+  std::vector<std::uint32_t> published_variables;  // indices into Subsystem::variables(), ascending
+};
+
+// Builds the subsystem; refuses with the reason (assets that differ, scene that this build cannot run).
+using SubsystemFactory = std::function<Status(const wire::SessionDescription&, BuiltSubsystem&)>;
+
+class PhysicsNode final : public Node {
+ public:
+  PhysicsNode(wire::Role role, transport::Transport& transport, SubsystemFactory factory, SimDuration session_timeout);
+
+  bool poll(std::int64_t now_ns) override;
+  [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override;
+  [[nodiscard]] bool is_finished() const override { return stage_ == Stage::finished; }
+  void request_stop(ExitCode code) override;
+  [[nodiscard]] SessionMember& member() override { return member_; }
+
+ private:
+  enum class Stage : std::uint8_t { waiting_for_session, joining, initialising, stepping, leaving, finished };
+
+  void receive(const transport::Received& message, std::int64_t now_ns);
+  void receive_session(std::span<const std::byte> bytes);
+  void receive_tick(std::span<const std::byte> bytes, std::int64_t now_ns);
+  template <typename Message>
+  void receive_partner(std::span<const std::byte> bytes, wire::Topic topic, StepRing<Message>& ring, Message& message,
+                       std::int64_t now_ns);
+  void receive_resend(std::span<const std::byte> bytes);
+
+  bool advance(std::int64_t now_ns);
+  bool advance_join(std::int64_t now_ns);
+  bool advance_init(std::int64_t now_ns);
+  bool advance_step(std::int64_t now_ns);
+  bool advance_leaving(std::int64_t now_ns);
+  void restart(std::uint32_t epoch);
+
+  void publish_sample(wire::Phase phase, StepIndex step, const StepReport& report);
+  void publish_variables(StepIndex step);
+  void publish_directory();
+  void ask_for_missing(std::int64_t now_ns);
+  void watch(std::int64_t now_ns);
+  void leave(ExitCode code, const std::string& reason, std::int64_t now_ns);
+  void apply_commands(const wire::Tick& tick);
+  [[nodiscard]] coupling::PartnerSamples partners_at(StepIndex step) const noexcept;
+  [[nodiscard]] bool has_partner() const noexcept;
+  [[nodiscard]] wire::Role partner() const noexcept;
+  void update_health() noexcept;
+
+  SessionMember member_;
+  SubsystemFactory factory_;
+  BuiltSubsystem built_;
+  Stage stage_ = Stage::waiting_for_session;
+  std::int64_t session_deadline_ns_ = 0;
+  SimDuration session_timeout_;
+  std::int64_t join_deadline_ns_ = 0;
+  std::int64_t leave_deadline_ns_ = 0;
+  StepIndex n_ = 0;  // next step to do
+  bool first_sample_sent_ = false;
+  bool has_mechanism_init_ = false;
+  coupling::MechanismSample mechanism_init_;
+  wire::MechanismMessage mechanism_in_;  // last decoded messages
+  wire::ActuatorMessage actuators_in_;
+  StepRing<wire::Tick> ticks_;
+  StepRing<wire::MechanismMessage> mechanisms_;
+  StepRing<wire::ActuatorMessage> actuators_;
+  wire::MechanismMessage mechanism_out_;
+  wire::ActuatorMessage actuators_out_;
+  wire::VariableBlock block_;
+  wire::Tick tick_scratch_;
+  coupling::OwnSample own_;
+  std::vector<double> variable_values_;
+  std::vector<std::byte> buffer_;
+  SentCache sent_;
+  ResendClock resend_;
+};
+
+}  // namespace slew::node

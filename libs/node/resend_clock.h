@@ -1,0 +1,30 @@
+// When to ask again for a step that has not come: after 3 ms, then with doubling pauses up to 100 ms.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "node/session_member.h"
+
+namespace slew::node {
+
+class ResendClock {
+ public:
+  // Progress was made: the next wait starts from now.
+  void restart(std::int64_t now_ns) noexcept {
+    pause_ns_ = kResendAfter.ns;
+    due_ns_ = now_ns + pause_ns_;
+  }
+  [[nodiscard]] bool is_due(std::int64_t now_ns) const noexcept { return now_ns >= due_ns_; }
+  void asked(std::int64_t now_ns) noexcept {
+    pause_ns_ = std::min(2 * pause_ns_, kResendAtMost.ns);
+    due_ns_ = now_ns + pause_ns_;
+  }
+  [[nodiscard]] std::int64_t due_ns() const noexcept { return due_ns_; }
+
+ private:
+  std::int64_t pause_ns_ = kResendAfter.ns;
+  std::int64_t due_ns_ = 0;
+};
+
+}  // namespace slew::node

@@ -1,0 +1,34 @@
+// The encoded step messages a node has sent, kept for those that missed one. Repeating one is idempotent.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "node/step_ring.h"
+
+namespace slew::node {
+
+// A recorder that was stopped for 200 ms at several kHz asks for about this many steps back.
+inline constexpr std::size_t kSentDepth = 1024;
+
+class SentCache {
+ public:
+  explicit SentCache(std::size_t depth = kSentDepth) : ring_(depth) {}
+
+  void keep(StepIndex step, std::span<const std::byte> bytes) {
+    std::vector<std::byte>& slot = ring_.put(step);
+    slot.assign(bytes.begin(), bytes.end());
+  }
+  [[nodiscard]] std::span<const std::byte> find(StepIndex step) const noexcept {
+    const std::vector<std::byte>* slot = ring_.find(step);
+    return slot != nullptr ? std::span<const std::byte>(*slot) : std::span<const std::byte>();
+  }
+  void clear() noexcept { ring_.clear(); }
+  [[nodiscard]] std::size_t depth() const noexcept { return ring_.depth(); }
+
+ private:
+  StepRing<std::vector<std::byte>> ring_;
+};
+
+}  // namespace slew::node

@@ -1,0 +1,140 @@
+// What every node of a session does alike: who am I, who are the others, have we heard each other, is anybody gone.
+//
+// JOIN: a writer repeats step -1 on each of its step topics until every required reader has reported, in its
+// NodeStatus, that it heard this writer there. "Matched" at the carrier proves nothing; only a received message does.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+#include "node/identity.h"
+#include "node/sent_cache.h"
+#include "transport/codec.h"
+#include "transport/transport.h"
+#include "transport/wire.h"
+
+namespace slew::node {
+
+inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
+inline constexpr SimDuration kProbeInterval = {20'000'000};
+inline constexpr SimDuration kSilentAfter = {300'000'000};   // named, everybody holds
+inline constexpr SimDuration kLostAfter = {2'000'000'000};   // given up
+inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
+inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
+inline constexpr SimDuration kHealthInterval = {100'000'000};
+inline constexpr SimDuration kLinger = {2'000'000'000};      // answers resends after its own end, at most
+
+// Messages that were received but not applied, by cause.
+struct Refusals {
+  std::uint64_t undecodable = 0;
+  std::uint64_t other_session = 0;
+  std::uint64_t other_epoch = 0;
+  std::uint64_t unexpected_step = 0;  // already done or too far ahead
+  std::uint64_t duplicate = 0;
+  std::uint64_t unexpected_writer = 0;
+  [[nodiscard]] std::uint64_t total() const noexcept {
+    return undecodable + other_session + other_epoch + unexpected_step + unexpected_writer;
+  }
+};
+
+// What is known of another role of the session.
+struct Peer {
+  bool is_known = false;
+  wire::NodeStatus status;
+  std::int64_t last_heard_ns = 0;  // monotonic
+  ProcessWatch process;
+  bool is_silent = false;          // named once
+  bool is_lost = false;            // given up
+};
+
+enum class PeerEvent : std::uint8_t { none, silent, back, lost };
+
+class SessionMember {
+ public:
+  // step_topics: the topics this role writes step by step, which JOIN must prove.
+  SessionMember(wire::Role role, transport::Transport& transport, std::span<const wire::Topic> step_topics);
+
+  [[nodiscard]] wire::Role role() const noexcept { return role_; }
+  [[nodiscard]] const Identity& identity() const noexcept { return identity_; }
+  [[nodiscard]] transport::Transport& transport() noexcept { return transport_; }
+
+  // ---- session
+  void adopt(const wire::SessionDescription& session);
+  [[nodiscard]] bool has_session() const noexcept { return has_session_; }
+  [[nodiscard]] const wire::SessionDescription& session() const noexcept { return session_; }
+  [[nodiscard]] bool requires_role(wire::Role role) const noexcept {
+    return (session_.required_roles & bit(role)) != 0;
+  }
+  [[nodiscard]] std::uint32_t epoch() const noexcept { return epoch_; }
+  void set_epoch(std::uint32_t epoch) noexcept { epoch_ = epoch; }
+  [[nodiscard]] wire::Header header(wire::Phase phase, StepIndex step) const noexcept;
+
+  // True when the message belongs to this session and epoch; counts it otherwise.
+  [[nodiscard]] bool fits(const wire::Header& header) noexcept;
+  [[nodiscard]] Refusals& refusals() noexcept { return refusals_; }
+
+  // ---- state and status
+  void set_state(wire::NodeState state) noexcept;
+  [[nodiscard]] wire::NodeState state() const noexcept { return status_.state; }
+  void set_step(StepIndex step) noexcept { status_.header.step = step; }
+  void set_recorded_step(StepIndex step) noexcept { status_.recorded_step = step; }
+  void fail(ExitCode code, std::string reason);
+  void end(ExitCode code);
+  [[nodiscard]] ExitCode exit_code() const noexcept { return static_cast<ExitCode>(status_.exit_code); }
+  [[nodiscard]] const std::string& reason() const noexcept { return status_.reason; }
+  void mark_status_changed() noexcept { status_changed_ = true; }
+  void publish_status_if_changed();
+
+  // ---- others
+  // Takes a NodeStatus or Health message. Returns a refusal when another process holds this role.
+  Status on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void on_health(std::span<const std::byte> bytes, std::int64_t now_ns);
+  [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
+  // Looks for silent and lost required peers; at most one event per call, with the role it is about.
+  PeerEvent watch_peers(std::int64_t now_ns, wire::Role& about);
+  [[nodiscard]] std::string describe_peer(wire::Role role) const;
+  [[nodiscard]] bool all_required(wire::NodeState at_least) const noexcept;
+
+  // ---- join
+  void heard(const wire::Header& from, wire::Topic topic, std::int64_t now_ns);
+  [[nodiscard]] bool is_heard_by_all() const noexcept;
+  [[nodiscard]] bool is_heard_on(wire::Topic topic) const noexcept;
+  [[nodiscard]] bool probe_is_due(std::int64_t now_ns) noexcept;
+  [[nodiscard]] std::string missing_join_text();
+
+  // ---- sending
+  template <typename Message>
+  void publish(wire::Topic topic, const Message& message) {
+    transport::encode(message, buffer_);
+    send(topic, buffer_);
+  }
+  void send(wire::Topic topic, std::span<const std::byte> bytes) noexcept;
+
+ private:
+  [[nodiscard]] bool must_read(wire::Role reader, wire::Topic topic) const noexcept;
+  [[nodiscard]] bool has_heard_me(wire::Role reader, wire::Topic topic) const noexcept;
+
+  wire::Role role_;
+  transport::Transport& transport_;
+  std::vector<wire::Topic> step_topics_;
+  Identity identity_;
+  wire::SessionDescription session_;
+  bool has_session_ = false;
+  std::uint32_t epoch_ = 0;
+  wire::NodeStatus status_;
+  bool status_changed_ = false;
+  std::array<Peer, wire::kRoles> peers_;
+  Refusals refusals_;
+  std::int64_t next_probe_ns_ = 0;
+  std::vector<std::byte> buffer_;
+};
+
+// Which roles read a step topic, as a set of bit(Role).
+[[nodiscard]] std::uint32_t readers_of(wire::Topic topic) noexcept;
+
+}  // namespace slew::node

@@ -1,0 +1,47 @@
+// Messages by step number, as many as the window needs: a later step overwrites the one `Depth` before it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "core/time.h"
+
+namespace slew::node {
+
+template <typename Message>
+class StepRing {
+ public:
+  explicit StepRing(std::size_t depth) : slots_(depth), steps_(depth, kEmpty) {}
+
+  // Slot to decode a message of this step into; the old content is lost.
+  [[nodiscard]] Message& put(StepIndex step) noexcept {
+    const std::size_t i = slot(step);
+    steps_[i] = step;
+    return slots_[i];
+  }
+  [[nodiscard]] const Message* find(StepIndex step) const noexcept {
+    const std::size_t i = slot(step);
+    return steps_[i] == step ? &slots_[i] : nullptr;
+  }
+  [[nodiscard]] Message* find(StepIndex step) noexcept {
+    const std::size_t i = slot(step);
+    return steps_[i] == step ? &slots_[i] : nullptr;
+  }
+  void clear() noexcept {
+    for (StepIndex& step : steps_) step = kEmpty;
+  }
+  [[nodiscard]] std::size_t depth() const noexcept { return slots_.size(); }
+
+ private:
+  static constexpr StepIndex kEmpty = -1000;
+  // steps from -1 on
+  [[nodiscard]] std::size_t slot(StepIndex step) const noexcept {
+    return static_cast<std::size_t>(step + 1) % slots_.size();
+  }
+  std::vector<Message> slots_;
+  std::vector<StepIndex> steps_;
+};
+
+}  // namespace slew::node
