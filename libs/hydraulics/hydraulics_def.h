@@ -113,8 +113,7 @@ inline constexpr Field kHydraulicsFields[] = {
                                         {.dimension = Dimension::time, .range = kPositive, .doc = "smallest sub-step"}),
     field<&HydraulicsDef::substep_budget>(
         "substep_budget",
-        {.dimension = Dimension::count,
-         .range = kBudgetRange,
+        {.range = kBudgetRange,
          .doc = "sub-steps allowed in one communication step; beyond, steps are accepted and flagged"}),
     field<&HydraulicsDef::start>(
         "start", {.choices = kStartChoices,
