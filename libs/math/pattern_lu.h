@@ -1,0 +1,82 @@
+// LU of (c I - J) for a J whose non-zero pattern is known at build: pivots on the diagonal in an order chosen once.
+//
+// The order is the greedy Markowitz order (fewest operations next, the lowest index of equals); the elimination becomes
+// flat lists of slots, so a factorisation is a few hundred multiply-adds without index search. Diagonal pivots are safe
+// for the matrices of stiff integrators as long as they stay near or above c; factorise() says when one does not,
+// and the caller then pivots densely (DenseLu).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace slew::math {
+
+// Which entries of a square matrix may be non-zero; the diagonal always may.
+class SparsityPattern {
+ public:
+  explicit SparsityPattern(std::size_t size) : size_(size), entry_(size * size, 0) {
+    for (std::size_t i = 0; i < size; ++i) add(i, i);
+  }
+  void add(std::size_t row, std::size_t column) { entry_[row * size_ + column] = 1; }
+  [[nodiscard]] bool has(std::size_t row, std::size_t column) const { return entry_[row * size_ + column] != 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_;
+  std::vector<char> entry_;
+};
+
+class PatternLu {
+ public:
+  // J will be handed over row-major with this many columns (>= pattern.size()).
+  PatternLu(const SparsityPattern& pattern, std::size_t stride);
+
+  // Factorises c I - J. False when a pivot falls below 1e-3 c in size or is not finite.
+  [[nodiscard]] bool factorise(const double* J, double c) noexcept;
+  // Replaces b by the solution.
+  void solve(double* b) noexcept;
+
+  [[nodiscard]] std::size_t non_zeros() const noexcept { return value_.size(); }    // of L and U with fill-in
+  [[nodiscard]] std::size_t operations() const noexcept { return update_.size(); }  // multiply-adds of a factorisation
+
+ private:
+  using Slot = std::uint16_t;
+  struct Gather {
+    std::uint32_t source;  // in J
+    Slot slot;
+  };
+  struct Elimination {  // of one entry (i, k) below the diagonal
+    Slot entry;
+    Slot updates;  // how many of update_ follow
+  };
+  struct Update {
+    Slot target, source;
+  };
+  struct Term {
+    Slot entry, column;
+  };
+  struct Row {
+    Slot begin, diagonal, end;  // in term_: [begin, diagonal) of L, [diagonal, end) of U without the diagonal
+  };
+
+  void choose_order(const SparsityPattern& pattern);
+  void list_operations(const std::vector<char>& filled);
+
+  std::size_t size_;
+  std::size_t stride_;
+  std::vector<std::size_t> order_;  // order_[k]: index eliminated k-th
+  std::vector<Gather> gather_;
+  std::vector<Slot> diagonal_;               // slot of pivot k
+  std::vector<std::uint16_t> eliminations_;  // how many of elimination_ belong to pivot k
+  std::vector<Elimination> elimination_;
+  std::vector<Update> update_;
+  std::vector<Row> row_;
+  std::vector<Term> term_;
+  std::vector<double> value_;
+  std::vector<double> inverse_pivot_;
+  std::vector<double> work_;
+};
+
+}  // namespace slew::math

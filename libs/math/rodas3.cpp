@@ -1,0 +1,144 @@
+#include "math/rodas3.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/check.h"
+#include "core/reductions.h"
+
+namespace slew::math {
+namespace {
+
+constexpr double kGamma = 0.5;
+constexpr double kC21 = 4, kC31 = 1, kC32 = -1, kC41 = 1, kC42 = -1, kC43 = -8.0 / 3;
+constexpr double kSafety = 0.9;  // below the size that the error estimate would just allow
+constexpr double kShrink = 0.2;  // bounds on the change of the step size from one step to the next
+constexpr double kGrow = 6;
+constexpr double kFirstFraction = 0.1;  // of the interval, first step ever
+constexpr double kStretch = 1e-9;       // relative: a rest this small is taken with the step before it
+constexpr int kUncheckedSteps = 10;     // for the rest of an interval once the budget is used up
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, Rodas3Options options)
+    : size_(pattern.size()),
+      stride_(jacobian_stride),
+      options_(std::move(options)),
+      lu_(pattern, jacobian_stride),
+      dense_(size_),
+      f_(size_),
+      k1_(size_),
+      k2_(size_),
+      k3_(size_),
+      k4_(size_),
+      stage_(size_),
+      new_(size_) {
+  SLEW_CHECK(options_.scale.size() == size_);
+}
+
+bool Rodas3::factorise(const double* J, double c, Rodas3Report& report) noexcept {
+  uses_dense_ = !lu_.factorise(J, c);
+  if (!uses_dense_) return true;
+  // rare: a pivot on the diagonal nearly vanished
+  ++report.dense_factorisations;
+  const std::span<double> a = dense_.matrix();
+  for (std::size_t i = 0; i < size_; ++i) {
+    for (std::size_t j = 0; j < size_; ++j) a[i * size_ + j] = -J[i * stride_ + j];
+    a[i * size_ + i] += c;
+  }
+  return dense_.factorise();
+}
+
+void Rodas3::solve(double* b) noexcept {
+  if (uses_dense_) {
+    dense_.solve({b, size_});
+  } else {
+    lu_.solve(b);
+  }
+}
+
+// Stages (2) and the new state (4) into new_; returns the error measure, infinite when it is not a number.
+double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept {
+  const std::size_t n = size_;
+  const double c = 1 / h;
+  std::copy(f_.begin(), f_.end(), k1_.begin());
+  solve(k1_.data());
+  for (std::size_t i = 0; i < n; ++i) k2_[i] = f_[i] + c * kC21 * k1_[i];
+  solve(k2_.data());
+
+  for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + 2 * k1_[i];
+  system.derivative(stage_.data(), k3_.data());
+  for (std::size_t i = 0; i < n; ++i) k3_[i] += c * (kC31 * k1_[i] + kC32 * k2_[i]);
+  solve(k3_.data());
+
+  for (std::size_t i = 0; i < n; ++i) stage_[i] += k3_[i];
+  system.derivative(stage_.data(), k4_.data());
+  for (std::size_t i = 0; i < n; ++i) k4_[i] += c * (kC41 * k1_[i] + kC42 * k2_[i] + kC43 * k3_[i]);
+  solve(k4_.data());
+
+  double error = 0;
+  bool is_number = true;
+  for (std::size_t i = 0; i < n; ++i) {
+    new_[i] = stage_[i] + k4_[i];
+    const double e = std::fabs(k4_[i]) / (options_.relative_tolerance * (options_.scale[i] + std::fabs(y[i])));
+    is_number = is_number && e <= std::numeric_limits<double>::max();
+    error = e > error ? e : error;
+  }
+  return is_number ? error : kInfinity;
+}
+
+Rodas3Report Rodas3::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
+  SLEW_ASSERT(y.size() == size_);
+  Rodas3Report report;
+  double h = step_size_ > 0 ? step_size_ : kFirstFraction * duration;
+  double rest = duration;
+  const double* J = nullptr;
+  while (rest > 0) {
+    // budget used up: a few more steps, whatever their error
+    if (!report.is_over_budget && report.accepted + report.rejected >= options_.substep_budget) {
+      report.is_over_budget = true;
+      h = std::max(options_.minimum_step, rest / kUncheckedSteps);
+    }
+    // two equal steps rather than a long and a short one
+    const bool is_last = h >= rest * (1 - kStretch);
+    const double used = is_last ? rest : std::min(h, std::max(0.5 * rest, options_.minimum_step));
+    if (J == nullptr) {
+      system.derivative(y.data(), f_.data());
+      J = system.jacobian(y.data(), f_.data());
+    }
+    const bool is_solvable = factorise(J, 1 / (used * kGamma), report);
+    const double error = is_solvable ? try_step(system, y.data(), used) : kInfinity;
+    const double factor = std::clamp(kSafety / std::cbrt(std::max(error, 1e-12)), kShrink, kGrow);
+
+    const bool is_shortest = used <= options_.minimum_step;
+    const bool is_accepted = error <= 1 || (error < kInfinity && (is_shortest || report.is_over_budget));
+    if (!is_accepted) {
+      if (is_shortest || report.is_over_budget) {
+        report.is_finite = false;
+        return report;
+      }
+      ++report.rejected;
+      h = std::max(options_.minimum_step, used * std::min(factor, 0.9));
+      continue;
+    }
+    if (error > 1 && is_shortest) report.is_at_minimum_step = true;
+    report.largest_error = std::max(report.largest_error, error);
+    ++report.accepted;
+    system.accepted(used, y.data(), f_.data(), new_.data());
+    std::copy(new_.begin(), new_.end(), y.begin());
+    J = nullptr;
+    rest = is_last ? 0 : rest - used;
+    // a step cut short by the end of the interval does not shorten the next one
+    if (!report.is_over_budget) {
+      const double wanted = used * factor;
+      h = std::clamp(factor >= 1 ? std::max(h, wanted) : wanted, options_.minimum_step, duration);
+    }
+  }
+  step_size_ = report.is_over_budget ? options_.minimum_step : h;
+  return report;
+}
+
+}  // namespace slew::math
