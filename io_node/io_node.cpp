@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/check.h"
+
 namespace slew::io {
 namespace {
 
@@ -102,19 +104,7 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
     }
     case Topic::health: return member_.on_health(message.bytes, now_ns);
     case Topic::mechanism:
-      if (transport::decode(message.bytes, mechanism_in_)) {
-        receive_sample(mechanism_in_.header, Topic::mechanism, now_ns);
-      } else {
-        ++member_.refusals().undecodable;
-      }
-      return;
-    case Topic::actuators:
-      if (transport::decode(message.bytes, actuators_in_)) {
-        receive_sample(actuators_in_.header, Topic::actuators, now_ns);
-      } else {
-        ++member_.refusals().undecodable;
-      }
-      return;
+    case Topic::actuators: return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::controller_input: return receive_controller(message.bytes, now_ns);
     case Topic::control_request: return receive_control(message.bytes, now_ns);
     case Topic::resend: return receive_resend(message.bytes);
@@ -138,7 +128,12 @@ void IoNode::receive_session(std::span<const std::byte> bytes) {
   stage_ = Stage::finished;
 }
 
-void IoNode::receive_sample(const wire::Header& header, Topic topic, std::int64_t now_ns) {
+void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::int64_t now_ns) {
+  wire::Header header;
+  if (!transport::decode_header(bytes, header)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
   if (!member_.fits(header)) return;
   member_.heard(header, topic, now_ns);
   if (header.phase != Phase::running) return;
@@ -428,9 +423,7 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   hash.add(n_);
   gate_.add_to(hash);
   tick_.state_hash = hash.digest();
-  transport::encode(tick_, buffer_);
-  sent_.keep(n_, buffer_);
-  member_.send(Topic::tick, buffer_);
+  send_tick(n_);
   if (n_ % config_.variables_every == 0) publish_variables();
 
   ++n_;
@@ -442,6 +435,13 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   resend_due_ns_ = now_ns + node::kResendAfter.ns;
 }
 
+void IoNode::send_tick(StepIndex step) {
+  const bool is_encoded = transport::encode(tick_, buffer_);
+  SLEW_CHECK(is_encoded);
+  sent_.keep(step, buffer_);
+  member_.send(Topic::tick, buffer_);
+}
+
 void IoNode::start_epoch(std::int64_t now_ns) {
   member_.set_epoch(member_.epoch() + 1);
   gate_.reset();
@@ -451,9 +451,7 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   mechanics_at_ = hydraulics_at_ = kJoinStep;
   tick_ = wire::Tick{};
   tick_.header = member_.header(Phase::init, kJoinStep);
-  transport::encode(tick_, buffer_);
-  sent_.keep(kJoinStep, buffer_);
-  member_.send(Topic::tick, buffer_);
+  send_tick(kJoinStep);
   member_.set_step(0);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
@@ -467,9 +465,7 @@ void IoNode::send_end(std::uint32_t flags, ExitCode code) {
   tick_.commands.clear();
   tick_.header = member_.header(Phase::running, n_);
   tick_.flags = static_cast<std::uint32_t>(wire::TickFlag::end) | flags | (static_cast<std::uint32_t>(code) << 8);
-  transport::encode(tick_, buffer_);
-  sent_.keep(n_, buffer_);
-  member_.send(Topic::tick, buffer_);
+  send_tick(n_);
 }
 
 void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns) {

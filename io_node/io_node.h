@@ -80,7 +80,7 @@ class IoNode final : public node::Node {
 
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(std::span<const std::byte> bytes);
-  void receive_sample(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
+  void receive_sample(std::span<const std::byte> bytes, wire::Topic topic, std::int64_t now_ns);
   void receive_controller(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_control(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_resend(std::span<const std::byte> bytes);
@@ -95,6 +95,7 @@ class IoNode final : public node::Node {
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept;
   void ask_for_missing(std::int64_t now_ns);
   void issue_tick(std::int64_t now_ns);
+  void send_tick(StepIndex step);
   void keep_time(std::int64_t now_ns) noexcept;
   void send_end(std::uint32_t flags, ExitCode code);
   void start_epoch(std::int64_t now_ns);
@@ -129,8 +130,6 @@ class IoNode final : public node::Node {
   wire::VariableBlock block_;
   std::vector<std::byte> buffer_;
   node::SentCache sent_;
-  wire::MechanismMessage mechanism_in_;
-  wire::ActuatorMessage actuators_in_;
 };
 
 }  // namespace slew::io

@@ -67,8 +67,8 @@ class HealthThread {
     message.step_time_max = static_cast<double>(h.step_time_max_ns.exchange(0)) * 1e-9;
     last_steps = message.steps_done;
     last_sum = sum;
-    transport::encode(message, buffer);
     // a lost health message needs no reaction: the next one follows
+    if (!transport::encode(message, buffer)) return;
     static_cast<void>(node_.member().transport().publish(wire::Topic::health, buffer));
   }
 

@@ -100,9 +100,7 @@ void PhysicsNode::receive(const transport::Received& message, std::int64_t now_n
     case Topic::health: return member_.on_health(message.bytes, now_ns);
     case Topic::tick: return receive_tick(message.bytes, now_ns);
     case Topic::mechanism:
-      return receive_partner(message.bytes, Topic::mechanism, mechanisms_, mechanism_in_, now_ns);
-    case Topic::actuators:
-      return receive_partner(message.bytes, Topic::actuators, actuators_, actuators_in_, now_ns);
+    case Topic::actuators: return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::resend: return receive_resend(message.bytes);
     default: return;
   }
@@ -137,58 +135,50 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes) {
 }
 
 void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  if (!transport::decode(bytes, tick_scratch_)) {
+  wire::Header header;
+  if (!transport::decode_header(bytes, header)) {
     ++member_.refusals().undecodable;
     return;
   }
-  const wire::Header& header = tick_scratch_.header;
   // a new epoch starts with an INIT tick
-  if (header.phase == Phase::init && member_.has_session() &&
-      header.session == member_.session().header.session && header.epoch == member_.epoch() + 1) {
-    member_.heard(header, Topic::tick, now_ns);
+  if (header.phase == Phase::init && member_.has_session() && header.session == member_.session().header.session &&
+      header.epoch == member_.epoch() + 1) {
     return restart(header.epoch);
   }
   if (!member_.fits(header)) return;
   member_.heard(header, Topic::tick, now_ns);
-  if (header.phase != Phase::running) return;
-  if (header.step < n_ || header.step >= n_ + static_cast<StepIndex>(kRingDepth)) {
-    ++member_.refusals().unexpected_step;
-    return;
-  }
-  if (ticks_.find(header.step) != nullptr) {
-    ++member_.refusals().duplicate;
-    return;
-  }
-  ticks_.put(header.step) = tick_scratch_;
+  if (header.phase == Phase::running) keep(bytes, header.step, ticks_);
 }
 
-template <typename Message>
-void PhysicsNode::receive_partner(std::span<const std::byte> bytes, Topic topic, StepRing<Message>& ring,
-                                  Message& message, std::int64_t now_ns) {
+void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::int64_t now_ns) {
   if (topic == sample_topic(member_.role())) return;
-  if (!transport::decode(bytes, message)) {
+  wire::Header header;
+  if (!transport::decode_header(bytes, header)) {
     ++member_.refusals().undecodable;
     return;
   }
-  if (!member_.fits(message.header)) return;
-  member_.heard(message.header, topic, now_ns);
-  if (message.header.phase == Phase::join) return;
-  if (message.header.phase == Phase::init) {
-    if (topic == Topic::mechanism) {
-      mechanism_init_ = mechanism_in_.sample;
-      has_mechanism_init_ = true;
-    }
-    return;
+  if (!member_.fits(header)) return;
+  member_.heard(header, topic, now_ns);
+  if (header.phase == Phase::init && topic == Topic::mechanism) {
+    has_mechanism_init_ = transport::decode(bytes, mechanism_init_);
+  } else if (header.phase == Phase::running && topic == Topic::mechanism) {
+    keep(bytes, header.step, mechanisms_);
+  } else if (header.phase == Phase::running) {
+    keep(bytes, header.step, actuators_);
   }
-  if (message.header.step < n_ || message.header.step >= n_ + static_cast<StepIndex>(kRingDepth)) {
+}
+
+// puts a message of a step that is still to be done into its ring, once
+template <typename Message>
+void PhysicsNode::keep(std::span<const std::byte> bytes, StepIndex step, StepRing<Message>& ring) {
+  if (step < n_ || step >= n_ + static_cast<StepIndex>(kRingDepth)) {
     ++member_.refusals().unexpected_step;
-    return;
-  }
-  if (ring.find(message.header.step) != nullptr) {
+  } else if (ring.find(step) != nullptr) {
     ++member_.refusals().duplicate;
-    return;
+  } else if (!transport::decode(bytes, ring.put(step))) {
+    ring.remove(step);
+    ++member_.refusals().undecodable;
   }
-  ring.put(message.header.step) = message;
 }
 
 void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
@@ -272,7 +262,7 @@ bool PhysicsNode::advance_init(std::int64_t now_ns) {
       const wire::ActuatorMessage* sample = actuators_.find(0);
       partners.actuators = sample != nullptr ? &sample->sample : nullptr;
     } else if (has_mechanism_init_) {
-      partners.mechanism = &mechanism_init_;
+      partners.mechanism = &mechanism_init_.sample;
     }
     if (partners.actuators == nullptr && partners.mechanism == nullptr) {
       ask_for_missing(now_ns);
@@ -400,17 +390,19 @@ void PhysicsNode::publish_sample(Phase phase, StepIndex step, const StepReport& 
   state.flags = report.flags;
   state.offender = report.offender;
   state.substeps = report.substeps;
+  bool is_encoded = false;
   if (member_.role() == Role::mechanics) {
     mechanism_out_.header = member_.header(phase, step);
     mechanism_out_.state = state;
     mechanism_out_.sample = own_.mechanism;
-    transport::encode(mechanism_out_, buffer_);
+    is_encoded = transport::encode(mechanism_out_, buffer_);
   } else {
     actuators_out_.header = member_.header(phase, step);
     actuators_out_.state = state;
     actuators_out_.sample = own_.actuators;
-    transport::encode(actuators_out_, buffer_);
+    is_encoded = transport::encode(actuators_out_, buffer_);
   }
+  SLEW_CHECK(is_encoded);
   sent_.keep(step, buffer_);
   member_.send(sample_topic(member_.role()), buffer_);
 }

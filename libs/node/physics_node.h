@@ -42,9 +42,9 @@ class PhysicsNode final : public Node {
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(std::span<const std::byte> bytes);
   void receive_tick(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void receive_sample(std::span<const std::byte> bytes, wire::Topic topic, std::int64_t now_ns);
   template <typename Message>
-  void receive_partner(std::span<const std::byte> bytes, wire::Topic topic, StepRing<Message>& ring, Message& message,
-                       std::int64_t now_ns);
+  void keep(std::span<const std::byte> bytes, StepIndex step, StepRing<Message>& ring);
   void receive_resend(std::span<const std::byte> bytes);
 
   bool advance(std::int64_t now_ns);
@@ -77,16 +77,13 @@ class PhysicsNode final : public Node {
   StepIndex n_ = 0;  // next step to do
   bool first_sample_sent_ = false;
   bool has_mechanism_init_ = false;
-  coupling::MechanismSample mechanism_init_;
-  wire::MechanismMessage mechanism_in_;  // last decoded messages
-  wire::ActuatorMessage actuators_in_;
+  wire::MechanismMessage mechanism_init_;
   StepRing<wire::Tick> ticks_;
   StepRing<wire::MechanismMessage> mechanisms_;
   StepRing<wire::ActuatorMessage> actuators_;
   wire::MechanismMessage mechanism_out_;
   wire::ActuatorMessage actuators_out_;
   wire::VariableBlock block_;
-  wire::Tick tick_scratch_;
   coupling::OwnSample own_;
   std::vector<double> variable_values_;
   std::vector<std::byte> buffer_;

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/check.h"
 #include "core/status.h"
 #include "node/identity.h"
 #include "node/sent_cache.h"
@@ -108,9 +109,11 @@ class SessionMember {
   [[nodiscard]] std::string missing_join_text();
 
   // ---- sending
+  // Pre-condition: texts and lists of the message are within their caps.
   template <typename Message>
   void publish(wire::Topic topic, const Message& message) {
-    transport::encode(message, buffer_);
+    const bool is_encoded = transport::encode(message, buffer_);
+    SLEW_CHECK(is_encoded);
     send(topic, buffer_);
   }
   void send(wire::Topic topic, std::span<const std::byte> bytes) noexcept;

@@ -29,6 +29,7 @@ class StepRing {
     const std::size_t i = slot(step);
     return steps_[i] == step ? &slots_[i] : nullptr;
   }
+  void remove(StepIndex step) noexcept { steps_[slot(step)] = kEmpty; }
   void clear() noexcept {
     for (StepIndex& step : steps_) step = kEmpty;
   }

@@ -1,0 +1,388 @@
+#include "recorder_node/recorder_node.h"
+
+#include <algorithm>
+
+#include "recorder_node/idl_text.h"
+#include "recording/run_directory.h"
+
+namespace slew::recorder {
+namespace {
+
+using node::to_text;
+using wire::NodeState;
+using wire::Phase;
+using wire::Role;
+using wire::Topic;
+
+// the recorder reports how far it is at least this often
+constexpr StepIndex kReportSteps = 64;
+constexpr std::int64_t kReportNs = 100'000'000;
+
+// type names as in idl/slewring.idl, by Topic
+constexpr std::string_view kTypeNames[] = {
+    "slewring::SessionDescription", "slewring::NodeStatus",     "slewring::Tick",
+    "slewring::MechanismMessage",   "slewring::ActuatorMessage", "slewring::VariableDirectory",
+    "slewring::VariableBlock",      "slewring::ControllerInput", "slewring::ControllerLease",
+    "slewring::ControlRequest",     "slewring::ControlReply",    "slewring::Health",
+    "slewring::ResendRequest"};
+static_assert(std::size(kTypeNames) == wire::kTopics);
+
+std::string manifest_text(const wire::SessionDescription& session) {
+  std::string text = "[";
+  for (const wire::Asset& asset : session.assets) {
+    constexpr char kDigits[] = "0123456789abcdef";
+    std::string sum;
+    for (const std::uint8_t byte : asset.sha256) sum += {kDigits[byte >> 4], kDigits[byte & 15]};
+    text += (text.size() > 1 ? ",\n " : "") + std::string("{\"name\": \"") + asset.name +
+            "\", \"size\": " + std::to_string(asset.size) + ", \"sha256\": \"" + sum + "\"}";
+  }
+  return text + "]\n";
+}
+
+recording::ByteSpan bytes_of(const std::string& text) {
+  return std::as_bytes(std::span<const char>(text.data(), text.size()));
+}
+
+}  // namespace
+
+RecorderNode::RecorderNode(transport::Transport& transport, RecorderConfig config)
+    : member_(Role::recorder, transport, {}), config_(std::move(config)) {}
+
+RecorderNode::~RecorderNode() { close(); }
+
+bool RecorderNode::poll(std::int64_t now_ns) {
+  bool any = false;
+  transport::Received message;
+  while (stage_ != Stage::finished && member_.transport().take(message)) {
+    receive(message, now_ns);
+    any = true;
+  }
+  if (stage_ == Stage::waiting_for_session) {
+    if (deadline_ns_ == 0) deadline_ns_ = now_ns + config_.session_timeout.ns;
+    if (now_ns > deadline_ns_) {
+      member_.fail(ExitCode::failed, "no session was found; start the io node first, and compare --session, --domain, "
+                                     "--interface and --peer on both sides");
+      stage_ = Stage::finished;
+    }
+  } else if (stage_ != Stage::finished) {
+    ask_for_gaps(now_ns);
+    watch(now_ns);
+    report_progress(now_ns);
+    if (writer_ != nullptr) {
+      const Status status = writer_->flush_if_due(now_ns);
+      if (!status.is_ok()) begin_ending(status.code, status.text, now_ns);
+    }
+  }
+  member_.publish_status_if_changed();
+  update_health();
+  return any;
+}
+
+std::int64_t RecorderNode::next_deadline(std::int64_t now_ns) const {
+  return now_ns + (stage_ == Stage::ending ? node::kResendAfter.ns : node::kProbeInterval.ns);
+}
+
+void RecorderNode::request_stop(ExitCode code) { begin_ending(code, "ended by a signal", 0); }
+
+void RecorderNode::update_health() noexcept {
+  node::HealthState& h = health();
+  h.state = static_cast<std::uint8_t>(member_.state());
+  h.step = complete_up_to();
+  h.epoch = member_.epoch();
+  h.refused = member_.refusals().total();
+  h.has_session.store(member_.has_session(), std::memory_order_release);
+}
+
+std::uint64_t RecorderNode::lost() const noexcept {
+  std::uint64_t sum = 0;
+  for (const TopicCounts& counts : counts_) sum += counts.lost;
+  return sum;
+}
+
+// ---- receiving ------------------------------------------------------------------------------------------------
+
+void RecorderNode::receive(const transport::Received& message, std::int64_t now_ns) {
+  switch (message.topic) {
+    case Topic::session: return receive_session(message, now_ns);
+    case Topic::tick:
+    case Topic::mechanism:
+    case Topic::actuators:
+    case Topic::variables: return receive_stepped(message, now_ns);
+    case Topic::node_status: {
+      const Status refusal = member_.on_node_status(message.bytes, now_ns);
+      if (!refusal.is_ok()) {
+        member_.fail(refusal.code, refusal.text);
+        close();
+        stage_ = Stage::finished;
+        return;
+      }
+      break;
+    }
+    case Topic::health: member_.on_health(message.bytes, now_ns); break;
+    default: break;
+  }
+  // everything else is filed under the step that is being recorded
+  if (writer_ != nullptr) {
+    write(message, member_.epoch(), std::max<StepIndex>(0, complete_up_to()), static_cast<std::uint32_t>(++unstepped_));
+  }
+}
+
+void RecorderNode::receive_session(const transport::Received& message, std::int64_t now_ns) {
+  wire::SessionDescription session;
+  if (!transport::decode(message.bytes, session)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (member_.has_session()) return;
+  member_.adopt(session);
+  Status status = Status::ok();
+  if (session.protocol != wire::kProtocolVersion) {
+    status = Status::error(ExitCode::bad_input, "session '" + session.name + "' speaks protocol version " +
+                                                    std::to_string(session.protocol) + ", this program " +
+                                                    std::to_string(wire::kProtocolVersion) +
+                                                    "; use one version on all machines");
+  }
+  if (status.is_ok() && config_.check) status = config_.check(session);
+  if (status.is_ok()) status = create(session);
+  if (!status.is_ok()) {
+    member_.fail(status.code, status.text);
+    member_.publish_status_if_changed();
+    stage_ = Stage::finished;
+    return;
+  }
+  write(message, session.header.epoch, kJoinStep, 0);
+  // nothing to prove for a node without step topics, nothing to initialise: it is ready when it listens
+  member_.set_state(NodeState::ready);
+  stage_ = Stage::recording;
+  resend_.restart(now_ns);
+}
+
+Status RecorderNode::create(const wire::SessionDescription& session) {
+  std::filesystem::path directory;
+  Status status =
+      recording::create_run_directory(config_.runs_directory, session.scene_name, session.started_ns, directory);
+  if (!status.is_ok()) return status;
+  path_ = directory / recording::kRecordingFileName;
+  recording::SessionIdentity identity;
+  identity.scene = session.scene_name;
+  identity.session_name = session.name;
+  identity.session_id = to_text(session.header.session);
+  identity.build = session.build;
+  identity.communication_step = {session.step_ns};
+  identity.started_ns = session.started_ns;
+  identity.more["pace"] = session.pace == wire::Pace::free ? "free" : "real";
+  identity.more["protocol"] = std::to_string(session.protocol);
+  status = recording::Writer::create(path_, identity, recording::WriterLimits{}, writer_);
+  if (!status.is_ok()) return status;
+  status = add_attachments(session);
+  for (std::size_t i = 0; status.is_ok() && i < wire::kTopics; ++i) {
+    const recording::ChannelDef channel{std::string(to_text(static_cast<Topic>(i))), std::string(kTypeNames[i]),
+                                        kIdlText, {}};
+    status = writer_->add_channel(channel, channels_[i]);
+  }
+  return status;
+}
+
+Status RecorderNode::add_attachments(const wire::SessionDescription& session) {
+  Status status = writer_->add_attachment("scene.yaml", "application/yaml", bytes_of(session.scene_text));
+  if (status.is_ok()) {
+    status = writer_->add_attachment("manifest.json", "application/json", bytes_of(manifest_text(session)));
+  }
+  if (status.is_ok()) status = writer_->add_attachment("build.txt", "text/plain", bytes_of(session.build + "\n"));
+  return status;
+}
+
+void RecorderNode::receive_stepped(const transport::Received& message, std::int64_t now_ns) {
+  wire::Header header;
+  if (!transport::decode_header(message.bytes, header)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (member_.has_session() && message.topic == Topic::tick && header.phase == Phase::init &&
+      header.session == member_.session().header.session && header.epoch == member_.epoch() + 1) {
+    start_epoch(header.epoch);
+  }
+  if (!member_.fits(header)) return;
+  member_.heard(header, message.topic, now_ns);
+  if (header.phase == Phase::join || writer_ == nullptr) return;
+  if (header.phase == Phase::init) return write(message, header.epoch, kJoinStep, static_cast<std::uint32_t>(header.role));
+
+  TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
+  if (message.topic == Topic::variables) {
+    // one stream per writer and block; blocks come every k-th step
+    wire::VariableBlock block;
+    if (!transport::decode(message.bytes, block)) {
+      ++member_.refusals().undecodable;
+      return;
+    }
+    const std::uint64_t key = (static_cast<std::uint64_t>(header.role) << 32) | block.first;
+    const auto [entry, is_new] = last_block_.try_emplace(key, header.step);
+    if (!is_new && header.step <= entry->second) {
+      ++counts.duplicates;
+      return;
+    }
+    entry->second = header.step;
+    return write(message, header.epoch, header.step,
+                 (static_cast<std::uint32_t>(header.role) << 16) | static_cast<std::uint32_t>(block.first));
+  }
+  StreamGaps& stream = streams_.try_emplace({message.topic, header.role}).first->second;
+  if (stream.arrived(header.step) == StreamGaps::Arrival::duplicate) {
+    ++counts.duplicates;
+    return;
+  }
+  if (message.topic == Topic::tick) {
+    wire::Tick tick;
+    if (transport::decode(message.bytes, tick) && (tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) {
+      end_step_ = header.step;
+      end_flags_ = tick.flags;
+    }
+  }
+  if (!stream.has_gap()) resend_.restart(now_ns);
+  write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
+}
+
+void RecorderNode::start_epoch(std::uint32_t epoch) {
+  for (auto& [key, stream] : streams_) {
+    stream.close_at(stream.newest());
+    counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
+  }
+  streams_.clear();
+  last_block_.clear();
+  member_.set_epoch(epoch);
+  end_step_ = -1;
+  reported_step_ = kJoinStep;
+  member_.set_recorded_step(kJoinStep);
+  member_.mark_status_changed();
+}
+
+void RecorderNode::write(const transport::Received& message, std::uint32_t epoch, StepIndex step,
+                         std::uint32_t sequence) {
+  const auto topic = static_cast<std::size_t>(message.topic);
+  const Status status = writer_->write(channels_[topic], {epoch, step, sequence, message.source_ns}, message.bytes);
+  if (status.is_ok()) {
+    ++counts_[topic].recorded;
+  } else {
+    begin_ending(status.code, status.text, 0);
+  }
+}
+
+// ---- progress -------------------------------------------------------------------------------------------------
+
+// all required streams are complete below the step after this one
+StepIndex RecorderNode::complete_up_to() const noexcept {
+  StepIndex least = -1;
+  bool is_first = true;
+  const auto consider = [&](Topic topic, Role role) {
+    if (!member_.has_session() || !member_.requires_role(role)) return;
+    const auto found = streams_.find({topic, role});
+    const StepIndex at = found == streams_.end() ? -1 : found->second.next() - 1;
+    least = is_first ? at : std::min(least, at);
+    is_first = false;
+  };
+  consider(Topic::tick, Role::io);
+  consider(Topic::mechanism, Role::mechanics);
+  consider(Topic::actuators, Role::hydraulics);
+  return least;
+}
+
+void RecorderNode::report_progress(std::int64_t now_ns) {
+  const StepIndex at = complete_up_to();
+  if (at != reported_step_ && (at - reported_step_ >= kReportSteps || now_ns - reported_ns_ >= kReportNs)) {
+    reported_step_ = at;
+    reported_ns_ = now_ns;
+    member_.set_recorded_step(at);
+    member_.set_step(at);
+    member_.mark_status_changed();
+  }
+  if (stage_ == Stage::recording && end_step_ >= 0 && at >= end_step_ - 1 && member_.all_required(NodeState::ended)) {
+    begin_ending((end_flags_ & static_cast<std::uint32_t>(wire::TickFlag::fault)) != 0
+                     ? static_cast<ExitCode>(end_flags_ >> 8)
+                     : ExitCode::ok,
+                 "the session was ended because of a fault elsewhere", now_ns);
+  }
+}
+
+void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
+  if (!resend_.is_due(now_ns)) return;
+  bool any = false;
+  for (const auto& [key, stream] : streams_) {
+    const bool waits_for_end = end_step_ >= 0 && stream.next() < end_step_ + (key.first == Topic::tick ? 0 : 1);
+    if (!stream.has_gap() && !waits_for_end) continue;
+    wire::ResendRequest request;
+    request.header = member_.header(Phase::running, stream.next());
+    request.role = key.second;
+    request.topic = static_cast<std::uint8_t>(key.first);
+    request.last_step = stream.has_gap() ? stream.gap_end() : end_step_;
+    member_.publish(Topic::resend, request);
+    ++health().resends_asked;
+    any = true;
+  }
+  if (any) {
+    resend_.asked(now_ns);
+  } else {
+    resend_.restart(now_ns);
+  }
+}
+
+// ---- ending ---------------------------------------------------------------------------------------------------
+
+void RecorderNode::watch(std::int64_t now_ns) {
+  if (stage_ != Stage::recording) return;
+  Role about = Role::io;
+  if (member_.watch_peers(now_ns, about) == node::PeerEvent::lost) {
+    return begin_ending(ExitCode::node_lost, member_.describe_peer(about) + " is gone; the recording was closed after step " +
+                                                 std::to_string(complete_up_to()),
+                        now_ns);
+  }
+  // io ended or failed without an END tick that reached us: close when everybody is through
+  const node::Peer& io = member_.peer(Role::io);
+  if (!io.is_known || io.status.state < NodeState::ended) {
+    deadline_ns_ = 0;
+    return;
+  }
+  if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns / 2;
+  if (member_.all_required(NodeState::ended) && end_step_ < 0) {
+    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason, now_ns);
+  } else if (now_ns > deadline_ns_) {
+    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason, now_ns);
+  }
+}
+
+void RecorderNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns) {
+  static_cast<void>(now_ns);
+  if (stage_ == Stage::ending || stage_ == Stage::finished) return;
+  stage_ = Stage::ending;
+  close();
+  if (code == ExitCode::ok && lost() > 0) {
+    member_.fail(ExitCode::losses, std::to_string(lost()) + " messages are missing in the recording");
+  } else if (code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated) {
+    member_.end(code);
+  } else {
+    member_.fail(code, reason);
+  }
+  member_.publish_status_if_changed();
+  stage_ = Stage::finished;
+}
+
+void RecorderNode::close() {
+  if (writer_ == nullptr) return;
+  for (auto& [key, stream] : streams_) {
+    const StepIndex last = end_step_ < 0 ? stream.newest() : end_step_ - (key.first == Topic::tick ? 1 : 0);
+    if (end_step_ >= 0 && (end_flags_ & static_cast<std::uint32_t>(wire::TickFlag::fault)) == 0) stream.close_at(last);
+    counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
+  }
+  recording::TextMap summary;
+  summary["last_step"] = std::to_string(complete_up_to());
+  for (std::size_t i = 0; i < wire::kTopics; ++i) {
+    if (counts_[i].recorded == 0) continue;
+    const std::string name(to_text(static_cast<Topic>(i)));
+    summary[name + ".recorded"] = std::to_string(counts_[i].recorded);
+    summary[name + ".lost"] = std::to_string(counts_[i].lost);
+    summary[name + ".duplicates"] = std::to_string(counts_[i].duplicates);
+  }
+  const Status status = writer_->close(summary);
+  if (!status.is_ok()) member_.fail(status.code, status.text);
+  writer_.reset();
+}
+
+}  // namespace slew::recorder

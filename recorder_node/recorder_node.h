@@ -1,0 +1,89 @@
+// Takes everything that is said in a session and puts it, ordered by step, into one recording.
+//
+// Ticks and samples must be complete: a gap is asked for by number after 3 ms and answered from the writers' caches;
+// what never comes is counted per topic. The recording is closed after every node's END, after a fault, or on a signal.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "node/node.h"
+#include "node/resend_clock.h"
+#include "recorder_node/stream_gaps.h"
+#include "recording/writer.h"
+
+namespace slew::recorder {
+
+struct RecorderConfig {
+  std::filesystem::path runs_directory = "runs";
+  SimDuration session_timeout = milliseconds(30'000);
+  // Checks of the session before the recording is created (assets); may be empty.
+  std::function<Status(const wire::SessionDescription&)> check;
+};
+
+struct TopicCounts {
+  std::uint64_t recorded = 0;
+  std::uint64_t duplicates = 0;
+  std::uint64_t lost = 0;
+};
+
+class RecorderNode final : public node::Node {
+ public:
+  RecorderNode(transport::Transport& transport, RecorderConfig config);
+  ~RecorderNode() override;
+
+  bool poll(std::int64_t now_ns) override;
+  [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override;
+  [[nodiscard]] bool is_finished() const override { return stage_ == Stage::finished; }
+  void request_stop(ExitCode code) override;
+  [[nodiscard]] node::SessionMember& member() override { return member_; }
+
+  // Empty before the session is known.
+  [[nodiscard]] const std::filesystem::path& recording() const noexcept { return path_; }
+  [[nodiscard]] const TopicCounts& counts(wire::Topic topic) const noexcept {
+    return counts_[static_cast<std::size_t>(topic)];
+  }
+  [[nodiscard]] std::uint64_t lost() const noexcept;
+
+ private:
+  enum class Stage : std::uint8_t { waiting_for_session, recording, ending, finished };
+
+  void receive(const transport::Received& message, std::int64_t now_ns);
+  void receive_session(const transport::Received& message, std::int64_t now_ns);
+  void receive_stepped(const transport::Received& message, std::int64_t now_ns);
+  Status create(const wire::SessionDescription& session);
+  Status add_attachments(const wire::SessionDescription& session);
+  void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
+  void start_epoch(std::uint32_t epoch);
+  [[nodiscard]] StepIndex complete_up_to() const noexcept;
+  void report_progress(std::int64_t now_ns);
+  void ask_for_gaps(std::int64_t now_ns);
+  void watch(std::int64_t now_ns);
+  void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
+  void close();
+  void update_health() noexcept;
+
+  node::SessionMember member_;
+  RecorderConfig config_;
+  Stage stage_ = Stage::waiting_for_session;
+  std::filesystem::path path_;
+  std::unique_ptr<recording::Writer> writer_;
+  std::array<recording::ChannelId, wire::kTopics> channels_{};
+  std::array<TopicCounts, wire::kTopics> counts_{};
+  std::map<std::pair<wire::Topic, wire::Role>, StreamGaps> streams_;  // ticks and samples, by writer
+  std::map<std::uint64_t, StepIndex> last_block_;                     // newest variable block, by writer and first
+  StepIndex end_step_ = -1;                                           // of the END tick; -1: not yet
+  std::uint32_t end_flags_ = 0;
+  StepIndex reported_step_ = kJoinStep;
+  std::int64_t reported_ns_ = 0;
+  std::int64_t deadline_ns_ = 0;
+  std::uint64_t unstepped_ = 0;  // running number of messages without a step of their own
+  node::ResendClock resend_;
+};
+
+}  // namespace slew::recorder
