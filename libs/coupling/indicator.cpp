@@ -92,10 +92,14 @@ double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noe
   if (m == 0) return 0;
   // power iteration on S = sqrt(K) W sqrt(K), which has the eigenvalues of W K
   std::array<double, kMaxPorts> root{}, vector{}, image{};
+  // it starts from the stiffest port alone: a symmetric start could miss the mode in which two ports work against
+  // each other
+  std::size_t stiffest = 0;
   for (std::size_t i = 0; i < m; ++i) {
     root[i] = std::sqrt(std::max(0.0, K[i]));
-    vector[i] = root[i];
+    if (K[i] * W[i * m + i] > K[stiffest] * W[stiffest * m + stiffest]) stiffest = i;
   }
+  vector[stiffest] = 1;
   double eigenvalue = 0;
   for (int iteration = 0; iteration < kPowerIterations; ++iteration) {
     double largest = 0;

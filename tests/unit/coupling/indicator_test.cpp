@@ -1,0 +1,72 @@
+#include "coupling/indicator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace slew::coupling {
+namespace {
+
+struct Pair {
+  MechanismSample mechanism;
+  ActuatorSample actuators;
+};
+
+Pair one_port() {
+  Pair pair;
+  resize(pair.mechanism, 1);
+  resize(pair.actuators, 1);
+  pair.actuators.F[0] = 1e5;
+  pair.actuators.K[0] = 1e8;
+  pair.mechanism.F_used[0] = 1e5;
+  return pair;
+}
+
+TEST(Indicator, PerfectAgreementIsGreen) {
+  Indicator indicator(1, milliseconds(1));
+  Pair pair = one_port();
+  pair.mechanism.work[0] = pair.actuators.work[0] = 1.0;
+  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators);
+  EXPECT_EQ(indicator.port(0).eta, 0.0);
+  EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::green);
+}
+
+TEST(Indicator, VolumeCorrectionIsNotAnError) {
+  // hydraulics behind by e_x: its work differs by F e_x - K e_x^2 / 2, which the correction gives back
+  Indicator indicator(1, milliseconds(1));
+  Pair pair = one_port();
+  const double e_x = 1e-5;
+  pair.mechanism.x[0] = e_x;
+  pair.mechanism.F_used[0] = 1e5 - 1e8 * e_x;
+  pair.mechanism.work[0] = 10;
+  pair.actuators.work[0] = 10 - (1e5 * e_x - 0.5 * 1e8 * e_x * e_x);
+  indicator.update(pair.mechanism, pair.actuators);
+  EXPECT_NEAR(indicator.port(0).e_x, e_x, 1e-18);
+  EXPECT_NEAR(indicator.port(0).e_F, 0, 1e-9);
+  EXPECT_NEAR(indicator.port(0).dE_star, 0, 1e-12);
+}
+
+TEST(Indicator, EnergyThatTheCouplingCreatesRaisesTheAlarmAfterItsTime) {
+  Indicator indicator(1, milliseconds(1));
+  Pair pair = one_port();
+  pair.mechanism.work[0] = 10;
+  pair.actuators.work[0] = 10 - 0.5;
+  int steps = 0;
+  while (!indicator.creates_energy() && steps < 1000) {
+    indicator.update(pair.mechanism, pair.actuators);
+    ++steps;
+  }
+  EXPECT_NEAR(steps, 200, 20);
+  EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::red);
+}
+
+TEST(Indicator, CouplingFrequencyUsesTheFullMobility) {
+  PortMatrix W;
+  for (const double w : {3e-5, -2.9e-5, -2.9e-5, 3e-5}) W.push_back(w);
+  const PortArray K{1.5e8, 1.5e8};
+  // eigenvalues of W K: 5.9e-5 K and 0.1e-5 K
+  EXPECT_NEAR(coupling_frequency(W, K, 1e-3), 1e-3 * std::sqrt(5.9e-5 * 1.5e8), 2e-3 * 0.094);
+}
+
+}  // namespace
+}  // namespace slew::coupling

@@ -1,0 +1,70 @@
+#include "coupling/line_force.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace slew::coupling {
+namespace {
+
+LineForceDef crane_lift() {
+  LineForceDef def;
+  def.friction_curve = {{0, 0}, {1e-4, 1}, {0.025, 0.9}, {0.05, 0.4}, {0.1, 0.2}, {1, 0.8}};
+  def.efficiency = 0.9;
+  def.seal_friction = 1000;
+  def.stroke_min = 0.7;
+  def.stroke_max = 1.05;
+  def.stop_stiffness = 5e7;
+  def.stop_damping = 5e5;
+  return def;
+}
+
+TEST(LineForce, FrictionOpposesTheMotionWhateverTheSignOfTheForce) {
+  const LineForceLaw law(crane_lift());
+  for (const double F : {-3e5, -1.0, 0.0, 2e5}) {
+    for (const double v : {-2.0, -0.03, -1e-5, 1e-5, 0.03, 2.0}) {
+      EXPECT_GE(law.friction(F, v) * v, 0.0) << F << ' ' << v;
+    }
+  }
+  EXPECT_EQ(law.friction(2e5, 0.0), 0.0);
+}
+
+TEST(LineForce, FrictionHasTheValuesOfTheCurve) {
+  const LineForceLaw law(crane_lift());
+  // |F| (1 - eta) f(v) + seal friction, by hand
+  EXPECT_NEAR(law.friction(2e5, 0.025), 2e5 * 0.1 * 0.9 + 1000, 1e-9);
+  EXPECT_NEAR(law.friction(-2e5, 0.0375), 2e5 * 0.1 * 0.65 + 1000, 1e-9);
+  EXPECT_NEAR(law.friction(2e5, 5.0), 2e5 * 0.1 * 0.8 + 1000, 1e-9);  // last value held
+}
+
+TEST(LineForce, StopPushesOnlyAndOnlyOutside) {
+  const LineForceLaw law(crane_lift());
+  EXPECT_EQ(law.stop_force(0.8, 1.0), 0.0);
+  EXPECT_NEAR(law.stop_force(0.699, 0.0), 5e4, 1e-6);
+  EXPECT_NEAR(law.stop_force(1.051, 0.01), -(5e4 + 5e3), 1e-6);
+  // leaving fast, the damper may not pull
+  EXPECT_EQ(law.stop_force(0.699, 1.0), 0.0);
+  EXPECT_EQ(law.stop_force(1.051, -1.0), 0.0);
+}
+
+TEST(LineForce, SlopesAgreeWithDifferences) {
+  const LineForceLaw law(crane_lift());
+  const double h = 1e-7;
+  for (const double F : {-1e5, 3e5}) {
+    for (const double x : {0.69, 0.9, 1.06}) {
+      for (const double v : {-0.2, -3e-5, 4e-5, 0.03, 0.3}) {
+        const LineForce line = law.evaluate(F, x, v);
+        const auto force = [&](double dF, double dx, double dv) {
+          return law.evaluate(F + dF, x + dx, v + dv).force;
+        };
+        EXPECT_NEAR(line.d_pressure, (force(1, 0, 0) - force(-1, 0, 0)) / 2, 1e-6);
+        EXPECT_NEAR(line.d_position, (force(0, h, 0) - force(0, -h, 0)) / (2 * h), 1e-6 * 5e7);
+        EXPECT_NEAR(line.d_speed, (force(0, 0, h) - force(0, 0, -h)) / (2 * h), 1e-6 * 3e8);
+        EXPECT_NEAR(line.force, F - law.friction(F, v) + law.stop_force(x, v), 1e-9);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slew::coupling

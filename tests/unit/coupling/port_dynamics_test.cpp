@@ -1,0 +1,140 @@
+#include "coupling/port_dynamics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/allocation_guard.h"
+#include "coupling/line_force.h"
+
+namespace slew::coupling {
+namespace {
+
+// f = z on every row
+class PassThrough final : public RowLaws {
+ public:
+  RowForce evaluate(std::size_t, double z, double, double) const noexcept override { return {z, 1, 0, 0}; }
+};
+
+class OneCylinder final : public RowLaws {
+ public:
+  explicit OneCylinder(const LineForceDef& def) : law_(def) {}
+  RowForce evaluate(std::size_t, double z, double x, double v) const noexcept override {
+    const LineForce line = law_.evaluate(z, x, v);
+    return {line.force, line.d_pressure, line.d_position, line.d_speed};
+  }
+
+ private:
+  LineForceLaw law_;
+};
+
+// mass 1/W on an oil spring K without leakage: x(t) = x0 cos(omega t) about x_ref = 0
+double oscillator_error(double h, int micro_steps) {
+  const double W = 1.0 / 42e3;
+  const double K = 1.6e8;
+  const double omega = std::sqrt(K * W);
+  PortDynamics ports(1);
+  ports.x()[0] = 1e-3;
+  ports.v()[0] = 0;
+  ports.z()[0] = -K * 1e-3;
+  ports.a_free()[0] = 0;
+  ports.W()[0] = W;
+  ports.partner()[0] = {0, K, 0, 0, 0, 0};
+  const PassThrough laws;
+  const int steps = static_cast<int>(std::lround(0.2 / h));
+  for (int i = 0; i < steps; ++i) ports.solve(h, micro_steps, laws);
+  return std::fabs(ports.x()[0] - 1e-3 * std::cos(omega * 0.2)) / 1e-3;
+}
+
+TEST(PortDynamics, OilSpringIsSolvedToSecondOrder) {
+  const double coarse = oscillator_error(1e-3, 1);
+  const double fine = oscillator_error(1e-3, 4);
+  EXPECT_LT(fine, 2e-3);
+  EXPECT_NEAR(std::log2(coarse / fine) / 2, 2.0, 0.3);
+}
+
+TEST(PortDynamics, PartnerForceFollowsItsLeakage) {
+  // held piston: F' = F_dot - lambda (F - F_n) goes to F_n + F_dot / lambda
+  PortDynamics ports(1);
+  ports.z()[0] = 1000;
+  ports.W()[0] = 0;
+  ports.partner()[0] = {500, 1e8, 50, 0, 1000, 0};
+  const PassThrough laws;
+  for (int i = 0; i < 1000; ++i) ports.solve(1e-3, 2, laws);
+  EXPECT_NEAR(ports.z()[0], 1000 + 500 / 50.0, 1e-6);
+}
+
+TEST(PortDynamics, StickingCylinderStaysWhereItIs) {
+  // 28 kN of friction against 5 kN of drive, slope 2.8e8 N s/m on 6.6 t: 4e4 1/s
+  LineForceDef def;
+  def.friction_curve = {{0, 0}, {1e-4, 1}, {0.025, 0.9}};
+  def.efficiency = 0.9;
+  def.stroke_max = 1;
+  const OneCylinder laws(def);
+  PortDynamics ports(1);
+  ports.x()[0] = 0.5;
+  ports.z()[0] = 280e3;
+  ports.a_free()[0] = (-280e3 + 5e3) / 6600.0;
+  ports.W()[0] = 1 / 6600.0;
+  double largest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_TRUE(ports.solve(1e-3, 4, laws).has_converged);
+    largest = std::max(largest, std::fabs(ports.v()[0]));
+  }
+  // creep speed of the regularised law: 1e-4 m/s * 5 kN / 28 kN
+  EXPECT_NEAR(ports.v()[0], 1e-4 * 5 / 28, 1e-7);
+  EXPECT_LT(largest, 2e-5);
+}
+
+TEST(PortDynamics, EndStopBringsAMovingMassToRest) {
+  LineForceDef def;
+  def.stroke_max = 1.0;
+  def.stop_stiffness = 5e7;
+  def.stop_damping = 5e5;
+  const OneCylinder laws(def);
+  PortDynamics ports(1);
+  ports.x()[0] = 0.999;
+  ports.v()[0] = 0.5;
+  ports.W()[0] = 1 / 5000.0;
+  ports.a_free()[0] = 2.0;  // pushed against the stop with 10 kN
+  double deepest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    EXPECT_TRUE(ports.solve(1e-3, 4, laws).has_converged);
+    deepest = std::max(deepest, ports.x()[0] - 1.0);
+  }
+  EXPECT_NEAR(ports.x()[0] - 1.0, 10e3 / 5e7, 1e-6);
+  EXPECT_LT(deepest, 0.5 * std::sqrt(5000 / 5e7));  // less than without the damper
+}
+
+TEST(PortDynamics, MeanAndSlopeReproduceTheMotion) {
+  // v(h) - v(0) = h (a_free + W f_mean); first moment of f from its slope
+  const PassThrough laws;
+  PortDynamics ports(2);
+  const double W[4] = {3e-5, -2.5e-5, -2.5e-5, 3e-5};
+  std::copy(W, W + 4, ports.W().begin());
+  ports.x()[0] = 1e-3;
+  ports.a_free()[0] = 1;
+  ports.a_free()[1] = -2;
+  ports.partner()[0] = {1e5, 1.6e8, 10, 0, 0, 0};
+  ports.partner()[1] = {0, 1.2e8, 0, 2e4, 0, 0.01};
+  const double v0[2] = {0.02, -0.01};
+  std::copy(v0, v0 + 2, ports.v().begin());
+  const double h = 1e-3;
+  ports.solve(h, 4, laws);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double expected = v0[i] + h * (ports.a_free()[i] + W[2 * i] * ports.f_mean()[0] + W[2 * i + 1] * ports.f_mean()[1]);
+    EXPECT_NEAR(ports.v()[i], expected, 1e-14);
+  }
+}
+
+TEST(PortDynamics, DoesNotAllocate) {
+  const PassThrough laws;
+  PortDynamics ports(3);
+  ports.solve(1e-3, 4, laws);
+  const AllocationGuard guard;
+  for (int i = 0; i < 1000; ++i) ports.solve(1e-3, 4, laws);
+  EXPECT_EQ(guard.allocations(), 0u);
+}
+
+}  // namespace
+}  // namespace slew::coupling
