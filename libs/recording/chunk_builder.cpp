@@ -1,0 +1,94 @@
+#include "recording/chunk_builder.h"
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <algorithm>
+
+namespace slew::recording {
+namespace {
+
+// a chunk is closed once it is full, so one message more than expected must fit without growing
+constexpr std::size_t kSpareBytes = 64 * 1024;
+
+}  // namespace
+
+void ChunkBuilder::FreeContext::operator()(ZSTD_CCtx_s* context) const noexcept {
+  ZSTD_freeCCtx(context);
+}
+
+ChunkBuilder::ChunkBuilder(std::size_t expected_bytes, int level) : context_(ZSTD_createCCtx()) {
+  if (context_) {
+    ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, level);
+  }
+  records_.reserve(expected_bytes + kSpareBytes);
+}
+
+ChunkBuilder::~ChunkBuilder() = default;
+
+void ChunkBuilder::add(const MessageRecord& message) {
+  if (message.channel_id >= entries_.size()) entries_.resize(std::size_t{message.channel_id} + 1);
+  std::vector<MessageIndexEntry>& entries = entries_[message.channel_id];
+  if (entries.empty()) channels_.push_back(message.channel_id);
+  entries.push_back({message.log_time, records_.size()});
+  start_time_ = is_empty() ? message.log_time : std::min(start_time_, message.log_time);
+  end_time_ = std::max(end_time_, message.log_time);
+  encode_message(records_, message);
+}
+
+Status ChunkBuilder::finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index) {
+  const std::size_t begin = out.size();
+  std::ignore = begin_record(out, Opcode::chunk);
+  put(out, start_time_);
+  put(out, end_time_);
+  put(out, static_cast<std::uint64_t>(records_.size()));
+  put(out, crc32_of(records_));
+  put_string(out, kZstd);
+
+  // compress in place behind the length of the records
+  const std::size_t length_at = out.size();
+  put(out, std::uint64_t{0});
+  const std::size_t records_at = out.size();
+  out.resize(records_at + ZSTD_compressBound(records_.size()));
+  const std::size_t size = context_ ? ZSTD_compress2(context_.get(), out.data() + records_at, out.size() - records_at,
+                                                     records_.data(), records_.size())
+                                    : static_cast<std::size_t>(-1);
+  if (ZSTD_isError(size) != 0) {
+    out.resize(begin);
+    return Status::error(ExitCode::resources, fmt::format("cannot compress {} bytes of messages ({}); they were not "
+                                                          "written; end other programs to free memory",
+                                                          records_.size(), ZSTD_getErrorName(size)));
+  }
+  out.resize(records_at + size);
+  put_at(out, length_at, static_cast<std::uint64_t>(size));
+  end_record(out, begin);
+
+  index.start_time = start_time_;
+  index.end_time = end_time_;
+  index.offset = file_size + begin;
+  index.length = out.size() - begin;
+  index.compression = kZstd;
+  index.compressed_size = size;
+  index.uncompressed_size = records_.size();
+
+  // message indexes, by ascending channel
+  const std::size_t indexes_at = out.size();
+  std::sort(channels_.begin(), channels_.end());
+  for (const std::uint16_t channel : channels_) {
+    index.message_index_offsets[channel] = file_size + out.size();
+    encode_message_index(out, channel, entries_[channel]);
+  }
+  index.message_index_length = out.size() - indexes_at;
+  start_empty();
+  return Status::ok();
+}
+
+void ChunkBuilder::start_empty() noexcept {
+  for (const std::uint16_t channel : channels_) entries_[channel].clear();
+  channels_.clear();
+  records_.clear();
+  start_time_ = 0;
+  end_time_ = 0;
+}
+
+}  // namespace slew::recording

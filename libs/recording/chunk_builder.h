@@ -1,0 +1,50 @@
+// Gathers messages into one MCAP chunk: compressed by zstd, checksummed, followed by an index per channel.
+//
+// Buffers keep their size from chunk to chunk: after the first full chunk nothing allocates.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+#include "recording/records.h"
+
+struct ZSTD_CCtx_s;
+
+namespace slew::recording {
+
+inline constexpr std::string_view kZstd = "zstd";
+
+class ChunkBuilder {
+ public:
+  // expected_bytes: size at which the owner closes a chunk; the buffers are sized for it.
+  // level: of zstd, 1 (fast) to 19.
+  ChunkBuilder(std::size_t expected_bytes, int level);
+  ~ChunkBuilder();
+
+  void add(const MessageRecord& message);
+
+  [[nodiscard]] std::size_t uncompressed_size() const noexcept { return records_.size(); }
+  [[nodiscard]] bool is_empty() const noexcept { return records_.empty(); }
+
+  // Appends the chunk record and its message indexes to out, for a file that ends at file_size; fills the entry for
+  // the summary and starts an empty chunk. Errors: resources, when zstd fails: nothing is appended.
+  [[nodiscard]] Status finish(Bytes& out, std::uint64_t file_size, ChunkIndexRecord& index);
+
+ private:
+  struct FreeContext {
+    void operator()(ZSTD_CCtx_s* context) const noexcept;
+  };
+
+  void start_empty() noexcept;
+
+  std::unique_ptr<ZSTD_CCtx_s, FreeContext> context_;
+  Bytes records_;
+  std::vector<std::vector<MessageIndexEntry>> entries_;  // by channel
+  std::vector<std::uint16_t> channels_;                  // with messages in this chunk
+  std::uint64_t start_time_ = 0;
+  std::uint64_t end_time_ = 0;
+};
+
+}  // namespace slew::recording

@@ -1,0 +1,106 @@
+#include "recording/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "recording/records.h"
+
+namespace slew::recording {
+namespace {
+
+// what the user can do about a failed write
+const char* remedy_of(int error) noexcept {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free space on that file system, or record elsewhere with --record DIR";
+    case EFBIG:
+      return "raise the file size limit (ulimit -f), or record to another file system";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a directory that you may write to with --record DIR";
+    case EIO:
+      return "check the disk (dmesg), and record elsewhere with --record DIR";
+    default:
+      return "record elsewhere with --record DIR";
+  }
+}
+
+}  // namespace
+
+OutputFile::~OutputFile() {
+  if (is_open()) ::close(descriptor_);
+}
+
+Status OutputFile::create(const std::filesystem::path& path) {
+  path_ = path;
+  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (is_open()) return Status::ok();
+  const int error = errno;
+  if (error == EEXIST) {
+    return Status::error(ExitCode::storage,
+                         fmt::format("{}: the file exists already; recordings are never overwritten; "
+                                     "choose another name",
+                                     path.string()));
+  }
+  return Status::error(ExitCode::storage, fmt::format("{}: cannot create the recording ({}); nothing was written; {}",
+                                                      path.string(), std::strerror(error), remedy_of(error)));
+}
+
+Status OutputFile::append(ByteSpan records) {
+  return write_all(records, crc32_of(records, crc_));
+}
+
+Status OutputFile::append_marked(Bytes& records) {
+  const std::uint32_t crc = crc32_of(records, crc_);
+  const std::size_t mark_at = records.size();
+  encode_mark(records, crc);
+  return write_all(records, crc32_of(ByteSpan(records).subspan(mark_at), crc));
+}
+
+Status OutputFile::write_all(ByteSpan bytes, std::uint32_t crc_after) {
+  std::uint64_t at = size_;
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (written > 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+      at += static_cast<std::uint64_t>(written);
+      continue;
+    }
+    const int error = written == 0 ? EIO : errno;
+    if (error == EINTR) continue;
+    // back to the last whole record; if even that fails, the reader stops at the same place
+    const bool is_cut_back = ::ftruncate(descriptor_, static_cast<off_t>(size_)) == 0;
+    return Status::error(
+        ExitCode::storage,
+        fmt::format("{}: cannot write {} bytes at byte {} ({}); {} {} bytes that are readable; {}", path_.string(),
+                    bytes.size(), at, std::strerror(error),
+                    is_cut_back ? "the file was cut back to" : "the file begins with", size_, remedy_of(error)));
+  }
+  size_ = at;
+  crc_ = crc_after;
+  return Status::ok();
+}
+
+Status OutputFile::close() {
+  if (!is_open()) return Status::ok();
+  const bool is_synchronised = ::fdatasync(descriptor_) == 0;
+  const int sync_error = errno;
+  const bool is_closed = ::close(descriptor_) == 0;
+  const int close_error = errno;
+  descriptor_ = -1;
+  if (is_synchronised && is_closed) return Status::ok();
+  const int error = is_synchronised ? close_error : sync_error;
+  return Status::error(ExitCode::storage,
+                       fmt::format("{}: the disk did not confirm the recording ({}); it was closed and may be "
+                                   "incomplete; check it with slewring info, {}",
+                                   path_.string(), std::strerror(error), remedy_of(error)));
+}
+
+}  // namespace slew::recording

@@ -1,0 +1,49 @@
+// The file that a recording is written to: whole records only, with the checksum of everything written so far.
+//
+// When a write fails the file is cut back to the last whole record, so that it stays readable, and no further byte is
+// written until the failure was told. Nothing is synchronised to the disk before close(): what was handed over
+// survives the death of the process, not a power cut (docs/recording-format.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/status.h"
+#include "recording/byte_order.h"
+
+namespace slew::recording {
+
+class OutputFile {
+ public:
+  OutputFile() = default;
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  // Creates the file; one that exists is never touched. Errors: storage.
+  [[nodiscard]] Status create(const std::filesystem::path& path);
+
+  // Appends whole records. Errors: storage; the file then ends where it ended before.
+  [[nodiscard]] Status append(ByteSpan records);
+
+  // The same, and a Mark behind them; the buffer grows by the Mark.
+  [[nodiscard]] Status append_marked(Bytes& records);
+
+  // Hands everything to the disk and closes. Errors: storage.
+  [[nodiscard]] Status close();
+
+  [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  [[nodiscard]] std::uint32_t crc() const noexcept { return crc_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  [[nodiscard]] Status write_all(ByteSpan bytes, std::uint32_t crc_after);
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::uint32_t crc_ = 0;
+};
+
+}  // namespace slew::recording

@@ -1,0 +1,199 @@
+// The records of an MCAP file (https://mcap.dev/spec, version 0) that a recording uses, as structs, with their bytes.
+//
+// A record is  <opcode: 1 byte> <length of content: uint64> <content>. encode_* append a whole record to a buffer;
+// decode_* read the content of one, return false when it is not well formed and never read outside of it. Content
+// may be longer than what is known here: newer fields are ignored. Not so in chunks and attachments, which prove
+// themselves by their own checksum: bytes behind it would be bytes that a wrong length swallowed.
+//
+// One record is our own, from the range that the specification leaves to applications:
+//   Mark (0x80): uint32 CRC32 of every byte of the file in front of the record.
+// It follows every record, or group of records, that carries no checksum of its own, so that any changed bit is found
+// and its place named without a summary. Readers of others skip it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/byte_order.h"
+
+namespace slew::recording {
+
+inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+
+enum class Opcode : std::uint8_t {
+  invalid = 0x00,
+  header = 0x01,
+  footer = 0x02,
+  schema = 0x03,
+  channel = 0x04,
+  message = 0x05,
+  chunk = 0x06,
+  message_index = 0x07,
+  chunk_index = 0x08,
+  attachment = 0x09,
+  attachment_index = 0x0A,
+  statistics = 0x0B,
+  metadata = 0x0C,
+  metadata_index = 0x0D,
+  summary_offset = 0x0E,
+  data_end = 0x0F,
+  mark = 0x80
+};
+
+inline constexpr std::size_t kRecordHeadBytes = 9;    // opcode and length
+inline constexpr std::size_t kMessageHeadBytes = 22;  // channel, sequence, log time, publish time
+inline constexpr std::size_t kFooterBytes = kRecordHeadBytes + 20;
+
+using TextMap = std::map<std::string, std::string>;
+
+struct HeaderRecord {
+  std::string profile;
+  std::string library;
+};
+
+struct SchemaRecord {
+  std::uint16_t id = 0;  // 1 or more
+  std::string name;
+  std::string encoding;
+  std::string text;
+};
+
+struct ChannelRecord {
+  std::uint16_t id = 0;
+  std::uint16_t schema_id = 0;
+  std::string topic;
+  std::string message_encoding;
+  TextMap metadata;
+};
+
+struct MessageRecord {
+  std::uint16_t channel_id = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0;      // ns
+  std::uint64_t publish_time = 0;  // ns
+  ByteSpan payload;                // into the buffer it was decoded from
+};
+
+struct ChunkRecord {
+  std::uint64_t start_time = 0;  // ns, smallest log time of a message in it, 0 when there is none
+  std::uint64_t end_time = 0;    // ns, largest
+  std::uint64_t uncompressed_size = 0;
+  std::uint32_t uncompressed_crc = 0;
+  std::string_view compression;
+  ByteSpan records;  // compressed
+};
+
+struct MessageIndexEntry {
+  std::uint64_t log_time = 0;
+  std::uint64_t offset = 0;  // in the uncompressed records of the chunk
+};
+
+struct ChunkIndexRecord {
+  std::uint64_t start_time = 0;
+  std::uint64_t end_time = 0;
+  std::uint64_t offset = 0;  // of the chunk record in the file
+  std::uint64_t length = 0;  // of the chunk record with its opcode and length
+  std::map<std::uint16_t, std::uint64_t> message_index_offsets;
+  std::uint64_t message_index_length = 0;
+  std::string compression;
+  std::uint64_t compressed_size = 0;
+  std::uint64_t uncompressed_size = 0;
+};
+
+struct AttachmentRecord {
+  std::uint64_t log_time = 0;
+  std::uint64_t create_time = 0;
+  std::string_view name;
+  std::string_view media_type;
+  ByteSpan content;
+};
+
+struct AttachmentIndexRecord {
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;
+  std::uint64_t log_time = 0;
+  std::uint64_t create_time = 0;
+  std::uint64_t size = 0;
+  std::string name;
+  std::string media_type;
+};
+
+struct MetadataRecord {
+  std::string name;
+  TextMap entries;
+};
+
+struct MetadataIndexRecord {
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;
+  std::string name;
+};
+
+struct StatisticsRecord {
+  std::uint64_t message_count = 0;
+  std::uint16_t schema_count = 0;
+  std::uint32_t channel_count = 0;
+  std::uint32_t attachment_count = 0;
+  std::uint32_t metadata_count = 0;
+  std::uint32_t chunk_count = 0;
+  std::uint64_t start_time = 0;
+  std::uint64_t end_time = 0;
+  std::map<std::uint16_t, std::uint64_t> channel_message_counts;
+};
+
+struct SummaryOffsetRecord {
+  Opcode group = Opcode::invalid;
+  std::uint64_t start = 0;
+  std::uint64_t length = 0;
+};
+
+struct FooterRecord {
+  std::uint64_t summary_start = 0;
+  std::uint64_t summary_offset_start = 0;
+  std::uint32_t summary_crc = 0;
+};
+
+// CRC32 (IEEE 802.3, as in zlib) continued from a former value; 0 starts.
+[[nodiscard]] std::uint32_t crc32_of(ByteSpan bytes, std::uint32_t former = 0) noexcept;
+
+// Opens a record: content follows by put calls, end_record sets the length.
+[[nodiscard]] std::size_t begin_record(Bytes& out, Opcode opcode);
+void end_record(Bytes& out, std::size_t begin) noexcept;
+
+void put_magic(Bytes& out);
+void encode_header(Bytes& out, const HeaderRecord& record);
+void encode_schema(Bytes& out, const SchemaRecord& record);
+void encode_channel(Bytes& out, const ChannelRecord& record);
+void encode_message(Bytes& out, const MessageRecord& record);
+void encode_message_index(Bytes& out, std::uint16_t channel_id, const std::vector<MessageIndexEntry>& entries);
+void encode_chunk_index(Bytes& out, const ChunkIndexRecord& record);
+void encode_attachment(Bytes& out, const AttachmentRecord& record);
+void encode_attachment_index(Bytes& out, const AttachmentIndexRecord& record);
+void encode_metadata(Bytes& out, const MetadataRecord& record);
+void encode_metadata_index(Bytes& out, const MetadataIndexRecord& record);
+void encode_statistics(Bytes& out, const StatisticsRecord& record);
+void encode_summary_offset(Bytes& out, const SummaryOffsetRecord& record);
+void encode_data_end(Bytes& out, std::uint32_t data_section_crc);
+void encode_mark(Bytes& out, std::uint32_t crc_so_far);
+
+[[nodiscard]] bool decode_header(ByteSpan content, HeaderRecord& record);
+[[nodiscard]] bool decode_schema(ByteSpan content, SchemaRecord& record);
+[[nodiscard]] bool decode_channel(ByteSpan content, ChannelRecord& record);
+[[nodiscard]] bool decode_message(ByteSpan content, MessageRecord& record) noexcept;
+[[nodiscard]] bool decode_chunk(ByteSpan content, ChunkRecord& record) noexcept;
+[[nodiscard]] bool decode_chunk_index(ByteSpan content, ChunkIndexRecord& record);
+// Also checks the attachment's checksum.
+[[nodiscard]] bool decode_attachment(ByteSpan content, AttachmentRecord& record) noexcept;
+[[nodiscard]] bool decode_attachment_index(ByteSpan content, AttachmentIndexRecord& record);
+[[nodiscard]] bool decode_metadata(ByteSpan content, MetadataRecord& record);
+[[nodiscard]] bool decode_metadata_index(ByteSpan content, MetadataIndexRecord& record);
+[[nodiscard]] bool decode_statistics(ByteSpan content, StatisticsRecord& record);
+[[nodiscard]] bool decode_footer(ByteSpan content, FooterRecord& record) noexcept;
+// The single uint32 of a Data End or a Mark.
+[[nodiscard]] bool decode_crc(ByteSpan content, std::uint32_t& crc) noexcept;
+
+}  // namespace slew::recording

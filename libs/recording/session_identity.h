@@ -1,0 +1,34 @@
+// What a recording says about itself: the Metadata record "slewring.recording", the first one behind the Header.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/time.h"
+#include "recording/records.h"
+
+namespace slew::recording {
+
+// Version of the layout described in docs/recording-format.md. A reader refuses a newer one by name.
+inline constexpr int kFormatVersion = 1;
+
+inline constexpr const char* kProfile = "slewring";
+inline constexpr const char* kIdentityName = "slewring.recording";  // first Metadata record
+inline constexpr const char* kSummaryName = "slewring.summary";     // Metadata record of an orderly end
+
+struct SessionIdentity {
+  std::string scene;  // name of the scene
+  std::string session_name;
+  std::string session_id;          // 128 bits, hexadecimal
+  std::string build;               // of the program that records
+  SimDuration communication_step;  // H, ns, at least 1
+  std::int64_t started_ns = 0;     // wall clock since 1970
+  TextMap more;                    // further entries, by keys that are none of the above
+};
+
+// To and from the entries of the Metadata record. from_entries gives false and names the problem when the record is
+// of a newer version or lacks the communication step.
+[[nodiscard]] TextMap to_entries(const SessionIdentity& identity);
+[[nodiscard]] bool from_entries(const TextMap& entries, SessionIdentity& identity, std::string& problem);
+
+}  // namespace slew::recording

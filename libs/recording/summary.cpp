@@ -1,0 +1,144 @@
+#include "recording/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace slew::recording {
+namespace {
+
+// one group of records of the same kind, and its entry for the summary offset section
+template <typename Records, typename Encode>
+void encode_group(Bytes& out, std::uint64_t file_size, Opcode opcode, const Records& records, const Encode& encode,
+                  std::vector<SummaryOffsetRecord>& groups) {
+  const std::size_t begin = out.size();
+  for (const auto& record : records) encode(out, record);
+  if (out.size() > begin) groups.push_back({opcode, file_size + begin, out.size() - begin});
+}
+
+template <typename Record, typename Decode>
+bool decode_into(std::vector<Record>& records, ByteSpan content, const Decode& decode) {
+  Record record;
+  if (!decode(content, record)) return false;
+  records.push_back(std::move(record));
+  return true;
+}
+
+bool decode_summary_record(Opcode opcode, ByteSpan content, FileIndex& index) {
+  switch (opcode) {
+    case Opcode::schema:
+      return decode_into(index.schemas, content, decode_schema);
+    case Opcode::channel:
+      return decode_into(index.channels, content, decode_channel);
+    case Opcode::chunk_index:
+      return decode_into(index.chunks, content, decode_chunk_index);
+    case Opcode::attachment_index:
+      return decode_into(index.attachments, content, decode_attachment_index);
+    case Opcode::metadata_index:
+      return decode_into(index.metadata, content, decode_metadata_index);
+    case Opcode::statistics:
+      return decode_statistics(content, index.statistics);
+    default:
+      return opcode != Opcode::invalid;  // summary offsets, and what a later version adds
+  }
+}
+
+bool decode_summary(ByteSpan summary, std::uint64_t file_offset, FileIndex& index, Damage& damage) {
+  ByteSource source(summary);
+  while (!source.is_empty()) {
+    const std::size_t at = source.position();
+    const Opcode opcode = Opcode{source.take<std::uint8_t>()};
+    const ByteSpan content = source.take_bytes(source.take<std::uint64_t>());
+    if (!source.is_valid() || !decode_summary_record(opcode, content, index)) {
+      damage = {file_offset + at, "a record of the summary is not well formed"};
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void complete_statistics(FileIndex& index) {
+  StatisticsRecord& statistics = index.statistics;
+  statistics.schema_count = static_cast<std::uint16_t>(index.schemas.size());
+  statistics.channel_count = static_cast<std::uint32_t>(index.channels.size());
+  statistics.attachment_count = static_cast<std::uint32_t>(index.attachments.size());
+  statistics.metadata_count = static_cast<std::uint32_t>(index.metadata.size());
+  statistics.chunk_count = static_cast<std::uint32_t>(index.chunks.size());
+  statistics.start_time = index.chunks.empty() ? 0 : index.chunks.front().start_time;
+  statistics.end_time = 0;
+  for (const ChunkIndexRecord& chunk : index.chunks) {
+    statistics.start_time = std::min(statistics.start_time, chunk.start_time);
+    statistics.end_time = std::max(statistics.end_time, chunk.end_time);
+  }
+  statistics.message_count = 0;
+  for (const auto& [channel, count] : statistics.channel_message_counts) statistics.message_count += count;
+}
+
+void encode_end(Bytes& out, std::uint64_t file_size, std::uint32_t data_section_crc, const FileIndex& index) {
+  encode_data_end(out, data_section_crc);
+
+  const std::size_t summary_at = out.size();
+  std::vector<SummaryOffsetRecord> groups;
+  encode_group(out, file_size, Opcode::schema, index.schemas, encode_schema, groups);
+  encode_group(out, file_size, Opcode::channel, index.channels, encode_channel, groups);
+  encode_group(out, file_size, Opcode::chunk_index, index.chunks, encode_chunk_index, groups);
+  encode_group(out, file_size, Opcode::attachment_index, index.attachments, encode_attachment_index, groups);
+  encode_group(out, file_size, Opcode::metadata_index, index.metadata, encode_metadata_index, groups);
+  encode_group(out, file_size, Opcode::statistics, std::span(&index.statistics, 1), encode_statistics, groups);
+
+  const std::size_t offsets_at = out.size();
+  for (const SummaryOffsetRecord& group : groups) encode_summary_offset(out, group);
+
+  // the summary's checksum reaches into the footer, up to itself
+  const std::size_t footer_at = begin_record(out, Opcode::footer);
+  put(out, file_size + summary_at);
+  put(out, file_size + offsets_at);
+  const std::size_t length_of_content = out.size() - footer_at - kRecordHeadBytes + sizeof(std::uint32_t);
+  put_at(out, footer_at + 1, static_cast<std::uint64_t>(length_of_content));
+  put(out, crc32_of(ByteSpan(out).subspan(summary_at)));
+  put_magic(out);
+}
+
+bool read_summary(const InputFile& file, FileIndex& index, Damage& damage, Status& status) {
+  constexpr std::size_t kEndBytes = kFooterBytes + kMagic.size();
+  index = {};
+  if (file.size() < kMagic.size() + kEndBytes) {
+    damage = {file.size(), "the file ends here, without a footer"};
+    return false;
+  }
+  const std::uint64_t footer_at = file.size() - kEndBytes;
+  Bytes end;
+  status = file.read(footer_at, kEndBytes, end);
+  if (!status.is_ok()) return false;
+
+  Bytes expected_magic;
+  put_magic(expected_magic);
+  ByteSource source(end);
+  const Opcode opcode = Opcode{source.take<std::uint8_t>()};
+  const std::uint64_t length = source.take<std::uint64_t>();
+  FooterRecord footer;
+  const bool is_footer = opcode == Opcode::footer && length == kFooterBytes - kRecordHeadBytes &&
+                         decode_footer(source.take_bytes(length), footer) &&
+                         std::ranges::equal(source.take_bytes(kMagic.size()), expected_magic);
+  if (!is_footer) {
+    damage = {file.size(), "the file ends here, without a footer"};
+    return false;
+  }
+  if (footer.summary_start < kMagic.size() || footer.summary_start > footer_at) {
+    damage = {footer_at, "the footer points outside of the file"};
+    return false;
+  }
+  Bytes summary;
+  status = file.read(footer.summary_start, file.size() - kMagic.size() - footer.summary_start, summary);
+  if (!status.is_ok()) return false;
+  if (crc32_of(ByteSpan(summary).first(summary.size() - sizeof(std::uint32_t))) != footer.summary_crc) {
+    damage = {footer.summary_start, "the checksum of the summary differs"};
+    return false;
+  }
+  const ByteSpan records = ByteSpan(summary).first(footer_at - footer.summary_start);
+  return decode_summary(records, footer.summary_start, index, damage);
+}
+
+}  // namespace slew::recording

@@ -1,0 +1,251 @@
+#include "recording/writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace slew::recording {
+namespace {
+
+constexpr const char* kSchemaEncoding = "omgidl";
+constexpr const char* kMessageEncoding = "cdr";
+
+// times stay below 2^62 ns (146 years), so that sums of two fit
+constexpr std::int64_t kMostNanoseconds = std::int64_t{1} << 62;
+
+}  // namespace
+
+Writer::Writer(const SessionIdentity& identity, const WriterLimits& limits)
+    : limits_(limits),
+      communication_step_(identity.communication_step),
+      window_(limits.window_steps, limits.window_bytes, limits.window_messages),
+      chunk_(limits.chunk_bytes, limits.compression_level) {}
+
+Writer::~Writer() {
+  if (file_.is_open()) std::ignore = close({});
+}
+
+Status Writer::create(const std::filesystem::path& path, const SessionIdentity& identity, const WriterLimits& limits,
+                      std::unique_ptr<Writer>& writer) {
+  if (identity.communication_step.ns < 1) {
+    return Status::error(ExitCode::bad_input, fmt::format("{}: a recording needs the session's communication step; "
+                                                          "nothing was written; give a step of at least 1 ns",
+                                                          path.string()));
+  }
+  std::unique_ptr<Writer> created(new Writer(identity, limits));
+  Status status = created->file_.create(path);
+  if (!status.is_ok()) return status;
+  status = created->write_front(identity);
+  if (!status.is_ok()) return status;
+  writer = std::move(created);
+  return status;
+}
+
+Status Writer::write_front(const SessionIdentity& identity) {
+  buffer_.clear();
+  put_magic(buffer_);
+  encode_header(buffer_, {kProfile, fmt::format("slewring {}", identity.build)});
+  const Status status = append_marked();
+  return status.is_ok() ? add_metadata(kIdentityName, to_entries(identity)) : status;
+}
+
+Status Writer::remember(Status status) {
+  if (!status.is_ok() && failure_.is_ok()) failure_ = status;
+  return status;
+}
+
+Status Writer::append_marked() {
+  return remember(file_.append_marked(buffer_));
+}
+
+Status Writer::add_attachment(std::string_view name, std::string_view media_type, ByteSpan content) {
+  if (!failure_.is_ok()) return failure_;
+  if (content.size() > kMaxAttachmentBytes) {
+    return Status::error(ExitCode::bad_input,
+                         fmt::format("{}: {} has {} bytes and an attachment at most {}; it was left out of the "
+                                     "recording",
+                                     path().string(), name, content.size(), kMaxAttachmentBytes));
+  }
+  buffer_.clear();
+  encode_attachment(buffer_, {last_log_time_, 0, name, media_type, content});
+  const AttachmentIndexRecord index = {file_.size(),   buffer_.size(),    last_log_time_,         0,
+                                       content.size(), std::string(name), std::string(media_type)};
+  Status status = append_marked();
+  if (status.is_ok()) index_.attachments.push_back(index);
+  return status;
+}
+
+Status Writer::add_metadata(std::string_view name, const TextMap& entries) {
+  if (!failure_.is_ok()) return failure_;
+  buffer_.clear();
+  encode_metadata(buffer_, {std::string(name), entries});
+  const MetadataIndexRecord index = {file_.size(), buffer_.size(), std::string(name)};
+  Status status = append_marked();
+  if (status.is_ok()) index_.metadata.push_back(index);
+  return status;
+}
+
+Status Writer::schema_of(const ChannelDef& channel, std::uint16_t& id) {
+  const auto same = std::find_if(index_.schemas.begin(), index_.schemas.end(), [&](const SchemaRecord& schema) {
+    return schema.name == channel.type_name && schema.text == channel.idl;
+  });
+  if (same != index_.schemas.end()) {
+    id = same->id;
+    return Status::ok();
+  }
+  id = static_cast<std::uint16_t>(index_.schemas.size() + 1);
+  SchemaRecord schema = {id, channel.type_name, kSchemaEncoding, channel.idl};
+  buffer_.clear();
+  encode_schema(buffer_, schema);
+  Status status = append_marked();
+  if (status.is_ok()) index_.schemas.push_back(std::move(schema));
+  return status;
+}
+
+Status Writer::add_channel(const ChannelDef& channel, ChannelId& id) {
+  if (!failure_.is_ok()) return failure_;
+  if (index_.channels.size() >= kMaxChannels) {
+    return Status::error(ExitCode::bad_input, fmt::format("{}: a recording has at most {} channels; {} is left out",
+                                                          path().string(), kMaxChannels, channel.topic));
+  }
+  ChannelRecord record = {static_cast<std::uint16_t>(index_.channels.size()), 0, channel.topic, kMessageEncoding,
+                          channel.metadata};
+  Status status = schema_of(channel, record.schema_id);
+  if (!status.is_ok()) return status;
+  buffer_.clear();
+  encode_channel(buffer_, record);
+  status = append_marked();
+  if (!status.is_ok()) return status;
+  id = ChannelId{record.id};
+  index_.channels.push_back(std::move(record));
+  pending_counts_.push_back(0);
+  return status;
+}
+
+Status Writer::write(ChannelId channel, const MessageStamp& stamp, ByteSpan payload) {
+  if (!failure_.is_ok()) {
+    ++counts_.lost_messages;
+    return failure_;
+  }
+  const std::uint16_t id = static_cast<std::uint16_t>(channel);
+  if (id >= index_.channels.size() || payload.size() > kMaxMessageBytes || stamp.step < kJoinStep ||
+      stamp.step > kMostNanoseconds / communication_step_.ns) {
+    return Status::error(ExitCode::failed,
+                         fmt::format("{}: a message of channel {}, step {}, {} bytes cannot be recorded; it was left "
+                                     "out; please report it",
+                                     path().string(), id, stamp.step, payload.size()));
+  }
+  SortWindow::PushResult result = window_.push(stamp, id, payload);
+  Status status;
+  while (result != SortWindow::PushResult::taken && !window_.is_empty() && status.is_ok()) {
+    status = emit_first();
+    result = window_.push(stamp, id, payload);
+  }
+  if (result != SortWindow::PushResult::taken) {
+    // larger than the whole window, which is empty now; or the recording has just failed
+    if (status.is_ok()) return emit(stamp, id, payload);
+    ++counts_.lost_messages;
+  }
+  while (status.is_ok() && window_.is_first_due()) status = emit_first();
+  return status;
+}
+
+Status Writer::emit_first() {
+  const WindowEntry& entry = window_.first();
+  const Status status = emit(entry.stamp, entry.channel, window_.payload_of(entry));
+  window_.pop_first();
+  return status;
+}
+
+std::uint64_t Writer::log_time_of(const MessageStamp& stamp) {
+  // a new epoch begins one step behind the last time of the one before
+  auto start = epoch_start_.find(stamp.epoch);
+  if (start == epoch_start_.end()) {
+    const std::uint64_t step = static_cast<std::uint64_t>(communication_step_.ns);
+    start = epoch_start_.emplace(stamp.epoch, epoch_start_.empty() ? 0 : last_log_time_ + step).first;
+  }
+  const SimTime since_reset = start_of(std::max<StepIndex>(stamp.step, 0), communication_step_);
+  return start->second + static_cast<std::uint64_t>(since_reset.ns);
+}
+
+Status Writer::emit(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload) {
+  const std::uint64_t log_time = log_time_of(stamp);
+  if (log_time < last_log_time_) ++counts_.late_messages;
+  last_log_time_ = std::max(last_log_time_, log_time);
+  const std::uint64_t publish_time =
+      stamp.publish_time_ns > 0 ? static_cast<std::uint64_t>(stamp.publish_time_ns) : log_time;
+  chunk_.add({channel, stamp.sequence, log_time, publish_time, payload});
+  counts_.payload_bytes += payload.size();
+  ++pending_counts_[channel];
+  return chunk_.uncompressed_size() >= limits_.chunk_bytes ? write_chunk() : Status::ok();
+}
+
+Status Writer::write_chunk() {
+  if (chunk_.is_empty()) return Status::ok();
+  ChunkIndexRecord chunk;
+  buffer_.clear();
+  Status status = remember(chunk_.finish(buffer_, file_.size(), chunk));
+  if (status.is_ok()) status = append_marked();
+  const bool is_written = status.is_ok();
+  for (std::size_t channel = 0; channel < pending_counts_.size(); ++channel) {
+    const std::uint64_t count = std::exchange(pending_counts_[channel], 0);
+    (is_written ? counts_.messages : counts_.lost_messages) += count;
+    if (is_written && count > 0) {
+      index_.statistics.channel_message_counts[static_cast<std::uint16_t>(channel)] += count;
+    }
+  }
+  if (!is_written) return status;
+  index_.chunks.push_back(std::move(chunk));
+  ++counts_.chunks;
+  return status;
+}
+
+Status Writer::flush_if_due(std::int64_t monotonic_ns) {
+  if (!failure_.is_ok()) return failure_;
+  if (!last_flush_ns_) last_flush_ns_ = monotonic_ns;
+  if (monotonic_ns - *last_flush_ns_ < limits_.flush_period.ns) return Status::ok();
+  last_flush_ns_ = monotonic_ns;
+  // a step that was there one period ago is complete by now
+  Status status;
+  while (status.is_ok() && window_.is_first_up_to(flushed_epoch_, flushed_step_)) status = emit_first();
+  flushed_epoch_ = window_.newest_epoch();
+  flushed_step_ = window_.newest_step();
+  return status.is_ok() ? write_chunk() : status;
+}
+
+Status Writer::flush() {
+  if (!failure_.is_ok()) return failure_;
+  Status status;
+  while (status.is_ok() && !window_.is_empty()) status = emit_first();
+  return status.is_ok() ? write_chunk() : status;
+}
+
+Status Writer::close(const TextMap& summary) {
+  if (!file_.is_open()) return failure_;
+  if (failure_.is_ok()) std::ignore = flush();
+  for (; !window_.is_empty(); window_.pop_first()) ++counts_.lost_messages;
+  const Status end = write_end(summary);
+  const Status closed = file_.close();
+  if (!failure_.is_ok()) return failure_;
+  return remember(end.is_ok() ? closed : end);
+}
+
+Status Writer::write_end(const TextMap& summary) {
+  // after a failure there may be room for the end, which is small, where there was none for a chunk
+  Bytes metadata;
+  if (!summary.empty()) {
+    encode_metadata(metadata, {kSummaryName, summary});
+    const MetadataIndexRecord index = {file_.size(), metadata.size(), kSummaryName};
+    const Status status = file_.append_marked(metadata);
+    if (!status.is_ok()) return status;
+    index_.metadata.push_back(index);
+  }
+  complete_statistics(index_);
+  buffer_.clear();
+  encode_end(buffer_, file_.size(), file_.crc(), index_);
+  return file_.append(buffer_);
+}
+
+}  // namespace slew::recording

@@ -1,0 +1,135 @@
+// Writes one session to one MCAP file.
+//
+// Layout, reasons and guarantees: docs/recording-format.md. In short: identity, attachments, schemas and channels in
+// front; then chunks of about 1 MiB of messages in the order (epoch, step, channel, sequence); index, statistics and
+// footer at the end. Whatever moment the process dies at, the file is readable up to the last chunk handed over.
+//
+// log_time of a message = simulation time of its step in ns, H * max(step, 0); every reset of the session (a new epoch)
+// continues one step behind the last time written, so that it never goes backwards in the file. Messages that come
+// after their step left the sort window are written with their own time and counted (late_messages).
+// publish_time = wall clock at the publisher, or log_time when that is unknown.
+//
+// Not thread-safe. write() does not allocate once the first chunk is full; it compresses and writes in the caller's
+// thread whenever a chunk is full (about 4 ms per MiB).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+#include "core/time.h"
+#include "recording/chunk_builder.h"
+#include "recording/output_file.h"
+#include "recording/records.h"
+#include "recording/session_identity.h"
+#include "recording/sort_window.h"
+#include "recording/summary.h"
+
+namespace slew::recording {
+
+enum class ChannelId : std::uint16_t {};
+
+inline constexpr std::size_t kMaxMessageBytes = 16u << 20;  // payload of one message
+inline constexpr std::size_t kMaxAttachmentBytes = 1u << 30;
+inline constexpr std::size_t kMaxChannels = 65'535;
+
+struct WriterLimits {
+  std::size_t chunk_bytes = 1u << 20;            // uncompressed size at which a chunk is closed
+  int compression_level = 1;                     // zstd, 1 to 19
+  StepIndex window_steps = 256;                  // span of steps that is sorted, 1 or more
+  std::size_t window_bytes = 8u << 20;           // its memory for payloads
+  std::size_t window_messages = 32'768;          // its capacity in messages
+  SimDuration flush_period = milliseconds(500);  // every message is in the file after twice this time
+};
+
+struct ChannelDef {
+  std::string topic;
+  std::string type_name;  // scoped, "slewring::Tick"
+  std::string idl;        // complete text: the type and all that it uses, no #include
+  TextMap metadata;       // for example the role that publishes
+};
+
+struct WriterCounts {
+  std::uint64_t messages = 0;       // in the file
+  std::uint64_t payload_bytes = 0;  // taken, before compression
+  std::uint64_t chunks = 0;
+  std::uint64_t late_messages = 0;  // behind a message of a later time in the file
+  std::uint64_t lost_messages = 0;  // not in the file because a write failed
+};
+
+class Writer {
+ public:
+  // Creates the file with the session's identity in front. A file that exists is never touched.
+  // Errors: storage; bad_input when the identity has no communication step.
+  [[nodiscard]] static Status create(const std::filesystem::path& path, const SessionIdentity& identity,
+                                     const WriterLimits& limits, std::unique_ptr<Writer>& writer);
+  // Closes as close({}) does, when nobody closed it.
+  ~Writer();
+
+  // Files beside the messages: expanded scene, manifest, build. Before the first message by convention.
+  // Errors: storage; bad_input above kMaxAttachmentBytes.
+  [[nodiscard]] Status add_attachment(std::string_view name, std::string_view media_type, ByteSpan content);
+  [[nodiscard]] Status add_metadata(std::string_view name, const TextMap& entries);
+
+  // Topics of one step are written in the order in which their channels were added: add them in a fixed order.
+  // Channels of one type share its schema. Errors: storage; bad_input when there are too many.
+  [[nodiscard]] Status add_channel(const ChannelDef& channel, ChannelId& id);
+
+  // payload: serialised sample with its 4-byte encapsulation header. Once a write has failed, every later one returns
+  // that failure and counts the message as lost. Errors: storage; failed for a channel that was not added, a step
+  // out of range or a payload above kMaxMessageBytes.
+  [[nodiscard]] Status write(ChannelId channel, const MessageStamp& stamp, ByteSpan payload);
+
+  // To be called about ten times a second, also while no message comes: hands to the file what is old enough.
+  [[nodiscard]] Status flush_if_due(std::int64_t monotonic_ns);
+  // Everything, also what might still be overtaken by an earlier step.
+  [[nodiscard]] Status flush();
+
+  // Flushes, writes summary entries (if any), index and footer, waits for the disk. After a failure it still tries to
+  // complete the file and returns the first failure.
+  [[nodiscard]] Status close(const TextMap& summary);
+
+  [[nodiscard]] const WriterCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
+  [[nodiscard]] std::uint64_t file_bytes() const noexcept { return file_.size(); }
+
+ private:
+  Writer(const SessionIdentity& identity, const WriterLimits& limits);
+
+  [[nodiscard]] Status write_front(const SessionIdentity& identity);
+  [[nodiscard]] Status append_marked();
+  [[nodiscard]] Status schema_of(const ChannelDef& channel, std::uint16_t& id);
+  [[nodiscard]] Status emit_first();
+  [[nodiscard]] Status emit(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload);
+  [[nodiscard]] Status write_chunk();
+  [[nodiscard]] Status write_end(const TextMap& summary);
+  [[nodiscard]] Status remember(Status status);
+  [[nodiscard]] std::uint64_t log_time_of(const MessageStamp& stamp);
+
+  WriterLimits limits_;
+  SimDuration communication_step_;
+  OutputFile file_;
+  Bytes buffer_;  // records on their way into the file
+  SortWindow window_;
+  ChunkBuilder chunk_;
+
+  FileIndex index_;                            // channel id = position in index_.channels
+  std::vector<std::uint64_t> pending_counts_;  // messages of each channel in the open chunk
+
+  std::map<std::uint32_t, std::uint64_t> epoch_start_;  // ns, log time of step 0 of each epoch
+  std::uint64_t last_log_time_ = 0;
+
+  std::optional<std::int64_t> last_flush_ns_;
+  std::uint32_t flushed_epoch_ = 0;  // newest epoch and step at the last flush
+  StepIndex flushed_step_ = kJoinStep - 1;
+
+  WriterCounts counts_;
+  Status failure_;
+};
+
+}  // namespace slew::recording
