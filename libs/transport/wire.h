@@ -21,9 +21,10 @@ inline constexpr std::uint32_t kProtocolVersion = 1;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
-inline constexpr std::size_t kMaxNameLength = 63;  // characters
-inline constexpr std::size_t kMaxReasonLength = 255;
+inline constexpr std::size_t kMaxNameLength = 63;     // characters: names, paths of parameters, units
+inline constexpr std::size_t kMaxReasonLength = 255;  // characters: sentences, hosts, builds, file names
 inline constexpr std::size_t kMaxAssets = 256;
+inline constexpr std::size_t kMaxHeard = 256;
 inline constexpr std::size_t kMaxSceneBytes = 4 * 1024 * 1024;
 
 using SessionId = std::array<std::uint8_t, 16>;
@@ -109,7 +110,7 @@ struct SessionDescription {
   std::string name;
   std::string scene_name;
   std::string scene_text;          // after includes and --set
-  std::vector<Asset> assets;
+  std::vector<Asset> assets;       // at most kMaxAssets
   std::string build;
   std::uint64_t self_test = 0;     // arithmetic fingerprint
   std::int64_t step_ns = 0;        // H
@@ -141,7 +142,7 @@ struct NodeStatus {
   std::int64_t started_ns = 0;
   std::string build;
   std::uint64_t self_test = 0;
-  std::vector<Heard> heard;
+  std::vector<Heard> heard;             // at most kMaxHeard
   StepIndex recorded_step = kJoinStep;  // recorder: all steps up to here are stored
   std::string reason;                   // why fault, at most kMaxReasonLength characters
   std::int32_t exit_code = 0;
@@ -197,7 +198,7 @@ struct ControllerInput {
   std::string channel;             // input name, "Input_Lift"
   ControllerAction action = ControllerAction::write;
   double value = 0;                // -1 .. 1 for analog, 0 or 1 for digital
-  std::uint64_t sequence = 0;
+  std::uint64_t sequence = 0;      // `sequence_number` in the IDL, where the short word is reserved
   StepIndex based_on_step = kJoinStep;  // step of the variables it was computed from; -1: unknown
   bool operator==(const ControllerInput&) const = default;
 };

@@ -1,0 +1,60 @@
+// Bytes of the messages: the one encoder and the one decoder, whatever carries them.
+//
+// The bytes are plain XCDR1, little endian, as idl/slewring.idl says: 4 bytes of encapsulation header (00 01 00 n), the
+// fields, n zero bytes up to a multiple of four. They are the bytes that Cyclone DDS makes of the generated types.
+//
+// encode() replaces the contents of `buffer`; it allocates only while the buffer grows. False: a text or a list is
+// longer than its cap, or a text holds a NUL; nothing may be sent then.
+// decode() accepts any bytes and reads none beyond the span. False: truncated, too long by four bytes or more, not
+// XCDR1 little endian, a length above its cap, an unknown enumerator, a text without its NUL. `message` then holds
+// rubbish. Texts and vectors of `message` keep their capacity, so that a reused message needs no new memory.
+// Cost: below 0.5 us for a step message with three ports. Real-time safe after warm-up, except for Tick.commands.
+//
+// Not covered: big-endian writers, XCDR2, UTF-8 validity, finiteness of numbers, agreement of array lengths with the
+// number of ports.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "transport/wire.h"
+
+namespace slew::transport {
+
+using Bytes = std::span<const std::byte>;
+using ByteBuffer = std::vector<std::byte>;
+
+[[nodiscard]] bool encode(const wire::SessionDescription& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::NodeStatus& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::Tick& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::MechanismMessage& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::ActuatorMessage& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::VariableDirectory& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::VariableBlock& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::ControllerInput& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::ControllerLease& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::ControlRequest& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::ControlReply& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::Health& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::ResendRequest& message, ByteBuffer& buffer);
+
+[[nodiscard]] bool decode(Bytes bytes, wire::SessionDescription& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::NodeStatus& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::Tick& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::MechanismMessage& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::ActuatorMessage& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::VariableDirectory& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::VariableBlock& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::ControllerInput& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::ControllerLease& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::ControlRequest& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::ControlReply& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::Health& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::ResendRequest& message);
+
+// The Header alone of a message that starts with one: who speaks and of which step, before the rest is worth reading.
+// All messages but ControllerInput and ControlRequest start with one.
+[[nodiscard]] bool decode_header(Bytes bytes, wire::Header& header);
+
+}  // namespace slew::transport

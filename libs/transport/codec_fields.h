@@ -1,0 +1,169 @@
+// The fields of every message in the order of idl/slewring.idl, once for both directions.
+//
+// An archive A is called with the fields of a struct; A::Of<T> is `const T` when it reads the struct (encoder) and `T`
+// when it fills it (decoder). Texts and lists without a cap in their type go through text() and list().
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "transport/wire.h"
+
+namespace slew::transport::detail {
+
+template <typename S>
+struct Text {
+  S& value;
+  std::size_t cap;
+};
+
+template <typename V>
+struct List {
+  V& values;
+  std::size_t cap;
+};
+
+template <typename S>
+[[nodiscard]] Text<S> name(S& value) {
+  return {value, wire::kMaxNameLength};
+}
+
+template <typename S>
+[[nodiscard]] Text<S> sentence(S& value) {
+  return {value, wire::kMaxReasonLength};
+}
+
+// Number of enumerators: a received value must be below it.
+template <typename E>
+inline constexpr std::uint32_t kEnumerators = 0;
+template <>
+inline constexpr std::uint32_t kEnumerators<wire::Role> = 7;
+template <>
+inline constexpr std::uint32_t kEnumerators<wire::Phase> = 4;
+template <>
+inline constexpr std::uint32_t kEnumerators<coupling::Level> = 4;
+template <>
+inline constexpr std::uint32_t kEnumerators<coupling::Quality> = 4;
+template <>
+inline constexpr std::uint32_t kEnumerators<coupling::MobilityKind> = 2;
+template <>
+inline constexpr std::uint32_t kEnumerators<wire::Pace> = 2;
+template <>
+inline constexpr std::uint32_t kEnumerators<wire::NodeState> = 8;
+template <>
+inline constexpr std::uint32_t kEnumerators<wire::ControllerAction> = 3;
+template <>
+inline constexpr std::uint32_t kEnumerators<wire::ControlAction> = 6;
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::Header>& m) {
+  a(m.session, m.role, m.incarnation, m.epoch, m.phase, m.step);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::SampleState>& m) {
+  a(m.level, m.quality, m.used_step, m.lost, m.state_hash, m.flags, m.offender, m.substeps);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<coupling::MechanismSample>& m) {
+  a(m.x, m.v, m.a, m.a_free, m.W, m.W_kind, m.F_used, m.F_line, m.work, m.impulse, m.v_mean);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::MechanismMessage>& m) {
+  a(m.header, m.state, m.sample);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<coupling::ActuatorSample>& m) {
+  a(m.F, m.F_dot, m.K, m.lambda, m.D, m.x_ref, m.v_ref, m.friction_scale, m.work, m.impulse);
+  a(m.p_A, m.p_B, m.Q_A, m.Q_B, m.flags);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::ActuatorMessage>& m) {
+  a(m.header, m.state, m.sample);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::Command>& m) {
+  a(m.request, name(m.path), m.value, m.over_ns);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::Tick>& m) {
+  a(m.header, m.flags, m.state_hash, m.controls, m.age, List{m.commands, wire::kMaxCommandsPerTick});
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::Asset>& m) {
+  a(sentence(m.name), m.size, m.sha256);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::SessionDescription>& m) {
+  a(m.header, m.protocol, name(m.name), name(m.scene_name), Text{m.scene_text, wire::kMaxSceneBytes});
+  a(List{m.assets, wire::kMaxAssets}, sentence(m.build), m.self_test, m.step_ns, m.pace, m.window, m.required_roles);
+  a(sentence(m.host), m.pid, m.started_ns);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::Heard>& m) {
+  a(m.role, m.incarnation, m.topic);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::NodeStatus>& m) {
+  a(m.header, m.state, sentence(m.host), m.pid, m.started_ns, sentence(m.build), m.self_test);
+  a(List{m.heard, wire::kMaxHeard}, m.recorded_step, sentence(m.reason), m.exit_code);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::Health>& m) {
+  a(m.header, m.state, m.is_waiting, m.waiting_for, m.waiting_step, m.steps_done, m.overruns, m.resends_asked);
+  a(m.resends_answered, m.refused_messages, m.step_time_mean, m.step_time_max, m.slip_ns);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::VariableEntry>& m) {
+  a(name(m.name), name(m.unit));
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::VariableDirectory>& m) {
+  a(m.header, m.total, m.first, List{m.entries, wire::kMaxVariablesPerBlock});
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::VariableBlock>& m) {
+  a(m.header, m.first, m.values);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::ControllerInput>& m) {
+  a(name(m.session), name(m.controller), name(m.channel), m.action, m.value, m.sequence, m.based_on_step);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::ControllerLease>& m) {
+  a(m.header, name(m.controller), name(m.channel), m.is_granted, name(m.holder), sentence(m.reason));
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::ControlRequest>& m) {
+  a(name(m.session), m.request, m.action, name(m.path), m.value, m.over_ns);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::ControlReply>& m) {
+  a(m.header, m.request, m.is_accepted, sentence(m.reason));
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::ResendRequest>& m) {
+  a(m.header, m.role, m.topic, m.last_step);
+}
+
+}  // namespace slew::transport::detail

@@ -1,0 +1,146 @@
+#include "transport/cyclone_domain.h"
+
+#include <arpa/inet.h>
+#include <dds/dds.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace slew::transport {
+namespace {
+
+struct Interface {
+  std::string name;
+  std::string address;  // IPv4
+  bool is_up;
+};
+
+// interfaces with an IPv4 address
+std::vector<Interface> interfaces_of_host() {
+  std::vector<Interface> found;
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return found;
+  for (const ifaddrs* i = first; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN] = "";
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr, text, sizeof text);
+    found.push_back({i->ifa_name, text, (i->ifa_flags & IFF_UP) != 0});
+  }
+  freeifaddrs(first);
+  return found;
+}
+
+std::string listing(const std::vector<Interface>& interfaces) {
+  std::string text;
+  for (const Interface& i : interfaces) {
+    text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", i.name, i.address, i.is_up ? "" : ", down");
+  }
+  return text.empty() ? "none" : text;
+}
+
+Status find_address(const std::string& name, std::string& address) {
+  const std::vector<Interface> interfaces = interfaces_of_host();
+  const auto found = std::ranges::find(interfaces, name, &Interface::name);
+  if (found == interfaces.end()) {
+    return Status::error(
+        ExitCode::resources,
+        fmt::format("network interface '{}' does not exist or has no IPv4 address; there are: {}; choose one with "
+                    "--interface",
+                    name, listing(interfaces)));
+  }
+  if (!found->is_up) {
+    return Status::error(ExitCode::resources,
+                         fmt::format("network interface '{0}' is down; bring it up (ip link set {0} up) or choose "
+                                     "another with --interface",
+                                     name));
+  }
+  address = found->address;
+  return Status::ok();
+}
+
+bool is_host(const std::string& text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == ':';
+  });
+}
+
+}  // namespace
+
+std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_address) {
+  std::string peers = fmt::format(R"(<Peer Address="{}"/>)", own_address);
+  for (const std::string& peer : network.peers) {
+    if (peer != own_address) peers += fmt::format(R"(<Peer Address="{}"/>)", peer);
+  }
+  // writer cache above depth x size of every topic and not adaptive: a slow reader never makes a writer wait;
+  // heartbeat and nack timers: a lost packet costs milliseconds; reorder: what arrives during a repair is not asked
+  // again
+  return fmt::format(
+      R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
+ <General>
+  <Interfaces><NetworkInterface name="{}" multicast="false"/></Interfaces>
+  <AllowMulticast>false</AllowMulticast>
+  <FragmentSize>12000 B</FragmentSize>
+ </General>
+ <Discovery>
+  <ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>
+  <SPDPInterval>500ms</SPDPInterval><LeaseDuration>2s</LeaseDuration>
+  <Peers>{}</Peers>
+ </Discovery>
+ <Internal>
+  <HeartbeatInterval min="2ms" minsched="2ms" max="20ms">5ms</HeartbeatInterval>
+  <NackDelay>0ms</NackDelay><PreEmptiveAckDelay>1ms</PreEmptiveAckDelay>
+  <AutoReschedNackDelay>5ms</AutoReschedNackDelay>
+  <PrimaryReorderMaxSamples>1024</PrimaryReorderMaxSamples><SecondaryReorderMaxSamples>1024</SecondaryReorderMaxSamples>
+  <WriterLingerDuration>250ms</WriterLingerDuration>
+  <Watermarks><WhcHigh>64 MB</WhcHigh><WhcHighInit>64 MB</WhcHighInit><WhcAdaptive>false</WhcAdaptive></Watermarks>
+ </Internal>
+</Domain></CycloneDDS>)",
+      network.interface, kMaxParticipantIndex, peers);
+}
+
+Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<CycloneDomain>& domain) {
+  if (network.domain > kMaxDomain) {
+    return Status::error(ExitCode::bad_input,
+                         fmt::format("DDS domain {} is out of range; expected 0 to {}", network.domain, kMaxDomain));
+  }
+  for (const std::string& peer : network.peers) {
+    if (!is_host(peer)) {
+      return Status::error(
+          ExitCode::bad_input,
+          fmt::format("'{}' is not the address or name of a peer; expected for example 10.0.0.2", peer));
+    }
+  }
+  std::string own_address;
+  if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;
+
+  std::shared_ptr<CycloneDomain> opened(new CycloneDomain(network.domain));
+  opened->log_.set_echo(CycloneLog::Echo::off);
+  opened->handle_ = dds_create_domain(network.domain, cyclone_xml(network, own_address).c_str());
+  if (opened->handle_ == DDS_RETCODE_PRECONDITION_NOT_MET) {
+    return Status::error(ExitCode::failed,
+                         fmt::format("internal error: this process has DDS domain {} already", network.domain));
+  }
+  if (opened->handle_ < 0) {
+    const std::string reason = opened->log_.last_line();
+    const std::string remedy =
+        reason.find("participant index") == std::string::npos
+            ? ""
+            : fmt::format("; {} processes use DDS domain {} on this host: end some or choose another with --domain",
+                          kMaxParticipantIndex + 1, network.domain);
+    return Status::error(ExitCode::resources, fmt::format("cannot join DDS domain {} on {}: {}{}", network.domain,
+                                                          network.interface, reason, remedy));
+  }
+  opened->log_.set_echo(CycloneLog::Echo::on);
+  domain = std::move(opened);
+  return Status::ok();
+}
+
+CycloneDomain::~CycloneDomain() {
+  if (handle_ > 0) dds_delete(handle_);
+}
+
+}  // namespace slew::transport

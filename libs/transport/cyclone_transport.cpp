@@ -1,0 +1,221 @@
+#include "transport/cyclone_transport.h"
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+#include <slewring.h>
+#include <unistd.h>
+
+#include <bit>
+#include <climits>
+#include <utility>
+
+#include "transport/cyclone_sertype.h"
+
+namespace slew::transport {
+namespace {
+
+constexpr std::uint32_t kWakeBit = 1u << 31;
+static_assert(wire::kTopics < 31);
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+// in the order of wire::Topic
+constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors = {
+    &slewring_SessionDescription_desc, &slewring_NodeStatus_desc,      &slewring_Tick_desc,
+    &slewring_MechanismMessage_desc,   &slewring_ActuatorMessage_desc, &slewring_VariableDirectory_desc,
+    &slewring_VariableBlock_desc,      &slewring_ControllerInput_desc, &slewring_ControllerLease_desc,
+    &slewring_ControlRequest_desc,     &slewring_ControlReply_desc,    &slewring_Health_desc,
+    &slewring_ResendRequest_desc,
+};
+
+[[nodiscard]] std::string partition_of(const std::string& session) {
+  return "slewring/" + session;
+}
+
+[[nodiscard]] Qos partition_qos(const std::string& session) {
+  Qos qos(dds_create_qos());
+  const std::string partition = partition_of(session);
+  const char* names[] = {partition.c_str()};
+  dds_qset_partition(qos.get(), 1, names);
+  return qos;
+}
+
+[[nodiscard]] Qos endpoint_qos(const TopicTraits& topic) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking.ns);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth);
+  if (topic.kept > 0) {
+    dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, topic.kept, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  dds_qset_writer_data_lifecycle(qos.get(), /*autodispose=*/false);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
+  dds_qset_data_representation(qos.get(), 1, &representation);
+  return qos;
+}
+
+// "role:host:pid", told to others with every writer
+[[nodiscard]] std::string own_user_data(const std::string& role) {
+  char host[HOST_NAME_MAX + 1] = "";
+  gethostname(host, sizeof host - 1);
+  return fmt::format("{}:{}:{}", role, host, getpid());
+}
+
+[[nodiscard]] Status creation_error(const char* what, dds_return_t code, CycloneDomain& domain) {
+  return Status::error(ExitCode::resources, fmt::format("cannot create the DDS {}: {}; {}", what, dds_strretcode(code),
+                                                        domain.log().last_line()));
+}
+
+// on Cyclone's receiving thread
+void on_data_available(dds_entity_t, void* bell) {
+  const TopicBell& topic = *static_cast<const TopicBell*>(bell);
+  topic.doorbell->ring(topic.bit);
+}
+
+[[nodiscard]] bool is_session_name(const std::string& name) {
+  return !name.empty() && name.size() <= wire::kMaxNameLength && name.find_first_of("*?[]") == std::string::npos;
+}
+
+}  // namespace
+
+CycloneTransport::CycloneTransport(std::shared_ptr<CycloneDomain> domain, CycloneOptions options)
+    : domain_(std::move(domain)), options_(std::move(options)) {}
+
+Status CycloneTransport::open(const CycloneNetwork& network, const CycloneOptions& options,
+                              std::unique_ptr<CycloneTransport>& transport) {
+  std::shared_ptr<CycloneDomain> domain;
+  if (Status status = CycloneDomain::open(network, domain); !status.is_ok()) return status;
+  return open(std::move(domain), options, transport);
+}
+
+Status CycloneTransport::open(std::shared_ptr<CycloneDomain> domain, const CycloneOptions& options,
+                              std::unique_ptr<CycloneTransport>& transport) {
+  const bool is_pure_reader = options.writes.is_empty();
+  if (!is_session_name(options.session) && !(is_pure_reader && options.session == kAnySession)) {
+    return Status::error(ExitCode::bad_input,
+                         fmt::format("'{}' is no session name; expected 1 to {} characters without * ? [ ]",
+                                     options.session, wire::kMaxNameLength));
+  }
+  std::unique_ptr<CycloneTransport> opened(new CycloneTransport(std::move(domain), options));
+  if (Status status = opened->create(); !status.is_ok()) return status;
+  transport = std::move(opened);
+  return Status::ok();
+}
+
+Status CycloneTransport::create() {
+  participant_ = dds_create_participant(domain_->number(), nullptr, nullptr);
+  if (participant_ < 0) return creation_error("participant", participant_, *domain_);
+  const Qos partition = partition_qos(options_.session);
+  const dds_entity_t publisher = dds_create_publisher(participant_, partition.get(), nullptr);
+  if (publisher < 0) return creation_error("publisher", publisher, *domain_);
+  const dds_entity_t subscriber = dds_create_subscriber(participant_, partition.get(), nullptr);
+  if (subscriber < 0) return creation_error("subscriber", subscriber, *domain_);
+  for (std::size_t i = 0; i < wire::kTopics; ++i) {
+    const auto topic = static_cast<wire::Topic>(i);
+    if (!options_.writes.contains(topic) && !options_.reads.contains(topic)) continue;
+    if (Status status = create_endpoints(topic, publisher, subscriber); !status.is_ok()) return status;
+  }
+  return Status::ok();
+}
+
+Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber) {
+  const auto i = static_cast<std::size_t>(topic);
+  const dds_entity_t handle = create_raw_topic(participant_, *kDescriptors[i], traits(topic).name, types_[i]);
+  if (handle < 0) return creation_error(traits(topic).name, handle, *domain_);
+  const Qos qos = endpoint_qos(traits(topic));
+  if (options_.writes.contains(topic)) {
+    const std::string user_data = own_user_data(options_.role);
+    dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+    writers_[i] = dds_create_writer(publisher, handle, qos.get(), nullptr);
+    if (writers_[i] < 0) return creation_error(traits(topic).name, writers_[i], *domain_);
+  }
+  if (options_.reads.contains(topic)) {
+    bells_[i] = {&doorbell_, 1u << i};
+    dds_listener_t* listener = dds_create_listener(nullptr);
+    dds_lset_data_available_arg(listener, on_data_available, &bells_[i], /*reset_on_invoke=*/true);
+    readers_[i] = dds_create_reader(subscriber, handle, qos.get(), listener);
+    dds_delete_listener(listener);
+    if (readers_[i] < 0) return creation_error(traits(topic).name, readers_[i], *domain_);
+  }
+  return Status::ok();
+}
+
+CycloneTransport::~CycloneTransport() {
+  if (taken_ != nullptr) ddsi_serdata_unref(taken_);
+  for (; batch_next_ < batch_count_; ++batch_next_) ddsi_serdata_unref(batch_[batch_next_]);
+  if (participant_ > 0) dds_delete(participant_);
+}
+
+Status CycloneTransport::publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept {
+  const auto i = static_cast<std::size_t>(topic);
+  if (writers_[i] <= 0) {
+    return Status::error(ExitCode::failed, fmt::format("internal error: {} publishes on the undeclared topic {}",
+                                                       options_.role, traits(topic).name));
+  }
+  const dds_return_t code = dds_writecdr(writers_[i], make_sample(*types_[i], bytes));
+  if (code == DDS_RETCODE_OK) return Status::ok();
+  return Status::error(ExitCode::failed,
+                       fmt::format("message on {} not sent within {} ms: {}; the network or a reader is stuck",
+                                   traits(topic).name, kMaxBlocking.ns / 1'000'000, dds_strretcode(code)));
+}
+
+bool CycloneTransport::take(Received& message) {
+  if (taken_ != nullptr) ddsi_serdata_unref(std::exchange(taken_, nullptr));
+  if (batch_next_ == batch_count_ && !refill()) return false;
+  const std::size_t i = batch_next_++;
+  taken_ = batch_[i];
+  message = {batch_topic_, bytes_of(*taken_), batch_source_ns_[i]};
+  return true;
+}
+
+// the next messages of a topic that has rung, lowest topic first; false when none has any
+bool CycloneTransport::refill() {
+  pending_ |= doorbell_.collect();
+  while ((pending_ & ~kWakeBit) != 0) {
+    const int topic = std::countr_zero(pending_ & ~kWakeBit);
+    std::array<ddsi_serdata*, kBatch> samples{};
+    std::array<dds_sample_info_t, kBatch> about{};
+    const dds_return_t n =
+        dds_takecdr(readers_[static_cast<std::size_t>(topic)], samples.data(), kBatch, about.data(), DDS_ANY_STATE);
+    if (n < static_cast<dds_return_t>(kBatch)) pending_ &= ~(1u << topic);
+    batch_topic_ = static_cast<wire::Topic>(topic);
+    batch_next_ = 0;
+    batch_count_ = 0;
+    for (std::size_t i = 0; n > 0 && i < static_cast<std::size_t>(n); ++i) {
+      // without data: a writer has left
+      if (!about[i].valid_data) {
+        ddsi_serdata_unref(samples[i]);
+        continue;
+      }
+      batch_[batch_count_] = samples[i];
+      batch_source_ns_[batch_count_] = about[i].source_timestamp;
+      ++batch_count_;
+    }
+    if (batch_count_ > 0) return true;
+  }
+  return false;
+}
+
+void CycloneTransport::wait_until(std::int64_t monotonic_deadline_ns) {
+  if (batch_next_ < batch_count_) return;
+  if (pending_ == 0) doorbell_.wait_until(monotonic_deadline_ns);
+  pending_ = (pending_ | doorbell_.collect()) & ~kWakeBit;
+}
+
+void CycloneTransport::wake() noexcept {
+  doorbell_.ring(kWakeBit);
+}
+
+std::size_t CycloneTransport::matched_readers(wire::Topic topic) const {
+  dds_publication_matched_status_t status{};
+  const dds_entity_t writer = writers_[static_cast<std::size_t>(topic)];
+  if (writer <= 0 || dds_get_publication_matched_status(writer, &status) != DDS_RETCODE_OK) return 0;
+  return status.current_count;
+}
+
+}  // namespace slew::transport

@@ -1,0 +1,87 @@
+// The carrier of one process: endpoints of one bus hand each other copies of the encoded bytes.
+//
+// Messages reach every endpoint in the order in which they were published, whoever published them; an endpoint does not
+// hear itself. A late endpoint first gets the kept messages of the transient-local topics, as with DDS. Endpoints may
+// be polled one after the other on one thread (take() until false, never wait_until) or run a thread each.
+//
+// An inbox holds kInboxLimit messages; above it the oldest is dropped and counted. No allocation once the inboxes have
+// grown to what the session needs; a message above kSlotBytes may allocate.
+// publish() does not block beyond the bus's mutex.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "transport/topics.h"
+#include "transport/transport.h"
+
+namespace slew::transport {
+
+class InProcessBus;
+
+struct InProcessOptions {
+  std::string role;  // how discovered_writers() names this endpoint, "mechanics"
+  TopicSet writes;   // publish() of another topic is refused
+  TopicSet reads;
+};
+
+// One node's place at a bus; the bus must outlive it.
+class InProcessEndpoint final : public Transport {
+ public:
+  InProcessEndpoint(InProcessBus& bus, InProcessOptions options);
+  ~InProcessEndpoint() override;
+  InProcessEndpoint(const InProcessEndpoint&) = delete;
+  InProcessEndpoint& operator=(const InProcessEndpoint&) = delete;
+
+  Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
+  bool take(Received& message) override;
+  void wait_until(std::int64_t monotonic_deadline_ns) override;
+  void wake() noexcept override;
+  [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
+
+  // Messages lost because they were not taken in time.
+  [[nodiscard]] std::uint64_t dropped() const;
+
+ private:
+  friend class InProcessBus;
+
+  struct Message {
+    wire::Topic topic = wire::Topic::session;
+    std::int64_t source_ns = 0;
+    std::vector<std::byte> bytes;
+  };
+
+  void receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns);
+  void grow();
+  void keep(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns);
+
+  InProcessBus& bus_;
+  const InProcessOptions options_;
+  std::vector<Message> inbox_;  // ring
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool is_woken_ = false;
+  std::condition_variable has_message_;
+  Message taken_;
+  std::vector<Message> kept_;  // own messages for late endpoints, oldest first
+};
+
+class InProcessBus {
+ public:
+  static constexpr std::size_t kInboxLimit = 16384;    // messages
+  static constexpr std::size_t kSlotBytes = 9 * 1024;  // above the largest step message
+
+ private:
+  friend class InProcessEndpoint;
+
+  mutable std::mutex mutex_;  // guards all endpoints' inboxes and kept messages
+  std::vector<InProcessEndpoint*> endpoints_;
+};
+
+}  // namespace slew::transport
