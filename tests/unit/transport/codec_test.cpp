@@ -1,0 +1,219 @@
+#include "transport/codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "core/allocation_guard.h"
+#include "tests/support/random_message.h"
+
+namespace slew::transport {
+namespace {
+
+using testing::random_message;
+
+template <typename M>
+class EveryMessage : public ::testing::Test {};
+
+using Messages = ::testing::Types<wire::SessionDescription, wire::NodeStatus, wire::Tick, wire::MechanismMessage,
+                                  wire::ActuatorMessage, wire::VariableDirectory, wire::VariableBlock,
+                                  wire::ControllerInput, wire::ControllerLease, wire::ControlRequest,
+                                  wire::ControlReply, wire::Health, wire::ResendRequest>;
+TYPED_TEST_SUITE(EveryMessage, Messages);
+
+TYPED_TEST(EveryMessage, ComesBackAsItWasSent) {
+  std::mt19937_64 random(1);
+  ByteBuffer buffer;
+  TypeParam received;
+  for (int i = 0; i < 200; ++i) {
+    const TypeParam sent = random_message<TypeParam>(random, static_cast<std::size_t>(i));
+    ASSERT_TRUE(encode(sent, buffer));
+    EXPECT_EQ(buffer.size() % 4, 0u);
+    ASSERT_TRUE(decode(buffer, received));
+    EXPECT_TRUE(received == sent);
+  }
+}
+
+TYPED_TEST(EveryMessage, CutAnywhereIsRefused) {
+  std::mt19937_64 random(2);
+  ByteBuffer buffer;
+  ASSERT_TRUE(encode(random_message<TypeParam>(random, 7), buffer));
+  const std::size_t padding = static_cast<std::size_t>(buffer[3]);
+  TypeParam received;
+  for (std::size_t size = 0; size < buffer.size() - padding; ++size) {
+    // a copy of exactly this size, so that a sanitizer sees any read beyond it
+    const ByteBuffer cut(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(size));
+    EXPECT_FALSE(decode(cut, received)) << size;
+  }
+}
+
+TYPED_TEST(EveryMessage, WithFourBytesTooManyIsRefused) {
+  std::mt19937_64 random(3);
+  ByteBuffer buffer;
+  ASSERT_TRUE(encode(random_message<TypeParam>(random, 7), buffer));
+  TypeParam received;
+  buffer.insert(buffer.end(), 4, std::byte{0});
+  EXPECT_FALSE(decode(buffer, received));
+}
+
+TYPED_TEST(EveryMessage, OfRandomBytesNeitherCrashesNorGrows) {
+  std::mt19937_64 random(4);
+  ByteBuffer buffer;
+  TypeParam received;
+  for (int i = 0; i < 100'000; ++i) {
+    buffer.resize(4 + random() % 200);
+    for (std::byte& b : buffer) b = static_cast<std::byte>(random());
+    buffer[0] = std::byte{0};
+    buffer[1] = std::byte{1};
+    static_cast<void>(decode(buffer, received));
+  }
+}
+
+// every 4-byte place of a good message, one after the other, becomes a huge length
+TYPED_TEST(EveryMessage, WithHugeLengthsIsRefusedOrHarmless) {
+  std::mt19937_64 random(5);
+  ByteBuffer good;
+  ASSERT_TRUE(encode(random_message<TypeParam>(random, 12), good));
+  TypeParam received;
+  for (const std::uint32_t length : {0xffffffffu, 0x7fffffffu, 0x80000000u, 0x20000000u, 5'000'000u, 70'000u}) {
+    for (std::size_t at = 4; at + 4 <= good.size(); at += 4) {
+      ByteBuffer bad = good;
+      std::memcpy(bad.data() + at, &length, sizeof length);
+      static_cast<void>(decode(bad, received));
+    }
+  }
+}
+
+TYPED_TEST(EveryMessage, OfAnotherRepresentationIsRefused) {
+  std::mt19937_64 random(6);
+  ByteBuffer buffer;
+  ASSERT_TRUE(encode(random_message<TypeParam>(random, 3), buffer));
+  TypeParam received;
+  for (const int identifier : {0, 2, 3, 6, 7, 8, 9, 0x100}) {
+    buffer[0] = static_cast<std::byte>(identifier >> 8);
+    buffer[1] = static_cast<std::byte>(identifier);
+    EXPECT_FALSE(decode(buffer, received)) << identifier;
+  }
+}
+
+TEST(Codec, RefusesToEncodeAboveTheCaps) {
+  ByteBuffer buffer;
+  wire::Tick tick;
+  tick.commands.resize(wire::kMaxCommandsPerTick);
+  tick.commands.back().path.assign(wire::kMaxNameLength, 'a');
+  EXPECT_TRUE(encode(tick, buffer));
+  tick.commands.back().path += 'a';
+  EXPECT_FALSE(encode(tick, buffer));
+  tick.commands.back().path = std::string("Bag\0.mass", 9);
+  EXPECT_FALSE(encode(tick, buffer));
+  tick.commands.assign(wire::kMaxCommandsPerTick + 1, {});
+  EXPECT_FALSE(encode(tick, buffer));
+
+  wire::NodeStatus status;
+  status.reason.assign(wire::kMaxReasonLength + 1, 'x');
+  EXPECT_FALSE(encode(status, buffer));
+  status.reason.clear();
+  status.heard.resize(wire::kMaxHeard + 1);
+  EXPECT_FALSE(encode(status, buffer));
+  status.heard.clear();
+  status.state = static_cast<wire::NodeState>(8);
+  EXPECT_FALSE(encode(status, buffer));
+
+  wire::SessionDescription session;
+  session.scene_text.assign(wire::kMaxSceneBytes, ' ');
+  EXPECT_TRUE(encode(session, buffer));
+  session.scene_text += ' ';
+  EXPECT_FALSE(encode(session, buffer));
+}
+
+// offset of the first byte that changes when the message changes
+template <typename M>
+std::size_t first_difference(const M& a, const M& b) {
+  ByteBuffer first, second;
+  EXPECT_TRUE(encode(a, first));
+  EXPECT_TRUE(encode(b, second));
+  std::size_t at = 4;
+  while (at < first.size() && first[at] == second[at]) ++at;
+  return at;
+}
+
+TEST(Codec, RefusesLengthsAboveTheCapEvenWhenTheBytesAreThere) {
+  wire::VariableBlock empty, one;
+  one.values.push_back(1.0);
+  const std::size_t length_at = first_difference(empty, one);
+  ByteBuffer buffer;
+  ASSERT_TRUE(encode(empty, buffer));
+  buffer.resize(length_at + 4 + 8 * (wire::kMaxVariablesPerBlock + 2), std::byte{0});
+  const std::uint32_t length = wire::kMaxVariablesPerBlock + 1;
+  std::memcpy(buffer.data() + length_at, &length, sizeof length);
+  wire::VariableBlock received;
+  EXPECT_FALSE(decode(buffer, received));
+}
+
+TEST(Codec, RefusesUnknownEnumeratorsBooleansAndTextsWithoutEnd) {
+  ByteBuffer buffer;
+  wire::Health calm, waiting;
+  waiting.is_waiting = true;
+  ASSERT_TRUE(encode(waiting, buffer));
+  const std::size_t flag_at = first_difference(calm, waiting);
+  buffer[flag_at] = std::byte{2};
+  wire::Health health;
+  EXPECT_FALSE(decode(buffer, health));
+
+  wire::Health fault;
+  fault.state = wire::NodeState::fault;
+  ASSERT_TRUE(encode(calm, buffer));
+  buffer[first_difference(calm, fault)] = std::byte{8};
+  EXPECT_FALSE(decode(buffer, health));
+
+  wire::ControlReply reply, answered;
+  answered.reason = "abc";
+  const std::size_t length_at = first_difference(reply, answered);
+  ASSERT_TRUE(encode(answered, buffer));
+  wire::ControlReply received;
+  ASSERT_TRUE(decode(buffer, received));
+  buffer[length_at + 4 + 3] = std::byte{'d'};
+  EXPECT_FALSE(decode(buffer, received));
+  buffer[length_at + 4 + 3] = std::byte{0};
+  buffer[length_at + 4 + 1] = std::byte{0};
+  EXPECT_FALSE(decode(buffer, received));
+}
+
+TEST(Codec, ReadsTheHeaderAlone) {
+  std::mt19937_64 random(7);
+  const auto sent = random_message<wire::MechanismMessage>(random, 3);
+  ByteBuffer buffer;
+  ASSERT_TRUE(encode(sent, buffer));
+  wire::Header header;
+  ASSERT_TRUE(decode_header(buffer, header));
+  EXPECT_TRUE(header == sent.header);
+  EXPECT_FALSE(decode_header(Bytes(buffer).first(43), header));
+  EXPECT_TRUE(decode_header(Bytes(buffer).first(44), header));
+}
+
+template <typename M>
+void expect_no_allocation_after_warm_up(M message) {
+  ByteBuffer buffer;
+  M received;
+  ASSERT_TRUE(encode(message, buffer) && decode(buffer, received));
+  const AllocationGuard guard;
+  bool is_good = true;
+  for (int i = 0; i < 1000; ++i) is_good = encode(message, buffer) && decode(buffer, received) && is_good;
+  EXPECT_EQ(guard.allocations(), 0u);
+  EXPECT_TRUE(is_good);
+}
+
+TEST(Codec, AllocatesNothingForStepMessagesAfterWarmUp) {
+  std::mt19937_64 random(8);
+  expect_no_allocation_after_warm_up(random_message<wire::MechanismMessage>(random, 16));
+  expect_no_allocation_after_warm_up(random_message<wire::ActuatorMessage>(random, 16));
+  expect_no_allocation_after_warm_up(random_message<wire::VariableBlock>(random, 1024));
+  auto tick = random_message<wire::Tick>(random, 64);
+  expect_no_allocation_after_warm_up(tick);
+  tick.commands.clear();
+  expect_no_allocation_after_warm_up(tick);
+}
+
+}  // namespace
+}  // namespace slew::transport

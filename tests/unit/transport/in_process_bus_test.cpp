@@ -1,0 +1,184 @@
+#include "transport/in_process_bus.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <thread>
+
+#include "core/allocation_guard.h"
+#include "core/time.h"
+
+namespace slew::transport {
+namespace {
+
+using wire::Topic;
+
+constexpr std::int64_t kForever = 20'000'000'000;  // ns
+
+struct NumberedBytes {
+  explicit NumberedBytes(std::uint64_t number) { std::memcpy(bytes.data(), &number, sizeof number); }
+  std::array<std::byte, 400> bytes{};
+};
+
+std::uint64_t number_of(const Received& message) {
+  std::uint64_t number = 0;
+  std::memcpy(&number, message.bytes.data(), sizeof number);
+  return number;
+}
+
+std::vector<std::uint64_t> take_all(Transport& endpoint) {
+  std::vector<std::uint64_t> numbers;
+  Received message;
+  while (endpoint.take(message)) numbers.push_back(number_of(message));
+  return numbers;
+}
+
+using Numbers = std::vector<std::uint64_t>;
+
+TEST(InProcessBus, DeliversInTheOrderOfPublishingWhoeverPublishes) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"a", {Topic::tick}, {Topic::mechanism}});
+  InProcessEndpoint b(bus, {"b", {Topic::mechanism}, {Topic::tick}});
+  InProcessEndpoint c(bus, {"c", {}, {Topic::tick, Topic::mechanism}});
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Status status = (i % 3 == 0 ? a.publish(Topic::tick, NumberedBytes(i).bytes)
+                                      : b.publish(Topic::mechanism, NumberedBytes(i).bytes));
+    ASSERT_TRUE(status.is_ok());
+  }
+  const Numbers heard = take_all(c);
+  ASSERT_EQ(heard.size(), 200u);
+  for (std::uint64_t i = 0; i < 200; ++i) EXPECT_EQ(heard[i], i);
+  EXPECT_EQ(take_all(b).size(), 67u);
+}
+
+TEST(InProcessBus, AnEndpointDoesNotHearItselfNorUnwantedTopics) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"a", TopicSet::all(), TopicSet::all()});
+  InProcessEndpoint b(bus, {"b", {}, {Topic::health}});
+  ASSERT_TRUE(a.publish(Topic::tick, NumberedBytes(1).bytes).is_ok());
+  ASSERT_TRUE(a.publish(Topic::health, NumberedBytes(2).bytes).is_ok());
+  EXPECT_EQ(take_all(a), Numbers{});
+  EXPECT_EQ(take_all(b), Numbers{2});
+}
+
+TEST(InProcessBus, ALateEndpointGetsEachWritersLastKeptMessages) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"a", TopicSet::all(), {}});
+  InProcessEndpoint b(bus, {"b", TopicSet::all(), {}});
+  for (const std::uint64_t i : {1u, 2u, 3u}) {
+    ASSERT_TRUE(a.publish(Topic::node_status, NumberedBytes(i).bytes).is_ok());
+    ASSERT_TRUE(b.publish(Topic::node_status, NumberedBytes(10 + i).bytes).is_ok());
+    ASSERT_TRUE(a.publish(Topic::variable_directory, NumberedBytes(20 + i).bytes).is_ok());
+    ASSERT_TRUE(a.publish(Topic::tick, NumberedBytes(30 + i).bytes).is_ok());
+  }
+  InProcessEndpoint late(bus, {"late", {}, TopicSet::all()});
+  EXPECT_EQ(take_all(late), (Numbers{21, 22, 3, 23, 13}));
+}
+
+TEST(InProcessBus, WhatALeftWriterKeptIsGone) {
+  InProcessBus bus;
+  {
+    InProcessEndpoint a(bus, {"a", TopicSet::all(), {}});
+    ASSERT_TRUE(a.publish(Topic::session, NumberedBytes(1).bytes).is_ok());
+  }
+  InProcessEndpoint late(bus, {"late", {}, TopicSet::all()});
+  EXPECT_EQ(take_all(late), Numbers{});
+}
+
+TEST(InProcessBus, UndeclaredTopicsAreRefused) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"a", {Topic::tick}, {}});
+  EXPECT_FALSE(a.publish(Topic::health, NumberedBytes(1).bytes).is_ok());
+}
+
+TEST(InProcessBus, NamesTheWritersOfATopic) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"mechanics", {Topic::mechanism}, {}});
+  InProcessEndpoint b(bus, {"hydraulics", {Topic::actuators}, {}});
+  EXPECT_EQ(b.discovered_writers(Topic::mechanism),
+            std::vector<std::string>{"mechanics in this process, type slewring::MechanismMessage"});
+  EXPECT_TRUE(b.discovered_writers(Topic::tick).empty());
+}
+
+TEST(InProcessBus, AboveItsLimitTheOldestIsDroppedAndCounted) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"a", {Topic::tick}, {}});
+  InProcessEndpoint b(bus, {"b", {}, {Topic::tick}});
+  const std::uint64_t count = InProcessBus::kInboxLimit + 5;
+  for (std::uint64_t i = 0; i < count; ++i) ASSERT_TRUE(a.publish(Topic::tick, NumberedBytes(i).bytes).is_ok());
+  EXPECT_EQ(b.dropped(), 5u);
+  const Numbers heard = take_all(b);
+  ASSERT_EQ(heard.size(), InProcessBus::kInboxLimit);
+  EXPECT_EQ(heard.front(), 5u);
+  EXPECT_EQ(heard.back(), count - 1);
+}
+
+TEST(InProcessBus, AllocatesNothingAfterWarmUp) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"a", {Topic::tick, Topic::variables}, {}});
+  InProcessEndpoint b(bus, {"b", {}, TopicSet::all()});
+  const std::vector<std::byte> block(8300);
+  Received message;
+  const auto exchange = [&] {
+    for (std::uint64_t i = 0; i < 40; ++i) {
+      static_cast<void>(a.publish(Topic::tick, NumberedBytes(i).bytes));
+      if (i % 7 == 0) static_cast<void>(a.publish(Topic::variables, block));
+    }
+    while (b.take(message)) {
+    }
+  };
+  exchange();
+  const AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) exchange();
+  EXPECT_EQ(guard.allocations(), 0u);
+}
+
+TEST(InProcessBus, WakeEndsAWaitOfAnotherThread) {
+  InProcessBus bus;
+  InProcessEndpoint a(bus, {"a", {}, {Topic::tick}});
+  std::thread sleeper([&a] { a.wait_until(monotonic_ns() + kForever); });
+  a.wake();
+  sleeper.join();
+  EXPECT_EQ(take_all(a), Numbers{});
+}
+
+TEST(InProcessBus, ThreadsExchangeWithoutLossOrDisorder) {
+  InProcessBus bus;
+  constexpr std::uint64_t kRounds = 20'000;
+  InProcessEndpoint a(bus, {"a", {Topic::mechanism}, {Topic::actuators}});
+  InProcessEndpoint b(bus, {"b", {Topic::actuators}, {Topic::mechanism}});
+  InProcessEndpoint witness(bus, {"witness", {}, {Topic::mechanism, Topic::actuators}});
+  // each answers the other's number with the next
+  const auto play = [](InProcessEndpoint& self, Topic topic, std::uint64_t first) {
+    std::uint64_t expected = first == 0 ? 1 : 0;
+    if (first == 0) static_cast<void>(self.publish(topic, NumberedBytes(0).bytes));
+    Received message;
+    while (expected < kRounds) {
+      if (!self.take(message)) {
+        self.wait_until(monotonic_ns() + kForever);
+        continue;
+      }
+      ASSERT_EQ(number_of(message), expected);
+      static_cast<void>(self.publish(topic, NumberedBytes(expected + 1).bytes));
+      expected += 2;
+    }
+  };
+  std::thread partner([&] { play(b, Topic::actuators, 1); });
+  std::thread observer([&] {
+    std::uint64_t expected = 0;
+    Received message;
+    while (expected < kRounds) {
+      if (!witness.take(message)) {
+        witness.wait_until(monotonic_ns() + kForever);
+        continue;
+      }
+      ASSERT_EQ(number_of(message), expected++);
+    }
+  });
+  play(a, Topic::mechanism, 0);
+  partner.join();
+  observer.join();
+}
+
+}  // namespace
+}  // namespace slew::transport
