@@ -1,0 +1,18 @@
+// Files that belong to a scene: size and SHA-256, so that a node on another machine can tell that its copy differs.
+#pragma once
+
+#include <string>
+
+#include "scene/diagnostic.h"
+#include "scene/expand.h"
+#include "scene/scene.h"
+#include "scene/yaml_tree.h"
+
+namespace slew::scene {
+
+inline constexpr std::size_t kMaxAssets = 256;
+
+// Reads the section `assets: [file, ...]`; with surroundings every file is measured.
+void read_assets(const Node& section, const Surroundings& surroundings, Scene& scene, Report& report);
+
+}  // namespace slew::scene

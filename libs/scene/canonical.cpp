@@ -1,0 +1,158 @@
+#include "scene/canonical.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "scene/sections.h"
+
+namespace slew::scene {
+namespace {
+
+// words that a YAML reader of any version may take for something else than text
+constexpr std::string_view kLoadedWords[] = {"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf"};
+
+bool is_word_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+}
+
+bool is_plain_word(const std::string& text) {
+  if (text.empty() || !((text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z') || text[0] == '_')) {
+    return false;
+  }
+  std::string word = text;
+  for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return std::all_of(text.begin(), text.end(), is_word_character) &&
+         std::find(std::begin(kLoadedWords), std::end(kLoadedWords), word) == std::end(kLoadedWords);
+}
+
+// Shortest text that reads back to the same bits.
+std::string number_text(double value) {
+  return fmt::format("{}", value);
+}
+
+template <typename Value>
+const Value& member(const Field& field, void* def) {
+  return *static_cast<const Value*>(field.member(def));
+}
+
+template <typename Range, typename Format>
+std::string list_text(const Range& values, const Format& format) {
+  std::string text = "[";
+  for (const auto& value : values) text += (text.size() > 1 ? ", " : "") + format(value);
+  return text + "]";
+}
+
+std::string point_text(const std::array<double, 2>& point) {
+  return fmt::format("[{}, {}]", point[0], point[1]);
+}
+
+// The value as YAML; empty when the field has none that could be written.
+std::string value_text(const Field& field, void* def) {
+  switch (field.type) {
+    case FieldType::number: {
+      const double value = member<double>(field, def);
+      return std::isfinite(value) && field.range.contains(value) ? number_text(value) : "";
+    }
+    case FieldType::integer:
+      return std::to_string(member<std::int64_t>(field, def));
+    case FieldType::boolean:
+      return member<bool>(field, def) ? "true" : "false";
+    case FieldType::text: {
+      const auto& text = member<std::string>(field, def);
+      return text.empty() ? "" : yaml_text(text);
+    }
+    case FieldType::triple:
+      return list_text(member<Triple>(field, def), number_text);
+    case FieldType::table: {
+      const auto& table = member<Table>(field, def);
+      return table.empty() ? "" : list_text(table, point_text);
+    }
+    case FieldType::numbers:
+      return list_text(member<std::vector<double>>(field, def), number_text);
+    case FieldType::texts:
+      return list_text(member<std::vector<std::string>>(field, def), yaml_text);
+    case FieldType::choice:
+      return std::string(field.choices[static_cast<std::size_t>(field.get_choice(def))]);
+  }
+  return {};
+}
+
+void write_fields(std::string& text, std::span<const Field> fields, void* def, std::string_view indent) {
+  for (const Field& field : fields) {
+    const std::string value = value_text(field, def);
+    if (!value.empty()) text += fmt::format("{}{}: {}\n", indent, field.key, value);
+  }
+}
+
+void write_elements(std::string& text, const std::vector<ElementRef>& all, std::string_view section) {
+  bool is_first = true;
+  for (const ElementRef& element : all) {
+    if (element.section != section) continue;
+    if (is_first) text += fmt::format("{}:\n", section);
+    is_first = false;
+    std::string fields;
+    if (!element.type.empty()) fields += fmt::format("    type: {}\n", element.type);
+    write_fields(fields, element.fields, element.def, "    ");
+    text += fmt::format("  {}:{}{}", element.name, fields.empty() ? " {}\n" : "\n", fields);
+  }
+}
+
+void write_script(std::string& text, const ScriptDef& script) {
+  if (script.is_empty()) return;
+  text += fmt::format("script:\n  interpolation: {}\n",
+                      script.interpolation == ScriptInterpolation::linear ? "linear" : "step");
+  if (!script.tracks.empty()) text += "  inputs:\n";
+  for (const ScriptTrack& track : script.tracks) {
+    text += fmt::format("    {}: {}\n", track.input, list_text(track.points, point_text));
+  }
+  if (!script.changes.empty()) text += "  parameters:\n";
+  for (const ScriptChange& change : script.changes) {
+    text += fmt::format("    - {{at: {}, set: {}, value: {}, over: {}}}\n", change.at, change.set, change.value,
+                        change.over);
+  }
+}
+
+}  // namespace
+
+std::string yaml_text(const std::string& text) {
+  if (is_plain_word(text)) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (c == '\n') {
+      quoted += "\\n";
+    } else if (c == '\t') {
+      quoted += "\\t";
+    } else if (c == '\r') {
+      quoted += "\\r";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
+std::string canonical_text(Scene& scene) {
+  std::string text = "scene: " + yaml_text(scene.name) + "\n";
+  if (!scene.description.empty()) text += "description: " + yaml_text(scene.description) + "\n";
+  if (!scene.assets.empty()) {
+    text += "assets: " + list_text(scene.assets, [](const Asset& asset) { return yaml_text(asset.name); }) + "\n";
+  }
+  const std::vector<ElementRef> all = elements(scene);
+  for (const ElementRef& single : single_sections(scene)) {
+    text += fmt::format("{}:\n", single.section);
+    write_fields(text, single.fields, single.def, "  ");
+  }
+  for (const std::string_view section : element_sections()) write_elements(text, all, section);
+  write_script(text, scene.script);
+  return text;
+}
+
+}  // namespace slew::scene

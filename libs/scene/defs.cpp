@@ -1,0 +1,185 @@
+#include "scene/defs.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace slew::scene {
+namespace {
+
+// a step of 1.0000001 ms is a slip of the pen, not a wish
+constexpr double kWholeNanosecondTolerance = 1e-3;  // ns
+
+constexpr Range kStepRange{.min = kMinStep, .max = kMaxStep, .min_is_open = false, .max_is_open = false};
+constexpr Range kDurationRange{.min = 0, .max = 1e6, .min_is_open = false, .max_is_open = false};
+constexpr Range kWindowRange{.min = 0, .max = 64, .min_is_open = false, .max_is_open = false};
+constexpr Range kTimeoutRange{.min = 0.01, .max = 60, .min_is_open = false, .max_is_open = false};
+constexpr Range kBlockRange{.min = 0, .max = 15, .min_is_open = false, .max_is_open = false};
+constexpr Range kChannelRange{.min = 0, .max = 63, .min_is_open = false, .max_is_open = false};
+constexpr Range kDeadZoneRange{.min = 0, .max = 1, .min_is_open = false};
+constexpr Range kRampRange{.min = 0, .max = 60, .min_is_open = false, .max_is_open = false};
+constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
+constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
+
+constexpr std::string_view kPaces[] = {"real", "free"};
+constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
+constexpr std::string_view kSubs[] = {"control_voltage"};
+constexpr std::string_view kInterpolations[] = {"linear", "step"};
+
+constexpr Field kSessionFields[] = {
+    field<&SessionDef::step>("step",
+                             {.dimension = Dimension::time,
+                              .range = kStepRange,
+                              .doc = "communication step H, whole nanoseconds; a warning outside 0.1 to 10 ms"}),
+    field<&SessionDef::duration>(
+        "duration",
+        {.dimension = Dimension::time, .range = kDurationRange, .doc = "length of a run; 0: until stopped"}),
+    field<&SessionDef::pace>("pace",
+                             {.choices = kPaces, .doc = "real: paced by the wall clock; free: as fast as possible"}),
+    field<&SessionDef::coupling>(
+        "coupling",
+        {.choices = kLevels,
+         .doc = "how much of the partner's behaviour a node uses inside a step; this version has hold, two"}),
+    field<&SessionDef::window>(
+        "window", {.range = kWindowRange,
+                   .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace"}),
+    field<&SessionDef::controller_timeout>("controller_timeout",
+                                           {.dimension = Dimension::time,
+                                            .range = kTimeoutRange,
+                                            .doc = "silence after which a controller's channel goes to neutral"}),
+};
+
+constexpr Field kInputFields[] = {
+    field<&InputDef::primitive>("primitive", {.presence = Presence::required,
+                                              .reference = "component",
+                                              .doc = "component that gets the signal; it must have a control signal"}),
+    field<&InputDef::sub>("sub", {.choices = kSubs, .doc = "which of the component's signals"}),
+    field<&InputDef::block>("block", {.range = kBlockRange, .doc = "I/O block: number of the joystick"}),
+    field<&InputDef::channel>("channel", {.range = kChannelRange, .doc = "I/O channel: axis or button of the block"}),
+    field<&InputDef::scale>("scale", {.dimension = Dimension::electric_signal,
+                                      .doc = "control signal at full stick; negative turns the direction round"}),
+    field<&InputDef::dead_zone>(
+        "dead_zone", {.range = kDeadZoneRange, .doc = "raw values up to this are 0; it cuts, it does not rescale"}),
+    field<&InputDef::ramp>("ramp", {.dimension = Dimension::time,
+                                    .range = kRampRange,
+                                    .doc = "time from neutral to full stick at the quickest; 0: none"}),
+    field<&InputDef::rate_limit>("rate_limit",
+                                 {.dimension = Dimension::frequency,
+                                  .range = kNotNegative,
+                                  .doc = "largest change of the raw value per second that is let in; 0: any"}),
+};
+
+constexpr Field kScriptFields[] = {
+    field<&ScriptDef::interpolation>(
+        "interpolation", {.choices = kInterpolations, .doc = "between two points: a line, or the earlier value held"}),
+};
+
+constexpr Field kScriptTrackFields[] = {
+    field<&ScriptTrack::points>("points",
+                                {.dimension = Dimension::time,
+                                 .range = kRawRange,
+                                 .doc = "points [time, raw value -1 to 1]; the first and last value are held"}),
+};
+
+constexpr Field kScriptChangeFields[] = {
+    field<&ScriptChange::at>("at", {.dimension = Dimension::time,
+                                    .range = kDurationRange,
+                                    .presence = Presence::required,
+                                    .doc = "time of the change"}),
+    field<&ScriptChange::set>("set", {.presence = Presence::required, .doc = "live parameter, Element.key"}),
+    field<&ScriptChange::over>("over", {.dimension = Dimension::time,
+                                        .range = kRampRange,
+                                        .doc = "time over which the value is reached; without it the parameter's own"}),
+};
+
+constexpr Field kRecordingFields[] = {
+    field<&RecordingDef::every>("every", {.range = kEveryRange, .doc = "steps between two published values"}),
+    field<&RecordingDef::variables>("variables",
+                                    {.doc = "names of variables, or patterns with * and ?; default all of them"}),
+};
+
+constexpr Field kPlotFields[] = {
+    field<&PlotDef::title>("title", {.doc = "heading; without it the plot's name"}),
+    field<&PlotDef::variables>("variables", {.presence = Presence::required, .doc = "names or patterns of variables"}),
+};
+
+}  // namespace
+
+SimDuration SessionDef::step_duration() const noexcept {
+  return {std::llround(step * 1e9)};
+}
+
+StepIndex SessionDef::steps() const noexcept {
+  return std::llround(duration / step_duration().seconds());
+}
+
+std::int64_t SessionDef::window_steps() const noexcept {
+  if (window > 0) return window;
+  return pace == Pace::real ? 1 : 4;
+}
+
+std::span<const Field> session_fields() noexcept {
+  return kSessionFields;
+}
+std::span<const Field> input_fields() noexcept {
+  return kInputFields;
+}
+std::span<const Field> script_fields() noexcept {
+  return kScriptFields;
+}
+std::span<const Field> script_track_fields() noexcept {
+  return kScriptTrackFields;
+}
+std::span<const Field> script_change_fields() noexcept {
+  return kScriptChangeFields;
+}
+std::span<const Field> recording_fields() noexcept {
+  return kRecordingFields;
+}
+std::span<const Field> plot_fields() noexcept {
+  return kPlotFields;
+}
+
+void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
+  const double nanoseconds = session.step * 1e9;
+  if (std::abs(nanoseconds - std::round(nanoseconds)) > kWholeNanosecondTolerance) {
+    errors.push_back({"session.step", fmt::format("{} s is not a whole number of nanoseconds", session.step),
+                      fmt::format("{} ns", std::llround(nanoseconds)), ""});
+  }
+  if (session.step < kMinUsualStep || session.step > kMaxUsualStep) {
+    warnings.push_back({"session.step", fmt::format("{} ms is outside 0.1 to 10 ms", session.step * 1e3), "", ""});
+  }
+  if (session.coupling == coupling::Level::linear || session.coupling == coupling::Level::tlm) {
+    const auto index = static_cast<std::size_t>(session.coupling);
+    errors.push_back(
+        {"session.coupling", fmt::format("'{}' is not in this version", kLevels[index]), "hold or two", ""});
+  }
+}
+
+void validate(const std::vector<InputDef>& inputs, Problems& errors) {
+  std::map<std::pair<std::int64_t, std::int64_t>, std::string> by_channel;
+  std::map<std::string, std::string> by_primitive;
+  for (const InputDef& input : inputs) {
+    const auto [same_channel, is_new_channel] = by_channel.emplace(std::pair(input.block, input.channel), input.name);
+    if (!is_new_channel) {
+      errors.push_back(
+          {input.name + ".channel",
+           fmt::format("channel {} of block {} is taken by '{}'", input.channel, input.block, same_channel->second),
+           "a channel of its own", ""});
+    }
+    const auto [same_primitive, is_new_primitive] = by_primitive.emplace(input.primitive, input.name);
+    if (!is_new_primitive && !input.primitive.empty()) {
+      errors.push_back({input.name + ".primitive",
+                        fmt::format("'{}' is driven by '{}' already", input.primitive, same_primitive->second),
+                        "one input for a component", ""});
+    }
+  }
+  if (inputs.size() > kMaxInputs) {
+    errors.push_back({inputs[kMaxInputs].name, fmt::format("there are {} inputs", inputs.size()),
+                      fmt::format("at most {}", kMaxInputs), ""});
+  }
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,113 @@
+// What a scene says beside the physics: session, inputs, script, recording, plots.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/field.h"
+#include "core/problem.h"
+#include "core/time.h"
+#include "coupling/level.h"
+
+namespace slew::scene {
+
+enum class Pace : int { real, free };
+
+// How a session runs.
+struct SessionDef {
+  double step = 1e-3;                               // s, communication step H; whole nanoseconds
+  double duration = 20;                             // s; 0: until it is stopped
+  Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
+  coupling::Level coupling = coupling::Level::two;  // linear and tlm are refused in this version
+  std::int64_t window = 0;                          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free
+  double controller_timeout = 0.5;                  // s of silence after which a controller's channel goes to neutral
+
+  [[nodiscard]] SimDuration step_duration() const noexcept;
+  [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped
+  [[nodiscard]] std::int64_t window_steps() const noexcept;
+};
+
+enum class InputType : int { analog, digital };
+enum class InputSub : int { control_voltage };
+
+// One channel from the operator to a component. Applied in this order to the raw value r (-1..1, digital 0 or 1):
+//   dead zone  r if |r| > dead_zone else 0        it cuts, it does not rescale
+//   ramp       at most 1 / ramp per second
+//   scale      the component gets scale * r
+struct InputDef {
+  std::string name;
+  InputType type = InputType::analog;
+  std::string primitive;                     // component with a control signal
+  InputSub sub = InputSub::control_voltage;  // which of its signals
+  std::int64_t block = 0;                    // I/O block: number of the joystick
+  std::int64_t channel = 0;                  // I/O channel: its axis or button
+  double scale = 1;                          // component's signal at full stick; its sign is the stick's direction
+  double dead_zone = 0;                      // of the raw value
+  double ramp = 0;                           // s, from neutral to full stick; 0: none
+  double rate_limit = 0;                     // 1/s, largest change of the raw value that a source may send; 0: none
+};
+
+enum class ScriptInterpolation : int { linear, step };
+
+// Raw value of one input over time.
+struct ScriptTrack {
+  std::string input;
+  Table points;  // time [s], raw value -1..1
+};
+
+// A parameter that the script changes.
+struct ScriptChange {
+  double at = 0;     // s
+  std::string set;   // parameter's path, "Bag.mass"
+  double value = 0;  // SI
+  double over = 0;   // s, spread over this time
+};
+
+// The scene's own operator, used when no other input is asked for.
+struct ScriptDef {
+  ScriptInterpolation interpolation = ScriptInterpolation::linear;
+  std::vector<ScriptTrack> tracks;    // in the order of the scene's inputs
+  std::vector<ScriptChange> changes;  // ordered by time
+
+  [[nodiscard]] bool is_empty() const noexcept { return tracks.empty() && changes.empty(); }
+};
+
+// Which variables the nodes publish and the recorder stores.
+struct RecordingDef {
+  std::int64_t every = 1;                   // steps between two values of a variable
+  std::vector<std::string> variables{"*"};  // names, or patterns with * and ?
+};
+
+// A panel of `slewring plot` and of the summary picture.
+struct PlotDef {
+  std::string name;
+  std::string title;                   // empty: the name
+  std::vector<std::string> variables;  // names or patterns; of one dimension
+};
+
+inline constexpr double kMinStep = 10e-6;                    // s
+inline constexpr double kMaxStep = 20e-3;                    // s
+inline constexpr double kMinUsualStep = 0.1e-3;              // s, warned about below
+inline constexpr double kMaxUsualStep = 10e-3;               // s, warned about above
+inline constexpr std::size_t kMaxNameLength = 32;            // of an element: "name.quantity" must fit the wire's 63
+inline constexpr std::size_t kMaxInputs = 64;                // channels on the wire
+inline constexpr std::size_t kMaxScriptChangesPerStep = 16;  // commands in one tick
+
+[[nodiscard]] std::span<const Field> session_fields() noexcept;
+[[nodiscard]] std::span<const Field> input_fields() noexcept;   // without `type`
+[[nodiscard]] std::span<const Field> script_fields() noexcept;  // of ScriptDef: interpolation
+[[nodiscard]] std::span<const Field> script_track_fields() noexcept;
+[[nodiscard]] std::span<const Field> script_change_fields() noexcept;  // without `value`
+[[nodiscard]] std::span<const Field> recording_fields() noexcept;
+[[nodiscard]] std::span<const Field> plot_fields() noexcept;
+
+inline constexpr std::string_view kInputTypeChoices[] = {"analog", "digital"};
+
+// Rules between the fields; ranges are the tables' matter.
+void validate(const SessionDef& session, Problems& errors, Problems& warnings);
+void validate(const std::vector<InputDef>& inputs, Problems& errors);
+
+}  // namespace slew::scene

@@ -1,0 +1,65 @@
+#include "scene/diagnostic.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace slew::scene {
+namespace {
+
+std::string join(const std::vector<Diagnostic>& diagnostics, std::size_t omitted) {
+  std::string text;
+  for (const Diagnostic& diagnostic : diagnostics) {
+    if (!text.empty()) text += '\n';
+    text += diagnostic.text();
+  }
+  if (omitted > 0) text += "\nand " + std::to_string(omitted) + " more";
+  return text;
+}
+
+}  // namespace
+
+std::string Diagnostic::text() const {
+  std::string text = file;
+  if (line > 0) text += ':' + std::to_string(line) + ':' + std::to_string(column);
+  text += ": ";
+  if (!path.empty()) text += path + ": ";
+  text += what;
+  if (!expected.empty()) text += "; expected " + expected;
+  if (!suggestion.empty()) text += "; did you mean '" + suggestion + "'?";
+  return text;
+}
+
+LoadError::LoadError(std::vector<Diagnostic> diagnostics, std::size_t omitted)
+    : std::runtime_error(join(diagnostics, omitted)), diagnostics_(std::move(diagnostics)), omitted_(omitted) {}
+
+int Report::add_source(std::string label, Lines lines) {
+  sources_.push_back({std::move(label), lines});
+  return static_cast<int>(sources_.size()) - 1;
+}
+
+Diagnostic Report::at(const Mark& mark, std::string path, Complaint complaint) const {
+  const Source& source = sources_.at(static_cast<std::size_t>(mark.source));
+  const bool is_numbered = source.lines == Lines::numbered;
+  return {.file = source.label,
+          .line = is_numbered ? mark.line : 0,
+          .column = is_numbered ? mark.column : 0,
+          .path = std::move(path),
+          .what = std::move(complaint.what),
+          .expected = std::move(complaint.expected),
+          .suggestion = std::move(complaint.suggestion)};
+}
+
+void Report::add(const Mark& mark, std::string path, Complaint complaint) {
+  entries_.push_back({mark, at(mark, std::move(path), std::move(complaint))});
+}
+
+void Report::fail(std::size_t limit) const {
+  std::vector<Entry> sorted = entries_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) { return a.mark < b.mark; });
+  const std::size_t shown = std::min(limit, sorted.size());
+  std::vector<Diagnostic> diagnostics;
+  for (std::size_t i = 0; i < shown; ++i) diagnostics.push_back(std::move(sorted[i].diagnostic));
+  throw LoadError(std::move(diagnostics), sorted.size() - shown);
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,84 @@
+// What is wrong with a scene and where: one Diagnostic for each problem, all of them in one LoadError.
+//
+// Text of a diagnostic:  file:line:col: path: what is wrong; expected ...; did you mean 'x'?
+// A problem of a whole file has no line and column; one of an override reads "--set Bag.mass=5: ...".
+#pragma once
+
+#include <compare>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace slew::scene {
+
+// Place in a source: line and column from 1, column in characters; line 0 means the source as a whole.
+struct Mark {
+  int source = 0;  // index into Report::sources
+  int line = 0;
+  int column = 0;
+  auto operator<=>(const Mark&) const = default;
+};
+
+struct Diagnostic {
+  std::string file;  // as the user named it, or "--set PATH=VALUE"
+  int line = 0;      // 0: no line applies
+  int column = 0;
+  std::string path;        // "Bag.mass"; empty when the problem belongs to no key
+  std::string what;        // what is wrong
+  std::string expected;    // what would be right; may be empty
+  std::string suggestion;  // a name that was probably meant; may be empty
+
+  [[nodiscard]] std::string text() const;
+};
+
+// Thrown by load_file and load_text; what() is the text of all diagnostics, one a line.
+class LoadError : public std::runtime_error {
+ public:
+  // omitted: number of further problems that are not in the list.
+  LoadError(std::vector<Diagnostic> diagnostics, std::size_t omitted);
+  [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
+  [[nodiscard]] std::size_t omitted() const noexcept { return omitted_; }
+
+ private:
+  std::vector<Diagnostic> diagnostics_;
+  std::size_t omitted_;
+};
+
+// A value's problem before its place is known.
+struct Complaint {
+  std::string what;
+  std::string expected;
+  std::string suggestion;
+};
+
+// Collects problems while a scene is read.
+class Report {
+ public:
+  enum class Lines { numbered, none };  // none: an override, whose places are not worth telling
+  // Registers a file or override by its label; the index goes into marks.
+  int add_source(std::string label, Lines lines = Lines::numbered);
+  // The text of a diagnostic at this place: for warnings as for problems.
+  [[nodiscard]] Diagnostic at(const Mark& mark, std::string path, Complaint complaint) const;
+
+  void add(const Mark& mark, std::string path, Complaint complaint);
+  [[nodiscard]] bool is_clean() const noexcept { return entries_.empty(); }
+  [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
+
+  // Throws LoadError with the first `limit` problems, ordered by source, line and column.
+  [[noreturn]] void fail(std::size_t limit) const;
+
+ private:
+  struct Entry {
+    Mark mark;
+    Diagnostic diagnostic;
+  };
+  struct Source {
+    std::string label;
+    Lines lines;
+  };
+  std::vector<Source> sources_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace slew::scene

@@ -1,0 +1,189 @@
+#include "scene/expand.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "scene/sections.h"
+#include "scene/source.h"
+#include "scene/suggestion.h"
+
+namespace slew::scene {
+namespace {
+
+std::optional<Node> read_tree(const std::string& path, int source, Report& report) {
+  const std::optional<SourceText> text = read_source(path, source, report);
+  return text ? parse_yaml(*text, report) : std::nullopt;
+}
+
+// Maps merge key by key, anything else is replaced; new keys go to the end.
+void merge(Node& base, Node overlay) {
+  if (base.kind != Node::Kind::map || overlay.kind != Node::Kind::map) {
+    base = std::move(overlay);
+    return;
+  }
+  base.mark = overlay.mark;
+  std::move(overlay.duplicates.begin(), overlay.duplicates.end(), std::back_inserter(base.duplicates));
+  for (Node::Entry& entry : overlay.entries) {
+    if (Node::Entry* found = base.find(entry.key)) {
+      found->mark = entry.mark;
+      merge(found->value, std::move(entry.value));
+    } else {
+      base.entries.push_back(std::move(entry));
+    }
+  }
+}
+
+// File names in `include: file` or `include: [file, file]`.
+std::vector<const Node*> included_files(const Node& include, Report& report) {
+  std::vector<const Node*> files;
+  const auto add = [&](const Node& node) {
+    if (node.kind == Node::Kind::scalar && !node.text.empty()) {
+      files.push_back(&node);
+    } else {
+      report.add(node.mark, "include", {"is " + describe(node), "the name of a file, or a list of names", ""});
+    }
+  };
+  if (include.kind == Node::Kind::sequence) {
+    for (const Node& item : include.items) add(item);
+  } else {
+    add(include);
+  }
+  return files;
+}
+
+std::optional<Node> read_included(const Node& name, const Surroundings& surroundings, Report& report) {
+  const std::string path = surroundings.path_of(name.text);
+  std::optional<Node> tree = read_tree(path, report.add_source(path), report);
+  if (!tree) {
+    report.add(name.mark, "include", {describe(name) + " cannot be included", "", ""});
+    return std::nullopt;
+  }
+  if (const Node::Entry* nested = tree->find("include")) {
+    report.add(nested->mark, "include", {"an included file includes another", "one level of includes", ""});
+    return std::nullopt;
+  }
+  return tree;
+}
+
+void erase(Node& map, std::string_view key) {
+  std::erase_if(map.entries, [&](const Node::Entry& entry) { return entry.key == key; });
+}
+
+// ---- overrides
+
+void move_all_marks(Node& node, const Mark& mark) {
+  node.mark = mark;
+  for (Node& item : node.items) move_all_marks(item, mark);
+  for (Node::Entry& entry : node.entries) {
+    entry.mark = mark;
+    move_all_marks(entry.value, mark);
+  }
+}
+
+void set_key(Node& map, const std::string& key, Node value, const Mark& mark) {
+  if (Node::Entry* found = map.find(key)) {
+    found->mark = mark;
+    found->value = std::move(value);
+  } else {
+    map.entries.push_back({key, mark, std::move(value)});
+  }
+}
+
+bool is_single_section(std::string_view name) {
+  return name == "script" || std::any_of(single_tables().begin(), single_tables().end(),
+                                         [&](const SingleTable& table) { return table.section == name; });
+}
+
+// The map that a path's first part names: a single section (made when it is not there) or an element.
+Node* owner_of(Node& root, const std::string& name, const Mark& mark) {
+  if (is_single_section(name)) {
+    if (root.find(name) == nullptr) {
+      Node section;
+      section.kind = Node::Kind::map;
+      section.mark = mark;
+      root.entries.push_back({name, mark, std::move(section)});
+    }
+    return &root.find(name)->value;
+  }
+  for (const std::string_view section : element_sections()) {
+    Node::Entry* entry = root.find(section);
+    Node::Entry* element = entry != nullptr ? entry->value.find(name) : nullptr;
+    if (element != nullptr) return &element->value;
+  }
+  return nullptr;
+}
+
+std::string closest_owner(const Node& root, const std::string& name) {
+  std::vector<std::string_view> names = {"script"};
+  for (const SingleTable& table : single_tables()) names.push_back(table.section);
+  for (const std::string_view section : element_sections()) {
+    const Node::Entry* entry = root.find(section);
+    if (entry == nullptr) continue;
+    for (const Node::Entry& element : entry->value.entries) names.push_back(element.key);
+  }
+  return closest(name, names);
+}
+
+void apply_override(Node& root, const std::string& text, Report& report) {
+  const Mark mark{report.add_source("--set " + text, Report::Lines::none), 0, 0};
+  const std::size_t equals = text.find('=');
+  const std::string path = text.substr(0, equals);
+  const std::size_t dot = path.find('.');
+  if (equals == std::string::npos || dot == std::string::npos || dot == 0 || dot + 1 == path.size()) {
+    report.add(mark, "", {"is not a setting", "Element.key=value, such as 'Bag.mass=1500kg'", ""});
+    return;
+  }
+  const std::string owner_name = path.substr(0, dot);
+  const std::string key = path.substr(dot + 1);
+  Node* owner = owner_of(root, owner_name, mark);
+  if (owner == nullptr) {
+    report.add(mark, "", {"no element or section '" + owner_name + "'", "", closest_owner(root, owner_name)});
+    return;
+  }
+  if (owner->kind != Node::Kind::map) return;  // reported when the section is read
+  if (text.find_first_not_of(" \t", equals + 1) == std::string::npos) {
+    report.add(mark, "", {"has no value", "Element.key=value, such as 'Bag.mass=1500kg'", ""});
+    return;
+  }
+  const std::optional<SourceText> source = check_source(text.substr(equals + 1), mark.source, report);
+  std::optional<Node> value = source ? parse_yaml_value(*source, report) : std::nullopt;
+  if (!value) return;
+  move_all_marks(*value, mark);
+  set_key(*owner, key, std::move(*value), mark);
+}
+
+}  // namespace
+
+std::string Surroundings::path_of(const std::string& file) const {
+  const std::filesystem::path path(file);
+  if (path.is_absolute() || folder.empty()) return file;
+  return (std::filesystem::path(folder) / path).string();
+}
+
+std::optional<Node> read_with_includes(const std::string& path, Report& report) {
+  std::optional<Node> scene = read_tree(path, report.add_source(path), report);
+  if (!scene) return std::nullopt;
+  const Node::Entry* include = scene->find("include");
+  if (include == nullptr) return scene;
+  const Surroundings surroundings{true, std::filesystem::path(path).parent_path().string()};
+  Node base;
+  base.kind = Node::Kind::map;
+  bool is_complete = true;
+  for (const Node* name : included_files(include->value, report)) {
+    std::optional<Node> tree = read_included(*name, surroundings, report);
+    is_complete = is_complete && tree;
+    if (tree) merge(base, std::move(*tree));
+  }
+  if (!is_complete) return std::nullopt;
+  erase(*scene, "include");
+  merge(base, std::move(*scene));
+  return base;
+}
+
+void apply_overrides(Node& root, const Overrides& overrides, Report& report) {
+  for (const std::string& text : overrides) apply_override(root, text, report);
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,309 @@
+#include "scene/field_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "scene/number.h"
+#include "scene/suggestion.h"
+
+namespace slew::scene {
+namespace {
+
+// integers of a scene are counts and indices; beyond this a double does not hold every integer
+constexpr double kLargestInteger = 9007199254740992.0;
+
+Writing writing_of(const Node& node) {
+  return node.is_quoted ? Writing::quoted : Writing::plain;
+}
+
+std::string choice_list(std::span<const std::string_view> choices) {
+  std::string all;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i > 0) all += i + 1 == choices.size() ? " or " : ", ";
+    all += choices[i];
+  }
+  return all;
+}
+
+// Reads values of one field; all problems carry its path.
+class ValueReader {
+ public:
+  ValueReader(const Field& field, void* def, const std::string& path, const ReadContext& context)
+      : field_(field), def_(def), path_(path), context_(context) {}
+
+  void read(const Node& node) {
+    if (node.kind == Node::Kind::empty) {
+      complain(node.mark, {"has no value", expected(), ""});
+      return;
+    }
+    switch (field_.type) {
+      case FieldType::number:
+        if (const auto value = number(node, field_.dimension, true)) member<double>() = *value;
+        break;
+      case FieldType::integer:
+        read_integer(node);
+        break;
+      case FieldType::boolean:
+        read_boolean(node);
+        break;
+      case FieldType::text:
+        if (const auto value = text(node)) member<std::string>() = *value;
+        break;
+      case FieldType::triple:
+        read_triple(node);
+        break;
+      case FieldType::table:
+        read_table(node);
+        break;
+      case FieldType::numbers:
+        read_numbers(node);
+        break;
+      case FieldType::texts:
+        read_texts(node);
+        break;
+      case FieldType::choice:
+        read_choice(node);
+        break;
+    }
+  }
+
+ private:
+  template <typename Value>
+  Value& member() {
+    return *static_cast<Value*>(field_.member(def_));
+  }
+  void complain(const Mark& mark, Complaint complaint) { context_.report.add(mark, path_, std::move(complaint)); }
+  void complain_kind(const Node& node) { complain(node.mark, {"is " + describe(node), expected(), ""}); }
+
+  [[nodiscard]] std::string expected() const { return expected_value(field_); }
+
+  std::optional<double> number(const Node& node, Dimension dimension, bool has_range) {
+    if (node.kind != Node::Kind::scalar) {
+      complain(node.mark, {"is " + describe(node), expected_quantity(dimension), ""});
+      return std::nullopt;
+    }
+    QuantityResult result = read_quantity(node.text, writing_of(node), dimension, context_.units);
+    if (!result.value) {
+      complain(node.mark, std::move(result.complaint));
+    } else if (has_range && !field_.range.contains(*result.value)) {
+      complain(node.mark, {describe(node) + " is out of range", range_text(field_.range, dimension), ""});
+      return std::nullopt;
+    }
+    return result.value;
+  }
+
+  void read_integer(const Node& node) {
+    const bool is_scalar = node.kind == Node::Kind::scalar && !node.is_quoted;
+    const NumberText parsed = is_scalar ? split_number(node.text) : NumberText{};
+    const auto value = static_cast<double>(parsed.value);
+    if (is_scalar && !parsed.is_number) {
+      complain(node.mark,
+               {parsed.complaint.what, parsed.complaint.expected.empty() ? expected() : parsed.complaint.expected, ""});
+    } else if (!is_scalar || !parsed.rest.empty() || value != std::floor(value) || std::abs(value) > kLargestInteger) {
+      complain(node.mark, {"is " + describe(node), expected() + (parsed.rest.empty() ? "" : " without unit"), ""});
+    } else if (!field_.range.contains(value)) {
+      complain(node.mark, {describe(node) + " is out of range", range_text(field_.range, Dimension::none), ""});
+    } else {
+      member<std::int64_t>() = static_cast<std::int64_t>(value);
+    }
+  }
+
+  void read_boolean(const Node& node) {
+    if (node.kind == Node::Kind::scalar && !node.is_quoted && (node.text == "true" || node.text == "false")) {
+      member<bool>() = node.text == "true";
+      return;
+    }
+    constexpr std::string_view kAmbiguous[] = {"yes", "no", "on",  "off", "y",  "n",  "Yes",
+                                               "No",  "On", "Off", "YES", "NO", "ON", "OFF"};
+    const bool is_ambiguous =
+        std::find(std::begin(kAmbiguous), std::end(kAmbiguous), node.text) != std::end(kAmbiguous);
+    complain(node.mark,
+             {(is_ambiguous ? describe(node) + " is ambiguous in YAML" : "is " + describe(node)), expected(), ""});
+  }
+
+  std::optional<std::string> text(const Node& node) {
+    if (node.kind != Node::Kind::scalar) {
+      complain_kind(node);
+      return std::nullopt;
+    }
+    // an empty text means "none" where a reference is optional
+    if (node.text.empty() && field_.presence == Presence::required) {
+      complain(node.mark, {"is empty", expected(), ""});
+      return std::nullopt;
+    }
+    if (!field_.reference.empty() && !node.text.empty()) {
+      context_.references.push_back({field_.reference, node.text, path_, node.mark});
+    }
+    return node.text;
+  }
+
+  void read_triple(const Node& node) {
+    if (node.kind != Node::Kind::sequence || node.items.size() != 3) {
+      const bool is_list = node.kind == Node::Kind::sequence;
+      complain(node.mark,
+               {"is " + (is_list ? fmt::format("a list of {}", node.items.size()) : describe(node)), expected(), ""});
+      return;
+    }
+    auto& triple = member<Triple>();
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (const auto value = number(node.items[i], field_.dimension, true)) triple[i] = *value;
+    }
+  }
+
+  void read_table(const Node& node) {
+    if (node.kind != Node::Kind::sequence || node.items.empty()) {
+      complain_kind(node);
+      return;
+    }
+    Table table;
+    bool is_sound = true;
+    for (const Node& point : node.items) {
+      if (point.kind != Node::Kind::sequence || point.items.size() != 2) {
+        complain(point.mark, {"a point is " + describe(point), "[argument, value]", ""});
+        is_sound = false;
+        continue;
+      }
+      const auto argument = number(point.items[0], field_.dimension, false);
+      const auto value = number(point.items[1], field_.value_dimension, true);
+      is_sound = is_sound && argument && value;
+      if (!argument || !value) continue;
+      if (is_sound && !table.empty() && !(*argument > table.back()[0])) {
+        complain(point.items[0].mark,
+                 {describe(point.items[0]) + " does not lie behind the point before it", "increasing arguments", ""});
+        is_sound = false;
+      }
+      table.push_back({*argument, *value});
+    }
+    if (is_sound) member<Table>() = std::move(table);
+  }
+
+  void read_numbers(const Node& node) {
+    if (node.kind != Node::Kind::sequence) {
+      complain_kind(node);
+      return;
+    }
+    std::vector<double> values;
+    for (const Node& item : node.items) values.push_back(number(item, field_.dimension, true).value_or(0));
+    member<std::vector<double>>() = std::move(values);
+  }
+
+  void read_texts(const Node& node) {
+    if (node.kind != Node::Kind::sequence) {
+      complain_kind(node);
+      return;
+    }
+    std::vector<std::string> values;
+    for (const Node& item : node.items) {
+      if (item.kind != Node::Kind::scalar || item.text.empty()) {
+        complain(item.mark, {"an entry is " + describe(item), "a text", ""});
+      } else if (auto value = text(item)) {
+        values.push_back(std::move(*value));
+      }
+    }
+    member<std::vector<std::string>>() = std::move(values);
+  }
+
+  void read_choice(const Node& node) {
+    if (node.kind == Node::Kind::scalar) {
+      const auto found = std::find(field_.choices.begin(), field_.choices.end(), node.text);
+      if (found != field_.choices.end()) {
+        field_.set_choice(def_, static_cast<int>(found - field_.choices.begin()));
+        return;
+      }
+    }
+    const std::vector<std::string_view> candidates(field_.choices.begin(), field_.choices.end());
+    complain(node.mark, {"is " + describe(node), expected(),
+                         node.kind == Node::Kind::scalar ? closest(node.text, candidates) : ""});
+  }
+
+  const Field& field_;
+  void* def_;
+  const std::string& path_;
+  const ReadContext& context_;
+};
+
+const Field* find_field(std::span<const Field> fields, std::string_view key) {
+  for (const Field& field : fields) {
+    if (field.key == key) return &field;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string expected_value(const Field& field) {
+  switch (field.type) {
+    case FieldType::number:
+      return expected_quantity(field.dimension);
+    case FieldType::integer:
+      return "an integer";
+    case FieldType::boolean:
+      return "true or false";
+    case FieldType::text:
+      return field.reference.empty() ? "a text" : "the name of a " + std::string(field.reference);
+    case FieldType::triple:
+      return "a list of three, [x, y, z]";
+    case FieldType::table:
+      return "a list of points [argument, value]";
+    case FieldType::numbers:
+      return "a list of numbers";
+    case FieldType::texts:
+      return field.reference.empty() ? "a list of texts" : "a list of names of " + std::string(field.reference) + "s";
+    case FieldType::choice:
+      return choice_list(field.choices);
+  }
+  return {};
+}
+
+std::string range_text(const Range& range, Dimension dimension) {
+  const bool has_min = std::isfinite(range.min);
+  const bool has_max = std::isfinite(range.max);
+  if (!has_min && !has_max) return {};
+  const std::string min = with_unit(range.min, dimension);
+  const std::string max = with_unit(range.max, dimension);
+  if (has_min && has_max && !range.min_is_open && !range.max_is_open) return min + " to " + max;
+  std::string text;
+  if (has_min) text = (range.min_is_open ? "more than " : "at least ") + min;
+  if (has_max) text += (has_min ? " and " : "") + std::string(range.max_is_open ? "less than " : "at most ") + max;
+  return text;
+}
+
+void report_duplicates(const Node& map, const std::string& path, Report& report) {
+  for (const Node::Duplicate& duplicate : map.duplicates) {
+    report.add(duplicate.mark, path.empty() ? duplicate.key : path + "." + duplicate.key,
+               {fmt::format("is there twice (first in line {})", duplicate.first.line), "one of them", ""});
+  }
+}
+
+void read_value(const Node& node, const Field& field, void* def, const std::string& path, const ReadContext& context) {
+  ValueReader(field, def, path, context).read(node);
+}
+
+void read_fields(const Node& map, std::span<const Field> fields, void* def, const std::string& path, const Mark& place,
+                 std::span<const std::string_view> other_keys, const ReadContext& context) {
+  report_duplicates(map, path, context.report);
+  for (const Node::Entry& entry : map.entries) {
+    if (std::find(other_keys.begin(), other_keys.end(), entry.key) != other_keys.end()) continue;
+    const std::string value_path = path + "." + entry.key;
+    if (const Field* field = find_field(fields, entry.key)) {
+      context.places.add(value_path, entry.value.mark);
+      read_value(entry.value, *field, def, value_path, context);
+      continue;
+    }
+    std::vector<std::string_view> candidates(other_keys.begin(), other_keys.end());
+    for (const Field& field : fields) candidates.push_back(field.key);
+    context.report.add(entry.mark, value_path, {"unknown key", "", closest(entry.key, candidates)});
+  }
+  for (const Field& field : fields) {
+    if (field.presence == Presence::required && map.find(field.key) == nullptr) {
+      context.report.add(place, path,
+                         {"the key '" + std::string(field.key) + "' is missing", expected_value(field), ""});
+    }
+  }
+}
+
+}  // namespace slew::scene

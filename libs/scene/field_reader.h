@@ -1,0 +1,49 @@
+// Fills a Def from a map of the scene by the Def's field table, checking type, unit, range and choice of every value.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/field.h"
+#include "scene/diagnostic.h"
+#include "scene/place_map.h"
+#include "scene/units.h"
+#include "scene/yaml_tree.h"
+
+namespace slew::scene {
+
+// A name that a value refers to, resolved when all elements are known.
+struct Reference {
+  std::string_view kind;  // Field::reference
+  std::string name;
+  std::string path;
+  Mark mark;
+};
+
+struct ReadContext {
+  UnitSystem& units;
+  Report& report;
+  PlaceMap& places;
+  std::vector<Reference>& references;
+};
+
+// Reads every entry of `map` into the Def at `def`. Keys in `other_keys` are the caller's and are left alone.
+// path: what stands before the keys in messages, "Bag"; place: where a missing key is reported.
+void read_fields(const Node& map, std::span<const Field> fields, void* def, const std::string& path, const Mark& place,
+                 std::span<const std::string_view> other_keys, const ReadContext& context);
+
+// Reads one value; its problems go to the report.
+void read_value(const Node& node, const Field& field, void* def, const std::string& path, const ReadContext& context);
+
+// Reports the keys that a map holds twice. path: "" at the root, else what stands before the key.
+void report_duplicates(const Node& map, const std::string& path, Report& report);
+
+// What a field takes, for messages: "a mass such as '500 kg', or a bare number in kg".
+[[nodiscard]] std::string expected_value(const Field& field);
+
+// "more than 0 kg", "0 to 1", for messages and documentation; empty for any finite number.
+[[nodiscard]] std::string range_text(const Range& range, Dimension dimension);
+
+}  // namespace slew::scene

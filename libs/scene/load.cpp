@@ -1,0 +1,298 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "multibody/validate.h"
+#include "scene/assets.h"
+#include "scene/canonical.h"
+#include "scene/expand.h"
+#include "scene/field_reader.h"
+#include "scene/names.h"
+#include "scene/place_map.h"
+#include "scene/ports.h"
+#include "scene/scene.h"
+#include "scene/script_reader.h"
+#include "scene/sections.h"
+#include "scene/source.h"
+#include "scene/suggestion.h"
+#include "scene/units.h"
+#include "scene/yaml_tree.h"
+
+namespace slew::scene {
+namespace {
+
+constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies", "joints", "forces", "dummies"};
+constexpr std::string_view kHydraulicsSections[] = {"hydraulics", "volumes", "components", "curves"};
+constexpr std::string_view kTypeKey[] = {"type"};
+
+// Reads the expanded tree into a Scene: elements by their tables, then what holds between them, domain by domain. The
+// physics libraries look at a domain only when every value in it could be read, so that nobody gets follow-up errors.
+class SceneReader {
+ public:
+  SceneReader(const Node& root, Surroundings surroundings, Report& report)
+      : root_(root), surroundings_(std::move(surroundings)), report_(report) {}
+
+  Scene read(const std::string& default_name) {
+    check_top_level();
+    read_texts(default_name);
+    names_.declare_all(root_, report_);
+    read_section("session");
+    check_problems([&](Problems& errors, Problems& warnings) { validate(scene_.session, errors, warnings); });
+    const bool mechanics_is_sound = read_mechanics();
+    const bool hydraulics_is_sound = read_hydraulics();
+    if (mechanics_is_sound && hydraulics_is_sound) {
+      check_problems([&](Problems& errors, Problems&) { make_ports(scene_, errors); });
+    }
+    read_inputs();
+    read_outputs();
+    if (const Node::Entry* script = root_.find("script")) {
+      read_script(script->value, script->mark, surroundings_, names_, scene_, context_);
+    }
+    check_content();
+    return std::move(scene_);
+  }
+
+ private:
+  void add_problem(const Problem& problem) {
+    report_.add(places_.nearest(problem.path, root_.mark), problem.path,
+                {problem.what, problem.expected, problem.suggestion});
+  }
+  void add_warning(const Problem& problem) {
+    const Mark mark = places_.nearest(problem.path, root_.mark);
+    scene_.warnings.push_back(
+        report_.at(mark, problem.path, {problem.what, problem.expected, problem.suggestion}).text());
+  }
+  template <typename Check>
+  void check_problems(const Check& check) {
+    Problems errors, warnings;
+    check(errors, warnings);
+    for (const Problem& problem : errors) add_problem(problem);
+    for (const Problem& problem : warnings) add_warning(problem);
+  }
+
+  void check_top_level() {
+    report_duplicates(root_, "", report_);
+    const auto& keys = top_level_keys();
+    for (const Node::Entry& entry : root_.entries) {
+      if (std::find(keys.begin(), keys.end(), entry.key) == keys.end()) {
+        report_.add(entry.mark, entry.key, {"unknown section", "", closest(entry.key, keys)});
+      }
+      places_.add(entry.key, entry.mark);
+    }
+    if (const Node::Entry* include = root_.find("include")) {
+      report_.add(include->mark, "include", {"a scene without a folder cannot include a file", "", ""});
+    }
+  }
+
+  void read_texts(const std::string& default_name) {
+    scene_.name = default_name;
+    for (const auto& [key, text] : {std::pair("scene", &scene_.name), std::pair("description", &scene_.description)}) {
+      const Node::Entry* entry = root_.find(key);
+      if (entry == nullptr) continue;
+      if (entry->value.kind != Node::Kind::scalar || entry->value.text.empty()) {
+        report_.add(entry->value.mark, key, {"is " + describe(entry->value), "a text", ""});
+      } else {
+        *text = entry->value.text;
+      }
+    }
+    if (const Node::Entry* assets = root_.find("assets")) read_assets(assets->value, surroundings_, scene_, report_);
+  }
+
+  bool is_map(const Node::Entry& section) {
+    if (section.value.kind == Node::Kind::map) return true;
+    report_.add(section.value.mark, section.key, {"is " + describe(section.value), "a map", ""});
+    return false;
+  }
+
+  // A section that is one map of fields, or one of elements.
+  void read_section(std::string_view name) {
+    const Node::Entry* section = root_.find(name);
+    if (section == nullptr || !is_map(*section)) return;
+    for (const SingleTable& table : single_tables()) {
+      if (table.section != name) continue;
+      read_fields(section->value, table.fields, table.def(scene_), section->key, section->mark, {}, context_);
+      return;
+    }
+    report_duplicates(section->value, "", report_);
+    for (const Node::Entry& element : section->value.entries) read_element(name, element);
+  }
+
+  void read_element(std::string_view section, const Node::Entry& element) {
+    places_.add(element.key, element.mark);
+    if (element.value.kind != Node::Kind::map) {
+      report_.add(element.value.mark, element.key, {"is " + describe(element.value), "a map", ""});
+      return;
+    }
+    const ElementTable* table = table_of(section, element);
+    if (table == nullptr) return;
+    void* def = table->append(scene_, element.key);
+    const bool has_type = !table->type.empty();
+    read_fields(element.value, table->fields, def, element.key, element.mark,
+                has_type ? std::span<const std::string_view>(kTypeKey) : std::span<const std::string_view>(), context_);
+  }
+
+  // The table of the element's type; null after a complaint.
+  const ElementTable* table_of(std::string_view section, const Node::Entry& element) {
+    std::vector<std::string_view> types;
+    const Node::Entry* type = element.value.find("type");
+    for (const ElementTable& table : element_tables()) {
+      if (table.section != section) continue;
+      if (table.type.empty() ||
+          (type != nullptr && type->value.kind == Node::Kind::scalar && type->value.text == table.type))
+        return &table;
+      types.push_back(table.type);
+    }
+    std::string list;
+    for (const std::string_view name : types)
+      list += (list.empty() ? "" : name == types.back() ? " or " : ", ") + std::string(name);
+    if (type == nullptr) {
+      report_.add(element.mark, element.key, {"the key 'type' is missing", list, ""});
+    } else {
+      const bool is_word = type->value.kind == Node::Kind::scalar;
+      report_.add(type->value.mark, element.key + ".type",
+                  {"is " + describe(type->value), list, is_word ? closest(type->value.text, types) : ""});
+    }
+    return nullptr;
+  }
+
+  void resolve_references() {
+    names_.resolve(references_, report_);
+    references_.clear();
+  }
+
+  bool read_mechanics() {
+    const std::size_t problems = report_.size();
+    for (const std::string_view section : kMechanicsSections) read_section(section);
+    resolve_references();
+    if (report_.size() > problems) return false;
+    check_problems([&](Problems& errors, Problems&) { multibody::validate(scene_.mechanics, errors); });
+    return report_.size() == problems;
+  }
+
+  bool read_hydraulics() {
+    const std::size_t problems = report_.size();
+    for (const std::string_view section : kHydraulicsSections) read_section(section);
+    resolve_references();
+    if (report_.size() > problems) return false;
+    // a scene without volumes has no circuit to look at
+    if (scene_.has_hydraulics() || !scene_.hydraulics.components.empty()) {
+      check_problems(
+          [&](Problems& errors, Problems& warnings) { hydraulics::validate(scene_.hydraulics, errors, warnings); });
+    }
+    return report_.size() == problems;
+  }
+
+  void read_inputs() {
+    const std::size_t problems = report_.size();
+    read_section("inputs");
+    resolve_references();
+    if (report_.size() > problems) return;
+    check_problems([&](Problems& errors, Problems&) {
+      validate(scene_.inputs, errors);
+      for (const InputDef& input : scene_.inputs) check_primitive(input, errors);
+    });
+  }
+
+  void check_primitive(const InputDef& input, Problems& errors) const {
+    std::vector<std::string_view> controlled;
+    for (const auto& component : scene_.hydraulics.components) {
+      const hydraulics::ComponentType* type = hydraulics::find_component_type(component->type_name());
+      if (type != nullptr && type->has_control_signal) controlled.push_back(component->name);
+    }
+    const bool is_known = std::any_of(scene_.hydraulics.components.begin(), scene_.hydraulics.components.end(),
+                                      [&](const auto& component) { return component->name == input.primitive; });
+    if (!is_known || std::find(controlled.begin(), controlled.end(), input.primitive) != controlled.end()) return;
+    errors.push_back({input.name + ".primitive", "'" + input.primitive + "' takes no control signal",
+                      "a component with a control signal, such as a valve", closest(input.primitive, controlled)});
+  }
+
+  void read_outputs() {
+    read_section("recording");
+    read_section("plots");
+    check_variables("recording", scene_.recording.variables);
+    for (const PlotDef& plot : scene_.plots) check_variables(plot.name, plot.variables);
+  }
+
+  // The part before the first dot names an element or a section; what quantities an element has is known to its node.
+  void check_variables(const std::string& owner, const std::vector<std::string>& variables) {
+    std::vector<std::string_view> owners = names_.names_of("");
+    for (const SingleTable& table : single_tables()) owners.push_back(table.section);
+    for (const std::string& variable : variables) {
+      const std::size_t dot = variable.find('.');
+      const std::string_view element = std::string_view(variable).substr(0, dot);
+      const std::string path = owner + ".variables";
+      if (dot == std::string::npos && element.find('*') == std::string_view::npos) {
+        add_problem({path, "'" + variable + "' is not the name of a variable",
+                     "Element.quantity or a pattern such as 'Cyl_*.force'", ""});
+      } else if (std::none_of(owners.begin(), owners.end(),
+                              [&](std::string_view name) { return fits_pattern(name, element); })) {
+        add_problem({path, "no element '" + std::string(element) + "'", "", closest(element, owners)});
+      }
+    }
+  }
+
+  void check_content() {
+    if (root_.find("bodies") != nullptr || root_.find("volumes") != nullptr) return;
+    report_.add(root_.mark, "", {"the scene holds nothing to simulate", "a section 'bodies' or 'volumes'", ""});
+  }
+
+  const Node& root_;
+  Surroundings surroundings_;
+  Report& report_;
+  Scene scene_;
+  NameTable names_;
+  PlaceMap places_;
+  std::vector<Reference> references_;
+  UnitSystem units_;
+  ReadContext context_{units_, report_, places_, references_};
+};
+
+Scene read_tree(Node root, Surroundings surroundings, const std::string& name, const Overrides& overrides,
+                Report& report) {
+  apply_overrides(root, overrides, report);
+  Scene scene = SceneReader(root, std::move(surroundings), report).read(name);
+  if (!report.is_clean()) report.fail(kMaxReportedProblems);
+  scene.expanded_text = canonical_text(scene);
+  return scene;
+}
+
+// What goes wrong outside the scene (no unit database, no memory) is told in the same way.
+template <typename Load>
+Scene guarded(const std::string& file, const Load& load) {
+  try {
+    return load();
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw LoadError({{.file = file, .path = "", .what = error.what(), .expected = "", .suggestion = ""}}, 0);
+  }
+}
+
+}  // namespace
+
+Scene load_file(const std::string& path, const Overrides& overrides) {
+  return guarded(path, [&] {
+    Report report;
+    std::optional<Node> root = read_with_includes(path, report);
+    if (!root) report.fail(kMaxReportedProblems);
+    const std::filesystem::path file(path);
+    Surroundings surroundings{true, file.parent_path().string()};
+    return read_tree(std::move(*root), std::move(surroundings), file.stem().string(), overrides, report);
+  });
+}
+
+Scene load_text(std::string text, const std::string& name, const Overrides& overrides) {
+  return guarded(name, [&] {
+    Report report;
+    const std::optional<SourceText> source = check_source(std::move(text), report.add_source(name), report);
+    std::optional<Node> root = source ? parse_yaml(*source, report) : std::nullopt;
+    if (!root) report.fail(kMaxReportedProblems);
+    return read_tree(std::move(*root), {}, name, overrides, report);
+  });
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,40 @@
+// The names of a scene's elements: one name, one element, whatever its section.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/diagnostic.h"
+#include "scene/field_reader.h"
+#include "scene/yaml_tree.h"
+
+namespace slew::scene {
+
+class NameTable {
+ public:
+  // Takes every element of every section, sound or not, so that one fault in an element does not make others dangle.
+  // Reports names that are not words, too long, taken, or reserved.
+  void declare_all(const Node& root, Report& report);
+
+  // Reports the references whose name is not an element of the kind they want.
+  void resolve(const std::vector<Reference>& references, Report& report) const;
+
+  // Kind of an element ("body", "force", ...); empty when there is none.
+  [[nodiscard]] std::string_view kind_of(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string_view> names_of(std::string_view kind) const;  // "" for all
+  [[nodiscard]] std::string closest_of(std::string_view name, std::string_view kind) const;
+
+ private:
+  struct Declared {
+    std::string_view kind;
+    Mark mark;
+  };
+  std::map<std::string, Declared, std::less<>> names_;
+};
+
+// True when a pattern with * (any characters) and ? (one character) fits the whole text.
+[[nodiscard]] bool fits_pattern(std::string_view text, std::string_view pattern);
+
+}  // namespace slew::scene

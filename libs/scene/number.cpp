@@ -1,0 +1,164 @@
+#include "scene/number.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <system_error>
+
+namespace slew::scene {
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_octal_digit(char c) {
+  return c >= '0' && c <= '7';
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+std::string quoted(std::string_view text) {
+  return fmt::format("'{}'", text);
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return result;
+}
+
+// [sign] digits [. digits] [e [sign] digits]
+struct Extent {
+  std::size_t sign = 0;      // length
+  std::size_t integer = 0;   // digits before the point
+  std::size_t fraction = 0;  // digits behind it
+  std::size_t end = 0;       // behind the whole number
+  bool has_point = false;
+};
+
+Extent measure(std::string_view text) {
+  Extent extent;
+  std::size_t i = 0;
+  if (i < text.size() && (text[i] == '+' || text[i] == '-')) extent.sign = ++i;
+  while (i < text.size() && is_digit(text[i])) ++i, ++extent.integer;
+  if (i < text.size() && text[i] == '.' && (extent.integer > 0 || (i + 1 < text.size() && is_digit(text[i + 1])))) {
+    extent.has_point = true;
+    ++i;
+    while (i < text.size() && is_digit(text[i])) ++i, ++extent.fraction;
+  }
+  if (extent.integer + extent.fraction == 0) return extent;
+  extent.end = i;
+  // an exponent needs a digit, else the letter belongs to the unit
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    std::size_t j = i + 1;
+    if (j < text.size() && (text[j] == '+' || text[j] == '-')) ++j;
+    if (j < text.size() && is_digit(text[j])) {
+      while (j < text.size() && is_digit(text[j])) ++j;
+      extent.end = j;
+    }
+  }
+  return extent;
+}
+
+// 0x1F, 0o17, 0b101
+bool complain_of_base(std::string_view text, NumberText& result) {
+  const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-') ? 1 : 0;
+  const std::string digits = lower(text.substr(sign));
+  if (digits.size() < 3 || digits[0] != '0') return false;
+  const char letter = digits[1];
+  const int base = letter == 'x' ? 16 : letter == 'o' ? 8 : letter == 'b' ? 2 : 0;
+  if (base == 0) return false;
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data() + 2, digits.data() + digits.size(), value, base);
+  if (end == digits.data() + 2) return false;
+  const std::string_view name = base == 16 ? "hexadecimal" : base == 8 ? "octal" : "binary";
+  const std::string_view minus = text[0] == '-' ? "-" : "";
+  const bool is_whole = error == std::errc() && end == digits.data() + digits.size();
+  result.complaint.what = fmt::format("{} is {}", quoted(text), name);
+  result.complaint.expected = is_whole ? fmt::format("{}{}", minus, value) : "a decimal number";
+  return true;
+}
+
+// 010 is 8 to YAML 1.1 and 10 to YAML 1.2
+void complain_of_leading_zero(std::string_view text, const Extent& extent, NumberText& result) {
+  const std::string_view number = text.substr(0, extent.end);
+  std::string_view digits = text.substr(extent.sign, extent.integer);
+  const std::string sign = extent.sign == 1 && text[0] == '-' ? "-" : "";
+  const bool may_be_octal = std::all_of(digits.begin(), digits.end(), is_octal_digit) && !extent.has_point &&
+                            extent.end == extent.sign + extent.integer;
+  std::uint64_t octal = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), octal, 8);
+  while (digits.size() > 1 && digits.front() == '0') digits.remove_prefix(1);
+  const std::string decimal = sign + std::string(digits) + std::string(number.substr(extent.sign + extent.integer));
+  if (may_be_octal) {
+    const std::string as_octal = sign + std::to_string(octal);
+    result.complaint = {quoted(number) + " looks octal", "", ""};
+    result.complaint.expected = as_octal == decimal ? decimal : decimal + " or " + as_octal;
+  } else {
+    result.complaint = {quoted(number) + " begins with a zero", decimal, ""};
+  }
+}
+
+// Words and signs that look like a number to somebody.
+void complain_of_text(std::string_view text, NumberText& result) {
+  const std::string word = lower(text);
+  const std::string_view bare =
+      std::string_view(word).substr(!word.empty() && (word[0] == '-' || word[0] == '+') ? 1 : 0);
+  if (bare == ".nan" || bare == "nan" || bare == ".inf" || bare == "inf" || bare == "infinity") {
+    result.complaint = {quoted(text) + " is not finite", "a finite number", ""};
+  } else if (text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x93")) {
+    result.complaint = {quoted(text) + " begins with a typographic minus sign", "'-'", ""};
+  } else {
+    result.complaint = {quoted(text) + " is not a number", "", ""};
+  }
+}
+
+}  // namespace
+
+NumberText split_number(std::string_view text) {
+  NumberText result;
+  text = trimmed(text);
+  if (complain_of_base(text, result)) return result;
+  const Extent extent = measure(text);
+  if (extent.end == 0) {
+    complain_of_text(text, result);
+    return result;
+  }
+  if (extent.integer > 1 && text[extent.sign] == '0') {
+    complain_of_leading_zero(text, extent, result);
+    return result;
+  }
+  const char next = extent.end < text.size() ? text[extent.end] : '\0';
+  const bool digit_follows = extent.end + 1 < text.size() && is_digit(text[extent.end + 1]);
+  if (next == ',' && digit_follows) {
+    result.complaint = {quoted(text) + " has a comma", "a decimal point", ""};
+    return result;
+  }
+  if (next == '_' || next == '\'') {
+    result.complaint = {quoted(text) + " has a digit separator", "digits only", ""};
+    return result;
+  }
+  // from_chars takes no plus sign
+  const std::size_t begin = text[0] == '+' ? 1 : 0;
+  const auto [end, error] = std::from_chars(text.data() + begin, text.data() + extent.end, result.value);
+  const bool is_huge = std::isinf(static_cast<double>(result.value));
+  if (error != std::errc() || is_huge || end != text.data() + extent.end) {
+    result.complaint = {quoted(text.substr(0, extent.end)) + " is beyond what a number can hold", "a finite number",
+                        ""};
+    return result;
+  }
+  result.is_number = true;
+  result.rest = trimmed(text.substr(extent.end));
+  return result;
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,136 @@
+#include "scene/parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "scene/field_reader.h"
+#include "scene/sections.h"
+#include "scene/suggestion.h"
+
+namespace slew::scene {
+namespace {
+
+constexpr std::string_view kAxes[] = {".x", ".y", ".z"};
+
+ParameterInfo about(const Field& field, std::string path, double value) {
+  return {.path = std::move(path),
+          .value = value,
+          .dimension = field.type == FieldType::integer ? Dimension::none : field.dimension,
+          .range = field.range,
+          .change = field.change,
+          .ramp = field.ramp,
+          .is_integer = field.type == FieldType::integer,
+          .doc = field.doc};
+}
+
+void add_field(std::vector<ParameterInfo>& all, const Field& field, const std::string& path, void* def) {
+  switch (field.type) {
+    case FieldType::number:
+      all.push_back(about(field, path, *static_cast<const double*>(field.member(def))));
+      break;
+    case FieldType::integer:
+      all.push_back(about(field, path, static_cast<double>(*static_cast<const std::int64_t*>(field.member(def)))));
+      break;
+    case FieldType::triple:
+      for (std::size_t i = 0; i < 3; ++i) {
+        all.push_back(about(field, path + std::string(kAxes[i]), (*static_cast<const Triple*>(field.member(def)))[i]));
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+// The tables bind to mutable Defs; nothing here writes.
+std::vector<ElementRef> everything(const Scene& scene) {
+  auto& mutable_scene = const_cast<Scene&>(scene);
+  std::vector<ElementRef> all = single_sections(mutable_scene);
+  for (ElementRef& element : elements(mutable_scene)) all.push_back(element);
+  return all;
+}
+
+Assignment refused(std::string text) {
+  Assignment assignment;
+  assignment.status = Status::error(ExitCode::bad_input, std::move(text));
+  return assignment;
+}
+
+}  // namespace
+
+std::vector<ParameterInfo> parameters(const Scene& scene) {
+  std::vector<ParameterInfo> all;
+  for (const ElementRef& element : everything(scene)) {
+    for (const Field& field : element.fields) {
+      add_field(all, field, std::string(element.name) + "." + std::string(field.key), element.def);
+    }
+  }
+  return all;
+}
+
+ParameterDirectory::ParameterDirectory(const Scene& scene) : parameters_(parameters(scene)) {
+  for (std::size_t i = 0; i < parameters_.size(); ++i) index_.emplace(parameters_[i].path, i);
+  for (const ElementRef& element : everything(scene)) {
+    for (const Field& field : element.fields) {
+      std::string path = std::string(element.name) + "." + std::string(field.key);
+      if (!index_.contains(path)) not_numeric_.emplace(std::move(path), expected_value(field));
+    }
+  }
+}
+
+const ParameterInfo* ParameterDirectory::find(std::string_view path) const {
+  const auto found = index_.find(path);
+  return found == index_.end() ? nullptr : &parameters_[found->second];
+}
+
+Assignment ParameterDirectory::check(std::string_view path, double value) const {
+  const std::string name(path);
+  const ParameterInfo* parameter = find(path);
+  if (parameter == nullptr) {
+    if (const auto other = not_numeric_.find(path); other != not_numeric_.end()) {
+      return refused(name + " takes " + other->second + " and is set in the scene only");
+    }
+    std::vector<std::string_view> live;
+    for (const ParameterInfo& candidate : parameters_) {
+      if (candidate.change == Change::live) live.push_back(candidate.path);
+    }
+    const std::string suggestion = closest(path, live);
+    return refused("no parameter '" + name + "'" + (suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?"));
+  }
+  if (parameter->change == Change::restart) {
+    return refused(name + " cannot be changed while the session runs; start it again with --set " + name + "=VALUE");
+  }
+  if (!parameter->range.contains(value) || !std::isfinite(value)) {
+    const std::string range = range_text(parameter->range, parameter->dimension);
+    return refused(fmt::format("{}: {} is out of range; expected {}", name, with_unit(value, parameter->dimension),
+                               range.empty() ? "a finite number" : range));
+  }
+  Assignment assignment;
+  assignment.path = name;
+  assignment.value = value;
+  assignment.over = {std::llround(parameter->ramp * 1e9)};
+  return assignment;
+}
+
+Assignment ParameterDirectory::parse_assignment(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos || equals == 0) {
+    return refused(
+        fmt::format("'{}' is not an assignment; expected Element.key=value, such as 'Bag.mass=1500kg'", text));
+  }
+  const std::string_view path = text.substr(0, equals);
+  const ParameterInfo* parameter = find(path);
+  // an unknown or fixed parameter is refused for that, whatever the value is
+  if (parameter == nullptr || parameter->change == Change::restart) return check(path, 0);
+  const QuantityResult quantity = read_quantity(text.substr(equals + 1), Writing::plain, parameter->dimension, units_);
+  if (!quantity.value) {
+    std::string complaint =
+        std::string(path) + ": " + quantity.complaint.what + "; expected " + quantity.complaint.expected;
+    if (!quantity.complaint.suggestion.empty()) complaint += "; did you mean '" + quantity.complaint.suggestion + "'?";
+    return refused(std::move(complaint));
+  }
+  return check(path, *quantity.value);
+}
+
+}  // namespace slew::scene

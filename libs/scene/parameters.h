@@ -1,0 +1,62 @@
+// The parameters of a scene: every numeric field of every element and section, with its range and whether it may be
+// changed while the session runs.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/field.h"
+#include "core/status.h"
+#include "core/time.h"
+#include "scene/scene.h"
+#include "scene/units.h"
+
+namespace slew::scene {
+
+struct ParameterInfo {
+  std::string path;  // "Bag.mass"; of a triple "Bag.position.x"
+  double value = 0;  // SI, as the scene has it
+  Dimension dimension = Dimension::none;
+  Range range;
+  Change change = Change::restart;
+  double ramp = 0;  // s, over which a live change is spread by default
+  bool is_integer = false;
+  std::string_view doc;
+};
+
+// All parameters of a scene in canonical order. Triples give three, .x .y .z; texts, choices and tables none.
+[[nodiscard]] std::vector<ParameterInfo> parameters(const Scene& scene);
+
+// A change that may be applied: path, SI value and the time over which it is spread.
+struct Assignment {
+  Status status;  // why it was refused; the other members then mean nothing
+  std::string path;
+  double value = 0;
+  SimDuration over;
+};
+
+// Checks changes of live parameters. Built once for a session; a check does not read files.
+class ParameterDirectory {
+ public:
+  explicit ParameterDirectory(const Scene& scene);
+
+  [[nodiscard]] const std::vector<ParameterInfo>& all() const noexcept { return parameters_; }
+  // Null when there is none.
+  [[nodiscard]] const ParameterInfo* find(std::string_view path) const;
+
+  // "Bag.mass=1500kg": refused when unknown (with a suggestion), not live, of a wrong dimension or out of range.
+  [[nodiscard]] Assignment parse_assignment(std::string_view text);
+  // The same for a value that is already in SI, as it comes over the wire.
+  [[nodiscard]] Assignment check(std::string_view path, double value) const;
+
+ private:
+  std::vector<ParameterInfo> parameters_;
+  std::map<std::string, std::size_t, std::less<>> index_;
+  std::map<std::string, std::string, std::less<>> not_numeric_;  // path of a field that is no parameter: its type
+  UnitSystem units_;
+};
+
+}  // namespace slew::scene

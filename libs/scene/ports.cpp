@@ -1,0 +1,85 @@
+#include "scene/ports.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "coupling/samples.h"
+#include "hydraulics/components/double_acting_cylinder.h"
+#include "hydraulics/components/slew_cylinder.h"
+
+namespace slew::scene {
+namespace {
+
+template <typename Def>
+bool has_element(const std::vector<Def>& defs, std::string_view name) {
+  return std::any_of(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
+}
+
+// What both kinds of cylinder say about the line force.
+template <typename Cylinder>
+PortDef port_of(const Cylinder& cylinder) {
+  PortDef port;
+  port.name = cylinder.name;
+  port.force = cylinder.force;
+  port.line_force.efficiency = cylinder.cylinder_coefficient;
+  port.line_force.seal_friction = cylinder.seal_friction;
+  port.line_force.stroke_min = cylinder.minimum_stroke;
+  port.line_force.stroke_max = cylinder.maximum_stroke;
+  port.line_force.stop_stiffness = cylinder.end_stiffness;
+  port.line_force.stop_damping = cylinder.end_damping;
+  return port;
+}
+
+void take_curve(PortDef& port, const std::string& curve, const Scene& scene, Problems& problems) {
+  for (const hydraulics::CurveDef& def : scene.hydraulics.curves) {
+    if (def.name != curve) continue;
+    port.line_force.friction_curve = def.points;
+    if (def.interpolation != hydraulics::Interpolation::linear) {
+      problems.push_back({curve + ".interpolation",
+                          "a friction curve ('" + port.name + "' uses it) is piecewise linear", "linear", ""});
+    }
+    if (!def.points.empty() && def.points.front()[0] < 0) {
+      problems.push_back({curve + ".points",
+                          "a friction curve ('" + port.name + "' uses it) is over the magnitude of the speed",
+                          "speeds of 0 and more", ""});
+    }
+  }
+}
+
+void check_force(const PortDef& port, std::string_view wanted, bool fits, Problems& problems) {
+  if (fits) return;
+  problems.push_back({port.name + ".force", fmt::format("'{}' is not a {} force", port.force, wanted),
+                      fmt::format("a force of type {}", wanted), ""});
+}
+
+}  // namespace
+
+void make_ports(Scene& scene, Problems& problems) {
+  for (const auto& component : scene.hydraulics.components) {
+    PortDef port;
+    if (const auto* line = dynamic_cast<const hydraulics::DoubleActingCylinderDef*>(component.get())) {
+      port = port_of(*line);
+      port.offset = -(line->attachment_length + line->rod_length);
+      take_curve(port, line->friction_curve, scene, problems);
+      check_force(port, "translational", has_element(scene.mechanics.translational_forces, line->force), problems);
+    } else if (const auto* slew = dynamic_cast<const hydraulics::SlewCylinderDef*>(component.get())) {
+      port = port_of(*slew);
+      port.offset = slew->stroke_offset;
+      port.ratio = slew->pinion_radius;
+      take_curve(port, slew->friction_curve, scene, problems);
+      check_force(port, "rotational", has_element(scene.mechanics.rotational_forces, slew->force), problems);
+    } else {
+      continue;
+    }
+    scene.ports.push_back(std::move(port));
+  }
+  if (scene.ports.size() > coupling::kMaxPorts) {
+    problems.push_back({scene.ports[coupling::kMaxPorts].name,
+                        fmt::format("there are {} cylinders", scene.ports.size()),
+                        fmt::format("at most {}", coupling::kMaxPorts), ""});
+  }
+}
+
+}  // namespace slew::scene

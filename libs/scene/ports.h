@@ -1,0 +1,13 @@
+// Power ports of a scene: each actuator of the circuit with the force element it drives.
+#pragma once
+
+#include "core/problem.h"
+#include "scene/scene.h"
+
+namespace slew::scene {
+
+// Fills scene.ports in component order. Problems: the element's kind does not fit the actuator, the friction
+// curve is none that the line force takes, too many ports. Pre-condition: all names are resolved.
+void make_ports(Scene& scene, Problems& problems);
+
+}  // namespace slew::scene

@@ -1,0 +1,78 @@
+// A scene: everything a session needs, read from a file, checked, in SI.
+//
+// A scene file is YAML (docs/scene-format.md). Reading is strict: unknown and duplicate keys, missing units, wrong
+// dimensions, dangling names and values out of range are errors, all reported at once in one LoadError.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+#include "coupling/line_force.h"
+#include "hydraulics/hydraulics_def.h"
+#include "multibody/defs.h"
+#include "scene/defs.h"
+#include "scene/diagnostic.h"
+
+namespace slew::scene {
+
+// Connection of one actuator of the circuit with one force element of the mechanism. x_port = offset + ratio * (length
+// [m] or angle [rad] of the force element) is the stroke [m].
+struct PortDef {
+  std::string name;   // of the actuator component
+  std::string force;  // name of the force element
+  double offset = 0;  // m
+  double ratio = 1;   // 1 for a line, m/rad for an axis
+  coupling::LineForceDef line_force;
+};
+
+// A file that belongs to the scene and must be the same on every machine.
+struct Asset {
+  std::string name;  // relative to the scene's folder
+  std::uint64_t size = 0;
+  std::array<std::uint8_t, 32> sha256{};
+  bool operator==(const Asset&) const = default;
+};
+
+struct Scene {
+  std::string name;
+  std::string description;
+  SessionDef session;
+  multibody::MechanicsDef mechanics;
+  hydraulics::HydraulicsDef hydraulics;
+  std::vector<InputDef> inputs;  // the position is the channel's index
+  ScriptDef script;
+  RecordingDef recording;
+  std::vector<PlotDef> plots;
+  std::vector<PortDef> ports;  // one per actuator, in component order
+  std::vector<std::string> warnings;
+  std::vector<Asset> assets;
+
+  // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
+  std::string expanded_text;
+
+  [[nodiscard]] bool has_mechanics() const noexcept { return !mechanics.bodies.empty(); }
+  [[nodiscard]] bool has_hydraulics() const noexcept { return !hydraulics.volumes.empty(); }
+};
+
+// "Bag.mass=1500kg": path and YAML value of one setting.
+using Overrides = std::vector<std::string>;
+
+inline constexpr std::size_t kMaxReportedProblems = 20;
+
+// Reads a scene file, its include and its assets. Throws LoadError, nothing else.
+[[nodiscard]] Scene load_file(const std::string& path, const Overrides& overrides = {});
+
+// Reads a scene from memory; `name` stands for the file in messages. Includes and script files are not allowed there,
+// and assets keep their names only (size 0): see check_assets. Throws LoadError, nothing else.
+[[nodiscard]] Scene load_text(std::string text, const std::string& name, const Overrides& overrides = {});
+
+// Compares the files in a folder with a session's manifest; the error names every file that is missing or differs.
+[[nodiscard]] Status check_assets(std::span<const Asset> manifest, const std::string& folder);
+
+}  // namespace slew::scene

@@ -1,0 +1,49 @@
+#include "scene/script.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slew::scene {
+namespace {
+
+std::int64_t nanoseconds(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+}  // namespace
+
+ScriptPlayer::ScriptPlayer(const Scene& scene)
+    : interpolation_(scene.script.interpolation), tracks_(scene.inputs.size()), changes_(scene.script.changes) {
+  for (const ScriptTrack& track : scene.script.tracks) {
+    for (std::size_t i = 0; i < scene.inputs.size(); ++i) {
+      if (scene.inputs[i].name != track.input) continue;
+      for (const auto& [time, value] : track.points) tracks_[i].push_back({nanoseconds(time), value});
+      end_.ns = std::max(end_.ns, tracks_[i].back().time_ns);
+    }
+  }
+  for (const ScriptChange& change : changes_) {
+    change_ns_.push_back(nanoseconds(change.at));
+    end_.ns = std::max(end_.ns, change_ns_.back());
+  }
+}
+
+double ScriptPlayer::value(std::size_t input, SimTime t) const noexcept {
+  if (input >= tracks_.size() || tracks_[input].empty()) return 0;
+  const std::vector<Point>& points = tracks_[input];
+  const auto next = std::upper_bound(points.begin(), points.end(), t.ns,
+                                     [](std::int64_t time, const Point& point) { return time < point.time_ns; });
+  if (next == points.begin()) return next->value;
+  const Point& before = *(next - 1);
+  if (next == points.end() || before.time_ns == t.ns || interpolation_ == ScriptInterpolation::step)
+    return before.value;
+  const double share = static_cast<double>(t.ns - before.time_ns) / static_cast<double>(next->time_ns - before.time_ns);
+  return before.value + (next->value - before.value) * share;
+}
+
+std::span<const ScriptChange> ScriptPlayer::changes(SimTime from, SimTime to) const noexcept {
+  const auto begin = std::lower_bound(change_ns_.begin(), change_ns_.end(), from.ns);
+  const auto end = std::lower_bound(begin, change_ns_.end(), to.ns);
+  return {changes_.data() + (begin - change_ns_.begin()), static_cast<std::size_t>(end - begin)};
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,41 @@
+// Plays a scene's script: the raw value of every input at any time of the session.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/time.h"
+#include "scene/scene.h"
+
+namespace slew::scene {
+
+// At a point of the table the value is the table's, bit for bit. Between two points: a straight line, or the earlier
+// value (interpolation step). Before the first and behind the last point their values are held; an input without a
+// track is 0.
+class ScriptPlayer {
+ public:
+  explicit ScriptPlayer(const Scene& scene);
+
+  // Raw value -1..1 of the input with this index in Scene::inputs. Real-time safe.
+  [[nodiscard]] double value(std::size_t input, SimTime t) const noexcept;
+
+  // Parameter changes that begin in [from, to). Real-time safe.
+  [[nodiscard]] std::span<const ScriptChange> changes(SimTime from, SimTime to) const noexcept;
+
+  // Time of the last point or change.
+  [[nodiscard]] SimTime end() const noexcept { return end_; }
+
+ private:
+  struct Point {
+    std::int64_t time_ns;
+    double value;
+  };
+  ScriptInterpolation interpolation_;
+  std::vector<std::vector<Point>> tracks_;  // by input
+  std::vector<ScriptChange> changes_;
+  std::vector<std::int64_t> change_ns_;
+  SimTime end_;
+};
+
+}  // namespace slew::scene

@@ -1,0 +1,190 @@
+#include "scene/sections.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "multibody/field_tables.h"
+
+namespace slew::scene {
+namespace {
+
+void add_mechanics(std::vector<ElementTable>& tables) {
+  for (const multibody::Section& section : multibody::sections()) {
+    for (const multibody::ElementType& type : section.types) {
+      tables.push_back({.section = section.name,
+                        .type = type.name,
+                        .kind = type.kind,
+                        .doc = type.doc,
+                        .fields = type.fields,
+                        .append = [append = type.append](Scene& scene, const std::string& name) {
+                          return append(scene.mechanics, name);
+                        }});
+    }
+  }
+}
+
+template <typename Def>
+void* append_named(std::vector<Def>& defs, const std::string& name) {
+  Def& def = defs.emplace_back();
+  def.name = name;
+  return &def;
+}
+
+void add_hydraulics(std::vector<ElementTable>& tables) {
+  tables.push_back(
+      {.section = "volumes",
+       .type = "",
+       .kind = "volume",
+       .doc = "pressure node",
+       .fields = hydraulics::kVolumeFields,
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.hydraulics.volumes, name); }});
+  for (const hydraulics::ComponentType& type : hydraulics::component_types()) {
+    tables.push_back({.section = "components",
+                      .type = type.name,
+                      .kind = "component",
+                      .doc = type.doc,
+                      .fields = type.fields,
+                      .append = [make = type.make_def](Scene& scene, const std::string& name) {
+                        auto& def = scene.hydraulics.components.emplace_back(make());
+                        def->name = name;
+                        return def->address();
+                      }});
+  }
+  tables.push_back(
+      {.section = "curves",
+       .type = "",
+       .kind = "curve",
+       .doc = "function given by points",
+       .fields = hydraulics::kCurveFields,
+       .append = [](Scene& scene, const std::string& name) { return append_named(scene.hydraulics.curves, name); }});
+}
+
+void* append_input(Scene& scene, const std::string& name, InputType type) {
+  InputDef& input = scene.inputs.emplace_back();
+  input.name = name;
+  input.type = type;
+  return &input;
+}
+
+void add_own(std::vector<ElementTable>& tables) {
+  tables.push_back(
+      {.section = "inputs",
+       .type = kInputTypeChoices[0],
+       .kind = "input",
+       .doc = "axis of a joystick, raw value -1 to 1",
+       .fields = input_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_input(scene, name, InputType::analog); }});
+  tables.push_back(
+      {.section = "inputs",
+       .type = kInputTypeChoices[1],
+       .kind = "input",
+       .doc = "button, raw value 0 or 1",
+       .fields = input_fields(),
+       .append = [](Scene& scene, const std::string& name) { return append_input(scene, name, InputType::digital); }});
+  tables.push_back({.section = "plots",
+                    .type = "",
+                    .kind = "plot",
+                    .doc = "panel of curves",
+                    .fields = plot_fields(),
+                    .append = [](Scene& scene, const std::string& name) { return append_named(scene.plots, name); }});
+}
+
+std::vector<ElementTable> make_element_tables() {
+  std::vector<ElementTable> tables;
+  add_mechanics(tables);
+  add_hydraulics(tables);
+  add_own(tables);
+  return tables;
+}
+
+std::vector<SingleTable> make_single_tables() {
+  return {
+      {"session", "how a session runs", session_fields(), [](Scene& scene) -> void* { return &scene.session; }},
+      {"mechanics", "settings of the mechanics", multibody::mechanics_fields(),
+       [](Scene& scene) -> void* { return &scene.mechanics; }},
+      {"hydraulics", "oil, solver and start state", hydraulics::kHydraulicsFields,
+       [](Scene& scene) -> void* { return &scene.hydraulics; }},
+      {"recording", "which variables are published and stored", recording_fields(),
+       [](Scene& scene) -> void* { return &scene.recording; }},
+  };
+}
+
+const ElementTable& table_of(std::string_view section, std::string_view type) {
+  const auto& tables = element_tables();
+  return *std::find_if(tables.begin(), tables.end(),
+                       [&](const ElementTable& table) { return table.section == section && table.type == type; });
+}
+
+ElementRef ref(const ElementTable& table, std::string_view name, void* def) {
+  return {name, table.section, table.type, table.kind, table.fields, def};
+}
+
+template <typename Defs>
+void collect(std::vector<ElementRef>& refs, const ElementTable& table, Defs& defs) {
+  for (auto& def : defs) refs.push_back(ref(table, def.name, &def));
+}
+
+void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& mechanics) {
+  // values of `type:` in the order of JointType
+  constexpr std::string_view kJointTypes[] = {"revolute", "prismatic", "spherical", "fixed", "floating"};
+  collect(refs, table_of("bodies", ""), mechanics.bodies);
+  for (multibody::JointDef& joint : mechanics.joints) {
+    refs.push_back(ref(table_of("joints", kJointTypes[static_cast<int>(joint.type)]), joint.name, &joint));
+  }
+  collect(refs, table_of("forces", "translational"), mechanics.translational_forces);
+  collect(refs, table_of("forces", "rotational"), mechanics.rotational_forces);
+  collect(refs, table_of("dummies", "body_to_body_force"), mechanics.force_dummies);
+  collect(refs, table_of("dummies", "static"), mechanics.static_dummies);
+}
+
+}  // namespace
+
+// built at the first use: constant afterwards
+const std::vector<ElementTable>& element_tables() {
+  static const std::vector<ElementTable> tables = make_element_tables();
+  return tables;
+}
+
+const std::vector<SingleTable>& single_tables() {
+  static const std::vector<SingleTable> tables = make_single_tables();
+  return tables;
+}
+
+const std::vector<std::string_view>& element_sections() {
+  static const std::vector<std::string_view> names = {"bodies",     "joints", "forces", "dummies", "volumes",
+                                                      "components", "curves", "inputs", "plots"};
+  return names;
+}
+
+const std::vector<std::string_view>& top_level_keys() {
+  static const std::vector<std::string_view> keys = {
+      "scene",   "description", "include", "assets",     "session", "mechanics", "bodies", "joints",    "forces",
+      "dummies", "hydraulics",  "volumes", "components", "curves",  "inputs",    "script", "recording", "plots"};
+  return keys;
+}
+
+std::vector<ElementRef> elements(Scene& scene) {
+  std::vector<ElementRef> refs;
+  collect_mechanics(refs, scene.mechanics);
+  collect(refs, table_of("volumes", ""), scene.hydraulics.volumes);
+  for (const auto& component : scene.hydraulics.components) {
+    refs.push_back(ref(table_of("components", component->type_name()), component->name, component->address()));
+  }
+  collect(refs, table_of("curves", ""), scene.hydraulics.curves);
+  for (InputDef& input : scene.inputs) {
+    refs.push_back(ref(table_of("inputs", kInputTypeChoices[static_cast<int>(input.type)]), input.name, &input));
+  }
+  collect(refs, table_of("plots", ""), scene.plots);
+  return refs;
+}
+
+std::vector<ElementRef> single_sections(Scene& scene) {
+  std::vector<ElementRef> refs;
+  for (const SingleTable& table : single_tables()) {
+    refs.push_back({table.section, table.section, "", "", table.fields, table.def(scene)});
+  }
+  return refs;
+}
+
+}  // namespace slew::scene

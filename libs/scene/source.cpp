@@ -1,0 +1,137 @@
+#include "scene/source.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+namespace slew::scene {
+namespace {
+
+struct FileCloser {
+  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+
+// Length of the UTF-8 sequence at text[at] (Unicode 15, table 3-7), 0 when it is malformed.
+std::size_t sequence_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
+  };
+  const auto continues = [&](std::size_t i, int low, int high) { return byte(i) >= low && byte(i) <= high; };
+  const int first = byte(at);
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first <= 0xDF) return continues(at + 1, 0x80, 0xBF) ? 2 : 0;
+  if (first >= 0xE0 && first <= 0xEF) {
+    const int low = first == 0xE0 ? 0xA0 : 0x80;
+    const int high = first == 0xED ? 0x9F : 0xBF;
+    return continues(at + 1, low, high) && continues(at + 2, 0x80, 0xBF) ? 3 : 0;
+  }
+  if (first >= 0xF0 && first <= 0xF4) {
+    const int low = first == 0xF0 ? 0x90 : 0x80;
+    const int high = first == 0xF4 ? 0x8F : 0xBF;
+    const bool ok = continues(at + 1, low, high) && continues(at + 2, 0x80, 0xBF) && continues(at + 3, 0x80, 0xBF);
+    return ok ? 4 : 0;
+  }
+  return 0;
+}
+
+// What is wrong with the character at a byte, or nothing.
+std::string character_problem(std::string_view text, std::size_t at) {
+  const auto byte = static_cast<std::uint8_t>(text[at]);
+  if (byte == 0) return "NUL byte: this is not a text file";
+  if (byte == 0x7F || (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r')) {
+    return fmt::format("control character 0x{:02X}", byte);
+  }
+  if (sequence_length(text, at) == 0) return fmt::format("bad UTF-8: byte 0x{:02X} does not belong here", byte);
+  return {};
+}
+
+std::string megabytes(std::size_t bytes) {
+  return fmt::format("{:.1f} MB", static_cast<double>(bytes) * 1e-6);
+}
+
+Complaint too_large(std::size_t bytes) {
+  return {"is " + megabytes(bytes) + " large", "at most " + megabytes(kMaxSceneBytes), ""};
+}
+
+// The kind and size of the file, before it is opened.
+std::optional<Complaint> refuse_file(const std::string& path) {
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) != 0) {
+    return Complaint{std::string("cannot be read: ") + std::strerror(errno), "", ""};
+  }
+  if (S_ISDIR(status.st_mode)) return Complaint{"is a directory", "a file", ""};
+  if (!S_ISREG(status.st_mode)) return Complaint{"is not a regular file", "a file", ""};
+  if (static_cast<std::size_t>(status.st_size) > kMaxSceneBytes) {
+    return too_large(static_cast<std::size_t>(status.st_size));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Mark SourceText::mark_at(std::size_t byte) const {
+  const auto next = std::upper_bound(line_start.begin(), line_start.end(), byte);
+  const auto line = static_cast<std::size_t>(next - line_start.begin());
+  const std::size_t start = line_start[line - 1];
+  // continuation bytes are not characters of their own
+  int column = 1;
+  for (std::size_t i = start; i < byte && i < text.size(); ++i) {
+    if ((static_cast<std::uint8_t>(text[i]) & 0xC0) != 0x80) ++column;
+  }
+  return {source, static_cast<int>(line), column};
+}
+
+std::optional<SourceText> check_source(std::string text, int source, Report& report) {
+  if (text.size() > kMaxSceneBytes) {
+    report.add({source, 0, 0}, "", too_large(text.size()));
+    return std::nullopt;
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  SourceText result{source, std::move(text), {0}};
+  for (std::size_t i = 0; i < result.text.size();) {
+    std::string problem = character_problem(result.text, i);
+    if (!problem.empty()) {
+      report.add(result.mark_at(i), "", {std::move(problem), "UTF-8 text", ""});
+      return std::nullopt;
+    }
+    if (result.text[i] == '\n') result.line_start.push_back(i + 1);
+    i += sequence_length(result.text, i);
+  }
+  return result;
+}
+
+std::optional<SourceText> read_source(const std::string& path, int source, Report& report) {
+  const Mark whole{source, 0, 0};
+  if (const auto complaint = refuse_file(path)) {
+    report.add(whole, "", *complaint);
+    return std::nullopt;
+  }
+  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
+  if (!file) {
+    report.add(whole, "", {std::string("cannot be read: ") + std::strerror(errno), "", ""});
+    return std::nullopt;
+  }
+  // a file that grows while it is read stops at the limit
+  std::string text;
+  std::array<char, 65536> block;
+  while (text.size() <= kMaxSceneBytes) {
+    const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
+    text.append(block.data(), count);
+    if (count < block.size()) break;
+  }
+  if (std::ferror(file.get()) != 0) {
+    report.add(whole, "", {std::string("cannot be read: ") + std::strerror(errno), "", ""});
+    return std::nullopt;
+  }
+  return check_source(std::move(text), source, report);
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,32 @@
+// Reading a scene's files: size and kind are checked before a byte is read, the bytes before they are parsed.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/diagnostic.h"
+
+namespace slew::scene {
+
+inline constexpr std::size_t kMaxSceneBytes = 10'000'000;
+
+// Text of one source with the byte offsets of its lines, for marks in characters.
+struct SourceText {
+  int source = 0;
+  std::string text;
+  std::vector<std::size_t> line_start;
+
+  // Mark of a byte: line and column from 1, column counted in characters.
+  [[nodiscard]] Mark mark_at(std::size_t byte) const;
+};
+
+// Reads a regular file of at most kMaxSceneBytes; a problem goes to the report and nothing is returned.
+[[nodiscard]] std::optional<SourceText> read_source(const std::string& path, int source, Report& report);
+
+// Checks text that is already in memory: size, UTF-8, no NUL or control characters. A UTF-8 byte order mark is dropped.
+[[nodiscard]] std::optional<SourceText> check_source(std::string text, int source, Report& report);
+
+}  // namespace slew::scene

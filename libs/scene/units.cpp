@@ -1,0 +1,309 @@
+#include "scene/units.h"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "scene/number.h"
+#include "scene/suggestion.h"
+
+namespace slew::scene {
+namespace {
+
+// UDUNITS keeps its last status and its scanner in static variables
+std::mutex& udunits_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+constexpr std::size_t kLongestUnit = 60;
+
+// a unit UDUNITS does not have under this name
+struct AddedUnit {
+  const char* name;
+  const char* definition;
+};
+constexpr AddedUnit kAddedUnits[] = {
+    {"deg", "arc_degree"}, {"rev", "turn"}, {"Nm", "N.m"}, {"Nms", "N.m.s"}, {"Ns", "N.s"}};
+
+// names offered when a unit is not known
+constexpr std::string_view kCommonUnits[] = {
+    "m",       "mm",    "cm",    "km",    "inch",  "m2",     "mm2",    "cm2",     "m3",     "cm3",     "cc",
+    "l",       "kg",    "g",     "t",     "s",     "ms",     "us",     "min",     "h",      "rad",     "deg",
+    "rev",     "m/s",   "mm/s",  "km/h",  "rad/s", "deg/s",  "rpm",    "m/s2",    "rad/s2", "N",       "kN",
+    "Nm",      "kNm",   "kg m2", "Pa",    "kPa",   "MPa",    "bar",    "psi",     "1/Pa",   "1/bar",   "m3/s",
+    "l/min",   "m2/s",  "mm2/s", "cSt",   "K",     "degC",   "J",      "kJ",      "W",      "kW",      "Hz",
+    "kHz",     "N/m",   "kN/m",  "Ns/m",  "N s/m", "Nm/rad", "Nm/deg", "Nms/rad", "m3/rad", "cm3/rev", "cc/rev",
+    "m3/s/Pa", "bar/s", "Pa/s",  "kg/m3", "%"};
+
+// ---- restoring exact scales
+
+constexpr long double kPi = std::numbers::pi_v<long double>;
+// a few units in the last place of UDUNITS' double
+constexpr long double kScaleTolerance = 2e-15L;
+constexpr long double kLargestNumerator = 1e8L;
+
+// x as numerator * 10^exponent / divisor with a short numerator, or nothing
+std::optional<long double> short_decimal(long double x, long double divisor) {
+  const long double t = x * divisor;
+  const int exponent = static_cast<int>(std::floor(std::log10(t)));
+  for (int digits = 0; digits <= 7; ++digits) {
+    const int shift = digits - exponent;
+    const long double power = std::pow(10.0L, static_cast<long double>(std::abs(shift)));
+    const long double scaled = shift >= 0 ? t * power : t / power;
+    const long double numerator = std::round(scaled);
+    if (numerator < 1 || numerator > kLargestNumerator || std::abs(scaled - numerator) > kScaleTolerance * scaled)
+      continue;
+    return shift >= 0 ? numerator / (power * divisor) : numerator * power / divisor;
+  }
+  return std::nullopt;
+}
+
+long double exact_scale(double scale) {
+  for (const long double factor : {1.0L, kPi}) {
+    for (const long double divisor : {1.0L, 3.0L, 9.0L, 60.0L, 3600.0L}) {
+      const auto found = short_decimal(static_cast<long double>(scale) / factor, divisor);
+      if (found) return *found * factor;
+      // also factor / decimal: deg/rev, 1/deg
+      const auto inverse = short_decimal(factor / static_cast<long double>(scale), divisor);
+      if (inverse) return factor / *inverse;
+    }
+  }
+  // 1 / pi: per degree, per revolution
+  for (const long double divisor : {1.0L, 60.0L}) {
+    const auto found = short_decimal(static_cast<long double>(scale) * kPi, divisor);
+    if (found) return *found / kPi;
+  }
+  return static_cast<long double>(scale);
+}
+
+long double exact_offset(double offset) {
+  const auto found = offset > 0 ? short_decimal(static_cast<long double>(offset), 1.0L) : std::nullopt;
+  return found.value_or(static_cast<long double>(offset));
+}
+
+// ---- what UDUNITS tells about a unit, through its visitor
+
+struct Visit {
+  const ut_system* system = nullptr;
+  Unit unit;
+  double scale = 1;
+  double offset = 0;
+};
+
+constexpr const char* kBaseNames[] = {"kilogram", "meter", "second", "kelvin", "radian"};
+
+void add_base(const ut_unit* base, int power, Visit& visit) {
+  const char* name = ut_get_name(base, UT_ASCII);
+  for (std::size_t i = 0; i < std::size(kBaseNames); ++i) {
+    if (name != nullptr && std::string_view(name) == kBaseNames[i]) {
+      visit.unit.exponent[i] = static_cast<std::int8_t>(visit.unit.exponent[i] + power);
+      return;
+    }
+  }
+  visit.unit.has_other_base = true;
+}
+
+ut_status visit_basic(const ut_unit* unit, void* context) {
+  add_base(unit, 1, *static_cast<Visit*>(context));
+  return UT_SUCCESS;
+}
+ut_status visit_product(const ut_unit*, int count, const ut_unit* const* bases, const int* powers, void* context) {
+  for (int i = 0; i < count; ++i) {
+    if (std::abs(powers[i]) > 100) return UT_MEANINGLESS;
+    add_base(bases[i], powers[i], *static_cast<Visit*>(context));
+  }
+  return UT_SUCCESS;
+}
+ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* inner, double offset, void* context);
+ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void*) {
+  return UT_MEANINGLESS;
+}
+ut_status visit_logarithmic(const ut_unit*, double, const ut_unit*, void*) {
+  return UT_MEANINGLESS;
+}
+
+constexpr ut_visitor kVisitor = {visit_basic, visit_product, visit_galilean, visit_timestamp, visit_logarithmic};
+
+// value = scale * (number + offset) in UDUNITS' terms
+ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* inner, double offset, void* context) {
+  auto& visit = *static_cast<Visit*>(context);
+  visit.scale = scale;
+  visit.offset = offset;
+  return ut_accept_visitor(inner, &kVisitor, context);
+}
+
+struct UnitDeleter {
+  void operator()(ut_unit* unit) const noexcept { ut_free(unit); }
+};
+using UnitHandle = std::unique_ptr<ut_unit, UnitDeleter>;
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
+}
+
+// A unit is words with digits as powers; "1" stands only before a slash ("1/Pa"). Keeps UDUNITS' scale factors
+// out of scene files; its visitor refuses time stamps and logarithms.
+bool looks_like_unit(std::string_view text) {
+  if (text.empty() || text.size() > kLongestUnit) return false;
+  if (text.starts_with("1/")) text.remove_prefix(2);
+  if (text.empty() || !(is_letter(text.front()) || text.front() == '%')) return false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool is_number = c >= '0' && c <= '9';
+    if (is_number && i > 0 && (text[i - 1] == ' ' || text[i - 1] == '/' || text[i - 1] == '.' || text[i - 1] == '*'))
+      return false;
+    if (!is_number && !is_letter(c) && std::string_view(" /.*^-%_()").find(c) == std::string_view::npos) return false;
+  }
+  return true;
+}
+
+std::string article(std::string_view noun) {
+  const bool vowel = std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(noun);
+}
+
+std::string name_of(Dimension dimension) {
+  return article(info(dimension).name);
+}
+
+// Dimensions with these exponents, for messages: "a torque or an energy".
+std::string name_of(const Unit& unit) {
+  std::string names;
+  if (unit.has_other_base) return names;
+  for (int i = 0; i < static_cast<int>(Dimension::number_of_dimensions); ++i) {
+    const auto dimension = static_cast<Dimension>(i);
+    if (dimension == Dimension::flow_coefficient || dimension == Dimension::electric_signal) continue;
+    if (info(dimension).exponent == unit.exponent) names += (names.empty() ? "" : " or ") + name_of(dimension);
+  }
+  return names;
+}
+
+// Dimensions whose values are written without a unit; a fraction may be in %.
+bool is_plain_number(Dimension dimension) {
+  return dimension == Dimension::none || dimension == Dimension::electric_signal ||
+         dimension == Dimension::flow_coefficient || dimension == Dimension::number_of_dimensions;
+}
+
+bool has_dimension(const Unit& unit, Dimension dimension) {
+  if (dimension == Dimension::electric_signal || dimension == Dimension::flow_coefficient ||
+      dimension == Dimension::number_of_dimensions) {
+    return false;
+  }
+  return !unit.has_other_base && unit.exponent == info(dimension).exponent &&
+         (unit.offset == 0 || dimension == Dimension::temperature);
+}
+
+Complaint unknown_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
+  std::vector<std::string_view> fitting, all(std::begin(kCommonUnits), std::end(kCommonUnits));
+  for (const std::string_view name : all) {
+    const Unit* unit = units.find(name);
+    if (unit != nullptr && has_dimension(*unit, dimension)) fitting.push_back(name);
+  }
+  std::string suggestion = closest(text, fitting);
+  return {fmt::format("unknown unit '{}'", text), expected_quantity(dimension), std::move(suggestion)};
+}
+
+}  // namespace
+
+struct UnitSystem::Database {
+  ut_system* system = nullptr;
+  ~Database() {
+    const std::lock_guard lock(udunits_mutex());
+    if (system != nullptr) ut_free_system(system);
+  }
+
+  void add(const AddedUnit& added) {
+    const UnitHandle unit(ut_parse(system, added.definition, UT_UTF8));
+    if (!unit) throw std::runtime_error(std::string("the unit database lacks ") + added.definition);
+    // as a symbol it also takes the short prefixes: kNm
+    ut_map_symbol_to_unit(added.name, UT_ASCII, unit.get());
+  }
+
+  [[nodiscard]] std::optional<Unit> parse(const std::string& text) const {
+    const UnitHandle handle(ut_parse(system, text.c_str(), UT_UTF8));
+    if (!handle) return std::nullopt;
+    Visit visit;
+    if (ut_accept_visitor(handle.get(), &kVisitor, &visit) != UT_SUCCESS) return std::nullopt;
+    if (!std::isfinite(visit.scale) || visit.scale <= 0) return std::nullopt;
+    visit.unit.scale = exact_scale(visit.scale);
+    visit.unit.offset = visit.unit.scale * exact_offset(visit.offset);
+    return visit.unit;
+  }
+};
+
+UnitSystem::UnitSystem() : database_(std::make_unique<Database>()) {
+  const std::lock_guard lock(udunits_mutex());
+  ut_set_error_message_handler(ut_ignore);
+  database_->system = ut_read_xml(nullptr);
+  if (database_->system == nullptr) {
+    throw std::runtime_error("the unit database of UDUNITS-2 cannot be read; install libudunits2-data");
+  }
+  for (const AddedUnit& added : kAddedUnits) database_->add(added);
+}
+
+UnitSystem::~UnitSystem() = default;
+UnitSystem::UnitSystem(UnitSystem&&) noexcept = default;
+UnitSystem& UnitSystem::operator=(UnitSystem&&) noexcept = default;
+
+const Unit* UnitSystem::find(std::string_view text) {
+  auto found = known_.find(text);
+  if (found == known_.end()) {
+    std::optional<Unit> unit;
+    if (looks_like_unit(text)) {
+      const std::lock_guard lock(udunits_mutex());
+      unit = database_->parse(std::string(text));
+    }
+    found = known_.emplace(std::string(text), unit).first;
+  }
+  return found->second ? &*found->second : nullptr;
+}
+
+std::string expected_quantity(Dimension dimension) {
+  if (is_plain_number(dimension)) return "a number without unit";
+  const DimensionInfo& about = info(dimension);
+  return article(about.name) + " such as '" + std::string(about.example) + "', or a bare number in " +
+         std::string(about.si_unit);
+}
+
+std::string with_unit(double value, Dimension dimension) {
+  std::string text = fmt::format("{}", value);
+  if (!is_plain_number(dimension)) text += fmt::format(" {}", info(dimension).si_unit);
+  return text;
+}
+
+QuantityResult read_quantity(std::string_view text, Writing writing, Dimension dimension, UnitSystem& units) {
+  const NumberText number = split_number(text);
+  if (!number.is_number) {
+    Complaint complaint = number.complaint;
+    if (complaint.expected.empty()) complaint.expected = expected_quantity(dimension);
+    return {std::nullopt, std::move(complaint)};
+  }
+  // a bare number is SI; in quotes it is a text that somebody forgot the unit of
+  if (number.rest.empty()) {
+    if (writing == Writing::plain) return {static_cast<double>(number.value), {}};
+    const std::string what = is_plain_number(dimension) ? " is in quotes" : " is in quotes and has no unit";
+    return {std::nullopt, {fmt::format("'{}'{}", text, what), expected_quantity(dimension), ""}};
+  }
+  const Unit* unit = units.find(number.rest);
+  if (unit == nullptr) return {std::nullopt, unknown_unit(number.rest, dimension, units)};
+  if (!has_dimension(*unit, dimension)) {
+    const std::string found = name_of(*unit);
+    std::string what = fmt::format("'{}' is {}", text, found.empty() ? "not " + name_of(dimension) : found);
+    return {std::nullopt, {std::move(what), expected_quantity(dimension), ""}};
+  }
+  const long double value = number.value * unit->scale + unit->offset;
+  if (!std::isfinite(static_cast<double>(value))) {
+    return {std::nullopt, {fmt::format("'{}' is beyond what a number can hold", text), "a finite number", ""}};
+  }
+  return {static_cast<double>(value), {}};
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,63 @@
+// Quantities: a number with a unit, checked against a dimension, in SI.
+//
+// UDUNITS-2 parses the unit and knows the scales; the dimension check is ours, because UDUNITS takes Hz for rad/s and
+// rad for 1. Here the angle is a base dimension (core/dimension.h). Added to its database: deg, rev, Nm, Nms, Ns.
+// Scales that are short decimals, such decimals over 60 or 3600, or those times pi are restored exactly: UDUNITS keeps
+// an inch as 0.025400000000000002 m. So "1050 mm" and 1.05 are the same bits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/dimension.h"
+#include "scene/diagnostic.h"
+
+namespace slew::scene {
+
+struct Unit {
+  long double scale = 1;                  // SI value = number * scale + offset
+  long double offset = 0;                 // degC, degF
+  std::array<std::int8_t, 5> exponent{};  // of kg, m, s, K, rad
+  bool has_other_base = false;            // mole, ampere, candela, ...
+};
+
+// Not for use by two threads at once; the instances of one process share nothing but UDUNITS' own locks.
+class UnitSystem {
+ public:
+  UnitSystem();
+  ~UnitSystem();
+  UnitSystem(UnitSystem&&) noexcept;
+  UnitSystem& operator=(UnitSystem&&) noexcept;
+
+  // Null when there is no such unit.
+  [[nodiscard]] const Unit* find(std::string_view text);
+
+ private:
+  struct Database;
+  std::unique_ptr<Database> database_;
+  std::map<std::string, std::optional<Unit>, std::less<>> known_;
+};
+
+// How a quantity was written.
+enum class Writing { plain, quoted };
+
+// The value in SI of "250 bar", of "2.5e7" (plain: already SI), or what is wrong with it.
+struct QuantityResult {
+  std::optional<double> value;
+  Complaint complaint;
+};
+[[nodiscard]] QuantityResult read_quantity(std::string_view text, Writing writing, Dimension dimension,
+                                           UnitSystem& units);
+
+// "a pressure such as '250 bar', or a bare number in Pa"
+[[nodiscard]] std::string expected_quantity(Dimension dimension);
+
+// A value with its SI unit for messages: "0.5 kg", "0.5".
+[[nodiscard]] std::string with_unit(double value, Dimension dimension);
+
+}  // namespace slew::scene

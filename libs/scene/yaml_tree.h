@@ -1,0 +1,55 @@
+// A YAML document as a tree of our own, with the place of every key and value.
+//
+// Stricter than yaml-cpp, whose event stream it is built from: one document, a map at its root, no anchors, aliases
+// or tags, keys are words, duplicate keys are found, quotes must be closed, at most kMaxDepth levels.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/diagnostic.h"
+#include "scene/source.h"
+
+namespace slew::scene {
+
+inline constexpr int kMaxDepth = 16;
+
+struct Node {
+  enum class Kind { empty, scalar, sequence, map };
+  struct Entry;
+  struct Duplicate {
+    std::string key;
+    Mark mark;  // of the later key, whose value is dropped
+    Mark first;
+  };
+
+  Kind kind = Kind::empty;
+  bool is_quoted = false;             // scalar in quotes or a block: text, never a number
+  std::string text;                   // scalar
+  std::vector<Node> items;            // sequence
+  std::vector<Entry> entries;         // map, in file order
+  std::vector<Duplicate> duplicates;  // map: keys that were there before; whoever reads the map reports them
+  Mark mark;
+
+  [[nodiscard]] const Entry* find(std::string_view key) const;
+  [[nodiscard]] Entry* find(std::string_view key);
+};
+
+struct Node::Entry {
+  std::string key;
+  Mark mark;  // of the key
+  Node value;
+};
+
+// What a node is, for messages: "a list", "a map", "nothing", "'text'".
+[[nodiscard]] std::string describe(const Node& node);
+
+// The document's root, which is a map; problems go to the report. Nothing is returned when no tree could be built.
+[[nodiscard]] std::optional<Node> parse_yaml(const SourceText& source, Report& report);
+
+// A single value in flow style, as in `--set PATH=VALUE`.
+[[nodiscard]] std::optional<Node> parse_yaml_value(const SourceText& source, Report& report);
+
+}  // namespace slew::scene
