@@ -36,7 +36,7 @@ Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, Roda
       k4_(size_),
       stage_(size_),
       new_(size_) {
-  SLEW_CHECK(options_.scale.size() == size_);
+  SLEW_CHECK(options_.scale.size() == size_ && options_.relative.size() == size_);
 }
 
 bool Rodas3::factorise(const double* J, double c, Rodas3Report& report) noexcept {
@@ -83,7 +83,8 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
   bool is_number = true;
   for (std::size_t i = 0; i < n; ++i) {
     new_[i] = stage_[i] + k4_[i];
-    const double e = std::fabs(k4_[i]) / (options_.relative_tolerance * (options_.scale[i] + std::fabs(y[i])));
+    const double size = options_.scale[i] + options_.relative[i] * std::fabs(y[i]);
+    const double e = std::fabs(k4_[i]) / (options_.relative_tolerance * size);
     is_number = is_number && e <= std::numeric_limits<double>::max();
     error = e > error ? e : error;
   }

@@ -4,8 +4,8 @@
 //   K_1, K_2 at y;  K_3 at y + 2 K_1;  K_4 at y + 2 K_1 + K_3                                                (2)
 //   c_21 = 4;  c_31 = 1, c_32 = -1;  c_41 = 1, c_42 = -1, c_43 = -8/3                                        (3)
 //   y_new = y + 2 K_1 + K_3 + K_4,   error = K_4                                                             (4)
-// A step needs three f, one J, one LU and four solves. A step is accepted when max |K_4,i| / (rtol (s_i + |y_i|)) <= 1;
-// the next size is h clip(0.9 err^(-1/3), 0.2, 6).
+// A step needs three f, one J, one LU and four solves. A step is accepted when max |K_4,i| / (rtol (s_i + r_i |y_i|))
+// <= 1; the next size is h clip(0.9 err^(-1/3), 0.2, 6).
 //
 // Source: A. Sandu et al. 1997, Atmos. Environ. 31, 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7.
 // The step size is carried over from one interval to the next and is part of the state. Real-time safe.
@@ -37,6 +37,7 @@ struct Rodas3Options {
   double minimum_step = 1e-6;          // s
   std::uint32_t substep_budget = 200;  // accepted and rejected sub-steps per interval
   std::vector<double> scale;           // s_i of the error measure, one per state, > 0
+  std::vector<double> relative;        // r_i: 1, or 0 for a state whose zero is arbitrary (a position)
 };
 
 struct Rodas3Report {

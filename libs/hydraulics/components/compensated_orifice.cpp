@@ -1,5 +1,10 @@
 #include "hydraulics/components/compensated_orifice.h"
 
+#include <cmath>
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/smooth.h"
+
 namespace slew::hydraulics {
 namespace {
 
@@ -26,6 +31,68 @@ constexpr Field kCompensatedOrificeFields[] = {
         "opening", {.range = kFraction, .change = Change::live, .doc = "opened fraction of the area"}),
 };
 
+constexpr double kSwitchWidth = 2e4;  // Pa, smoothing where the compensator opens fully and where it holds the load
+
+class CompensatedOrifice final : public HydraulicComponent {
+ public:
+  CompensatedOrifice(const CompensatedOrificeDef& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        p_(builder.volume(def.port_p)),
+        a_(builder.volume(def.port_a)),
+        t_(builder.volume(def.port_t)),
+        ls_(builder.ls_index(def.name)),
+        transition_(builder.def().orifice_transition),
+        root_2_rho_(std::sqrt(2 / builder.def().oil_density)) {
+    apply_parameters();
+  }
+  void declare_dependencies(DependencyList& dependencies) const override { dependencies.add_restriction(p_, a_); }
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    rates.move(p_, a_, flow(view[p_] - view[a_]).value);
+  }
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    const double slope = flow(view[p_] - view[a_]).slope;
+    jacobian.move(p_, a_, p_, slope);
+    jacobian.move(p_, a_, a_, -slope);
+  }
+  [[nodiscard]] double ls_pressure(const CircuitView& view) const noexcept override { return view[a_] - view[t_]; }
+  void declare_ls_dependencies(DependencyList& dependencies) const override {
+    dependencies.add(dependencies.ls_row(ls_), a_);
+    dependencies.add(dependencies.ls_row(ls_), t_);
+  }
+  void add_ls_jacobian(const CircuitView&, JacobianStamp& jacobian) const noexcept override {
+    jacobian.add(jacobian.ls_row(ls_), a_, 1);
+    jacobian.add(jacobian.ls_row(ls_), t_, -1);
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("flow", Dimension::volume_flow));
+    variables.push_back(variable("ls_pressure", Dimension::pressure));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    *values++ = flow(view[p_] - view[a_]).value;
+    *values++ = ls_pressure(view);
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {
+    K_ = def_.opening * def_.discharge_coefficient * def_.area * root_2_rho_;
+  }
+
+ private:
+  [[nodiscard]] ValueSlope flow(double drop) const noexcept {
+    const ValueSlope available = ramp(drop, kSwitchWidth);
+    const ValueSlope held = smooth_min(available.value, def_.compensator_pressure, kSwitchWidth);
+    const ValueSlope r = root(held.value, transition_);
+    return {K_ * r.value, K_ * r.slope * held.slope * available.slope};
+  }
+
+  CompensatedOrificeDef def_;
+  StateIndex p_, a_, t_;
+  LsIndex ls_;
+  double transition_, root_2_rho_;
+  double K_ = 0;
+};
+
 }  // namespace
 
 ComponentType compensated_orifice_type() {
@@ -33,9 +100,11 @@ ComponentType compensated_orifice_type() {
           .fields = kCompensatedOrificeFields,
           .doc = "metering orifice with an ideal pressure compensator",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<CompensatedOrificeDef>(); },
-          .has_control_signal = false,
-          .has_ls_port = true,
-          .is_actuator = false};
+          .validate = nullptr,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<CompensatedOrifice>(static_cast<const CompensatedOrificeDef&>(def), builder);
+          },
+          .has_ls_port = true};
 }
 
 }  // namespace slew::hydraulics

@@ -1,5 +1,10 @@
 #include "hydraulics/components/hose.h"
 
+#include <cmath>
+#include <numbers>
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+
 namespace slew::hydraulics {
 namespace {
 
@@ -24,6 +29,43 @@ constexpr Field kHoseFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "upper bound of the wall's law"}),
 };
 
+class Hose final : public HydraulicComponent {
+ public:
+  Hose(const HoseDef& def, CircuitBuilder& builder) : HydraulicComponent(def), def_(def) {
+    builder.add_content(
+        {.volume_index = builder.volume(def.volume),
+         .volume = 0.25 * std::numbers::pi * def.diameter * def.diameter * def.length,
+         .wall = {
+             .factor = def.bulk_modulus, .lowest = def.minimum_bulk_modulus, .highest = def.maximum_bulk_modulus}});
+  }
+  [[nodiscard]] bool has_equations() const noexcept override { return false; }
+  void declare_dependencies(DependencyList&) const override {}
+  void add_rates(const CircuitView&, Rates&) const noexcept override {}
+  void add_jacobian(const CircuitView&, JacobianStamp&) const noexcept override {}
+  void list_variables(std::vector<ElementVariable>&) const override {}
+  double* read_variables(const CircuitView&, double* values) const noexcept override { return values; }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {}
+
+ private:
+  HoseDef def_;
+};
+
+void validate_hose(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems& warnings) {
+  const HoseDef& def = static_cast<const HoseDef&>(component);
+  if (def.minimum_bulk_modulus > def.maximum_bulk_modulus) {
+    errors.push_back({def.name + ".minimum_bulk_modulus",
+                      "the lower bound of the wall's modulus is above the upper bound", "at most maximum_bulk_modulus",
+                      ""});
+  }
+  // the law is at its cap already at the lowest pressure there is
+  if (def.bulk_modulus * std::sqrt(circuit.pressure_floor) >= def.maximum_bulk_modulus) {
+    warnings.push_back({def.name + ".bulk_modulus",
+                        "the wall's modulus is at its upper bound at every pressure, so this value has no effect",
+                        "a value below maximum_bulk_modulus / sqrt(pressure)", ""});
+  }
+}
+
 }  // namespace
 
 ComponentType hose_type() {
@@ -31,9 +73,10 @@ ComponentType hose_type() {
           .fields = kHoseFields,
           .doc = "hose or pipe: oil volume with an elastic wall",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<HoseDef>(); },
-          .has_control_signal = false,
-          .has_ls_port = false,
-          .is_actuator = false};
+          .validate = validate_hose,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<Hose>(static_cast<const HoseDef&>(def), builder);
+          }};
 }
 
 }  // namespace slew::hydraulics

@@ -1,5 +1,9 @@
 #include "hydraulics/components/ls_pump.h"
 
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/smooth.h"
+
 namespace slew::hydraulics {
 namespace {
 
@@ -49,6 +53,98 @@ constexpr Field kLsPumpFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
 };
 
+constexpr double kSwitchWidth = 2e4;  // Pa, smoothing between stand-by and load sensing, and of the LS limit
+constexpr double kClipWidth = 0.01;   // of the swash, smoothing of its limits
+
+class LsPump final : public HydraulicComponent {
+ public:
+  LsPump(const LsPumpDef& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        a_(builder.volume(def.port_a)),
+        b_(builder.volume(def.port_b)),
+        ls_(def.ls_port.empty() ? -1 : builder.ls_index(def.ls_port)),
+        alpha_(builder.add_state({.initial = 0, .scale = 1})) {
+    builder.mark_supply(a_);
+    apply_parameters();
+  }
+  void declare_dependencies(DependencyList& dependencies) const override {
+    dependencies.add_restriction(a_, b_);
+    dependencies.add(a_, alpha_), dependencies.add(b_, alpha_);
+    dependencies.add(alpha_, alpha_), dependencies.add(alpha_, a_), dependencies.add(alpha_, b_);
+    if (ls_ >= 0) dependencies.add_ls(alpha_, ls_);
+  }
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    rates.set_rate(alpha_, rate_ * (command(view).value - view[alpha_]));
+    rates.move(b_, a_, flow(view));
+  }
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    const ValueSlope u = command(view);
+    const double d_command = rate_ * u.slope * def_.controller_gain;
+    jacobian.add(alpha_, alpha_, -rate_);
+    jacobian.add(alpha_, a_, -d_command);
+    jacobian.add(alpha_, b_, d_command);
+    if (ls_ >= 0) jacobian.add_ls(alpha_, ls_, d_command * set_point(view).slope);
+    jacobian.move(b_, a_, alpha_, full_flow_);
+    jacobian.move(b_, a_, a_, -G_leak_);
+    jacobian.move(b_, a_, b_, G_leak_);
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("swash", Dimension::none));
+    variables.push_back(variable("flow", Dimension::volume_flow));
+    variables.push_back(variable("set_point", Dimension::pressure));
+    variables.push_back(variable("torque", Dimension::torque));
+    variables.push_back(variable("power", Dimension::power));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    const double torque = def_.displacement * view[alpha_] * (view[a_] - view[b_]) / def_.mechanical_coefficient;
+    *values++ = view[alpha_];
+    *values++ = flow(view);
+    *values++ = set_point(view).value;
+    *values++ = torque;
+    *values++ = torque * def_.speed;
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {
+    full_flow_ = def_.displacement * def_.speed * def_.volumetric_coefficient;
+    G_leak_ = def_.leak_flow / def_.leak_pressure;
+    rate_ = 1 / def_.time_constant;
+  }
+
+ private:
+  // outlet pressure that the controller aims at, above tank; slope with respect to the LS pressure
+  [[nodiscard]] ValueSlope set_point(const CircuitView& view) const noexcept {
+    if (ls_ < 0) return {def_.standby_pressure, 0};
+    const ValueSlope limited = smooth_min(view.ls[ls_], def_.maximum_ls_pressure, kSwitchWidth);
+    const ValueSlope set = smooth_max(limited.value + def_.set_pressure, def_.standby_pressure, kSwitchWidth);
+    return {set.value, set.slope * limited.slope};
+  }
+  // swash command; slope with respect to the unlimited command
+  [[nodiscard]] ValueSlope command(const CircuitView& view) const noexcept {
+    return unit_clip(def_.controller_gain * (set_point(view).value - (view[a_] - view[b_])), kClipWidth);
+  }
+  [[nodiscard]] double flow(const CircuitView& view) const noexcept {
+    return full_flow_ * view[alpha_] - G_leak_ * (view[a_] - view[b_]);
+  }
+
+  LsPumpDef def_;
+  StateIndex a_, b_;
+  LsIndex ls_;        // -1: none
+  StateIndex alpha_;  // swash 0..1
+  double full_flow_ = 0, G_leak_ = 0, rate_ = 0;
+};
+
+void validate_pump(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+  const LsPumpDef& def = static_cast<const LsPumpDef&>(component);
+  for (const VolumeDef& volume : circuit.volumes) {
+    if (volume.name != def.port_b || volume.fixed) continue;
+    errors.push_back({def.name + ".port_b",
+                      "the pump has no tank: '" + def.port_b + "' is not held at a fixed pressure",
+                      "a volume with fixed: true", ""});
+  }
+}
+
 }  // namespace
 
 ComponentType ls_pump_type() {
@@ -56,9 +152,10 @@ ComponentType ls_pump_type() {
           .fields = kLsPumpFields,
           .doc = "variable-displacement pump with load-sensing controller",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<LsPumpDef>(); },
-          .has_control_signal = false,
-          .has_ls_port = false,
-          .is_actuator = false};
+          .validate = validate_pump,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<LsPump>(static_cast<const LsPumpDef&>(def), builder);
+          }};
 }
 
 }  // namespace slew::hydraulics

@@ -1,5 +1,10 @@
 #include "hydraulics/components/relief_valve.h"
 
+#include <cmath>
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/smooth.h"
+
 namespace slew::hydraulics {
 namespace {
 
@@ -33,6 +38,77 @@ constexpr Field kReliefValveFields[] = {
         {.dimension = Dimension::time, .range = kPositive, .doc = "three time constants of the opening"}),
 };
 
+constexpr double kClipWidth = 0.02;   // of the opening, smoothing of its limits
+constexpr double kOpen = 1e-3;        // opening above which the valve counts as open
+constexpr double kTimeConstants = 3;  // in a step response: 95 % of the way
+
+class ReliefValve final : public HydraulicComponent {
+ public:
+  ReliefValve(const ReliefValveDef& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        p_1_(builder.volume(def.port_1)),
+        p_2_(builder.volume(def.port_2)),
+        pilot_(builder.volume(def.port_3.empty() ? def.port_1 : def.port_3)),
+        u_(builder.add_state({.initial = 0, .scale = 1})),
+        transition_(builder.def().orifice_transition) {
+    apply_parameters();
+  }
+  void declare_dependencies(DependencyList& dependencies) const override {
+    dependencies.add_restriction(p_1_, p_2_);
+    dependencies.add(p_1_, u_), dependencies.add(p_2_, u_);
+    dependencies.add(u_, u_), dependencies.add(u_, pilot_), dependencies.add(u_, p_2_);
+  }
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    rates.set_rate(u_, rate_ * (opening_command(view).value - view[u_]));
+    rates.move(p_1_, p_2_, flow(view));
+  }
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    const double d_command = rate_ * opening_command(view).slope * per_pressure_;
+    jacobian.add(u_, u_, -rate_);
+    jacobian.add(u_, pilot_, d_command);
+    jacobian.add(u_, p_2_, -d_command);
+    const ValueSlope r = root(view[p_1_] - view[p_2_], transition_);
+    jacobian.move(p_1_, p_2_, u_, K_ * r.value);
+    jacobian.move(p_1_, p_2_, p_1_, view[u_] * K_ * r.slope);
+    jacobian.move(p_1_, p_2_, p_2_, -view[u_] * K_ * r.slope);
+  }
+  [[nodiscard]] std::uint32_t flags(const CircuitView& view) const noexcept override {
+    return view[u_] > kOpen ? static_cast<std::uint32_t>(StepFlag::relief_open) : 0;
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("opening", Dimension::none));
+    variables.push_back(variable("flow", Dimension::volume_flow));
+    variables.push_back(variable("is_open", Dimension::none));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    *values++ = view[u_];
+    *values++ = flow(view);
+    *values++ = view[u_] > kOpen ? 1 : 0;
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override {
+    K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
+    per_pressure_ = 1 / def_.opening_pressure_rise;
+    rate_ = kTimeConstants / def_.step_response;
+  }
+
+ private:
+  [[nodiscard]] ValueSlope opening_command(const CircuitView& view) const noexcept {
+    return unit_clip((view[pilot_] - view[p_2_] - def_.setting_pressure) * per_pressure_, kClipWidth);
+  }
+  [[nodiscard]] double flow(const CircuitView& view) const noexcept {
+    return view[u_] * K_ * root(view[p_1_] - view[p_2_], transition_).value;
+  }
+
+  ReliefValveDef def_;
+  StateIndex p_1_, p_2_, pilot_;
+  StateIndex u_;  // opening 0..1
+  double transition_;
+  double K_ = 0, per_pressure_ = 0, rate_ = 0;
+};
+
 }  // namespace
 
 ComponentType relief_valve_type() {
@@ -40,9 +116,10 @@ ComponentType relief_valve_type() {
           .fields = kReliefValveFields,
           .doc = "pilot-operated pressure relief valve",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<ReliefValveDef>(); },
-          .has_control_signal = false,
-          .has_ls_port = false,
-          .is_actuator = false};
+          .validate = nullptr,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<ReliefValve>(static_cast<const ReliefValveDef&>(def), builder);
+          }};
 }
 
 }  // namespace slew::hydraulics

@@ -1,5 +1,11 @@
 #include "hydraulics/components/restrictions.h"
 
+#include <cmath>
+#include <numbers>
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/smooth.h"
+
 namespace slew::hydraulics {
 namespace {
 
@@ -42,6 +48,76 @@ constexpr Field kLaminarRestrictionFields[] = {
         {.dimension = Dimension::length, .range = kPositive, .presence = Presence::required, .doc = "length"}),
 };
 
+struct OilNumbers {
+  double density, viscosity;  // kg/m3, m2/s
+};
+
+// Q = K root(drop) + G drop
+struct Conductance {
+  double K = 0;  // m3/s/sqrt(Pa)
+  double G = 0;  // m3/s/Pa
+};
+
+Conductance conductance(const BleedDef& def, const OilNumbers&) noexcept {
+  return {.K = def.nominal_flow / std::sqrt(def.nominal_pressure_drop)};
+}
+
+Conductance conductance(const OrificeDef& def, const OilNumbers& oil) noexcept {
+  const double area = 0.25 * std::numbers::pi * def.diameter * def.diameter;
+  return {.K = def.opening * def.discharge_coefficient * area * std::sqrt(2 / oil.density)};
+}
+
+Conductance conductance(const LaminarRestrictionDef& def, const OilNumbers& oil) noexcept {
+  const double d_2 = def.diameter * def.diameter;
+  return {.G = std::numbers::pi * d_2 * d_2 / (128 * oil.density * oil.viscosity * def.length)};
+}
+
+// The three differ only in where their conductance comes from.
+template <typename Def>
+class Restriction final : public HydraulicComponent {
+ public:
+  Restriction(const Def& def, CircuitBuilder& builder)
+      : HydraulicComponent(def),
+        def_(def),
+        oil_{.density = builder.def().oil_density, .viscosity = builder.def().oil_viscosity},
+        p_1_(builder.volume(def.port_1)),
+        p_2_(builder.volume(def.port_2)),
+        transition_(builder.def().orifice_transition) {
+    apply_parameters();
+  }
+  void declare_dependencies(DependencyList& dependencies) const override { dependencies.add_restriction(p_1_, p_2_); }
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override {
+    rates.move(p_1_, p_2_, flow(view).value);
+  }
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
+    const double slope = flow(view).slope;
+    jacobian.move(p_1_, p_2_, p_1_, slope);
+    jacobian.move(p_1_, p_2_, p_2_, -slope);
+  }
+  void list_variables(std::vector<ElementVariable>& variables) const override {
+    variables.push_back(variable("flow", Dimension::volume_flow));
+  }
+  double* read_variables(const CircuitView& view, double* values) const noexcept override {
+    *values++ = flow(view).value;
+    return values;
+  }
+  [[nodiscard]] void* def_address() noexcept override { return &def_; }
+  void apply_parameters() noexcept override { c_ = conductance(def_, oil_); }
+
+ private:
+  [[nodiscard]] ValueSlope flow(const CircuitView& view) const noexcept {
+    const double drop = view[p_1_] - view[p_2_];
+    const ValueSlope r = root(drop, transition_);
+    return {c_.K * r.value + c_.G * drop, c_.K * r.slope + c_.G};
+  }
+
+  Def def_;
+  OilNumbers oil_;
+  StateIndex p_1_, p_2_;
+  double transition_;
+  Conductance c_;
+};
+
 }  // namespace
 
 ComponentType bleed_type() {
@@ -49,9 +125,10 @@ ComponentType bleed_type() {
           .fields = kBleedFields,
           .doc = "restriction given by a nominal flow",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<BleedDef>(); },
-          .has_control_signal = false,
-          .has_ls_port = false,
-          .is_actuator = false};
+          .validate = nullptr,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<Restriction<BleedDef>>(static_cast<const BleedDef&>(def), builder);
+          }};
 }
 
 ComponentType orifice_type() {
@@ -59,9 +136,10 @@ ComponentType orifice_type() {
           .fields = kOrificeFields,
           .doc = "sharp-edged orifice",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<OrificeDef>(); },
-          .has_control_signal = false,
-          .has_ls_port = false,
-          .is_actuator = false};
+          .validate = nullptr,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<Restriction<OrificeDef>>(static_cast<const OrificeDef&>(def), builder);
+          }};
 }
 
 ComponentType laminar_restriction_type() {
@@ -69,9 +147,11 @@ ComponentType laminar_restriction_type() {
           .fields = kLaminarRestrictionFields,
           .doc = "thin pipe with laminar flow",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<LaminarRestrictionDef>(); },
-          .has_control_signal = false,
-          .has_ls_port = false,
-          .is_actuator = false};
+          .validate = nullptr,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return std::make_unique<Restriction<LaminarRestrictionDef>>(static_cast<const LaminarRestrictionDef&>(def),
+                                                                        builder);
+          }};
 }
 
 }  // namespace slew::hydraulics

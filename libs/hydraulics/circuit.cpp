@@ -1,0 +1,321 @@
+#include "hydraulics/circuit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr double kPositionScale = 1e-3;  // m: at rtol 1e-4 an error of 0.1 um, a few newtons of oil spring
+constexpr double kSpeedScale = 0.1;      // m/s
+
+std::size_t at(int i) noexcept {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+Circuit::Circuit(const HydraulicsDef& def)
+    : oil_(def),
+      floor_(def.pressure_floor),
+      start_(def.start),
+      start_return_(def.start_return_pressure),
+      start_slew_(def.start_slew_pressure),
+      start_pump_(def.start_pump_pressure) {
+  CircuitBuilder builder(def);
+  for (const auto& component : def.components) {
+    components_.push_back(find_component_type(component->type_name())->build(*component, builder));
+    if (components_.back()->has_equations()) active_.push_back(components_.back().get());
+  }
+  size_ = builder.state_count();
+  for (const VolumeDef& volume : def.volumes) {
+    volume_name_.push_back(volume.name);
+    is_fixed_.push_back(volume.fixed ? 1 : 0);
+    initial_pressure_.push_back(volume.initial_pressure);
+  }
+  actuators_ = builder.actuators();
+  states_ = builder.states();
+  control_name_ = builder.controls();
+  supply_ = builder.supply();
+  add_contents(builder);
+
+  scale_.assign(at(volume_count()), def.pressure_scale);
+  scale_.insert(scale_.end(), at(actuator_count()), kPositionScale);
+  scale_.insert(scale_.end(), at(actuator_count()), kSpeedScale);
+  for (const ComponentState& state : states_) scale_.push_back(state.scale);
+  relative_.assign(at(size_), 1);
+  for (int j = 0; j < actuator_count(); ++j) relative_[at(position(j))] = 0;
+
+  control_.assign(control_name_.size(), 0);
+  line_force_.assign(actuators_.size(), 0);
+  ls_.assign(builder.ls_names().size(), 0);
+  flow_slope_.assign(at(volume_count()), 0);
+  jacobian_.assign((at(size_) + ls_.size()) * at(size_), 0);
+  moved_.assign(at(size_), 0);
+  way_.assign(actuators_.size(), 0);
+  for (std::vector<double>& k : slope_) k.assign(at(volume_count()), 0);
+  order_ls_sources(builder);
+  declare_pattern();
+  list_variables();
+  list_parameters();
+}
+
+void Circuit::add_contents(const CircuitBuilder& builder) {
+  for (int i = 0; i < volume_count(); ++i) {
+    for (const Content& content : builder.contents()) {
+      if (content.volume_index != i) continue;
+      Piece piece{content};
+      // a law at its cap at any pressure, or without one, is a constant
+      const WallLaw& wall = content.wall;
+      piece.has_constant_wall =
+          wall.lowest >= wall.highest || wall.factor * std::sqrt(oil_.lowest_pressure()) >= wall.highest;
+      piece.wall_compressibility = 1 / wall.highest;
+      pieces_.push_back(piece);
+    }
+    piece_end_.push_back(pieces_.size());
+  }
+}
+
+void Circuit::order_ls_sources(const CircuitBuilder& builder) {
+  std::vector<HydraulicComponent*> source;
+  for (const std::string& name : builder.ls_names()) {
+    for (const auto& component : components_) {
+      if (component->name() == name) source.push_back(component.get());
+    }
+  }
+  // those whose inputs are all ordered already, until none is left; a validated chain has no loop
+  std::vector<char> is_ordered(source.size(), 0);
+  while (ls_order_.size() < source.size()) {
+    const std::size_t before = ls_order_.size();
+    for (std::size_t i = 0; i < source.size(); ++i) {
+      if (is_ordered[i]) continue;
+      const std::vector<LsIndex> inputs = source[i]->ls_inputs();
+      if (std::any_of(inputs.begin(), inputs.end(), [&](LsIndex k) { return !is_ordered[at(k)]; })) continue;
+      is_ordered[i] = 1;
+      ls_order_.push_back({source[i], static_cast<LsIndex>(i)});
+    }
+    SLEW_CHECK(ls_order_.size() > before);
+  }
+}
+
+void Circuit::declare_pattern() {
+  // rows of the load-sensing pressures first, in their order; then the equations
+  math::SparsityPattern with_ls(at(size_) + ls_.size());
+  DependencyList dependencies(with_ls, size_);
+  for (const LsSource& source : ls_order_) source.component->declare_ls_dependencies(dependencies);
+  for (const HydraulicComponent* component : active_) component->declare_dependencies(dependencies);
+  for (const Piece& piece : pieces_) {
+    if (piece.position >= 0) dependencies.add(piece.volume_index, piece.position);
+  }
+  for (int j = 0; j < actuator_count(); ++j) dependencies.add(position(j), speed(j));
+  pattern_ = math::SparsityPattern(at(size_));
+  for (int i = 0; i < size_; ++i) {
+    for (int j = 0; j < size_; ++j) {
+      // a fixed volume never changes: neither its row nor its column takes part in an elimination
+      const bool is_held = (i < volume_count() && is_fixed(i)) || (j < volume_count() && is_fixed(j));
+      if (!is_held && with_ls.has(at(i), at(j))) pattern_.add(at(i), at(j));
+    }
+  }
+}
+
+void Circuit::list_variables() {
+  for (const std::string& name : volume_name_) {
+    variables_.push_back({name + ".pressure", Dimension::pressure});
+    variables_.push_back({name + ".content", Dimension::volume});
+    variables_.push_back({name + ".effective_bulk_modulus", Dimension::pressure});
+    variables_.push_back({name + ".is_cavitating", Dimension::none});
+  }
+  for (const auto& component : components_) component->list_variables(variables_);
+}
+
+void Circuit::list_parameters() {
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    HydraulicComponent& component = *components_[i];
+    for (const Field& row : component.type().fields) {
+      if (row.change != Change::live || row.type != FieldType::number) continue;
+      double* const value = static_cast<double*>(row.member(component.def_address()));
+      parameters_.push_back({component.name() + "." + std::string(row.key), &row, value, i});
+      parameter_value_.push_back(*value);
+    }
+  }
+}
+
+int Circuit::find_volume(std::string_view name) const noexcept {
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) {
+    if (volume_name_[i] == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int Circuit::find_control(std::string_view component) const noexcept {
+  for (std::size_t i = 0; i < control_name_.size(); ++i) {
+    if (control_name_[i] == component) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int Circuit::find_parameter(std::string_view path) const noexcept {
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    if (parameters_[i].path == path) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+ParameterResult Circuit::set_parameter(int index, double value) noexcept {
+  if (index < 0 || at(index) >= parameters_.size()) return ParameterResult::unknown;
+  const LiveParameter& parameter = parameters_[at(index)];
+  if (!parameter.field->range.contains(value)) return ParameterResult::out_of_range;
+  *parameter.value = value;
+  parameter_value_[at(index)] = value;
+  components_[parameter.component]->apply_parameters();
+  return ParameterResult::ok;
+}
+
+ParameterResult Circuit::set_parameter(std::string_view element, std::string_view key, double value) noexcept {
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const LiveParameter& parameter = parameters_[i];
+    if (parameter.field->key == key && components_[parameter.component]->name() == element) {
+      return set_parameter(static_cast<int>(i), value);
+    }
+  }
+  return ParameterResult::unknown;
+}
+
+void Circuit::evaluate_ls(const double* y) noexcept {
+  const CircuitView now = view(y);
+  for (const LsSource& source : ls_order_) ls_[at(source.index)] = source.component->ls_pressure(now);
+}
+
+ValueSlope Circuit::Piece::wall_at(double p) const noexcept {
+  if (has_constant_wall) return {wall_compressibility, 0};
+  const double B = wall.factor * std::sqrt(std::max(p, 0.0));
+  if (B >= wall.highest) return {1 / wall.highest, 0};
+  if (B <= wall.lowest) return {1 / wall.lowest, 0};
+  return {1 / B, -0.5 / (B * p)};
+}
+
+Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) const noexcept {
+  const double p = y[volume];
+  const ValueSlope oil = oil_.at(p);
+  Capacity C{0, 0, 0};
+  for (std::size_t k = volume == 0 ? 0 : piece_end_[volume - 1]; k < piece_end_[volume]; ++k) {
+    const Piece& piece = pieces_[k];
+    const double V = piece.content_at(y);
+    const ValueSlope wall = piece.wall_at(p);
+    C.value += V * (oil.value + wall.value);
+    C.d_pressure += V * (oil.slope + wall.slope);
+    C.content += V;
+  }
+  return C;
+}
+
+void Circuit::capacities(const double* y, double* C) const noexcept {
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
+}
+
+void Circuit::rates(const double* y, double* f) noexcept {
+  std::fill(f, f + size_, 0.0);
+  evaluate_ls(y);
+  const CircuitView now = view(y);
+  Rates sums(f);
+  for (const HydraulicComponent* component : active_) component->add_rates(now, sums);
+  // (1), (2)
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity(i, y).value;
+  // (3)
+  for (int j = 0; j < actuator_count(); ++j) f[position(j)] = y[speed(j)];
+}
+
+double* Circuit::jacobian(const double* y, const double* f) noexcept {
+  std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
+  evaluate_ls(y);
+  const CircuitView now = view(y);
+  JacobianStamp stamp(jacobian_.data(), size_);
+  for (const LsSource& source : ls_order_) source.component->add_ls_jacobian(now, stamp);
+  for (const HydraulicComponent* component : active_) component->add_jacobian(now, stamp);
+  add_capacity_slopes(y, f);
+  for (int j = 0; j < actuator_count(); ++j) jacobian_[at(position(j) * size_ + speed(j))] = 1;
+  return jacobian_.data();
+}
+
+// Rows of flows become rows of pressure rates: d(Q/C) = dQ/C - p' dC/C.
+void Circuit::add_capacity_slopes(const double* y, const double* f) noexcept {
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) {
+    double* const row = &jacobian_[i * at(size_)];
+    flow_slope_[i] = -row[i];
+    if (is_fixed_[i]) {
+      std::fill(row, row + size_, 0.0);
+      continue;
+    }
+    const Capacity C = capacity(i, y);
+    const double inverse = 1 / C.value;
+    for (int j = 0; j < size_; ++j) row[j] *= inverse;
+    const double share = f[i] * inverse;
+    row[i] -= share * C.d_pressure;
+    const double kappa = oil_.at(y[i]).value;
+    for (std::size_t k = i == 0 ? 0 : piece_end_[i - 1]; k < piece_end_[i]; ++k) {
+      const Piece& piece = pieces_[k];
+      if (piece.position < 0 || piece.is_closed(y)) continue;
+      row[piece.position] -= share * piece.slope * (kappa + piece.wall_at(y[i]).value);
+    }
+  }
+}
+
+void Circuit::outflow_slopes(const double* y, double* slope) noexcept {
+  std::copy(flow_slope_.begin(), flow_slope_.end(), slope);
+  evaluate_ls(y);
+  const CircuitView now = view(y);
+  for (const HydraulicComponent* component : active_) component->raise_outflow_slopes(now, slope);
+}
+
+void Circuit::pressure_forces(const double* y, double* F) const noexcept {
+  for (std::size_t j = 0; j < actuators_.size(); ++j) {
+    const Actuator& actuator = actuators_[j];
+    F[j] = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
+  }
+}
+
+bool Circuit::bound(double* y) const noexcept {
+  bool was_moved = false;
+  const double lowest = oil_.lowest_pressure();
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) {
+    if (y[i] >= lowest) continue;
+    y[i] = lowest;
+    was_moved = true;
+  }
+  return was_moved;
+}
+
+int Circuit::first_cavitating(const double* y) const noexcept {
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) {
+    if (!is_fixed_[i] && y[i] < floor_) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::uint32_t Circuit::flags(const double* y) noexcept {
+  std::uint32_t flags = first_cavitating(y) < 0 ? 0 : static_cast<std::uint32_t>(StepFlag::cavitating);
+  evaluate_ls(y);
+  const CircuitView now = view(y);
+  for (const HydraulicComponent* component : active_) flags |= component->flags(now);
+  return flags;
+}
+
+void Circuit::read_variables(const double* y, std::span<double> values) noexcept {
+  SLEW_ASSERT(values.size() == variables_.size());
+  double* out = values.data();
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) {
+    const Capacity C = capacity(i, y);
+    *out++ = y[i];
+    *out++ = C.content;
+    *out++ = C.value > 0 ? C.content / C.value : 0;
+    *out++ = !is_fixed_[i] && y[i] < floor_ ? 1 : 0;
+  }
+  evaluate_ls(y);
+  const CircuitView now = view(y);
+  for (const auto& component : components_) out = component->read_variables(now, out);
+  SLEW_ASSERT(out == values.data() + values.size());
+}
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,179 @@
+// A hydraulic circuit as a system of ordinary differential equations.
+//
+//   y = [p of all volumes | x | v of all actuators | component states]
+//   p_i' = sum Q_i / C_i,   C_i = sum_k V_k (kappa_oil(p_i) + 1/B_k(p_i))          free volumes          (1)
+//   p_i' = 0                                                                       fixed volumes         (2)
+//   x' = v;  v' = 0 here: the owner adds the pistons' accelerations                                      (3)
+// V_k: hoses, rigid blocks, and chambers V_0 +- A x; kappa_oil in oil.h, wall moduli B_k by their component.
+// Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27 (lumped fluid theory). Not covered:
+// inertia of the oil, wave travel, temperature.
+//
+// Built once from a validated Def; afterwards only control signals, line forces for display and live parameters change.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/element_variable.h"
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+#include "hydraulics/hydraulics_def.h"
+#include "hydraulics/oil.h"
+
+namespace slew::hydraulics {
+
+// A number that may change while the circuit runs.
+struct LiveParameter {
+  std::string path;  // "L90Lift.overlap"
+  const Field* field = nullptr;
+  double* value = nullptr;
+  std::size_t component = 0;
+};
+
+enum class ParameterResult { ok, unknown, out_of_range };
+
+class Circuit {
+ public:
+  // def: validate() found no error. Only read during construction.
+  explicit Circuit(const HydraulicsDef& def);
+  Circuit(const Circuit&) = delete;
+  Circuit& operator=(const Circuit&) = delete;
+
+  // layout of y
+  [[nodiscard]] int state_count() const noexcept { return size_; }
+  [[nodiscard]] int volume_count() const noexcept { return static_cast<int>(volume_name_.size()); }
+  [[nodiscard]] int actuator_count() const noexcept { return static_cast<int>(actuators_.size()); }
+  [[nodiscard]] StateIndex position(int actuator) const noexcept { return volume_count() + actuator; }
+  [[nodiscard]] StateIndex speed(int actuator) const noexcept { return volume_count() + actuator_count() + actuator; }
+  [[nodiscard]] StateIndex first_component_state() const noexcept { return volume_count() + 2 * actuator_count(); }
+  [[nodiscard]] std::span<const Actuator> actuators() const noexcept { return actuators_; }
+  [[nodiscard]] const std::string& volume_name(int volume) const {
+    return volume_name_[static_cast<std::size_t>(volume)];
+  }
+  [[nodiscard]] bool is_fixed(int volume) const noexcept { return is_fixed_[static_cast<std::size_t>(volume)] != 0; }
+  [[nodiscard]] int find_volume(std::string_view name) const noexcept;                       // -1: none
+  [[nodiscard]] const std::vector<double>& scales() const noexcept { return scale_; }        // typical sizes of y
+  [[nodiscard]] const std::vector<double>& relatives() const noexcept { return relative_; }  // 1, or 0 for positions
+  [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }   // of jacobian()
+  [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
+  [[nodiscard]] double pressure_floor() const noexcept { return floor_; }
+
+  // start states [y without x and v, which the caller owns]
+  // Equilibrium: linear cylinders hold F with the rod side at the return pressure, slew cylinders around their mean
+  // pressure; when a pressure would fall below 1 bar the pair is raised. Volumes of parallel cylinders take the mean.
+  void start_in_equilibrium(std::span<const double> F, std::span<double> y) const;
+  void start_at_initial_pressures(std::span<double> y) const;
+  // The start that the Def asks for.
+  void start(std::span<const double> F, std::span<double> y) const;
+
+  // inputs
+  [[nodiscard]] int find_control(std::string_view component) const noexcept;  // -1: none
+  [[nodiscard]] std::span<const std::string> controls() const noexcept { return control_name_; }
+  void set_control(int control, double signal) noexcept { control_[static_cast<std::size_t>(control)] = signal; }
+  void set_line_force(int actuator, double F) noexcept { line_force_[static_cast<std::size_t>(actuator)] = F; }
+
+  // live parameters; no allocation
+  [[nodiscard]] std::span<const LiveParameter> parameters() const noexcept { return parameters_; }
+  [[nodiscard]] int find_parameter(std::string_view path) const noexcept;                               // -1: none
+  [[nodiscard]] std::span<const double> parameter_values() const noexcept { return parameter_value_; }  // same order
+  ParameterResult set_parameter(int index, double value) noexcept;
+  ParameterResult set_parameter(std::string_view element, std::string_view key, double value) noexcept;
+
+  // equations (1) to (3)
+  void rates(const double* y, double* f) noexcept;
+  // Jacobian of rates() at y, with f = rates(y); row-major, stride state_count(); valid until the next call.
+  double* jacobian(const double* y, const double* f) noexcept;
+  void pressure_forces(const double* y, double* F) const noexcept;
+
+  // Capacities C_i [m3/Pa]; 0 for fixed volumes.
+  void capacities(const double* y, double* C) const noexcept;
+  // -dQ/dp of each volume at y, on the steeper side of switches; needs jacobian() called before with the same y.
+  void outflow_slopes(const double* y, double* slope) noexcept;
+  // Moves the pistons to x_new and lets each pressure follow its chamber's change of volume, no oil lost:
+  // C dp + A dx = 0, integrated over the way. False when a pressure had to be held at the lowest pressure.
+  bool move_pistons(double* y, const double* x_new) noexcept;
+  // Holds pressures at or above the lowest pressure; true when one had to be moved.
+  bool bound(double* y) const noexcept;
+
+  // StepFlag bits that hold at y, and the first volume that cavitates (-1: none).
+  [[nodiscard]] std::uint32_t flags(const double* y) noexcept;
+  [[nodiscard]] int first_cavitating(const double* y) const noexcept;
+
+  // variables of all volumes and components, in a fixed order
+  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }
+  void read_variables(const double* y, std::span<double> values) noexcept;
+
+ private:
+  struct Capacity {
+    double value, d_pressure, content;
+  };
+
+  // A content with the constant part of its wall's law worked out.
+  struct Piece : Content {
+    bool has_constant_wall = true;
+    double wall_compressibility = 0;  // 1/Pa, when constant
+
+    [[nodiscard]] bool is_closed(const double* y) const noexcept { return volume + slope * y[position] <= smallest; }
+    [[nodiscard]] double content_at(const double* y) const noexcept {
+      if (position < 0) return volume;
+      const double V = volume + slope * y[position];
+      return V > smallest ? V : smallest;
+    }
+    [[nodiscard]] ValueSlope wall_at(double p) const noexcept;
+  };
+
+  void add_contents(const CircuitBuilder& builder);
+  void order_ls_sources(const CircuitBuilder& builder);
+  void declare_pattern();
+  void list_variables();
+  void list_parameters();
+  void evaluate_ls(const double* y) noexcept;
+  [[nodiscard]] CircuitView view(const double* y) const noexcept {
+    return {y, control_.data(), ls_.data(), line_force_.data()};
+  }
+  [[nodiscard]] Capacity capacity(std::size_t volume, const double* y) const noexcept;
+  void add_capacity_slopes(const double* y, const double* f) noexcept;
+  void chamber_rates(const double* y, double* dp) const noexcept;
+
+  int size_ = 0;
+  OilCompressibility oil_;
+  double floor_;
+  std::vector<std::string> volume_name_;
+  std::vector<char> is_fixed_;
+  std::vector<double> initial_pressure_;
+  std::vector<StateIndex> supply_;
+  StartState start_;
+  double start_return_, start_slew_, start_pump_;
+
+  std::vector<Piece> pieces_;           // by volume
+  std::vector<std::size_t> piece_end_;  // of each volume in pieces_
+  std::vector<Actuator> actuators_;
+  std::vector<ComponentState> states_;
+  std::vector<double> scale_, relative_;
+
+  std::vector<std::unique_ptr<HydraulicComponent>> components_;
+  std::vector<HydraulicComponent*> active_;  // with equations
+  struct LsSource {
+    HydraulicComponent* component;
+    LsIndex index;
+  };
+  std::vector<LsSource> ls_order_;
+  math::SparsityPattern pattern_{0};
+
+  std::vector<double> control_;
+  std::vector<std::string> control_name_;
+  std::vector<double> line_force_;
+  std::vector<ElementVariable> variables_;
+  std::vector<LiveParameter> parameters_;
+  std::vector<double> parameter_value_;
+
+  // work space
+  std::vector<double> ls_, flow_slope_, jacobian_, moved_, way_;
+  std::array<std::vector<double>, 4> slope_;  // stages of move_pistons()
+};
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,53 @@
+#include "hydraulics/circuit_builder.h"
+
+#include "core/check.h"
+
+namespace slew::hydraulics {
+
+CircuitBuilder::CircuitBuilder(const HydraulicsDef& def)
+    : def_(def), volume_count_(static_cast<int>(def.volumes.size())) {
+  for (const auto& component : def.components) {
+    const ComponentType* type = find_component_type(component->type_name());
+    SLEW_CHECK(type != nullptr);
+    actuator_count_ += type->is_actuator;
+    if (type->has_ls_port) ls_names_.push_back(component->name);
+  }
+  // oil in rigid blocks
+  for (int i = 0; i < volume_count_; ++i) {
+    const VolumeDef& volume = def.volumes[static_cast<std::size_t>(i)];
+    if (volume.rigid_volume > 0) add_content({.volume_index = i, .volume = volume.rigid_volume});
+  }
+}
+
+StateIndex CircuitBuilder::volume(std::string_view name) const {
+  for (int i = 0; i < volume_count_; ++i) {
+    if (def_.volumes[static_cast<std::size_t>(i)].name == name) return i;
+  }
+  SLEW_CHECK(!"a validated circuit names existing volumes only");
+  return 0;
+}
+
+StateIndex CircuitBuilder::add_state(const ComponentState& state) {
+  states_.push_back(state);
+  return state_count() - 1;
+}
+
+int CircuitBuilder::add_control(std::string_view component) {
+  controls_.emplace_back(component);
+  return static_cast<int>(controls_.size()) - 1;
+}
+
+LsIndex CircuitBuilder::ls_index(std::string_view component) const {
+  for (std::size_t i = 0; i < ls_names_.size(); ++i) {
+    if (ls_names_[i] == component) return static_cast<LsIndex>(i);
+  }
+  SLEW_CHECK(!"a validated circuit names existing LS ports only");
+  return 0;
+}
+
+int CircuitBuilder::add_actuator(Actuator actuator) {
+  actuators_.push_back(std::move(actuator));
+  return static_cast<int>(actuators_.size()) - 1;
+}
+
+}  // namespace slew::hydraulics

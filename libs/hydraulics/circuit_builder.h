@@ -1,0 +1,92 @@
+// What a component may ask for while the circuit is built: positions of its ports, states, content, oil data.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hydraulics/component.h"
+#include "hydraulics/components/cylinder_def.h"
+#include "hydraulics/hydraulics_def.h"
+
+namespace slew::hydraulics {
+
+// Wall modulus min(highest, max(factor sqrt(p), lowest)) [Pa]; constant when lowest == highest, rigid when infinite.
+struct WallLaw {
+  double factor = 0;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+};
+
+// Oil in a hose, chamber or block: V = volume + slope x, at least `smallest`.
+struct Content {
+  StateIndex volume_index = 0;
+  double volume = 0;         // m3, at x = 0
+  double slope = 0;          // m2, dV/dx
+  StateIndex position = -1;  // of x; -1: constant
+  double smallest = 0;       // m3
+  WallLaw wall = {};
+};
+
+// How an actuator shares the static load between its chambers at an equilibrium start.
+enum class StartRule { return_pressure, mean_pressure };
+
+// A cylinder as the power port sees it.
+struct Actuator {
+  std::string name;   // of the component
+  std::string force;  // force element that it drives
+  StateIndex port_a = 0, port_b = 0;
+  double area_a = 0, area_b = 0;   // m2; F = p_A area_a - p_B area_b
+  PortCoordinate coordinate = {};  // x = offset + ratio * element coordinate
+  LineForceParameters line_force = {};
+  StartRule start = StartRule::return_pressure;
+};
+
+struct ComponentState {
+  double initial = 0;
+  double scale = 1;  // typical size, for the error measure
+};
+
+class CircuitBuilder {
+ public:
+  // def: validated without errors.
+  explicit CircuitBuilder(const HydraulicsDef& def);
+
+  [[nodiscard]] const HydraulicsDef& def() const noexcept { return def_; }
+  [[nodiscard]] StateIndex volume(std::string_view name) const;
+  [[nodiscard]] StateIndex add_state(const ComponentState& state);
+  [[nodiscard]] int add_control(std::string_view component);
+  // Number of the component's own load-sensing pressure; of another component's.
+  [[nodiscard]] LsIndex ls_index(std::string_view component) const;
+  void add_content(const Content& content) { contents_.push_back(content); }
+  // Index of the actuator; its position is y[position(index)], its speed y[speed(index)].
+  [[nodiscard]] int add_actuator(Actuator actuator);
+  [[nodiscard]] StateIndex position(int actuator) const noexcept { return volume_count_ + actuator; }
+  [[nodiscard]] StateIndex speed(int actuator) const noexcept { return volume_count_ + actuator_count_ + actuator; }
+  // The volume starts at the pump pressure in an equilibrium start.
+  void mark_supply(StateIndex volume) { supply_.push_back(volume); }
+
+  // results, taken by the circuit
+  [[nodiscard]] int state_count() const noexcept {
+    return volume_count_ + 2 * actuator_count_ + static_cast<int>(states_.size());
+  }
+  [[nodiscard]] const std::vector<Content>& contents() const noexcept { return contents_; }
+  [[nodiscard]] const std::vector<Actuator>& actuators() const noexcept { return actuators_; }
+  [[nodiscard]] const std::vector<ComponentState>& states() const noexcept { return states_; }
+  [[nodiscard]] const std::vector<std::string>& controls() const noexcept { return controls_; }
+  [[nodiscard]] const std::vector<std::string>& ls_names() const noexcept { return ls_names_; }
+  [[nodiscard]] const std::vector<StateIndex>& supply() const noexcept { return supply_; }
+
+ private:
+  const HydraulicsDef& def_;
+  int volume_count_ = 0, actuator_count_ = 0;
+  std::vector<Content> contents_;
+  std::vector<Actuator> actuators_;
+  std::vector<ComponentState> states_;
+  std::vector<std::string> controls_;
+  std::vector<std::string> ls_names_;
+  std::vector<StateIndex> supply_;
+};
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,207 @@
+#include "hydraulics/circuit_integrator.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "core/reductions.h"
+
+namespace slew::hydraulics {
+namespace {
+
+math::SparsityPattern coupled_pattern(const Circuit& circuit) {
+  math::SparsityPattern pattern = circuit.pattern();
+  for (int i = 0; i < circuit.actuator_count(); ++i) {
+    const auto row = static_cast<std::size_t>(circuit.speed(i));
+    for (int j = 0; j < circuit.actuator_count(); ++j) {
+      const Actuator& actuator = circuit.actuators()[static_cast<std::size_t>(j)];
+      for (const StateIndex port : {actuator.port_a, actuator.port_b}) {
+        if (!circuit.is_fixed(port)) pattern.add(row, static_cast<std::size_t>(port));
+      }
+      pattern.add(row, static_cast<std::size_t>(circuit.position(j)));
+      pattern.add(row, static_cast<std::size_t>(circuit.speed(j)));
+    }
+  }
+  return pattern;
+}
+
+math::Rodas3Options options_of(const Circuit& circuit, const HydraulicsDef& def) {
+  return {.relative_tolerance = def.relative_tolerance,
+          .minimum_step = def.minimum_step,
+          .substep_budget = static_cast<std::uint32_t>(def.substep_budget),
+          .scale = circuit.scales(),
+          .relative = circuit.relatives()};
+}
+
+}  // namespace
+
+CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
+    : circuit_(circuit),
+      m_(static_cast<std::size_t>(circuit.actuator_count())),
+      y_(static_cast<std::size_t>(circuit.state_count()), 0),
+      y_start_(y_),
+      f_(y_),
+      F_(m_),
+      F_dot_(m_),
+      da_dF_(m_ * m_),
+      da_dx_(m_ * m_),
+      da_dv_(m_ * m_),
+      C_(static_cast<std::size_t>(circuit.volume_count())),
+      outflow_(C_),
+      published_(m_),
+      solver_(coupled_pattern(circuit), static_cast<std::size_t>(circuit.state_count()), options_of(circuit, def)) {
+  circuit_.start_at_initial_pressures(y_);
+  refresh();
+}
+
+void CircuitIntegrator::start(std::span<const double> x, std::span<const double> v,
+                              std::span<const double> F) noexcept {
+  SLEW_CHECK(x.size() == m_ && v.size() == m_ && F.size() == m_);
+  circuit_.start(F, y_);
+  for (std::size_t j = 0; j < m_; ++j) {
+    y_[static_cast<std::size_t>(circuit_.position(static_cast<int>(j)))] = x[j];
+    y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))] = v[j];
+    published_[j].work = published_[j].impulse = 0;
+  }
+  solver_.set_step_size(0);
+  has_failed_ = false;
+  refresh();
+}
+
+void CircuitIntegrator::align(std::span<const double> x, std::span<const double> v) noexcept {
+  SLEW_ASSERT(x.size() == m_ && v.size() == m_);
+  if (has_failed_) return;
+  was_clamped_ = !circuit_.move_pistons(y_.data(), x.data());
+  for (std::size_t j = 0; j < m_; ++j) y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))] = v[j];
+}
+
+void CircuitIntegrator::derivative(const double* y, double* f) noexcept {
+  circuit_.rates(y, f);
+  circuit_.pressure_forces(y, F_.data());
+  motion_->accelerations(F_.data(), y + circuit_.position(0), y + circuit_.speed(0), f + circuit_.speed(0));
+}
+
+const double* CircuitIntegrator::jacobian(const double* y, const double* f) noexcept {
+  double* const J = circuit_.jacobian(y, f);
+  if (m_ == 0) return J;
+  circuit_.pressure_forces(y, F_.data());
+  motion_->slopes(F_.data(), y + circuit_.position(0), y + circuit_.speed(0), da_dF_.data(), da_dx_.data(),
+                  da_dv_.data());
+  const int n = circuit_.state_count(), m = static_cast<int>(m_);
+  for (int i = 0; i < m; ++i) {
+    double* const row = J + circuit_.speed(i) * n;
+    for (int j = 0; j < m; ++j) {
+      const Actuator& actuator = circuit_.actuators()[static_cast<std::size_t>(j)];
+      const double da_dF = da_dF_[static_cast<std::size_t>(i * m + j)];
+      if (!circuit_.is_fixed(actuator.port_a)) row[actuator.port_a] += da_dF * actuator.area_a;
+      if (!circuit_.is_fixed(actuator.port_b)) row[actuator.port_b] -= da_dF * actuator.area_b;
+      row[circuit_.position(j)] = da_dx_[static_cast<std::size_t>(i * m + j)];
+      row[circuit_.speed(j)] = da_dv_[static_cast<std::size_t>(i * m + j)];
+    }
+  }
+  return J;
+}
+
+// (1); the slope at the end of a sub-step is taken when the next one starts.
+void CircuitIntegrator::accepted(double h, const double* y_before, const double* f_before, double* y) noexcept {
+  close_quadrature(y_before, f_before);
+  const double weight = h * h / 12;
+  for (std::size_t j = 0; j < m_; ++j) {
+    const Actuator& actuator = circuit_.actuators()[j];
+    const int v = circuit_.speed(static_cast<int>(j));
+    const double F_0 = y_before[actuator.port_a] * actuator.area_a - y_before[actuator.port_b] * actuator.area_b;
+    const double F_1 = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
+    const double F_dot = f_before[actuator.port_a] * actuator.area_a - f_before[actuator.port_b] * actuator.area_b;
+    published_[j].work +=
+        0.5 * h * (F_0 * y_before[v] + F_1 * y[v]) + weight * (F_dot * y_before[v] + F_0 * f_before[v]);
+    published_[j].impulse += 0.5 * h * (F_0 + F_1) + weight * F_dot;
+  }
+  open_quadrature_ = weight;
+  was_clamped_ = circuit_.bound(y) || was_clamped_;
+}
+
+void CircuitIntegrator::close_quadrature(const double* y, const double* f) noexcept {
+  if (open_quadrature_ == 0) return;
+  for (std::size_t j = 0; j < m_; ++j) {
+    const Actuator& actuator = circuit_.actuators()[j];
+    const int v = circuit_.speed(static_cast<int>(j));
+    const double F = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
+    const double F_dot = f[actuator.port_a] * actuator.area_a - f[actuator.port_b] * actuator.area_b;
+    published_[j].work -= open_quadrature_ * (F_dot * y[v] + F * f[v]);
+    published_[j].impulse -= open_quadrature_ * F_dot;
+  }
+  open_quadrature_ = 0;
+}
+
+StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcept {
+  StepReport report;
+  if (has_failed_ || !all_finite(y_)) {
+    has_failed_ = true;
+    report.raise(StepFlag::non_finite);
+    return report;
+  }
+  motion_ = &motion;
+  std::copy(y_.begin(), y_.end(), y_start_.begin());
+  for (ActuatorLinearisation& actuator : published_) actuator.work = actuator.impulse = 0;
+  open_quadrature_ = 0;
+  report_ = solver_.advance(*this, y_, H);
+  if (!report_.is_finite) {
+    has_failed_ = true;
+    std::copy(y_start_.begin(), y_start_.end(), y_.begin());
+    open_quadrature_ = 0;
+  }
+  if (!has_failed_) {
+    derivative(y_.data(), f_.data());
+    close_quadrature(y_.data(), f_.data());
+  }
+  refresh();
+  report_flags(report);
+  was_clamped_ = false;
+  motion_ = nullptr;
+  return report;
+}
+
+void CircuitIntegrator::report_flags(StepReport& report) noexcept {
+  report.flags = circuit_.flags(y_.data());
+  report.offender = circuit_.first_cavitating(y_.data());
+  report.substeps = report_.accepted;
+  report.iterations = report_.accepted + report_.rejected;
+  report.residual = report_.largest_error;
+  if (report_.is_over_budget) report.raise(StepFlag::step_budget);
+  if (report_.is_at_minimum_step) report.raise(StepFlag::not_converged);
+  if (was_clamped_) report.raise(StepFlag::clamp_active);
+  if (has_failed_) report.raise(StepFlag::non_finite);
+}
+
+// (2)
+void CircuitIntegrator::refresh() noexcept {
+  circuit_.rates(y_.data(), f_.data());
+  circuit_.jacobian(y_.data(), f_.data());
+  circuit_.outflow_slopes(y_.data(), outflow_.data());
+  circuit_.capacities(y_.data(), C_.data());
+  for (std::size_t j = 0; j < m_; ++j) {
+    const Actuator& actuator = circuit_.actuators()[j];
+    const auto a = static_cast<std::size_t>(actuator.port_a), b = static_cast<std::size_t>(actuator.port_b);
+    ActuatorLinearisation& out = published_[j];
+    out.x = y_[static_cast<std::size_t>(circuit_.position(static_cast<int>(j)))];
+    out.v = y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))];
+    out.p_a = y_[a], out.p_b = y_[b];
+    out.F = out.p_a * actuator.area_a - out.p_b * actuator.area_b;
+    out.F_dot = f_[a] * actuator.area_a - f_[b] * actuator.area_b;
+    out.Q_a = C_[a] * f_[a] + out.v * actuator.area_a;
+    out.Q_b = C_[b] * f_[b] - out.v * actuator.area_b;
+    const double K_a = C_[a] > 0 ? actuator.area_a * actuator.area_a / C_[a] : 0;
+    const double K_b = C_[b] > 0 ? actuator.area_b * actuator.area_b / C_[b] : 0;
+    out.K = K_a + K_b;
+    const double weighted = (K_a > 0 ? K_a * outflow_[a] / C_[a] : 0) + (K_b > 0 ? K_b * outflow_[b] / C_[b] : 0);
+    out.lambda = out.K > 0 ? std::max(0.0, weighted / out.K) : 0;
+  }
+}
+
+void CircuitIntegrator::add_to(StateHash& hash) const noexcept {
+  hash.add(std::span<const double>(y_));
+  hash.add(solver_.step_size());
+  hash.add(has_failed_);
+  hash.add(circuit_.parameter_values());
+}
+
+}  // namespace slew::hydraulics

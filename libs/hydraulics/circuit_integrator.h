@@ -1,0 +1,86 @@
+// Advances a circuit and its pistons over communication steps, and states what a partner needs to know afterwards.
+//
+// Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for RODAS3:
+//   y' = rates(y),  x' = v,  v' = a(F, x, v),  F = p_A A_A - p_B A_B
+// Work and impulse of each actuator are integrated beside it with the cubic through both ends of a sub-step:
+//   int g dt = h/2 (g_0 + g_1) + h^2/12 (g_0' - g_1'),  g = F v and F                                            (1)
+//
+// Published at the end (coupling study, section 8; K_A = A_A^2/C_A, K_B = A_B^2/C_B):
+//   F, F_dot = A_A p_A' - A_B p_B',  K = K_A + K_B,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C             (2)
+// l on the steeper side of unilateral valves. Chambers have no feed-through: D = 0.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/state_hash.h"
+#include "core/step_report.h"
+#include "hydraulics/circuit.h"
+#include "hydraulics/piston_motion.h"
+#include "math/rodas3.h"
+
+namespace slew::hydraulics {
+
+// One actuator's force near (x, v) and what happened to it in the last step.
+struct ActuatorLinearisation {
+  double F = 0;             // N
+  double F_dot = 0;         // N/s at constant v
+  double K = 0;             // N/m
+  double lambda = 0;        // 1/s
+  double x = 0;             // m, the circuit's own piston position
+  double v = 0;             // m/s
+  double work = 0;          // J, integral of F v dt over the last step
+  double impulse = 0;       // N s
+  double p_a = 0, p_b = 0;  // Pa absolute
+  double Q_a = 0, Q_b = 0;  // m3/s, what the circuit sends into the chambers' volumes
+};
+
+class CircuitIntegrator final : private math::StiffSystem {
+ public:
+  // circuit outlives the integrator. def: validated.
+  CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def);
+
+  // Start state as the Def asks for; F: static forces of the actuators [N]. Clears the step size and failures.
+  void start(std::span<const double> x, std::span<const double> v, std::span<const double> F) noexcept;
+
+  // Takes the pistons' true position and speed: pressures follow with the oil enclosed (study, section 8).
+  void align(std::span<const double> x, std::span<const double> v) noexcept;
+
+  // Advances by H seconds. A non-finite state is latched: the last finite one stays, every further report says so.
+  StepReport step(double H, const PistonMotion& motion) noexcept;
+
+  [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }
+  [[nodiscard]] std::span<const double> state() const noexcept { return y_; }
+  // For tests and tools; refresh() afterwards.
+  [[nodiscard]] std::span<double> mutable_state() noexcept { return y_; }
+  // Works out actuators() from the state.
+  void refresh() noexcept;
+  [[nodiscard]] double step_size() const noexcept { return solver_.step_size(); }
+  void set_step_size(double h) noexcept { solver_.set_step_size(h); }
+  [[nodiscard]] const math::Rodas3Report& last_report() const noexcept { return report_; }
+
+  // Raw bits of all that the future depends on: y, step size, failure latch, live parameters.
+  void add_to(StateHash& hash) const noexcept;
+
+ private:
+  void derivative(const double* y, double* f) noexcept override;
+  const double* jacobian(const double* y, const double* f) noexcept override;
+  void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
+  void close_quadrature(const double* y, const double* f) noexcept;
+  void report_flags(StepReport& report) noexcept;
+
+  Circuit& circuit_;
+  const PistonMotion* motion_ = nullptr;  // during step()
+  std::size_t m_;
+  std::vector<double> y_, y_start_, f_;
+  std::vector<double> F_, F_dot_, da_dF_, da_dx_, da_dv_, C_, outflow_;
+  std::vector<ActuatorLinearisation> published_;
+  double open_quadrature_ = 0;  // h^2/12 of the last sub-step, whose end slope is not known yet
+  bool was_clamped_ = false;
+  bool has_failed_ = false;
+  math::Rodas3 solver_;
+  math::Rodas3Report report_;
+};
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,120 @@
+// Start states of a circuit, and the volume-consistent motion of its pistons.
+#include <algorithm>
+#include <cmath>
+
+#include "hydraulics/circuit.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr double kLowestStart = 1e5;     // Pa; below it an anti-cavitation valve would be open from the start
+constexpr double kLargestChange = 0.02;  // of a pressure, per part of a piston's way
+constexpr int kMostParts = 64;
+
+struct Pair {
+  double a, b;
+};
+
+// Pressures that hold F; b at `aim`, or higher when a would be too low.
+Pair held_by_return_side(const Actuator& actuator, double F, double aim) noexcept {
+  Pair p{(F + aim * actuator.area_b) / actuator.area_a, aim};
+  if (p.a < kLowestStart && actuator.area_b > 0) {
+    p.a = kLowestStart;
+    p.b = (p.a * actuator.area_a - F) / actuator.area_b;
+  }
+  return p;
+}
+
+// Pressures that hold F around `mean`, which rises when one would be too low.
+Pair held_around_mean(const Actuator& actuator, double F, double mean) noexcept {
+  const double half = F / (actuator.area_a + actuator.area_b);
+  mean = std::max(mean, kLowestStart + std::fabs(half));
+  return {mean + half, mean - half};
+}
+
+}  // namespace
+
+void Circuit::start_at_initial_pressures(std::span<double> y) const {
+  std::copy(initial_pressure_.begin(), initial_pressure_.end(), y.begin());
+  const std::size_t first = static_cast<std::size_t>(first_component_state());
+  for (std::size_t k = 0; k < states_.size(); ++k) y[first + k] = states_[k].initial;
+}
+
+void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> y) const {
+  start_at_initial_pressures(y);
+  for (const StateIndex volume : supply_) {
+    if (!is_fixed(volume)) y[static_cast<std::size_t>(volume)] = start_pump_;
+  }
+  // volumes that several cylinders share take the mean of what each asks for
+  std::vector<double> sum(volume_name_.size(), 0);
+  std::vector<int> count(volume_name_.size(), 0);
+  for (std::size_t j = 0; j < actuators_.size(); ++j) {
+    const Actuator& actuator = actuators_[j];
+    const std::size_t a = static_cast<std::size_t>(actuator.port_a), b = static_cast<std::size_t>(actuator.port_b);
+    Pair p = actuator.start == StartRule::return_pressure ? held_by_return_side(actuator, F[j], start_return_)
+                                                          : held_around_mean(actuator, F[j], start_slew_);
+    // a chamber on a fixed volume keeps its pressure, the other one holds
+    if (is_fixed_[b]) p.a = (F[j] + initial_pressure_[b] * actuator.area_b) / actuator.area_a;
+    if (is_fixed_[a] && actuator.area_b > 0) p.b = (initial_pressure_[a] * actuator.area_a - F[j]) / actuator.area_b;
+    sum[a] += p.a, ++count[a];
+    sum[b] += p.b, ++count[b];
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (count[i] > 0 && is_fixed_[i] == 0) y[i] = std::max(sum[i] / count[i], floor_);
+  }
+}
+
+void Circuit::start(std::span<const double> F, std::span<double> y) const {
+  if (start_ == StartState::equilibrium) {
+    start_in_equilibrium(F, y);
+  } else {
+    start_at_initial_pressures(y);
+  }
+}
+
+// dp/ds = -(dV/dx . way) / C at the state y; s runs from 0 to 1 along the pistons' way.
+void Circuit::chamber_rates(const double* y, double* dp) const noexcept {
+  for (std::size_t i = 0; i < volume_name_.size(); ++i) {
+    dp[i] = 0;
+    if (is_fixed_[i]) continue;
+    double dV = 0;
+    for (std::size_t k = i == 0 ? 0 : piece_end_[i - 1]; k < piece_end_[i]; ++k) {
+      const Piece& piece = pieces_[k];
+      if (piece.position >= 0) dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
+    }
+    if (dV != 0) dp[i] = -dV / capacity(i, y).value;
+  }
+}
+
+bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
+  const std::size_t n = volume_name_.size(), m = actuators_.size();
+  for (std::size_t j = 0; j < m; ++j) way_[j] = x_new[j] - y[n + j];
+  // parts short enough for the stiffness of oil with air to change little within one
+  chamber_rates(y, slope_[0].data());
+  double change = 0;
+  for (std::size_t i = 0; i < n; ++i) change = std::max(change, std::fabs(slope_[0][i]) / std::max(y[i], floor_));
+  const double wanted = std::min(std::ceil(change / kLargestChange), static_cast<double>(kMostParts));
+  const int parts = std::max(1, static_cast<int>(wanted));
+  const double h = 1.0 / parts;
+  bool is_within = true;
+  for (int part = 0; part < parts; ++part) {
+    // classical Runge-Kutta of order 4 along the way
+    constexpr double kStage[] = {0, 0.5, 0.5, 1};
+    for (std::size_t stage = 0; stage < 4; ++stage) {
+      for (std::size_t i = 0; i < n; ++i) {
+        moved_[i] = y[i] + (stage == 0 ? 0 : kStage[stage] * h * slope_[stage - 1][i]);
+      }
+      for (std::size_t j = 0; j < m; ++j) moved_[n + j] = y[n + j] + kStage[stage] * h * way_[j];
+      chamber_rates(moved_.data(), slope_[stage].data());
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      y[i] += h / 6 * (slope_[0][i] + 2 * slope_[1][i] + 2 * slope_[2][i] + slope_[3][i]);
+    }
+    for (std::size_t j = 0; j < m; ++j) y[n + j] += h * way_[j];
+    is_within = !bound(y) && is_within;
+  }
+  for (std::size_t j = 0; j < m; ++j) y[n + j] = x_new[j];
+  return is_within;
+}
+
+}  // namespace slew::hydraulics

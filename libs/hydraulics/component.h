@@ -1,0 +1,142 @@
+// The seam for hydraulic components: what a component sees of the circuit and what it adds to its equations.
+//
+// The circuit's state vector is y = [p of all volumes | x | v of all actuators | component states]. A component keeps
+// the positions (StateIndex) of what it is connected to, adds flows into volumes [m3/s] and rates of its own states,
+// and stamps their partial derivatives into the Jacobian. The circuit turns flows into pressure rates,
+//   p' = sum Q / C,   C = sum over contents V_k (kappa_oil + 1/B_k),
+// including the dependence of C on p and x: components never see capacities.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/element_variable.h"
+#include "core/step_report.h"
+#include "hydraulics/component_def.h"
+#include "math/pattern_lu.h"
+
+namespace slew::hydraulics {
+
+using StateIndex = int;  // position in y; a volume's StateIndex is its number
+using LsIndex = int;     // number of a load-sensing pressure
+
+// The instant at which equations are evaluated.
+struct CircuitView {
+  const double* y;           // state vector
+  const double* control;     // control signals
+  const double* ls;          // load-sensing pressures above tank [Pa]
+  const double* line_force;  // of the actuators, as the partner states them [N]; for display
+  [[nodiscard]] double operator[](StateIndex i) const noexcept { return y[i]; }
+};
+
+// Sums of flows into volumes and rates of component states, by StateIndex.
+class Rates {
+ public:
+  explicit Rates(double* f) noexcept : f_(f) {}
+  void add_flow(StateIndex volume, double Q) noexcept { f_[volume] += Q; }
+  // Q m3/s leaves one volume and enters the other.
+  void move(StateIndex from, StateIndex to, double Q) noexcept {
+    f_[from] -= Q;
+    f_[to] += Q;
+  }
+  void set_rate(StateIndex state, double rate) noexcept { f_[state] = rate; }
+
+ private:
+  double* f_;
+};
+
+// Partial derivatives of the same sums. Rows beyond the state are those of the load-sensing pressures.
+class JacobianStamp {
+ public:
+  JacobianStamp(double* a, int size) noexcept : a_(a), size_(size) {}
+  void add(StateIndex row, StateIndex column, double d) noexcept { a_[row * size_ + column] += d; }
+  // Derivative of a flow that leaves one volume and enters the other.
+  void move(StateIndex from, StateIndex to, StateIndex column, double d) noexcept {
+    add(from, column, -d);
+    add(to, column, d);
+  }
+  // Dependence of a row on a load-sensing pressure, by the chain rule.
+  void add_ls(StateIndex row, LsIndex ls, double d) noexcept {
+    for (int j = 0; j < size_; ++j) a_[row * size_ + j] += d * a_[(size_ + ls) * size_ + j];
+  }
+  // Row number of a load-sensing pressure, for add() and add_ls().
+  [[nodiscard]] StateIndex ls_row(LsIndex ls) const noexcept { return size_ + ls; }
+
+ private:
+  double* a_;
+  int size_;
+};
+
+// Where a component's Jacobian may be non-zero; the integrator's elimination is planned from it.
+class DependencyList {
+ public:
+  DependencyList(math::SparsityPattern& pattern, int size) : pattern_(pattern), size_(size) {}
+  void add(StateIndex row, StateIndex column) {
+    pattern_.add(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
+  }
+  // Both flows depend on both pressures.
+  void add_restriction(StateIndex a, StateIndex b) { add(a, a), add(a, b), add(b, a), add(b, b); }
+  void add_ls(StateIndex row, LsIndex ls) {
+    for (int j = 0; j < size_; ++j) {
+      if (pattern_.has(static_cast<std::size_t>(size_ + ls), static_cast<std::size_t>(j))) add(row, j);
+    }
+  }
+  [[nodiscard]] StateIndex ls_row(LsIndex ls) const { return size_ + ls; }
+
+ private:
+  math::SparsityPattern& pattern_;
+  int size_;
+};
+
+// Base of all components. Functions that a step reaches neither allocate nor throw.
+class HydraulicComponent {
+ public:
+  explicit HydraulicComponent(const ComponentDef& def)
+      : name_(def.name), type_(*find_component_type(def.type_name())) {}
+  HydraulicComponent(const HydraulicComponent&) = delete;
+  HydraulicComponent& operator=(const HydraulicComponent&) = delete;
+  virtual ~HydraulicComponent() = default;
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] const ComponentType& type() const noexcept { return type_; }
+
+  // False for a component that only adds content to a volume.
+  [[nodiscard]] virtual bool has_equations() const noexcept { return true; }
+  virtual void declare_dependencies(DependencyList& dependencies) const = 0;
+  virtual void add_rates(const CircuitView& view, Rates& rates) const noexcept = 0;
+  virtual void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept = 0;
+
+  // Load-sensing pressure above tank and its derivatives, for components that have one; called in an order in which
+  // every source comes before its consumers.
+  [[nodiscard]] virtual std::vector<LsIndex> ls_inputs() const { return {}; }  // that ls_pressure() reads
+  [[nodiscard]] virtual double ls_pressure(const CircuitView&) const noexcept { return 0; }
+  virtual void declare_ls_dependencies(DependencyList&) const {}
+  virtual void add_ls_jacobian(const CircuitView&, JacobianStamp&) const noexcept {}
+
+  // Raises outflow_slope[volume] (-dQ/dp) to the steeper side where a unilateral element is about to switch.
+  virtual void raise_outflow_slopes(const CircuitView&, double* /*outflow_slope*/) const noexcept {}
+  // StepFlag bits that hold now.
+  [[nodiscard]] virtual std::uint32_t flags(const CircuitView&) const noexcept { return 0; }
+
+  // Variables in a fixed order, names with the element's name in front; read() writes as many values and returns the
+  // end.
+  virtual void list_variables(std::vector<ElementVariable>& variables) const = 0;
+  virtual double* read_variables(const CircuitView& view, double* values) const noexcept = 0;
+
+  // The component's own copy of its Def (live parameters are written there) and what follows from a change of it.
+  [[nodiscard]] virtual void* def_address() noexcept = 0;
+  virtual void apply_parameters() noexcept = 0;
+
+ protected:
+  [[nodiscard]] ElementVariable variable(std::string_view quantity, Dimension dimension) const {
+    return {name_ + "." + std::string(quantity), dimension};
+  }
+
+ private:
+  std::string name_;
+  const ComponentType& type_;
+};
+
+}  // namespace slew::hydraulics

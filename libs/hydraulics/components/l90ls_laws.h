@@ -1,0 +1,42 @@
+// Flow laws of one side (A or B) of the L90LS valve, equations (2) to (6) of l90ls_valve.h, with their slopes.
+#pragma once
+
+#include "hydraulics/smooth.h"
+
+namespace slew::hydraulics {
+
+inline constexpr double kLsWidth = 5e4;  // Pa, smoothing of the LS limit and of the compensator's switches
+
+struct L90Side {
+  double K_supply = 0, K_return = 0;  // m3/s/sqrt(Pa), fully open edges
+  double K_comp_2 = 0;                // square of the compensator's
+  double compensator_pressure = 0;    // Pa
+  double maximum_ls = 0;              // Pa above tank
+  double opening_rise = 0;            // Pa, of the lock-hold
+  double G_leak = 0;                  // m3/s/Pa
+  double shock_setting = 0, shock_rise = 0, K_shock = 0;
+  double K_anti_cavitation = 0, crack = 0;
+  double transition = 0;  // Pa, of the orifices
+};
+
+// From P into the port; drop = p_P - p_port, load = p_port - p_T.
+struct SupplyFlow {
+  double Q, d_opening, d_drop, d_load;
+};
+
+// From the port to T; drop = p_port - p_T.
+struct ReturnFlow {
+  double Q, d_opening, d_drop;
+};
+
+[[nodiscard]] SupplyFlow supply(const L90Side& side, double opening, double drop, double load) noexcept;
+[[nodiscard]] ReturnFlow to_tank(const L90Side& side, double opening, double drop) noexcept;
+
+// Parts of to_tank(), over the drop: shock valve (>= 0), anti-cavitation valve (<= 0: into the port).
+[[nodiscard]] ValueSlope shock(const L90Side& side, double drop) noexcept;
+[[nodiscard]] ValueSlope anti_cavitation(const L90Side& side, double drop) noexcept;
+
+// By how much the slope of to_tank() grows on the steeper side of a switch closer than `margin`.
+[[nodiscard]] double steeper_return_slope(const L90Side& side, double drop, double margin) noexcept;
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,72 @@
+#include "hydraulics/oil.h"
+
+#include <bit>
+#include <cmath>
+
+#include "hydraulics/hydraulics_def.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr int kPartsShift = 52 - 5;       // 32 parts of an octave: five leading bits of the mantissa
+constexpr double kHighestPressure = 4e9;  // Pa; beyond, kappa keeps its last value
+constexpr double kLowestFraction = 1e-3;  // of the floor: the table's lower end
+constexpr double kVapour = 10;            // c of (3): 110 % expansion at half the floor
+
+std::uint64_t leading_bits(double p) noexcept {
+  return std::bit_cast<std::uint64_t>(p) >> kPartsShift;
+}
+double from_leading_bits(std::uint64_t bits) noexcept {
+  return std::bit_cast<double>(bits << kPartsShift);
+}
+
+}  // namespace
+
+OilCompressibility::OilCompressibility(const HydraulicsDef& def)
+    : B_(def.oil_bulk_modulus),
+      alpha_(def.entrained_air),
+      p_0_(def.air_reference_pressure),
+      inverse_n_(1 / def.polytropic_exponent),
+      floor_(def.pressure_floor) {
+  first_ = leading_bits(kLowestFraction * floor_);
+  lowest_ = from_leading_bits(first_);
+  const std::uint64_t last = leading_bits(kHighestPressure);
+  for (std::uint64_t bits = first_; bits <= last; ++bits) {
+    // cubic with the exact values and slopes at both ends
+    const double start = from_leading_bits(bits), end = from_leading_bits(bits + 1), width = end - start;
+    const ValueSlope a = exact(start), b = exact(end);
+    const double rise = b.value - a.value, slope_a = a.slope * width, slope_b = b.slope * width;
+    segment_.push_back(
+        {start, 1 / width, {a.value, slope_a, 3 * rise - 2 * slope_a - slope_b, slope_a + slope_b - 2 * rise}});
+  }
+}
+
+ValueSlope OilCompressibility::exact(double p) const noexcept {
+  const double oil = std::exp(-(p - p_0_) / B_);
+  const double air = alpha_ * std::pow(p_0_ / p, inverse_n_);
+  const double V = oil + air;
+  const double V_1 = -oil / B_ - air * inverse_n_ / p;
+  const double V_2 = oil / (B_ * B_) + air * inverse_n_ * (inverse_n_ + 1) / (p * p);
+  ValueSlope kappa{-V_1 / V, -V_2 / V + V_1 * V_1 / (V * V)};
+  if (p < floor_) {
+    const double q = floor_ / p - 1;
+    kappa.value += kVapour / floor_ * q * q;
+    kappa.slope -= 2 * kVapour * q / (p * p);
+  }
+  return kappa;
+}
+
+ValueSlope OilCompressibility::at(double p) const noexcept {
+  if (!(p > lowest_)) return {segment_.front().coefficient[0], 0};
+  const std::uint64_t index = leading_bits(p) - first_;
+  if (index >= segment_.size()) {
+    const auto& c = segment_.back().coefficient;
+    return {((c[3] + c[2]) + c[1]) + c[0], 0};
+  }
+  const Segment& s = segment_[index];
+  const auto& c = s.coefficient;
+  const double t = (p - s.start) * s.inverse_width;
+  return {((c[3] * t + c[2]) * t + c[1]) * t + c[0], ((3 * c[3] * t + 2 * c[2]) * t + c[1]) * s.inverse_width};
+}
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,48 @@
+// Compressibility of oil with entrained air, and vapour below the cavitation floor.
+//
+//   V(p)/V_0 = exp(-(p - p_0)/B) + alpha (p_0/p)^(1/n)                                          (1)
+//   kappa(p) = -V'/V                                  1/Pa, the inverse bulk modulus            (2)
+//   kappa(p) += c/p_f (p_f/p - 1)^2  for p < p_f      vapour fills what the oil cannot          (3)
+//
+// p absolute; p_0 air reference pressure, alpha air content there, n polytropic exponent, p_f floor, c = 10. The
+// integral of (3) diverges towards p = 0, so no finite expansion brings a pressure to zero. kappa is tabulated once as
+// piecewise cubics over 32 equal parts of each octave of p (relative error below 1e-6) and read without a
+// transcendental function. Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27; the air term is
+// the usual polytropic one. Not covered: dissolution of air, temperature.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hydraulics/smooth.h"
+
+namespace slew::hydraulics {
+
+struct HydraulicsDef;
+
+class OilCompressibility {
+ public:
+  explicit OilCompressibility(const HydraulicsDef& def);
+
+  // kappa [1/Pa] and its slope [1/Pa2] at the absolute pressure p; beyond the table its end values.
+  [[nodiscard]] ValueSlope at(double p) const noexcept;
+  // (2), (3) evaluated directly; what the table is made from.
+  [[nodiscard]] ValueSlope exact(double p) const noexcept;
+
+  // Pressures below this one are outside of (3): the solver moves them back.
+  [[nodiscard]] double lowest_pressure() const noexcept { return lowest_; }
+
+ private:
+  struct Segment {
+    double start, inverse_width;        // Pa, 1/Pa
+    std::array<double, 4> coefficient;  // of powers of t = (p - start) inverse_width
+  };
+
+  double B_, alpha_, p_0_, inverse_n_, floor_;
+  double lowest_;
+  std::uint64_t first_ = 0;  // leading bits of the first segment's start
+  std::vector<Segment> segment_;
+};
+
+}  // namespace slew::hydraulics

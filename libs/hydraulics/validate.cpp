@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/dimension.h"
+#include "hydraulics/hydraulics_def.h"
+
+namespace slew::hydraulics {
+namespace {
+
+// Field::member takes the Def's address without const; nothing is written through it here.
+template <typename T>
+const T& member(const Field& row, const void* def) {
+  return *static_cast<const T*>(row.member(const_cast<void*>(def)));
+}
+
+std::string interval(const Range& range) {
+  return fmt::format("{}{:g}, {:g}{}", range.min_is_open ? '(' : '[', range.min, range.max,
+                     range.max_is_open ? ')' : ']');
+}
+
+// Values of one element against its field table: numbers in range, required texts present.
+void check_fields(const std::string& element, std::span<const Field> fields, const void* def, Problems& errors) {
+  for (const Field& row : fields) {
+    const std::string path = element + "." + std::string(row.key);
+    if (row.type == FieldType::number || row.type == FieldType::integer) {
+      const double value = row.type == FieldType::number ? member<double>(row, def)
+                                                         : static_cast<double>(member<std::int64_t>(row, def));
+      if (row.range.contains(value)) continue;
+      errors.push_back({path, fmt::format("{:g} is out of range", value),
+                        fmt::format("a value in {} {}", interval(row.range), info(row.dimension).si_unit), ""});
+    } else if (row.type == FieldType::text && row.presence == Presence::required &&
+               member<std::string>(row, def).empty()) {
+      errors.push_back({path, "the name is missing", fmt::format("the name of a {}", row.reference), ""});
+    }
+  }
+}
+
+const ComponentDef* find_component(const HydraulicsDef& def, std::string_view name) {
+  for (const auto& component : def.components) {
+    if (component->name == name) return component.get();
+  }
+  return nullptr;
+}
+
+bool has_volume(const HydraulicsDef& def, std::string_view name) {
+  return std::any_of(def.volumes.begin(), def.volumes.end(), [&](const VolumeDef& v) { return v.name == name; });
+}
+
+// Names that a component refers to exist, by the kind of element in its table.
+void check_references(const HydraulicsDef& def, const ComponentDef& component, const ComponentType& type,
+                      const void* address, Problems& errors) {
+  for (const Field& row : type.fields) {
+    if (row.type != FieldType::text || row.reference.empty()) continue;
+    const std::string& name = member<std::string>(row, address);
+    if (name.empty()) continue;
+    const bool is_missing =
+        (row.reference == "volume" && !has_volume(def, name)) ||
+        (row.reference == "component" && find_component(def, name) == nullptr) ||
+        (row.reference == "curve" &&
+         std::none_of(def.curves.begin(), def.curves.end(), [&](const CurveDef& c) { return c.name == name; }));
+    if (is_missing) {
+      errors.push_back({component.name + "." + std::string(row.key),
+                        fmt::format("there is no {} '{}'", row.reference, name),
+                        fmt::format("the name of a {}", row.reference), ""});
+    }
+  }
+}
+
+void check_names(const HydraulicsDef& def, Problems& errors) {
+  std::set<std::string_view> seen;
+  const auto check = [&](const std::string& name, const char* section) {
+    if (name.empty()) {
+      errors.push_back({section, "an element has no name", "a name", ""});
+    } else if (!seen.insert(name).second) {
+      errors.push_back({name, "the name is used twice", "a name of its own for every element", ""});
+    }
+  };
+  for (const VolumeDef& volume : def.volumes) check(volume.name, "volumes");
+  for (const CurveDef& curve : def.curves) check(curve.name, "curves");
+  for (const auto& component : def.components) check(component->name, "components");
+}
+
+void check_curve(const CurveDef& curve, Problems& errors) {
+  const std::string path = curve.name + ".points";
+  if (curve.points.size() < 2) {
+    errors.push_back({path, "a curve needs at least two points", "two or more [argument, value]", ""});
+    return;
+  }
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const auto& point = curve.points[i];
+    if (!std::isfinite(point[0]) || !std::isfinite(point[1])) {
+      errors.push_back({path, fmt::format("point {} is not finite", i + 1), "numbers", ""});
+    } else if (i > 0 && !(point[0] > curve.points[i - 1][0])) {
+      errors.push_back({path, fmt::format("argument {:g} of point {} does not increase", point[0], i + 1),
+                        "strictly increasing arguments", ""});
+    }
+  }
+  if (!curve.odd) return;
+  if (curve.points.front()[0] < 0) {
+    errors.push_back({path, "an odd curve has points at negative arguments", "arguments >= 0", ""});
+  } else if (curve.points.front()[0] == 0 && curve.points.front()[1] != 0) {
+    errors.push_back({path, "an odd curve is not zero at zero", "[0, 0] as the first point", ""});
+  }
+}
+
+// Volumes that some hose or chamber fills.
+bool has_content(const HydraulicsDef& def, const VolumeDef& volume) {
+  if (volume.fixed || volume.rigid_volume > 0) return true;
+  for (const auto& component : def.components) {
+    const ComponentType* type = find_component_type(component->type_name());
+    if (type == nullptr || !(type->is_actuator || type->name == "hose")) continue;
+    for (const Field& row : type->fields) {
+      if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) return true;
+    }
+  }
+  return false;
+}
+
+void check_volumes(const HydraulicsDef& def, Problems& errors) {
+  for (const VolumeDef& volume : def.volumes) {
+    check_fields(volume.name, kVolumeFields, &volume, errors);
+    if (!has_content(def, volume)) {
+      errors.push_back({volume.name + ".rigid_volume", "the volume has no content: no hose or chamber is connected",
+                        "a hose, a cylinder, a rigid_volume, or fixed: true", ""});
+    }
+  }
+}
+
+// Components that this one takes load-sensing pressures from, with the key that names each.
+std::vector<std::pair<std::string_view, std::string_view>> ls_references(ComponentDef& component) {
+  std::vector<std::pair<std::string_view, std::string_view>> names;
+  for (const Field& row : find_component_type(component.type_name())->fields) {
+    if (row.reference != "component") continue;
+    const std::string& name = member<std::string>(row, component.address());
+    if (!name.empty()) names.emplace_back(row.key, name);
+  }
+  return names;
+}
+
+bool reaches(const HydraulicsDef& def, const ComponentDef& from, std::string_view target, std::size_t depth) {
+  if (depth == 0) return true;
+  for (const auto& [key, name] : ls_references(const_cast<ComponentDef&>(from))) {
+    const ComponentDef* next = find_component(def, name);
+    if (name == target || (next != nullptr && reaches(def, *next, target, depth - 1))) return true;
+  }
+  return false;
+}
+
+// Every LS reference ends at a load-sensing port, without a loop; every LS port is used.
+void check_ls_chain(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
+  std::set<std::string_view> used;
+  for (const auto& component : def.components) {
+    for (const auto& [key, name] : ls_references(*component)) {
+      used.insert(name);
+      const std::string path = component->name + "." + std::string(key);
+      const ComponentDef* source = find_component(def, name);
+      if (source != nullptr && !find_component_type(source->type_name())->has_ls_port) {
+        errors.push_back(
+            {path, fmt::format("'{}' has no load-sensing port", name), "a load-sensing valve or an ls_shuttle", ""});
+      }
+    }
+    if (reaches(def, *component, component->name, def.components.size())) {
+      errors.push_back(
+          {component->name, "the load-sensing chain returns to itself", "a chain that ends at valves", ""});
+    }
+  }
+  for (const auto& component : def.components) {
+    if (!find_component_type(component->type_name())->has_ls_port || used.contains(component->name)) continue;
+    warnings.push_back({component->name, "no pump or shuttle takes its load-sensing pressure",
+                        "an ls_shuttle or the pump's ls_port naming it", ""});
+  }
+}
+
+void check_forces(const HydraulicsDef& def, Problems& errors) {
+  std::set<std::string> driven;
+  for (const auto& component : def.components) {
+    for (const Field& row : find_component_type(component->type_name())->fields) {
+      if (row.reference != "force") continue;
+      const std::string& name = member<std::string>(row, component->address());
+      if (name.empty() || driven.insert(name).second) continue;
+      errors.push_back({component->name + ".force", fmt::format("'{}' is driven by another cylinder already", name),
+                        "a force element of its own", ""});
+    }
+  }
+}
+
+void check_circuit_numbers(const HydraulicsDef& def, Problems& errors) {
+  check_fields("hydraulics", kHydraulicsFields, &def, errors);
+  if (def.solver != Solver::rodas3) {
+    errors.push_back({"hydraulics.solver",
+                      fmt::format("{} is not in this version", kSolverChoices[static_cast<std::size_t>(def.solver)]),
+                      "rodas3", ""});
+  }
+  const auto above_floor = [&](const char* key, double pressure) {
+    if (pressure > def.pressure_floor) return;
+    errors.push_back({std::string("hydraulics.") + key, "the start pressure is below pressure_floor",
+                      "an absolute pressure above pressure_floor", ""});
+  };
+  above_floor("start_return_pressure", def.start_return_pressure);
+  above_floor("start_slew_pressure", def.start_slew_pressure);
+  above_floor("start_pump_pressure", def.start_pump_pressure);
+  for (const VolumeDef& volume : def.volumes) {
+    if (volume.initial_pressure <= def.pressure_floor && volume.initial_pressure > 0) {
+      errors.push_back({volume.name + ".initial_pressure", "the start pressure is below hydraulics.pressure_floor",
+                        "an absolute pressure above pressure_floor", ""});
+    }
+  }
+}
+
+}  // namespace
+
+void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
+  check_names(def, errors);
+  check_circuit_numbers(def, errors);
+  for (const CurveDef& curve : def.curves) check_curve(curve, errors);
+  bool are_types_known = true;
+  for (const auto& component : def.components) {
+    const ComponentType* type = find_component_type(component->type_name());
+    if (type == nullptr) {
+      are_types_known = false;
+      errors.push_back({component->name + ".type",
+                        fmt::format("there is no component type '{}'", component->type_name()),
+                        "one of the types of hydraulic components", ""});
+      continue;
+    }
+    check_fields(component->name, type->fields, component->address(), errors);
+    check_references(def, *component, *type, component->address(), errors);
+    if (type->validate != nullptr) type->validate(def, *component, errors, warnings);
+  }
+  check_volumes(def, errors);
+  if (!are_types_known) return;
+  check_ls_chain(def, errors, warnings);
+  check_forces(def, errors);
+}
+
+}  // namespace slew::hydraulics
