@@ -1,0 +1,434 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/check.h"
+#include "multibody/model.h"
+#include "multibody/topology.h"
+
+namespace slew::multibody {
+namespace {
+
+using math::Mat3;
+using math::Vec3;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+// half a turn about x: reverses a joint's axis, so that q keeps its sign when the tree walks the joint backwards
+const Mat3 kReverse = Mat3::diagonal(1, -1, -1);
+
+Mat3 inertia_about_center(const BodyDef& def) {
+  const auto [xx, yy, zz] = def.inertia;
+  const auto [xy, xz, yz] = def.products;
+  Mat3 I{{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)}};
+  if (def.inertia_about == InertiaPoint::body_origin) {
+    const Mat3 c = math::skew(Vec3(def.center_of_mass));
+    I += (c * c) * def.mass;
+  }
+  return I;
+}
+
+Mat3 rotated(const Mat3& R, const Mat3& I) {
+  return R * I * math::transpose(R);
+}
+
+class Builder {
+ public:
+  explicit Builder(const MechanicsDef& def) : def_(def) {}
+
+  Model run(std::span<const std::string> rows) {
+    Problems problems;
+    poses_ = start_poses(def_, problems);
+    tree_ = find_tree(def_, problems);
+    SLEW_CHECK(problems.empty());
+    model_.gravity = Vec3(def_.gravity);
+    model_.max_substep = def_.max_substep;
+    add_bodies();
+    add_joints();
+    for (const TranslationalForceDef& force : def_.translational_forces) add_line(force);
+    for (const RotationalForceDef& force : def_.rotational_forces) add_angle(force);
+    add_static_dummies();
+    add_force_dummies();
+    for (const std::string& row : rows) add_row(row);
+    mark_used_elements(model_);
+    for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
+    return std::move(model_);
+  }
+
+ private:
+  [[nodiscard]] int body_index(const std::string& name) const { return find_body(def_, name); }
+  [[nodiscard]] const Body& body_of(const std::string& name) const { return model_.bodies[at(body_index(name))]; }
+
+  void add_bodies() {
+    model_.bodies.resize(def_.bodies.size() + 1);
+    model_.bodies[0].name = kGroundName;
+    model_.bodies[0].R_LB = Mat3::identity();
+    for (std::size_t i = 0; i < def_.bodies.size(); ++i) {
+      Body& body = model_.bodies[i + 1];
+      body.name = def_.bodies[i].name;
+      body.c_B = Vec3(def_.bodies[i].center_of_mass);
+      body.I_B = inertia_about_center(def_.bodies[i]);
+    }
+    model_.links.resize(1);
+    link_pose_.resize(1);
+  }
+
+  void add_joints() {
+    model_.joints.resize(def_.joints.size());
+    for (const TreeEdge& edge : tree_) {
+      const JointDef& def = def_.joints[at(edge.joint)];
+      Joint& joint = model_.joints[at(edge.joint)];
+      joint = {.name = def.name,
+               .type = def.type,
+               .body1 = body_index(def.body1),
+               .body2 = body_index(def.body2),
+               .R_B1 = math::rotation_xyz(def.orientation1),
+               .R_B2 = math::rotation_xyz(def.orientation2),
+               .p_B1 = Vec3(def.point1),
+               .p_B2 = Vec3(def.point2),
+               .is_reversed = edge.is_reversed};
+      Body& child = model_.bodies[at(edge.child)];
+      child.parent = edge.parent;
+      child.joint = edge.joint;
+      if (def.type == JointType::fixed) {
+        child.link = model_.bodies[at(edge.parent)].link;
+      } else {
+        joint.link = add_link(def, edge);
+        child.link = joint.link;
+      }
+      place(child, poses_[at(edge.child)]);
+      add_mass(edge.child);
+      model_.body_order.push_back(edge.child);
+    }
+  }
+
+  // the body's pose in its link; for merged bodies as the start poses have it
+  void place(Body& body, const Pose& pose) {
+    const Pose& link = link_pose_[at(body.link)];
+    body.R_LB = math::transpose(link.R) * pose.R;
+    body.p_LB = math::transpose(link.R) * (pose.p - link.p);
+  }
+
+  void add_mass(int body) {
+    Body& moved = model_.bodies[at(body)];
+    const double mass = def_.bodies[at(body) - 1].mass;
+    moved.lumped = static_cast<int>(model_.lumped.size());
+    model_.lumped.push_back({.c_L = moved.p_LB + moved.R_LB * moved.c_B,
+                             .I_c = rotated(moved.R_LB, moved.I_B),
+                             .mass = mass,
+                             .reference_mass = mass,
+                             .link = moved.link,
+                             .owner = body});
+  }
+
+  int add_link(const JointDef& def, const TreeEdge& edge) {
+    JointFrames frames = joint_frames(def, poses_[at(body_index(def.body1))], poses_[at(body_index(def.body2))]);
+    if (edge.is_reversed) {
+      std::swap(frames.frame1, frames.frame2);
+      if (def.type != JointType::spherical) {
+        frames.frame1.R = frames.frame1.R * kReverse;
+        frames.frame2.R = frames.frame2.R * kReverse;
+      }
+    }
+    const int parent = model_.bodies[at(edge.parent)].link;
+    const Pose& parent_pose = link_pose_[at(parent)];
+    Link link;
+    link.parent = parent;
+    link.R_PJ = math::transpose(parent_pose.R) * frames.frame1.R;
+    link.p_PJ = math::transpose(parent_pose.R) * (frames.frame1.p - parent_pose.p);
+    link.q = model_.coordinate_count();
+    link.u = model_.degrees_of_freedom();
+    add_coordinates(def, edge, frames, link);
+    model_.links.push_back(link);
+    return static_cast<int>(model_.links.size()) - 1;
+  }
+
+  // start values; the child link's frame is put where these coordinates have it
+  void add_coordinates(const JointDef& def, const TreeEdge& edge, const JointFrames& frames, Link& link) {
+    std::vector<double>& q = model_.start_q;
+    std::vector<double>& u = model_.start_u;
+    const auto& [frame1, frame2] = frames;
+    Pose child = {frame2.R, frame1.p};
+    if (def.type == JointType::revolute) {
+      link.joint = LinkJoint::revolute;
+      const double c = math::dot(frame1.R.c[0], frame2.R.c[0]), s = math::dot(frame1.R.c[1], frame2.R.c[0]);
+      q.push_back(std::atan2(s, c));
+      u.push_back(def.initial_velocity);
+      child.R = frame1.R * math::rotation_z(q.back());
+    } else if (def.type == JointType::prismatic) {
+      link.joint = LinkJoint::prismatic;
+      q.push_back(math::dot(frame1.R.c[2], frame2.p - frame1.p));
+      u.push_back(def.initial_velocity);
+      child = {frame1.R, frame1.p + frame1.R.c[2] * q.back()};
+    } else {
+      link.joint = def.type == JointType::spherical ? LinkJoint::spherical : LinkJoint::floating;
+      const Mat3& R_body1 = poses_[at(body_index(def.body1))].R;
+      if (link.joint == LinkJoint::floating) {
+        child.p = frame2.p;
+        for (const double x : frame2.p.array()) q.push_back(x);
+        for (const double v : (R_body1 * Vec3(def.initial_translation)).array()) u.push_back(v);
+      }
+      const math::Quaternion attitude = math::quaternion_of(frame2.R);
+      child.R = math::rotation_of(attitude);
+      q.insert(q.end(), {attitude.w, attitude.x, attitude.y, attitude.z});
+      const Vec3 w = R_body1 * Vec3(def.initial_rotation) * (edge.is_reversed ? -1.0 : 1.0);
+      for (const double x : w.array()) u.push_back(x);
+    }
+    link_pose_.push_back(child);
+  }
+
+  void add_line(const TranslationalForceDef& def) {
+    const Body& body1 = body_of(def.body1);
+    const Body& body2 = body_of(def.body2);
+    model_.lines.push_back({.name = def.name,
+                            .p1 = body1.p_LB + body1.R_LB * Vec3(def.point1),
+                            .p2 = body2.p_LB + body2.R_LB * Vec3(def.point2),
+                            .link1 = body1.link,
+                            .link2 = body2.link,
+                            .body1 = body_index(def.body1),
+                            .body2 = body_index(def.body2),
+                            .law = {.spring = def.spring_constant,
+                                    .damping = def.damping_constant,
+                                    .free = def.free_length,
+                                    .min = def.min_length,
+                                    .max = def.max_length,
+                                    .end_spring = def.end_spring_constant,
+                                    .end_damping = def.end_damping_constant}});
+  }
+
+  void add_angle(const RotationalForceDef& def) {
+    const Body& body1 = body_of(def.body1);
+    const Body& body2 = body_of(def.body2);
+    // right-handed triad of unit vectors from the two directions given
+    const Vec3 f1 = Vec3(def.f1) * (1 / math::norm(Vec3(def.f1)));
+    const Vec3 normal = math::cross(f1, Vec3(def.g1));
+    const Vec3 axis = normal * (1 / math::norm(normal));
+    AngleElement element{.name = def.name,
+                         .f1 = body1.R_LB * f1,
+                         .g1 = body1.R_LB * math::cross(axis, f1),
+                         .axis = body1.R_LB * axis,
+                         .f2 = body2.R_LB * (Vec3(def.f2) * (1 / math::norm(Vec3(def.f2)))),
+                         .link1 = body1.link,
+                         .link2 = body2.link,
+                         .body1 = body_index(def.body1),
+                         .body2 = body_index(def.body2),
+                         .law = {.spring = def.spring_constant,
+                                 .damping = def.damping_constant,
+                                 .free = def.free_angle,
+                                 .min = def.min_angle,
+                                 .max = def.max_angle,
+                                 .end_spring = def.end_spring_constant,
+                                 .end_damping = def.end_damping_constant}};
+    element.first_path = static_cast<int>(model_.paths.size());
+    add_path(element.link1, element.link2);
+    element.path_end = static_cast<int>(model_.paths.size());
+    find_coaxial(element);
+    model_.angles.push_back(element);
+  }
+
+  // joints between two links: those that move link 1 with sign -1, those that move link 2 with sign +1
+  void add_path(int link1, int link2) {
+    while (link1 != link2) {
+      // the deeper one has the larger number, or is at least no ancestor of the other
+      int& deeper = link1 > link2 ? link1 : link2;
+      const double sign = link1 > link2 ? -1 : 1;
+      model_.paths.push_back({.link = deeper, .sign = sign});
+      deeper = model_.links[at(deeper)].parent;
+    }
+  }
+
+  // with all joints on the way about one axis the angle is a sum of joint angles, whatever the number of turns
+  void find_coaxial(AngleElement& element) {
+    constexpr double kParallel = 1e-9;
+    const Pose& pose1 = link_pose_[at(element.link1)];
+    const Vec3 axis = pose1.R * element.axis;
+    const Vec3 f2 = link_pose_[at(element.link2)].R * element.f2;
+    const double angle = std::atan2(math::dot(f2, pose1.R * element.g1), math::dot(f2, pose1.R * element.f1));
+    element.is_coaxial = true;
+    element.offset = angle;
+    for (int i = element.first_path; i < element.path_end; ++i) {
+      PathEntry& entry = model_.paths[at(i)];
+      const Link& link = model_.links[at(entry.link)];
+      const Vec3 joint_axis = link_pose_[at(entry.link)].R.c[2];
+      if (link.joint != LinkJoint::revolute || math::norm(math::cross(joint_axis, axis)) > kParallel) {
+        element.is_coaxial = false;
+        return;
+      }
+      entry.turn = entry.sign * (math::dot(joint_axis, axis) > 0 ? 1.0 : -1.0);
+      element.offset -= entry.turn * model_.start_q[at(link.q)];
+    }
+  }
+
+  void add_static_dummies() {
+    for (const StaticDummyDef& def : def_.static_dummies) {
+      const Body& body = body_of(def.relative_to);
+      const Mat3 R_LD = body.R_LB * math::rotation_zxz(def.orientation);
+      const Vec3 p_LD = body.p_LB + body.R_LB * Vec3(def.position);
+      const Mat3 I = Mat3::diagonal(def.inertia[0], def.inertia[1], def.inertia[2]);
+      model_.lumped.push_back({.c_L = p_LD + R_LD * Vec3(def.center_of_mass),
+                               .I_c = rotated(R_LD, I),
+                               .mass = def.mass,
+                               .reference_mass = def.mass,
+                               .link = body.link,
+                               .owner = body_index(def.relative_to)});
+    }
+  }
+
+  void add_force_dummies() {
+    for (std::size_t i = 0; i < model_.lines.size(); ++i) add_dummies_of(static_cast<int>(i));
+    std::stable_sort(model_.coupled.begin(), model_.coupled.end(),
+                     [](const CoupledMass& a, const CoupledMass& b) { return a.child < b.child; });
+    for (std::size_t i = 0; i < model_.coupled.size(); ++i) {
+      Link& child = model_.links[at(model_.coupled[i].child)];
+      if (child.coupled_end == child.first_coupled) child.first_coupled = static_cast<int>(i);
+      child.coupled_end = static_cast<int>(i) + 1;
+    }
+  }
+
+  // all dummies of one force as one cylinder and one piston
+  void add_dummies_of(int index) {
+    const LineElement& line = model_.lines[at(index)];
+    double mass[2] = {0, 0}, moment[2] = {0, 0}, second[2] = {0, 0}, transverse = 0;
+    for (const ForceDummyDef& dummy : def_.force_dummies) {
+      if (dummy.relative_to != line.name) continue;
+      const std::size_t end = dummy.index == 1 ? 0 : 1;
+      mass[end] += dummy.mass;
+      moment[end] += dummy.mass * dummy.center_of_mass[0];
+      second[end] += dummy.mass * dummy.center_of_mass[0] * dummy.center_of_mass[0];
+      transverse += 0.5 * (dummy.inertia[1] + dummy.inertia[2]);
+    }
+    if (mass[0] + mass[1] == 0) return;
+    CoupledMass coupled{.line = index, .m1 = mass[0], .m2 = mass[1]};
+    if (mass[0] > 0) coupled.c1 = moment[0] / mass[0];
+    if (mass[1] > 0) coupled.c2 = moment[1] / mass[1];
+    // several dummies at one end: their spread about the common centre is transverse inertia
+    coupled.transverse = transverse + (second[0] - moment[0] * coupled.c1) + (second[1] - moment[1] * coupled.c2);
+    if (line.link1 == line.link2) {
+      lump_dummies(line, coupled);
+      return;
+    }
+    coupled.is_point1_on_child = line.link1 > line.link2;
+    coupled.child = coupled.is_point1_on_child ? line.link1 : line.link2;
+    model_.coupled.push_back(coupled);
+  }
+
+  // both points on one link: the dummies are part of it
+  void lump_dummies(const LineElement& line, const CoupledMass& coupled) {
+    if (line.link1 == kGround) return;
+    const Vec3 d = line.p1 - line.p2;
+    const Vec3 e = d * (1 / math::norm(d));
+    const Mat3 across = Mat3::identity() - math::outer(e, e);
+    const auto add = [&](Vec3 center, double mass, double transverse, int owner) {
+      model_.lumped.push_back({.c_L = center,
+                               .I_c = across * transverse,
+                               .mass = mass,
+                               .reference_mass = mass,
+                               .link = line.link1,
+                               .owner = owner});
+    };
+    add(line.p1 + e * coupled.c1, coupled.m1, coupled.transverse, line.body1);
+    add(line.p2 + e * coupled.c2, coupled.m2, 0, line.body2);
+  }
+
+  void add_row(const std::string& name) {
+    Row row;
+    for (std::size_t i = 0; i < model_.lines.size(); ++i) {
+      if (model_.lines[i].name != name) continue;
+      row.kind = RowKind::length;
+      row.element = static_cast<int>(i);
+      row.first_path = static_cast<int>(model_.paths.size());
+      add_path(model_.lines[i].link1, model_.lines[i].link2);
+      row.path_end = static_cast<int>(model_.paths.size());
+    }
+    for (std::size_t i = 0; i < model_.angles.size(); ++i) {
+      if (model_.angles[i].name != name) continue;
+      row.kind = RowKind::angle;
+      row.element = static_cast<int>(i);
+      row.first_path = model_.angles[i].first_path;
+      row.path_end = model_.angles[i].path_end;
+    }
+    for (std::size_t i = 0; i < def_.joints.size(); ++i) {
+      const JointDef& def = def_.joints[i];
+      if (def.name != name) continue;
+      row.kind = RowKind::joint;
+      row.element = static_cast<int>(i);
+      row.link = model_.joints[i].link;
+      row.first_path = static_cast<int>(model_.paths.size());
+      model_.paths.push_back({.link = row.link, .sign = 1});
+      row.path_end = row.first_path + 1;
+      row.law = {.coulomb = def.coulomb_friction,
+                 .viscous = def.viscous_friction,
+                 .friction_speed = def.friction_speed,
+                 .limit_min = def.limit_min,
+                 .limit_max = def.limit_max,
+                 .limit_stiffness = def.limit_stiffness,
+                 .limit_damping = def.limit_damping};
+    }
+    SLEW_CHECK(row.path_end > row.first_path);
+    model_.rows.push_back(row);
+  }
+
+  const MechanicsDef& def_;
+  Model model_;
+  std::vector<Pose> poses_;
+  std::vector<TreeEdge> tree_;
+  std::vector<Pose> link_pose_;  // at the start, by link
+};
+
+bool has_one_coordinate(const JointDef& joint) {
+  return joint.type == JointType::revolute || joint.type == JointType::prismatic;
+}
+
+}  // namespace
+
+std::vector<std::string> joint_rows(const MechanicsDef& mechanics) {
+  std::vector<std::string> names;
+  for (const JointDef& joint : mechanics.joints) {
+    const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
+    if (has_one_coordinate(joint) && (has_limits || joint.coulomb_friction > 0 || joint.viscous_friction > 0)) {
+      names.push_back(joint.name);
+    }
+  }
+  return names;
+}
+
+void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems) {
+  if (rows.size() > static_cast<std::size_t>(kMaxRows)) {
+    problems.push_back({"mechanics",
+                        std::to_string(rows.size()) + " actuators and joints with friction or limits",
+                        "at most " + std::to_string(kMaxRows),
+                        {}});
+  }
+  Problems ignored;
+  const std::vector<int> merged = merged_into(mechanics, find_tree(mechanics, ignored));
+  const auto is_merged = [&](const std::string& body1, const std::string& body2) {
+    const int a = find_body(mechanics, body1), b = find_body(mechanics, body2);
+    return a == kNoBody || b == kNoBody || merged[at(a)] == merged[at(b)];
+  };
+  for (const std::string& name : rows) {
+    bool is_known = false, is_rigid = false;
+    for (const TranslationalForceDef& force : mechanics.translational_forces) {
+      if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
+    }
+    for (const RotationalForceDef& force : mechanics.rotational_forces) {
+      if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
+    }
+    for (const JointDef& joint : mechanics.joints) is_known |= joint.name == name && has_one_coordinate(joint);
+    if (!is_known) {
+      problems.push_back({name,
+                          "nothing can act here: '" + name + "' is no force and no joint with one coordinate",
+                          "a translational or rotational force, or a revolute or prismatic joint",
+                          {}});
+    } else if (is_rigid) {
+      problems.push_back({name, "the force acts between bodies that fixed joints merge", "bodies that can move", {}});
+    }
+  }
+}
+
+Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows) {
+  return Builder(mechanics).run(rows);
+}
+
+}  // namespace slew::multibody

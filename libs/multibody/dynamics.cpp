@@ -1,0 +1,137 @@
+#include "multibody/dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/check.h"
+#include "core/reductions.h"
+#include "multibody/passes.h"
+#include "multibody/rows.h"
+
+namespace slew::multibody {
+namespace {
+
+// everything up to and including the backward pass
+void prepare(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+  update_motion(model, q, u, ws);
+  update_elements(model, q, Elements::used, ws);
+  update_inertia(model, ws);
+  update_coupled(model, ws);
+  std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
+  apply_elements(model, ws);
+}
+
+}  // namespace
+
+void forward_dynamics(const Model& model, std::span<const double> q, std::span<const double> u,
+                      std::span<const double> row_forces, Workspace& ws) noexcept {
+  prepare(model, q, u, ws);
+  if (!row_forces.empty()) {
+    std::copy(row_forces.begin(), row_forces.end(), ws.row_force.begin());
+    apply_row_forces(model, ws);
+  }
+  factorize(model, ws);
+  solve_forward(model, ws, ws.residual, ws.udot);
+}
+
+void evaluate(const Model& model, const State& state, Workspace& ws) noexcept {
+  forward_dynamics(model, state.q, state.u, {}, ws);
+  ws.udot_free = ws.udot;
+  ws.residual_free = ws.residual;
+  evaluate_rows(model, state, ws);
+}
+
+void accelerations(const Model& model, Workspace& ws, std::span<const double> row_forces,
+                   std::span<double> udot) noexcept {
+  const std::size_t dof = ws.udot.size();
+  std::copy(ws.residual_free.begin(), ws.residual_free.end(), ws.residual.begin());
+  for (std::size_t k = 0; k < row_forces.size(); ++k) {
+    if (!ws.row_is_active[k]) continue;
+    const double* residual = ws.row_residual.data() + k * dof;
+    for (std::size_t j = 0; j < dof; ++j) ws.residual[j] += residual[j] * row_forces[k];
+  }
+  solve_forward(model, ws, ws.residual, udot);
+}
+
+void response_column(const Model& model, Workspace& ws, int row, std::span<double> column) noexcept {
+  const std::size_t dof = ws.udot.size();
+  const std::span<const double> residual(ws.row_residual.data() + static_cast<std::size_t>(row) * dof, dof);
+  solve_forward(model, ws, residual, column);
+}
+
+namespace {
+
+void normalize_quaternions(const Model& model, std::span<double> q) noexcept {
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    if (link.joint != LinkJoint::spherical && link.joint != LinkJoint::floating) continue;
+    const std::size_t k = static_cast<std::size_t>(link.q) + (link.joint == LinkJoint::floating ? 3 : 0);
+    const math::Quaternion unit = math::normalized({q[k], q[k + 1], q[k + 2], q[k + 3]});
+    q[k] = unit.w;
+    q[k + 1] = unit.x;
+    q[k + 2] = unit.y;
+    q[k + 3] = unit.z;
+  }
+}
+
+// y = x + scale * rate
+void combine(std::span<const double> x, double scale, std::span<const double> rate, std::span<double> y) noexcept {
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = x[i] + scale * rate[i];
+}
+
+void row_forces_at(double t, double h, std::span<const double> mean, std::span<const double> slope,
+                   std::span<double> forces) noexcept {
+  for (std::size_t k = 0; k < mean.size(); ++k) forces[k] = mean[k] + (t - 0.5 * h) * slope[k];
+}
+
+// stages 2 to 4 and the sum; the first stage's u' is in ws.udot and its motion in ws
+void finish_step(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                 std::span<const double> slope) noexcept {
+  constexpr double kStageTime[3] = {0.5, 0.5, 1.0};
+  constexpr double kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  coordinate_rates(model, ws, state.q, state.u, ws.qdot);
+  combine(state.q, h * kWeight[0], ws.qdot, ws.q_sum);
+  combine(state.u, h * kWeight[0], ws.udot, ws.u_sum);
+  const std::span<double> forces(ws.row_force.data(), mean.size());
+  for (int stage = 1; stage < 4; ++stage) {
+    const double time = kStageTime[stage - 1] * h;
+    combine(state.q, time, ws.qdot, ws.q_stage);
+    combine(state.u, time, ws.udot, ws.u_stage);
+    row_forces_at(time, h, mean, slope, forces);
+    forward_dynamics(model, ws.q_stage, ws.u_stage, forces, ws);
+    coordinate_rates(model, ws, ws.q_stage, ws.u_stage, ws.qdot);
+    combine(ws.q_sum, h * kWeight[stage], ws.qdot, ws.q_sum);
+    combine(ws.u_sum, h * kWeight[stage], ws.udot, ws.u_sum);
+  }
+  state.q.swap(ws.q_sum);
+  state.u.swap(ws.u_sum);
+  normalize_quaternions(model, state.q);
+}
+
+}  // namespace
+
+void advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+             std::span<const double> slope) noexcept {
+  SLEW_ASSERT(mean.size() == model.rows.size() && slope.size() == model.rows.size());
+  row_forces_at(0, h, mean, slope, ws.row_force);
+  accelerations(model, ws, ws.row_force, ws.udot);
+  finish_step(model, state, ws, h, mean, slope);
+}
+
+void advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept {
+  forward_dynamics(model, state.q, state.u, {}, ws);
+  finish_step(model, state, ws, h, {}, {});
+}
+
+int substep_count(const Model& model, double step) noexcept {
+  // a step that is a multiple but for rounding does not get one sub-step more
+  constexpr double kRounding = 1e-9;
+  return std::max(1, static_cast<int>(std::ceil(step / model.max_substep * (1 - kRounding))));
+}
+
+bool is_finite(const State& state) noexcept {
+  return all_finite(state.q) && all_finite(state.u);
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,35 @@
+// Spring, damper and end dampers of a force element along its coordinate x (length or angle). Internal to the library.
+//
+//   F = -k (x - x_0) - d v + max(0, k_e (x_min - x) - d_e v) - max(0, k_e (x - x_max) + d_e v)      (1)
+// the last two while x is outside its range: an end damper pushes back and never pulls.
+#pragma once
+
+#include "multibody/model.h"
+
+namespace slew::multibody {
+
+// damper_speed replaces v in the second term: a rotational damper acts about the axis, its spring along the gradient.
+[[nodiscard]] inline double force_of(const ElementLaw& law, double x, double v, double damper_speed) noexcept {
+  double force = -law.spring * (x - law.free) - law.damping * damper_speed;
+  if (law.end_spring > 0) {
+    if (x < law.min) {
+      const double push = law.end_spring * (law.min - x) - law.end_damping * v;
+      if (push > 0) force += push;
+    } else if (x > law.max) {
+      const double push = law.end_spring * (x - law.max) + law.end_damping * v;
+      if (push > 0) force -= push;
+    }
+  }
+  return force;
+}
+
+[[nodiscard]] inline double stored_energy(const ElementLaw& law, double x) noexcept {
+  double energy = 0.5 * law.spring * (x - law.free) * (x - law.free);
+  if (law.end_spring > 0) {
+    const double depth = x < law.min ? law.min - x : x > law.max ? x - law.max : 0;
+    energy += 0.5 * law.end_spring * depth * depth;
+  }
+  return energy;
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,135 @@
+#include <cmath>
+#include <cstddef>
+
+#include "multibody/element_law.h"
+#include "multibody/passes.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+bool has_spring(const ElementLaw& law) noexcept {
+  return law.spring != 0 || law.end_spring != 0;
+}
+
+// a damper alone needs the axis only
+bool needs_angle(const AngleElement& element) noexcept {
+  return element.has_row || has_spring(element.law);
+}
+
+void update_line(const LineElement& line, const Workspace& ws, LineMotion& m) noexcept {
+  const LinkMotion& link1 = ws.motion[at(line.link1)];
+  const LinkMotion& link2 = ws.motion[at(line.link2)];
+  const Vec3 s1 = link1.R * line.p1, s2 = link2.R * line.p2;
+  m.P1 = link1.p + s1;
+  m.P2 = link2.p + s2;
+  m.w = (link1.v + cross(link1.w, s1)) - (link2.v + cross(link2.w, s2));
+  const Vec3 d = m.P1 - m.P2;
+  m.length = norm(d);
+  m.e = d * (1 / m.length);
+  m.rate = dot(m.e, m.w);
+}
+
+void update_angle(const Model& model, const AngleElement& element, std::span<const double> q, const Workspace& ws,
+                  AngleMotion& m) noexcept {
+  const LinkMotion& link1 = ws.motion[at(element.link1)];
+  const LinkMotion& link2 = ws.motion[at(element.link2)];
+  m.axis = link1.R * element.axis;
+  if (element.is_coaxial) {
+    m.angle = element.offset;
+    for (int i = element.first_path; i < element.path_end; ++i) {
+      const PathEntry& entry = model.paths[at(i)];
+      m.angle += entry.turn * q[at(model.links[at(entry.link)].q)];
+    }
+    m.n = m.axis;
+  } else {
+    // angle of f2's shadow on the plane of f1 and g1; n is its gradient
+    const Vec3 f1 = link1.R * element.f1, g1 = link1.R * element.g1, f2 = link2.R * element.f2;
+    const double c = dot(f2, f1), s = dot(f2, g1);
+    m.angle = std::atan2(s, c);
+    m.n = cross(f2, g1 * c - f1 * s) * (1 / (c * c + s * s));
+  }
+  m.rate = dot(m.n, link2.w - link1.w);
+}
+
+void push(Workspace& ws, int link, Vec3 point, Vec3 force) noexcept {
+  ArticulatedInertia& body = ws.inertia[at(link)];
+  body.f -= force;
+  body.n -= cross(point - ws.motion[at(link)].p, force);
+}
+
+void push_apart(const LineElement& line, const LineMotion& m, double force, Workspace& ws) noexcept {
+  const Vec3 F = m.e * force;
+  push(ws, line.link1, m.P1, F);
+  push(ws, line.link2, m.P2, -F);
+}
+
+void turn(const AngleElement& element, Vec3 torque, Workspace& ws) noexcept {
+  ws.inertia[at(element.link2)].n -= torque;
+  ws.inertia[at(element.link1)].n += torque;
+}
+
+}  // namespace
+
+Vec3 torque_of(const AngleElement& element, const AngleMotion& m, const Workspace& ws) noexcept {
+  const Vec3 w_rel = ws.motion[at(element.link2)].w - ws.motion[at(element.link1)].w;
+  // the damper acts about the axis itself, so that three of them at right angles damp any rotation alike
+  Vec3 torque = m.axis * (-element.law.damping * dot(m.axis, w_rel));
+  if (has_spring(element.law)) torque += m.n * force_of(element.law, m.angle, m.rate, 0);
+  return torque;
+}
+
+void update_elements(const Model& model, std::span<const double> q, Elements which, Workspace& ws) noexcept {
+  for (std::size_t i = 0; i < model.lines.size(); ++i) {
+    if (which == Elements::all || model.lines[i].is_used) update_line(model.lines[i], ws, ws.lines[i]);
+  }
+  for (std::size_t i = 0; i < model.angles.size(); ++i) {
+    const AngleElement& element = model.angles[i];
+    if (which == Elements::all || needs_angle(element)) {
+      update_angle(model, element, q, ws, ws.angles[i]);
+    } else if (element.law.is_active) {
+      ws.angles[i].axis = ws.motion[at(element.link1)].R * element.axis;
+    }
+  }
+}
+
+void apply_elements(const Model& model, Workspace& ws) noexcept {
+  for (std::size_t i = 0; i < model.lines.size(); ++i) {
+    const LineElement& line = model.lines[i];
+    if (!line.law.is_active) continue;
+    const LineMotion& m = ws.lines[i];
+    push_apart(line, m, force_of(line.law, m.length, m.rate, m.rate), ws);
+  }
+  for (std::size_t i = 0; i < model.angles.size(); ++i) {
+    const AngleElement& element = model.angles[i];
+    if (!element.law.is_active) continue;
+    turn(element, torque_of(element, ws.angles[i], ws), ws);
+  }
+}
+
+void apply_row_forces(const Model& model, Workspace& ws) noexcept {
+  for (std::size_t i = 0; i < model.rows.size(); ++i) {
+    if (!ws.row_is_active[i]) continue;
+    const Row& row = model.rows[i];
+    const double force = ws.row_force[i];
+    switch (row.kind) {
+      case RowKind::length:
+        push_apart(model.lines[at(row.element)], ws.lines[at(row.element)], force, ws);
+        break;
+      case RowKind::angle:
+        turn(model.angles[at(row.element)], ws.angles[at(row.element)].n * force, ws);
+        break;
+      case RowKind::joint:
+        ws.tau[at(model.links[at(row.link)].u)] += force;
+        break;
+    }
+  }
+}
+
+}  // namespace slew::multibody

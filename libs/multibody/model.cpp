@@ -1,0 +1,86 @@
+#include "multibody/model.h"
+
+#include <cstddef>
+
+namespace slew::multibody {
+
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+template <typename Element>
+int find_named(const std::vector<Element>& elements, std::string_view name) noexcept {
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (elements[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+}  // namespace
+
+int find_body(const Model& model, std::string_view name) noexcept {
+  return find_named(model.bodies, name);
+}
+
+int find_joint(const Model& model, std::string_view name) noexcept {
+  return find_named(model.joints, name);
+}
+
+int find_row(const Model& model, std::string_view name) noexcept {
+  for (int row = 0; row < model.row_count(); ++row) {
+    if (row_name(model, row) == name) return row;
+  }
+  return -1;
+}
+
+std::string_view row_name(const Model& model, int row) noexcept {
+  const Row& r = model.rows[static_cast<std::size_t>(row)];
+  const auto element = static_cast<std::size_t>(r.element);
+  switch (r.kind) {
+    case RowKind::length:
+      return model.lines[element].name;
+    case RowKind::angle:
+      return model.angles[element].name;
+    case RowKind::joint:
+      break;
+  }
+  return model.joints[element].name;
+}
+
+bool has_effect(const ElementLaw& law) noexcept {
+  return law.spring != 0 || law.damping != 0 || law.end_spring != 0;
+}
+
+void mark_used_elements(Model& model) noexcept {
+  for (LineElement& line : model.lines) line.is_used = line.law.is_active = has_effect(line.law);
+  for (AngleElement& element : model.angles) element.law.is_active = has_effect(element.law);
+  for (const CoupledMass& coupled : model.coupled) model.lines[static_cast<std::size_t>(coupled.line)].is_used = true;
+  for (const Row& row : model.rows) {
+    const auto element = static_cast<std::size_t>(row.element);
+    if (row.kind == RowKind::length) model.lines[element].is_used = true;
+    if (row.kind == RowKind::angle) model.angles[element].has_row = true;
+  }
+}
+
+void lump_link(Model& model, int link) noexcept {
+  double mass = 0;
+  Vec3 h;
+  Mat3 I;
+  for (const LumpedMass& part : model.lumped) {
+    if (part.link != link) continue;
+    mass += part.mass;
+    h += part.c_L * part.mass;
+    // inertia scales with the mass; then from the part's centre to the link's origin
+    const double share = part.reference_mass > 0 ? part.mass / part.reference_mass : 0;
+    const Mat3 c = math::skew(part.c_L);
+    I += part.I_c * share;
+    I -= (c * c) * part.mass;
+  }
+  Link& lumped = model.links[static_cast<std::size_t>(link)];
+  lumped.mass = mass;
+  lumped.h_L = h;
+  lumped.I_L = I;
+}
+
+}  // namespace slew::multibody

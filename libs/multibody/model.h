@@ -1,0 +1,184 @@
+// The mechanism as flat arrays in depth order, ready for the recursion.
+//
+// A link is one or more bodies merged by fixed joints; link 0 is Ground. A link's frame sits at the child side of its
+// joint with z along the joint's axis, so that the pose of link i in its parent is a fixed offset followed by the
+// joint's motion. Coordinates q and speeds u by joint type:
+//   revolute   q: angle                                  u: rate
+//   prismatic  q: displacement                           u: rate
+//   spherical  q: quaternion w x y z of the link in Ground   u: angular velocity seen from the parent, Ground axes
+//   floating   q: position, quaternion of the link in Ground u: velocity of the link's origin, angular velocity
+// The joint's type is an enum, its kernels are picked by a switch in each pass: no virtual call per joint.
+//
+// A Model does not change while a step runs; parameters that a scene declares live change between steps through
+// parameters.h.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/problem.h"
+#include "math/rotation.h"
+#include "multibody/defs.h"
+#include "multibody/joint_law.h"
+
+namespace slew::multibody {
+
+inline constexpr int kMaxRows = 32;
+
+enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating };
+
+struct Link {
+  math::Mat3 R_PJ;  // joint frame in the parent link, at q = 0
+  math::Vec3 p_PJ;  // m
+  math::Mat3 I_L;   // kg m2, about the link's origin, link axes
+  math::Vec3 h_L;   // kg m, mass times centre of mass, link axes
+  double mass = 0;  // kg
+  int parent = 0;   // link
+  LinkJoint joint = LinkJoint::revolute;
+  int q = 0;              // first entry in State::q
+  int u = 0;              // first entry in State::u
+  int first_coupled = 0;  // CoupledMass entries of this link's joint: [first_coupled, coupled_end)
+  int coupled_end = 0;
+};
+
+// Something with a mass that is fixed to a link: a body, a static dummy, a force dummy between merged bodies.
+struct LumpedMass {
+  math::Vec3 c_L;             // m, centre of mass, link frame
+  math::Mat3 I_c;             // kg m2, about it, link axes, for reference_mass
+  double mass = 0;            // kg, now
+  double reference_mass = 0;  // kg, of the scene
+  int link = 0;
+  int owner = 0;  // body that carries it: itself, or a dummy's body
+};
+
+struct Body {
+  std::string name;
+  math::Mat3 R_LB;  // pose in the link
+  math::Vec3 p_LB;  // m
+  math::Vec3 c_B;   // m, centre of mass, body frame
+  math::Mat3 I_B;   // kg m2, about the centre of mass, body axes, for the reference mass
+  int link = 0;
+  int parent = -1;  // body, through the joint that holds it; Ground's is -1
+  int joint = -1;   // that joint
+  int lumped = -1;  // its LumpedMass
+};
+
+struct Joint {
+  std::string name;
+  JointType type = JointType::revolute;
+  int body1 = 0, body2 = 0;
+  math::Mat3 R_B1, R_B2;     // joint frames in their bodies
+  math::Vec3 p_B1, p_B2;     // m
+  int link = 0;              // link that it moves; 0 for a fixed joint
+  bool is_reversed = false;  // the tree walks it from body 2 to body 1
+};
+
+// Linear law of a force element with its end dampers; lengths in m or rad.
+struct ElementLaw {
+  double spring = 0, damping = 0, free = 0;
+  double min = 0, max = 0, end_spring = 0, end_damping = 0;
+  bool is_active = false;  // false: nothing to evaluate
+};
+
+struct LineElement {
+  std::string name;
+  math::Vec3 p1, p2;  // m, points in their links
+  int link1 = 0, link2 = 0;
+  int body1 = 0, body2 = 0;
+  ElementLaw law;
+  bool is_used = false;  // by its law, a row or a dummy: evaluated at every stage
+};
+
+struct AngleElement {
+  std::string name;
+  math::Vec3 f1, g1, axis;  // unit, orthogonal, link 1
+  math::Vec3 f2;            // unit, link 2
+  int link1 = 0, link2 = 0;
+  int body1 = 0, body2 = 0;
+  ElementLaw law;
+  bool has_row = false;
+  bool is_coaxial = false;  // every joint between the links turns about this axis: angle = offset + sum(+-q)
+  double offset = 0;        // rad
+  int first_path = 0;       // entries of Model::paths from link 1 to link 2
+  int path_end = 0;
+};
+
+// Dummies of one force whose points lie on a link and on its parent: masses without degrees of freedom.
+struct CoupledMass {
+  int line = 0;   // LineElement
+  int child = 0;  // link whose joint it spans
+  bool is_point1_on_child = false;
+  double m1 = 0, c1 = 0;  // kg, m: cylinder; centre at P1 + c1 e
+  double m2 = 0, c2 = 0;  // kg, m: piston; centre at P2 + c2 e
+  double transverse = 0;  // kg m2, sum of both transverse moments about their centres
+};
+
+// A joint on the way between two links; sign +1: it moves the second link outwards, -1: the first.
+struct PathEntry {
+  int link = 0;
+  double sign = 0;
+  double turn = 0;  // of a coaxial AngleElement: d(angle)/dq, +1 or -1
+};
+
+enum class RowKind : std::uint8_t { length, angle, joint };
+
+// A scalar generalised coordinate through which a partner or a joint's law acts.
+struct Row {
+  RowKind kind = RowKind::joint;
+  int element = 0;     // LineElement, AngleElement or Joint
+  int link = 0;        // of a joint row
+  int first_path = 0;  // entries of Model::paths
+  int path_end = 0;
+  JointLaw law;  // of a joint row
+};
+
+struct Model {
+  math::Vec3 gravity;         // m/s2, Ground axes
+  double max_substep = 1e-3;  // s
+  std::vector<Link> links;    // [0] is Ground
+  std::vector<LumpedMass> lumped;
+  std::vector<CoupledMass> coupled;  // by child link
+  std::vector<LineElement> lines;
+  std::vector<AngleElement> angles;
+  std::vector<PathEntry> paths;
+  std::vector<Row> rows;
+  std::vector<Body> bodies;  // [0] is Ground
+  std::vector<Joint> joints;
+  std::vector<int> body_order;  // bodies from Ground outwards, parents first; without Ground
+  std::vector<double> start_q, start_u;
+
+  [[nodiscard]] int coordinate_count() const noexcept { return static_cast<int>(start_q.size()); }
+  [[nodiscard]] int degrees_of_freedom() const noexcept { return static_cast<int>(start_u.size()); }
+  [[nodiscard]] int row_count() const noexcept { return static_cast<int>(rows.size()); }
+};
+
+// Names of the joints that need a row because they have friction or limits, in the scene's order.
+[[nodiscard]] std::vector<std::string> joint_rows(const MechanicsDef& mechanics);
+
+// Appends a problem for every name that is no force and no joint with one coordinate, and for too many rows.
+void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems);
+
+// Pre-condition: validate() and validate_rows() found nothing. rows: names of translational forces (coordinate:
+// length), rotational forces (angle) and revolute or prismatic joints (joint coordinate), in the order of the rows.
+// Allocates; not for a step.
+[[nodiscard]] Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows = {});
+
+// Index of a body, joint or row by name; -1 when there is none.
+[[nodiscard]] int find_body(const Model& model, std::string_view name) noexcept;
+[[nodiscard]] int find_joint(const Model& model, std::string_view name) noexcept;
+[[nodiscard]] int find_row(const Model& model, std::string_view name) noexcept;
+[[nodiscard]] std::string_view row_name(const Model& model, int row) noexcept;
+
+// False when all constants are zero: then there is nothing to evaluate.
+[[nodiscard]] bool has_effect(const ElementLaw& law) noexcept;
+
+// Whether each force element is evaluated at every stage, after a change of its law.
+void mark_used_elements(Model& model) noexcept;
+
+// Mass properties of a link from what is lumped into it. Does not allocate.
+void lump_link(Model& model, int link) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,126 @@
+#include <cmath>
+#include <cstddef>
+
+#include "multibody/passes.h"
+
+namespace slew::multibody {
+
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+// R Rz(angle)
+Mat3 turned_about_z(const Mat3& R, double angle) noexcept {
+  const auto [s, c] = math::sin_cos(angle);
+  return {{R.c[0] * c + R.c[1] * s, R.c[1] * c - R.c[0] * s, R.c[2]}};
+}
+
+math::Quaternion quaternion_at(std::span<const double> q, std::size_t i) noexcept {
+  return {q[i], q[i + 1], q[i + 2], q[i + 3]};
+}
+
+Vec3 vector_at(std::span<const double> u, std::size_t i) noexcept {
+  return {u[i], u[i + 1], u[i + 2]};
+}
+
+void move_revolute(const Link& link, const LinkMotion& parent, double q, double u, LinkMotion& m) noexcept {
+  m.R = turned_about_z(parent.R * link.R_PJ, q);
+  m.axis = m.R.c[2];
+  m.r = parent.R * link.p_PJ;
+  const Vec3 spin = m.axis * u;
+  const Vec3 v_rel = cross(parent.w, m.r);
+  m.p = parent.p + m.r;
+  m.w = parent.w + spin;
+  m.v = parent.v + v_rel;
+  m.alpha = parent.alpha + cross(parent.w, spin);
+  m.a = parent.a + cross(parent.alpha, m.r) + cross(parent.w, v_rel);
+}
+
+void move_prismatic(const Link& link, const LinkMotion& parent, double q, double u, LinkMotion& m) noexcept {
+  m.R = parent.R * link.R_PJ;
+  m.axis = m.R.c[2];
+  m.r = parent.R * link.p_PJ + m.axis * q;
+  const Vec3 slide = m.axis * u;
+  const Vec3 v_rel = cross(parent.w, m.r);
+  m.p = parent.p + m.r;
+  m.w = parent.w;
+  m.v = parent.v + v_rel + slide;
+  m.alpha = parent.alpha;
+  // the last term is Coriolis' acceleration
+  m.a = parent.a + cross(parent.alpha, m.r) + cross(parent.w, v_rel) + cross(parent.w, slide) * 2;
+}
+
+// u is the relative angular velocity in Ground axes: u' = 0 leaves the parent's angular acceleration unchanged
+void move_spherical(const Link& link, const LinkMotion& parent, const math::Quaternion& q, Vec3 u,
+                    LinkMotion& m) noexcept {
+  m.R = math::rotation_of(q);
+  m.r = parent.R * link.p_PJ;
+  const Vec3 v_rel = cross(parent.w, m.r);
+  m.p = parent.p + m.r;
+  m.w = parent.w + u;
+  m.v = parent.v + v_rel;
+  m.alpha = parent.alpha;
+  m.a = parent.a + cross(parent.alpha, m.r) + cross(parent.w, v_rel);
+}
+
+void move_floating(const LinkMotion& ground, std::span<const double> q, std::span<const double> u,
+                   LinkMotion& m) noexcept {
+  m.p = vector_at(q, 0);
+  m.r = m.p;
+  m.R = math::rotation_of(quaternion_at(q, 3));
+  m.v = vector_at(u, 0);
+  m.w = vector_at(u, 3);
+  m.alpha = Vec3();
+  m.a = ground.a;
+}
+
+}  // namespace
+
+void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+  ws.motion[0].a = -model.gravity;
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    const LinkMotion& parent = ws.motion[static_cast<std::size_t>(link.parent)];
+    LinkMotion& m = ws.motion[i];
+    const auto qi = static_cast<std::size_t>(link.q), ui = static_cast<std::size_t>(link.u);
+    switch (link.joint) {
+      case LinkJoint::revolute:
+        move_revolute(link, parent, q[qi], u[ui], m);
+        break;
+      case LinkJoint::prismatic:
+        move_prismatic(link, parent, q[qi], u[ui], m);
+        break;
+      case LinkJoint::spherical:
+        move_spherical(link, parent, quaternion_at(q, qi), vector_at(u, ui), m);
+        break;
+      case LinkJoint::floating:
+        move_floating(parent, q.subspan(qi, 7), u.subspan(ui, 6), m);
+        break;
+    }
+  }
+}
+
+void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,
+                      std::span<double> qdot) noexcept {
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    auto qi = static_cast<std::size_t>(link.q);
+    const auto ui = static_cast<std::size_t>(link.u);
+    if (link.joint == LinkJoint::revolute || link.joint == LinkJoint::prismatic) {
+      qdot[qi] = u[ui];
+      continue;
+    }
+    if (link.joint == LinkJoint::floating) {
+      for (std::size_t k = 0; k < 3; ++k) qdot[qi + k] = u[ui + k];
+      qi += 3;
+    }
+    const math::Quaternion rate = math::derivative(quaternion_at(q, qi), ws.motion[i].w);
+    qdot[qi] = rate.w;
+    qdot[qi + 1] = rate.x;
+    qdot[qi + 2] = rate.y;
+    qdot[qi + 3] = rate.z;
+  }
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,77 @@
+// What can be read off a mechanism at an instant: energies, joint reactions, variables, a description.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/element_variable.h"
+#include "multibody/state.h"
+
+namespace slew::multibody {
+
+// Motion of all links and elements at the state; call it before the readings below that take a Workspace. Cheap, does
+// not allocate.
+void observe(const Model& model, const State& state, Workspace& ws) noexcept;
+
+// Kinetic energy of all masses; potential energy of gravity (zero at Ground's origin) and of the elements' springs,
+// end dampers included. Joint limits act through rows and are their owner's. [J]
+struct Energy {
+  double kinetic = 0, potential = 0;
+};
+[[nodiscard]] Energy energy(const Model& model, const Workspace& ws) noexcept;
+
+// Linear momentum, and angular momentum about Ground's origin, of all moving masses [kg m/s, kg m2/s].
+struct Momentum {
+  Triple linear{}, angular{};
+};
+[[nodiscard]] Momentum momentum(const Model& model, const Workspace& ws) noexcept;
+
+// Pose of a body's origin in Ground, by its index in the model (0: Ground).
+struct BodyPose {
+  Triple position{};                    // m
+  std::array<double, 4> orientation{};  // quaternion w x y z
+  Triple center_of_mass{};              // m
+  Triple velocity{};                    // m/s, of the origin
+  Triple angular_velocity{};            // rad/s, Ground axes
+};
+[[nodiscard]] BodyPose body_pose(const Model& model, const Workspace& ws, int body) noexcept;
+
+// What a joint transmits to its body 1: force and moment about the joint's point of body 2, Ground axes [N, N m].
+// It includes the forces of the joint's own row. Fixed joints are included.
+struct JointReaction {
+  Triple force{}, moment{};
+};
+
+// Newton and Euler over the bodies of the scene with the accelerations that the given row forces cause. reactions: one
+// per joint of the scene. Runs a forward dynamics; does not allocate.
+void joint_reactions(const Model& model, const State& state, Workspace& ws, std::span<const double> row_forces,
+                     std::span<JointReaction> reactions) noexcept;
+
+// Variables of bodies ("Bag.position.y"), joints with one coordinate ("Body_Pillar.position"), forces
+// ("ForceT_Lift.length") and energies ("mechanics.kinetic_energy"), in a fixed order; allocates.
+[[nodiscard]] std::vector<ElementVariable> variables(const Model& model);
+
+// Values in the order of variables(), after observe(). row_forces: forces of the rows at this instant, shown as the
+// `force` of their element or joint together with its own law; empty: zero.
+void read_variables(const Model& model, const State& state, const Workspace& ws, std::span<const double> row_forces,
+                    std::span<double> values) noexcept;
+
+// For `slewring describe`.
+struct LinkDescription {
+  std::string joint;  // that moves it
+  std::string joint_type;
+  int degrees_of_freedom = 0;
+  std::vector<std::string> bodies;  // merged into it
+};
+struct Description {
+  int bodies = 0;  // of the scene, without Ground
+  int joints = 0;
+  int degrees_of_freedom = 0;
+  int rows = 0;
+  std::vector<LinkDescription> links;
+  std::vector<std::string> fixed_to_ground;  // bodies that do not move
+};
+[[nodiscard]] Description describe(const Model& model);
+
+}  // namespace slew::multibody

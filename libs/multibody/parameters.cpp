@@ -1,0 +1,126 @@
+#include "multibody/parameters.h"
+
+#include <array>
+#include <cstddef>
+
+namespace slew::multibody {
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+template <typename Law>
+struct Member {
+  std::string_view key;
+  double Law::*value;
+};
+
+constexpr std::array<Member<ElementLaw>, 5> kLineMembers = {{{"spring_constant", &ElementLaw::spring},
+                                                             {"damping_constant", &ElementLaw::damping},
+                                                             {"free_length", &ElementLaw::free},
+                                                             {"end_spring_constant", &ElementLaw::end_spring},
+                                                             {"end_damping_constant", &ElementLaw::end_damping}}};
+constexpr std::array<Member<ElementLaw>, 5> kAngleMembers = {{{"spring_constant", &ElementLaw::spring},
+                                                              {"damping_constant", &ElementLaw::damping},
+                                                              {"free_angle", &ElementLaw::free},
+                                                              {"end_spring_constant", &ElementLaw::end_spring},
+                                                              {"end_damping_constant", &ElementLaw::end_damping}}};
+constexpr std::array<Member<JointLaw>, 4> kJointMembers = {{{"coulomb_friction", &JointLaw::coulomb},
+                                                            {"viscous_friction", &JointLaw::viscous},
+                                                            {"limit_stiffness", &JointLaw::limit_stiffness},
+                                                            {"limit_damping", &JointLaw::limit_damping}}};
+constexpr std::array<std::string_view, 3> kGravityKeys = {"gravity.x", "gravity.y", "gravity.z"};
+
+template <typename Law, std::size_t N>
+int member_index(const std::array<Member<Law>, N>& members, std::string_view key) noexcept {
+  for (std::size_t i = 0; i < N; ++i) {
+    if (members[i].key == key) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::optional<Parameter> find_gravity(std::string_view key) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (kGravityKeys[at(axis)] == key) return Parameter{ParameterKind::gravity, axis, 0};
+  }
+  return std::nullopt;
+}
+
+std::optional<Parameter> member_of(ParameterKind kind, std::size_t element, int member) noexcept {
+  if (member < 0) return std::nullopt;
+  return Parameter{kind, static_cast<int>(element), member};
+}
+
+double& law_value(Model& model, Parameter p) noexcept {
+  switch (p.kind) {
+    case ParameterKind::line_law:
+      return model.lines[at(p.element)].law.*kLineMembers[at(p.member)].value;
+    case ParameterKind::angle_law:
+      return model.angles[at(p.element)].law.*kAngleMembers[at(p.member)].value;
+    default:
+      return model.rows[at(p.element)].law.*kJointMembers[at(p.member)].value;
+  }
+}
+
+}  // namespace
+
+std::optional<Parameter> find_parameter(const Model& model, std::string_view path) noexcept {
+  const std::size_t dot = path.find('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  const std::string_view element = path.substr(0, dot), key = path.substr(dot + 1);
+  if (element == "mechanics") return find_gravity(key);
+  if (const int body = find_body(model, element); body > 0) {
+    if (key != "mass") return std::nullopt;
+    return Parameter{ParameterKind::body_mass, body, 0};
+  }
+  for (std::size_t i = 0; i < model.lines.size(); ++i) {
+    if (model.lines[i].name == element) return member_of(ParameterKind::line_law, i, member_index(kLineMembers, key));
+  }
+  for (std::size_t i = 0; i < model.angles.size(); ++i) {
+    if (model.angles[i].name == element)
+      return member_of(ParameterKind::angle_law, i, member_index(kAngleMembers, key));
+  }
+  for (std::size_t i = 0; i < model.rows.size(); ++i) {
+    if (model.rows[i].kind != RowKind::joint || row_name(model, static_cast<int>(i)) != element) continue;
+    return member_of(ParameterKind::joint_law, i, member_index(kJointMembers, key));
+  }
+  return std::nullopt;
+}
+
+double get_parameter(const Model& model, Parameter parameter) noexcept {
+  switch (parameter.kind) {
+    case ParameterKind::body_mass:
+      return model.lumped[at(model.bodies[at(parameter.element)].lumped)].mass;
+    case ParameterKind::gravity:
+      return model.gravity[parameter.element];
+    default:
+      return law_value(const_cast<Model&>(model), parameter);
+  }
+}
+
+void set_parameter(Model& model, Parameter parameter, double value) noexcept {
+  switch (parameter.kind) {
+    case ParameterKind::body_mass:
+      set_body_mass(model, parameter.element, value);
+      break;
+    case ParameterKind::gravity: {
+      Triple g = model.gravity.array();
+      g[at(parameter.element)] = value;
+      model.gravity = math::Vec3(g);
+      break;
+    }
+    default:
+      law_value(model, parameter) = value;
+      mark_used_elements(model);
+      break;
+  }
+}
+
+void set_body_mass(Model& model, int body, double mass) noexcept {
+  LumpedMass& part = model.lumped[at(model.bodies[at(body)].lumped)];
+  part.mass = mass;
+  if (part.link > 0) lump_link(model, part.link);
+}
+
+}  // namespace slew::multibody

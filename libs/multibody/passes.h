@@ -1,0 +1,46 @@
+// The passes of one evaluation, in the order in which dynamics.cpp calls them. Internal to the library.
+#pragma once
+
+#include <span>
+
+#include "multibody/state.h"
+
+namespace slew::multibody {
+
+// Poses, velocities and the accelerations with u' = 0 of all links, from Ground outwards.
+void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
+
+// Length, angle and their rates of the force elements: of those that a step needs, or of all for their variables.
+enum class Elements { used, all };
+void update_elements(const Model& model, std::span<const double> q, Elements which, Workspace& ws) noexcept;
+
+// Torque of a rotational element's own law on its second link; needs its motion.
+[[nodiscard]] math::Vec3 torque_of(const AngleElement& element, const AngleMotion& motion,
+                                   const Workspace& ws) noexcept;
+
+// Inertia of every link about its origin in Ground axes and its bias wrench, and the coupled masses.
+void update_inertia(const Model& model, Workspace& ws) noexcept;
+void update_coupled(const Model& model, Workspace& ws) noexcept;
+
+// Subtracts spring-dampers, then the rows' forces ws.row_force, from the bias wrenches.
+void apply_elements(const Model& model, Workspace& ws) noexcept;
+void apply_row_forces(const Model& model, Workspace& ws) noexcept;
+
+// Backward pass: articulated inertias, factors and residuals; forward pass: udot from residuals.
+void factorize(const Model& model, Workspace& ws) noexcept;
+void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
+                   std::span<double> udot) noexcept;
+
+// Residual of the generalised forces tau alone (no bias, no velocities), with the factors of factorize().
+void solve_backward(const Model& model, Workspace& ws, std::span<const double> tau,
+                    std::span<double> residual) noexcept;
+
+// a^T D^-1 b over all joints: with residuals of two right-hand sides this is their product through M^-1.
+[[nodiscard]] double residual_product(const Model& model, const Workspace& ws, std::span<const double> a,
+                                      std::span<const double> b) noexcept;
+
+// q' of the coordinates for speeds u; needs the motion of the same q and u.
+void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,
+                      std::span<double> qdot) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,152 @@
+#include "multibody/rows.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/reductions.h"
+#include "multibody/coupled_mass.h"
+#include "multibody/dynamics.h"
+#include "multibody/passes.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+// what the unit force of a row does to a link on its way: a force at a point, or a torque
+struct UnitWrench {
+  Vec3 force, torque;  // torque about the link's origin
+};
+
+void write_entries(const Link& link, const LinkMotion& m, const UnitWrench& wrench, std::span<double> J) noexcept {
+  const std::size_t u = at(link.u);
+  switch (link.joint) {
+    case LinkJoint::revolute:
+      J[u] = dot(m.axis, wrench.torque);
+      break;
+    case LinkJoint::prismatic:
+      J[u] = dot(m.axis, wrench.force);
+      break;
+    case LinkJoint::spherical:
+      for (std::size_t k = 0; k < 3; ++k) J[u + k] = wrench.torque[static_cast<int>(k)];
+      break;
+    case LinkJoint::floating:
+      for (std::size_t k = 0; k < 3; ++k) {
+        J[u + k] = wrench.force[static_cast<int>(k)];
+        J[u + 3 + k] = wrench.torque[static_cast<int>(k)];
+      }
+      break;
+  }
+}
+
+void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std::span<double> J) noexcept {
+  if (row.kind == RowKind::joint) {
+    J[at(model.links[at(row.link)].u)] = 1;
+    return;
+  }
+  for (int i = row.first_path; i < row.path_end; ++i) {
+    const PathEntry& entry = model.paths[at(i)];
+    const LinkMotion& m = ws.motion[at(entry.link)];
+    UnitWrench wrench;
+    if (row.kind == RowKind::length) {
+      // the unit force pushes P1 along e and P2 against it
+      const LineMotion& line = ws.lines[at(row.element)];
+      wrench.force = line.e * -entry.sign;
+      wrench.torque = cross((entry.sign < 0 ? line.P1 : line.P2) - m.p, wrench.force);
+    } else {
+      wrench.torque = ws.angles[at(row.element)].n * entry.sign;
+    }
+    write_entries(model.links[at(entry.link)], m, wrench, J);
+  }
+}
+
+// x'' with u' = 0
+double bias_of_length(const LineElement& element, const LineMotion& line, const Workspace& ws) noexcept {
+  const Vec3 a =
+      acceleration_at(ws.motion[at(element.link1)], line.P1) - acceleration_at(ws.motion[at(element.link2)], line.P2);
+  return dot(line.e, a) + (dot(line.w, line.w) - line.rate * line.rate) / line.length;
+}
+
+double bias_of_angle(const AngleElement& element, const AngleMotion& angle, const Workspace& ws) noexcept {
+  const LinkMotion& link1 = ws.motion[at(element.link1)];
+  const LinkMotion& link2 = ws.motion[at(element.link2)];
+  // as seen from body 1
+  const Vec3 w = link2.w - link1.w;
+  const Vec3 alpha = link2.alpha - link1.alpha - cross(link1.w, w);
+  if (element.is_coaxial) return dot(angle.n, alpha);
+  const Vec3 f1 = link1.R * element.f1, g1 = link1.R * element.g1, f2 = link2.R * element.f2;
+  const Vec3 rate = cross(w, f2);
+  const Vec3 second = cross(alpha, f2) + cross(w, rate);
+  const double c = dot(f2, f1), s = dot(f2, g1);
+  const double c1 = dot(rate, f1), s1 = dot(rate, g1), c2 = dot(second, f1), s2 = dot(second, g1);
+  const double rho = c * c + s * s;
+  return (c * s2 - s * c2) / rho - 2 * (c * s1 - s * c1) * (c * c1 + s * s1) / (rho * rho);
+}
+
+void evaluate_row(const Model& model, const State& state, std::size_t k, Workspace& ws) noexcept {
+  const Row& row = model.rows[k];
+  const std::size_t dof = ws.udot.size();
+  double bias = 0;
+  switch (row.kind) {
+    case RowKind::length: {
+      const LineMotion& line = ws.lines[at(row.element)];
+      ws.row_x[k] = line.length;
+      ws.row_v[k] = line.rate;
+      bias = bias_of_length(model.lines[at(row.element)], line, ws);
+      break;
+    }
+    case RowKind::angle: {
+      const AngleMotion& angle = ws.angles[at(row.element)];
+      ws.row_x[k] = angle.angle;
+      ws.row_v[k] = angle.rate;
+      bias = bias_of_angle(model.angles[at(row.element)], angle, ws);
+      break;
+    }
+    case RowKind::joint: {
+      const Link& link = model.links[at(row.link)];
+      ws.row_x[k] = state.q[at(link.q)];
+      ws.row_v[k] = state.u[at(link.u)];
+      break;
+    }
+  }
+  if (!ws.row_is_active[k]) {
+    ws.row_a_free[k] = 0;
+    return;
+  }
+  const std::span<double> J(ws.row_J.data() + k * dof, dof);
+  write_jacobian(model, ws, row, J);
+  ws.row_a_free[k] = bias + fixed_dot(J, ws.udot_free);
+  solve_backward(model, ws, J, {ws.row_residual.data() + k * dof, dof});
+}
+
+}  // namespace
+
+void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexcept {
+  const std::size_t rows = model.rows.size(), dof = ws.udot.size();
+  for (std::size_t k = 0; k < rows; ++k) evaluate_row(model, state, k, ws);
+  const auto residual_of = [&](std::size_t k) {
+    return std::span<const double>(ws.row_residual.data() + k * dof, dof);
+  };
+  for (std::size_t k = 0; k < rows; ++k) {
+    for (std::size_t l = 0; l <= k; ++l) {
+      const bool is_active = ws.row_is_active[k] && ws.row_is_active[l];
+      const double w = is_active ? residual_product(model, ws, residual_of(k), residual_of(l)) : 0;
+      ws.row_W[k * rows + l] = ws.row_W[l * rows + k] = w;
+    }
+  }
+}
+
+void activate_row(Workspace& ws, int row) noexcept {
+  ws.row_is_active[at(row)] = true;
+}
+
+void deactivate_row(Workspace& ws, int row) noexcept {
+  ws.row_is_active[at(row)] = false;
+}
+
+}  // namespace slew::multibody

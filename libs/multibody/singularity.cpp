@@ -1,0 +1,52 @@
+#include "multibody/singularity.h"
+
+#include <cmath>
+#include <cstddef>
+
+#include "multibody/dynamics.h"
+
+namespace slew::multibody {
+namespace {
+
+// a real part has at least 1e-9 of its largest inertia about any axis; rounding leaves 1e-16
+constexpr double kSmallestShare = 1e-12;
+
+bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
+  const ArticulatedInertia& I = ws.inertia[i];
+  const JointFactor& factor = ws.factor[i];
+  const double turning = I.J(0, 0) + I.J(1, 1) + I.J(2, 2);
+  switch (link.joint) {
+    case LinkJoint::revolute:
+      return !(1 / factor.d_inv > kSmallestShare * turning);
+    case LinkJoint::prismatic:
+      return !(1 / factor.d_inv > 0);
+    case LinkJoint::spherical:
+    case LinkJoint::floating:
+      break;
+  }
+  // the largest element of the inverse against the size of the inertia
+  double largest = 0;
+  for (int k = 0; k < 9; ++k) largest = std::fmax(largest, std::abs(factor.D_inv(k / 3, k % 3)));
+  return !std::isfinite(largest) || !(1 / largest > kSmallestShare * turning);
+}
+
+}  // namespace
+
+void find_singular_joints(const MechanicsDef& mechanics, Problems& problems) {
+  const Model model = build_model(mechanics);
+  Workspace ws(model);
+  const State state = start_state(model);
+  forward_dynamics(model, state.q, state.u, {}, ws);
+  for (const Joint& joint : model.joints) {
+    if (joint.link == 0 ||
+        !is_singular(model.links[static_cast<std::size_t>(joint.link)], ws, static_cast<std::size_t>(joint.link))) {
+      continue;
+    }
+    problems.push_back({joint.name,
+                        "what hangs on this joint has no inertia about a direction that it leaves free",
+                        "inertia about every free axis: a point mass must not turn about itself",
+                        {}});
+  }
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,51 @@
+#include "multibody/state.h"
+
+#include <cstddef>
+
+namespace slew::multibody {
+
+Workspace::Workspace(const Model& model)
+    : motion(model.links.size()),
+      inertia(model.links.size()),
+      factor(model.links.size()),
+      coupled(model.coupled.size()),
+      lines(model.lines.size()),
+      angles(model.angles.size()),
+      delta_alpha(model.links.size()),
+      delta_a(model.links.size()),
+      pass_n(model.links.size()),
+      pass_f(model.links.size()),
+      body_n(model.bodies.size()),
+      body_f(model.bodies.size()) {
+  const auto nq = model.start_q.size(), nu = model.start_u.size(), rows = model.rows.size();
+  for (auto* by_u : {&tau, &residual, &udot, &u_stage, &u_sum, &udot_free, &residual_free}) by_u->assign(nu, 0.0);
+  for (auto* by_q : {&q_stage, &qdot, &q_sum}) by_q->assign(nq, 0.0);
+  for (auto* by_row : {&row_x, &row_v, &row_a_free, &row_force}) by_row->assign(rows, 0.0);
+  row_J.assign(rows * nu, 0.0);
+  row_residual.assign(rows * nu, 0.0);
+  row_W.assign(rows * rows, 0.0);
+  row_is_active.assign(rows, true);
+  motion[0].R = math::Mat3::identity();
+}
+
+State start_state(const Model& model) {
+  return {model.start_q, model.start_u};
+}
+
+void add_to_hash(const Model& model, const State& state, StateHash& hash) noexcept {
+  hash.add(std::span<const double>(state.q));
+  hash.add(std::span<const double>(state.u));
+  for (const double g : model.gravity.array()) hash.add(g);
+  for (const LumpedMass& part : model.lumped) hash.add(part.mass);
+  const auto add_law = [&hash](const ElementLaw& law) {
+    for (const double x : {law.spring, law.damping, law.free, law.end_spring, law.end_damping}) hash.add(x);
+  };
+  for (const LineElement& line : model.lines) add_law(line.law);
+  for (const AngleElement& angle : model.angles) add_law(angle.law);
+  for (const Row& row : model.rows) {
+    const JointLaw& law = row.law;
+    for (const double x : {law.coulomb, law.viscous, law.limit_stiffness, law.limit_damping}) hash.add(x);
+  }
+}
+
+}  // namespace slew::multibody

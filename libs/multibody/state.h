@@ -1,0 +1,107 @@
+// What changes while a mechanism runs: the state itself, and the workspace that a step computes in.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/state_hash.h"
+#include "multibody/model.h"
+
+namespace slew::multibody {
+
+// Coordinates and speeds, laid out as model.h says; nothing else is integrated.
+struct State {
+  std::vector<double> q;  // rad, m, quaternions
+  std::vector<double> u;  // rad/s, m/s
+};
+
+// Pose and motion of a link in Ground axes. alpha and a are the accelerations that the link would have with u' = 0 in
+// a frame that accelerates with gravity (Ground has a = -g), so that gravity needs no forces of its own.
+struct LinkMotion {
+  math::Mat3 R;      // R_WL
+  math::Vec3 p;      // m, origin
+  math::Vec3 r;      // m, from the parent's origin
+  math::Vec3 w;      // rad/s
+  math::Vec3 v;      // m/s, of the origin
+  math::Vec3 axis;   // of a revolute or prismatic joint
+  math::Vec3 alpha;  // rad/s2
+  math::Vec3 a;      // m/s2, of the origin
+};
+
+// Articulated inertia about the link's origin, Ground axes, and the bias wrench:
+//   n = J alpha + K^T a + n0 (moment),  f = K alpha + M a + f0 (force)
+// J and M are symmetric: 21 different numbers, kept as nine columns.
+struct ArticulatedInertia {
+  math::Mat3 J, K, M;
+  math::Vec3 n, f;
+};
+
+// What the backward pass leaves behind for the solutions with this inertia. With S the joint's free directions,
+// U = (IA + coupled masses) S, D = S^T U: one coordinate uses U_ang.c[0], U_lin.c[0], d_inv; spherical all; floating
+// holds the inverse blocks (see articulated.cpp).
+struct JointFactor {
+  math::Mat3 U_ang, U_lin, D_inv;
+  double d_inv = 0;
+};
+
+// Geometry of a line element at one instant.
+struct LineMotion {
+  math::Vec3 P1, P2;  // m
+  math::Vec3 e;       // unit(P1 - P2)
+  math::Vec3 w;       // m/s, velocity of P1 seen from P2
+  double length = 0;  // m
+  double rate = 0;    // m/s
+};
+
+struct AngleMotion {
+  math::Vec3 axis;  // a, fixed in body 1
+  math::Vec3 n;     // gradient: d(angle)/dt = w_rel . n
+  double angle = 0, rate = 0;
+};
+
+// A CoupledMass at one instant; s1, s2 from the child link's origin.
+struct CoupledMotion {
+  math::Vec3 s1, s2, e;
+  math::Vec3 F1, F2;                 // N, forces that the points need with u' = 0
+  double a11 = 0, a12 = 0, a22 = 0;  // kg, across the line
+};
+
+struct Workspace {
+  explicit Workspace(const Model& model);
+
+  std::vector<LinkMotion> motion;
+  std::vector<ArticulatedInertia> inertia;
+  std::vector<JointFactor> factor;
+  std::vector<CoupledMotion> coupled;
+  std::vector<LineMotion> lines;
+  std::vector<AngleMotion> angles;
+  std::vector<math::Vec3> delta_alpha, delta_a;  // accelerations caused by u'
+  std::vector<math::Vec3> pass_n, pass_f;        // wrenches on their way to Ground in a back-solve
+
+  std::vector<double> tau;       // generalised forces of joint rows, by u
+  std::vector<double> residual;  // of the backward pass, by u
+  std::vector<double> udot;      // by u, of the last forward dynamics
+
+  // rows: filled by evaluate_rows()
+  std::vector<double> row_x, row_v, row_a_free;
+  std::vector<double> row_J;         // rows x dof
+  std::vector<double> row_residual;  // rows x dof
+  std::vector<double> row_W;         // rows x rows
+  std::vector<double> row_force;     // of the stage under way
+  std::vector<bool> row_is_active;
+
+  // by body of the scene: what joint_reactions() gathers, about the origin of the body's link
+  std::vector<math::Vec3> body_n, body_f;
+
+  // Runge-Kutta
+  std::vector<double> q_stage, u_stage, qdot, q_sum, u_sum, udot_free, residual_free;
+};
+
+// Start of the scene.
+[[nodiscard]] State start_state(const Model& model);
+
+// Raw bits of coordinates, speeds and live parameters in id order.
+void add_to_hash(const Model& model, const State& state, StateHash& hash) noexcept;
+
+}  // namespace slew::multibody

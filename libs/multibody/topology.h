@@ -1,0 +1,51 @@
+// How the bodies hang together: the tree of joints rooted in Ground, and the bodies' poses at the start.
+//
+// Bodies are numbered 0 for Ground, i + 1 for MechanicsDef::bodies[i].
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "core/problem.h"
+#include "math/rotation.h"
+#include "multibody/defs.h"
+
+namespace slew::multibody {
+
+inline constexpr int kGround = 0;
+inline constexpr int kNoBody = -1;
+
+struct Pose {
+  math::Mat3 R = math::Mat3::identity();  // R_WB: columns are the body's axes in Ground
+  math::Vec3 p;                           // p_WB [m]
+};
+
+// A joint as the tree walks it, from Ground outwards.
+struct TreeEdge {
+  int joint = 0;             // index in MechanicsDef::joints
+  int parent = 0;            // body
+  int child = 0;             // body
+  bool is_reversed = false;  // the child is the joint's body 1
+};
+
+// Index of a body by name, kNoBody when there is none.
+[[nodiscard]] int find_body(const MechanicsDef& mechanics, std::string_view name) noexcept;
+[[nodiscard]] std::string_view body_name(const MechanicsDef& mechanics, int body) noexcept;
+
+// Joints in an order in which every parent comes before its children. Appends a problem for every loop, every body
+// without a way to Ground and every floating joint that does not start from Ground.
+[[nodiscard]] std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems);
+
+// Poses in Ground of all bodies by number. Appends a problem for a cycle of `relative_to`; names must be known.
+[[nodiscard]] std::vector<Pose> start_poses(const MechanicsDef& mechanics, Problems& problems);
+
+// Poses in Ground of a joint's two frames.
+struct JointFrames {
+  Pose frame1, frame2;
+};
+[[nodiscard]] JointFrames joint_frames(const JointDef& joint, const Pose& body1, const Pose& body2) noexcept;
+
+// For every body, the number of the lowest body that fixed joints merge it with (itself when there is none).
+[[nodiscard]] std::vector<int> merged_into(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree);
+
+}  // namespace slew::multibody

@@ -1,0 +1,327 @@
+#include "multibody/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "multibody/field_tables.h"
+#include "multibody/singularity.h"
+#include "multibody/topology.h"
+
+namespace slew::multibody {
+namespace {
+
+using math::Mat3;
+using math::Vec3;
+
+// how far joint frames may be apart at the start: the scene's numbers have six digits and more
+constexpr double kFrameTolerance = 1e-6;  // m, rad
+// printed inertias are rounded: share of the largest moment by which a rule may fail
+constexpr double kInertiaTolerance = 1e-6;
+// directions f1 and g1 are exact in practice; more than this is a wrong number
+constexpr double kRightAngleTolerance = 1e-3;
+// transverse moments of a cylinder as CAD prints them
+constexpr double kTransverseTolerance = 1e-2;
+
+class Validator {
+ public:
+  Validator(const MechanicsDef& mechanics, Problems& problems) : m_(mechanics), problems_(problems) {}
+
+  void run() {
+    check_section();
+    check_ranges();
+    check_names();
+    for (const BodyDef& body : m_.bodies) check_inertia(body);
+    for (const JointDef& joint : m_.joints) check_limits(joint);
+    for (const TranslationalForceDef& force : m_.translational_forces) check_line(force);
+    for (const RotationalForceDef& force : m_.rotational_forces) check_angle(force);
+    for (const ForceDummyDef& dummy : m_.force_dummies) check_dummy(dummy);
+    for (const StaticDummyDef& dummy : m_.static_dummies) check_dummy(dummy);
+    if (!references_hold_) return;
+    const std::size_t before = problems_.size();
+    const std::vector<Pose> poses = start_poses(m_, problems_);
+    const std::vector<TreeEdge> tree = find_tree(m_, problems_);
+    if (problems_.size() == before) {
+      for (const JointDef& joint : m_.joints) check_frames(joint, poses);
+      for (const TranslationalForceDef& force : m_.translational_forces) check_start_length(force, poses);
+      check_neighbours(tree);
+    }
+    if (problems_.empty()) find_singular_joints(m_, problems_);
+  }
+
+ private:
+  void add(std::string path, std::string what, std::string expected) {
+    problems_.push_back({std::move(path), std::move(what), std::move(expected), {}});
+  }
+
+  void check_section() {
+    if (m_.formulation == Formulation::recursive) return;
+    add("mechanics.formulation", "only the formulation 'recursive' is in this version", "recursive");
+  }
+
+  // ranges of the field tables, for Defs that no scene reader has seen
+  void check_ranges() {
+    check_fields("mechanics", mechanics_fields(), const_cast<MechanicsDef*>(&m_));
+    const auto check_all = [this](const auto& defs, std::size_t section, auto type_of) {
+      for (const auto& def : defs) {
+        const ElementType& type = sections()[section].types[type_of(def)];
+        check_fields(def.name, type.fields, const_cast<void*>(static_cast<const void*>(&def)));
+      }
+    };
+    const auto first = [](const auto&) { return std::size_t{0}; };
+    const auto second = [](const auto&) { return std::size_t{1}; };
+    check_all(m_.bodies, 0, first);
+    check_all(m_.joints, 1, [](const JointDef& joint) { return static_cast<std::size_t>(joint.type); });
+    check_all(m_.translational_forces, 2, first);
+    check_all(m_.rotational_forces, 2, second);
+    check_all(m_.force_dummies, 3, first);
+    check_all(m_.static_dummies, 3, second);
+  }
+
+  void check_fields(const std::string& owner, std::span<const Field> fields, void* def) {
+    for (const Field& row : fields) {
+      if (row.type == FieldType::choice) continue;
+      if (row.type == FieldType::number) {
+        const double value = *static_cast<double*>(row.member(def));
+        // a limit that is not set is infinite, which no scene can write
+        if (!row.range.contains(value) && !std::isinf(value)) report_range(owner, row, value);
+        if (std::isinf(value) && !is_open_ended(row.key)) report_range(owner, row, value);
+      } else if (row.type == FieldType::integer) {
+        const double value = static_cast<double>(*static_cast<std::int64_t*>(row.member(def)));
+        if (!row.range.contains(value)) report_range(owner, row, value);
+      } else if (row.type == FieldType::triple) {
+        for (const double value : *static_cast<Triple*>(row.member(def))) {
+          if (!row.range.contains(value)) report_range(owner, row, value);
+        }
+      }
+    }
+  }
+
+  static bool is_open_ended(std::string_view key) {
+    return key == "limit_min" || key == "limit_max" || key == "max_length" || key == "min_angle" || key == "max_angle";
+  }
+
+  void report_range(const std::string& owner, const Field& row, double value) {
+    const std::string unit(info(row.dimension).si_unit);
+    const bool is_positive = row.range.min == 0 && std::isinf(row.range.max);
+    add(fmt::format("{}.{}", owner, row.key), fmt::format("{} {} is out of range", value, unit),
+        is_positive                    ? fmt::format("a number {} 0", row.range.min_is_open ? ">" : ">=")
+        : std::isfinite(row.range.min) ? fmt::format("{} to {} {}", row.range.min, row.range.max, unit)
+                                       : std::string("a finite number"));
+  }
+
+  void check_names() {
+    const auto reference = [this](const std::string& owner, std::string_view key, const std::string& body) {
+      if (multibody::find_body(m_, body) != kNoBody) return;
+      references_hold_ = false;
+      add(fmt::format("{}.{}", owner, key), fmt::format("there is no body '{}'", body),
+          "the name of a body, or Ground");
+    };
+    for (const BodyDef& body : m_.bodies) reference(body.name, "relative_to", body.relative_to);
+    const auto two_bodies = [this, &reference](const auto& def) {
+      reference(def.name, "body1", def.body1);
+      reference(def.name, "body2", def.body2);
+      if (def.body1 == def.body2) {
+        references_hold_ = false;
+        add(def.name + ".body2", fmt::format("both bodies are '{}'", def.body1), "two different bodies");
+      }
+    };
+    for (const JointDef& joint : m_.joints) two_bodies(joint);
+    for (const TranslationalForceDef& force : m_.translational_forces) two_bodies(force);
+    for (const RotationalForceDef& force : m_.rotational_forces) two_bodies(force);
+    for (const StaticDummyDef& dummy : m_.static_dummies) reference(dummy.name, "relative_to", dummy.relative_to);
+    check_unique();
+  }
+
+  void check_unique() {
+    std::vector<std::string_view> names = {kGroundName};
+    const auto collect = [&names](const auto& defs) {
+      for (const auto& def : defs) names.push_back(def.name);
+    };
+    collect(m_.bodies);
+    collect(m_.joints);
+    collect(m_.translational_forces);
+    collect(m_.rotational_forces);
+    collect(m_.force_dummies);
+    collect(m_.static_dummies);
+    std::sort(names.begin(), names.end());
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      if (names[i] != names[i - 1]) continue;
+      references_hold_ = false;
+      add(std::string(names[i]), fmt::format("the name '{}' is taken", names[i]),
+          "a name of its own for every element");
+    }
+  }
+
+  void check_inertia(const BodyDef& body) {
+    const auto [xx, yy, zz] = body.inertia;
+    const auto [xy, xz, yz] = body.products;
+    Mat3 I{{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)}};
+    const bool is_about_origin = body.inertia_about == InertiaPoint::body_origin;
+    if (is_about_origin) {
+      const Mat3 c = math::skew(Vec3(body.center_of_mass));
+      I += (c * c) * body.mass;
+    }
+    const auto [a, b, c] = math::symmetric_eigenvalues(I);
+    const double tolerance = kInertiaTolerance * std::max({xx, yy, zz, std::abs(c)});
+    const std::string point = is_about_origin ? " (taken to the centre of mass)" : "";
+    if (a < -tolerance) {
+      add(body.name + ".inertia",
+          fmt::format("the tensor{} is not positive: smallest principal moment {:.6g} kg m2", point, a),
+          "moments and products of a real body; products are the tensor's elements, minus the integral of x y dm");
+    } else if (a + b < c - tolerance) {
+      add(body.name + ".inertia",
+          fmt::format("principal moments {:.6g}, {:.6g}, {:.6g} kg m2{} break the triangle rule", a, b, c, point),
+          "no moment larger than the sum of the other two");
+    }
+  }
+
+  void check_limits(const JointDef& joint) {
+    const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
+    if (joint.type != JointType::revolute && joint.type != JointType::prismatic) return;
+    if (joint.limit_min >= joint.limit_max) {
+      add(joint.name + ".limit_min",
+          fmt::format("lower limit {} is not below the upper limit {}", joint.limit_min, joint.limit_max),
+          "limit_min < limit_max");
+    }
+    if (has_limits && joint.limit_stiffness == 0) {
+      add(joint.name + ".limit_stiffness", "the joint has limits but they have no stiffness",
+          "limit_stiffness > 0, or no limits");
+    }
+  }
+
+  void check_line(const TranslationalForceDef& force) {
+    if (force.min_length > force.max_length ||
+        (force.end_spring_constant > 0 && force.min_length >= force.max_length)) {
+      add(force.name + ".min_length",
+          fmt::format("smallest length {} m is not below the largest {} m", force.min_length, force.max_length),
+          "min_length < max_length");
+    }
+  }
+
+  void check_angle(const RotationalForceDef& force) {
+    const Vec3 f1(force.f1), g1(force.g1), f2(force.f2);
+    for (const auto& [key, direction] : {std::pair{"f1", f1}, {"g1", g1}, {"f2", f2}}) {
+      if (math::norm(direction) > 0) continue;
+      add(fmt::format("{}.{}", force.name, key), "the direction is zero", "a direction");
+      return;
+    }
+    const double cosine = math::dot(f1, g1) / (math::norm(f1) * math::norm(g1));
+    if (std::abs(cosine) > kRightAngleTolerance) {
+      add(force.name + ".g1", fmt::format("f1 and g1 enclose {:.4g} deg", std::acos(cosine) * 180 / M_PI),
+          "two directions at a right angle; the axis is f1 x g1");
+    }
+    if (force.min_angle > force.max_angle || (force.end_spring_constant > 0 && force.min_angle >= force.max_angle)) {
+      add(force.name + ".min_angle",
+          fmt::format("smallest angle {} rad is not below the largest {} rad", force.min_angle, force.max_angle),
+          "min_angle < max_angle");
+    }
+  }
+
+  void check_dummy(const ForceDummyDef& dummy) {
+    const bool is_found = std::any_of(m_.translational_forces.begin(), m_.translational_forces.end(),
+                                      [&](const auto& force) { return force.name == dummy.relative_to; });
+    if (!is_found) {
+      references_hold_ = false;
+      add(dummy.name + ".relative_to", fmt::format("there is no translational force '{}'", dummy.relative_to),
+          "the name of a translational force");
+    }
+    if (dummy.center_of_mass[1] != 0 || dummy.center_of_mass[2] != 0) {
+      add(dummy.name + ".center_of_mass", "the centre of mass is off the line of force",
+          "y = z = 0: two points do not say where y and z point");
+    }
+    const auto [xx, yy, zz] = dummy.inertia;
+    if (std::abs(yy - zz) > kTransverseTolerance * std::max(yy, zz)) {
+      add(dummy.name + ".inertia", fmt::format("Iyy {} and Izz {} kg m2 differ by more than 1 %", yy, zz),
+          "Iyy = Izz: two points do not say where y and z point");
+    }
+    if (xx > yy + zz + kInertiaTolerance * std::max({xx, yy, zz})) {
+      add(dummy.name + ".inertia", fmt::format("moments {}, {}, {} kg m2 break the triangle rule", xx, yy, zz),
+          "no moment larger than the sum of the other two");
+    }
+  }
+
+  void check_dummy(const StaticDummyDef& dummy) {
+    auto I = dummy.inertia;
+    std::sort(I.begin(), I.end());
+    if (I[0] + I[1] < I[2] * (1 - kInertiaTolerance)) {
+      add(dummy.name + ".inertia", fmt::format("moments {}, {}, {} kg m2 break the triangle rule", I[0], I[1], I[2]),
+          "no moment larger than the sum of the other two");
+    }
+  }
+
+  const Pose& pose_of(const std::vector<Pose>& poses, const std::string& body) const {
+    return poses[static_cast<std::size_t>(multibody::find_body(m_, body))];
+  }
+
+  // what the joint holds must agree at the start
+  void check_frames(const JointDef& joint, const std::vector<Pose>& poses) {
+    if (joint.type == JointType::floating) return;
+    const auto [frame1, frame2] = joint_frames(joint, pose_of(poses, joint.body1), pose_of(poses, joint.body2));
+    Vec3 gap = frame2.p - frame1.p;
+    const Vec3 z = frame1.R.c[2];
+    if (joint.type == JointType::prismatic) gap -= z * math::dot(gap, z);
+    if (math::norm(gap) > kFrameTolerance) {
+      add(joint.name + ".point2",
+          fmt::format("the joint's points are {:.6g} m apart at the start{}", math::norm(gap),
+                      joint.type == JointType::prismatic ? " across the axis" : ""),
+          fmt::format("points that agree within {} m", kFrameTolerance));
+    }
+    if (joint.type == JointType::spherical) return;
+    const double tilt = joint.type == JointType::revolute
+                            ? std::atan2(math::norm(math::cross(z, frame2.R.c[2])), math::dot(z, frame2.R.c[2]))
+                            : math::rotation_angle(math::transpose(frame1.R) * frame2.R);
+    if (tilt > kFrameTolerance) {
+      add(joint.name + ".orientation2",
+          fmt::format("the joint's {} {:.6g} rad apart at the start",
+                      joint.type == JointType::revolute ? "axes are" : "frames are turned", tilt),
+          fmt::format("joint frames that agree within {} rad", kFrameTolerance));
+    }
+  }
+
+  void check_start_length(const TranslationalForceDef& force, const std::vector<Pose>& poses) {
+    const Pose& body1 = pose_of(poses, force.body1);
+    const Pose& body2 = pose_of(poses, force.body2);
+    const Vec3 gap = body1.p + body1.R * Vec3(force.point1) - body2.p - body2.R * Vec3(force.point2);
+    if (math::norm(gap) > kFrameTolerance) return;
+    add(force.name + ".point2", "the force's points coincide at the start", "two points that stay apart");
+  }
+
+  // a dummy's mass couples the links of its two points, which the recursion takes for parent and child only
+  void check_neighbours(const std::vector<TreeEdge>& tree) {
+    const std::vector<int> merged = merged_into(m_, tree);
+    std::vector<int> parent(merged.size(), kGround);
+    for (const TreeEdge& edge : tree) {
+      const auto child = static_cast<std::size_t>(edge.child);
+      if (merged[child] == edge.child) parent[child] = merged[static_cast<std::size_t>(edge.parent)];
+    }
+    for (const ForceDummyDef& dummy : m_.force_dummies) {
+      for (const TranslationalForceDef& force : m_.translational_forces) {
+        if (force.name != dummy.relative_to) continue;
+        const int a = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body1))];
+        const int b = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body2))];
+        if (a == b || parent[static_cast<std::size_t>(a)] == b || parent[static_cast<std::size_t>(b)] == a) continue;
+        add(dummy.name + ".relative_to",
+            fmt::format("'{}' acts between bodies that more than one joint connects", force.name),
+            "a force between neighbours; dummies on a force across more than one joint are not in this version");
+      }
+    }
+  }
+
+  const MechanicsDef& m_;
+  Problems& problems_;
+  bool references_hold_ = true;
+};
+
+}  // namespace
+
+void validate(const MechanicsDef& mechanics, Problems& problems) {
+  Problems own;
+  Validator(mechanics, own).run();
+  problems.insert(problems.end(), own.begin(), own.end());
+}
+
+}  // namespace slew::multibody

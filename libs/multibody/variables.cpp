@@ -1,0 +1,148 @@
+#include <array>
+#include <cstddef>
+
+#include "multibody/element_law.h"
+#include "multibody/observe.h"
+
+namespace slew::multibody {
+
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+constexpr std::array<const char*, 3> kAxes = {".x", ".y", ".z"};
+
+bool has_one_coordinate(const Joint& joint) noexcept {
+  return joint.type == JointType::revolute || joint.type == JointType::prismatic;
+}
+
+// force of the row that acts on an element or joint; 0 without one
+double row_force_on(const Model& model, RowKind kind, std::size_t element,
+                    std::span<const double> row_forces) noexcept {
+  double force = 0;
+  for (std::size_t k = 0; k < row_forces.size(); ++k) {
+    if (model.rows[k].kind == kind && at(model.rows[k].element) == element) force += row_forces[k];
+  }
+  return force;
+}
+
+class Names {
+ public:
+  void add(const std::string& name, Dimension dimension) { list_.push_back({name, dimension}); }
+  void add_triple(const std::string& name, Dimension dimension) {
+    for (const char* axis : kAxes) add(name + axis, dimension);
+  }
+  [[nodiscard]] std::vector<ElementVariable> take() { return std::move(list_); }
+
+ private:
+  std::vector<ElementVariable> list_;
+};
+
+class Values {
+ public:
+  explicit Values(std::span<double> values) : values_(values) {}
+  void add(double value) noexcept {
+    if (next_ < values_.size()) values_[next_++] = value;
+  }
+  template <std::size_t N>
+  void add(const std::array<double, N>& values) noexcept {
+    for (const double value : values) add(value);
+  }
+
+ private:
+  std::span<double> values_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+BodyPose body_pose(const Model& model, const Workspace& ws, int body) noexcept {
+  const Body& b = model.bodies[at(body)];
+  const LinkMotion& m = ws.motion[at(b.link)];
+  const Mat3 R = m.R * b.R_LB;
+  const Vec3 s = m.R * b.p_LB;
+  const math::Quaternion attitude = math::quaternion_of(R);
+  return {.position = (m.p + s).array(),
+          .orientation = {attitude.w, attitude.x, attitude.y, attitude.z},
+          .center_of_mass = (m.p + s + R * b.c_B).array(),
+          .velocity = (m.v + cross(m.w, s)).array(),
+          .angular_velocity = m.w.array()};
+}
+
+std::vector<ElementVariable> variables(const Model& model) {
+  using enum Dimension;
+  Names names;
+  for (std::size_t i = 1; i < model.bodies.size(); ++i) {
+    const std::string& body = model.bodies[i].name;
+    names.add_triple(body + ".position", length);
+    for (const char* part : {".w", ".x", ".y", ".z"}) names.add(body + ".orientation" + part, none);
+    names.add_triple(body + ".center_of_mass", length);
+    names.add_triple(body + ".velocity", velocity);
+    names.add_triple(body + ".angular_velocity", angular_velocity);
+  }
+  for (const Joint& joint : model.joints) {
+    if (!has_one_coordinate(joint)) continue;
+    const bool is_revolute = joint.type == JointType::revolute;
+    names.add(joint.name + ".position", is_revolute ? angle : length);
+    names.add(joint.name + ".velocity", is_revolute ? angular_velocity : velocity);
+    names.add(joint.name + (is_revolute ? ".torque" : ".force"), is_revolute ? torque : force);
+  }
+  for (const LineElement& line : model.lines) {
+    names.add(line.name + ".length", length);
+    names.add(line.name + ".rate", velocity);
+    names.add(line.name + ".force", force);
+  }
+  for (const AngleElement& element : model.angles) {
+    names.add(element.name + ".angle", angle);
+    names.add(element.name + ".rate", angular_velocity);
+    names.add(element.name + ".torque", torque);
+  }
+  names.add("mechanics.kinetic_energy", Dimension::energy);
+  names.add("mechanics.potential_energy", Dimension::energy);
+  return names.take();
+}
+
+void read_variables(const Model& model, const State& state, const Workspace& ws, std::span<const double> row_forces,
+                    std::span<double> values) noexcept {
+  Values out(values);
+  for (std::size_t i = 1; i < model.bodies.size(); ++i) {
+    const BodyPose pose = body_pose(model, ws, static_cast<int>(i));
+    out.add(pose.position);
+    out.add(pose.orientation);
+    out.add(pose.center_of_mass);
+    out.add(pose.velocity);
+    out.add(pose.angular_velocity);
+  }
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    if (!has_one_coordinate(joint)) continue;
+    const Link& link = model.links[at(joint.link)];
+    out.add(state.q[at(link.q)]);
+    out.add(state.u[at(link.u)]);
+    out.add(row_force_on(model, RowKind::joint, i, row_forces));
+  }
+  for (std::size_t i = 0; i < model.lines.size(); ++i) {
+    const LineMotion& line = ws.lines[i];
+    out.add(line.length);
+    out.add(line.rate);
+    out.add(force_of(model.lines[i].law, line.length, line.rate, line.rate) +
+            row_force_on(model, RowKind::length, i, row_forces));
+  }
+  for (std::size_t i = 0; i < model.angles.size(); ++i) {
+    const AngleMotion& angle = ws.angles[i];
+    out.add(angle.angle);
+    out.add(angle.rate);
+    out.add(force_of(model.angles[i].law, angle.angle, angle.rate, angle.rate) +
+            row_force_on(model, RowKind::angle, i, row_forces));
+  }
+  const Energy sum = energy(model, ws);
+  out.add(sum.kinetic);
+  out.add(sum.potential);
+}
+
+}  // namespace slew::multibody
