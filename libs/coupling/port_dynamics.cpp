@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "math/small_solve.h"
 
 namespace slew::coupling {
 namespace {
@@ -21,16 +22,21 @@ constexpr double kAbsoluteTolerance = 1e-15;
 
 }  // namespace
 
-PortDynamics::PortDynamics(std::size_t rows) : rows_(rows) {
-  SLEW_CHECK(rows <= kMaxRows);
+PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
+  SLEW_CHECK(capacity <= kMaxRows);
   for (std::vector<double>* values :
        {&x_, &v_, &z_, &a_free_, &x_base_, &v_base_, &z_base_, &x_stage_, &v_stage_, &z_stage_, &f_, &slope_, &f_mean_,
         &f_slope_, &f_end_, &work_, &impulse_, &residual_, &k_x_, &k_v_, &k_z_}) {
-    values->assign(rows, 0.0);
+    values->assign(capacity, 0.0);
   }
-  W_.assign(rows * rows, 0.0);
-  A_.assign(rows * rows, 0.0);
-  partner_.assign(rows, RowPartner{});
+  W_.assign(capacity * capacity, 0.0);
+  A_.assign(capacity * capacity, 0.0);
+  partner_.assign(capacity, RowPartner{});
+}
+
+void PortDynamics::set_rows(std::size_t rows) noexcept {
+  SLEW_CHECK(rows <= capacity_);
+  rows_ = rows;
 }
 
 // stage values x, z from the stage speeds, then force f and its total slope with respect to the own speed
@@ -44,33 +50,6 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
     const RowForce law = laws.evaluate(i, z_stage_[i] - p.D * (v_stage_[i] - p.v_ref), x_stage_[i], v_stage_[i]);
     f_[i] = law.force;
     slope_[i] = law.d_v + weight * law.d_x - law.d_z * (weight * p.K * shrink + p.D);
-  }
-}
-
-// Gaussian elimination with row pivoting in a fixed order; A_ and residual_ are overwritten, residual_ is the solution
-void PortDynamics::solve_linear() noexcept {
-  const std::size_t m = rows_;
-  for (std::size_t k = 0; k < m; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < m; ++i) {
-      if (std::fabs(A_[i * m + k]) > std::fabs(A_[pivot * m + k])) pivot = i;
-    }
-    if (pivot != k) {
-      for (std::size_t j = k; j < m; ++j) std::swap(A_[k * m + j], A_[pivot * m + j]);
-      std::swap(residual_[k], residual_[pivot]);
-    }
-    const double inverse = 1 / A_[k * m + k];
-    for (std::size_t i = k + 1; i < m; ++i) {
-      const double factor = A_[i * m + k] * inverse;
-      if (factor == 0) continue;
-      for (std::size_t j = k + 1; j < m; ++j) A_[i * m + j] -= factor * A_[k * m + j];
-      residual_[i] -= factor * residual_[k];
-    }
-  }
-  for (std::size_t k = m; k-- > 0;) {
-    double sum = residual_[k];
-    for (std::size_t j = k + 1; j < m; ++j) sum -= A_[k * m + j] * residual_[j];
-    residual_[k] = sum / A_[k * m + k];
   }
 }
 
@@ -98,7 +77,7 @@ bool PortDynamics::solve_stage(double weight, const RowLaws& laws, PortStep& rep
         A_[i * m + j] = (i == j ? 1.0 : 0.0) - weight * W_[i * m + j] * slope_[j];
       }
     }
-    solve_linear();
+    if (!math::solve_in_place(A_.data(), residual_.data(), m, 1)) break;
     const double damping = iteration < kDampedAfter ? 1.0 : 0.5;
     for (std::size_t i = 0; i < m; ++i) v_stage_[i] += damping * residual_[i];
     if (iteration + 1 == kMaxIterations) report.residual = std::max(report.residual, largest);
@@ -136,9 +115,11 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
         impulse_[i] += share * pressure_force;
       }
     }
-    x_.swap(x_stage_);
-    z_.swap(z_stage_);
-    v_ = v_stage_;
+    for (std::size_t i = 0; i < rows_; ++i) {
+      x_[i] = x_stage_[i];
+      v_[i] = v_stage_[i];
+      z_[i] = z_stage_[i];
+    }
   }
   for (std::size_t i = 0; i < rows_; ++i) {
     f_mean_[i] /= h;

@@ -48,8 +48,12 @@ struct PortStep {
 
 class PortDynamics {
  public:
-  // rows <= kMaxRows.
-  explicit PortDynamics(std::size_t rows);
+  // capacity <= kMaxRows; starts with that many rows.
+  explicit PortDynamics(std::size_t capacity);
+
+  // Number of rows of the next sub-steps, at most the capacity; all inputs must be set again.
+  void set_rows(std::size_t rows) noexcept;
+  [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
 
   // inputs of a sub-step, set by the owner; all arrays have one entry per row
   std::span<double> x() noexcept { return {x_.data(), rows_}; }        // start positions, advanced by solve()
@@ -72,8 +76,8 @@ class PortDynamics {
  private:
   bool solve_stage(double weight, const RowLaws& laws, PortStep& report) noexcept;
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
-  void solve_linear() noexcept;
 
+  std::size_t capacity_;
   std::size_t rows_;
   std::vector<double> x_, v_, z_, a_free_, W_;
   std::vector<RowPartner> partner_;

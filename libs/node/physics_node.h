@@ -18,6 +18,7 @@ namespace slew::node {
 
 // What the program around a physics node makes of the session's scene.
 struct BuiltSubsystem {
+  std::shared_ptr<const void> scene;  // what the subsystem refers to; destroyed after it
   std::unique_ptr<coupling::Subsystem> subsystem;
   std::uint32_t variables_every = 10;              // steps between two variable blocks
   std::vector<std::uint32_t> published_variables;  // indices into Subsystem::variables(), ascending

@@ -1,0 +1,37 @@
+// The program hydraulics_node: the hydraulic circuit of a session's scene as a process of its own.
+#include "hydraulics_node/hydraulics_subsystem.h"
+
+#include "cli_support/carrier.h"
+#include "cli_support/node_program.h"
+#include "cli_support/subsystem_factory.h"
+#include "node/physics_node.h"
+
+namespace {
+
+using namespace slew;
+
+ExitCode run(const cli_support::NodeOptions& options) {
+  cli_support::apply_real_time(options, "hydraulics_node");
+  const auto carrier = cli_support::open_carrier(wire::Role::hydraulics, options.session);
+  node::PhysicsNode node(
+      wire::Role::hydraulics, *carrier,
+      cli_support::subsystem_factory(
+          [](const scene::Scene& scene) { return hydraulics::make_hydraulics_subsystem(scene); }, options.assets),
+      options.timeout());
+  return cli_support::run_node(node);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Hydraulics of a Slewring session: valves, pump, cylinders, hoses. Takes the scene from the session.",
+               "hydraulics_node");
+  app.footer("Example, on the machine that computes the hydraulics:\n"
+             "  hydraulics_node --session truck_crane --interface eth0 --peer 192.168.1.20");
+  cli_support::NodeOptions options;
+  cli_support::add_node_options(app, options);
+  cli_support::add_version(app);
+  int exit_code = 0;
+  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
+  return cli_support::guarded("hydraulics_node", [&] { return run(options); });
+}

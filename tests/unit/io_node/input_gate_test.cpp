@@ -1,0 +1,103 @@
+#include "io_node/input_gate.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace slew::io {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kMs = 1'000'000;
+
+InputGate crane_gate(double ramp = 0) {
+  return InputGate({{"Input_Slew", false, -500, 0.2, ramp, 0}, {"Input_Lift", false, 500, 0.2, ramp, 0}}, GateConfig{},
+                   milliseconds(1));
+}
+
+TEST(InputGate, DeadZoneCutsAndScaleHasItsSign) {
+  InputGate gate = crane_gate();
+  gate.advance(0, std::vector<double>{0.19, 0.21}, 0);
+  EXPECT_EQ(gate.control(0), 0.0);
+  EXPECT_NEAR(gate.control(1), 105, 1e-12);  // not rescaled
+  gate.advance(1, std::vector<double>{1.0, -1.0}, 0);
+  EXPECT_EQ(gate.control(0), -500);
+  EXPECT_EQ(gate.control(1), -500);
+}
+
+TEST(InputGate, RampTakesItsTimeForAFullStroke) {
+  InputGate gate = crane_gate(0.5);
+  for (StepIndex n = 0; n < 250; ++n) gate.advance(n, std::vector<double>{0, 1}, 0);
+  EXPECT_NEAR(gate.control(1), 250, 1e-9);
+  for (StepIndex n = 250; n < 500; ++n) gate.advance(n, std::vector<double>{0, 1}, 0);
+  EXPECT_NEAR(gate.control(1), 500, 1e-9);
+}
+
+TEST(InputGate, NanAndOutOfRangeAreCountedAndNeverPassOn) {
+  InputGate gate = crane_gate();
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  EXPECT_TRUE(gate.write(1, "pid", 0.5, 0, 0));
+  EXPECT_FALSE(gate.write(1, "pid", kNan, 1, 0));
+  EXPECT_FALSE(gate.write(1, "pid", std::numeric_limits<double>::infinity(), 1, 0));
+  EXPECT_EQ(gate.rejected_not_finite(), 2u);
+  gate.advance(1, std::vector<double>{0, 0}, 0);
+  EXPECT_NEAR(gate.control(1), 250, 1e-12);  // the last good value
+  EXPECT_TRUE(gate.write(1, "pid", 7, 2, 0));
+  gate.advance(2, std::vector<double>{kNan, 0}, 0);
+  EXPECT_EQ(gate.control(1), 500);
+  EXPECT_EQ(gate.control(0), 0);
+  EXPECT_EQ(gate.clamped(), 1u);
+  EXPECT_EQ(gate.rejected_not_finite(), 3u);
+}
+
+TEST(InputGate, LeaseIsRefusedWithTheHoldersName) {
+  InputGate gate = crane_gate();
+  EXPECT_TRUE(gate.acquire(0, "pid", 0).is_granted);
+  EXPECT_TRUE(gate.acquire(0, "pid", 0).is_granted);  // again by the same one
+  const LeaseAnswer refused = gate.acquire(0, "joystick", 0);
+  EXPECT_FALSE(refused.is_granted);
+  EXPECT_EQ(refused.holder, "pid");
+  EXPECT_NE(refused.reason.find("Input_Slew is held by 'pid'"), std::string::npos) << refused.reason;
+  EXPECT_FALSE(gate.write(0, "joystick", 1, 0, 0));
+  EXPECT_EQ(gate.rejected_no_lease(), 1u);
+  EXPECT_TRUE(gate.release(0, "pid").is_granted);
+  EXPECT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
+}
+
+TEST(InputGate, SilentControllerGoesToNeutralAndLaterLosesTheChannel) {
+  InputGate gate = crane_gate();
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  gate.write(1, "pid", 1, 0, 0);
+  gate.advance(0, std::vector<double>{0, 0.5}, 199 * kMs);
+  EXPECT_EQ(gate.control(1), 500);
+  gate.advance(1, std::vector<double>{0, 0.5}, 201 * kMs);
+  EXPECT_EQ(gate.control(1), 0) << "neutral, not the script: the channel is still held";
+  EXPECT_EQ(gate.went_neutral(), 1u);
+  EXPECT_EQ(gate.holder(1), "pid");
+  gate.advance(2, std::vector<double>{0, 0.5}, 5001 * kMs);
+  EXPECT_EQ(gate.holder(1), "");
+  EXPECT_EQ(gate.control(1), 250);
+}
+
+TEST(InputGate, HolderOverridesTheScript) {
+  InputGate gate = crane_gate();
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  gate.write(1, "pid", -1, 3, 0);
+  gate.advance(5, std::vector<double>{1, 1}, 0);
+  EXPECT_EQ(gate.control(0), -500);  // script
+  EXPECT_EQ(gate.control(1), -500);  // controller
+  EXPECT_EQ(gate.age(1), 2u);
+}
+
+TEST(InputGate, DigitalInputIsZeroOrOne) {
+  InputGate gate({{"Horn", true, 1, 0, 0, 0}}, GateConfig{}, milliseconds(1));
+  gate.advance(0, std::vector<double>{0.4}, 0);
+  EXPECT_EQ(gate.control(0), 0);
+  gate.advance(1, std::vector<double>{0.6}, 0);
+  EXPECT_EQ(gate.control(0), 1);
+  gate.advance(2, std::vector<double>{-1}, 0);
+  EXPECT_EQ(gate.control(0), 0);
+}
+
+}  // namespace
+}  // namespace slew::io
