@@ -1,0 +1,37 @@
+// The program mechanics_node: the mechanism of a session's scene as a process of its own.
+#include "mechanics_node/mechanics_subsystem.h"
+
+#include "cli_support/carrier.h"
+#include "cli_support/node_program.h"
+#include "cli_support/subsystem_factory.h"
+#include "node/physics_node.h"
+
+namespace {
+
+using namespace slew;
+
+ExitCode run(const cli_support::NodeOptions& options) {
+  cli_support::apply_real_time(options, "mechanics_node");
+  const auto carrier = cli_support::open_carrier(wire::Role::mechanics, options.session);
+  node::PhysicsNode node(
+      wire::Role::mechanics, *carrier,
+      cli_support::subsystem_factory(
+          [](const scene::Scene& scene) { return mechanics::make_mechanics_subsystem(scene); }, options.assets),
+      options.timeout());
+  return cli_support::run_node(node);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Mechanics of a Slewring session: bodies, joints, forces. Takes the scene from the session.",
+               "mechanics_node");
+  app.footer("Example, on the machine that computes the mechanics:\n"
+             "  mechanics_node --session truck_crane --interface eth0 --peer 192.168.1.20");
+  cli_support::NodeOptions options;
+  cli_support::add_node_options(app, options);
+  cli_support::add_version(app);
+  int exit_code = 0;
+  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
+  return cli_support::guarded("mechanics_node", [&] { return run(options); });
+}

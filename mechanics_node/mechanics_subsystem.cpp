@@ -1,0 +1,452 @@
+#include "mechanics_node/mechanics_subsystem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/small_solve.h"
+#include "multibody/joint_law.h"
+#include "multibody/observe.h"
+#include "multibody/parameters.h"
+
+namespace slew::mechanics {
+namespace {
+
+// micro-step of the port problem: resolves an oil spring of 300 rad/s to 1e-3 of its phase
+constexpr double kMicroStep = 0.25e-3;
+
+// a limit takes part in the port problem when it could be reached within so many sub-steps
+constexpr double kLimitLookAhead = 4;
+
+std::vector<std::string> row_names(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::PortDef& port : scene.ports) names.push_back(port.force);
+  for (const std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(joint);
+  return names;
+}
+
+// a multibody parameter as the one number that ParameterRamps keeps
+int handle_of(multibody::Parameter parameter) {
+  return (static_cast<int>(parameter.kind) << 24) | (parameter.element << 8) | parameter.member;
+}
+
+multibody::Parameter parameter_of(int handle) {
+  return {static_cast<multibody::ParameterKind>(handle >> 24), (handle >> 8) & 0xffff, handle & 0xff};
+}
+
+}  // namespace
+
+// the row's own law: cylinder line force or joint friction and limits
+class MechanicsSubsystem::Laws final : public coupling::RowLaws {
+ public:
+  explicit Laws(const MechanicsSubsystem& owner) : owner_(owner) {}
+  coupling::RowForce evaluate(std::size_t index, double z, double x, double v) const noexcept override {
+    const std::size_t row = owner_.active_[index];
+    if (row < owner_.ports_.size()) {
+      const coupling::LineForce line = owner_.ports_[row].law.evaluate(z, x, v);
+      return {line.force, line.d_pressure, line.d_position, line.d_speed};
+    }
+    const multibody::JointForce joint = multibody::evaluate(owner_.model_.rows[row].law, x, v);
+    return {joint.force, 0, joint.d_x, joint.d_v};
+  }
+
+ private:
+  const MechanicsSubsystem& owner_;
+};
+
+MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
+    : def_(scene.mechanics),
+      row_names_(row_names(scene)),
+      model_(multibody::build_model(def_, row_names_)),
+      state_(multibody::start_state(model_)),
+      last_good_(state_),
+      workspace_(model_),
+      level_(scene.session.coupling),
+      H_(scene.session.step_duration()),
+      row_is_active_(model_.rows.size(), 1),
+      laws_(std::make_unique<Laws>(*this)),
+      dynamics_(model_.rows.size()),
+      force_mean_(model_.rows.size()),
+      force_slope_(model_.rows.size()),
+      row_force_(model_.rows.size()),
+      joint_slope_(model_.rows.size()) {
+  for (const scene::PortDef& port : scene.ports) {
+    ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
+  }
+  substeps_ = multibody::substep_count(model_, H_.seconds());
+  micro_steps_ = static_cast<int>(std::ceil(H_.seconds() / substeps_ / kMicroStep - 1e-9));
+  micro_steps_ = std::max(1, micro_steps_);
+  active_.reserve(model_.rows.size());
+  const std::size_t rows = model_.rows.size();
+  matrix_.resize(rows * rows);
+  right_.resize(rows * (ports_.size() + 1));
+  coupling::resize(published_, ports_.size());
+  list_variables();
+}
+
+MechanicsSubsystem::~MechanicsSubsystem() = default;
+
+void MechanicsSubsystem::reset() {
+  model_ = multibody::build_model(def_, row_names_);
+  state_ = multibody::start_state(model_);
+  last_good_ = state_;
+  workspace_ = multibody::Workspace(model_);
+  is_evaluated_ = false;
+  std::fill(row_is_active_.begin(), row_is_active_.end(), 1);
+  ramps_.clear();
+  has_failed_ = false;
+  failure_ = StepReport{};
+  for (Port& port : ports_) port.F = port.friction = port.stop = port.static_force = 0;
+  coupling::resize(published_, ports_.size());
+}
+
+void MechanicsSubsystem::evaluate() noexcept {
+  if (is_evaluated_) return;
+  multibody::evaluate(model_, state_, workspace_);
+  is_evaluated_ = true;
+}
+
+// ---- start ----------------------------------------------------------------------------------------------------
+
+bool MechanicsSubsystem::first_sample(coupling::OwnSample& sample) noexcept {
+  evaluate();
+  publish(sample.mechanism);
+  return true;
+}
+
+Status MechanicsSubsystem::start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) {
+  if (!ports_.empty()) {
+    if (partners.actuators == nullptr || partners.actuators->F.size() != ports_.size()) {
+      return Status::error(ExitCode::failed, "hydraulics states " +
+                                                 std::to_string(partners.actuators ? partners.actuators->F.size() : 0) +
+                                                 " actuators, mechanics has " + std::to_string(ports_.size()) +
+                                                 " ports: the nodes run different scenes");
+    }
+    for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].F = partners.actuators->F[i];
+  }
+  publish(sample.mechanism);
+  return Status::ok();
+}
+
+// ---- step -----------------------------------------------------------------------------------------------------
+
+// rows of the coming sub-step; true when the choice changed
+bool MechanicsSubsystem::select_rows(double h) noexcept {
+  bool has_changed = false;
+  const std::span<const double> x = multibody::row_positions(workspace_);
+  const std::span<const double> v = multibody::row_speeds(workspace_);
+  for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
+    const multibody::JointLaw& law = model_.rows[row].law;
+    const double reach = kLimitLookAhead * h * std::fabs(v[row]);
+    const bool near_limit =
+        law.limit_stiffness > 0 && (x[row] - reach <= law.limit_min || x[row] + reach >= law.limit_max);
+    const bool is_active = law.coulomb > 0 || law.viscous > 0 || near_limit;
+    if (is_active == (row_is_active_[row] != 0)) continue;
+    has_changed = true;
+    row_is_active_[row] = is_active ? 1 : 0;
+    if (is_active) {
+      multibody::activate_row(workspace_, static_cast<int>(row));
+    } else {
+      multibody::deactivate_row(workspace_, static_cast<int>(row));
+    }
+  }
+  return has_changed;
+}
+
+// the partner's linearisation; at the exchange the pressure force starts from the sample, moved to the true position
+void MechanicsSubsystem::load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept {
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const std::size_t row = active_[k];
+    coupling::RowPartner law;
+    double z = 0;
+    if (row < ports_.size() && partner != nullptr) {
+      z = ports_[row].F;
+      if (level_ == coupling::Level::hold) {
+        if (is_first_substep) z = partner->F[row];
+      } else {
+        law = {partner->F_dot[row], partner->K[row], partner->lambda[row],
+               partner->D[row],     partner->F[row], partner->v_ref[row]};
+        if (is_first_substep) z = partner->F[row] - law.K * (dynamics_.x()[k] - partner->x_ref[row]);
+      }
+    }
+    dynamics_.partner()[k] = law;
+    dynamics_.z()[k] = z;
+  }
+}
+
+coupling::PortStep MechanicsSubsystem::advance(double h, const coupling::ActuatorSample* partner,
+                                               bool is_first_substep) noexcept {
+  evaluate();
+  if (select_rows(h)) {
+    is_evaluated_ = false;
+    evaluate();
+  }
+  // the reduced model at the rows, in port coordinates
+  active_.clear();
+  for (std::size_t row = 0; row < model_.rows.size(); ++row) {
+    if (row_is_active_[row] != 0) active_.push_back(row);
+  }
+  const std::size_t rows = model_.rows.size();
+  const std::span<const double> W = multibody::row_mobility(workspace_);
+  dynamics_.set_rows(active_.size());
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const std::size_t row = active_[k];
+    const double ratio = ratio_of(row);
+    dynamics_.x()[k] = (row < ports_.size() ? ports_[row].offset : 0) + ratio * workspace_.row_x[row];
+    dynamics_.v()[k] = ratio * workspace_.row_v[row];
+    dynamics_.a_free()[k] = ratio * workspace_.row_a_free[row];
+    for (std::size_t j = 0; j < active_.size(); ++j) {
+      dynamics_.W()[k * active_.size() + j] = ratio * W[row * rows + active_[j]] * ratio_of(active_[j]);
+    }
+  }
+  load_partner(partner, is_first_substep);
+  const coupling::PortStep solved = dynamics_.solve(h, micro_steps_, *laws_);
+  // the mechanism under these forces
+  std::fill(force_mean_.begin(), force_mean_.end(), 0.0);
+  std::fill(force_slope_.begin(), force_slope_.end(), 0.0);
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const std::size_t row = active_[k];
+    force_mean_[row] = ratio_of(row) * dynamics_.f_mean()[k];
+    force_slope_[row] = ratio_of(row) * dynamics_.f_slope()[k];
+    if (row < ports_.size()) ports_[row].F = dynamics_.z()[k];
+  }
+  multibody::advance(model_, state_, workspace_, h, force_mean_, force_slope_);
+  is_evaluated_ = false;
+  return solved;
+}
+
+void MechanicsSubsystem::add_work(coupling::MechanismSample& sample) const noexcept {
+  for (std::size_t k = 0; k < active_.size() && active_[k] < ports_.size(); ++k) {
+    sample.work[active_[k]] += dynamics_.work()[k];
+    sample.impulse[active_[k]] += dynamics_.impulse()[k];
+  }
+}
+
+StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double>,
+                                    coupling::OwnSample& sample) noexcept {
+  if (has_failed_) {
+    sample.mechanism = published_;
+    return failure_;
+  }
+  if (!ramps_.empty()) {
+    ramps_.apply(n, [this](int handle, double value) {
+      multibody::set_parameter(model_, parameter_of(handle), value);
+    });
+    is_evaluated_ = false;
+  }
+  StepReport report;
+  const double h = H_.seconds() / substeps_;
+  coupling::MechanismSample& out = sample.mechanism;
+  coupling::resize(out, ports_.size());
+  evaluate();
+  const PortPositions begin = port_positions();
+  for (int i = 0; i < substeps_; ++i) {
+    const coupling::PortStep solved = advance(h, partners.actuators, i == 0);
+    if (!solved.has_converged) report.raise(StepFlag::not_converged);
+    report.iterations += static_cast<std::uint32_t>(solved.iterations);
+    report.residual = std::max(report.residual, solved.residual);
+    add_work(out);
+  }
+  report.substeps = static_cast<std::uint32_t>(substeps_);
+  if (!multibody::is_finite(state_)) {
+    has_failed_ = true;
+    report.raise(StepFlag::non_finite);
+    report.offender = first_not_finite();
+    failure_ = report;
+    state_ = last_good_;
+    is_evaluated_ = false;
+    out = published_;
+    return report;
+  }
+  last_good_.q = state_.q;
+  last_good_.u = state_.u;
+  evaluate();
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const double x = ports_[i].offset + ports_[i].ratio * workspace_.row_x[i];
+    out.v_mean[i] = (x - begin[i]) / H_.seconds();
+    if (ports_[i].law.touches_stop(x)) report.raise(StepFlag::limit_hit);
+  }
+  publish(out);
+  for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
+    if (multibody::touches_limit(model_.rows[row].law, workspace_.row_x[row])) report.raise(StepFlag::limit_hit);
+  }
+  return report;
+}
+
+MechanicsSubsystem::PortPositions MechanicsSubsystem::port_positions() const noexcept {
+  PortPositions x;
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    x.push_back(ports_[i].offset + ports_[i].ratio * workspace_.row_x[i]);
+  }
+  return x;
+}
+
+std::int32_t MechanicsSubsystem::first_not_finite() const noexcept {
+  for (std::size_t i = 0; i < state_.q.size(); ++i) {
+    if (!std::isfinite(state_.q[i])) return static_cast<std::int32_t>(i);
+  }
+  for (std::size_t i = 0; i < state_.u.size(); ++i) {
+    if (!std::isfinite(state_.u[i])) return static_cast<std::int32_t>(state_.q.size() + i);
+  }
+  return -1;
+}
+
+std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noexcept {
+  // the joint whose coordinate or speed it is
+  const auto q_count = static_cast<std::int32_t>(state_.q.size());
+  const bool is_coordinate = index < q_count;
+  const std::int32_t at = is_coordinate ? index : index - q_count;
+  int link = 0;
+  for (std::size_t i = 1; i < model_.links.size(); ++i) {
+    if ((is_coordinate ? model_.links[i].q : model_.links[i].u) <= at) link = static_cast<int>(i);
+  }
+  for (const multibody::Joint& joint : model_.joints) {
+    if (joint.link == link && link > 0) return joint.name;
+  }
+  return "a joint";
+}
+
+// ---- publishing -----------------------------------------------------------------------------------------------
+
+// Work, impulse and mean speed are the finished step's and stay as they are.
+void MechanicsSubsystem::publish(coupling::MechanismSample& sample) noexcept {
+  evaluate();
+  const std::size_t m = ports_.size();
+  if (sample.x.size() != m) coupling::resize(sample, m);
+  const std::size_t rows = model_.rows.size();
+  const std::span<const double> W = multibody::row_mobility(workspace_);
+  for (std::size_t i = 0; i < m; ++i) {
+    const double ratio = ports_[i].ratio;
+    sample.x[i] = ports_[i].offset + ratio * workspace_.row_x[i];
+    sample.v[i] = ratio * workspace_.row_v[i];
+    sample.a_free[i] = ratio * workspace_.row_a_free[i];
+    sample.F_used[i] = ports_[i].F;
+    for (std::size_t j = 0; j < m; ++j) sample.W[i * m + j] = ratio * W[i * rows + j] * ports_[j].ratio;
+  }
+  sample.W_kind = coupling::MobilityKind::instant;
+  condense_joints(sample);
+  update_line_forces(sample);
+  find_static_forces(sample);
+  published_ = sample;
+}
+
+// Joint laws behind the ports, implicit over H: with f_r = f_0 - S H a_r, S = -(dF/dv + H dF/dx),
+//   (I + H S W_rr) f_r = f_0 - H S (a_r + W_ra F_a)
+// so that a_free += W_ar f_r(F_a = 0) and W -= W_ar (I + H S W_rr)^-1 H S W_ra.
+void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noexcept {
+  const std::size_t m = ports_.size();
+  const std::size_t rows = model_.rows.size();
+  const std::span<const double> W = multibody::row_mobility(workspace_);
+  const double H = H_.seconds();
+  active_.clear();
+  for (std::size_t row = m; row < rows; ++row) {
+    row_force_[row] = 0;
+    if (row_is_active_[row] == 0) continue;
+    const multibody::JointForce law =
+        multibody::evaluate(model_.rows[row].law, workspace_.row_x[row], workspace_.row_v[row]);
+    row_force_[row] = law.force;
+    joint_slope_[row] = std::max(0.0, -(law.d_v + H * law.d_x));
+    active_.push_back(row);
+  }
+  const std::size_t r = active_.size();
+  if (r == 0 || m == 0) return;
+  sample.W_kind = coupling::MobilityKind::step;
+  // matrix I + H S W_rr, right-hand sides: free part, then one column per port
+  const std::size_t columns = m + 1;
+  for (std::size_t a = 0; a < r; ++a) {
+    const double HS = H * joint_slope_[active_[a]];
+    for (std::size_t b = 0; b < r; ++b) {
+      matrix_[a * r + b] = (a == b ? 1.0 : 0.0) + HS * W[active_[a] * rows + active_[b]];
+    }
+    right_[a * columns] = row_force_[active_[a]] - HS * workspace_.row_a_free[active_[a]];
+    for (std::size_t i = 0; i < m; ++i) {
+      right_[a * columns + 1 + i] = -HS * W[active_[a] * rows + i] * ports_[i].ratio;
+    }
+  }
+  if (!math::solve_in_place(matrix_.data(), right_.data(), r, columns)) return;
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t a = 0; a < r; ++a) {
+      const double w = ports_[i].ratio * W[i * rows + active_[a]];
+      sample.a_free[i] += w * right_[a * columns];
+      for (std::size_t j = 0; j < m; ++j) sample.W[i * m + j] += w * right_[a * columns + 1 + j];
+    }
+  }
+  // symmetric to the bit, as the partner may factorise it
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double mean = 0.5 * (sample.W[i * m + j] + sample.W[j * m + i]);
+      sample.W[i * m + j] = sample.W[j * m + i] = mean;
+    }
+  }
+}
+
+void MechanicsSubsystem::update_line_forces(coupling::MechanismSample& sample) noexcept {
+  const std::size_t m = ports_.size();
+  for (std::size_t i = 0; i < m; ++i) {
+    Port& port = ports_[i];
+    port.friction = port.law.friction(port.F, sample.v[i]);
+    port.stop = port.law.stop_force(sample.x[i], sample.v[i]);
+    sample.F_line[i] = port.F - port.friction + port.stop;
+    row_force_[i] = port.ratio * sample.F_line[i];
+  }
+  for (std::size_t i = 0; i < m; ++i) {
+    double a = sample.a_free[i];
+    for (std::size_t j = 0; j < m; ++j) a += sample.W[i * m + j] * sample.F_line[j];
+    sample.a[i] = a;
+  }
+}
+
+// line forces that would hold the ports where they are: W F = -a_free
+void MechanicsSubsystem::find_static_forces(const coupling::MechanismSample& sample) noexcept {
+  const std::size_t m = ports_.size();
+  std::copy(sample.W.begin(), sample.W.end(), matrix_.begin());
+  for (std::size_t i = 0; i < m; ++i) right_[i] = -sample.a_free[i];
+  const bool is_regular = math::solve_in_place(matrix_.data(), right_.data(), m, 1);
+  for (std::size_t i = 0; i < m; ++i) ports_[i].static_force = is_regular ? right_[i] : 0.0;
+}
+
+// ---- parameters, hash, variables ------------------------------------------------------------------------------
+
+bool MechanicsSubsystem::change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept {
+  const std::optional<multibody::Parameter> parameter = multibody::find_parameter(model_, change.path);
+  if (!parameter) return false;
+  const StepIndex steps = std::max<StepIndex>(1, change.over.ns / H_.ns);
+  return ramps_.begin(handle_of(*parameter), multibody::get_parameter(model_, *parameter), change.value, n, steps);
+}
+
+std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
+  StateHash hash;
+  multibody::add_to_hash(model_, state_, hash);
+  ramps_.add_to(hash);
+  for (const Port& port : ports_) hash.add(port.F);
+  for (const char is_active : row_is_active_) hash.add(is_active);
+  hash.add(has_failed_);
+  return hash.digest();
+}
+
+void MechanicsSubsystem::list_variables() {
+  variables_ = multibody::variables(model_);
+  model_variables_ = variables_.size();
+  for (const Port& port : ports_) {
+    variables_.push_back({port.name + ".line_force", Dimension::force});
+    variables_.push_back({port.name + ".friction_force", Dimension::force});
+    variables_.push_back({port.name + ".end_stop_force", Dimension::force});
+    variables_.push_back({port.name + ".static_force", Dimension::force});
+  }
+}
+
+void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept {
+  multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
+  std::size_t k = model_variables_;
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    values[k++] = published_.F_line[i];
+    values[k++] = ports_[i].friction;
+    values[k++] = ports_[i].stop;
+    values[k++] = ports_[i].static_force;
+  }
+}
+
+std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene) {
+  return std::make_unique<MechanicsSubsystem>(scene);
+}
+
+}  // namespace slew::mechanics

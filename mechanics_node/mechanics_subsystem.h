@@ -1,0 +1,102 @@
+// The mechanism of a scene as a Subsystem: multibody dynamics, the ports' line forces and the joints' friction and
+// limits solved implicitly at the rows, the partner's linearisation inside (coupling study, section 8).
+//
+// Ports come first among the rows, in the scene's order; then the joints with friction or limits. Per sub-step:
+//   rows x, v, a_free, W  ->  PortDynamics: mean and slope of every row's force  ->  one RK4 step of the mechanism.
+// Published a_free and W contain the joints' laws condensed implicitly over H (MobilityKind::step), so that the partner
+// sees a slewing ring with its friction, not without.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coupling/line_force.h"
+#include "coupling/parameter_ramps.h"
+#include "coupling/port_dynamics.h"
+#include "coupling/subsystem.h"
+#include "multibody/dynamics.h"
+#include "scene/scene.h"
+
+namespace slew::mechanics {
+
+class MechanicsSubsystem final : public coupling::Subsystem {
+ public:
+  // Pre-condition: a validated scene with bodies.
+  explicit MechanicsSubsystem(const scene::Scene& scene);
+  ~MechanicsSubsystem() override;
+
+  [[nodiscard]] bool first_sample(coupling::OwnSample& sample) noexcept override;
+  Status start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) override;
+  StepReport step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double> controls,
+                  coupling::OwnSample& sample) noexcept override;
+  bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
+  void reset() override;
+  [[nodiscard]] std::uint64_t state_hash() const noexcept override;
+  [[nodiscard]] coupling::Level level() const noexcept override { return level_; }
+  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
+  void read_variables(std::span<double> values) const noexcept override;
+  [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
+
+  [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
+  [[nodiscard]] const multibody::State& state() const noexcept { return state_; }
+
+ private:
+  struct Port {
+    std::string name;
+    double offset = 0, ratio = 1;  // x = offset + ratio * row coordinate
+    coupling::LineForceLaw law;
+    double F = 0;                  // pressure force, this side's copy [N]
+    double friction = 0;           // [N]
+    double stop = 0;               // [N]
+    double static_force = 0;       // line force that would hold the mechanism where it is [N]
+  };
+  class Laws;
+  using PortPositions = coupling::PortArray;
+
+  [[nodiscard]] PortPositions port_positions() const noexcept;
+  void evaluate() noexcept;
+  bool select_rows(double h) noexcept;
+  void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
+  [[nodiscard]] coupling::PortStep advance(double h, const coupling::ActuatorSample* partner,
+                                           bool is_first_substep) noexcept;
+  void add_work(coupling::MechanismSample& sample) const noexcept;
+  void publish(coupling::MechanismSample& sample) noexcept;
+  void condense_joints(coupling::MechanismSample& sample) noexcept;
+  void update_line_forces(coupling::MechanismSample& sample) noexcept;
+  void find_static_forces(const coupling::MechanismSample& sample) noexcept;
+  void list_variables();
+  [[nodiscard]] std::int32_t first_not_finite() const noexcept;
+  [[nodiscard]] double ratio_of(std::size_t row) const noexcept { return row < ports_.size() ? ports_[row].ratio : 1.0; }
+
+  multibody::MechanicsDef def_;
+  std::vector<std::string> row_names_;
+  multibody::Model model_;
+  multibody::State state_;
+  multibody::State last_good_;
+  multibody::Workspace workspace_;
+  bool is_evaluated_ = false;        // workspace_ belongs to state_ and model_
+  coupling::Level level_;
+  SimDuration H_;
+  int substeps_ = 1;
+  int micro_steps_ = 1;
+  std::vector<Port> ports_;
+  std::vector<char> row_is_active_;
+  std::vector<std::size_t> active_;  // rows of the port problem, ascending
+  std::unique_ptr<Laws> laws_;
+  coupling::PortDynamics dynamics_;
+  std::vector<double> force_mean_, force_slope_;  // by row, for the Runge-Kutta step
+  std::vector<double> row_force_;    // by row, at the published instant, on the row's own coordinate
+  std::vector<double> joint_slope_;  // by joint row: -(dF/dv + H dF/dx)
+  std::vector<double> matrix_, right_;            // scratch of the condensation and the static forces
+  coupling::ParameterRamps ramps_;
+  std::vector<ElementVariable> variables_;
+  std::size_t model_variables_ = 0;
+  bool has_failed_ = false;
+  StepReport failure_;
+  coupling::MechanismSample published_;
+};
+
+[[nodiscard]] std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene);
+
+}  // namespace slew::mechanics
