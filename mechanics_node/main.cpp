@@ -26,8 +26,9 @@ ExitCode run(const cli_support::NodeOptions& options) {
 int main(int argc, char** argv) {
   CLI::App app("Mechanics of a Slewring session: bodies, joints, forces. Takes the scene from the session.",
                "mechanics_node");
-  app.footer("Example, on the machine that computes the mechanics:\n"
-             "  mechanics_node --session truck_crane --interface eth0 --peer 192.168.1.20");
+  app.footer(
+      "Example, on the machine that computes the mechanics:\n"
+      "  mechanics_node --session truck_crane --interface eth0 --peer 192.168.1.20");
   cli_support::NodeOptions options;
   cli_support::add_node_options(app, options);
   cli_support::add_version(app);

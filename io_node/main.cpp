@@ -1,0 +1,45 @@
+// The program io_node: owner of a session, its clock, its operator input and its commands.
+#include "cli_support/carrier.h"
+#include "cli_support/failure.h"
+#include "cli_support/node_program.h"
+#include "cli_support/scene_options.h"
+#include "io_node/scene_config.h"
+
+namespace {
+
+using namespace slew;
+
+struct IoOptions {
+  cli_support::NodeOptions node;
+  cli_support::SceneOptions scene;
+};
+
+ExitCode run(const IoOptions& options) {
+  cli_support::apply_real_time(options.node, "io_node");
+  const scene::Scene scene = cli_support::load_scene(options.scene);
+  const auto carrier = cli_support::open_carrier(wire::Role::io, options.node.session);
+  io::SessionWish wish;
+  wish.session_name = options.node.session.session;
+  wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
+  wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
+  io::IoNode node(*carrier, io::make_config(scene, wish));
+  return cli_support::run_node(node);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Owner of a Slewring session: publishes the scene, gives the clock, takes operator input and commands.",
+               "io_node");
+  app.footer(
+      "Example; the other nodes of the session find it by its name:\n"
+      "  io_node scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10");
+  IoOptions options;
+  options.node.priority = cli_support::kIoPriority;
+  cli_support::add_scene_options(app, options.scene);
+  cli_support::add_node_options(app, options.node);
+  cli_support::add_version(app);
+  int exit_code = 0;
+  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
+  return cli_support::guarded("io_node", [&] { return run(options); });
+}

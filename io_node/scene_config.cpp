@@ -1,0 +1,62 @@
+#include "io_node/scene_config.h"
+
+#include "scene/parameters.h"
+
+namespace slew::io {
+
+void ScriptSource::values(SimTime t, std::span<double> raw) {
+  for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = player_.value(i, t);
+}
+
+void ScriptSource::changes(SimTime from, SimTime to, std::vector<wire::Command>& due) {
+  for (const scene::ScriptChange& change : player_.changes(from, to)) {
+    wire::Command command;
+    command.path = change.set;
+    command.value = change.value;
+    command.over_ns = static_cast<std::int64_t>(change.over * 1e9);
+    due.push_back(std::move(command));
+  }
+}
+
+std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noexcept {
+  std::uint32_t roles = bit(wire::Role::io);
+  if (scene.has_mechanics()) roles |= bit(wire::Role::mechanics);
+  if (scene.has_hydraulics()) roles |= bit(wire::Role::hydraulics);
+  if (recording == Recording::required) roles |= bit(wire::Role::recorder);
+  return roles;
+}
+
+IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
+  IoConfig config;
+  config.session_name = wish.session_name;
+  config.scene_name = scene.name;
+  config.scene_text = scene.expanded_text;
+  for (const scene::Asset& asset : scene.assets) config.assets.push_back({asset.name, asset.size, asset.sha256});
+  config.step = scene.session.step_duration();
+  config.pace = scene.session.pace == scene::Pace::free ? wire::Pace::free : wire::Pace::real;
+  config.required_roles = required_roles(scene, wish.recording);
+  config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;
+  for (const scene::InputDef& input : scene.inputs) {
+    ChannelConfig channel;
+    channel.name = input.name;
+    channel.is_digital = input.type == scene::InputType::digital;
+    channel.scale = input.scale;
+    channel.dead_zone = input.dead_zone;
+    channel.ramp = input.ramp;
+    config.channels.push_back(std::move(channel));
+  }
+  config.gate.neutral_after = {static_cast<std::int64_t>(scene.session.controller_timeout * 1e9)};
+  if (wish.operating == Operator::script && !scene.script.is_empty()) {
+    config.source = std::make_unique<ScriptSource>(scene);
+  }
+  // std::function needs a copyable owner; the directory itself is built once
+  const auto directory = std::make_shared<const scene::ParameterDirectory>(scene);
+  config.judge_parameter = [directory](const std::string& path, double value) {
+    const scene::Assignment assignment = directory->check(path, value);
+    return ParameterVerdict{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
+  };
+  config.variables_every = static_cast<std::uint32_t>(scene.recording.every);
+  return config;
+}
+
+}  // namespace slew::io

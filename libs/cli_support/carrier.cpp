@@ -1,0 +1,84 @@
+#include "cli_support/carrier.h"
+
+#include <utility>
+
+#include "cli_support/failure.h"
+#include "node/identity.h"
+#include "transport/cyclone_transport.h"
+
+namespace slew::cli_support {
+
+using transport::TopicSet;
+using wire::Role;
+using wire::Topic;
+
+TopicSet topics_written(Role role) noexcept {
+  switch (role) {
+    case Role::io:
+      return {Topic::session,   Topic::node_status,      Topic::tick,          Topic::variable_directory,
+              Topic::variables, Topic::controller_lease, Topic::control_reply, Topic::health,
+              Topic::resend};
+    case Role::mechanics:
+      return {Topic::node_status, Topic::mechanism, Topic::variable_directory,
+              Topic::variables,   Topic::health,    Topic::resend};
+    case Role::hydraulics:
+      return {Topic::node_status, Topic::actuators, Topic::variable_directory,
+              Topic::variables,   Topic::health,    Topic::resend};
+    case Role::recorder:
+      return {Topic::node_status, Topic::health, Topic::resend};
+    case Role::observer:
+    case Role::controller:
+      return {Topic::controller_input, Topic::control_request};
+    case Role::flex:
+      return {};
+  }
+  return {};
+}
+
+TopicSet topics_read(Role role) noexcept {
+  switch (role) {
+    case Role::io:
+      return {Topic::session,          Topic::node_status,     Topic::mechanism, Topic::actuators,
+              Topic::controller_input, Topic::control_request, Topic::health,    Topic::resend};
+    case Role::mechanics:
+      return {Topic::session, Topic::node_status, Topic::tick, Topic::actuators, Topic::health, Topic::resend};
+    case Role::hydraulics:
+      return {Topic::session, Topic::node_status, Topic::tick, Topic::mechanism, Topic::health, Topic::resend};
+    case Role::recorder:
+      return TopicSet::all();
+    case Role::observer:
+    case Role::controller:
+      return {Topic::session,   Topic::node_status,      Topic::variable_directory,
+              Topic::variables, Topic::controller_lease, Topic::control_reply,
+              Topic::health};
+    case Role::flex:
+      return {};
+  }
+  return {};
+}
+
+namespace {
+
+std::unique_ptr<transport::Transport> open(const SessionOptions& options, transport::CycloneOptions endpoint) {
+  const transport::CycloneNetwork network{options.domain, options.interface, options.peers};
+  std::unique_ptr<transport::CycloneTransport> carrier;
+  require(transport::CycloneTransport::open(network, endpoint, carrier));
+  return carrier;
+}
+
+}  // namespace
+
+std::unique_ptr<transport::Transport> open_carrier(Role role, const SessionOptions& options) {
+  return open(options, {options.session, std::string(node::to_text(role)), topics_written(role), topics_read(role)});
+}
+
+std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options) {
+  return open(options, {transport::kAnySession, "survey", {}, {Topic::session, Topic::node_status, Topic::health}});
+}
+
+std::unique_ptr<transport::Transport> open_carrier(Role role, transport::InProcessBus& bus) {
+  return std::make_unique<transport::InProcessEndpoint>(
+      bus, transport::InProcessOptions{std::string(node::to_text(role)), topics_written(role), topics_read(role)});
+}
+
+}  // namespace slew::cli_support

@@ -1,0 +1,26 @@
+// The endpoint of a role: which topics it writes and reads, over Cyclone DDS or on the bus of one process.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "cli_support/session_options.h"
+#include "transport/in_process_bus.h"
+#include "transport/topics.h"
+#include "transport/transport.h"
+#include "transport/wire.h"
+
+namespace slew::cli_support {
+
+[[nodiscard]] transport::TopicSet topics_written(wire::Role role) noexcept;
+[[nodiscard]] transport::TopicSet topics_read(wire::Role role) noexcept;
+
+// Throws Failure with the carrier's text.
+[[nodiscard]] std::unique_ptr<transport::Transport> open_carrier(wire::Role role, const SessionOptions& options);
+
+// Reads what all sessions of the domain say about themselves; writes nothing.
+[[nodiscard]] std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options);
+
+[[nodiscard]] std::unique_ptr<transport::Transport> open_carrier(wire::Role role, transport::InProcessBus& bus);
+
+}  // namespace slew::cli_support

@@ -1,0 +1,91 @@
+#include "cli_support/node_program.h"
+
+#include <cstdio>
+#include <new>
+
+#include "cli_support/failure.h"
+#include "core/arithmetic_self_test.h"
+#include "core/real_time_thread.h"
+#include "node/driver.h"
+#include "node/identity.h"
+#include "scene/diagnostic.h"
+
+namespace slew::cli_support {
+namespace {
+
+int report(const std::string& program, const char* text, ExitCode code) noexcept {
+  std::fflush(stdout);
+  std::fprintf(stderr, "%s: %s\n", program.c_str(), text);
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept {
+  const char* missing = nullptr;
+  if (!processor_fits(missing)) {
+    std::fprintf(stderr,
+                 "%s: this processor lacks %s, which this build uses; nothing was started; build with "
+                 "-DSLEWRING_MARCH=x86-64-v2 on all machines of a session\n",
+                 program.c_str(), missing);
+    return static_cast<int>(ExitCode::resources);
+  }
+  try {
+    return static_cast<int>(body());
+  } catch (const Failure& failure) {
+    return report(program, failure.what(), failure.code());
+  } catch (const scene::LoadError& error) {
+    // one line a problem, each beginning with its place in the file
+    std::fflush(stdout);
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::bad_input);
+  } catch (const std::bad_alloc&) {
+    return report(program, "out of memory; the program ends; close other programs or use a smaller scene",
+                  ExitCode::resources);
+  } catch (const std::exception& error) {
+    return report(program, error.what(), ExitCode::failed);
+  }
+}
+
+bool parse(CLI::App& app, int argc, char** argv, int& exit_code) {
+  try {
+    app.parse(argc, argv);
+    return true;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {
+      exit_code = app.exit(error);
+      return false;
+    }
+    // the verb that was being parsed knows its own help
+    std::string verb = app.get_name();
+    for (const CLI::App* used = &app; !used->get_subcommands().empty();) {
+      used = used->get_subcommands().front();
+      verb += ' ' + used->get_name();
+    }
+    std::fprintf(stderr, "%s: %s; nothing was done; see '%s --help'\n", app.get_name().c_str(), error.what(),
+                 verb.c_str());
+    exit_code = static_cast<int>(ExitCode::bad_input);
+    return false;
+  }
+}
+
+void add_version(CLI::App& app) {
+  app.set_version_flag("--version", app.get_name() + " " + node::build_id(), "print version and build");
+}
+
+void apply_real_time(const NodeOptions& options, const std::string& program) {
+  if (!options.is_real_time) return;
+  const Status status = make_real_time(options.priority);
+  if (!status.is_ok()) std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), status.text.c_str());
+}
+
+ExitCode run_node(node::Node& node) {
+  node::install_signal_handlers();
+  const ExitCode code = node::run_alone(node);
+  const std::string& reason = node.member().reason();
+  const bool was_asked_to_end = code == ExitCode::interrupted || code == ExitCode::terminated;
+  if (code != ExitCode::ok && !was_asked_to_end && !reason.empty()) throw Failure(code, reason);
+  return code;
+}
+
+}  // namespace slew::cli_support

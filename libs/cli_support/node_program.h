@@ -1,0 +1,30 @@
+// The frame of every main: processor check, command line, signals, and where exceptions end.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "cli_support/session_options.h"
+#include "core/status.h"
+#include "node/node.h"
+
+namespace slew::cli_support {
+
+// Runs `body` and turns what it throws into one line on standard error and an exit code.
+// Failure: its own code; a scene's LoadError: bad_input; no memory: resources; anything else: failed.
+[[nodiscard]] int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept;
+
+// Parses; true when the program goes on. Otherwise `exit_code` is 0 (help, version) or bad_input.
+[[nodiscard]] bool parse(CLI::App& app, int argc, char** argv, int& exit_code);
+
+// --version of every program: name and build id.
+void add_version(CLI::App& app);
+
+// Real-time scheduling as asked for; refused permission is a warning with the remedy on standard error.
+void apply_real_time(const NodeOptions& options, const std::string& program);
+
+// Runs a node to its end and says on standard error why it failed, if it did.
+[[nodiscard]] ExitCode run_node(node::Node& node);
+
+}  // namespace slew::cli_support

@@ -1,0 +1,101 @@
+#include "cli_support/scene_options.h"
+
+#include <utility>
+
+#include "scene/canonical.h"
+#include "scene/script_reader.h"
+
+namespace slew::cli_support {
+namespace {
+
+scene::Node text_node(const std::string& text, const scene::Mark& mark) {
+  scene::Node node;
+  node.kind = scene::Node::Kind::scalar;
+  node.is_quoted = true;
+  node.text = text;
+  node.mark = mark;
+  return node;
+}
+
+// Puts the script of a file in the place of the scene's own; problems are told with their place in that file.
+void replace_script(scene::Scene& scene, const std::string& file) {
+  scene::Report report;
+  const scene::Mark mark{report.add_source("--input " + file, scene::Report::Lines::none), 0, 0};
+  scene::Node section;
+  section.kind = scene::Node::Kind::map;
+  section.mark = mark;
+  section.entries.push_back({"file", mark, text_node(file, mark)});
+
+  // names of the scene's elements, from its canonical text
+  scene::Report own_report;
+  const auto source = scene::check_source(scene.expanded_text, own_report.add_source(scene.name), own_report);
+  const auto root = source ? scene::parse_yaml(*source, own_report) : std::nullopt;
+  if (!root) own_report.fail(scene::kMaxReportedProblems);
+  scene::NameTable names;
+  names.declare_all(*root, own_report);
+
+  scene.script = {};
+  scene::UnitSystem units;
+  scene::PlaceMap places;
+  std::vector<scene::Reference> references;
+  const scene::ReadContext context{units, report, places, references};
+  scene::read_script(section, mark, {true, ""}, names, scene, context);
+  if (!report.is_clean()) report.fail(scene::kMaxReportedProblems);
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& app, SceneOptions& options) {
+  app.add_option("scene", options.file, "scene file")->required()->type_name("SCENE");
+  app.add_option("--set", options.overrides, "change a value of the scene; repeat for more")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false)
+      ->group("Scene");
+  app.add_option("--step", options.step, "communication step H, such as '1 ms'")->type_name("TIME")->group("Scene");
+  app.add_option("--duration", options.duration, "length of the run, such as '20 s'; 0: until it is stopped")
+      ->type_name("TIME")
+      ->group("Scene");
+  app.add_option("--pace", options.pace, "real: by the wall clock; free: as fast as possible")
+      ->check(CLI::IsMember({"real", "free"}))
+      ->type_name("PACE")
+      ->group("Scene");
+  app.add_option("--input", options.input, "script (the scene's own), none, keyboard, or a .csv or .yaml file")
+      ->type_name("SOURCE")
+      ->capture_default_str()
+      ->group("Scene");
+  app.add_flag("--record,!--no-record", options.is_recording, "write a recording (default)")->group("Scene");
+}
+
+scene::Scene load_scene(const SceneOptions& options) {
+  scene::Overrides overrides = options.overrides;
+  if (!options.step.empty()) overrides.push_back("session.step=" + options.step);
+  if (!options.duration.empty()) overrides.push_back("session.duration=" + options.duration);
+  if (!options.pace.empty()) overrides.push_back("session.pace=" + options.pace);
+  scene::Scene scene = scene::load_file(options.file, overrides);
+  if (options.input == "script") return scene;
+  if (options.has_script()) {
+    replace_script(scene, options.input);
+  } else {
+    scene.script = {};
+  }
+  scene.expanded_text = scene::canonical_text(scene);
+  return scene;
+}
+
+std::vector<std::string> scene_arguments(const SceneOptions& options) {
+  std::vector<std::string> arguments = {options.file};
+  const auto add = [&](const char* name, const std::string& value) {
+    if (value.empty()) return;
+    arguments.emplace_back(name);
+    arguments.push_back(value);
+  };
+  for (const std::string& setting : options.overrides) add("--set", setting);
+  add("--step", options.step);
+  add("--duration", options.duration);
+  add("--pace", options.pace);
+  add("--input", options.input);
+  if (!options.is_recording) arguments.emplace_back("--no-record");
+  return arguments;
+}
+
+}  // namespace slew::cli_support

@@ -1,0 +1,85 @@
+#include "cli_support/session_options.h"
+
+#include <algorithm>
+
+#include "transport/wire.h"
+
+namespace slew::cli_support {
+namespace {
+
+bool is_name_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+}
+
+}  // namespace
+
+std::string problem_of_session_name(const std::string& name) {
+  if (name.empty() || name.size() > wire::kMaxNameLength) return "a session's name has 1 to 63 characters";
+  if (!std::all_of(name.begin(), name.end(), is_name_character)) {
+    return "a session's name consists of letters, digits, '_', '-' and '.'";
+  }
+  return "";
+}
+
+std::string session_name_of(const std::string& scene) {
+  std::string name = scene.substr(0, wire::kMaxNameLength);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !is_name_character(c); }, '_');
+  return name.empty() ? "session" : name;
+}
+
+void add_network_options(CLI::App& app, SessionOptions& options) {
+  app.add_option("--domain", options.domain, "DDS domain; sessions of different domains do not see each other")
+      ->check(CLI::Range(0u, kMaxDomain))
+      ->type_name("N")
+      ->capture_default_str()
+      ->group("Network");
+  app.add_option("--interface", options.interface,
+                 "network interface to send on; 'lo' keeps everything on this machine")
+      ->type_name("IF")
+      ->capture_default_str()
+      ->group("Network");
+  app.add_option("--peer", options.peers, "address of another machine of the session; repeat or separate by commas")
+      ->type_name("ADDR")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->group("Network");
+}
+
+void add_session_options(CLI::App& app, SessionOptions& options, bool is_required) {
+  CLI::Option* session = app.add_option("--session", options.session, "name of the session")
+                             ->type_name("NAME")
+                             ->check(CLI::Validator(problem_of_session_name, "", "session name"))
+                             ->group("Session");
+  if (is_required) session->required();
+  add_network_options(app, options);
+}
+
+void add_node_options(CLI::App& app, NodeOptions& options) {
+  add_session_options(app, options.session, true);
+  app.add_option("--assets", options.assets, "folder with the scene's files (meshes, tables)")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_option("--session-timeout", options.session_timeout, "seconds to wait for the session")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group("Session");
+  app.add_flag("--rt", options.is_real_time, "real-time scheduling (SCHED_FIFO) and locked memory")->group("Real time");
+  app.add_option("--priority", options.priority, "its priority")
+      ->check(CLI::Range(1, 99))
+      ->type_name("N")
+      ->capture_default_str()
+      ->group("Real time");
+}
+
+std::vector<std::string> network_arguments(const SessionOptions& options) {
+  std::vector<std::string> arguments = {"--domain", std::to_string(options.domain), "--interface", options.interface};
+  for (const std::string& peer : options.peers) {
+    arguments.push_back("--peer");
+    arguments.push_back(peer);
+  }
+  return arguments;
+}
+
+}  // namespace slew::cli_support

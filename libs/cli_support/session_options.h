@@ -1,0 +1,49 @@
+// How a program finds its session: what every node and every verb that talks to one takes on its command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/time.h"
+
+namespace slew::cli_support {
+
+inline constexpr std::uint32_t kMaxDomain = 230;
+inline constexpr int kIoPriority = 30;  // the clock goes before the nodes that wait for it
+inline constexpr int kDefaultPriority = 20;
+
+struct SessionOptions {
+  std::string session;             // name
+  std::uint32_t domain = 0;        // DDS domain
+  std::string interface = "lo";    // network interface that messages are sent on
+  std::vector<std::string> peers;  // addresses of the other machines; empty: this machine only
+};
+
+struct NodeOptions {
+  SessionOptions session;
+  std::string assets = ".";  // folder of the scene's assets
+  bool is_real_time = false;
+  int priority = kDefaultPriority;  // SCHED_FIFO, 1..99
+  double session_timeout = 30;      // s
+
+  [[nodiscard]] SimDuration timeout() const noexcept { return {static_cast<std::int64_t>(session_timeout * 1e9)}; }
+};
+
+// --domain, --interface, --peer.
+void add_network_options(CLI::App& app, SessionOptions& options);
+// --session and the network; a session is named or the verb takes its scene's name.
+void add_session_options(CLI::App& app, SessionOptions& options, bool is_required);
+// The above and --assets, --rt, --priority.
+void add_node_options(CLI::App& app, NodeOptions& options);
+
+// The same as command-line arguments, for a child process.
+[[nodiscard]] std::vector<std::string> network_arguments(const SessionOptions& options);
+
+// Text for a session's name: 1 to 63 letters, digits, '_', '-', '.'; empty when the name is good, else what is wrong.
+[[nodiscard]] std::string problem_of_session_name(const std::string& name);
+// A scene's name made into a session's name.
+[[nodiscard]] std::string session_name_of(const std::string& scene);
+
+}  // namespace slew::cli_support

@@ -1,0 +1,27 @@
+// What a physics node's program makes of a session: the scene from the session's text, its files compared, its
+// subsystem, and the variables that the scene wants published.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "coupling/subsystem.h"
+#include "node/physics_node.h"
+#include "scene/scene.h"
+
+namespace slew::cli_support {
+
+using MakeSubsystem = std::function<std::unique_ptr<coupling::Subsystem>(const scene::Scene&)>;
+
+// assets: folder in which the scene's files are looked for.
+[[nodiscard]] node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets);
+
+// Compares the files of a session's manifest with those in the folder. Error bad_input: names what differs.
+[[nodiscard]] Status check_session_assets(const wire::SessionDescription& session, const std::string& assets);
+
+// The published variables of a subsystem, by the scene's `recording.variables`.
+[[nodiscard]] std::vector<std::uint32_t> published_variables(const scene::Scene& scene,
+                                                             const coupling::Subsystem& subsystem);
+
+}  // namespace slew::cli_support

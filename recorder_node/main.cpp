@@ -1,0 +1,45 @@
+// The program recorder_node: writes everything that is said in a session into one recording.
+#include <cstdio>
+
+#include "cli_support/carrier.h"
+#include "cli_support/node_program.h"
+#include "cli_support/subsystem_factory.h"
+#include "recorder_node/recorder_node.h"
+
+namespace {
+
+using namespace slew;
+
+ExitCode run(const cli_support::NodeOptions& options, const std::string& runs) {
+  cli_support::apply_real_time(options, "recorder_node");
+  const auto carrier = cli_support::open_carrier(wire::Role::recorder, options.session);
+  recorder::RecorderConfig config;
+  config.runs_directory = runs;
+  config.session_timeout = options.timeout();
+  recorder::RecorderNode node(*carrier, std::move(config));
+  // the path is said last, whatever the end was
+  struct SayPath {
+    const recorder::RecorderNode& node;
+    ~SayPath() {
+      if (!node.recording().empty()) std::printf("recording: %s\n", node.recording().c_str());
+    }
+  } const say_path{node};
+  return cli_support::run_node(node);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Recorder of a Slewring session: one .mcap file in a new folder of --out.", "recorder_node");
+  app.footer("Example:\n  recorder_node --session truck_crane --out /data/runs");
+  cli_support::NodeOptions options;
+  std::string runs = "runs";
+  cli_support::add_node_options(app, options);
+  app.add_option("--out", runs, "folder in which the session gets a folder of its own")
+      ->type_name("DIR")
+      ->capture_default_str();
+  cli_support::add_version(app);
+  int exit_code = 0;
+  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
+  return cli_support::guarded("recorder_node", [&] { return run(options, runs); });
+}
