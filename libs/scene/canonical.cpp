@@ -51,37 +51,6 @@ std::string point_text(const std::array<double, 2>& point) {
   return fmt::format("[{}, {}]", point[0], point[1]);
 }
 
-// The value as YAML; empty when the field has none that could be written.
-std::string value_text(const Field& field, void* def) {
-  switch (field.type) {
-    case FieldType::number: {
-      const double value = member<double>(field, def);
-      return std::isfinite(value) && field.range.contains(value) ? number_text(value) : "";
-    }
-    case FieldType::integer:
-      return std::to_string(member<std::int64_t>(field, def));
-    case FieldType::boolean:
-      return member<bool>(field, def) ? "true" : "false";
-    case FieldType::text: {
-      const auto& text = member<std::string>(field, def);
-      return text.empty() ? "" : yaml_text(text);
-    }
-    case FieldType::triple:
-      return list_text(member<Triple>(field, def), number_text);
-    case FieldType::table: {
-      const auto& table = member<Table>(field, def);
-      return table.empty() ? "" : list_text(table, point_text);
-    }
-    case FieldType::numbers:
-      return list_text(member<std::vector<double>>(field, def), number_text);
-    case FieldType::texts:
-      return list_text(member<std::vector<std::string>>(field, def), yaml_text);
-    case FieldType::choice:
-      return std::string(field.choices[static_cast<std::size_t>(field.get_choice(def))]);
-  }
-  return {};
-}
-
 void write_fields(std::string& text, std::span<const Field> fields, void* def, std::string_view indent) {
   for (const Field& field : fields) {
     const std::string value = value_text(field, def);
@@ -118,6 +87,36 @@ void write_script(std::string& text, const ScriptDef& script) {
 }
 
 }  // namespace
+
+std::string value_text(const Field& field, void* def) {
+  switch (field.type) {
+    case FieldType::number: {
+      const double value = member<double>(field, def);
+      return std::isfinite(value) && field.range.contains(value) ? number_text(value) : "";
+    }
+    case FieldType::integer:
+      return std::to_string(member<std::int64_t>(field, def));
+    case FieldType::boolean:
+      return member<bool>(field, def) ? "true" : "false";
+    case FieldType::text: {
+      const auto& text = member<std::string>(field, def);
+      return text.empty() ? "" : yaml_text(text);
+    }
+    case FieldType::triple:
+      return list_text(member<Triple>(field, def), number_text);
+    case FieldType::table: {
+      const auto& table = member<Table>(field, def);
+      return table.empty() ? "" : list_text(table, point_text);
+    }
+    case FieldType::numbers:
+      return list_text(member<std::vector<double>>(field, def), number_text);
+    case FieldType::texts:
+      return list_text(member<std::vector<std::string>>(field, def), yaml_text);
+    case FieldType::choice:
+      return std::string(field.choices[static_cast<std::size_t>(field.get_choice(def))]);
+  }
+  return {};
+}
 
 std::string yaml_text(const std::string& text) {
   if (is_plain_word(text)) return text;

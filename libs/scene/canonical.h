@@ -4,11 +4,15 @@
 
 #include <string>
 
+#include "core/field.h"
 #include "scene/scene.h"
 
 namespace slew::scene {
 
 [[nodiscard]] std::string canonical_text(Scene& scene);
+
+// The value of one field as YAML; empty when it has none that a scene could hold.
+[[nodiscard]] std::string value_text(const Field& field, void* def);
 
 // A text as a YAML scalar: plain where that is safe, else in double quotes.
 [[nodiscard]] std::string yaml_text(const std::string& text);

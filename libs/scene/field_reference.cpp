@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "scene/canonical.h"
+#include "scene/field_reader.h"
+#include "scene/schema.h"
+#include "scene/sections.h"
+
+namespace slew::scene {
+namespace {
+
+std::string type_text(const Field& field) {
+  switch (field.type) {
+    case FieldType::number:
+      return std::string(info(field.dimension).name);
+    case FieldType::integer:
+      return "integer";
+    case FieldType::boolean:
+      return "true or false";
+    case FieldType::text:
+      return field.reference.empty() ? "text" : "name of a " + std::string(field.reference);
+    case FieldType::triple:
+      return field.dimension == Dimension::none ? "three numbers"
+                                                : fmt::format("three, {}", info(field.dimension).name);
+    case FieldType::table:
+      return "points";
+    case FieldType::numbers:
+      return fmt::format("list, {}", info(field.dimension).name);
+    case FieldType::texts:
+      return "list of texts";
+    case FieldType::choice:
+      return expected_value(field);
+  }
+  return {};
+}
+
+std::string unit_text(const Field& field) {
+  const bool is_numeric =
+      field.type == FieldType::number || field.type == FieldType::triple || field.type == FieldType::numbers;
+  if (!is_numeric || info(field.dimension).si_unit == "1") return "";
+  return std::string(info(field.dimension).si_unit);
+}
+
+// Markdown tables part cells with |
+std::string cell(std::string text) {
+  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
+  return text;
+}
+
+std::string default_text(const Field& field, void* def) {
+  if (field.presence == Presence::required) return "required";
+  const std::string value = value_text(field, def);
+  if (value.empty()) return field.type == FieldType::number ? "none" : "";
+  return value;
+}
+
+std::string table_of(std::span<const Field> fields, void* defaults) {
+  std::string text = "| key | takes | SI unit | range | default | live | meaning |\n|---|---|---|---|---|---|---|\n";
+  for (const Field& field : fields) {
+    const bool has_range = field.type == FieldType::number || field.type == FieldType::integer ||
+                           field.type == FieldType::triple || field.type == FieldType::numbers ||
+                           field.type == FieldType::table;
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.key, cell(type_text(field)), unit_text(field),
+                        has_range ? range_text(field.range, Dimension::none) : "", cell(default_text(field, defaults)),
+                        field.change == Change::live ? "live" : "", cell(std::string(field.doc)));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string field_reference() {
+  std::string text;
+  Scene defaults;
+  for (const SingleTable& table : single_tables()) {
+    text += fmt::format("\n### {}\n\n{}.\n\n{}", table.section, table.doc, table_of(table.fields, table.def(defaults)));
+  }
+  for (const std::string_view section : element_sections()) {
+    text += fmt::format("\n### {}\n", section);
+    for (const ElementTable& table : element_tables()) {
+      if (table.section != section) continue;
+      void* def = table.append(defaults, "Name");
+      const std::string heading =
+          table.type.empty() ? std::string(table.doc) : fmt::format("`type: {}`: {}", table.type, table.doc);
+      text += fmt::format("\n{}.\n\n{}", heading, table_of(table.fields, def));
+    }
+  }
+  ScriptDef script;
+  ScriptChange change;
+  text +=
+      fmt::format("\n### script\n\n{}\nAn entry of `parameters` (with `value`, in the parameter's dimension):\n\n{}\n",
+                  table_of(script_fields(), &script), table_of(script_change_fields(), &change));
+  return text;
+}
+
+std::string with_field_reference(const std::string& document) {
+  const std::size_t begin = document.find(kReferenceBegin);
+  const std::size_t end = document.find(kReferenceEnd);
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
+  return document.substr(0, begin + kReferenceBegin.size()) + field_reference() + document.substr(end);
+}
+
+}  // namespace slew::scene

@@ -1,0 +1,147 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/defs.h"
+#include "scene/field_reader.h"
+#include "scene/schema.h"
+#include "scene/sections.h"
+#include "scene/units.h"
+
+namespace slew::scene {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// a number, then a unit
+constexpr const char* kQuantityPattern =
+    R"(^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*(1/)?[A-Za-z%°µ].*$)";
+constexpr const char* kNamePattern = "^[A-Za-z_][A-Za-z0-9_]*$";
+
+Json bounded(Json schema, const Range& range) {
+  if (std::isfinite(range.min)) schema[range.min_is_open ? "exclusiveMinimum" : "minimum"] = range.min;
+  if (std::isfinite(range.max)) schema[range.max_is_open ? "exclusiveMaximum" : "maximum"] = range.max;
+  return schema;
+}
+
+Json quantity(const Range& range) {
+  return {{"anyOf", {bounded({{"type", "number"}}, range), {{"type", "string"}, {"pattern", kQuantityPattern}}}}};
+}
+
+Json list_of(Json items, int length) {
+  Json list = {{"type", "array"}, {"items", std::move(items)}};
+  if (length > 0) list["minItems"] = list["maxItems"] = length;
+  return list;
+}
+
+Json point(const Field& field) {
+  Json pair = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}};
+  pair["prefixItems"] = {quantity(Range{}), quantity(field.range)};
+  return pair;
+}
+
+Json type_of(const Field& field) {
+  switch (field.type) {
+    case FieldType::number:
+      return quantity(field.range);
+    case FieldType::integer:
+      return bounded({{"type", "integer"}}, field.range);
+    case FieldType::boolean:
+      return {{"type", "boolean"}};
+    case FieldType::text:
+      return {{"type", "string"}};
+    case FieldType::triple:
+      return list_of(quantity(field.range), 3);
+    case FieldType::table: {
+      Json table = list_of(point(field), 0);
+      table["minItems"] = 1;
+      return table;
+    }
+    case FieldType::numbers:
+      return list_of(quantity(field.range), 0);
+    case FieldType::texts:
+      return list_of({{"type", "string"}}, 0);
+    case FieldType::choice:
+      return {{"enum", std::vector<std::string>(field.choices.begin(), field.choices.end())}};
+  }
+  return {};
+}
+
+Json property(const Field& field) {
+  Json schema = type_of(field);
+  std::string description(field.doc);
+  const bool has_unit =
+      field.type == FieldType::number || field.type == FieldType::triple || field.type == FieldType::numbers;
+  if (has_unit && field.dimension != Dimension::none) description += "; " + expected_quantity(field.dimension);
+  if (!field.reference.empty()) description += "; name of a " + std::string(field.reference);
+  schema["description"] = description;
+  if (field.change == Change::live) schema["x-live"] = true;
+  return schema;
+}
+
+Json object_of(std::span<const Field> fields, std::string_view doc, std::string_view type) {
+  Json schema = {{"type", "object"}, {"description", std::string(doc)}, {"additionalProperties", false}};
+  Json required = Json::array();
+  Json& properties = schema["properties"] = Json::object();
+  if (!type.empty()) {
+    properties["type"] = {{"const", std::string(type)}};
+    required.push_back("type");
+  }
+  for (const Field& field : fields) {
+    properties[std::string(field.key)] = property(field);
+    if (field.presence == Presence::required) required.push_back(std::string(field.key));
+  }
+  if (!required.empty()) schema["required"] = std::move(required);
+  return schema;
+}
+
+Json elements_of(std::string_view section) {
+  Json types = Json::array();
+  for (const ElementTable& table : element_tables()) {
+    if (table.section == section) types.push_back(object_of(table.fields, table.doc, table.type));
+  }
+  Json element = types.size() == 1 ? types[0] : Json{{"oneOf", types}};
+  return {{"type", "object"},
+          {"propertyNames", {{"pattern", kNamePattern}, {"maxLength", kMaxNameLength}}},
+          {"additionalProperties", std::move(element)}};
+}
+
+Json script() {
+  Json schema = object_of(script_fields(), "the scene's own operator", "");
+  Json change = object_of(script_change_fields(), "change of a live parameter", "");
+  change["properties"]["value"] = quantity(Range{});
+  change["required"].push_back("value");
+  Json& properties = schema["properties"];
+  properties["file"] = {{"type", "string"}, {"description", "CSV or YAML file beside the scene, instead of inputs"}};
+  properties["inputs"] = {{"type", "object"}, {"additionalProperties", property(script_track_fields().front())}};
+  properties["parameters"] = list_of(std::move(change), 0);
+  return schema;
+}
+
+}  // namespace
+
+std::string json_schema() {
+  const Json text = {{"type", "string"}};
+  const Json texts = list_of(text, 0);
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", "Slewring scene"},
+                 {"type", "object"},
+                 {"additionalProperties", false}};
+  Json& properties = schema["properties"] = Json::object();
+  for (const std::string_view key : top_level_keys()) properties[std::string(key)] = Json::object();
+  properties["scene"] = {{"type", "string"}, {"description", "name of the scene"}};
+  properties["description"] = {{"type", "string"}, {"description", "what the scene shows"}};
+  properties["include"] = {{"anyOf", {text, texts}}, {"description", "files that this one is laid over"}};
+  properties["assets"] = list_of(text, 0);
+  properties["assets"]["description"] = "files that every machine of a session must have alike";
+  properties["script"] = script();
+  for (const SingleTable& table : single_tables()) {
+    properties[std::string(table.section)] = object_of(table.fields, table.doc, "");
+  }
+  for (const std::string_view section : element_sections()) properties[std::string(section)] = elements_of(section);
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace slew::scene

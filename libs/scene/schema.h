@@ -1,0 +1,21 @@
+// The scene format as a JSON Schema and as tables for people, both from the field tables.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace slew::scene {
+
+// JSON Schema (draft 2020-12) of a scene file, for editors and other programs. It cannot say everything: dimensions of
+// units, names that exist and rules between fields are checked by load_file only.
+[[nodiscard]] std::string json_schema();
+
+// Markdown: one table for each section and type, all fields with dimension, range, default and doc.
+[[nodiscard]] std::string field_reference();
+
+// The document with its part between the two markers replaced by field_reference(); empty when the markers are missing.
+inline constexpr std::string_view kReferenceBegin = "<!-- fields: begin, written by scene_format -->\n";
+inline constexpr std::string_view kReferenceEnd = "<!-- fields: end -->\n";
+[[nodiscard]] std::string with_field_reference(const std::string& document);
+
+}  // namespace slew::scene
