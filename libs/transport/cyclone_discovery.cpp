@@ -2,6 +2,7 @@
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/ddsi_typelib.h>
+#include <dds/ddsi/ddsi_typewrap.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,11 +51,11 @@ bool has_other_layout(const dds_builtintopic_endpoint_t& endpoint, const ddsi_se
   if (dds_builtintopic_get_endpoint_type_info(const_cast<dds_builtintopic_endpoint_t*>(&endpoint), &theirs) != 0) {
     return false;
   }
-  ddsi_typeinfo_t* ours = ddsi_sertype_typeinfo(&own_type);
-  const bool differs =
-      theirs != nullptr && ours != nullptr && !ddsi_typeinfo_equal(theirs, ours, DDSI_TYPE_IGNORE_DEPS);
+  ddsi_typeid_t* ours = ddsi_sertype_typeid(&own_type, DDSI_TYPEID_KIND_MINIMAL);
+  const ddsi_typeid_t* minimal = theirs == nullptr ? nullptr : ddsi_typeinfo_minimal_typeid(theirs);
+  const bool differs = ours != nullptr && minimal != nullptr && ddsi_typeid_compare(minimal, ours) != 0;
   if (ours != nullptr) {
-    ddsi_typeinfo_fini(ours);
+    ddsi_typeid_fini(ours);
     dds_free(ours);
   }
   return differs;

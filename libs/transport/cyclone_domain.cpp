@@ -99,7 +99,7 @@ std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_ad
   <Watermarks><WhcHigh>64 MB</WhcHigh><WhcHighInit>64 MB</WhcHighInit><WhcAdaptive>false</WhcAdaptive></Watermarks>
  </Internal>
 </Domain></CycloneDDS>)",
-      network.interface, kMaxParticipantIndex, peers);
+      network.interface, kMaxProcesses, peers);
 }
 
 Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<CycloneDomain>& domain) {
@@ -130,7 +130,7 @@ Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<Cyclon
         reason.find("participant index") == std::string::npos
             ? ""
             : fmt::format("; {} processes use DDS domain {} on this host: end some or choose another with --domain",
-                          kMaxParticipantIndex + 1, network.domain);
+                          kMaxProcesses, network.domain);
     return Status::error(ExitCode::resources, fmt::format("cannot join DDS domain {} on {}: {}{}", network.domain,
                                                           network.interface, reason, remedy));
   }

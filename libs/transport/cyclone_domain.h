@@ -2,7 +2,7 @@
 //
 // Unicast only, on one interface; nothing is sent beyond loopback unless another interface is named (the sockets
 // themselves are bound to all addresses: this is no firewall). Loss is repaired within 8 to 15 ms. UDP ports:
-// 7400 + 250 domain + 10 .. 131, two per process.
+// 7400 + 250 domain + 10 .. 129, two per process.
 // CYCLONEDDS_URI is not consulted. One domain per number and process; several transports share it.
 #pragma once
 
@@ -17,7 +17,7 @@
 namespace slew::transport {
 
 inline constexpr std::uint32_t kMaxDomain = 230;
-inline constexpr int kMaxParticipantIndex = 60;  // processes of one domain on one host, less one
+inline constexpr int kMaxProcesses = 60;  // of one domain on one host
 
 struct CycloneNetwork {
   std::uint32_t domain = 0;        // 0 .. kMaxDomain

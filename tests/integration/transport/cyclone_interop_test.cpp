@@ -1,0 +1,196 @@
+// Programs that know only idl/slewring.idl and Cyclone, in a process of their own, against the transport.
+#include <dds/dds.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/integration/transport/child_process.h"
+#include "tests/integration/transport/generated_types.h"
+#include "tests/integration/transport/same_fields.h"
+#include "tests/integration/transport/waiting.h"
+#include "tests/support/random_message.h"
+#include "tests/support/test_domain.h"
+#include "transport/codec.h"
+#include "transport/cyclone_transport.h"
+
+namespace slew::transport {
+namespace {
+
+using testing::ChildProcess;
+using testing::eventually;
+using wire::Topic;
+
+constexpr int kCount = 300;  // messages
+constexpr const char* kSession = "interop";
+
+// A participant of generated types, as another program has it.
+class TypedProgram {
+ public:
+  explicit TypedProgram(std::uint32_t domain) {
+    static_cast<void>(CycloneDomain::open({domain, "lo", {}}, domain_));
+    participant_ = dds_create_participant(domain, nullptr, nullptr);
+    dds_qos_t* partition = dds_create_qos();
+    const char* names[] = {"slewring/interop"};
+    dds_qset_partition(partition, 1, names);
+    publisher_ = dds_create_publisher(participant_, partition, nullptr);
+    subscriber_ = dds_create_subscriber(participant_, partition, nullptr);
+    dds_delete_qos(partition);
+    qos_ = dds_create_qos();
+    dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
+    dds_qset_history(qos_, DDS_HISTORY_KEEP_ALL, 0);
+  }
+  ~TypedProgram() {
+    dds_delete_qos(qos_);
+    dds_delete(participant_);
+  }
+  TypedProgram(const TypedProgram&) = delete;
+  TypedProgram& operator=(const TypedProgram&) = delete;
+
+  dds_entity_t reader(const dds_topic_descriptor_t& type, const char* name) const {
+    return dds_create_reader(subscriber_, dds_create_topic(participant_, &type, name, nullptr, nullptr), qos_, nullptr);
+  }
+  dds_entity_t writer(const dds_topic_descriptor_t& type, const char* name) const {
+    return dds_create_writer(publisher_, dds_create_topic(participant_, &type, name, nullptr, nullptr), qos_, nullptr);
+  }
+
+ private:
+  std::shared_ptr<CycloneDomain> domain_;
+  dds_entity_t participant_ = 0;
+  dds_entity_t publisher_ = 0;
+  dds_entity_t subscriber_ = 0;
+  dds_qos_t* qos_ = nullptr;
+};
+
+bool has_match(dds_entity_t reader) {
+  dds_subscription_matched_status_t status{};
+  return dds_get_subscription_matched_status(reader, &status) == DDS_RETCODE_OK && status.current_count > 0;
+}
+
+bool has_reader(dds_entity_t writer) {
+  dds_publication_matched_status_t status{};
+  return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK && status.current_count > 0;
+}
+
+// other program: says ready, then reads typed messages and compares every field
+bool read_typed_mechanism_messages(std::uint32_t domain) {
+  const TypedProgram program(domain);
+  const dds_entity_t reader = program.reader(slewring_MechanismMessage_desc, "slewring/mechanism");
+  const dds_entity_t writer = program.writer(slewring_ControlRequest_desc, "slewring/control_request");
+  if (!eventually([&] { return has_match(reader) && has_reader(writer); })) return false;
+  slewring_ControlRequest ready{};
+  if (dds_write(writer, &ready) != DDS_RETCODE_OK) return false;
+  std::mt19937_64 random(21);
+  for (int i = 0; i < kCount; ++i) {
+    void* sample = nullptr;
+    dds_sample_info_t about{};
+    if (!eventually([&] { return dds_take(reader, &sample, &about, 1, 1) == 1 && about.valid_data; })) return false;
+    const auto expected = testing::random_message<wire::MechanismMessage>(random, 16);
+    if (!testing::same(*static_cast<slewring_MechanismMessage*>(sample), expected)) return false;
+    dds_return_loan(reader, &sample, 1);
+  }
+  return true;
+}
+
+TEST(CycloneInterop, ATypedReaderOfAnotherProgramReadsEveryFieldOfWhatWeSend) {
+  const testing::TestDomain domain;
+  ChildProcess program([&] { return read_typed_mechanism_messages(domain.number()); });
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status =
+      CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+                             {kSession, "mechanics", {Topic::mechanism}, {Topic::control_request}}, transport);
+  ASSERT_TRUE(status.is_ok()) << status.text;
+  Received message;
+  ASSERT_TRUE(testing::next(*transport, message));
+  wire::ControlRequest ready;
+  EXPECT_EQ(message.topic, Topic::control_request);
+  EXPECT_TRUE(decode(message.bytes, ready));
+  std::mt19937_64 random(21);
+  ByteBuffer bytes;
+  for (int i = 0; i < kCount; ++i) {
+    ASSERT_TRUE(encode(testing::random_message<wire::MechanismMessage>(random, 16), bytes));
+    ASSERT_TRUE(transport->publish(Topic::mechanism, bytes).is_ok());
+  }
+  EXPECT_EQ(program.wait(), 0);
+}
+
+// other program: writes typed messages once it knows the reader
+bool write_typed_inputs(std::uint32_t domain) {
+  const TypedProgram program(domain);
+  const dds_entity_t writer = program.writer(slewring_ControllerInput_desc, "slewring/controller_input");
+  const dds_entity_t done = program.reader(slewring_Tick_desc, "slewring/tick");
+  if (!eventually([&] { return has_reader(writer) && has_match(done); })) return false;
+  for (int i = 0; i < kCount; ++i) {
+    slewring_ControllerInput input{};
+    std::snprintf(input.session, sizeof input.session, "%s", kSession);
+    std::snprintf(input.channel, sizeof input.channel, "Input_%d", i);
+    input.action = slewring_CONTROLLER_RELEASE;
+    input.value = 0.25 * i;
+    input.sequence_number = static_cast<std::uint64_t>(i);
+    input.based_on_step = -1;
+    if (dds_write(writer, &input) != DDS_RETCODE_OK) return false;
+  }
+  // until the test has read everything
+  void* sample = nullptr;
+  dds_sample_info_t about{};
+  return eventually([&] { return dds_take(done, &sample, &about, 1, 1) == 1; });
+}
+
+TEST(CycloneInterop, WeReadWhatATypedWriterOfAnotherProgramSends) {
+  const testing::TestDomain domain;
+  ChildProcess program([&] { return write_typed_inputs(domain.number()); });
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+                                               {kSession, "io", {Topic::tick}, {Topic::controller_input}}, transport);
+  ASSERT_TRUE(status.is_ok()) << status.text;
+  Received message;
+  wire::ControllerInput input;
+  for (int i = 0; i < kCount; ++i) {
+    ASSERT_TRUE(testing::next(*transport, message));
+    ASSERT_TRUE(decode(message.bytes, input));
+    const wire::ControllerInput expected{kSession,
+                                         "",
+                                         "Input_" + std::to_string(i),
+                                         wire::ControllerAction::release,
+                                         0.25 * i,
+                                         static_cast<std::uint64_t>(i),
+                                         -1};
+    ASSERT_TRUE(input == expected) << i;
+    EXPECT_NE(message.source_ns, 0);
+  }
+  EXPECT_EQ(transport->discovered_writers(Topic::controller_input),
+            std::vector<std::string>{"a program that is not of Slewring, type slewring::ControllerInput"});
+  ByteBuffer bytes;
+  ASSERT_TRUE(encode(wire::Tick{}, bytes));
+  ASSERT_TRUE(transport->publish(Topic::tick, bytes).is_ok());
+  EXPECT_EQ(program.wait(), 0);
+}
+
+// other program: a type of the right name and other fields
+bool write_another_layout(std::uint32_t domain) {
+  const TypedProgram program(domain);
+  dds_topic_descriptor_t type = slewring_ControlReply_desc;
+  type.m_typename = "slewring::Tick";
+  const dds_entity_t writer = program.writer(type, "slewring/tick");
+  if (writer < 0) return false;
+  pause();  // until killed
+  return true;
+}
+
+TEST(CycloneInterop, AWriterOfAnotherLayoutIsNamedAsSuch) {
+  const testing::TestDomain domain;
+  ChildProcess program([&] { return write_another_layout(domain.number()); });
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+                                               {kSession, "mechanics", {}, {Topic::tick}}, transport);
+  ASSERT_TRUE(status.is_ok()) << status.text;
+  std::vector<std::string> writers;
+  ASSERT_TRUE(eventually([&] {
+    writers = transport->discovered_writers(Topic::tick);
+    return !writers.empty();
+  }));
+  ASSERT_EQ(writers.size(), 1u);
+  EXPECT_NE(writers[0].find("type slewring::Tick of another layout"), std::string::npos) << writers[0];
+}
+
+}  // namespace
+}  // namespace slew::transport

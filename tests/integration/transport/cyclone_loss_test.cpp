@@ -1,0 +1,106 @@
+// What happens to a stream when its reader, in another process, does not run for a while.
+#include <gtest/gtest.h>
+
+#include "tests/integration/transport/child_process.h"
+#include "tests/integration/transport/waiting.h"
+#include "tests/support/test_domain.h"
+#include "transport/codec.h"
+#include "transport/cyclone_transport.h"
+
+namespace slew::transport {
+namespace {
+
+using testing::ChildProcess;
+using testing::eventually;
+using testing::next;
+using wire::Topic;
+
+constexpr StepIndex kSteps = 4000;
+constexpr std::int64_t kPeriod = 250'000;  // ns: 4 kHz
+constexpr StepIndex kStopAt = 1000;
+constexpr StepIndex kStopFor = 800;  // steps: 200 ms
+
+// the recorder's place: every step of both topics, in order
+bool hear_every_step(std::uint32_t domain) {
+  std::unique_ptr<CycloneTransport> transport;
+  const CycloneOptions options{"loss", "recorder", {Topic::node_status}, {Topic::tick, Topic::variables}};
+  if (!CycloneTransport::open(CycloneNetwork{domain, "lo", {}}, options, transport).is_ok()) return false;
+  StepIndex next_tick = 0;
+  StepIndex next_block = 0;
+  Received message;
+  wire::Header header;
+  while (next_tick < kSteps || next_block < kSteps) {
+    if (!next(*transport, message) || !decode_header(message.bytes, header)) return false;
+    StepIndex& expected = message.topic == Topic::tick ? next_tick : next_block;
+    if (header.step != expected++) {
+      std::fprintf(stderr, "step %lld came instead of %lld\n", static_cast<long long>(header.step),
+                   static_cast<long long>(expected - 1));
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(CycloneLoss, AReaderStoppedFor200MillisecondsAtFourKilohertzLosesNothing) {
+  const testing::TestDomain domain;
+  ChildProcess recorder([&] { return hear_every_step(domain.number()); });
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status =
+      CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+                             {"loss", "io", {Topic::tick, Topic::variables}, {Topic::node_status}}, transport);
+  ASSERT_TRUE(status.is_ok()) << status.text;
+  ASSERT_TRUE(eventually([&] {
+    return transport->matched_readers(Topic::tick) == 1 && transport->matched_readers(Topic::variables) == 1;
+  }));
+  wire::Tick tick;
+  tick.controls.resize(4);
+  tick.age.resize(4);
+  wire::VariableBlock block;
+  block.values.resize(100);
+  ByteBuffer bytes;
+  const std::int64_t start = monotonic_ns();
+  for (StepIndex n = 0; n < kSteps; ++n) {
+    if (n == kStopAt) recorder.send(SIGSTOP);
+    if (n == kStopAt + kStopFor) recorder.send(SIGCONT);
+    tick.header.step = n;
+    block.header.step = n;
+    ASSERT_TRUE(encode(tick, bytes) && transport->publish(Topic::tick, bytes).is_ok());
+    ASSERT_TRUE(encode(block, bytes) && transport->publish(Topic::variables, bytes).is_ok());
+    sleep_until_monotonic(start + (n + 1) * kPeriod);
+  }
+  EXPECT_EQ(recorder.wait(), 0);
+}
+
+bool hear_the_session(std::uint32_t domain) {
+  std::unique_ptr<CycloneTransport> transport;
+  const CycloneOptions options{"loss", "mechanics", {}, {Topic::session}};
+  if (!CycloneTransport::open(CycloneNetwork{domain, "lo", {}}, options, transport).is_ok()) return false;
+  Received message;
+  wire::SessionDescription session;
+  return next(*transport, message) && decode(message.bytes, session) &&
+         session.scene_text == std::string(wire::kMaxSceneBytes, 'x');
+}
+
+TEST(CycloneLoss, TheLargestSceneReachesALateNode) {
+  const testing::TestDomain domain;
+  // the late node starts when told so by a signal, before which nothing of DDS may exist in this process
+  ChildProcess node([&] {
+    raise(SIGSTOP);
+    return hear_the_session(domain.number());
+  });
+  ASSERT_TRUE(node.wait_until_stopped());
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+                                               {"loss", "io", {Topic::session}, {}}, transport);
+  ASSERT_TRUE(status.is_ok()) << status.text;
+  wire::SessionDescription session;
+  session.scene_text.assign(wire::kMaxSceneBytes, 'x');
+  ByteBuffer bytes;
+  ASSERT_TRUE(encode(session, bytes));
+  ASSERT_TRUE(transport->publish(Topic::session, bytes).is_ok());
+  node.send(SIGCONT);
+  EXPECT_EQ(node.wait(), 0);
+}
+
+}  // namespace
+}  // namespace slew::transport

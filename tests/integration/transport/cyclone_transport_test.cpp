@@ -1,0 +1,212 @@
+#include "transport/cyclone_transport.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/integration/transport/child_process.h"
+#include "tests/integration/transport/waiting.h"
+#include "tests/support/test_domain.h"
+#include "transport/codec.h"
+
+namespace slew::transport {
+namespace {
+
+using testing::eventually;
+using testing::next;
+using wire::Topic;
+
+constexpr std::int64_t kSilence = 50'000'000;  // ns in which nothing more may come
+
+// Several transports of one process on a test domain.
+class CycloneBus : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Status status = CycloneDomain::open({number_.number(), "lo", {}}, domain_);
+    ASSERT_TRUE(status.is_ok()) << status.text;
+  }
+
+  std::unique_ptr<CycloneTransport> connect(const std::string& session, const std::string& role, TopicSet writes,
+                                            TopicSet reads) {
+    std::unique_ptr<CycloneTransport> transport;
+    const Status status = CycloneTransport::open(domain_, {session, role, writes, reads}, transport);
+    EXPECT_TRUE(status.is_ok()) << status.text;
+    return transport;
+  }
+
+  testing::TestDomain number_;
+  std::shared_ptr<CycloneDomain> domain_;
+};
+
+ByteBuffer status_of(wire::Role role, std::int32_t number) {
+  wire::NodeStatus status;
+  status.header.role = role;
+  status.exit_code = number;
+  ByteBuffer bytes;
+  EXPECT_TRUE(encode(status, bytes));
+  return bytes;
+}
+
+ByteBuffer tick_of(StepIndex step) {
+  wire::Tick tick;
+  tick.header.step = step;
+  ByteBuffer bytes;
+  EXPECT_TRUE(encode(tick, bytes));
+  return bytes;
+}
+
+TEST_F(CycloneBus, CarriesMessagesInOrder) {
+  const auto io = connect("a", "io", {Topic::tick}, {});
+  const auto node = connect("a", "mechanics", {}, {Topic::tick});
+  ASSERT_TRUE(eventually([&] { return io->matched_readers(Topic::tick) == 1; }));
+  for (StepIndex n = 0; n < 500; ++n) ASSERT_TRUE(io->publish(Topic::tick, tick_of(n)).is_ok());
+  Received message;
+  wire::Header header;
+  for (StepIndex n = 0; n < 500; ++n) {
+    ASSERT_TRUE(next(*node, message));
+    ASSERT_EQ(message.topic, Topic::tick);
+    ASSERT_TRUE(decode_header(message.bytes, header));
+    ASSERT_EQ(header.step, n);
+    ASSERT_EQ(ByteBuffer(message.bytes.begin(), message.bytes.end()), tick_of(n));
+  }
+}
+
+TEST_F(CycloneBus, AnEndpointDoesNotHearItself) {
+  const auto a = connect("a", "io", TopicSet::all(), TopicSet::all());
+  const auto b = connect("a", "mechanics", TopicSet::all(), TopicSet::all());
+  ASSERT_TRUE(eventually([&] { return a->matched_readers(Topic::tick) == 1; }));
+  ASSERT_TRUE(a->publish(Topic::tick, tick_of(1)).is_ok());
+  Received message;
+  EXPECT_TRUE(next(*b, message));
+  EXPECT_FALSE(next(*a, message, kSilence));
+}
+
+TEST_F(CycloneBus, SessionsDoNotHearEachOtherAndAnObserverHearsAll) {
+  const auto a = connect("a", "io", {Topic::tick}, {});
+  const auto b = connect("b", "io", {Topic::tick}, {});
+  const auto node_a = connect("a", "mechanics", {}, {Topic::tick});
+  const auto observer = connect(kAnySession, "observer", {}, {Topic::tick});
+  ASSERT_TRUE(eventually([&] { return a->matched_readers(Topic::tick) == 2; }));
+  ASSERT_TRUE(eventually([&] { return b->matched_readers(Topic::tick) == 1; }));
+  ASSERT_TRUE(b->publish(Topic::tick, tick_of(2)).is_ok());
+  ASSERT_TRUE(a->publish(Topic::tick, tick_of(1)).is_ok());
+  Received message;
+  wire::Header header;
+  ASSERT_TRUE(next(*node_a, message));
+  ASSERT_TRUE(decode_header(message.bytes, header));
+  EXPECT_EQ(header.step, 1);
+  EXPECT_FALSE(next(*node_a, message, kSilence));
+  EXPECT_TRUE(next(*observer, message));
+  EXPECT_TRUE(next(*observer, message));
+}
+
+TEST_F(CycloneBus, ALateNodeGetsEachWritersLastStatus) {
+  const auto io = connect("a", "io", {Topic::node_status}, {});
+  const auto mechanics = connect("a", "mechanics", {Topic::node_status}, {});
+  const auto hydraulics = connect("a", "hydraulics", {Topic::node_status}, {});
+  for (std::int32_t i = 0; i < 10; ++i) {
+    ASSERT_TRUE(io->publish(Topic::node_status, status_of(wire::Role::io, i)).is_ok());
+    ASSERT_TRUE(mechanics->publish(Topic::node_status, status_of(wire::Role::mechanics, i)).is_ok());
+    ASSERT_TRUE(hydraulics->publish(Topic::node_status, status_of(wire::Role::hydraulics, i)).is_ok());
+  }
+  const auto late = connect("a", "recorder", {}, {Topic::node_status});
+  std::uint32_t heard = 0;
+  Received message;
+  wire::NodeStatus status;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(next(*late, message));
+    ASSERT_TRUE(decode(message.bytes, status));
+    EXPECT_EQ(status.exit_code, 9);
+    heard |= bit(status.header.role);
+  }
+  EXPECT_EQ(heard, bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics));
+  EXPECT_FALSE(next(*late, message, kSilence));
+}
+
+TEST_F(CycloneBus, WakeEndsAWaitOfAnotherThreadAndIsNotLostToTake) {
+  const auto node = connect("a", "mechanics", {}, {Topic::tick});
+  std::thread sleeper([&] { node->wait_until(monotonic_ns() + testing::kPatience); });
+  node->wake();
+  sleeper.join();
+  Received message;
+  node->wake();
+  EXPECT_FALSE(node->take(message));
+  node->wait_until(monotonic_ns() + testing::kPatience);
+}
+
+TEST_F(CycloneBus, UndeclaredTopicsAreRefused) {
+  const auto node = connect("a", "mechanics", {Topic::mechanism}, {Topic::tick});
+  EXPECT_FALSE(node->publish(Topic::tick, tick_of(1)).is_ok());
+}
+
+TEST_F(CycloneBus, NamesTheWritersOfATopic) {
+  const auto io = connect("a", "io", {Topic::tick}, {});
+  const auto other = connect("b", "io", {Topic::tick}, {});
+  const auto node = connect("a", "mechanics", {}, {Topic::tick});
+  std::vector<std::string> writers;
+  ASSERT_TRUE(eventually([&] {
+    writers = node->discovered_writers(Topic::tick);
+    return !writers.empty();
+  }));
+  ASSERT_EQ(writers.size(), 1u);
+  EXPECT_EQ(writers[0].find("io on host "), 0u) << writers[0];
+  EXPECT_NE(writers[0].find(", pid " + std::to_string(getpid()) + ", type slewring::Tick"), std::string::npos);
+  EXPECT_EQ(writers[0].find("layout"), std::string::npos);
+}
+
+TEST_F(CycloneBus, PatternsAreNoSessionNames) {
+  for (const char* name : {"", "a*", "?", "[x]"}) {
+    std::unique_ptr<CycloneTransport> transport;
+    EXPECT_EQ(CycloneTransport::open(domain_, {name, "io", {Topic::tick}, {}}, transport).code, ExitCode::bad_input);
+  }
+}
+
+TEST(CycloneDomainErrors, AMissingInterfaceIsNamedWithThoseThatExist) {
+  std::shared_ptr<CycloneDomain> domain;
+  const Status status = CycloneDomain::open({1, "nonesuch0", {}}, domain);
+  EXPECT_EQ(status.code, ExitCode::resources);
+  EXPECT_NE(status.text.find("'nonesuch0'"), std::string::npos) << status.text;
+  EXPECT_NE(status.text.find("lo (127.0.0.1)"), std::string::npos) << status.text;
+  EXPECT_NE(status.text.find("--interface"), std::string::npos) << status.text;
+}
+
+TEST(CycloneDomainErrors, WrongPeersAndNumbersAreRefused) {
+  std::shared_ptr<CycloneDomain> domain;
+  EXPECT_EQ(CycloneDomain::open({1, "lo", {"10.0.0.2\"/>"}}, domain).code, ExitCode::bad_input);
+  EXPECT_EQ(CycloneDomain::open({kMaxDomain + 1, "lo", {}}, domain).code, ExitCode::bad_input);
+}
+
+TEST(CycloneDomainErrors, AnExhaustedParticipantIndexIsExplained) {
+  const testing::TestDomain number;
+  const auto hold = [&number] {
+    std::shared_ptr<CycloneDomain> domain;
+    std::unique_ptr<CycloneTransport> transport;
+    const Status status =
+        CycloneTransport::open(CycloneNetwork{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
+    if (!status.is_ok()) {
+      std::fprintf(stderr, "%s\n", status.text.c_str());
+      return false;
+    }
+    raise(SIGSTOP);
+    return true;
+  };
+  std::vector<testing::ChildProcess> children;
+  for (int i = 0; i < kMaxProcesses; ++i) children.emplace_back(hold);
+  for (testing::ChildProcess& child : children) ASSERT_TRUE(child.wait_until_stopped());
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status =
+      CycloneTransport::open(CycloneNetwork{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
+  EXPECT_EQ(status.code, ExitCode::resources);
+  EXPECT_NE(status.text.find("--domain"), std::string::npos) << status.text;
+}
+
+TEST(CycloneConfiguration, SendsOnlyToOwnHostUnlessPeersAreNamed) {
+  const std::string alone = cyclone_xml({0, "lo", {}}, "127.0.0.1");
+  EXPECT_NE(alone.find(R"(<Peers><Peer Address="127.0.0.1"/></Peers>)"), std::string::npos);
+  EXPECT_NE(alone.find("<AllowMulticast>false</AllowMulticast>"), std::string::npos);
+  const std::string two = cyclone_xml({0, "eth0", {"10.0.0.2"}}, "10.0.0.1");
+  EXPECT_NE(two.find(R"(<Peers><Peer Address="10.0.0.1"/><Peer Address="10.0.0.2"/></Peers>)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace slew::transport
