@@ -51,7 +51,6 @@ Circuit::Circuit(const HydraulicsDef& def)
   control_.assign(control_name_.size(), 0);
   line_force_.assign(actuators_.size(), 0);
   ls_.assign(builder.ls_names().size(), 0);
-  flow_slope_.assign(at(volume_count()), 0);
   jacobian_.assign((at(size_) + ls_.size()) * at(size_), 0);
   moved_.assign(at(size_), 0);
   way_.assign(actuators_.size(), 0);
@@ -64,6 +63,7 @@ Circuit::Circuit(const HydraulicsDef& def)
 
 void Circuit::add_contents(const CircuitBuilder& builder) {
   for (int i = 0; i < volume_count(); ++i) {
+    VolumeContent volume{.begin = pieces_.size()};
     for (const Content& content : builder.contents()) {
       if (content.volume_index != i) continue;
       Piece piece{content};
@@ -72,9 +72,15 @@ void Circuit::add_contents(const CircuitBuilder& builder) {
       piece.has_constant_wall =
           wall.lowest >= wall.highest || wall.factor * std::sqrt(oil_.lowest_pressure()) >= wall.highest;
       piece.wall_compressibility = 1 / wall.highest;
-      pieces_.push_back(piece);
+      if (piece.position < 0 && piece.has_constant_wall) {
+        volume.volume += content.volume;
+        volume.wall += content.volume * piece.wall_compressibility;
+      } else {
+        pieces_.push_back(piece);
+      }
     }
-    piece_end_.push_back(pieces_.size());
+    volume.end = pieces_.size();
+    volumes_.push_back(volume);
   }
 }
 
@@ -188,27 +194,32 @@ void Circuit::evaluate_ls(const double* y) noexcept {
   for (const LsSource& source : ls_order_) ls_[at(source.index)] = source.component->ls_pressure(now);
 }
 
-ValueSlope Circuit::Piece::wall_at(double p) const noexcept {
-  if (has_constant_wall) return {wall_compressibility, 0};
+ValueSlope Circuit::Piece::elastic_wall_at(double p) const noexcept {
   const double B = wall.factor * std::sqrt(std::max(p, 0.0));
   if (B >= wall.highest) return {1 / wall.highest, 0};
   if (B <= wall.lowest) return {1 / wall.lowest, 0};
   return {1 / B, -0.5 / (B * p)};
 }
 
-Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) const noexcept {
+// (1)
+inline Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) const noexcept {
   const double p = y[volume];
   const ValueSlope oil = oil_.at(p);
-  Capacity C{0, 0, 0};
-  for (std::size_t k = volume == 0 ? 0 : piece_end_[volume - 1]; k < piece_end_[volume]; ++k) {
+  const VolumeContent& contents = volumes_[volume];
+  double V = contents.volume, walls = contents.wall, d_walls = 0;
+  for (std::size_t k = contents.begin; k < contents.end; ++k) {
     const Piece& piece = pieces_[k];
-    const double V = piece.content_at(y);
+    const double V_k = piece.content_at(y);
     const ValueSlope wall = piece.wall_at(p);
-    C.value += V * (oil.value + wall.value);
-    C.d_pressure += V * (oil.slope + wall.slope);
-    C.content += V;
+    V += V_k;
+    walls += V_k * wall.value;
+    d_walls += V_k * wall.slope;
   }
-  return C;
+  return {V * oil.value + walls, V * oil.slope + d_walls, V, oil.value};
+}
+
+double Circuit::capacity_at(std::size_t volume, const double* y) const noexcept {
+  return capacity(volume, y).value;
 }
 
 void Circuit::capacities(const double* y, double* C) const noexcept {
@@ -222,18 +233,23 @@ void Circuit::rates(const double* y, double* f) noexcept {
   Rates sums(f);
   for (const HydraulicComponent* component : active_) component->add_rates(now, sums);
   // (1), (2)
-  for (std::size_t i = 0; i < volume_name_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity(i, y).value;
+  for (std::size_t i = 0; i < volumes_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity(i, y).value;
   // (3)
   for (int j = 0; j < actuator_count(); ++j) f[position(j)] = y[speed(j)];
 }
 
-double* Circuit::jacobian(const double* y, const double* f) noexcept {
+// Partial derivatives of the flows and of the component states' rates.
+void Circuit::stamp_flows(const double* y) noexcept {
   std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
   evaluate_ls(y);
   const CircuitView now = view(y);
   JacobianStamp stamp(jacobian_.data(), size_);
   for (const LsSource& source : ls_order_) source.component->add_ls_jacobian(now, stamp);
   for (const HydraulicComponent* component : active_) component->add_jacobian(now, stamp);
+}
+
+double* Circuit::jacobian(const double* y, const double* f) noexcept {
+  stamp_flows(y);
   add_capacity_slopes(y, f);
   for (int j = 0; j < actuator_count(); ++j) jacobian_[at(position(j) * size_ + speed(j))] = 1;
   return jacobian_.data();
@@ -241,9 +257,8 @@ double* Circuit::jacobian(const double* y, const double* f) noexcept {
 
 // Rows of flows become rows of pressure rates: d(Q/C) = dQ/C - p' dC/C.
 void Circuit::add_capacity_slopes(const double* y, const double* f) noexcept {
-  for (std::size_t i = 0; i < volume_name_.size(); ++i) {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
     double* const row = &jacobian_[i * at(size_)];
-    flow_slope_[i] = -row[i];
     if (is_fixed_[i]) {
       std::fill(row, row + size_, 0.0);
       continue;
@@ -253,18 +268,17 @@ void Circuit::add_capacity_slopes(const double* y, const double* f) noexcept {
     for (int j = 0; j < size_; ++j) row[j] *= inverse;
     const double share = f[i] * inverse;
     row[i] -= share * C.d_pressure;
-    const double kappa = oil_.at(y[i]).value;
-    for (std::size_t k = i == 0 ? 0 : piece_end_[i - 1]; k < piece_end_[i]; ++k) {
+    for (std::size_t k = volumes_[i].begin; k < volumes_[i].end; ++k) {
       const Piece& piece = pieces_[k];
       if (piece.position < 0 || piece.is_closed(y)) continue;
-      row[piece.position] -= share * piece.slope * (kappa + piece.wall_at(y[i]).value);
+      row[piece.position] -= share * piece.slope * (C.oil + piece.wall_at(y[i]).value);
     }
   }
 }
 
 void Circuit::outflow_slopes(const double* y, double* slope) noexcept {
-  std::copy(flow_slope_.begin(), flow_slope_.end(), slope);
-  evaluate_ls(y);
+  stamp_flows(y);
+  for (int i = 0; i < volume_count(); ++i) slope[i] = -jacobian_[at(i * size_ + i)];
   const CircuitView now = view(y);
   for (const HydraulicComponent* component : active_) component->raise_outflow_slopes(now, slope);
 }

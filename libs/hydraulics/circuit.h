@@ -91,7 +91,7 @@ class Circuit {
 
   // Capacities C_i [m3/Pa]; 0 for fixed volumes.
   void capacities(const double* y, double* C) const noexcept;
-  // -dQ/dp of each volume at y, on the steeper side of switches; needs jacobian() called before with the same y.
+  // -dQ/dp of each volume at y, on the steeper side of switches.
   void outflow_slopes(const double* y, double* slope) noexcept;
   // Moves the pistons to x_new and lets each pressure follow its chamber's change of volume, no oil lost:
   // C dp + A dx = 0, integrated over the way. False when a pressure had to be held at the lowest pressure.
@@ -109,10 +109,10 @@ class Circuit {
 
  private:
   struct Capacity {
-    double value, d_pressure, content;
+    double value, d_pressure, content, oil;
   };
 
-  // A content with the constant part of its wall's law worked out.
+  // A content whose volume or wall changes, with what is constant in it worked out.
   struct Piece : Content {
     bool has_constant_wall = true;
     double wall_compressibility = 0;  // 1/Pa, when constant
@@ -123,7 +123,16 @@ class Circuit {
       const double V = volume + slope * y[position];
       return V > smallest ? V : smallest;
     }
-    [[nodiscard]] ValueSlope wall_at(double p) const noexcept;
+    [[nodiscard]] ValueSlope wall_at(double p) const noexcept {
+      return has_constant_wall ? ValueSlope{wall_compressibility, 0} : elastic_wall_at(p);
+    }
+    [[nodiscard]] ValueSlope elastic_wall_at(double p) const noexcept;
+  };
+  // All contents of a volume: constant ones summed, the others one by one.
+  struct VolumeContent {
+    double volume = 0;               // m3
+    double wall = 0;                 // m3/Pa, sum of volume x wall compressibility
+    std::size_t begin = 0, end = 0;  // in pieces_
   };
 
   void add_contents(const CircuitBuilder& builder);
@@ -136,6 +145,8 @@ class Circuit {
     return {y, control_.data(), ls_.data(), line_force_.data()};
   }
   [[nodiscard]] Capacity capacity(std::size_t volume, const double* y) const noexcept;
+  [[nodiscard]] double capacity_at(std::size_t volume, const double* y) const noexcept;
+  void stamp_flows(const double* y) noexcept;
   void add_capacity_slopes(const double* y, const double* f) noexcept;
   void chamber_rates(const double* y, double* dp) const noexcept;
 
@@ -149,8 +160,8 @@ class Circuit {
   StartState start_;
   double start_return_, start_slew_, start_pump_;
 
-  std::vector<Piece> pieces_;           // by volume
-  std::vector<std::size_t> piece_end_;  // of each volume in pieces_
+  std::vector<Piece> pieces_;  // by volume
+  std::vector<VolumeContent> volumes_;
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
   std::vector<double> scale_, relative_;
@@ -172,7 +183,7 @@ class Circuit {
   std::vector<double> parameter_value_;
 
   // work space
-  std::vector<double> ls_, flow_slope_, jacobian_, moved_, way_;
+  std::vector<double> ls_, jacobian_, moved_, way_;
   std::array<std::vector<double>, 4> slope_;  // stages of move_pistons()
 };
 

@@ -149,11 +149,9 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
     std::copy(y_start_.begin(), y_start_.end(), y_.begin());
     open_quadrature_ = 0;
   }
-  if (!has_failed_) {
-    derivative(y_.data(), f_.data());
-    close_quadrature(y_.data(), f_.data());
-  }
-  refresh();
+  derivative(y_.data(), f_.data());
+  close_quadrature(y_.data(), f_.data());
+  publish();
   report_flags(report);
   was_clamped_ = false;
   motion_ = nullptr;
@@ -172,10 +170,13 @@ void CircuitIntegrator::report_flags(StepReport& report) noexcept {
   if (has_failed_) report.raise(StepFlag::non_finite);
 }
 
-// (2)
 void CircuitIntegrator::refresh() noexcept {
   circuit_.rates(y_.data(), f_.data());
-  circuit_.jacobian(y_.data(), f_.data());
+  publish();
+}
+
+// (2), from y_ and its rates f_
+void CircuitIntegrator::publish() noexcept {
   circuit_.outflow_slopes(y_.data(), outflow_.data());
   circuit_.capacities(y_.data(), C_.data());
   for (std::size_t j = 0; j < m_; ++j) {

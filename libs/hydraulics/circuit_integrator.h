@@ -67,6 +67,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   void derivative(const double* y, double* f) noexcept override;
   const double* jacobian(const double* y, const double* f) noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
+  void publish() noexcept;
   void close_quadrature(const double* y, const double* f) noexcept;
   void report_flags(StepReport& report) noexcept;
 

@@ -78,11 +78,11 @@ void Circuit::chamber_rates(const double* y, double* dp) const noexcept {
     dp[i] = 0;
     if (is_fixed_[i]) continue;
     double dV = 0;
-    for (std::size_t k = i == 0 ? 0 : piece_end_[i - 1]; k < piece_end_[i]; ++k) {
+    for (std::size_t k = volumes_[i].begin; k < volumes_[i].end; ++k) {
       const Piece& piece = pieces_[k];
       if (piece.position >= 0) dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
     }
-    if (dV != 0) dp[i] = -dV / capacity(i, y).value;
+    if (dV != 0) dp[i] = -dV / capacity_at(i, y);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "hydraulics/oil.h"
 
-#include <bit>
 #include <cmath>
 
 #include "hydraulics/hydraulics_def.h"
@@ -8,17 +7,9 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr int kPartsShift = 52 - 5;       // 32 parts of an octave: five leading bits of the mantissa
 constexpr double kHighestPressure = 4e9;  // Pa; beyond, kappa keeps its last value
 constexpr double kLowestFraction = 1e-3;  // of the floor: the table's lower end
 constexpr double kVapour = 10;            // c of (3): 110 % expansion at half the floor
-
-std::uint64_t leading_bits(double p) noexcept {
-  return std::bit_cast<std::uint64_t>(p) >> kPartsShift;
-}
-double from_leading_bits(std::uint64_t bits) noexcept {
-  return std::bit_cast<double>(bits << kPartsShift);
-}
 
 }  // namespace
 
@@ -28,12 +19,13 @@ OilCompressibility::OilCompressibility(const HydraulicsDef& def)
       p_0_(def.air_reference_pressure),
       inverse_n_(1 / def.polytropic_exponent),
       floor_(def.pressure_floor) {
+  const auto start_of = [](std::uint64_t bits) { return std::bit_cast<double>(bits << kPartsShift); };
   first_ = leading_bits(kLowestFraction * floor_);
-  lowest_ = from_leading_bits(first_);
+  lowest_ = start_of(first_);
   const std::uint64_t last = leading_bits(kHighestPressure);
   for (std::uint64_t bits = first_; bits <= last; ++bits) {
     // cubic with the exact values and slopes at both ends
-    const double start = from_leading_bits(bits), end = from_leading_bits(bits + 1), width = end - start;
+    const double start = start_of(bits), end = start_of(bits + 1), width = end - start;
     const ValueSlope a = exact(start), b = exact(end);
     const double rise = b.value - a.value, slope_a = a.slope * width, slope_b = b.slope * width;
     segment_.push_back(
@@ -54,19 +46,6 @@ ValueSlope OilCompressibility::exact(double p) const noexcept {
     kappa.slope -= 2 * kVapour * q / (p * p);
   }
   return kappa;
-}
-
-ValueSlope OilCompressibility::at(double p) const noexcept {
-  if (!(p > lowest_)) return {segment_.front().coefficient[0], 0};
-  const std::uint64_t index = leading_bits(p) - first_;
-  if (index >= segment_.size()) {
-    const auto& c = segment_.back().coefficient;
-    return {((c[3] + c[2]) + c[1]) + c[0], 0};
-  }
-  const Segment& s = segment_[index];
-  const auto& c = s.coefficient;
-  const double t = (p - s.start) * s.inverse_width;
-  return {((c[3] * t + c[2]) * t + c[1]) * t + c[0], ((3 * c[3] * t + 2 * c[2]) * t + c[1]) * s.inverse_width};
 }
 
 }  // namespace slew::hydraulics

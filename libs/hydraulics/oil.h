@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -26,7 +27,16 @@ class OilCompressibility {
   explicit OilCompressibility(const HydraulicsDef& def);
 
   // kappa [1/Pa] and its slope [1/Pa2] at the absolute pressure p; beyond the table its end values.
-  [[nodiscard]] ValueSlope at(double p) const noexcept;
+  [[nodiscard]] ValueSlope at(double p) const noexcept {
+    const std::uint64_t index = leading_bits(p > lowest_ ? p : lowest_) - first_;
+    const Segment& s = segment_[index < segment_.size() ? index : segment_.size() - 1];
+    const auto& c = s.coefficient;
+    const double t = (p - s.start) * s.inverse_width;
+    // outside of the table
+    if (!(t >= 0)) return {c[0], 0};
+    if (t > 1) return {((c[3] + c[2]) + c[1]) + c[0], 0};
+    return {((c[3] * t + c[2]) * t + c[1]) * t + c[0], ((3 * c[3] * t + 2 * c[2]) * t + c[1]) * s.inverse_width};
+  }
   // (2), (3) evaluated directly; what the table is made from.
   [[nodiscard]] ValueSlope exact(double p) const noexcept;
 
@@ -34,6 +44,12 @@ class OilCompressibility {
   [[nodiscard]] double lowest_pressure() const noexcept { return lowest_; }
 
  private:
+  // 32 parts of an octave: the exponent and the five leading bits of the mantissa number them
+  static constexpr int kPartsShift = 52 - 5;
+  [[nodiscard]] static std::uint64_t leading_bits(double p) noexcept {
+    return std::bit_cast<std::uint64_t>(p) >> kPartsShift;
+  }
+
   struct Segment {
     double start, inverse_width;        // Pa, 1/Pa
     std::array<double, 4> coefficient;  // of powers of t = (p - start) inverse_width

@@ -55,8 +55,12 @@ ValueSlope anti_cavitation(const L90Side& side, double drop) noexcept {
 }
 
 ReturnFlow to_tank(const L90Side& side, double opening, double drop) noexcept {
-  const ValueSlope relief = shock(side, drop), suction = anti_cavitation(side, drop);
-  ReturnFlow flow{side.G_leak * drop + relief.value + suction.value, 0, side.G_leak + relief.slope + suction.slope};
+  ReturnFlow flow{side.G_leak * drop, 0, side.G_leak};
+  if (drop > side.shock_setting || drop < -side.crack) {
+    const ValueSlope valve = drop > 0 ? shock(side, drop) : anti_cavitation(side, drop);
+    flow.Q += valve.value;
+    flow.d_drop += valve.slope;
+  }
   if (opening > 0) {
     const ValueSlope r = root(drop, side.transition);
     flow.Q += opening * side.K_return * r.value;

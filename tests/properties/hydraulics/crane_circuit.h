@@ -124,8 +124,18 @@ inline HydraulicsDef crane_circuit() {
   bleed.nominal_flow = 2 * kLitrePerMinute, bleed.nominal_pressure_drop = 25 * kBar;
 
   circuit.curves.push_back({.name = "Spline_CylinderFriction",
-                            .points = {{0, 0}, {0.0001, 1}, {0.025, 0.9}, {0.05, 0.4}, {0.075, 0.225}, {0.1, 0.2},
-                                       {0.125, 0.225}, {0.2, 0.275}, {0.3, 0.35}, {0.4, 0.415}, {1, 0.8}, {3, 0.85}},
+                            .points = {{0, 0},
+                                       {0.0001, 1},
+                                       {0.025, 0.9},
+                                       {0.05, 0.4},
+                                       {0.075, 0.225},
+                                       {0.1, 0.2},
+                                       {0.125, 0.225},
+                                       {0.2, 0.275},
+                                       {0.3, 0.35},
+                                       {0.4, 0.415},
+                                       {1, 0.8},
+                                       {3, 0.85}},
                             .odd = true});
   return circuit;
 }

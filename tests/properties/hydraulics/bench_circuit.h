@@ -1,0 +1,52 @@
+// A circuit that holds one of every component type that the truck crane does not use, for tests.
+#pragma once
+
+#include "hydraulics/components/compensated_orifice.h"
+#include "hydraulics/components/direct_relief_valve.h"
+#include "tests/properties/hydraulics/crane_circuit.h"
+
+namespace slew::hydraulics::test {
+
+inline HydraulicsDef bench_circuit() {
+  HydraulicsDef circuit;
+  circuit.oil_density = 850;
+  add_volume(circuit, "Vol_P").rigid_volume = 1e-3;
+  add_volume(circuit, "Vol_A").rigid_volume = 2e-3;
+  add_volume(circuit, "Vol_B");
+  add_tank(circuit, "Vol_T");
+
+  // a soft hose, whose wall law moves between its bounds
+  add_hose(circuit, "Hose_B", "Vol_B", 3, 0.02);
+  static_cast<HoseDef&>(*circuit.components.back()).bulk_modulus = 6e4;
+
+  CompensatedOrificeDef& metering = add<CompensatedOrificeDef>(circuit, "Metering_A");
+  metering.port_p = "Vol_P", metering.port_a = "Vol_A", metering.port_t = "Vol_T", metering.area = 5e-6;
+  CompensatedOrificeDef& second = add<CompensatedOrificeDef>(circuit, "Metering_B");
+  second.port_p = "Vol_P", second.port_a = "Vol_B", second.port_t = "Vol_T", second.area = 3e-6;
+  L90lsValveDef& valve = add<L90lsValveDef>(circuit, "Valve");
+  valve.port_p = "Vol_P", valve.port_a = "Vol_A", valve.port_b = "Vol_B", valve.port_t = "Vol_T";
+
+  // shuttles with and without a line behind them
+  LsShuttleDef& first = add<LsShuttleDef>(circuit, "Shuttle_1");
+  first.port_1 = "Metering_A", first.port_2 = "Metering_B", first.line_time_constant = 0.005;
+  LsShuttleDef& last = add<LsShuttleDef>(circuit, "Shuttle_2");
+  last.port_1 = "Shuttle_1", last.port_2 = "Valve";
+  LsPumpDef& pump = add<LsPumpDef>(circuit, "Pump");
+  pump.port_a = "Vol_P", pump.port_b = "Vol_T", pump.ls_port = "Shuttle_2";
+  pump.speed = 157, pump.displacement = 10e-6, pump.leak_flow = kLeak;
+
+  DirectReliefValveDef& relief = add<DirectReliefValveDef>(circuit, "Relief_A");
+  relief.port_1 = "Vol_A", relief.port_2 = "Vol_T", relief.seat_diameter = 0.01, relief.crack_pressure = 200 * kBar;
+  relief.spring_constant = 4e4, relief.flow_force = FlowForce::included;
+  DirectReliefValveDef& plain = add<DirectReliefValveDef>(circuit, "Relief_B");
+  plain.port_1 = "Vol_B", plain.port_2 = "Vol_T", plain.seat_diameter = 0.01, plain.crack_pressure = 100 * kBar;
+  plain.spring_constant = 4e4, plain.maximum_lift = 2e-4;
+
+  OrificeDef& orifice = add<OrificeDef>(circuit, "Orifice");
+  orifice.port_1 = "Vol_A", orifice.port_2 = "Vol_B", orifice.diameter = 1e-3;
+  LaminarRestrictionDef& capillary = add<LaminarRestrictionDef>(circuit, "Capillary");
+  capillary.port_1 = "Vol_B", capillary.port_2 = "Vol_T", capillary.diameter = 1e-3, capillary.length = 0.5;
+  return circuit;
+}
+
+}  // namespace slew::hydraulics::test
