@@ -9,7 +9,11 @@
 namespace slew::recording {
 
 ScratchDirectory::ScratchDirectory() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "slewring-recording-XXXXXX").string();
+  // in memory where there is such a place: thousands of small files are synchronised
+  const std::filesystem::path memory = "/dev/shm";
+  const bool is_usable = ::access(memory.c_str(), W_OK) == 0;
+  const std::filesystem::path parent = is_usable ? memory : std::filesystem::temp_directory_path();
+  std::string pattern = (parent / "slewring-recording-XXXXXX").string();
   path_ = ::mkdtemp(pattern.data());
 }
 

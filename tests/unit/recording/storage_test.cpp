@@ -127,9 +127,12 @@ TEST(RecordingStorage, AfterAFailedChunkTheEndIsStillWrittenWhenItFits) {
 // As root at once, otherwise as root of a user namespace of its own.
 bool enter_mount_namespace() {
   const uid_t user = getuid();
+  const gid_t group = getgid();
   if (unshare(CLONE_NEWNS) == 0) return true;
   if (unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return false;
   write_file("/proc/self/uid_map", fmt::format("0 {} 1", user));
+  write_file("/proc/self/setgroups", "deny");
+  write_file("/proc/self/gid_map", fmt::format("0 {} 1", group));
   return true;
 }
 
