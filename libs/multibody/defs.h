@@ -24,7 +24,7 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 enum class InertiaPoint : int { center_of_mass, body_origin };
 
 struct BodyDef {
-  std::string name;
+  std::string name{};
   std::string relative_to = "Ground";  // body that the pose refers to
   Triple position{};                   // m, origin in relative_to's frame
   Triple orientation{};                // rad, Euler z-x'-z''
@@ -39,12 +39,12 @@ enum class JointType : int { revolute, prismatic, spherical, fixed, floating };
 
 // One struct for every joint type; each type's field table lists the members that it has, in its own dimensions.
 struct JointDef {
-  std::string name;
+  std::string name{};
   JointType type = JointType::revolute;
   std::string body1 = "Ground";
   Triple point1{};        // m, body 1 frame
   Triple orientation1{};  // rad, successive x, y', z''
-  std::string body2;
+  std::string body2{};
   Triple point2{};                 // m, body 2 frame
   Triple orientation2{};           // rad
   double initial_velocity = 0;     // rad/s or m/s (revolute, prismatic)
@@ -61,10 +61,10 @@ struct JointDef {
 
 // Force along the line between a point of body 1 and a point of body 2; positive pushes them apart.
 struct TranslationalForceDef {
-  std::string name;
-  std::string body1;
+  std::string name{};
+  std::string body1{};
   Triple point1{};  // m, body 1 frame
-  std::string body2;
+  std::string body2{};
   Triple point2{};                  // m, body 2 frame
   double spring_constant = 0;       // N/m
   double damping_constant = 0;      // N s/m
@@ -77,11 +77,11 @@ struct TranslationalForceDef {
 
 // Torque about the axis f1 x g1 of body 1; the angle is that of f2 in the plane of f1 and g1, counted from f1 to g1.
 struct RotationalForceDef {
-  std::string name;
-  std::string body1;
+  std::string name{};
+  std::string body1{};
   Triple f1{0, 0, 1};  // direction, body 1 frame
   Triple g1{1, 0, 0};  // direction at a right angle to f1, body 1 frame
-  std::string body2;
+  std::string body2{};
   Triple f2{0, 0, 1};               // direction, body 2 frame
   double spring_constant = 0;       // N m/rad
   double damping_constant = 0;      // N m s/rad
@@ -95,8 +95,8 @@ struct RotationalForceDef {
 // Mass of a cylinder (index 1) or of a piston with its rod (index 2), carried by a translational force without
 // degrees of freedom. Element frame: x = unit(P1 - P2), origin P1 for index 1 and P2 for index 2.
 struct ForceDummyDef {
-  std::string name;
-  std::string relative_to;  // translational force
+  std::string name{};
+  std::string relative_to{};  // translational force
   std::int64_t index = 1;   // 1: at body 1's end, 2: at body 2's end
   double mass = 0;          // kg
   Triple center_of_mass{};  // m, element frame; on the x axis
@@ -105,7 +105,7 @@ struct ForceDummyDef {
 
 // Mass fixed to a body.
 struct StaticDummyDef {
-  std::string name;
+  std::string name{};
   std::string relative_to = "Ground";  // body
   Triple position{};                   // m, in the body's frame
   Triple orientation{};                // rad, Euler z-x'-z''

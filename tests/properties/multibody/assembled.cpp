@@ -1,0 +1,306 @@
+#include "tests/properties/multibody/assembled.h"
+
+#include <cmath>
+
+namespace slew::multibody::testing {
+namespace {
+
+Vector3 vec(const Triple& t) {
+  return {t[0], t[1], t[2]};
+}
+
+Matrix3 about(int axis, Real angle) {
+  return Eigen::AngleAxis<Real>(angle, Vector3::Unit(axis)).toRotationMatrix();
+}
+
+Matrix3 euler_zxz(const Triple& a) {
+  return about(2, a[0]) * about(0, a[1]) * about(2, a[2]);
+}
+Matrix3 euler_xyz(const Triple& a) {
+  return about(0, a[0]) * about(1, a[1]) * about(2, a[2]);
+}
+
+Matrix3 cross_matrix(const Vector3& v) {
+  Matrix3 m;
+  m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return m;
+}
+
+Columns point_jacobian(const BodyMotion& body, const Vector3& arm) {
+  return body.Jp - cross_matrix(arm) * body.Jw;
+}
+
+// joint frames in parent and child
+struct Sides {
+  const BodyMotion* parent;
+  Matrix3 R_P, R_C;
+  Vector3 p_P, p_C;
+  Real sign;  // of the coordinate: the child is body 2 (+) or body 1 (-)
+};
+
+Matrix3 quaternion_matrix(const Vector& q, int i) {
+  return Eigen::Quaternion<Real>(q[i], q[i + 1], q[i + 2], q[i + 3]).normalized().toRotationMatrix();
+}
+
+}  // namespace
+
+const BodyMotion& Assembled::body(const std::vector<BodyMotion>& bodies, const std::string& name) const {
+  if (name == kGroundName) return bodies[0];
+  for (std::size_t i = 0; i < def_.bodies.size(); ++i) {
+    if (def_.bodies[i].name == name) return bodies[i + 1];
+  }
+  throw std::runtime_error("unknown body " + name);
+}
+
+std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
+  const int n = model_.degrees_of_freedom();
+  std::vector<BodyMotion> bodies(def_.bodies.size() + 1);
+  std::vector<bool> is_placed(bodies.size(), false);
+  is_placed[0] = true;
+  for (BodyMotion& b : bodies) b.Jw = b.Jp = Columns::Zero(3, n);
+  const auto index = [this](const std::string& name) { return find_body(model_, name); };
+  for (std::size_t placed = 0; placed < def_.bodies.size();) {
+    for (std::size_t j = 0; j < def_.joints.size(); ++j) {
+      const JointDef& joint = def_.joints[j];
+      const auto b1 = static_cast<std::size_t>(index(joint.body1)), b2 = static_cast<std::size_t>(index(joint.body2));
+      if (is_placed[b1] == is_placed[b2]) continue;
+      const bool is_forward = is_placed[b1];
+      const std::size_t child_index = is_forward ? b2 : b1;
+      BodyMotion& child = bodies[child_index];
+      const BodyMotion& parent = bodies[is_forward ? b1 : b2];
+      const Matrix3 R1 = euler_xyz(joint.orientation1), R2 = euler_xyz(joint.orientation2);
+      const Vector3 p1 = vec(joint.point1), p2 = vec(joint.point2);
+      const Matrix3& R_P = is_forward ? R1 : R2;
+      const Matrix3& R_C = is_forward ? R2 : R1;
+      const Vector3& p_P = is_forward ? p1 : p2;
+      const Vector3& p_C = is_forward ? p2 : p1;
+      const Real sign = is_forward ? 1 : -1;
+      const Link& link = model_.links[static_cast<std::size_t>(model_.joints[j].link)];
+      const Matrix3 frame = parent.R * R_P;
+      const Vector3 axis = frame.col(2);
+      Vector3 point = parent.p + parent.R * p_P;
+      child.Jw = parent.Jw;
+      child.Jp = point_jacobian(parent, parent.R * p_P);  // of the joint's point for now
+      switch (joint.type) {
+        case JointType::fixed:
+          child.R = frame * R_C.transpose();
+          break;
+        case JointType::revolute:
+          child.R = frame * about(2, sign * q[link.q]) * R_C.transpose();
+          child.Jw.col(link.u) += sign * axis;
+          break;
+        case JointType::prismatic: {
+          child.R = frame * R_C.transpose();
+          const Vector3 slide = axis * (sign * q[link.q]);
+          child.Jp -= cross_matrix(slide) * parent.Jw;
+          child.Jp.col(link.u) += sign * axis;
+          point += slide;
+          break;
+        }
+        case JointType::spherical:
+          child.R = quaternion_matrix(q, link.q) * R_C.transpose();
+          child.Jw.middleCols(link.u, 3) += Matrix3::Identity();
+          break;
+        case JointType::floating:
+          child.R = quaternion_matrix(q, link.q + 3) * R_C.transpose();
+          point = q.segment(link.q, 3);
+          child.Jw.setZero();
+          child.Jp.setZero();
+          child.Jp.middleCols(link.u, 3) = Matrix3::Identity();
+          child.Jw.middleCols(link.u + 3, 3) = Matrix3::Identity();
+          break;
+      }
+      // from the joint's point to the child's origin
+      const Vector3 arm = -(child.R * p_C);
+      child.p = point + arm;
+      child.Jp -= cross_matrix(arm) * child.Jw;
+      is_placed[child_index] = true;
+      ++placed;
+    }
+  }
+  return bodies;
+}
+
+Vector Assembled::coordinate_rates(const Vector& q, const Vector& u) const {
+  Vector rates = Vector::Zero(q.size());
+  const std::vector<BodyMotion> bodies = motion(q);
+  for (std::size_t j = 0; j < def_.joints.size(); ++j) {
+    const Joint& joint = model_.joints[j];
+    const Link& link = model_.links[static_cast<std::size_t>(joint.link)];
+    if (joint.type == JointType::revolute || joint.type == JointType::prismatic) {
+      rates[link.q] = u[link.u];
+    } else if (joint.type == JointType::spherical || joint.type == JointType::floating) {
+      const std::string& name = joint.is_reversed ? def_.joints[j].body1 : def_.joints[j].body2;
+      const Vector3 w = body(bodies, name).Jw * u;
+      int i = link.q;
+      if (joint.type == JointType::floating) {
+        rates.segment(i, 3) = u.segment(link.u, 3);
+        i += 3;
+      }
+      const Eigen::Quaternion<Real> spin(0, w[0] / 2, w[1] / 2, w[2] / 2), now(q[i], q[i + 1], q[i + 2], q[i + 3]);
+      const Eigen::Quaternion<Real> rate = spin * now;
+      rates.segment(i, 4) << rate.w(), rate.x(), rate.y(), rate.z();
+    }
+  }
+  return rates;
+}
+
+std::vector<Assembled::Mass> Assembled::masses(const std::vector<BodyMotion>& bodies) const {
+  std::vector<Mass> list;
+  const auto add = [&list](const BodyMotion& on, Real mass, const Vector3& center, const Matrix3& inertia) {
+    list.push_back(
+        {mass, on.R * inertia * on.R.transpose(), point_jacobian(on, on.R * center), on.Jw, on.p + on.R * center});
+  };
+  for (std::size_t i = 0; i < def_.bodies.size(); ++i) {
+    const BodyDef& def = def_.bodies[i];
+    Matrix3 I;
+    I << def.inertia[0], def.products[0], def.products[1], def.products[0], def.inertia[1], def.products[2],
+        def.products[1], def.products[2], def.inertia[2];
+    const Vector3 c = vec(def.center_of_mass);
+    if (def.inertia_about == InertiaPoint::body_origin) {
+      I -= def.mass * (c.squaredNorm() * Matrix3::Identity() - c * c.transpose());
+    }
+    add(bodies[i + 1], def.mass, c, I);
+  }
+  for (const StaticDummyDef& def : def_.static_dummies) {
+    const Matrix3 R = euler_zxz(def.orientation);
+    const Matrix3 I = R * vec(def.inertia).asDiagonal() * R.transpose();
+    add(body(bodies, def.relative_to), def.mass, vec(def.position) + R * vec(def.center_of_mass), I);
+  }
+  add_force_dummies(bodies, list);
+  return list;
+}
+
+void Assembled::add_force_dummies(const std::vector<BodyMotion>& bodies, std::vector<Mass>& list) const {
+  for (const ForceDummyDef& dummy : def_.force_dummies) {
+    for (const TranslationalForceDef& force : def_.translational_forces) {
+      if (force.name != dummy.relative_to) continue;
+      const BodyMotion &b1 = body(bodies, force.body1), &b2 = body(bodies, force.body2);
+      const Vector3 s1 = b1.R * vec(force.point1), s2 = b2.R * vec(force.point2);
+      const Columns J1 = point_jacobian(b1, s1), J2 = point_jacobian(b2, s2);
+      const Vector3 d = b1.p + s1 - b2.p - s2;
+      const Real length = d.norm();
+      const Vector3 e = d / length;
+      const Columns Je = (Matrix3::Identity() - e * e.transpose()) * (J1 - J2) / length;
+      const Real c = dummy.center_of_mass[0];
+      const bool is_cylinder = dummy.index == 1;
+      // it turns with e x e', without spin about e
+      list.push_back({dummy.mass, (dummy.inertia[1] + dummy.inertia[2]) / 2 * Matrix3::Identity(),
+                      (is_cylinder ? J1 : J2) + c * Je, cross_matrix(e) * Je,
+                      (is_cylinder ? Vector3(b1.p + s1) : Vector3(b2.p + s2)) + c * e});
+    }
+  }
+}
+
+Matrix Assembled::mass_matrix(const Vector& q) const {
+  const int n = model_.degrees_of_freedom();
+  Matrix M = Matrix::Zero(n, n);
+  for (const Mass& m : masses(motion(q))) {
+    M += m.mass * m.Jv.transpose() * m.Jv + m.Jw.transpose() * m.inertia * m.Jw;
+  }
+  return M;
+}
+
+Real Assembled::potential(const Vector& q) const {
+  Real sum = 0;
+  for (const Mass& m : masses(motion(q))) sum -= m.mass * vec(def_.gravity).dot(m.center);
+  return sum;
+}
+
+Vector Assembled::forces(const Vector& q, const Vector& u) const {
+  const Vector rates = coordinate_rates(q, u);
+  const std::vector<Mass> now = masses(motion(q));
+  Vector result = element_forces(q, u);
+  // velocities of all masses along the motion with u held
+  const auto velocities = [&](Real t) {
+    const std::vector<Mass> then = masses(motion(q + t * rates));
+    Vector v(6 * static_cast<Eigen::Index>(then.size()));
+    for (std::size_t i = 0; i < then.size(); ++i) {
+      const auto k = 6 * static_cast<Eigen::Index>(i);
+      v.segment(k, 3) = then[i].Jv * u;
+      v.segment(k + 3, 3) = then[i].Jw * u;
+    }
+    return v;
+  };
+  const Vector bias = derivative_at_zero(velocities);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const Mass& m = now[i];
+    const auto k = 6 * static_cast<Eigen::Index>(i);
+    const Vector3 w = m.Jw * u, a = bias.segment(k, 3), alpha = bias.segment(k + 3, 3);
+    result -= m.Jv.transpose() * (m.mass * (a - vec(def_.gravity)));
+    result -= m.Jw.transpose() * (m.inertia * alpha + w.cross(m.inertia * w));
+  }
+  return result;
+}
+
+Vector Assembled::element_forces(const Vector& q, const Vector& u) const {
+  const std::vector<BodyMotion> bodies = motion(q);
+  Vector result = Vector::Zero(u.size());
+  for (const TranslationalForceDef& force : def_.translational_forces) {
+    const Real x = row_value(force.name, q);
+    const Vector J = row_jacobian(force.name, q);
+    Real f = -force.spring_constant * (x - force.free_length) - force.damping_constant * J.dot(u);
+    if (force.end_spring_constant > 0 && x < force.min_length) {
+      f +=
+          std::max(Real(0), force.end_spring_constant * (force.min_length - x) - force.end_damping_constant * J.dot(u));
+    }
+    if (force.end_spring_constant > 0 && x > force.max_length) {
+      f -=
+          std::max(Real(0), force.end_spring_constant * (x - force.max_length) + force.end_damping_constant * J.dot(u));
+    }
+    result += J * f;
+  }
+  for (const RotationalForceDef& force : def_.rotational_forces) {
+    const BodyMotion &b1 = body(bodies, force.body1), &b2 = body(bodies, force.body2);
+    const Vector3 axis = (b1.R * vec(force.f1).cross(vec(force.g1))).normalized();
+    const Vector damper = (b2.Jw - b1.Jw).transpose() * axis;
+    result -= damper * (force.damping_constant * damper.dot(u));
+    if (force.spring_constant == 0) continue;
+    const Real f = -force.spring_constant * (row_value(force.name, q) - force.free_angle);
+    result += row_jacobian(force.name, q) * f;
+  }
+  return result;
+}
+
+Vector Assembled::accelerations(const Vector& q, const Vector& u) const {
+  return mass_matrix(q).ldlt().solve(forces(q, u));
+}
+
+Real Assembled::row_value(const std::string& row, const Vector& q) const {
+  const std::vector<BodyMotion> bodies = motion(q);
+  for (const TranslationalForceDef& force : def_.translational_forces) {
+    if (force.name != row) continue;
+    const BodyMotion &b1 = body(bodies, force.body1), &b2 = body(bodies, force.body2);
+    return (b1.p + b1.R * vec(force.point1) - b2.p - b2.R * vec(force.point2)).norm();
+  }
+  for (const RotationalForceDef& force : def_.rotational_forces) {
+    if (force.name != row) continue;
+    const BodyMotion &b1 = body(bodies, force.body1), &b2 = body(bodies, force.body2);
+    const Vector3 f2 = b2.R * vec(force.f2);
+    return std::atan2(f2.dot(b1.R * vec(force.g1).normalized()), f2.dot(b1.R * vec(force.f1).normalized()));
+  }
+  return q[model_.links[static_cast<std::size_t>(model_.joints[static_cast<std::size_t>(find_joint(model_, row))].link)]
+               .q];
+}
+
+// d(row)/dt for each unit speed, numerically
+Vector Assembled::row_jacobian(const std::string& row, const Vector& q) const {
+  Vector J(model_.degrees_of_freedom());
+  const Real here = row_value(row, q);
+  for (Eigen::Index k = 0; k < J.size(); ++k) {
+    const Vector rates = coordinate_rates(q, Vector::Unit(J.size(), k));
+    J[k] = derivative_at_zero([&](Real t) {
+      const Real there = row_value(row, q + t * rates);
+      // an angle may cross pi between two points of the difference
+      return here + std::remainder(there - here, 2 * std::numbers::pi_v<Real>);
+    });
+  }
+  return J;
+}
+
+Real Assembled::row_bias(const std::string& row, const Vector& q, const Vector& u) const {
+  const Vector rates = coordinate_rates(q, u);
+  return derivative_at_zero([&](Real t) { return row_jacobian(row, q + t * rates).dot(u); });
+}
+
+}  // namespace slew::multibody::testing

@@ -1,0 +1,78 @@
+// A second formulation of the same equations, for agreement tests: Jacobians of every mass assembled into M u' + h = Q
+// in long double, velocity terms by differentiating the Jacobians numerically along the motion. It starts from the
+// Def and shares no dynamics code with the library.
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "multibody/defs.h"
+#include "multibody/model.h"
+
+namespace slew::multibody::testing {
+
+using Real = long double;
+using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using Vector3 = Eigen::Matrix<Real, 3, 1>;
+using Matrix3 = Eigen::Matrix<Real, 3, 3>;
+using Columns = Eigen::Matrix<Real, 3, Eigen::Dynamic>;
+
+struct BodyMotion {
+  Matrix3 R = Matrix3::Identity();
+  Vector3 p = Vector3::Zero();
+  Columns Jw, Jp;  // angular velocity and velocity of the origin per u
+};
+
+class Assembled {
+ public:
+  // model: only where each joint's coordinates lie in q and u is taken from it
+  Assembled(const MechanicsDef& def, const Model& model) : def_(def), model_(model) {}
+
+  [[nodiscard]] std::vector<BodyMotion> motion(const Vector& q) const;
+  [[nodiscard]] Vector coordinate_rates(const Vector& q, const Vector& u) const;
+
+  [[nodiscard]] Matrix mass_matrix(const Vector& q) const;
+  // M u' = forces(q, u) with row forces zero
+  [[nodiscard]] Vector forces(const Vector& q, const Vector& u) const;
+  [[nodiscard]] Vector accelerations(const Vector& q, const Vector& u) const;
+
+  // coordinate of a row and its Jacobian, both from the Def's geometry
+  [[nodiscard]] Real row_value(const std::string& row, const Vector& q) const;
+  [[nodiscard]] Vector row_jacobian(const std::string& row, const Vector& q) const;
+  [[nodiscard]] Real row_bias(const std::string& row, const Vector& q, const Vector& u) const;
+
+  [[nodiscard]] Real potential(const Vector& q) const;  // gravity only
+
+ private:
+  // one moving mass: m J_v^T J_v, with rotational inertia about it as J_w^T I J_w
+  struct Mass {
+    Real mass = 0;
+    Matrix3 inertia = Matrix3::Zero();
+    Columns Jv, Jw;
+    Vector3 center = Vector3::Zero();
+  };
+  [[nodiscard]] std::vector<Mass> masses(const std::vector<BodyMotion>& bodies) const;
+  void add_force_dummies(const std::vector<BodyMotion>& bodies, std::vector<Mass>& list) const;
+  [[nodiscard]] const BodyMotion& body(const std::vector<BodyMotion>& bodies, const std::string& name) const;
+  [[nodiscard]] Vector element_forces(const Vector& q, const Vector& u) const;
+
+  const MechanicsDef& def_;
+  const Model& model_;
+};
+
+// Derivative at 0 of a smooth function of one variable, to about 1e-14: central differences of order 8.
+template <typename Function>
+auto derivative_at_zero(const Function& f) {
+  constexpr Real h = 2e-3L;
+  using Value = decltype(f(h));
+  const Value d1 = f(h) - f(-h);
+  const Value d2 = f(2 * h) - f(-2 * h);
+  const Value d3 = f(3 * h) - f(-3 * h);
+  const Value d4 = f(4 * h) - f(-4 * h);
+  const Value sum = d1 * (4.0L / 5) - d2 * (1.0L / 5) + d3 * (4.0L / 105) - d4 * (1.0L / 280);
+  return Value(sum / h);
+}
+
+}  // namespace slew::multibody::testing

@@ -1,0 +1,66 @@
+// A mechanism under test: model, state and workspace of a Def that must be sound.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "multibody/dynamics.h"
+#include "multibody/observe.h"
+#include "multibody/validate.h"
+
+namespace slew::multibody::testing {
+
+inline std::string text_of(const Problems& problems) {
+  std::string text;
+  for (const Problem& problem : problems)
+    text += problem.path + ": " + problem.what + "; expected " + problem.expected + "\n";
+  return text;
+}
+
+struct Mechanism {
+  explicit Mechanism(const MechanicsDef& def, const std::vector<std::string>& rows = {})
+      : model((expect_sound(def, rows), build_model(def, rows))), state(start_state(model)), ws(model) {
+    see();
+  }
+
+  static void expect_sound(const MechanicsDef& def, const std::vector<std::string>& rows) {
+    Problems problems;
+    validate(def, problems);
+    validate_rows(def, rows, problems);
+    EXPECT_TRUE(problems.empty()) << text_of(problems);
+  }
+
+  // free motion for `time` in steps of h
+  void run(double time, double h) {
+    const int steps = static_cast<int>(std::lround(time / h));
+    for (int i = 0; i < steps; ++i) advance_free(model, state, ws, h);
+    see();
+  }
+
+  void see() { observe(model, state, ws); }
+
+  [[nodiscard]] BodyPose pose(const std::string& body) const { return body_pose(model, ws, find_body(model, body)); }
+  [[nodiscard]] double total_energy() const {
+    const Energy e = energy(model, ws);
+    return e.kinetic + e.potential;
+  }
+  [[nodiscard]] double value(const std::string& variable) const {
+    const std::vector<ElementVariable> names = variables(model);
+    std::vector<double> values(names.size());
+    read_variables(model, state, ws, {}, values);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].name == variable) return values[i];
+    }
+    ADD_FAILURE() << "no variable " << variable;
+    return 0;
+  }
+
+  Model model;
+  State state;
+  Workspace ws;
+};
+
+}  // namespace slew::multibody::testing
