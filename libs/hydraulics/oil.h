@@ -6,9 +6,9 @@
 //
 // p absolute; p_0 air reference pressure, alpha air content there, n polytropic exponent, p_f floor, c = 10. The
 // integral of (3) diverges towards p = 0, so no finite expansion brings a pressure to zero. kappa is tabulated once as
-// piecewise cubics over 32 equal parts of each octave of p (relative error below 1e-6) and read without a
-// transcendental function. Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27; the air term is
-// the usual polytropic one. Not covered: dissolution of air, temperature.
+// piecewise cubics over 32 equal parts of each octave of p (relative error below 1e-6 above the floor, 1e-4 in vapour)
+// and read without a transcendental function. Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to
+// 27; the air term is the usual polytropic one. Not covered: dissolution of air, temperature.
 #pragma once
 
 #include <array>

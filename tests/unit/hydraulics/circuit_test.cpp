@@ -1,0 +1,327 @@
+// Parts of the circuit, one by one.
+#include "hydraulics/circuit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "hydraulics/circuit_integrator.h"
+#include "hydraulics/curve.h"
+#include "hydraulics/oil.h"
+#include "hydraulics/smooth.h"
+#include "tests/properties/hydraulics/crane_circuit.h"
+
+namespace slew::hydraulics::test {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+TEST(Smooth, ramp_is_exact_outside_its_width_and_close_inside) {
+  EXPECT_EQ(ramp(-1, 0.1).value, 0);
+  EXPECT_EQ(ramp(0.2, 0.1).value, 0.2);
+  for (double x = 0; x < 0.1; x += 1e-3) {
+    EXPECT_LE(ramp(x, 0.1).value, x + 0.1 * 4 / 27);
+    EXPECT_LE(std::fabs(ramp(x, 0.1).value - x), 0.1 * 4 / 27 + 1e-15);
+    EXPECT_NEAR(ramp(x, 0.1).slope, (ramp(x + 1e-6, 0.1).value - ramp(x - 1e-6, 0.1).value) / 2e-6, 1e-4);
+  }
+}
+
+TEST(Smooth, root_is_odd_and_a_square_root_far_from_zero) {
+  EXPECT_NEAR(root(35e5, 1e4).value, std::sqrt(35e5), 1e-4 * std::sqrt(35e5));
+  EXPECT_EQ(root(-7e3, 1e4).value, -root(7e3, 1e4).value);
+  EXPECT_NEAR(root(1, 1e4).slope, 1 / std::sqrt(1e4), 1e-6);
+}
+
+TEST(Smooth, clip_stays_within_zero_and_one) {
+  for (double x = -1; x < 3; x += 1e-3) {
+    EXPECT_GE(unit_clip(x, 0.02).value, 0);
+    EXPECT_LE(unit_clip(x, 0.02).value, 1 + 0.02 * 4 / 27 + 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(unit_clip(0.5, 0.02).value, 0.5);
+  EXPECT_DOUBLE_EQ(unit_clip(2, 0.02).value, 1);
+}
+
+TEST(Oil, table_agrees_with_the_law_and_is_continuous) {
+  HydraulicsDef def;
+  const OilCompressibility oil(def);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> exponent(std::log10(300.0), 8.9);
+  for (int i = 0; i < 20000; ++i) {
+    const double p = std::pow(10, exponent(random));
+    // vapour rises steeply; it starts within a segment of the table, with a jump of curvature
+    const bool is_at_floor = std::fabs(p - def.pressure_floor) < 0.04 * def.pressure_floor;
+    const double tolerance = is_at_floor ? 1e-2 : p < def.pressure_floor ? 1e-4 : 1e-6;
+    EXPECT_NEAR(oil.at(p).value, oil.exact(p).value, tolerance * oil.exact(p).value) << p;
+    EXPECT_NEAR(oil.at(p * (1 + 1e-13)).value, oil.at(p).value, 1e-9 * oil.exact(p).value);
+    EXPECT_GT(oil.at(p).value, 0);
+  }
+}
+
+TEST(Oil, bulk_modulus_rises_from_the_airs_to_the_oils) {
+  HydraulicsDef def;
+  const OilCompressibility oil(def);
+  // at 1 bar: (1/B + alpha/(n p)) / (1 + alpha)
+  EXPECT_NEAR(oil.at(1e5).value, (1 / 1.5e9 + 0.005 / 1.2 / 1e5) / 1.005, 1e-4 * oil.at(1e5).value);
+  EXPECT_NEAR(1 / oil.at(200e5).value, 1.494e9, 0.001e9);
+  def.entrained_air = 0;
+  EXPECT_NEAR(1 / OilCompressibility(def).at(1e5).value, 1.5e9, 1e3);
+}
+
+TEST(Oil, vapour_keeps_pressures_positive_at_any_expansion) {
+  HydraulicsDef def;
+  def.entrained_air = 0;
+  const OilCompressibility oil(def);
+  double p = 1e5, expansion = 0;
+  while (expansion < 2) {
+    const double dp = 1e-3 * p;
+    expansion += oil.at(p).value * dp;
+    p -= dp;
+    ASSERT_GT(p, 0.1 * def.pressure_floor);
+  }
+}
+
+TEST(Curve, pchip_passes_through_its_points_and_stays_between_them) {
+  HydraulicsDef def = crane_circuit();
+  CurveDef& curve = def.curves[0];
+  EXPECT_EQ(straight_lines(curve), curve.points);
+  curve.interpolation = Interpolation::pchip;
+  const Table table = straight_lines(curve);
+  ASSERT_EQ(table.size(), 16 * (curve.points.size() - 1) + 1);
+  for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) {
+    const double low = std::min(curve.points[i][1], curve.points[i + 1][1]);
+    const double high = std::max(curve.points[i][1], curve.points[i + 1][1]);
+    for (std::size_t k = 0; k <= 16; ++k) {
+      EXPECT_GE(table[16 * i + k][1], low - 1e-12);
+      EXPECT_LE(table[16 * i + k][1], high + 1e-12);
+    }
+    EXPECT_NEAR(table[16 * i][1], curve.points[i][1], 1e-12);
+  }
+  EXPECT_EQ(find_curve(def, "Spline_CylinderFriction"), &curve);
+  EXPECT_EQ(find_curve(def, "nothing"), nullptr);
+}
+
+TEST(Circuit, numbers_its_states_volumes_first_then_pistons_then_components) {
+  const Circuit circuit(crane_circuit());
+  EXPECT_EQ(circuit.volume_count(), 8);
+  EXPECT_EQ(circuit.actuator_count(), 3);
+  // three spools, one LS line, relief valve, swash
+  EXPECT_EQ(circuit.state_count(), 8 + 6 + 6);
+  EXPECT_EQ(circuit.position(1), 9);
+  EXPECT_EQ(circuit.speed(1), 12);
+  EXPECT_EQ(circuit.actuators()[0].name, "Cyl_Lift");
+  EXPECT_EQ(circuit.actuators()[0].force, "ForceT_Lift");
+  EXPECT_DOUBLE_EQ(circuit.actuators()[0].coordinate.offset, -1.237);
+  EXPECT_DOUBLE_EQ(circuit.actuators()[2].coordinate.ratio, 0.144);
+  EXPECT_EQ(circuit.actuators()[2].line_force.friction_curve, "Spline_CylinderFriction");
+}
+
+TEST(Circuit, equilibrium_start_holds_the_static_forces) {
+  const Circuit circuit(crane_circuit());
+  std::vector<double> y(at(circuit.state_count())), F(3);
+  // pushing, pulling hard, and to either side
+  for (const double lift : {251e3, 627e3, 0.0, -50e3, -400e3}) {
+    const double forces[] = {lift, 107e3, 0.2 * lift};
+    circuit.start_in_equilibrium(forces, y);
+    circuit.pressure_forces(y.data(), F.data());
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(F[j], forces[j], 1e-6 * (1e3 + std::fabs(forces[j])));
+    for (int i = 0; i < circuit.volume_count(); ++i) EXPECT_GE(y[at(i)], 1e5 * (1 - 1e-12));
+  }
+  const double forces[] = {251e3, 107e3, 0};
+  circuit.start_in_equilibrium(forces, y);
+  EXPECT_DOUBLE_EQ(y[at(circuit.find_volume("Vol_LiftCyl_B"))], 5e5);
+  EXPECT_DOUBLE_EQ(y[at(circuit.find_volume("Vol_SlewCyl_A"))], 20e5);
+  EXPECT_DOUBLE_EQ(y[at(circuit.find_volume("Vol_MainPump"))], 26e5);
+}
+
+TEST(Circuit, table_13_start_is_1_bar_everywhere) {
+  HydraulicsDef def = crane_circuit();
+  def.start = StartState::table13;
+  const Circuit circuit(def);
+  std::vector<double> y(at(circuit.state_count()), 7);
+  circuit.start(kCraneForces, y);
+  for (int i = 0; i < circuit.volume_count(); ++i) EXPECT_EQ(y[at(i)], 1e5);
+  EXPECT_EQ(y.back(), 0);
+}
+
+TEST(Circuit, moving_a_piston_to_and_fro_gives_the_pressures_back) {
+  Circuit circuit(crane_circuit());
+  std::vector<double> y(at(circuit.state_count()));
+  circuit.start_in_equilibrium(kCraneForces, y);
+  for (int j = 0; j < 3; ++j) y[at(circuit.position(j))] = kCraneStrokes[j];
+  const std::vector<double> y_0 = y;
+  const double there[] = {0.8325, 0.7525, 0.6};
+  EXPECT_TRUE(circuit.move_pistons(y.data(), there));
+  // lift: A_A^2/C_A of about 8 kN/mm and bar, so half a millimetre is some ten bar
+  EXPECT_LT(y[at(circuit.find_volume("Vol_LiftCyl_A"))], y_0[at(circuit.find_volume("Vol_LiftCyl_A"))] - 5e5);
+  EXPECT_TRUE(circuit.move_pistons(y.data(), kCraneStrokes));
+  for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], y_0[i], 1e-5 * y_0[i]);
+}
+
+TEST(Circuit, moving_a_piston_slightly_follows_the_stiffness) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  const ActuatorLinearisation before = integrator.actuators()[0];
+  const double x[] = {kCraneStrokes[0] + 1e-6, kCraneStrokes[1], kCraneStrokes[2]};
+  integrator.align(x, kAtRest);
+  integrator.refresh();
+  EXPECT_NEAR(integrator.actuators()[0].F - before.F, -before.K * 1e-6, 1e-3 * before.K * 1e-6);
+  EXPECT_EQ(integrator.actuators()[0].x, x[0]);
+}
+
+TEST(Circuit, published_slopes_predict_the_force_of_a_small_step) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  const double v[] = {0.01, -0.02, 0.05};
+  integrator.start(kCraneStrokes, v, kCraneForces);
+  const HeldSpeed motion(3);
+  for (int k = 0; k < 50; ++k) integrator.step(1e-3, motion);
+  std::vector<ActuatorLinearisation> before(integrator.actuators().begin(), integrator.actuators().end());
+  integrator.step(1e-5, motion);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const double dF = integrator.actuators()[j].F - before[j].F;
+    EXPECT_NEAR(dF, before[j].F_dot * 1e-5, 1e-2 * std::fabs(dF)) << j;
+    EXPECT_GT(before[j].K, 0);
+    EXPECT_GE(before[j].lambda, 0);
+  }
+}
+
+TEST(Circuit, lambda_takes_the_steeper_side_of_an_anti_cavitation_valve) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  const double closed = integrator.actuators()[0].lambda;
+  const auto B = at(circuit.find_volume("Vol_LiftCyl_B"));
+  integrator.mutable_state()[B] = 1e5 - 0.15e5;  // shortly before it opens at 0.2 bar
+  integrator.refresh();
+  EXPECT_GT(integrator.actuators()[0].lambda, 1 + closed);
+}
+
+TEST(Circuit, live_parameters_act_at_once_and_others_are_refused) {
+  Circuit circuit(crane_circuit());
+  std::vector<double> y(at(circuit.state_count())), f(y), g(y);
+  circuit.start_in_equilibrium(kCraneForces, y);
+  for (int j = 0; j < 3; ++j) y[at(circuit.position(j))] = kCraneStrokes[j];
+  const auto B = at(circuit.find_volume("Vol_LiftCyl_B"));
+  circuit.rates(y.data(), f.data());
+  EXPECT_EQ(circuit.set_parameter("L90Lift", "leak_flow", 10 * kLeak), ParameterResult::ok);
+  circuit.rates(y.data(), g.data());
+  EXPECT_LT(f[B] - g[B], 0);
+  EXPECT_EQ(circuit.set_parameter("L90Lift", "leak_flow", -1), ParameterResult::out_of_range);
+  EXPECT_EQ(circuit.set_parameter("L90Lift", "overlap", 2), ParameterResult::out_of_range);
+  EXPECT_EQ(circuit.set_parameter("L90Lift", "step_response", 1), ParameterResult::unknown);
+  EXPECT_EQ(circuit.set_parameter("Nothing", "overlap", 0.1), ParameterResult::unknown);
+  EXPECT_EQ(circuit.set_parameter(-1, 0.1), ParameterResult::unknown);
+  const int index = circuit.find_parameter("PRV_MainPump.setting_pressure");
+  ASSERT_GE(index, 0);
+  EXPECT_EQ(*circuit.parameters()[at(index)].value, 270e5);
+  EXPECT_EQ(circuit.parameter_values()[at(index)], 270e5);
+}
+
+TEST(Circuit, every_live_parameter_can_be_set_to_its_own_value_without_effect) {
+  Circuit circuit(crane_circuit());
+  std::vector<double> y(at(circuit.state_count())), f(y), g(y);
+  circuit.start_in_equilibrium(kCraneForces, y);
+  for (int j = 0; j < 3; ++j) y[at(circuit.position(j))] = kCraneStrokes[j];
+  circuit.rates(y.data(), f.data());
+  for (std::size_t i = 0; i < circuit.parameters().size(); ++i) {
+    EXPECT_EQ(circuit.set_parameter(static_cast<int>(i), *circuit.parameters()[i].value), ParameterResult::ok);
+  }
+  circuit.rates(y.data(), g.data());
+  EXPECT_EQ(f, g);
+}
+
+TEST(Circuit, variables_have_names_of_their_own_and_finite_values) {
+  Circuit circuit(crane_circuit());
+  std::vector<double> y(at(circuit.state_count())), values(circuit.variables().size(), NAN);
+  circuit.start_in_equilibrium(kCraneForces, y);
+  for (int j = 0; j < 3; ++j) y[at(circuit.position(j))] = kCraneStrokes[j];
+  circuit.set_line_force(0, 123);
+  circuit.read_variables(y.data(), values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(values[i])) << circuit.variables()[i].name;
+    for (std::size_t k = 0; k < i; ++k) EXPECT_NE(circuit.variables()[i].name, circuit.variables()[k].name);
+    if (circuit.variables()[i].name == "Cyl_Lift.force") {
+      EXPECT_EQ(values[i], 123);
+    }
+    if (circuit.variables()[i].name == "Vol_LiftCyl_A.effective_bulk_modulus") {
+      EXPECT_NEAR(values[i], 1.15e9, 0.2e9);
+    }
+  }
+}
+
+TEST(CircuitIntegrator, hash_changes_when_any_state_changes_by_one_ulp) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  const HeldSpeed motion(3);
+  integrator.step(1e-3, motion);
+  const auto digest = [&] {
+    StateHash hash;
+    integrator.add_to(hash);
+    return hash.digest();
+  };
+  const std::uint64_t before = digest();
+  for (double& value : integrator.mutable_state()) {
+    const double good = value;
+    value = std::nextafter(good, 1e300);
+    EXPECT_NE(digest(), before);
+    value = good;
+  }
+  const double h = integrator.step_size();
+  integrator.set_step_size(std::nextafter(h, 1.0));
+  EXPECT_NE(digest(), before);
+  integrator.set_step_size(h);
+  EXPECT_EQ(digest(), before);
+  EXPECT_EQ(circuit.set_parameter("L90Lift", "overlap", std::nextafter(0.32, 1.0)), ParameterResult::ok);
+  EXPECT_NE(digest(), before);
+}
+
+TEST(CircuitIntegrator, a_non_finite_state_is_latched_and_the_last_good_one_stays) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  const std::vector<double> good(integrator.state().begin(), integrator.state().end());
+  // a partner that loses its numbers
+  class Broken final : public PistonMotion {
+   public:
+    void accelerations(const double*, const double*, const double*, double* a) const noexcept override {
+      a[0] = a[1] = a[2] = NAN;
+    }
+    void slopes(const double*, const double*, const double*, double* dF, double* dx,
+                double* dv) const noexcept override {
+      for (int i = 0; i < 9; ++i) dF[i] = dx[i] = dv[i] = NAN;
+    }
+  };
+  EXPECT_TRUE(integrator.step(1e-3, Broken()).has(StepFlag::non_finite));
+  EXPECT_TRUE(std::equal(good.begin(), good.end(), integrator.state().begin()));
+  EXPECT_TRUE(integrator.step(1e-3, HeldSpeed(3)).has(StepFlag::non_finite));
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  EXPECT_FALSE(integrator.step(1e-3, HeldSpeed(3)).has(StepFlag::non_finite));
+}
+
+TEST(CircuitIntegrator, an_exhausted_budget_is_flagged_and_the_step_is_finished) {
+  HydraulicsDef def = crane_circuit();
+  def.substep_budget = 2;
+  def.relative_tolerance = 1e-9;
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  MassLoad load = crane_load();
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  circuit.set_control(circuit.find_control("L90Lift"), 500);
+  StepReport all;
+  for (int k = 0; k < 100; ++k) all.flags |= integrator.step(1e-3, load).flags;
+  EXPECT_TRUE(all.has(StepFlag::step_budget));
+  EXPECT_FALSE(all.has(StepFlag::non_finite));
+}
+
+}  // namespace
+}  // namespace slew::hydraulics::test

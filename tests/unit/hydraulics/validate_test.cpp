@@ -1,0 +1,243 @@
+// Everything that is wrong with a circuit is found at load and named.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tests/properties/hydraulics/bench_circuit.h"
+
+namespace slew::hydraulics::test {
+namespace {
+
+struct Findings {
+  Problems errors, warnings;
+};
+
+Findings findings(const HydraulicsDef& def) {
+  Findings found;
+  validate(def, found.errors, found.warnings);
+  return found;
+}
+
+// Empty when there is no problem at the path.
+std::string what_at(const Problems& problems, const std::string& path) {
+  for (const Problem& problem : problems) {
+    if (problem.path == path) return problem.what;
+  }
+  return {};
+}
+
+std::string listing(const Problems& problems) {
+  std::string text;
+  for (const Problem& problem : problems) text += problem.path + ": " + problem.what + "\n";
+  return text;
+}
+
+template <typename Def>
+Def& component(HydraulicsDef& def, const std::string& name) {
+  for (auto& c : def.components) {
+    if (c->name == name) return dynamic_cast<Def&>(*c);
+  }
+  throw std::runtime_error("no component " + name);
+}
+
+TEST(HydraulicsValidation, the_test_circuits_are_sound) {
+  EXPECT_TRUE(findings(crane_circuit()).errors.empty()) << listing(findings(crane_circuit()).errors);
+  EXPECT_TRUE(findings(bench_circuit()).errors.empty()) << listing(findings(bench_circuit()).errors);
+}
+
+// Sets every numeric field of the element to NaN and beyond each end of its range, one at a time.
+void expect_ranges_are_checked(const HydraulicsDef& def, const std::string& element, std::span<const Field> fields,
+                               void* address) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const Field& row : fields) {
+    if (row.type != FieldType::number) continue;
+    double& value = *static_cast<double*>(row.member(address));
+    const double good = value;
+    std::vector<double> bad{kNan};
+    if (std::isfinite(row.range.min)) bad.push_back(row.range.min_is_open ? row.range.min : row.range.min - 1e-3);
+    if (std::isfinite(row.range.max)) bad.push_back(row.range.max_is_open ? row.range.max : row.range.max + 1e-3);
+    for (const double wrong : bad) {
+      value = wrong;
+      const std::string path = element + "." + std::string(row.key);
+      EXPECT_NE(what_at(findings(def).errors, path).find("is out of range"), std::string::npos)
+          << path << " = " << wrong;
+    }
+    value = good;
+  }
+}
+
+TEST(HydraulicsValidation, every_number_of_every_component_is_checked_against_its_range) {
+  for (const auto make : {crane_circuit, bench_circuit}) {
+    HydraulicsDef def = make();
+    for (auto& c : def.components) {
+      expect_ranges_are_checked(def, c->name, find_component_type(c->type_name())->fields, c->address());
+    }
+  }
+}
+
+TEST(HydraulicsValidation, every_number_of_volumes_and_of_the_circuit_is_checked_against_its_range) {
+  HydraulicsDef def = crane_circuit();
+  expect_ranges_are_checked(def, "hydraulics", kHydraulicsFields, &def);
+  expect_ranges_are_checked(def, def.volumes[0].name, kVolumeFields, &def.volumes[0]);
+  def.substep_budget = 0;
+  EXPECT_NE(what_at(findings(def).errors, "hydraulics.substep_budget"), "");
+}
+
+TEST(HydraulicsValidation, every_missing_or_dangling_name_is_reported) {
+  for (const auto make : {crane_circuit, bench_circuit}) {
+    HydraulicsDef def = make();
+    for (auto& c : def.components) {
+      for (const Field& row : find_component_type(c->type_name())->fields) {
+        if (row.type != FieldType::text || row.reference.empty()) continue;
+        std::string& name = *static_cast<std::string*>(row.member(c->address()));
+        const std::string good = name, path = c->name + "." + std::string(row.key);
+        if (row.reference != "force") {
+          name = "Nowhere";
+          EXPECT_EQ(what_at(findings(def).errors, path), "there is no " + std::string(row.reference) + " 'Nowhere'");
+        }
+        name.clear();
+        if (row.presence == Presence::required) {
+          EXPECT_EQ(what_at(findings(def).errors, path), "the name is missing");
+        }
+        name = good;
+      }
+    }
+  }
+}
+
+TEST(HydraulicsValidation, rod_thicker_than_the_piston_is_refused) {
+  HydraulicsDef def = crane_circuit();
+  component<DoubleActingCylinderDef>(def, "Cyl_Lift").rod_diameter = 0.2;
+  EXPECT_EQ(what_at(findings(def).errors, "Cyl_Lift.rod_diameter"), "the rod is not thinner than the piston");
+}
+
+TEST(HydraulicsValidation, swapped_stroke_limits_are_refused) {
+  HydraulicsDef def = crane_circuit();
+  DoubleActingCylinderDef& lift = component<DoubleActingCylinderDef>(def, "Cyl_Lift");
+  std::swap(lift.minimum_stroke, lift.maximum_stroke);
+  EXPECT_EQ(what_at(findings(def).errors, "Cyl_Lift.maximum_stroke"),
+            "the stroke limits are swapped: minimum 1.05 m, maximum 0.7 m");
+}
+
+TEST(HydraulicsValidation, a_chamber_that_closes_within_the_stops_compression_is_refused) {
+  HydraulicsDef def = crane_circuit();
+  component<DoubleActingCylinderDef>(def, "Cyl_Lift").dead_volume = 0;
+  component<DoubleActingCylinderDef>(def, "Cyl_Lift").maximum_stroke = 1.06;
+  component<SlewCylinderDef>(def, "SlewCyl_CraneSlew").minimum_stroke = 0.001;
+  const Problems errors = findings(def).errors;
+  EXPECT_NE(what_at(errors, "Cyl_Lift.maximum_stroke").find("chamber B is not positive"), std::string::npos);
+  EXPECT_NE(what_at(errors, "SlewCyl_CraneSlew.minimum_stroke").find("chamber A is not positive"), std::string::npos);
+}
+
+TEST(HydraulicsValidation, a_chamber_not_longer_than_its_piston_is_refused) {
+  HydraulicsDef def = crane_circuit();
+  component<SlewCylinderDef>(def, "SlewCyl_CraneSlew").piston_length = 1.3;
+  EXPECT_EQ(what_at(findings(def).errors, "SlewCyl_CraneSlew.chamber_length"),
+            "the chamber is not longer than the piston");
+}
+
+TEST(HydraulicsValidation, both_ports_on_one_volume_are_refused) {
+  HydraulicsDef def = crane_circuit();
+  component<DoubleActingCylinderDef>(def, "Cyl_Jib").port_b = "Vol_JibCyl_A";
+  component<L90lsValveDef>(def, "L90Lift").port_b = "Vol_LiftCyl_A";
+  const Problems errors = findings(def).errors;
+  EXPECT_NE(what_at(errors, "Cyl_Jib.port_b"), "");
+  EXPECT_NE(what_at(errors, "L90Lift.port_b"), "");
+}
+
+TEST(HydraulicsValidation, a_pump_or_a_valve_without_a_tank_is_refused) {
+  HydraulicsDef def = crane_circuit();
+  component<LsPumpDef>(def, "MainPump").port_b = "Vol_JibCyl_A";
+  component<L90lsValveDef>(def, "L90Lift").port_t = "Vol_JibCyl_A";
+  const Problems errors = findings(def).errors;
+  EXPECT_NE(what_at(errors, "MainPump.port_b").find("the pump has no tank"), std::string::npos);
+  EXPECT_NE(what_at(errors, "L90Lift.port_t").find("the valve has no tank"), std::string::npos);
+}
+
+TEST(HydraulicsValidation, a_volume_without_content_is_refused) {
+  HydraulicsDef def = crane_circuit();
+  add_volume(def, "Vol_Empty");
+  EXPECT_NE(what_at(findings(def).errors, "Vol_Empty.rigid_volume").find("has no content"), std::string::npos);
+}
+
+TEST(HydraulicsValidation, a_name_used_twice_is_refused) {
+  HydraulicsDef def = crane_circuit();
+  add_volume(def, "Cyl_Lift").rigid_volume = 1e-3;
+  EXPECT_EQ(what_at(findings(def).errors, "Cyl_Lift"), "the name is used twice");
+}
+
+TEST(HydraulicsValidation, two_cylinders_on_one_force_are_refused) {
+  HydraulicsDef def = crane_circuit();
+  component<DoubleActingCylinderDef>(def, "Cyl_Jib").force = "ForceT_Lift";
+  EXPECT_EQ(what_at(findings(def).errors, "Cyl_Jib.force"), "'ForceT_Lift' is driven by another cylinder already");
+}
+
+TEST(HydraulicsValidation, load_sensing_chains_must_end_at_valves_without_a_loop) {
+  HydraulicsDef def = crane_circuit();
+  component<LsShuttleDef>(def, "LSPressure_Lift_Jib").port_1 = "LSPressure_MainPump";
+  EXPECT_EQ(what_at(findings(def).errors, "LSPressure_Lift_Jib"), "the load-sensing chain returns to itself");
+  component<LsShuttleDef>(def, "LSPressure_Lift_Jib").port_1 = "Cyl_Lift";
+  EXPECT_EQ(what_at(findings(def).errors, "LSPressure_Lift_Jib.port_1"), "'Cyl_Lift' has no load-sensing port");
+  component<LsShuttleDef>(def, "LSPressure_Lift_Jib").port_1 = "L90Jib";
+  const Findings found = findings(def);
+  EXPECT_TRUE(found.errors.empty());
+  EXPECT_EQ(what_at(found.warnings, "L90Lift"), "no pump or shuttle takes its load-sensing pressure");
+}
+
+TEST(HydraulicsValidation, curves_must_increase_and_friction_must_brake) {
+  HydraulicsDef def = crane_circuit();
+  def.curves[0].points[3][0] = 0.01;
+  EXPECT_NE(what_at(findings(def).errors, "Spline_CylinderFriction.points").find("does not increase"),
+            std::string::npos);
+  def = crane_circuit();
+  def.curves[0].points.resize(1);
+  EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"), "a curve needs at least two points");
+  def = crane_circuit();
+  def.curves[0].odd = false;
+  EXPECT_EQ(what_at(findings(def).errors, "Cyl_Lift.friction_curve"),
+            "the curve 'Spline_CylinderFriction' would drive the piston");
+  def = crane_circuit();
+  def.curves[0].points[0] = {0, 0.1};
+  EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"), "an odd curve is not zero at zero");
+  def.curves[0].points[0] = {-1, 0.1};
+  EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"),
+            "an odd curve has points at negative arguments");
+  def.curves[0].points[0] = {0, std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"), "point 1 is not finite");
+}
+
+TEST(HydraulicsValidation, solvers_of_later_versions_are_refused_by_name) {
+  HydraulicsDef def = crane_circuit();
+  def.solver = Solver::rk4;
+  EXPECT_EQ(what_at(findings(def).errors, "hydraulics.solver"), "rk4 is not in this version");
+}
+
+TEST(HydraulicsValidation, start_pressures_below_the_floor_are_refused) {
+  HydraulicsDef def = crane_circuit();
+  def.pressure_floor = 6e5;
+  const Problems errors = findings(def).errors;
+  EXPECT_NE(what_at(errors, "hydraulics.start_return_pressure"), "");
+  EXPECT_NE(what_at(errors, "Vol_MainPump.initial_pressure"), "");
+}
+
+TEST(HydraulicsValidation, anti_cavitation_stated_at_a_drop_below_its_crack_pressure_is_refused) {
+  HydraulicsDef def = crane_circuit();
+  component<L90lsValveDef>(def, "L90Lift").anti_cavitation_pressure_drop = 1e4;
+  EXPECT_NE(what_at(findings(def).errors, "L90Lift.anti_cavitation_pressure_drop"), "");
+}
+
+TEST(HydraulicsValidation, hose_walls_without_effect_and_valves_that_never_open_fully_are_warnings) {
+  HydraulicsDef def = crane_circuit();
+  component<L90lsValveDef>(def, "L90Lift").nominal_control_signal = 600;
+  const Findings found = findings(def);
+  EXPECT_TRUE(found.errors.empty());
+  EXPECT_NE(what_at(found.warnings, "Hose_Lift_A.bulk_modulus").find("at its upper bound"), std::string::npos);
+  EXPECT_EQ(what_at(found.warnings, "L90Lift.nominal_control_signal"), "the valve never opens fully");
+  component<HoseDef>(def, "Hose_Lift_A").minimum_bulk_modulus = 6e8;
+  EXPECT_NE(what_at(findings(def).errors, "Hose_Lift_A.minimum_bulk_modulus"), "");
+}
+
+}  // namespace
+}  // namespace slew::hydraulics::test
