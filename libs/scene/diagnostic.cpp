@@ -40,6 +40,8 @@ int Report::add_source(std::string label, Lines lines) {
 Diagnostic Report::at(const Mark& mark, std::string path, Complaint complaint) const {
   const Source& source = sources_.at(static_cast<std::size_t>(mark.source));
   const bool is_numbered = source.lines == Lines::numbered;
+  // an override says its path itself
+  if (!is_numbered && source.label.starts_with("--set " + path + "=")) path.clear();
   return {.file = source.label,
           .line = is_numbered ? mark.line : 0,
           .column = is_numbered ? mark.column : 0,

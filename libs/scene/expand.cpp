@@ -147,11 +147,13 @@ void apply_override(Node& root, const std::string& text, Report& report) {
     report.add(mark, "", {"has no value", "Element.key=value, such as 'Bag.mass=1500kg'", ""});
     return;
   }
-  const std::optional<SourceText> source = check_source(text.substr(equals + 1), mark.source, report);
-  std::optional<Node> value = source ? parse_yaml_value(*source, report) : std::nullopt;
-  if (!value) return;
-  move_all_marks(*value, mark);
-  set_key(*owner, key, std::move(*value), mark);
+  // read as the value of a key, so that brackets and quotes mean what they mean in a file
+  const std::optional<SourceText> source = check_source("value: " + text.substr(equals + 1), mark.source, report);
+  std::optional<Node> map = source ? parse_yaml(*source, report) : std::nullopt;
+  if (!map) return;
+  Node& value = map->entries.front().value;
+  move_all_marks(value, mark);
+  set_key(*owner, key, std::move(value), mark);
 }
 
 }  // namespace

@@ -39,7 +39,9 @@ class SceneReader {
   Scene read(const std::string& default_name) {
     check_top_level();
     read_texts(default_name);
+    const std::size_t problems = report_.size();
     names_.declare_all(root_, report_);
+    has_sound_names_ = report_.size() == problems;
     read_section("session");
     check_problems([&](Problems& errors, Problems& warnings) { validate(scene_.session, errors, warnings); });
     const bool mechanics_is_sound = read_mechanics();
@@ -168,7 +170,7 @@ class SceneReader {
     const std::size_t problems = report_.size();
     for (const std::string_view section : kMechanicsSections) read_section(section);
     resolve_references();
-    if (report_.size() > problems) return false;
+    if (report_.size() > problems || !has_sound_names_) return false;
     check_problems([&](Problems& errors, Problems&) { multibody::validate(scene_.mechanics, errors); });
     return report_.size() == problems;
   }
@@ -177,7 +179,7 @@ class SceneReader {
     const std::size_t problems = report_.size();
     for (const std::string_view section : kHydraulicsSections) read_section(section);
     resolve_references();
-    if (report_.size() > problems) return false;
+    if (report_.size() > problems || !has_sound_names_) return false;
     // a scene without volumes has no circuit to look at
     if (scene_.has_hydraulics() || !scene_.hydraulics.components.empty()) {
       check_problems(
@@ -236,7 +238,7 @@ class SceneReader {
   }
 
   void check_content() {
-    if (root_.find("bodies") != nullptr || root_.find("volumes") != nullptr) return;
+    if (!report_.is_clean() || root_.find("bodies") != nullptr || root_.find("volumes") != nullptr) return;
     report_.add(root_.mark, "", {"the scene holds nothing to simulate", "a section 'bodies' or 'volumes'", ""});
   }
 
@@ -245,6 +247,7 @@ class SceneReader {
   Report& report_;
   Scene scene_;
   NameTable names_;
+  bool has_sound_names_ = true;
   PlaceMap places_;
   std::vector<Reference> references_;
   UnitSystem units_;

@@ -71,14 +71,15 @@ class TreeBuilder final : public YAML::EventHandler {
     refuse_anchor(mark, anchor);
     const auto at = static_cast<std::size_t>(std::max(mark.pos, 0));
     const char first = at < source_.text.size() ? source_.text[at] : '\0';
-    if (tag != "?" && (tag != "!" || first == '!')) refuse_tag(mark);
+    const bool has_tag = tag != "?" && (tag != "!" || first == '!');
+    if (has_tag) refuse_tag(mark);
     if ((first == '"' || first == '\'') && closing_quote(source_.text, at) == std::string_view::npos) {
       report_.add(place(mark), "", {"this quote is not closed", std::string("a second ") + first, ""});
       throw StopReading();
     }
     Node node;
     node.kind = Node::Kind::scalar;
-    node.is_quoted = tag != "?";
+    node.is_quoted = tag != "?" && !has_tag;
     node.text = value;
     node.mark = place(mark);
     accept(std::move(node));
@@ -110,12 +111,7 @@ class TreeBuilder final : public YAML::EventHandler {
                    std::string("'") + (is_list ? ']' : '}') + "' or ','", ""});
       return;
     }
-    const Mark mark = place(error.mark);
-    if (line_begins_with_tab(mark)) {
-      report_.add(mark, "", {"not valid YAML: the line is indented with a tab", "spaces", ""});
-      return;
-    }
-    report_.add(mark, "", {"not valid YAML: " + error.msg, "", ""});
+    report_.add(place(error.mark), "", explain(error));
   }
 
  private:
@@ -131,6 +127,22 @@ class TreeBuilder final : public YAML::EventHandler {
   [[nodiscard]] Mark place(const YAML::Mark& mark) const {
     if (mark.is_null()) return {source_.source, 0, 0};
     return source_.mark_at(std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), source_.text.size()));
+  }
+  // yaml-cpp's messages in the words of somebody who writes a scene
+  [[nodiscard]] Complaint explain(const YAML::Exception& error) const {
+    const std::string begin = "not valid YAML: ";
+    if (line_begins_with_tab(place(error.mark))) return {begin + "the line is indented with a tab", "spaces", ""};
+    if (error.msg == "illegal flow end" && !open_.empty()) {
+      const Node& inner = open_.back().node;
+      const char bracket = inner.kind == Node::Kind::sequence ? '[' : '{';
+      return {fmt::format("{}this bracket does not fit the '{}' in line {}", begin, bracket, inner.mark.line),
+              bracket == '[' ? "']'" : "'}'", ""};
+    }
+    if (error.msg == "illegal map value") {
+      return {begin + "no key can stand here", "one 'key: value' in a line; a ':' may be missing in the line before",
+              ""};
+    }
+    return {begin + error.msg, "", ""};
   }
   [[nodiscard]] bool line_begins_with_tab(const Mark& mark) const {
     if (mark.line < 1) return false;
@@ -155,7 +167,7 @@ class TreeBuilder final : public YAML::EventHandler {
     refuse_anchor(mark, anchor);
     if (!tag.empty() && tag != "?") refuse_tag(mark);
     if (!open_.empty() && open_.back().node.kind == Node::Kind::map && !open_.back().has_key) {
-      report_.add(place(mark), "", {"a list or map cannot be a key", "a word", ""});
+      report_.add(place(mark), "", {"a list or map cannot be a key (is a bracket not closed?)", "a word", ""});
       throw StopReading();
     }
     if (open_.size() >= static_cast<std::size_t>(kMaxDepth)) {
@@ -276,10 +288,6 @@ std::optional<Node> parse_yaml(const SourceText& source, Report& report) {
     return std::nullopt;
   }
   return root;
-}
-
-std::optional<Node> parse_yaml_value(const SourceText& source, Report& report) {
-  return read_document(source, report);
 }
 
 }  // namespace slew::scene

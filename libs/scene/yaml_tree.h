@@ -49,7 +49,4 @@ struct Node::Entry {
 // The document's root, which is a map; problems go to the report. Nothing is returned when no tree could be built.
 [[nodiscard]] std::optional<Node> parse_yaml(const SourceText& source, Report& report);
 
-// A single value in flow style, as in `--set PATH=VALUE`.
-[[nodiscard]] std::optional<Node> parse_yaml_value(const SourceText& source, Report& report);
-
 }  // namespace slew::scene

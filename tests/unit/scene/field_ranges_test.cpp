@@ -1,0 +1,142 @@
+// Every field of every table refuses a value outside what it takes, with its path and the range in the message. The
+// cases are made from the field tables, so that a new field is tested as soon as it is there.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/field_reader.h"
+#include "scene/scene.h"
+#include "scene/sections.h"
+#include "scene/units.h"
+
+namespace slew::scene {
+namespace {
+
+// A table, and how a scene begins that holds one field of it.
+struct Case {
+  std::string label;  // name of the test
+  std::string owner;  // what stands before the key in messages
+  std::string before;
+  std::span<const Field> fields;
+};
+
+std::string in_list(const Field& field, const std::string& value) {
+  switch (field.type) {
+    case FieldType::triple:
+      return fmt::format("[{0}, {0}, {0}]", value);
+    case FieldType::table:
+      return fmt::format("[[0, {}]]", value);
+    case FieldType::numbers:
+      return fmt::format("[{}]", value);
+    default:
+      return value;
+  }
+}
+
+struct BadValue {
+  std::string text, what, expected;
+};
+
+// Numbers just outside the range, or one that is no number where every finite number is taken.
+std::vector<BadValue> bad_numbers(const Field& field) {
+  std::vector<BadValue> bad;
+  const Dimension dimension = field.type == FieldType::integer ? Dimension::none
+                              : field.type == FieldType::table ? field.value_dimension
+                                                               : field.dimension;
+  const std::string range = range_text(field.range, dimension);
+  const auto add = [&](double value) {
+    const std::string number = fmt::format("{}", value);
+    bad.push_back({in_list(field, number), fmt::format("'{}' is out of range", number), range});
+  };
+  if (std::isfinite(field.range.min)) {
+    const double step = field.type == FieldType::integer ? 1 : std::max(1e-12, std::abs(field.range.min) * 1e-3);
+    add(field.range.min_is_open ? field.range.min : field.range.min - step);
+  }
+  if (std::isfinite(field.range.max)) {
+    const double step = field.type == FieldType::integer ? 1 : std::max(1e-12, std::abs(field.range.max) * 1e-3);
+    add(field.range.max_is_open ? field.range.max : field.range.max + step);
+  }
+  bad.push_back({in_list(field, ".nan"), "'.nan' is not finite", "a finite number"});
+  return bad;
+}
+
+std::vector<BadValue> bad_values(const Field& field) {
+  switch (field.type) {
+    case FieldType::number:
+    case FieldType::integer:
+    case FieldType::triple:
+    case FieldType::table:
+    case FieldType::numbers:
+      return bad_numbers(field);
+    case FieldType::boolean:
+      return {{"maybe", "is 'maybe'", "true or false"}};
+    case FieldType::choice:
+      return {{"no_such_choice", "is 'no_such_choice'", expected_value(field)}};
+    case FieldType::text:
+      if (field.reference.empty()) return {{"[a]", "is a list", "a text"}};
+      return {{"No_such_element", fmt::format("no {} 'No_such_element'", field.reference), ""}};
+    case FieldType::texts:
+      return {{"{a: b}", "is a map", expected_value(field)}};
+  }
+  return {};
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const SingleTable& table : single_tables()) {
+    const std::string section(table.section);
+    all.push_back({section, section, fmt::format("{}: {{", section), table.fields});
+  }
+  for (const ElementTable& table : element_tables()) {
+    const std::string type = table.type.empty() ? "" : fmt::format("type: {}, ", table.type);
+    const std::string label =
+        table.type.empty() ? std::string(table.section) : fmt::format("{}_{}", table.section, table.type);
+    all.push_back({label, "Thing", fmt::format("{}:\n  Thing: {{{}", table.section, type), table.fields});
+  }
+  return all;
+}
+
+std::vector<std::string> labels() {
+  std::vector<std::string> names;
+  for (const Case& one : cases()) names.push_back(one.label);
+  return names;
+}
+
+void expect_refusal(const Case& one, const Field& field, const BadValue& bad) {
+  const std::string text = fmt::format("{}{}: {}}}\n", one.before, field.key, bad.text);
+  const std::string path = fmt::format("{}.{}", one.owner, field.key);
+  try {
+    (void)load_text(text, "test");
+    ADD_FAILURE() << "accepted:\n" << text;
+  } catch (const LoadError& error) {
+    const auto& diagnostics = error.diagnostics();
+    const bool is_told = std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Diagnostic& diagnostic) {
+      return diagnostic.path == path && diagnostic.what == bad.what && diagnostic.expected == bad.expected &&
+             diagnostic.line > 0;
+    });
+    EXPECT_TRUE(is_told) << text << path << ": " << bad.what << "; expected " << bad.expected << "\nis not in\n"
+                         << error.what();
+  }
+}
+
+class FieldRanges : public testing::TestWithParam<std::string> {};
+
+TEST_P(FieldRanges, OfEveryFieldAreCheckedWithPathAndMessage) {
+  for (const Case& one : cases()) {
+    if (one.label != GetParam()) continue;
+    for (const Field& field : one.fields) {
+      for (const BadValue& bad : bad_values(field)) expect_refusal(one, field, bad);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FieldRanges, testing::ValuesIn(labels()), [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace slew::scene

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "scene/canonical.h"
+#include "scene/scene.h"
+#include "scene_text.h"
+#include "temporary_folder.h"
+
+namespace slew::scene {
+namespace {
+
+TEST(Load, TheCanonicalTextOfASceneReadsBackToTheSameText) {
+  for (const char* file : {"first_steps", "truck_crane"}) {
+    const Scene scene = load_file(std::string(SLEWRING_SOURCE_DIR "/scenes/") + file + ".yaml");
+    const Scene again = load_text(scene.expanded_text, "again");
+    EXPECT_EQ(again.expanded_text, scene.expanded_text);
+    EXPECT_EQ(again.name, scene.name);
+    EXPECT_EQ(again.ports.size(), scene.ports.size());
+  }
+}
+
+TEST(Load, TextsSurviveTheRoundTrip) {
+  const std::string title = "say \"hi\" \\ to\tit: # [x] \xC3\xA4, and 'so'";
+  std::string scene = kPendulum + "plots:\n  Swing: {title: " + yaml_text(title) + ", variables: [Rod.position.x]}\n";
+  const Scene once = load_text(scene, "test");
+  EXPECT_EQ(once.plots.at(0).title, title);
+  EXPECT_EQ(load_text(once.expanded_text, "test").plots.at(0).title, title);
+}
+
+TEST(Load, WordsThatYamlTakesForSomethingElseAreQuoted) {
+  for (const char* word : {"yes", "No", "true", "null", "~", "", "010", "1.5", "a: b", "-", "x y"}) {
+    EXPECT_EQ(yaml_text(word).front(), '"') << word;
+  }
+  EXPECT_EQ(yaml_text("Truck_Pillar"), "Truck_Pillar");
+}
+
+TEST(Load, APendulumNeedsNoHydraulics) {
+  const Scene scene = load_file(SLEWRING_SOURCE_DIR "/scenes/first_steps.yaml");
+  EXPECT_TRUE(scene.has_mechanics());
+  EXPECT_FALSE(scene.has_hydraulics());
+  EXPECT_TRUE(scene.ports.empty());
+  EXPECT_EQ(scene.name, "first_steps");
+}
+
+TEST(Load, AnOverrideReplacesTheValueBeforeTheSceneIsChecked) {
+  const Scene scene = load_text(kPendulum, "test", {"Rod.mass=1500kg", "session.step=2 ms", "Rod.inertia=[1, 2, 2]"});
+  EXPECT_EQ(scene.mechanics.bodies.at(0).mass, 1500);
+  EXPECT_EQ(scene.session.step_duration(), milliseconds(2));
+  EXPECT_EQ(scene.mechanics.bodies.at(0).inertia, (Triple{1, 2, 2}));
+  EXPECT_EQ(load_text(scene.expanded_text, "test").mechanics.bodies.at(0).mass, 1500);
+}
+
+TEST(Load, TheLastOfTwoOverridesWins) {
+  EXPECT_EQ(load_text(kPendulum, "test", {"Rod.mass=3", "Rod.mass=4"}).mechanics.bodies.at(0).mass, 4);
+}
+
+TEST(Load, IncludedFilesAreLaidUnderTheScene) {
+  const TemporaryFolder folder;
+  folder.write("base.yaml", kPendulum + "session: {step: 2 ms, duration: 5 s}\n");
+  folder.write("free.yaml", "session: {pace: free, step: 4 ms}\n");
+  const Scene scene = load_file(folder.write(
+      "scene.yaml", "include: [base.yaml, free.yaml]\nbodies:\n  Rod: {mass: 7 kg}\nsession: {duration: 1 s}\n"));
+  EXPECT_EQ(scene.mechanics.bodies.at(0).mass, 7);
+  EXPECT_EQ(scene.mechanics.bodies.at(0).inertia, (Triple{0, 1, 1}));
+  EXPECT_EQ(scene.session.step, 4e-3);
+  EXPECT_EQ(scene.session.duration, 1);
+  EXPECT_EQ(scene.session.pace, Pace::free);
+}
+
+TEST(Load, AProblemInAnIncludedFileIsToldWhereItStands) {
+  const TemporaryFolder folder;
+  const std::string base = folder.write("base.yaml", "bodies:\n  Rod: {mass: 0, inertia: [0, 1, 1]}\n");
+  const std::string scene =
+      folder.write("scene.yaml", "include: base.yaml\njoints:\n  Hinge: {type: revolute, body2: Rod}\n");
+  try {
+    (void)load_file(scene);
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_EQ(std::string(error.what()), base + ":2:15: Rod.mass: '0' is out of range; expected more than 0 kg");
+  }
+}
+
+TEST(Load, ASceneInMemoryIncludesNothing) {
+  EXPECT_EQ(problems_of("include: base.yaml\n" + kPendulum),
+            "test:1:1: include: a scene without a folder cannot include a file");
+}
+
+TEST(Load, AnUnusualStepIsAWarningAndNotAnError) {
+  const Scene scene = load_text("session: {step: 50 us}\n" + kPendulum, "test");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(scene.warnings[0], "test:1:17: session.step: 0.05 ms is outside 0.1 to 10 ms");
+}
+
+TEST(Load, TheWindowFollowsThePaceWhenItIsNotGiven) {
+  EXPECT_EQ(load_text(kPendulum, "test").session.window_steps(), 1);
+  EXPECT_EQ(load_text(kPendulum, "test", {"session.pace=free"}).session.window_steps(), 4);
+  EXPECT_EQ(load_text(kPendulum, "test", {"session.window=7"}).session.window_steps(), 7);
+}
+
+TEST(Load, StepsAreWholeNumbersOfTheDuration) {
+  EXPECT_EQ(load_text(kPendulum, "test", {"session.duration=0.3 s", "session.step=0.1 ms"}).session.steps(), 3000);
+  EXPECT_EQ(load_text(kPendulum, "test", {"session.duration=0"}).session.steps(), 0);
+}
+
+TEST(Load, SeveralDiagnosticsAreOrderedByPlaceAndCounted) {
+  try {
+    (void)load_file(SLEWRING_SOURCE_DIR "/tests/scenes_negative/more_than_twenty.yaml");
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_EQ(error.diagnostics().size(), 20u);
+    EXPECT_EQ(error.omitted(), 5u);
+    EXPECT_EQ(error.diagnostics()[0].line, 2);
+    EXPECT_EQ(error.diagnostics()[0].path, "Rod_1.mass");
+  }
+}
+
+TEST(Assets, AreMeasuredAndComparedByContents) {
+  const TemporaryFolder here, there;
+  here.write("mesh.stl", "abc");
+  const Scene scene = load_file(here.write("scene.yaml", "assets: [mesh.stl]\n" + kPendulum));
+  ASSERT_EQ(scene.assets.size(), 1u);
+  EXPECT_EQ(scene.assets[0].size, 3u);
+  EXPECT_EQ(scene.assets[0].sha256[0], 0xba);
+  EXPECT_TRUE(check_assets(scene.assets, here.path()).is_ok());
+
+  const Status missing = check_assets(scene.assets, there.path());
+  EXPECT_EQ(missing.code, ExitCode::bad_input);
+  EXPECT_NE(missing.text.find("mesh.stl cannot be read"), std::string::npos) << missing.text;
+  there.write("mesh.stl", "abd");
+  EXPECT_NE(check_assets(scene.assets, there.path()).text.find("mesh.stl has other contents"), std::string::npos);
+  there.write("mesh.stl", "abcd");
+  EXPECT_NE(check_assets(scene.assets, there.path()).text.find("mesh.stl has 4 bytes"), std::string::npos);
+}
+
+TEST(Assets, KeepTheirNamesInTheCanonicalText) {
+  const TemporaryFolder folder;
+  folder.write("mesh 1.stl", "abc");
+  const Scene scene = load_file(folder.write("scene.yaml", "assets: [mesh 1.stl]\n" + kPendulum));
+  const Scene again = load_text(scene.expanded_text, "test");
+  ASSERT_EQ(again.assets.size(), 1u);
+  EXPECT_EQ(again.assets[0].name, "mesh 1.stl");
+  EXPECT_EQ(again.assets[0].size, 0u);
+}
+
+TEST(Assets, OutsideTheScenesFolderAreRefused) {
+  EXPECT_EQ(problems_of("assets: [../mesh.stl, /etc/passwd]\n" + kPendulum),
+            "test:1:10: assets: an entry is '../mesh.stl'; expected a file in the scene's folder\n"
+            "test:1:23: assets: an entry is '/etc/passwd'; expected a file in the scene's folder");
+}
+
+}  // namespace
+}  // namespace slew::scene

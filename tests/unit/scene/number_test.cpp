@@ -1,0 +1,73 @@
+#include "scene/number.h"
+
+#include <gtest/gtest.h>
+
+namespace slew::scene {
+namespace {
+
+double value_of(std::string_view text) {
+  const NumberText number = split_number(text);
+  EXPECT_TRUE(number.is_number) << text << ": " << number.complaint.what;
+  return static_cast<double>(number.value);
+}
+
+TEST(Number, DecimalNumbersReadToTheNearestDouble) {
+  EXPECT_EQ(value_of("0"), 0.0);
+  EXPECT_EQ(value_of("-0.1"), -0.1);
+  EXPECT_EQ(value_of("+2.5e-3"), 2.5e-3);
+  EXPECT_EQ(value_of(".5"), 0.5);
+  EXPECT_EQ(value_of("5."), 5.0);
+  EXPECT_EQ(value_of("1e308"), 1e308);
+  EXPECT_EQ(value_of("3.21922"), 3.21922);
+  EXPECT_EQ(value_of("0.00036178"), 0.00036178);
+}
+
+TEST(Number, TheRestBehindTheNumberIsTheUnit) {
+  EXPECT_EQ(split_number("250 bar").rest, "bar");
+  EXPECT_EQ(split_number(" 250bar ").rest, "bar");
+  EXPECT_EQ(split_number("5 eV").rest, "eV");
+  EXPECT_EQ(split_number("5e3m").rest, "m");
+  EXPECT_EQ(split_number("3.5e-7 1/Pa").rest, "1/Pa");
+  EXPECT_EQ(split_number("32 %").rest, "%");
+}
+
+struct Refused {
+  const char* text;
+  const char* what;
+  const char* expected;
+};
+
+const Refused kRefused[] = {Refused{"010", "'010' looks octal", "10 or 8"},
+                            Refused{"-017", "'-017' looks octal", "-17 or -15"},
+                            Refused{"007 m", "'007' looks octal", "7"},
+                            Refused{"08", "'08' begins with a zero", "8"},
+                            Refused{"01.5", "'01.5' begins with a zero", "1.5"},
+                            Refused{"0x1F", "'0x1F' is hexadecimal", "31"},
+                            Refused{"0o17", "'0o17' is octal", "15"},
+                            Refused{"-0b101", "'-0b101' is binary", "-5"},
+                            Refused{".nan", "'.nan' is not finite", "a finite number"},
+                            Refused{"-.INF", "'-.INF' is not finite", "a finite number"},
+                            Refused{"inf", "'inf' is not finite", "a finite number"},
+                            Refused{"1e999", "'1e999' is beyond what a number can hold", "a finite number"},
+                            Refused{"1,5", "'1,5' has a comma", "a decimal point"},
+                            Refused{"1_000", "'1_000' has a digit separator", "digits only"},
+                            Refused{"\xE2\x88\x92"
+                                    "5",
+                                    "'\xE2\x88\x92"
+                                    "5' begins with a typographic minus sign",
+                                    "'-'"},
+                            Refused{"bar", "'bar' is not a number", ""},
+                            Refused{"", "'' is not a number", ""},
+                            Refused{"-", "'-' is not a number", ""}};
+
+TEST(Number, IsRefusedWithAReasonAndAWayOut) {
+  for (const Refused& refused : kRefused) {
+    const NumberText number = split_number(refused.text);
+    EXPECT_FALSE(number.is_number) << refused.text;
+    EXPECT_EQ(number.complaint.what, refused.what);
+    EXPECT_EQ(number.complaint.expected, refused.expected) << refused.text;
+  }
+}
+
+}  // namespace
+}  // namespace slew::scene

@@ -1,0 +1,73 @@
+#include "scene/parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "scene_text.h"
+
+namespace slew::scene {
+namespace {
+
+class Parameters : public testing::Test {
+ protected:
+  Scene scene = load_text(kPendulum, "test");
+  ParameterDirectory directory{scene};
+};
+
+TEST_F(Parameters, ListEveryNumberWithItsValueAndLimits) {
+  const ParameterInfo* mass = directory.find("Rod.mass");
+  ASSERT_NE(mass, nullptr);
+  EXPECT_EQ(mass->value, 2.0);
+  EXPECT_EQ(mass->dimension, Dimension::mass);
+  EXPECT_EQ(mass->change, Change::live);
+  EXPECT_EQ(mass->ramp, 1.0);
+  EXPECT_EQ(directory.find("Rod.center_of_mass.x")->value, 0.5);
+  EXPECT_EQ(directory.find("session.step")->change, Change::restart);
+  EXPECT_TRUE(directory.find("session.window")->is_integer);
+  EXPECT_EQ(directory.find("Rod.relative_to"), nullptr);
+}
+
+TEST_F(Parameters, AreTheSameForTheSameSceneInCanonicalText) {
+  const auto a = parameters(scene);
+  const auto b = parameters(load_text(scene.expanded_text, "test"));
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].path, b[i].path);
+    EXPECT_EQ(a[i].value, b[i].value) << a[i].path;
+  }
+}
+
+TEST_F(Parameters, AnAssignmentGivesThePathTheSiValueAndTheRamp) {
+  const Assignment assignment = directory.parse_assignment("Rod.mass=1.5 t");
+  EXPECT_TRUE(assignment.status.is_ok()) << assignment.status.text;
+  EXPECT_EQ(assignment.path, "Rod.mass");
+  EXPECT_EQ(assignment.value, 1500.0);
+  EXPECT_EQ(assignment.over, milliseconds(1000));
+}
+
+TEST_F(Parameters, AnAssignmentIsRefusedWithAReason) {
+  const auto refusal = [&](const char* text) { return directory.parse_assignment(text).status.text; };
+  EXPECT_EQ(refusal("Rod.mas=5"), "no parameter 'Rod.mas'; did you mean 'Rod.mass'?");
+  EXPECT_EQ(refusal("Rot.mass=5"), "no parameter 'Rot.mass'; did you mean 'Rod.mass'?");
+  EXPECT_EQ(refusal("session.step=2 ms"),
+            "session.step cannot be changed while the session runs; start it again with --set session.step=VALUE");
+  EXPECT_EQ(refusal("Rod.mass=-1 kg"), "Rod.mass: -1 kg is out of range; expected more than 0 kg");
+  EXPECT_EQ(refusal("Rod.mass=5 m"),
+            "Rod.mass: '5 m' is a length; expected a mass such as '500 kg', or a bare number in kg");
+  EXPECT_EQ(refusal("Rod.mass=.nan"), "Rod.mass: '.nan' is not finite; expected a finite number");
+  EXPECT_EQ(refusal("Rod.relative_to=Ground"), "Rod.relative_to takes the name of a body and is set in the scene only");
+  EXPECT_EQ(refusal("Rod.mass"),
+            "'Rod.mass' is not an assignment; expected Element.key=value, such as 'Bag.mass=1500kg'");
+}
+
+TEST_F(Parameters, AValueFromTheWireIsCheckedInTheSameWay) {
+  EXPECT_TRUE(directory.check("Rod.mass", 3).status.is_ok());
+  EXPECT_FALSE(directory.check("Rod.mass", 0).status.is_ok());
+  EXPECT_FALSE(directory.check("Rod.mass", std::numeric_limits<double>::quiet_NaN()).status.is_ok());
+  EXPECT_FALSE(directory.check("Rod.mass", std::numeric_limits<double>::infinity()).status.is_ok());
+  EXPECT_EQ(directory.check("Rod.mass", 0).status.code, ExitCode::bad_input);
+}
+
+}  // namespace
+}  // namespace slew::scene

@@ -1,0 +1,61 @@
+#include "scene/schema.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "scene/sections.h"
+
+namespace slew::scene {
+namespace {
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(Schema, HasEveryFieldOfEveryTable) {
+  const auto schema = nlohmann::json::parse(json_schema());
+  for (const ElementTable& table : element_tables()) {
+    const auto& element = schema["properties"][std::string(table.section)]["additionalProperties"];
+    const auto alternatives = element.contains("oneOf") ? element["oneOf"] : nlohmann::json::array({element});
+    bool is_found = false;
+    for (const auto& alternative : alternatives) {
+      if (!table.type.empty() && alternative["properties"]["type"]["const"] != std::string(table.type)) continue;
+      is_found = true;
+      for (const Field& field : table.fields) {
+        EXPECT_TRUE(alternative["properties"].contains(std::string(field.key))) << table.section << " " << field.key;
+      }
+    }
+    EXPECT_TRUE(is_found) << table.section << " " << table.type;
+  }
+}
+
+TEST(Schema, SaysWhichFieldsAreLive) {
+  const auto schema = nlohmann::json::parse(json_schema());
+  EXPECT_TRUE(schema["properties"]["bodies"]["additionalProperties"]["properties"]["mass"]["x-live"].get<bool>());
+}
+
+TEST(Schema, EveryFieldHasADocLine) {
+  for (const ElementTable& table : element_tables()) {
+    for (const Field& field : table.fields) EXPECT_FALSE(field.doc.empty()) << table.section << " " << field.key;
+  }
+}
+
+TEST(FormatDocument, IsCurrent) {
+  const std::string document = read_file(SLEWRING_SOURCE_DIR "/docs/scene-format.md");
+  EXPECT_EQ(with_field_reference(document), document)
+      << "run `scene_format docs/scene-format.md` (target scene_format) and commit the result";
+}
+
+TEST(FormatDocument, WithoutMarkersIsNotTouched) {
+  EXPECT_EQ(with_field_reference("text"), "");
+}
+
+}  // namespace
+}  // namespace slew::scene

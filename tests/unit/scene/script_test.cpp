@@ -1,0 +1,125 @@
+#include "scene/script.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "scene/scene.h"
+#include "scene_text.h"
+#include "temporary_folder.h"
+
+namespace slew::scene {
+namespace {
+
+const std::string kValve =
+    "volumes:\n"
+    "  Vol_P: {rigid_volume: 1 l}\n"
+    "  Vol_A: {rigid_volume: 1 l}\n"
+    "  Vol_B: {rigid_volume: 1 l}\n"
+    "  Tank: {fixed: true}\n"
+    "components:\n"
+    "  Valve: {type: l90ls_valve, port_p: Vol_P, port_a: Vol_A, port_b: Vol_B, port_t: Tank}\n"
+    "  Valve_2: {type: l90ls_valve, port_p: Vol_P, port_a: Vol_A, port_b: Vol_B, port_t: Tank}\n"
+    "inputs:\n"
+    "  Stick: {type: analog, primitive: Valve, channel: 0}\n"
+    "  Button: {type: digital, primitive: Valve_2, channel: 1}\n";
+
+ScriptPlayer player(const std::string& script) {
+  return ScriptPlayer(load_text(kValve + script, "test"));
+}
+
+SimTime at(double seconds) {
+  return {std::llround(seconds * 1e9)};
+}
+
+TEST(Script, IsExactAtItsPointsAndLinearBetween) {
+  const ScriptPlayer script = player("script:\n  inputs:\n    Stick: [[0.1 s, 0.3], [0.7 s, -0.1], [1 s, 1]]\n");
+  EXPECT_EQ(script.value(0, at(0.1)), 0.3);
+  EXPECT_EQ(script.value(0, at(0.7)), -0.1);
+  EXPECT_EQ(script.value(0, at(1)), 1.0);
+  EXPECT_DOUBLE_EQ(script.value(0, at(0.4)), 0.1);
+}
+
+TEST(Script, HoldsTheFirstAndTheLastValue) {
+  const ScriptPlayer script = player("script:\n  inputs:\n    Stick: [[1 s, 0.5], [2 s, 1]]\n");
+  EXPECT_EQ(script.value(0, at(0)), 0.5);
+  EXPECT_EQ(script.value(0, at(100)), 1.0);
+  EXPECT_EQ(script.end(), at(2));
+}
+
+TEST(Script, StepInterpolationJumpsAtThePoint) {
+  const ScriptPlayer script = player("script:\n  interpolation: step\n  inputs:\n    Stick: [[0, 0], [1 s, 1]]\n");
+  EXPECT_EQ(script.value(0, {999'999'999}), 0.0);
+  EXPECT_EQ(script.value(0, {1'000'000'000}), 1.0);
+}
+
+TEST(Script, AnInputWithoutTrackIsNeutral) {
+  const ScriptPlayer script = player("script:\n  inputs:\n    Stick: [[0, 1]]\n");
+  EXPECT_EQ(script.value(1, at(1)), 0.0);
+  EXPECT_EQ(script.value(7, at(1)), 0.0);
+}
+
+TEST(Script, ADigitalInputTakesZeroAndOneOnly) {
+  EXPECT_EQ(problems_of(kValve + "script:\n  inputs:\n    Button: [[0, 0], [1 s, 0.5]]\n"),
+            "test:14:13: script.inputs.Button: 0.5 is no value of a digital input; expected 0 or 1");
+}
+
+TEST(Script, ChangesComeInOrderOnceEach) {
+  const ScriptPlayer script = player(
+      "script:\n"
+      "  parameters:\n"
+      "    - {at: 3 s, set: Valve.overlap, value: 20 %, over: 2 s}\n"
+      "    - {at: 1 s, set: Valve.compensator_pressure, value: 9 bar}\n");
+  EXPECT_TRUE(script.changes(at(0), at(1)).empty());
+  const auto first = script.changes(at(1), at(1.001));
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].set, "Valve.compensator_pressure");
+  EXPECT_EQ(first[0].value, 9e5);
+  const auto second = script.changes(at(2.999), at(10));
+  ASSERT_EQ(second.size(), 1u);
+  EXPECT_EQ(second[0].value, 0.2);
+  EXPECT_EQ(second[0].over, 2.0);
+}
+
+TEST(Script, AChangeWithoutTimeTakesTheParametersOwn) {
+  const Scene scene =
+      load_text(kPendulum + "script:\n  parameters:\n    - {at: 1 s, set: Rod.mass, value: 3 kg}\n", "test");
+  ASSERT_EQ(scene.script.changes.size(), 1u);
+  EXPECT_EQ(scene.script.changes[0].over, 1.0);
+}
+
+TEST(Script, MoreChangesInOneStepThanATickHoldsAreRefused) {
+  std::string text = kPendulum + "script:\n  parameters:\n";
+  for (int i = 0; i < 17; ++i) text += "    - {at: 1 s, set: Rod.mass, value: 3 kg}\n";
+  EXPECT_EQ(problems_of(text),
+            "test:6:3: script.parameters: more than 16 changes in the step at 1 s; expected at most 16 in one step");
+}
+
+TEST(Script, ACsvFileBesideTheSceneIsTheSameAsPointsInIt) {
+  const TemporaryFolder folder;
+  folder.write("lift.csv", "# a comment\ntime, Button, Stick\n\n0, 0, 0\n0.5, , 1\r\n2,1,-1\n");
+  const Scene scene = load_file(folder.write("scene.yaml", kValve + "script: {file: lift.csv, interpolation: step}\n"));
+  ASSERT_EQ(scene.script.tracks.size(), 2u);
+  EXPECT_EQ(scene.script.tracks[0].input, "Stick");  // in the order of the inputs
+  EXPECT_EQ(scene.script.tracks[0].points, (Table{{0, 0}, {0.5, 1}, {2, -1}}));
+  EXPECT_EQ(scene.script.tracks[1].points, (Table{{0, 0}, {2, 1}}));
+  EXPECT_EQ(load_text(scene.expanded_text, "test").script.tracks[0].points, scene.script.tracks[0].points);
+}
+
+TEST(Script, AYamlFileHoldsTheKeysOfTheSection) {
+  const TemporaryFolder folder;
+  folder.write("lift.yaml", "interpolation: step\ninputs:\n  Stick: [[0, 0], [1 s, 1]]\n");
+  const Scene scene = load_file(folder.write("scene.yaml", kValve + "script: {file: lift.yaml}\n"));
+  EXPECT_EQ(scene.script.interpolation, ScriptInterpolation::step);
+  ASSERT_EQ(scene.script.tracks.size(), 1u);
+}
+
+TEST(Script, ASceneWithoutFolderCannotNameAFile) {
+  EXPECT_EQ(problems_of(kPendulum + "script: {file: a.csv}\n"),
+            "test:5:16: script.file: a scene without a folder cannot name a file; expected the points themselves under "
+            "inputs");
+}
+
+}  // namespace
+}  // namespace slew::scene
