@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstddef>
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // glibc's own entry points behind malloc and its relatives
 extern "C" {
 void* __libc_malloc(std::size_t);
@@ -11,12 +12,14 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 void __libc_free(void*);
 }
+#endif
 
 namespace {
 thread_local std::uint64_t allocation_count = 0;
 thread_local std::uint64_t free_count = 0;
 }  // namespace
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 extern "C" {
 void* malloc(std::size_t size) {
   ++allocation_count;
@@ -48,6 +51,7 @@ void free(void* block) {
   __libc_free(block);
 }
 }
+#endif
 
 namespace slew {
 
