@@ -193,11 +193,14 @@ TEST(CycloneDomainErrors, AnExhaustedParticipantIndexIsExplained) {
   std::vector<testing::ChildProcess> children;
   for (int i = 0; i < kMaxProcesses; ++i) children.emplace_back(hold);
   for (testing::ChildProcess& child : children) ASSERT_TRUE(child.wait_until_stopped());
-  std::unique_ptr<CycloneTransport> transport;
-  const Status status =
-      CycloneTransport::open(CycloneNetwork{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
-  EXPECT_EQ(status.code, ExitCode::resources);
-  EXPECT_NE(status.text.find("--domain"), std::string::npos) << status.text;
+  // in a process of its own, as Cyclone leaks memory on this path
+  testing::ChildProcess one_too_many([&number] {
+    std::unique_ptr<CycloneTransport> transport;
+    const Status status =
+        CycloneTransport::open(CycloneNetwork{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
+    return status.code == ExitCode::resources && status.text.find("--domain") != std::string::npos;
+  });
+  EXPECT_EQ(one_too_many.wait(), 0);
 }
 
 TEST(CycloneConfiguration, SendsOnlyToOwnHostUnlessPeersAreNamed) {
