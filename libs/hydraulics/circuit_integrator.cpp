@@ -137,6 +137,7 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
   if (has_failed_ || !all_finite(y_)) {
     has_failed_ = true;
     report.raise(StepFlag::non_finite);
+    report.offender = report_.worst_state;
     return report;
   }
   motion_ = &motion;
@@ -167,6 +168,7 @@ void CircuitIntegrator::report_flags(StepReport& report) noexcept {
   if (report_.is_over_budget) report.raise(StepFlag::step_budget);
   if (report_.is_at_minimum_step) report.raise(StepFlag::not_converged);
   if (was_clamped_) report.raise(StepFlag::clamp_active);
+  if (report_.is_over_budget || report_.is_at_minimum_step || has_failed_) report.offender = report_.worst_state;
   if (has_failed_) report.raise(StepFlag::non_finite);
 }
 

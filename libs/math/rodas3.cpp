@@ -81,14 +81,29 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
 
   double error = 0;
   bool is_number = true;
+  worst_ = -1;
   for (std::size_t i = 0; i < n; ++i) {
     new_[i] = stage_[i] + k4_[i];
     const double size = options_.scale[i] + options_.relative[i] * std::fabs(y[i]);
     const double e = std::fabs(k4_[i]) / (options_.relative_tolerance * size);
     is_number = is_number && e <= std::numeric_limits<double>::max();
-    error = e > error ? e : error;
+    if (e > error) {
+      error = e;
+      worst_ = static_cast<std::int32_t>(i);
+    }
   }
   return is_number ? error : kInfinity;
+}
+
+// In the derivative at the step's start, else in the new state.
+std::int32_t Rodas3::first_non_finite() const noexcept {
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (!std::isfinite(f_[i])) return static_cast<std::int32_t>(i);
+  }
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (!std::isfinite(new_[i])) return static_cast<std::int32_t>(i);
+  }
+  return -1;
 }
 
 Rodas3Report Rodas3::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
@@ -119,6 +134,7 @@ Rodas3Report Rodas3::advance(StiffSystem& system, std::span<double> y, double du
     if (!is_accepted) {
       if (is_shortest || report.is_over_budget) {
         report.is_finite = false;
+        report.worst_state = first_non_finite();
         return report;
       }
       ++report.rejected;
@@ -126,7 +142,10 @@ Rodas3Report Rodas3::advance(StiffSystem& system, std::span<double> y, double du
       continue;
     }
     if (error > 1 && is_shortest) report.is_at_minimum_step = true;
-    report.largest_error = std::max(report.largest_error, error);
+    if (error > report.largest_error) {
+      report.largest_error = error;
+      report.worst_state = worst_;
+    }
     ++report.accepted;
     system.accepted(used, y.data(), f_.data(), new_.data());
     std::copy(new_.begin(), new_.end(), y.begin());

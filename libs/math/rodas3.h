@@ -48,6 +48,7 @@ struct Rodas3Report {
   bool is_at_minimum_step = false;         // a step was accepted with its error because it could not be shorter
   bool is_finite = true;                   // false: y is the last finite state, the interval is not finished
   double largest_error = 0;                // of the accepted steps, 1 = tolerance
+  std::int32_t worst_state = -1;           // the state with that error; when not finite: the first such state
 };
 
 class Rodas3 {
@@ -65,6 +66,7 @@ class Rodas3 {
  private:
   [[nodiscard]] bool factorise(const double* J, double c, Rodas3Report& report) noexcept;
   void solve(double* b) noexcept;
+  [[nodiscard]] std::int32_t first_non_finite() const noexcept;
   [[nodiscard]] double try_step(StiffSystem& system, const double* y, double h) noexcept;
 
   std::size_t size_;
@@ -73,6 +75,7 @@ class Rodas3 {
   PatternLu lu_;
   DenseLu dense_;
   bool uses_dense_ = false;
+  std::int32_t worst_ = -1;  // of the last step tried
   double step_size_ = 0;
   std::vector<double> f_, k1_, k2_, k3_, k4_, stage_, new_;
 };

@@ -113,7 +113,6 @@ TEST(CircuitIntegrator, agrees_with_cvode_over_lift_and_stop) {
   // rtol 1e-4: the fast pump line is off by some hundredths of a bar while it rises by 100 bar
   EXPECT_LT(worst_pressure, 0.1 * kBar);
   EXPECT_LT(worst_position, 1e-6);
-  std::printf("worst pressure %.4f bar, worst position %.3g m\n", worst_pressure / kBar, worst_position);
 }
 
 }  // namespace

@@ -301,7 +301,9 @@ TEST(CircuitIntegrator, a_non_finite_state_is_latched_and_the_last_good_one_stay
       for (int i = 0; i < 9; ++i) dF[i] = dx[i] = dv[i] = NAN;
     }
   };
-  EXPECT_TRUE(integrator.step(1e-3, Broken()).has(StepFlag::non_finite));
+  const StepReport report = integrator.step(1e-3, Broken());
+  EXPECT_TRUE(report.has(StepFlag::non_finite));
+  EXPECT_EQ(report.offender, circuit.speed(0));
   EXPECT_TRUE(std::equal(good.begin(), good.end(), integrator.state().begin()));
   EXPECT_TRUE(integrator.step(1e-3, HeldSpeed(3)).has(StepFlag::non_finite));
   integrator.start(kCraneStrokes, kAtRest, kCraneForces);
