@@ -1,0 +1,161 @@
+// Cost of the truck crane in one process: each subsystem's step, both together, and the whole session over the bus of
+// one process (ticks, encoding, gate, no recorder), per simulated millisecond at H = 1 ms, over the scene's own
+// manoeuvre.
+//
+//   crane_step --benchmark_min_time=2
+#include <benchmark/benchmark.h>
+
+#include <memory>
+#include <vector>
+
+#include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/scene_config.h"
+#include "mechanics_node/mechanics_subsystem.h"
+#include "node/driver.h"
+#include "node/physics_node.h"
+#include "scene/scene.h"
+#include "scene/script.h"
+#include "transport/in_process_bus.h"
+
+namespace {
+
+using namespace slew;
+
+const scene::Scene& crane() {
+  static const scene::Scene scene = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml");
+  return scene;
+}
+
+constexpr SimDuration kH = milliseconds(1);
+constexpr StepIndex kSteps = 6000;  // rest, lift, lift and slew
+
+io::IoConfig io_config() {
+  io::SessionWish wish;
+  wish.session_name = "benchmark";
+  wish.operating = io::Operator::script;
+  wish.recording = io::Recording::none;
+  return io::make_config(crane(), wish);
+}
+
+// One run with everything that either side was given: replayed to one side alone, it does the same again.
+struct Tape {
+  std::vector<coupling::MechanismSample> mechanism;
+  std::vector<coupling::ActuatorSample> actuators;
+  std::vector<std::vector<double>> controls;
+};
+
+// starts both subsystems; their samples 0
+void start(coupling::Subsystem& mechanics, coupling::Subsystem& hydraulics, coupling::OwnSample& m,
+           coupling::OwnSample& h) {
+  static_cast<void>(mechanics.first_sample(m));
+  static_cast<void>(hydraulics.start({&m.mechanism, nullptr}, h));
+  static_cast<void>(mechanics.start({nullptr, &h.actuators}, m));
+}
+
+const Tape& tape() {
+  static const Tape tape = [] {
+    Tape t;
+    mechanics::MechanicsSubsystem mechanics(crane());
+    hydraulic_node::HydraulicsSubsystem hydraulics(crane());
+    const scene::ScriptPlayer script(crane());
+    const io::IoConfig config = io_config();
+    io::InputGate gate(config.channels, config.gate, kH);
+    std::vector<double> raw(gate.size());
+    coupling::OwnSample m, h;
+    start(mechanics, hydraulics, m, h);
+    for (StepIndex n = 0; n < kSteps; ++n) {
+      for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = script.value(i, start_of(n, kH));
+      gate.advance(n, raw, 0);
+      std::vector<double> controls;
+      for (std::size_t i = 0; i < gate.size(); ++i) controls.push_back(gate.control(i));
+      t.mechanism.push_back(m.mechanism);
+      t.actuators.push_back(h.actuators);
+      t.controls.push_back(controls);
+      coupling::OwnSample m_next, h_next;
+      mechanics.step(n, {nullptr, &t.actuators.back()}, controls, m_next);
+      hydraulics.step(n, {&t.mechanism.back(), nullptr}, controls, h_next);
+      m = m_next;
+      h = h_next;
+    }
+    return t;
+  }();
+  return tape;
+}
+
+void report(benchmark::State& state, StepIndex steps_per_iteration) {
+  state.counters["per_simulated_ms"] =
+      benchmark::Counter(static_cast<double>(state.iterations() * steps_per_iteration),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+// one side, given what the other said on the tape
+template <typename Side>
+void run_side(benchmark::State& state, Side side) {
+  const Tape& t = tape();
+  for (auto _ : state) {
+    state.PauseTiming();
+    mechanics::MechanicsSubsystem mechanics(crane());
+    hydraulic_node::HydraulicsSubsystem hydraulics(crane());
+    coupling::OwnSample m, h;
+    start(mechanics, hydraulics, m, h);
+    state.ResumeTiming();
+    for (StepIndex n = 0; n < kSteps; ++n) side(mechanics, hydraulics, n, t, m, h);
+  }
+  report(state, kSteps);
+}
+
+void step_mechanics(coupling::Subsystem& mechanics, coupling::Subsystem&, StepIndex n, const Tape& t,
+                    coupling::OwnSample& m, coupling::OwnSample&) {
+  const auto i = static_cast<std::size_t>(n);
+  mechanics.step(n, {nullptr, &t.actuators[i]}, t.controls[i], m);
+}
+
+void step_hydraulics(coupling::Subsystem&, coupling::Subsystem& hydraulics, StepIndex n, const Tape& t,
+                     coupling::OwnSample&, coupling::OwnSample& h) {
+  const auto i = static_cast<std::size_t>(n);
+  hydraulics.step(n, {&t.mechanism[i], nullptr}, t.controls[i], h);
+}
+
+void BM_Mechanics(benchmark::State& state) { run_side(state, step_mechanics); }
+BENCHMARK(BM_Mechanics)->Unit(benchmark::kMillisecond);
+
+void BM_Hydraulics(benchmark::State& state) { run_side(state, step_hydraulics); }
+BENCHMARK(BM_Hydraulics)->Unit(benchmark::kMillisecond);
+
+void BM_Session(benchmark::State& state) {
+  for (auto _ : state) {
+    transport::InProcessBus bus;
+    const auto endpoint = [&](const char* role) {
+      return std::make_unique<transport::InProcessEndpoint>(
+          bus, transport::InProcessOptions{role, transport::TopicSet::all(), transport::TopicSet::all()});
+    };
+    const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
+    io::IoConfig config = io_config();
+    config.pace = wire::Pace::free;
+    config.name_check = {0};
+    config.steps = kSteps;
+    io::IoNode io(*io_end, std::move(config));
+    node::PhysicsNode mechanics(
+        wire::Role::mechanics, *mechanics_end,
+        [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
+          built.subsystem = mechanics::make_mechanics_subsystem(crane());
+          return Status::ok();
+        },
+        milliseconds(1000));
+    node::PhysicsNode hydraulics(
+        wire::Role::hydraulics, *hydraulics_end,
+        [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
+          built.subsystem = hydraulic_node::make_hydraulics_subsystem(crane());
+          return Status::ok();
+        },
+        milliseconds(1000));
+    node::Node* nodes[] = {&io, &mechanics, &hydraulics};
+    if (node::run_together(nodes, {}) != ExitCode::ok) state.SkipWithError("the session failed");
+  }
+  report(state, kSteps);
+}
+BENCHMARK(BM_Session)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

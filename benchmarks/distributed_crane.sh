@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Steps per second of the distributed truck crane in `free` pace, beside a bare Cyclone star of the same shape measured
+# in the same minute. Prints a line per round and the medians' ratio.
+#
+#   benchmarks/distributed_crane.sh BUILD_DIRECTORY [ROUNDS=5] [SECONDS=20]
+set -euo pipefail
+build=${1:?usage: benchmarks/distributed_crane.sh BUILD_DIRECTORY [ROUNDS] [SECONDS]}
+rounds=${2:-5}
+seconds=${3:-20}
+root=$(cd "$(dirname "$0")/.." && pwd)
+bin=$(cd "$build" && pwd)/bin
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# wall seconds from the io node's first to its last tick are what `--json` reports as steps_per_second
+crane() {
+  "$bin/slewring" run "$root/scenes/truck_crane.yaml" --pace free --duration "${seconds}s" --session "bench$$" \
+    --domain 97 "$@" --quiet --json 2>/dev/null | sed -n 's/.*"steps_per_second": *\([0-9.]*\).*/\1/p' | head -1
+}
+star() { "$bin/cyclone_star" 20000 1; }
+
+for round in $(seq "$rounds"); do
+  echo "round $round: star: $(star | tr '\n' ' ')"
+  echo "round $round: crane with recorder: $(crane) steps/s, without: $(crane --no-record) steps/s"
+done
+echo "load: $(cat /proc/loadavg)"
