@@ -16,7 +16,7 @@ ExitCode run(const cli_support::NodeOptions& options) {
   node::PhysicsNode node(
       wire::Role::hydraulics, *carrier,
       cli_support::subsystem_factory(
-          [](const scene::Scene& scene) { return hydraulics::make_hydraulics_subsystem(scene); }, options.assets),
+          [](const scene::Scene& scene) { return hydraulic_node::make_hydraulics_subsystem(scene); }, options.assets),
       options.timeout());
   return cli_support::run_node(node);
 }

@@ -19,14 +19,16 @@ std::vector<std::uint32_t> published_variables(const scene::Scene& scene, const 
 }
 
 node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets) {
-  return [make = std::move(make), assets = std::move(assets)](const wire::SessionDescription& session,
-                                                              node::BuiltSubsystem& built) -> Status {
+  // a std::function is copyable, a scene is not: the copies share it
+  const auto scene = std::make_shared<scene::Scene>();
+  return [make = std::move(make), assets = std::move(assets), scene](const wire::SessionDescription& session,
+                                                                     node::BuiltSubsystem& built) -> Status {
     if (Status status = check_session_assets(session, assets); !status.is_ok()) return status;
     try {
-      const scene::Scene scene = scene::load_text(session.scene_text, "scene of session '" + session.name + "'");
-      built.subsystem = make(scene);
-      built.variables_every = static_cast<std::uint32_t>(scene.recording.every);
-      built.published_variables = published_variables(scene, *built.subsystem);
+      *scene = scene::load_text(session.scene_text, "scene of session '" + session.name + "'");
+      built.subsystem = make(*scene);
+      built.variables_every = static_cast<std::uint32_t>(scene->recording.every);
+      built.published_variables = published_variables(*scene, *built.subsystem);
       return Status::ok();
     } catch (const scene::LoadError& error) {
       return Status::error(ExitCode::bad_input,

@@ -14,7 +14,8 @@ namespace slew::cli_support {
 
 using MakeSubsystem = std::function<std::unique_ptr<coupling::Subsystem>(const scene::Scene&)>;
 
-// assets: folder in which the scene's files are looked for.
+// assets: folder in which the scene's files are looked for. The factory owns the scene it has built from: it must
+// outlive the subsystem.
 [[nodiscard]] node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets);
 
 // Compares the files of a session's manifest with those in the folder. Error bad_input: names what differs.

@@ -1,0 +1,186 @@
+// `slewring describe SCENE`: what a scene is made of, what it costs in states, and which nodes it needs and why.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/display.h"
+#include "cli/verbs.h"
+#include "hydraulics/circuit.h"
+#include "multibody/model.h"
+#include "multibody/observe.h"
+#include "scene/scene.h"
+
+namespace slew::cli {
+namespace {
+
+struct Options {
+  std::string scene;
+  std::vector<std::string> overrides;
+  bool is_json = false;
+};
+
+struct NodeNeed {
+  std::string role;
+  bool is_needed = false;
+  std::string reason;
+};
+
+struct Description {
+  std::string name, text;
+  double step = 0, duration = 0;
+  std::string pace;
+  std::size_t bodies = 0, joints = 0, links = 0, rows = 0;
+  int degrees_of_freedom = 0;
+  std::vector<std::string> motions;  // "Body_Pillar (revolute, 1)"
+  std::vector<std::string> merged;   // "Pole with Pillar"
+  std::size_t components = 0, free_volumes = 0, fixed_volumes = 0;
+  int hydraulic_states = 0;
+  std::vector<std::string> ports;   // "Cyl_Lift drives ForceT_Lift"
+  std::vector<std::string> inputs;  // "Input_Lift moves L90Lift"
+  std::vector<NodeNeed> nodes;
+  std::vector<std::string> left_out;
+};
+
+std::vector<std::string> row_names(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::PortDef& port : scene.ports) names.push_back(port.force);
+  for (const std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(joint);
+  return names;
+}
+
+void describe_mechanics(const scene::Scene& scene, Description& d) {
+  d.bodies = scene.mechanics.bodies.size();
+  d.joints = scene.mechanics.joints.size();
+  if (!scene.has_mechanics()) return;
+  const multibody::Description m = multibody::describe(multibody::build_model(scene.mechanics, row_names(scene)));
+  d.links = m.links.size();
+  d.rows = static_cast<std::size_t>(m.rows);
+  d.degrees_of_freedom = m.degrees_of_freedom;
+  for (const std::string& body : m.fixed_to_ground) d.merged.push_back(body + " with Ground");
+  for (const multibody::LinkDescription& link : m.links) {
+    d.motions.push_back(fmt::format("{} ({}, {})", link.joint, link.joint_type, link.degrees_of_freedom));
+    for (std::size_t i = 1; i < link.bodies.size(); ++i) d.merged.push_back(link.bodies[i] + " with " + link.bodies[0]);
+  }
+}
+
+void describe_hydraulics(const scene::Scene& scene, Description& d) {
+  d.components = scene.hydraulics.components.size();
+  if (!scene.has_hydraulics()) return;
+  const hydraulics::Circuit circuit(scene.hydraulics);
+  for (int i = 0; i < circuit.volume_count(); ++i) ++(circuit.is_fixed(i) ? d.fixed_volumes : d.free_volumes);
+  d.hydraulic_states = circuit.state_count() - static_cast<int>(d.fixed_volumes);
+}
+
+void describe_nodes(const scene::Scene& scene, Description& d) {
+  d.nodes.push_back({"io", true, "owns the session, gives the clock, takes the input"});
+  d.nodes.push_back(
+      {"mechanics", scene.has_mechanics(), scene.has_mechanics() ? fmt::format("{} bodies", d.bodies) : "no bodies"});
+  d.nodes.push_back({"hydraulics", scene.has_hydraulics(),
+                     scene.has_hydraulics()
+                         ? fmt::format("{} volumes, {} components", scene.hydraulics.volumes.size(), d.components)
+                         : "no volumes"});
+  d.nodes.push_back({"flex", false, "no flexible bodies"});
+  d.nodes.push_back({"recorder", true, "unless --no-record is given"});
+  if (!scene.has_mechanics()) d.left_out.emplace_back("mechanics: no bodies, no process, no states");
+  if (!scene.has_hydraulics()) d.left_out.emplace_back("hydraulics: no volumes, no process, no states");
+  d.left_out.emplace_back("flexible bodies: none, no flex_node, no modal states");
+  d.left_out.emplace_back("contact: no collision pairs, no collision detection");
+  if (scene.ports.empty()) d.left_out.emplace_back("coupling: no actuator drives a force, no ports");
+}
+
+Description describe(const scene::Scene& scene) {
+  Description d;
+  d.name = scene.name;
+  d.text = scene.description;
+  d.step = scene.session.step;
+  d.duration = scene.session.duration;
+  d.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
+  describe_mechanics(scene, d);
+  describe_hydraulics(scene, d);
+  for (const scene::PortDef& port : scene.ports) d.ports.push_back(port.name + " drives " + port.force);
+  for (const scene::InputDef& input : scene.inputs) d.inputs.push_back(input.name + " moves " + input.primitive);
+  describe_nodes(scene, d);
+  return d;
+}
+
+nlohmann::json to_json(const Description& d) {
+  nlohmann::json nodes = nlohmann::json::array();
+  for (const NodeNeed& node : d.nodes) {
+    nodes.push_back({{"role", node.role}, {"needed", node.is_needed}, {"reason", node.reason}});
+  }
+  return {{"name", d.name},
+          {"description", d.text},
+          {"session", {{"step", d.step}, {"duration", d.duration}, {"pace", d.pace}}},
+          {"mechanics",
+           {{"bodies", d.bodies},
+            {"joints", d.joints},
+            {"links", d.links},
+            {"motions", d.motions},
+            {"merged", d.merged},
+            {"degrees_of_freedom", d.degrees_of_freedom},
+            {"rows", d.rows}}},
+          {"hydraulics",
+           {{"components", d.components},
+            {"pressure_states", d.free_volumes},
+            {"fixed_pressures", d.fixed_volumes},
+            {"states", d.hydraulic_states}}},
+          {"ports", d.ports},
+          {"inputs", d.inputs},
+          {"nodes", nodes},
+          {"left_out", d.left_out}};
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text.empty() ? "none" : text;
+}
+
+void print(const Description& d) {
+  if (!d.text.empty()) fmt::print("{}\n\n", d.text);
+  std::vector<std::vector<std::string>> rows = {
+      {"scene", d.name},
+      {"session", fmt::format("step {}, duration {}, pace {}", duration_text(d.step),
+                              d.duration > 0 ? duration_text(d.duration) : "until stopped", d.pace)},
+      {"mechanics", fmt::format("{} bodies, {} joints, {} moving links, {} degrees of freedom", d.bodies, d.joints,
+                                d.links, d.degrees_of_freedom)},
+      {"motions", joined(d.motions)},
+      {"merged", joined(d.merged)},
+      {"hydraulics", fmt::format("{} components, {} pressure states, {} fixed pressures, {} states in all",
+                                 d.components, d.free_volumes, d.fixed_volumes, d.hydraulic_states)},
+      {"ports", joined(d.ports)},
+      {"inputs", joined(d.inputs)}};
+  for (const NodeNeed& node : d.nodes) {
+    rows.push_back({node.role + " node", (node.is_needed ? "needed: " : "not needed: ") + node.reason});
+  }
+  for (const std::string& part : d.left_out) rows.push_back({"left out", part});
+  fmt::print("{}", table_text(rows, ""));
+}
+
+ExitCode show(const Options& options) {
+  const scene::Scene scene = scene::load_file(options.scene, options.overrides);
+  const Description description = describe(scene);
+  if (options.is_json) {
+    fmt::print("{}\n", to_json(description).dump(2));
+  } else {
+    print(description);
+  }
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+void add_describe(CLI::App& program, Action& action) {
+  CLI::App* verb =
+      program.add_subcommand("describe", "what a scene consists of and which nodes it needs, with reasons");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  verb->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
+  verb->add_option("--set", options->overrides, "change a value of the scene; repeat for more")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  verb->add_flag("--json", options->is_json, "for machines");
+  verb->footer("Example:\n  slewring describe scenes/truck_crane.yaml");
+  verb->callback([&action, options] { action = [options] { return show(*options); }; });
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,82 @@
+#include "cli/direct_session.h"
+
+#include "hydraulics_node/hydraulics_subsystem.h"
+#include "mechanics_node/mechanics_subsystem.h"
+
+namespace slew::cli {
+
+using coupling::PartnerSamples;
+using wire::Role;
+
+std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scene& scene) {
+  if (role == Role::mechanics && scene.has_mechanics()) return mechanics::make_mechanics_subsystem(scene);
+  if (role == Role::hydraulics && scene.has_hydraulics()) return hydraulic_node::make_hydraulics_subsystem(scene);
+  return nullptr;
+}
+
+DirectSession::DirectSession(const scene::Scene& scene)
+    : mechanics_(make_subsystem(Role::mechanics, scene)), hydraulics_(make_subsystem(Role::hydraulics, scene)) {}
+
+Status DirectSession::start() {
+  mechanics_report_ = hydraulics_report_ = {};
+  // hydraulics starts from the mechanics' INIT, mechanics from the hydraulics' sample 0
+  coupling::OwnSample init;
+  if (mechanics_ != nullptr) {
+    static_cast<void>(mechanics_->first_sample(init));
+    init_hash_ = mechanics_->state_hash();
+  }
+  if (hydraulics_ != nullptr) {
+    static_cast<void>(hydraulics_->first_sample(hydraulics_sample_));
+    PartnerSamples partners;
+    if (mechanics_ != nullptr) partners.mechanism = &init.mechanism;
+    if (Status status = hydraulics_->start(partners, hydraulics_sample_); !status.is_ok()) return status;
+  }
+  if (mechanics_ == nullptr) return Status::ok();
+  PartnerSamples partners;
+  if (hydraulics_ != nullptr) partners.actuators = &hydraulics_sample_.actuators;
+  return mechanics_->start(partners, mechanics_sample_);
+}
+
+void DirectSession::reset() {
+  if (mechanics_ != nullptr) mechanics_->reset();
+  if (hydraulics_ != nullptr) hydraulics_->reset();
+}
+
+void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
+                         std::span<const double> controls) noexcept {
+  const auto advance = [&](coupling::Subsystem& subsystem, const PartnerSamples& partners, coupling::OwnSample& next) {
+    for (const wire::Command& command : commands) {
+      subsystem.change_parameter(n, {command.path, command.value, {command.over_ns}});
+    }
+    return subsystem.step(n, partners, controls, next);
+  };
+  if (mechanics_ != nullptr) {
+    PartnerSamples partners;
+    if (hydraulics_ != nullptr) partners.actuators = &hydraulics_sample_.actuators;
+    mechanics_report_ = advance(*mechanics_, partners, mechanics_next_);
+  }
+  if (hydraulics_ != nullptr) {
+    PartnerSamples partners;
+    if (mechanics_ != nullptr) partners.mechanism = &mechanics_sample_.mechanism;
+    hydraulics_report_ = advance(*hydraulics_, partners, hydraulics_next_);
+  }
+  mechanics_sample_ = mechanics_next_;
+  hydraulics_sample_ = hydraulics_next_;
+}
+
+const coupling::Subsystem* DirectSession::subsystem(Role role) const noexcept {
+  return role == Role::mechanics ? mechanics_.get() : role == Role::hydraulics ? hydraulics_.get() : nullptr;
+}
+
+std::uint64_t DirectSession::state_hash(Role role) const noexcept {
+  const coupling::Subsystem* found = subsystem(role);
+  return found != nullptr ? found->state_hash() : 0;
+}
+
+std::string DirectSession::failure() const {
+  if (mechanics_report_.has_failed()) return std::string(mechanics_->offender_name(mechanics_report_.offender));
+  if (hydraulics_report_.has_failed()) return std::string(hydraulics_->offender_name(hydraulics_report_.offender));
+  return "";
+}
+
+}  // namespace slew::cli

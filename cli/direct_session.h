@@ -1,0 +1,51 @@
+// The physics of a scene stepped by hand in this process, without nodes and messages: what the nodes compute from INIT
+// and the ticks, in the same order. For replay and for a look at the start state.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "coupling/subsystem.h"
+#include "scene/scene.h"
+#include "transport/wire.h"
+
+namespace slew::cli {
+
+// Subsystems of a scene; null where the scene has nothing of the kind. The scene must outlive them.
+[[nodiscard]] std::unique_ptr<coupling::Subsystem> make_subsystem(wire::Role role, const scene::Scene& scene);
+
+class DirectSession {
+ public:
+  explicit DirectSession(const scene::Scene& scene);
+
+  // INIT: start states and samples 0. After reset() again.
+  Status start();
+  void reset();
+
+  // Applies the commands, then advances all subsystems from t_n to t_{n+1}.
+  void step(StepIndex n, std::span<const wire::Command> commands, std::span<const double> controls) noexcept;
+
+  [[nodiscard]] const coupling::Subsystem* subsystem(wire::Role role) const noexcept;
+  // Hash of the role's state now, 0 when the scene has no such role.
+  [[nodiscard]] std::uint64_t state_hash(wire::Role role) const noexcept;
+  // Mechanics' hash at its INIT sample.
+  [[nodiscard]] std::uint64_t init_hash() const noexcept { return init_hash_; }
+  // Why the last step failed; empty when it did not.
+  [[nodiscard]] std::string failure() const;
+
+ private:
+  std::unique_ptr<coupling::Subsystem> mechanics_;
+  std::unique_ptr<coupling::Subsystem> hydraulics_;
+  coupling::OwnSample mechanics_sample_;  // at t_n
+  coupling::OwnSample hydraulics_sample_;
+  coupling::OwnSample mechanics_next_;
+  coupling::OwnSample hydraulics_next_;
+  StepReport mechanics_report_;
+  StepReport hydraulics_report_;
+  std::uint64_t init_hash_ = 0;
+};
+
+}  // namespace slew::cli

@@ -1,0 +1,75 @@
+#include "cli/display.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace slew::cli {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+constexpr std::pair<std::string_view, DisplayUnit> kUnits[] = {{"Pa", {1e-5, "bar"}},
+                                                               {"Pa/s", {1e-5, "bar/s"}},
+                                                               {"m3/s", {6e4, "l/min"}},
+                                                               {"m3", {1e3, "l"}},
+                                                               {"rad", {kDegrees, "deg"}},
+                                                               {"rad/s", {kDegrees, "deg/s"}},
+                                                               {"N", {1e-3, "kN"}},
+                                                               {"N m", {1e-3, "kN m"}},
+                                                               {"N/m", {1e-6, "kN/mm"}},
+                                                               {"J", {1e-3, "kJ"}},
+                                                               {"W", {1e-3, "kW"}},
+                                                               {"1", {1, ""}},
+                                                               {"rad/s2", {kDegrees, "deg/s2"}}};
+
+std::size_t characters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+DisplayUnit display_unit(std::string_view si_unit) {
+  for (const auto& [unit, shown] : kUnits) {
+    if (unit == si_unit) return shown;
+  }
+  return {1, si_unit};
+}
+
+std::string quantity_text(double si_value, std::string_view si_unit) {
+  const DisplayUnit shown = display_unit(si_unit);
+  std::string text = fmt::format("{:.4g}", si_value * shown.factor);
+  if (text == "-0") text = "0";
+  return shown.unit.empty() ? text : text + ' ' + std::string(shown.unit);
+}
+
+std::string duration_text(double seconds) {
+  if (!(std::fabs(seconds) > 0)) return "0";
+  if (std::fabs(seconds) < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
+  if (std::fabs(seconds) < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
+  return fmt::format("{:.4g} s", seconds);
+}
+
+std::string table_text(const std::vector<std::vector<std::string>>& rows, std::string_view indent) {
+  std::vector<std::size_t> widths;
+  for (const std::vector<std::string>& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
+  }
+  std::string text;
+  for (const std::vector<std::string>& row : rows) {
+    text += indent;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += row[i];
+      if (i + 1 < row.size()) text.append(widths[i] - characters(row[i]) + 2, ' ');
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace slew::cli

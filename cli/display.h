@@ -1,0 +1,28 @@
+// How quantities are shown to people: the units of the workshop, and as many digits as can be read.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace slew::cli {
+
+struct DisplayUnit {
+  double factor = 1;  // shown value = SI value * factor
+  std::string_view unit;
+};
+
+// Pa -> bar, m3/s -> l/min, rad -> deg, ...; units that are not in the list stay as they are.
+[[nodiscard]] DisplayUnit display_unit(std::string_view si_unit);
+
+// "47.2 kN" style: value in the display unit with four significant digits.
+[[nodiscard]] std::string quantity_text(double si_value, std::string_view si_unit);
+
+// "1.9 us", "12 ms", "3.2 s".
+[[nodiscard]] std::string duration_text(double seconds);
+
+// Columns aligned by spaces, two between them; the last column is not padded. Lengths are counted in characters of
+// UTF-8.
+[[nodiscard]] std::string table_text(const std::vector<std::vector<std::string>>& rows, std::string_view indent = "  ");
+
+}  // namespace slew::cli

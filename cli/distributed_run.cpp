@@ -1,0 +1,289 @@
+#include "cli/distributed_run.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/child_process.h"
+#include "cli/interrupts.h"
+#include "cli/keyboard.h"
+#include "cli/observer.h"
+#include "cli/status_line.h"
+#include "cli_support/carrier.h"
+#include "io_node/scene_config.h"
+#include "node/identity.h"
+#include "node/session_member.h"
+#include "recording/run_directory.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+constexpr int kRoundMs = 20;
+// after io is through, or a node is lost, the others have this long: their own linger and some more
+constexpr std::int64_t kGraceNs = 4'000'000'000;
+constexpr std::int64_t kTermNs = 1'500'000'000;
+
+class Supervisor {
+ public:
+  Supervisor(const RunOptions& options, const scene::Scene& scene)
+      : options_(options),
+        status_(status_mode(options.is_quiet || options.is_json)),
+        text_(scene),
+        roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
+        name_(scene.name) {
+    if (options.scene.input == "keyboard") keyboard_.emplace(scene);
+  }
+
+  RunOutcome run() {
+    count_interrupts();
+    started_wall_ns_ = wall_clock_ns();
+    if (is_ours(Role::io)) start(Role::io);
+    observer_ = std::make_unique<Observer>(cli_support::open_carrier(Role::observer, options_.session),
+                                           options_.session.session);
+    if (!is_ours(Role::io)) start_others();
+    while (!all_ended()) {
+      wait_for_output();
+      observer_->drain();
+      look_after_children();
+      start_others_when_io_is_there();
+      obey_interrupts();
+      enforce_deadlines();
+      show();
+    }
+    status_.clear();
+    return outcome();
+  }
+
+ private:
+  struct Node {
+    Role role = Role::io;
+    std::unique_ptr<ChildProcess> process;
+    bool is_reported = false;
+    bool is_killed_by_us = false;
+  };
+
+  // ---- starting -----------------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool is_ours(Role role) const {
+    const bool is_remote =
+        std::find(options_.remote.begin(), options_.remote.end(), node::to_text(role)) != options_.remote.end();
+    return (roles_ & bit(role)) != 0 && !is_remote;
+  }
+
+  void start(Role role) {
+    std::vector<std::string> arguments;
+    if (role == Role::io) arguments = cli_support::scene_arguments(options_.scene);
+    arguments.insert(arguments.end(), {"--session", options_.session.session, "--assets", options_.assets()});
+    const std::vector<std::string> network = cli_support::network_arguments(options_.session);
+    arguments.insert(arguments.end(), network.begin(), network.end());
+    if (role == Role::recorder) arguments.insert(arguments.end(), {"--out", options_.runs});
+    if (options_.is_real_time) arguments.emplace_back("--rt");
+    const std::string name(node::to_text(role));
+    nodes_.push_back({role, std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments)});
+  }
+
+  void start_others() {
+    are_others_started_ = true;
+    for (const Role role : {Role::mechanics, Role::hydraulics, Role::recorder}) {
+      if (is_ours(role)) start(role);
+    }
+    if (keyboard_) status_.say(keyboard_->levers().help());
+  }
+
+  // a session of the same name refuses io: then no other node must come near that session
+  void start_others_when_io_is_there() {
+    if (are_others_started_ || nodes_.front().process->poll_end()) return;
+    const NodeView& io = observer_->view().node(Role::io);
+    const bool is_our_io = io.is_known && io.status.pid == static_cast<std::uint32_t>(nodes_.front().process->pid());
+    if (is_our_io && io.status.state < wire::NodeState::ended && interrupts() == 0) start_others();
+  }
+
+  // ---- watching -----------------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool all_ended() {
+    return std::all_of(nodes_.begin(), nodes_.end(),
+                       [](const Node& node) { return node.process->poll_end().has_value(); });
+  }
+
+  void wait_for_output() {
+    std::vector<pollfd> requests;
+    for (const Node& node : nodes_) {
+      if (!node.process->poll_end()) requests.push_back({node.process->output_fd(), POLLIN, 0});
+    }
+    ::poll(requests.data(), requests.size(), kRoundMs);
+  }
+
+  void look_after_children() {
+    for (Node& node : nodes_) {
+      const bool has_ended = node.process->poll_end().has_value();
+      for (const std::string& line : node.process->take_lines()) take_line(line);
+      if (has_ended && !node.is_reported) report_end(node);
+    }
+  }
+
+  void take_line(const std::string& line) {
+    constexpr std::string_view kPath = "recording: ";
+    if (line.starts_with(kPath)) {
+      recording_ = line.substr(kPath.size());
+      return;
+    }
+    // what follows from another node's failure is kept apart from the cause
+    const bool is_consequence = line.find("io ended the session") != std::string::npos ||
+                                line.find("because of a fault elsewhere") != std::string::npos;
+    const bool is_warning = line.find("warning") != std::string::npos;
+    if (is_warning || line.find("_node: ") == std::string::npos) return status_.say(line);
+    (is_consequence ? consequences_ : causes_).push_back(line);
+  }
+
+  void report_end(Node& node) {
+    node.is_reported = true;
+    const ProcessEnd& end = *node.process->poll_end();
+    if (end.signal != 0 && !node.is_killed_by_us) {
+      is_node_killed_ = true;
+      const std::string line = "slewring: the " + node.process->name() + " node (process " +
+                               std::to_string(node.process->pid()) + ") " + end.text() +
+                               "; the others hold, end with code 4 and close the recording; run the session again";
+      status_.say(line);
+    }
+    const bool is_wrong = end.signal != 0 || end.exit_code != 0;
+    if (node.role == Role::io || is_wrong) {
+      if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    }
+  }
+
+  // ---- ending -------------------------------------------------------------------------------------------------
+
+  void send_to_all(int signal) {
+    for (Node& node : nodes_) {
+      if (node.process->poll_end()) continue;
+      if (signal == SIGKILL) {
+        node.is_killed_by_us = true;
+        status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                    ") does not end; it was killed");
+      }
+      node.process->send_signal(signal);
+      node.process->send_signal(SIGCONT);  // one that is stopped takes its signal only then
+    }
+  }
+
+  void obey_interrupts() {
+    const int count = interrupts();
+    if (count == obeyed_) return;
+    obeyed_ = count;
+    if (count > 1) return send_to_all(SIGKILL);
+    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    if (is_ours(Role::io)) {
+      // io ends the session in order: END, the recorder closes, everybody leaves
+      nodes_.front().process->send_signal(SIGTERM);
+      return;
+    }
+    wire::ControlRequest request;
+    request.action = wire::ControlAction::stop;
+    observer_->send(request);
+  }
+
+  void enforce_deadlines() {
+    if (deadline_ns_ == 0) return;
+    const std::int64_t now_ns = monotonic_ns();
+    if (now_ns > deadline_ns_ + kTermNs) {
+      deadline_ns_ = now_ns;
+      send_to_all(SIGKILL);
+    } else if (now_ns > deadline_ns_ && !is_termed_) {
+      is_termed_ = true;
+      send_to_all(SIGTERM);
+    }
+  }
+
+  // ---- showing ------------------------------------------------------------------------------------------------
+
+  void show() {
+    const std::int64_t now_ns = monotonic_ns();
+    const SessionView& view = observer_->view();
+    if (first_step_ns_ == 0 && view.step() > 0) {
+      first_step_ns_ = now_ns;
+      first_step_ = view.step();
+    }
+    if (first_step_ns_ != 0 && !view.is_over()) last_step_ns_ = now_ns;
+    if (keyboard_) keyboard_->poll(*observer_, now_ns);
+    if (status_.is_due(now_ns) && deadline_ns_ == 0) status_.show(text_.text(view, now_ns), now_ns);
+  }
+
+  // The newest recording of this scene since the start: for a recorder that could not say its path.
+  [[nodiscard]] std::string find_recording() const {
+    std::string newest;
+    std::error_code error;
+    const std::string earliest = recording::run_name(name_, started_wall_ns_);
+    for (const auto& entry : std::filesystem::directory_iterator(options_.runs, error)) {
+      const std::string name = entry.path().filename().string();
+      const std::filesystem::path file = entry.path() / recording::kRecordingFileName;
+      if (name < earliest || !std::filesystem::exists(file, error)) continue;
+      if (name.substr(0, name_.size()) == earliest.substr(0, name_.size()) && file.string() > newest) newest = file;
+    }
+    return newest;
+  }
+
+  [[nodiscard]] ExitCode code() const {
+    if (is_node_killed_) return ExitCode::node_lost;
+    ExitCode of_io = ExitCode::ok, of_others = ExitCode::ok;
+    for (const Node& node : nodes_) {
+      const ProcessEnd& end = *node.process->poll_end();
+      const auto of_node = static_cast<ExitCode>(end.signal != 0 ? static_cast<int>(ExitCode::failed) : end.exit_code);
+      if (node.role == Role::io) of_io = of_node;
+      if (node.role != Role::io && of_others == ExitCode::ok) of_others = of_node;
+    }
+    const bool was_asked_to_end = of_io == ExitCode::interrupted || of_io == ExitCode::terminated;
+    if (interrupt_code() != 0 && (of_io == ExitCode::ok || was_asked_to_end)) {
+      return static_cast<ExitCode>(interrupt_code());
+    }
+    return of_io != ExitCode::ok ? of_io : of_others;
+  }
+
+  RunOutcome outcome() {
+    RunOutcome outcome;
+    outcome.code = code();
+    // nobody says "io ended it" when io has said why
+    outcome.messages = causes_.empty() && !is_node_killed_ ? consequences_ : causes_;
+    outcome.recording = recording_;
+    if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
+    outcome.view = observer_->view();
+    outcome.steps = std::max<StepIndex>(0, outcome.view.step());
+    outcome.wall_time = first_step_ns_ > 0 ? static_cast<double>(last_step_ns_ - first_step_ns_) * 1e-9 : 0;
+    return outcome;
+  }
+
+  const RunOptions& options_;
+  StatusLine status_;
+  StatusText text_;
+  std::uint32_t roles_;
+  std::string name_;         // of the scene
+  std::vector<Node> nodes_;  // io first, when it is ours
+  std::unique_ptr<Observer> observer_;
+  std::optional<Keyboard> keyboard_;
+  bool are_others_started_ = false;
+  bool is_node_killed_ = false;
+  bool is_termed_ = false;
+  int obeyed_ = 0;
+  std::int64_t deadline_ns_ = 0;
+  std::int64_t started_wall_ns_ = 0;
+  std::int64_t first_step_ns_ = 0;
+  std::int64_t last_step_ns_ = 0;
+  StepIndex first_step_ = 0;
+  std::string recording_;
+  std::vector<std::string> causes_;
+  std::vector<std::string> consequences_;
+};
+
+}  // namespace
+
+RunOutcome run_distributed(const RunOptions& options, const scene::Scene& scene) {
+  return Supervisor(options, scene).run();
+}
+
+}  // namespace slew::cli

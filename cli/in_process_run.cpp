@@ -1,0 +1,195 @@
+#include "cli/in_process_run.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "cli/direct_session.h"
+#include "cli/interrupts.h"
+#include "cli/keyboard.h"
+#include "cli/observer.h"
+#include "cli/status_line.h"
+#include "cli_support/carrier.h"
+#include "cli_support/subsystem_factory.h"
+#include "core/real_time_thread.h"
+#include "io_node/scene_config.h"
+#include "node/driver.h"
+#include "node/physics_node.h"
+#include "recorder_node/recorder_node.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+// A node in a process of its own has a thread for its health; here somebody must say for all that they are alive, or a
+// pause would look like their death.
+class HealthReports {
+ public:
+  void send_if_due(std::span<node::Node* const> nodes, std::int64_t now_ns) {
+    if (now_ns < next_ns_) return;
+    next_ns_ = now_ns + node::kHealthInterval.ns;
+    for (node::Node* node : nodes) {
+      if (!node->is_finished()) send(*node);
+    }
+  }
+
+ private:
+  struct Sent {
+    std::uint64_t steps = 0;
+    std::int64_t sum_ns = 0;
+  };
+
+  void send(node::Node& node) {
+    node::HealthState& h = node.health();
+    if (!h.has_session.load()) return;
+    Sent& last = sent_[static_cast<std::size_t>(node.member().role())];
+    wire::Health message;
+    message.header = node.member().header(wire::Phase::running, h.step.load());
+    message.state = node.member().state();
+    message.is_waiting = h.is_waiting.load();
+    message.waiting_for = static_cast<Role>(h.waiting_for.load());
+    message.waiting_step = h.waiting_step.load();
+    message.steps_done = h.steps_done.load();
+    message.overruns = h.overruns.load();
+    message.resends_asked = h.resends_asked.load();
+    message.resends_answered = h.resends_answered.load();
+    message.refused_messages = h.refused.load();
+    message.slip_ns = h.slip_ns.load();
+    const std::int64_t sum_ns = h.step_time_sum_ns.load();
+    if (message.steps_done > last.steps) {
+      message.step_time_mean =
+          static_cast<double>(sum_ns - last.sum_ns) * 1e-9 / static_cast<double>(message.steps_done - last.steps);
+    }
+    message.step_time_max = static_cast<double>(h.step_time_max_ns.exchange(0)) * 1e-9;
+    last = {message.steps_done, sum_ns};
+    node.member().publish(wire::Topic::health, message);
+  }
+
+  std::array<Sent, wire::kRoles> sent_{};
+  std::int64_t next_ns_ = 0;
+};
+
+class InProcessRun {
+ public:
+  InProcessRun(const RunOptions& options, const scene::Scene& scene)
+      : options_(options), scene_(scene), status_(status_mode(options.is_quiet || options.is_json)), text_(scene) {
+    io::SessionWish wish;
+    wish.session_name = options.session.session;
+    wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
+    wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
+    io::IoConfig config = io::make_config(scene, wish);
+    config.name_check = {};  // nobody else is on this bus
+    roles_ = config.required_roles;
+    io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
+    nodes_.push_back(io_.get());
+    for (const Role role : {Role::mechanics, Role::hydraulics}) add_physics(role);
+    if (options.scene.is_recording) add_recorder();
+    observer_ = std::make_unique<Observer>(cli_support::open_carrier(Role::observer, bus_), options.session.session);
+    if (options.scene.input == "keyboard") keyboard_.emplace(scene);
+  }
+
+  RunOutcome run() {
+    if (options_.is_real_time) {
+      const Status status = make_real_time(cli_support::kDefaultPriority);
+      if (!status.is_ok()) status_.say("slewring: warning: " + status.text);
+    }
+    count_interrupts();
+    if (keyboard_) status_.say(keyboard_->levers().help());
+    RunOutcome outcome;
+    outcome.code = node::run_together(nodes_, [this] { each_round(); });
+    status_.clear();
+    observer_->drain();
+    finish(outcome);
+    return outcome;
+  }
+
+ private:
+  transport::Transport& endpoint(Role role) {
+    endpoints_.push_back(cli_support::open_carrier(role, bus_));
+    return *endpoints_.back();
+  }
+
+  void add_physics(Role role) {
+    if ((roles_ & bit(role)) == 0) return;
+    auto node = std::make_unique<node::PhysicsNode>(
+        role, endpoint(role),
+        cli_support::subsystem_factory([role](const scene::Scene& scene) { return make_subsystem(role, scene); },
+                                       options_.assets()),
+        milliseconds(10'000));
+    nodes_.push_back(node.get());
+    physics_.push_back(std::move(node));
+  }
+
+  void add_recorder() {
+    recorder::RecorderConfig config;
+    config.runs_directory = options_.runs;
+    recorder_ = std::make_unique<recorder::RecorderNode>(endpoint(Role::recorder), std::move(config));
+    nodes_.push_back(recorder_.get());
+  }
+
+  void each_round() {
+    const std::int64_t now_ns = monotonic_ns();
+    health_.send_if_due(nodes_, now_ns);
+    observer_->drain();
+    if (started_ns_ == 0 && io_->next_step() > 0) started_ns_ = now_ns;
+    if (io_->member().state() < wire::NodeState::ended) ended_ns_ = now_ns;
+    if (keyboard_) keyboard_->poll(*observer_, now_ns);
+    if (status_.is_due(now_ns)) status_.show(text_.text(observer_->view(), now_ns), now_ns);
+  }
+
+  void finish(RunOutcome& outcome) {
+    for (node::Node* node : nodes_) {
+      const ExitCode code = node->member().exit_code();
+      const std::string& reason = node->member().reason();
+      // the node that failed first says why; the others only that it did
+      const bool is_consequence = reason.find("io ended the session") == 0 ||
+                                  reason.find("the session was ended because of a fault elsewhere") == 0;
+      if (code == ExitCode::ok || reason.empty()) continue;
+      outcome.messages.insert(is_consequence ? outcome.messages.end() : outcome.messages.begin(),
+                              std::string(node::to_text(node->member().role())) + ": " + reason);
+    }
+    if (interrupt_code() != 0) outcome.code = static_cast<ExitCode>(interrupt_code());
+    if (recorder_ != nullptr) outcome.recording = recorder_->recording().string();
+    outcome.steps = io_->next_step();
+    outcome.wall_time = started_ns_ > 0 ? static_cast<double>(ended_ns_ - started_ns_) * 1e-9 : 0;
+    outcome.view = observer_->view();
+    for (const auto& node : physics_) {
+      const node::HealthState& health = node->health();
+      StepTimes times;
+      times.sum = static_cast<double>(health.step_time_sum_ns.load()) * 1e-9;
+      times.steps = health.steps_done.load();
+      const Role role = node->member().role();
+      times.max =
+          std::max(outcome.view.node(role).times.max, static_cast<double>(health.step_time_max_ns.load()) * 1e-9);
+      outcome.view.set_times(role, times);
+    }
+  }
+
+  const RunOptions& options_;
+  const scene::Scene& scene_;
+  StatusLine status_;
+  StatusText text_;
+  transport::InProcessBus bus_;
+  std::vector<std::unique_ptr<transport::Transport>> endpoints_;
+  std::uint32_t roles_ = 0;
+  std::unique_ptr<io::IoNode> io_;
+  std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
+  std::unique_ptr<recorder::RecorderNode> recorder_;
+  std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
+  std::unique_ptr<Observer> observer_;
+  std::optional<Keyboard> keyboard_;
+  HealthReports health_;
+  std::int64_t started_ns_ = 0;
+  std::int64_t ended_ns_ = 0;
+};
+
+}  // namespace
+
+RunOutcome run_in_process(const RunOptions& options, const scene::Scene& scene) {
+  return InProcessRun(options, scene).run();
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,107 @@
+// `slewring info REC`: what a recording holds.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/display.h"
+#include "cli/recorded.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+#include "node/identity.h"
+
+namespace slew::cli {
+namespace {
+
+struct Options {
+  std::string recording;
+  bool is_verifying = false;
+  bool is_json = false;
+};
+
+struct Counts {
+  std::uint64_t recorded = 0;
+  std::string lost = "?";
+};
+
+std::map<std::string, Counts> counts_of(const recording::Reader& reader) {
+  std::map<std::string, Counts> counts;
+  const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
+  for (const recording::RecordedChannel& channel : reader.channels()) {
+    if (channel.message_count == 0) continue;
+    Counts& count = counts[channel.topic];
+    count.recorded = channel.message_count;
+    if (summary == nullptr) continue;
+    const auto lost = summary->find(channel.topic + ".lost");
+    if (lost != summary->end()) count.lost = lost->second;
+  }
+  return counts;
+}
+
+nlohmann::json to_json(const recording::Reader& reader, double simulated) {
+  const recording::SessionIdentity& identity = reader.identity();
+  nlohmann::json topics = nlohmann::json::object();
+  for (const auto& [topic, count] : counts_of(reader)) {
+    topics[topic] = {{"recorded", count.recorded}, {"lost", count.lost}};
+  }
+  return {{"path", reader.path().string()},
+          {"bytes", reader.file_bytes()},
+          {"scene", identity.scene},
+          {"session", identity.session_name},
+          {"session_id", identity.session_id},
+          {"build", identity.build},
+          {"started_ns", identity.started_ns},
+          {"step_ns", identity.communication_step.ns},
+          {"duration", simulated},
+          {"complete", reader.has_all_messages()},
+          {"damage", reader.damage_text()},
+          {"topics", topics}};
+}
+
+void print(const recording::Reader& reader, double simulated) {
+  const recording::SessionIdentity& identity = reader.identity();
+  const TickSpan span = tick_span(reader);
+  std::vector<std::vector<std::string>> rows = {
+      {"file", fmt::format("{} ({:.2f} MB)", reader.path().string(), static_cast<double>(reader.file_bytes()) * 1e-6)},
+      {"scene", identity.scene},
+      {"session", identity.session_name + ", " + identity.session_id},
+      {"started", node::time_text(identity.started_ns)},
+      {"build", identity.build},
+      {"step", duration_text(identity.communication_step.seconds())},
+      {"length", fmt::format("{}, {} ticks in {} of wall time", duration_text(simulated), span.ticks,
+                             duration_text(span.wall_time))},
+      {"end", reader.has_all_messages() ? "closed in order" : "cut: " + reader.damage_text()}};
+  for (const auto& [topic, count] : counts_of(reader)) {
+    rows.push_back({"topic", fmt::format("{}: {} messages, {} lost", topic, count.recorded, count.lost)});
+  }
+  for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
+    rows.push_back({"attached", fmt::format("{} ({} bytes)", attachment.name, attachment.size)});
+  }
+  fmt::print("{}", table_text(rows, ""));
+}
+
+ExitCode show(const Options& options) {
+  const auto reader = open_recording(options.recording);
+  if (options.is_verifying) cli_support::require(reader->verify());
+  const double simulated = static_cast<double>(reader->statistics().end_time) * 1e-9;
+  if (options.is_json) {
+    fmt::print("{}\n", to_json(*reader, simulated).dump(2));
+  } else {
+    print(*reader, simulated);
+    if (options.is_verifying) fmt::print("every byte was read and every checksum fits\n");
+  }
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("info", "what a recording holds");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
+  verb->add_flag("--verify", options->is_verifying, "read every byte and compare every checksum");
+  verb->add_flag("--json", options->is_json, "for machines");
+  verb->footer("Example:\n  slewring info runs/truck_crane-20260501-102030");
+  verb->callback([&action, options] { action = [options] { return show(*options); }; });
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,55 @@
+// `slewring node ROLE`: one node of a session, in the place of this process.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "cli/child_process.h"
+#include "cli/verbs.h"
+#include "scene/suggestion.h"
+
+namespace slew::cli {
+namespace {
+
+constexpr const char* kRoles[] = {"io", "mechanics", "hydraulics", "flex", "recorder"};
+
+}  // namespace
+
+int become_node(int argc, char** argv) {
+  const std::string role = argv[2];
+  if (std::find(std::begin(kRoles), std::end(kRoles), role) == std::end(kRoles)) {
+    const std::string meant = scene::closest(role, {std::begin(kRoles), std::end(kRoles)});
+    std::fprintf(
+        stderr, "slewring: there is no role '%s'; nothing was started; %s\n", role.c_str(),
+        meant.empty() ? "roles: io, mechanics, hydraulics, flex, recorder" : ("did you mean '" + meant + "'?").c_str());
+    return static_cast<int>(ExitCode::bad_input);
+  }
+  const std::string program = sibling_program(role + "_node");
+  std::vector<char*> arguments = {const_cast<char*>(program.c_str())};
+  arguments.insert(arguments.end(), argv + 3, argv + argc);
+  arguments.push_back(nullptr);
+  execv(program.c_str(), arguments.data());
+  std::fprintf(stderr, "slewring: cannot start %s (%s); build it, or install all programs together\n", program.c_str(),
+               strerror(errno));
+  return static_cast<int>(ExitCode::resources);
+}
+
+void add_node(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("node", "run one node of a session, here or on this machine's part of it");
+  verb->footer(
+      "Roles: io SCENE (owner of the session), mechanics, hydraulics, recorder; flex refuses in this version.\n"
+      "'slewring node ROLE --help' lists the options of a role.\n\n"
+      "Example:\n  slewring node hydraulics --session truck_crane --interface eth0 --peer 192.168.1.10");
+  verb->callback([&action] {
+    action = []() -> ExitCode {
+      std::fprintf(stderr, "slewring: a role is missing; nothing was started; see 'slewring node --help'\n");
+      return ExitCode::bad_input;
+    };
+  });
+}
+
+}  // namespace slew::cli

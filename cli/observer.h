@@ -1,0 +1,52 @@
+// Looks at a live session from outside and speaks to it: the carrier of a verb, and what is known through it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "cli/session_view.h"
+#include "cli_support/session_options.h"
+#include "core/time.h"
+#include "transport/transport.h"
+
+namespace slew::cli {
+
+class Observer {
+ public:
+  Observer(std::unique_ptr<transport::Transport> carrier, std::string session);
+
+  [[nodiscard]] const SessionView& view() const noexcept { return view_; }
+  [[nodiscard]] const std::string& session_name() const noexcept { return session_; }
+
+  // Takes what has arrived. Does not wait.
+  void drain();
+
+  // Takes messages until `done` is true or the time is over; false then, and when a signal asks to stop.
+  bool wait_for(const std::function<bool()>& done, SimDuration at_most);
+
+  // Sends a request and waits for io_node's answer. Throws Failure when none comes.
+  [[nodiscard]] wire::ControlReply ask(wire::ControlRequest request);
+
+  // The same without waiting: whether it had an effect is seen in the view. Returns the request's number.
+  std::uint64_t send(wire::ControlRequest request);
+
+  void send(const wire::ControllerInput& input);
+
+ private:
+  std::unique_ptr<transport::Transport> carrier_;
+  std::string session_;
+  SessionView view_;
+  std::function<void(const wire::ControlReply&)> on_reply_;
+};
+
+// How long a verb waits for a session that should be there, and for an answer of it.
+inline constexpr SimDuration kFindTimeout = milliseconds(3000);
+inline constexpr SimDuration kAnswerTimeout = milliseconds(3000);
+
+// Opens an observer of the named session, or of the only one that runs on the domain, and waits until it is heard.
+// Throws Failure when there is none, or more than one and no name.
+[[nodiscard]] std::unique_ptr<Observer> find_session(cli_support::SessionOptions options);
+
+}  // namespace slew::cli

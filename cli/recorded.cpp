@@ -1,0 +1,148 @@
+#include "cli/recorded.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "cli/display.h"
+#include "cli_support/failure.h"
+#include "cli_support/name_pattern.h"
+#include "node/identity.h"
+#include "recording/run_directory.h"
+#include "transport/codec.h"
+
+namespace slew::cli {
+namespace {
+
+using cli_support::Failure;
+using cli_support::require;
+using recording::Reader;
+using wire::Topic;
+using Visit = recording::Reader::Visit;
+
+Topic topic_of(const recording::RecordedChannel& channel) {
+  for (std::size_t i = 0; i < wire::kTopics; ++i) {
+    if (channel.topic == node::to_text(static_cast<Topic>(i))) return static_cast<Topic>(i);
+  }
+  return Topic::count;
+}
+
+recording::MessageFilter only(std::initializer_list<Topic> topics) {
+  recording::MessageFilter filter;
+  for (const Topic topic : topics) filter.topics.emplace_back(node::to_text(topic));
+  return filter;
+}
+
+// A damaged chunk ends the reading; what was in front of it counts.
+void read_all(const Reader& reader, const recording::MessageFilter& filter,
+              const std::function<Visit(const recording::RecordedMessage&)>& visit) {
+  const Status status = reader.for_each(filter, visit);
+  if (status.code == ExitCode::storage) throw Failure(status.code, status.text);
+  if (!status.is_ok()) std::fprintf(stderr, "warning: %s\n", status.text.c_str());
+}
+
+// Where in the curves a variable's values go: by writer and index.
+using Places = std::map<std::pair<wire::Role, std::uint32_t>, std::size_t>;
+
+void add_block(const wire::VariableBlock& block, double time, const Places& places,
+               std::span<plotting::Series> curves) {
+  for (auto place = places.lower_bound({block.header.role, block.first}); place != places.end(); ++place) {
+    const auto& [role, index] = place->first;
+    if (role != block.header.role || index >= block.first + block.values.size()) break;
+    plotting::Series& curve = curves[place->second];
+    curve.time.push_back(time);
+    curve.values.push_back(block.values[index - block.first]);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Reader> open_recording(const std::string& path) {
+  std::filesystem::path file = path;
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) file /= recording::kRecordingFileName;
+  std::unique_ptr<Reader> reader;
+  require(Reader::open(file, reader));
+  const std::string damage = reader->damage_text();
+  if (!damage.empty()) std::fprintf(stderr, "warning: %s\n", damage.c_str());
+  return reader;
+}
+
+SessionView view_recording(const Reader& reader, Values values) {
+  SessionView view;
+  const auto take = [&](const recording::RecordedMessage& message) {
+    view.take(topic_of(*message.channel), message.payload);
+    return Visit::go_on;
+  };
+  // names first: a message of the directory may be filed behind the first values
+  read_all(reader, only({Topic::session}), take);
+  read_all(reader, only({Topic::variable_directory, Topic::node_status, Topic::health}), take);
+  if (values == Values::all) read_all(reader, only({Topic::variables}), take);
+  return view;
+}
+
+std::vector<plotting::Series> read_series(const Reader& reader, std::span<const std::string> patterns, Units units) {
+  // names and places
+  std::map<std::string, std::pair<std::pair<wire::Role, std::uint32_t>, std::string>> known;
+  std::vector<std::string> names;
+  read_all(reader, only({Topic::variable_directory}), [&](const recording::RecordedMessage& message) {
+    wire::VariableDirectory directory;
+    if (!transport::decode(message.payload, directory)) return Visit::go_on;
+    for (std::size_t i = 0; i < directory.entries.size(); ++i) {
+      const std::pair place(directory.header.role, directory.first + static_cast<std::uint32_t>(i));
+      const wire::VariableEntry& entry = directory.entries[i];
+      if (known.emplace(entry.name, std::pair(place, entry.unit)).second) names.push_back(entry.name);
+    }
+    return Visit::go_on;
+  });
+  Places places;
+  std::vector<plotting::Series> curves;
+  for (const std::string& name : cli_support::choose(patterns, names)) {
+    const auto& [place, unit] = known.at(name);
+    places.emplace(place, curves.size());
+    plotting::Series curve;
+    curve.name = name;
+    curve.unit = units == Units::display ? std::string(display_unit(unit).unit) : unit;
+    if (curve.unit == "1") curve.unit.clear();
+    curves.push_back(std::move(curve));
+  }
+  // values
+  wire::VariableBlock block;
+  read_all(reader, only({Topic::variables}), [&](const recording::RecordedMessage& message) {
+    if (transport::decode(message.payload, block) && block.header.phase == wire::Phase::running) {
+      add_block(block, static_cast<double>(message.log_time_ns) * 1e-9, places, curves);
+    }
+    return Visit::go_on;
+  });
+  if (units == Units::display) {
+    for (plotting::Series& curve : curves) {
+      const double factor = display_unit(known.at(curve.name).second).factor;
+      for (double& value : curve.values) value *= factor;
+    }
+  }
+  return curves;
+}
+
+TickSpan tick_span(const Reader& reader) {
+  TickSpan span;
+  std::uint64_t first = 0, last = 0;
+  read_all(reader, only({Topic::tick}), [&](const recording::RecordedMessage& message) {
+    if (message.publish_time_ns == 0) return Visit::go_on;
+    if (first == 0) first = message.publish_time_ns;
+    last = std::max(last, message.publish_time_ns);
+    ++span.ticks;
+    return Visit::go_on;
+  });
+  span.wall_time = static_cast<double>(last - first) * 1e-9;
+  return span;
+}
+
+std::string attachment_text(const Reader& reader, const std::string& name) {
+  recording::Bytes content;
+  require(reader.read_attachment(name, content));
+  return std::string(recording::as_text(content));
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,42 @@
+// What a recording holds, for the verbs that read one: the session as an observer would have seen it, and variables as
+// curves.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/plotting/series.h"
+#include "cli/session_view.h"
+#include "recording/reader.h"
+
+namespace slew::cli {
+
+// Opens a recording; a folder of a run stands for the file in it. Throws Failure. A cut recording is told as a warning
+// on standard error.
+[[nodiscard]] std::unique_ptr<recording::Reader> open_recording(const std::string& path);
+
+// Session, nodes, health and the names of all variables; values and extremes of the variables only when asked for.
+enum class Values : std::uint8_t { none, all };
+[[nodiscard]] SessionView view_recording(const recording::Reader& reader, Values values);
+
+enum class Units : std::uint8_t { si, display };
+
+// Curves of the named variables. Throws Failure when one is not in the recording, with the name that was probably
+// meant.
+[[nodiscard]] std::vector<plotting::Series> read_series(const recording::Reader& reader,
+                                                        std::span<const std::string> patterns, Units units);
+
+// Wall time between the first and the last tick as their writer stamped them, and the number of ticks.
+struct TickSpan {
+  double wall_time = 0;  // s
+  StepIndex ticks = 0;
+};
+[[nodiscard]] TickSpan tick_span(const recording::Reader& reader);
+
+// Text of an attachment. Throws Failure.
+[[nodiscard]] std::string attachment_text(const recording::Reader& reader, const std::string& name);
+
+}  // namespace slew::cli

@@ -1,0 +1,35 @@
+// Computes a recorded session again, from its INIT and its ticks, and compares the state's hash at every step.
+//
+// The physics runs in this process without nodes and messages (direct_session.h). Equal hashes in every sample mean
+// that every bit of every state was the same. Another build, C library or family of processors may differ in the last
+// bit: the recording's build is told.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/status.h"
+#include "core/time.h"
+#include "recording/reader.h"
+#include "transport/wire.h"
+
+namespace slew::cli {
+
+enum class OnDifference : std::uint8_t { stop, count };
+
+struct ReplayResult {
+  StepIndex steps = 0;  // computed, over all epochs
+  std::uint32_t epochs = 0;
+  std::uint64_t compared = 0;  // samples whose hash was compared
+  std::uint64_t different = 0;
+  std::uint64_t unrecorded = 0;  // computed steps without a recorded sample
+  double compute_time = 0;       // s
+  std::string problem;           // first difference or gap, by name; empty: none
+  [[nodiscard]] bool is_equal() const noexcept { return problem.empty() && different == 0; }
+};
+
+// Throws Failure when the recording lacks its scene or its ticks.
+[[nodiscard]] ReplayResult replay(const recording::Reader& reader, OnDifference on_difference);
+
+}  // namespace slew::cli

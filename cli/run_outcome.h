@@ -1,0 +1,38 @@
+// What a run was asked to do, and what came of it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "cli/session_view.h"
+#include "cli_support/scene_options.h"
+#include "cli_support/session_options.h"
+#include "core/status.h"
+
+namespace slew::cli {
+
+struct RunOptions {
+  cli_support::SceneOptions scene;
+  cli_support::SessionOptions session;
+  std::string runs = "runs";        // folder of the recordings
+  std::vector<std::string> remote;  // roles that somebody else starts
+  bool is_in_process = false;
+  bool is_real_time = false;
+  bool is_json = false;
+  bool is_quiet = false;
+
+  // Folder of the scene file: its assets are there.
+  [[nodiscard]] std::string assets() const;
+};
+
+struct RunOutcome {
+  ExitCode code = ExitCode::ok;
+  std::vector<std::string> messages;  // why it did not end well, the cause first
+  std::string recording;              // path; empty: none
+  SessionView view;                   // as seen while it ran
+  double wall_time = 0;               // s, from the first tick to the last
+  StepIndex steps = 0;
+};
+
+}  // namespace slew::cli

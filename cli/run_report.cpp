@@ -1,0 +1,234 @@
+#include "cli/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/display.h"
+#include "cli/plotting/svg_plot.h"
+#include "cli/recorded.h"
+#include "cli_support/failure.h"
+#include "coupling/indicator.h"
+#include "node/identity.h"
+#include "scene/names.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+std::string lamp_of(double eta, double net) {
+  coupling::PortDefects defects;
+  defects.eta = eta;
+  defects.net = net;
+  switch (coupling::lamp_of(defects)) {
+    case coupling::Lamp::green:
+      return "green";
+    case coupling::Lamp::amber:
+      return "amber";
+    case coupling::Lamp::red:
+      return "red";
+  }
+  return "";
+}
+
+void report_nodes(const SessionView& view, RunReport& report) {
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::recorder}) {
+    if (!view.has_session() || (view.session().required_roles & bit(role)) == 0) continue;
+    const NodeView& node = view.node(role);
+    report.nodes.push_back({std::string(node::to_text(role)), node.times, node.health.resends_asked,
+                            node.health.resends_answered, node.health.refused_messages});
+  }
+  report.slip = static_cast<double>(view.node(Role::io).health.slip_ns) * 1e-9;
+}
+
+void report_variables(const SessionView& view, const scene::Scene& scene, RunReport& report) {
+  for (const scene::PortDef& port : scene.ports) {
+    const VariableView* eta = view.find(port.name + ".coupling_eta");
+    const VariableView* net = view.find(port.name + ".coupling_net");
+    if (eta == nullptr || eta->step < 0) continue;
+    const double lowest = net != nullptr && net->step >= 0 ? net->min : 0;
+    report.ports.push_back({port.name, eta->max, lowest, lamp_of(eta->max, lowest)});
+  }
+  if (const VariableView* omega = view.find("hydraulics.omega_H"); omega != nullptr && omega->step >= 0) {
+    report.omega_H = omega->max;
+  }
+  for (const VariableView* variable : view.variables()) {
+    const bool is_plotted = std::any_of(scene.plots.begin(), scene.plots.end(), [&](const scene::PlotDef& plot) {
+      return std::any_of(plot.variables.begin(), plot.variables.end(),
+                         [&](const std::string& pattern) { return scene::fits_pattern(variable->name, pattern); });
+    });
+    if (is_plotted && variable->step >= 0) {
+      report.variables.push_back({variable->name, variable->unit, variable->min, variable->max, variable->value});
+    }
+  }
+}
+
+std::string losses(const recording::Reader& reader) {
+  const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
+  if (summary == nullptr) return "unknown: the recording was not closed";
+  std::string text;
+  for (const auto& [key, value] : *summary) {
+    const std::size_t dot = key.rfind(".lost");
+    if (dot == std::string::npos || value == "0") continue;
+    text += (text.empty() ? "" : ", ") + key.substr(0, dot) + ' ' + value;
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.2g}", share);
+}
+
+nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+}  // namespace
+
+std::string write_plots(const scene::Scene& scene, const std::string& recording) {
+  const auto reader = open_recording(recording);
+  std::vector<plotting::Series> curves;
+  for (const scene::PlotDef& plot : scene.plots) {
+    for (plotting::Series& curve : read_series(*reader, plot.variables, Units::display)) {
+      curves.push_back(std::move(curve));
+    }
+  }
+  if (curves.empty()) return "";
+  plotting::PlotOptions options;
+  options.title = scene.name;
+  options.subtitle =
+      "session " + reader->identity().session_name + ", " + node::time_text(reader->identity().started_ns);
+  const std::filesystem::path path = std::filesystem::path(recording).parent_path() / (scene.name + ".svg");
+  std::ofstream file(path, std::ios::binary);
+  file << plotting::plot_svg(curves, options);
+  if (!file.flush()) {
+    throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
+                                                      "; the recording is complete; free some space and use 'slewring "
+                                                      "plot'");
+  }
+  return path.string();
+}
+
+RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
+  RunReport report;
+  report.code = outcome.code;
+  report.messages = outcome.messages;
+  report.recording = outcome.recording;
+  report.scene = scene.name;
+  report.step = scene.session.step_duration().seconds();
+  report.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
+  report.steps = outcome.steps;
+  report.wall_time = outcome.wall_time;
+  if (outcome.view.has_session()) report.session = outcome.view.session().name;
+  report_nodes(outcome.view, report);
+  if (outcome.recording.empty()) {
+    report_variables(outcome.view, scene, report);
+  } else {
+    // the recording has every message; an observer may have missed some
+    try {
+      const auto reader = open_recording(outcome.recording);
+      report_variables(view_recording(*reader, Values::all), scene, report);
+      report.lost = losses(*reader);
+      const TickSpan span = tick_span(*reader);
+      if (span.ticks > 0) report.steps = span.ticks - 1;  // the last one says END
+      if (span.wall_time > 0) report.wall_time = span.wall_time;
+      report.plots = write_plots(scene, outcome.recording);
+    } catch (const cli_support::Failure& failure) {
+      report.messages.emplace_back(failure.what());
+      if (report.code == ExitCode::ok) report.code = failure.code();
+    }
+  }
+  report.simulated_time = static_cast<double>(report.steps) * report.step;
+  return report;
+}
+
+void print(const RunReport& report) {
+  std::vector<std::vector<std::string>> rows;
+  rows.push_back({"session", fmt::format("{} of scene {}, step {}, pace {}", report.session, report.scene,
+                                         duration_text(report.step), report.pace)});
+  if (report.wall_time > 0) {
+    rows.push_back({"time", fmt::format("{} simulated in {}: {:.2f} times real time, {:.0f} steps/s",
+                                        duration_text(report.simulated_time), duration_text(report.wall_time),
+                                        report.simulated_time / report.wall_time,
+                                        static_cast<double>(report.steps) / report.wall_time)});
+  }
+  if (report.pace == "real") rows.push_back({"slip", duration_text(report.slip)});
+  for (const NodeReport& node : report.nodes) {
+    std::string text;
+    if (node.times.steps > 0) {
+      text = fmt::format("step {} mean, {} max; ", duration_text(node.times.mean()), duration_text(node.times.max));
+    }
+    text += fmt::format("resends {} asked, {} answered", node.resends_asked, node.resends_answered);
+    if (node.refused_messages > 0) text += fmt::format("; {} messages refused", node.refused_messages);
+    rows.push_back({node.role, text});
+  }
+  if (!report.lost.empty()) rows.push_back({"lost", report.lost});
+  for (const PortReport& port : report.ports) {
+    rows.push_back({"coupling", fmt::format("{} {}: residual {} at most, net {} at least", port.name, port.lamp,
+                                            percent(port.eta), percent(port.net))});
+  }
+  for (const VariableReport& variable : report.variables) {
+    rows.push_back(
+        {"range",
+         fmt::format("{} {} to {}, {} at the end", variable.name, quantity_text(variable.min, variable.unit),
+                     quantity_text(variable.max, variable.unit), quantity_text(variable.last, variable.unit))});
+  }
+  for (const std::string& note : report.notes) rows.push_back({"note", note});
+  fmt::print("{}", table_text(rows, ""));
+  std::fflush(stdout);
+  for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
+  if (!report.plots.empty()) fmt::print("{}\n", report.plots);
+  if (!report.recording.empty()) fmt::print("{}\n", report.recording);
+}
+
+std::string to_json_text(const RunReport& report) {
+  nlohmann::json nodes = nlohmann::json::object();
+  for (const NodeReport& node : report.nodes) {
+    nodes[node.role] = {{"step_time_mean", node.times.mean()},
+                        {"step_time_max", node.times.max},
+                        {"steps", node.times.steps},
+                        {"resends_asked", node.resends_asked},
+                        {"resends_answered", node.resends_answered},
+                        {"refused_messages", node.refused_messages}};
+  }
+  nlohmann::json ports = nlohmann::json::object();
+  for (const PortReport& port : report.ports) {
+    ports[port.name] = {{"eta_max", number(port.eta)}, {"net_min", number(port.net)}, {"lamp", port.lamp}};
+  }
+  nlohmann::json variables = nlohmann::json::object();
+  for (const VariableReport& variable : report.variables) {
+    variables[variable.name] = {{"unit", variable.unit},
+                                {"min", number(variable.min)},
+                                {"max", number(variable.max)},
+                                {"last", number(variable.last)}};
+  }
+  const bool is_timed = report.wall_time > 0;
+  return nlohmann::json({{"exit_code", static_cast<int>(report.code)},
+                         {"scene", report.scene},
+                         {"session", report.session},
+                         {"pace", report.pace},
+                         {"step", report.step},
+                         {"steps", report.steps},
+                         {"simulated_time", report.simulated_time},
+                         {"wall_time", report.wall_time},
+                         {"real_time_factor", is_timed ? report.simulated_time / report.wall_time : 0},
+                         {"steps_per_second", is_timed ? static_cast<double>(report.steps) / report.wall_time : 0},
+                         {"slip", report.slip},
+                         {"nodes", nodes},
+                         {"lost", report.lost},
+                         {"ports", ports},
+                         {"omega_H_max", report.omega_H},
+                         {"variables", variables},
+                         {"notes", report.notes},
+                         {"messages", report.messages},
+                         {"plots", report.plots},
+                         {"recording", report.recording}})
+      .dump(2);
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,61 @@
+// The summary of a run: how it went, what it cost, how good the coupling was, and where everything is.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/run_outcome.h"
+#include "scene/scene.h"
+
+namespace slew::cli {
+
+struct NodeReport {
+  std::string role;
+  StepTimes times;
+  std::uint64_t resends_asked = 0;
+  std::uint64_t resends_answered = 0;
+  std::uint64_t refused_messages = 0;
+};
+
+struct PortReport {
+  std::string name;
+  double eta = 0;  // largest energy residual
+  double net = 0;  // lowest net energy
+  std::string lamp;
+};
+
+struct VariableReport {
+  std::string name, unit;  // SI
+  double min = 0, max = 0, last = 0;
+};
+
+struct RunReport {
+  ExitCode code = ExitCode::ok;
+  std::string scene, session, pace;
+  double step = 0;  // s
+  StepIndex steps = 0;
+  double simulated_time = 0;  // s
+  double wall_time = 0;       // s
+  double slip = 0;            // s
+  std::vector<NodeReport> nodes;
+  std::string lost;  // "tick 0, mechanism 0, ..."; empty: not recorded
+  std::vector<PortReport> ports;
+  double omega_H = 0;  // largest
+  std::vector<VariableReport> variables;
+  std::vector<std::string> notes;     // remarkable: a load that could not be lifted, and why
+  std::vector<std::string> messages;  // why it did not end well
+  std::string plots;                  // path of the picture
+  std::string recording;              // path
+};
+
+// Collects the report, from the recording where there is one, and writes the scene's plots beside it.
+[[nodiscard]] RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene);
+
+// For people; the path of the recording is the last line.
+void print(const RunReport& report);
+[[nodiscard]] std::string to_json_text(const RunReport& report);
+
+// Writes the scene's plots of a recording as one picture. Returns its path; empty when the scene has none.
+[[nodiscard]] std::string write_plots(const scene::Scene& scene, const std::string& recording);
+
+}  // namespace slew::cli

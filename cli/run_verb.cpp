@@ -1,0 +1,72 @@
+// `slewring run SCENE`: runs a scene as processes or in one process, records it, and says what came of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/distributed_run.h"
+#include "cli/in_process_run.h"
+#include "cli/run_report.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+
+namespace slew::cli {
+
+std::string RunOptions::assets() const {
+  const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+namespace {
+
+ExitCode run(RunOptions options) {
+  const scene::Scene scene = cli_support::load_scene(options.scene);
+  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
+  if (options.is_in_process && !options.remote.empty()) {
+    throw cli_support::Failure(ExitCode::bad_input,
+                               "--in-process and --remote exclude each other; nothing was started; leave one out");
+  }
+  const RunOutcome outcome = options.is_in_process ? run_in_process(options, scene) : run_distributed(options, scene);
+  const RunReport report = make_report(outcome, scene);
+  if (options.is_json) {
+    fmt::print("{}\n", to_json_text(report));
+    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
+  } else {
+    print(report);
+  }
+  return report.code;
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("run", "run a scene: start its nodes, drive, record, plot");
+  const auto options = std::make_shared<RunOptions>();  // lives as long as the command line's callbacks
+  cli_support::add_scene_options(*verb, options->scene);
+  cli_support::add_session_options(*verb, options->session, false);
+  verb->get_option("--session")->description("name of the session; without it the scene's");
+  verb->add_option("--remote", options->remote, "roles that are started elsewhere, separated by commas")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"io", "mechanics", "hydraulics", "recorder"}))
+      ->type_name("ROLE")
+      ->group("Session");
+  verb->add_flag("--in-process", options->is_in_process, "all nodes in this process, on one thread")->group("Session");
+  verb->add_option("--out", options->runs, "folder in which the recording gets a folder of its own")
+      ->type_name("DIR")
+      ->capture_default_str();
+  verb->add_flag("--rt", options->is_real_time, "real-time scheduling and locked memory for the nodes");
+  verb->add_flag("--json", options->is_json, "print the summary as JSON and nothing else");
+  verb->add_flag("--quiet", options->is_quiet, "no status line");
+  verb->footer(
+      "The first Ctrl-C ends the session in order, the second one at once.\n\n"
+      "Examples:\n"
+      "  slewring run scenes/truck_crane.yaml\n"
+      "  slewring run scenes/truck_crane.yaml --set Bag.mass=1000kg --duration 10 --pace free --in-process\n"
+      "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20");
+  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace slew::cli

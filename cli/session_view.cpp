@@ -1,0 +1,140 @@
+#include "cli/session_view.h"
+
+#include <algorithm>
+
+#include "transport/codec.h"
+
+namespace slew::cli {
+
+using wire::Role;
+using wire::Topic;
+
+NodeView* SessionView::node_of(const wire::Header& header) {
+  const auto index = static_cast<std::size_t>(header.role);
+  if (!session_ || header.session != session_->header.session || index >= wire::kRoles) return nullptr;
+  return &nodes_[index];
+}
+
+void SessionView::take(Topic topic, std::span<const std::byte> bytes) {
+  switch (topic) {
+    case Topic::session:
+      return take_session(bytes);
+    case Topic::node_status: {
+      wire::NodeStatus status;
+      if (!transport::decode(bytes, status)) return;
+      if (NodeView* node = node_of(status.header); node != nullptr) {
+        node->is_known = true;
+        node->status = std::move(status);
+      }
+      return;
+    }
+    case Topic::health:
+      return take_health(bytes);
+    case Topic::variable_directory:
+      return take_directory(bytes);
+    case Topic::variables:
+      return take_block(bytes);
+    default:
+      return;
+  }
+}
+
+// a session that starts under the same name after this one takes its place
+void SessionView::take_session(std::span<const std::byte> bytes) {
+  wire::SessionDescription session;
+  if (!transport::decode(bytes, session) || (!name_.empty() && session.name != name_)) return;
+  if (session_ && session.header.session == session_->header.session) return;
+  if (session_ && session.started_ns < session_->started_ns) return;
+  name_ = session.name;
+  session_ = std::move(session);
+  nodes_ = {};
+  variables_ = {};
+  named_ = {};
+  index_.clear();
+  leases_.clear();
+  step_ = kJoinStep;
+}
+
+void SessionView::take_health(std::span<const std::byte> bytes) {
+  wire::Health health;
+  if (!transport::decode(bytes, health)) return;
+  NodeView* node = node_of(health.header);
+  if (node == nullptr) return;
+  if (health.steps_done > node->steps_seen) {
+    const std::uint64_t steps = health.steps_done - node->steps_seen;
+    node->times.sum += health.step_time_mean * static_cast<double>(steps);
+    node->times.steps += steps;
+  }
+  node->times.max = std::max(node->times.max, health.step_time_max);
+  node->steps_seen = health.steps_done;
+  if (health.header.role == Role::io) step_ = health.header.step;
+  node->health = std::move(health);
+}
+
+void SessionView::take_directory(std::span<const std::byte> bytes) {
+  wire::VariableDirectory directory;
+  if (!transport::decode(bytes, directory) || node_of(directory.header) == nullptr) return;
+  const auto role = static_cast<std::size_t>(directory.header.role);
+  std::vector<VariableView>& variables = variables_[role];
+  if (variables.size() < directory.total) variables.resize(directory.total);
+  for (std::size_t i = 0; i < directory.entries.size(); ++i) {
+    const std::size_t at = directory.first + i;
+    if (at >= variables.size()) break;
+    if (variables[at].name.empty()) ++named_[role];
+    variables[at].name = directory.entries[i].name;
+    variables[at].unit = directory.entries[i].unit;
+    index_.insert_or_assign(variables[at].name, std::pair(role, at));
+  }
+}
+
+void SessionView::take_block(std::span<const std::byte> bytes) {
+  if (!transport::decode(bytes, block_) || node_of(block_.header) == nullptr) return;
+  if (block_.header.phase != wire::Phase::running) return;
+  std::vector<VariableView>& variables = variables_[static_cast<std::size_t>(block_.header.role)];
+  if (variables.size() < block_.first + block_.values.size()) variables.resize(block_.first + block_.values.size());
+  for (std::size_t i = 0; i < block_.values.size(); ++i) {
+    VariableView& variable = variables[block_.first + i];
+    variable.value = block_.values[i];
+    variable.min = std::min(variable.min, variable.value);
+    variable.max = std::max(variable.max, variable.value);
+    variable.step = block_.header.step;
+  }
+  step_ = std::max(step_, block_.header.step);
+}
+
+bool SessionView::is_over() const noexcept {
+  const NodeView& io = node(Role::io);
+  return io.is_known && io.status.state >= wire::NodeState::ended;
+}
+
+std::vector<const VariableView*> SessionView::variables() const {
+  std::vector<const VariableView*> all;
+  for (const std::vector<VariableView>& of_role : variables_) {
+    for (const VariableView& variable : of_role) {
+      if (!variable.name.empty()) all.push_back(&variable);
+    }
+  }
+  return all;
+}
+
+const VariableView* SessionView::find(std::string_view name) const {
+  const auto found = index_.find(name);
+  return found == index_.end() ? nullptr : &variables_[found->second.first][found->second.second];
+}
+
+const wire::ControllerLease* SessionView::lease(const std::string& controller, const std::string& channel) const {
+  const auto found = leases_.find({controller, channel});
+  return found == leases_.end() ? nullptr : &found->second;
+}
+
+bool SessionView::has_whole_directory() const noexcept {
+  if (!session_) return false;
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
+    const auto index = static_cast<std::size_t>(role);
+    if ((session_->required_roles & bit(role)) == 0) continue;
+    if (variables_[index].empty() || named_[index] < variables_[index].size()) return false;
+  }
+  return true;
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,101 @@
+// `slewring sessions`: what runs on this domain.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/display.h"
+#include "cli/survey.h"
+#include "cli/verbs.h"
+#include "node/identity.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+struct Options {
+  cli_support::SessionOptions network;
+  double seconds = 0.7;
+  bool is_json = false;
+};
+
+std::string host_of(const std::string& identity) {
+  return identity.substr(0, identity.find('#'));
+}
+
+std::string nodes_text(const FoundSession& session) {
+  std::string text;
+  for (std::size_t role = 0; role < wire::kRoles; ++role) {
+    const bool is_required = (session.description.required_roles & (1u << role)) != 0;
+    if (!is_required) continue;
+    text += (text.empty() ? "" : ", ") + std::string(node::to_text(static_cast<Role>(role))) + ' ' +
+            (session.is_heard[role] ? std::string(node::to_text(session.nodes[role].state)) : "not heard");
+  }
+  return text;
+}
+
+nlohmann::json to_json(const FoundSession& session) {
+  nlohmann::json nodes = nlohmann::json::array();
+  for (std::size_t role = 0; role < wire::kRoles; ++role) {
+    if ((session.description.required_roles & (1u << role)) == 0) continue;
+    const wire::NodeStatus& status = session.nodes[role];
+    nodes.push_back({{"role", node::to_text(static_cast<Role>(role))},
+                     {"state", session.is_heard[role] ? node::to_text(status.state) : "not heard"},
+                     {"host", host_of(status.host)},
+                     {"pid", status.pid}});
+  }
+  const wire::SessionDescription& description = session.description;
+  return {{"name", description.name},
+          {"scene", description.scene_name},
+          {"id", node::to_text(description.header.session)},
+          {"host", host_of(description.host)},
+          {"pid", description.pid},
+          {"started_ns", description.started_ns},
+          {"step_ns", description.step_ns},
+          {"pace", description.pace == wire::Pace::free ? "free" : "real"},
+          {"step", session.step},
+          {"nodes", nodes}};
+}
+
+ExitCode show(const Options& options) {
+  const std::vector<FoundSession> sessions =
+      find_sessions(options.network, {static_cast<std::int64_t>(options.seconds * 1e9)});
+  if (options.is_json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const FoundSession& session : sessions) all.push_back(to_json(session));
+    fmt::print("{}\n", all.dump(2));
+    return ExitCode::ok;
+  }
+  if (sessions.empty()) {
+    fmt::print("no session runs on domain {} (interface {})\n", options.network.domain, options.network.interface);
+    return ExitCode::ok;
+  }
+  std::vector<std::vector<std::string>> rows = {{"session", "scene", "time", "pace", "owner", "started", "nodes"}};
+  for (const FoundSession& session : sessions) {
+    const wire::SessionDescription& description = session.description;
+    const double time = static_cast<double>(std::max<StepIndex>(0, session.step) * description.step_ns) * 1e-9;
+    rows.push_back({description.name, description.scene_name, fmt::format("{:.2f} s", time),
+                    description.pace == wire::Pace::free ? "free" : "real",
+                    fmt::format("process {} on {}", description.pid, host_of(description.host)),
+                    node::time_text(description.started_ns), nodes_text(session)});
+  }
+  fmt::print("{}", table_text(rows, ""));
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+void add_sessions(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("sessions", "list the sessions that run on a domain");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  cli_support::add_network_options(*verb, options->network);
+  verb->add_option("--time", options->seconds, "seconds to listen")
+      ->check(CLI::Range(0.1, 60.0))
+      ->type_name("S")
+      ->capture_default_str();
+  verb->add_flag("--json", options->is_json, "for machines");
+  verb->footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20");
+  verb->callback([&action, options] { action = [options] { return show(*options); }; });
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,150 @@
+#include "cli/status_line.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "cli/display.h"
+#include "coupling/indicator.h"
+#include "node/identity.h"
+#include "scene/names.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+constexpr std::int64_t kTerminalPeriodNs = 200'000'000;
+constexpr std::int64_t kLinesPeriodNs = 2'000'000'000;
+constexpr std::int64_t kFactorPeriodNs = 1'000'000'000;
+constexpr std::size_t kMostVariables = 6;
+
+std::size_t terminal_width() {
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20) return size.ws_col;
+  return 100;
+}
+
+std::string_view lamp_text(coupling::Lamp lamp) {
+  switch (lamp) {
+    case coupling::Lamp::green:
+      return "green";
+    case coupling::Lamp::amber:
+      return "amber";
+    case coupling::Lamp::red:
+      return "red";
+  }
+  return "";
+}
+
+// "mechanics running", or what a node waits for
+std::string node_text(const SessionView& view, Role role) {
+  const NodeView& node = view.node(role);
+  const std::string name(node::to_text(role));
+  if (!node.is_known) return name + " not heard";
+  if (role == Role::io && node.health.is_waiting && node.status.state == wire::NodeState::holding) {
+    return fmt::format("io holds, waits for {} at step {}", node::to_text(node.health.waiting_for),
+                       node.health.waiting_step);
+  }
+  return name + " " + std::string(node::to_text(node.status.state));
+}
+
+}  // namespace
+
+bool StatusLine::is_due(std::int64_t now_ns) const noexcept {
+  return mode_ != Mode::off && now_ns >= next_ns_;
+}
+
+void StatusLine::show(const std::string& text, std::int64_t now_ns) {
+  if (mode_ == Mode::off) return;
+  if (mode_ == Mode::terminal) {
+    next_ns_ = now_ns + kTerminalPeriodNs;
+    std::printf("\r%s\x1b[K", text.substr(0, terminal_width() - 1).c_str());
+    is_shown_ = true;
+  } else {
+    next_ns_ = now_ns + kLinesPeriodNs;
+    std::printf("%s\n", text.c_str());
+  }
+  std::fflush(stdout);
+}
+
+void StatusLine::say(const std::string& line) {
+  clear();
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void StatusLine::clear() {
+  if (!is_shown_) return;
+  is_shown_ = false;
+  std::printf("\r\x1b[K");
+  std::fflush(stdout);
+}
+
+StatusLine::Mode status_mode(bool is_quiet) {
+  if (is_quiet) return StatusLine::Mode::off;
+  return isatty(STDOUT_FILENO) != 0 ? StatusLine::Mode::terminal : StatusLine::Mode::lines;
+}
+
+StatusText::StatusText(const scene::Scene& scene) : duration_(scene.session.duration) {
+  for (const scene::PlotDef& plot : scene.plots) {
+    plotted_.insert(plotted_.end(), plot.variables.begin(), plot.variables.end());
+  }
+  for (const scene::PortDef& port : scene.ports) ports_.push_back(port.name);
+}
+
+std::string StatusText::text(const SessionView& view, std::int64_t now_ns) {
+  if (!view.has_session()) return "waiting for the session";
+  const double H = static_cast<double>(view.session().step_ns) * 1e-9;
+  const StepIndex step = std::max<StepIndex>(0, view.step());
+  if (last_ns_ == 0 || step < last_step_) {
+    last_ns_ = now_ns;
+    last_step_ = step;
+  } else if (now_ns - last_ns_ >= kFactorPeriodNs) {
+    factor_ = static_cast<double>(step - last_step_) * H / (static_cast<double>(now_ns - last_ns_) * 1e-9);
+    last_ns_ = now_ns;
+    last_step_ = step;
+  }
+  std::string text = fmt::format("{:7.2f} s", static_cast<double>(step) * H);
+  if (duration_ > 0) text += fmt::format(" of {:g}", duration_);
+  text += fmt::format("  x{:.2f}", factor_);
+  // nodes: named only when they are not simply running
+  std::string nodes;
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::recorder}) {
+    if ((view.session().required_roles & bit(role)) == 0) continue;
+    const bool is_usual = view.node(role).is_known &&
+                          (view.node(role).status.state == wire::NodeState::running ||
+                           (role == Role::recorder && view.node(role).status.state == wire::NodeState::ready));
+    if (!is_usual) nodes += (nodes.empty() ? "" : ", ") + node_text(view, role);
+  }
+  text += "  " + (nodes.empty() ? "running" : nodes);
+  // coupling
+  std::string lamps;
+  for (const std::string& port : ports_) {
+    const VariableView* eta = view.find(port + ".coupling_eta");
+    const VariableView* net = view.find(port + ".coupling_net");
+    if (eta == nullptr || eta->step < 0) continue;
+    coupling::PortDefects defects;
+    defects.eta = eta->value;
+    defects.net = net != nullptr ? net->value : 0;
+    lamps += fmt::format("{}{}", lamps.empty() ? "" : "/", lamp_text(coupling::lamp_of(defects)));
+  }
+  if (!lamps.empty()) text += "  coupling " + lamps;
+  // plotted variables
+  std::size_t shown = 0;
+  for (const VariableView* variable : view.variables()) {
+    if (shown == kMostVariables) break;
+    const bool is_plotted =
+        variable->step >= 0 && std::any_of(plotted_.begin(), plotted_.end(), [&](const std::string& pattern) {
+          return scene::fits_pattern(variable->name, pattern);
+        });
+    if (!is_plotted) continue;
+    ++shown;
+    text += "  " + variable->name + " " + quantity_text(variable->value, variable->unit);
+  }
+  return text;
+}
+
+}  // namespace slew::cli

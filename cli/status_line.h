@@ -1,0 +1,51 @@
+// The line at the bottom of a run: rewritten in place on a terminal, a plain line every other second elsewhere.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cli/session_view.h"
+#include "scene/scene.h"
+
+namespace slew::cli {
+
+class StatusLine {
+ public:
+  enum class Mode : std::uint8_t { off, terminal, lines };
+  explicit StatusLine(Mode mode) : mode_(mode) {}
+  ~StatusLine() { clear(); }
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+  // True when it is time for a new text.
+  [[nodiscard]] bool is_due(std::int64_t now_ns) const noexcept;
+  void show(const std::string& text, std::int64_t now_ns);
+  // A lasting line on standard error, above the status.
+  void say(const std::string& line);
+  void clear();
+
+ private:
+  Mode mode_;
+  std::int64_t next_ns_ = 0;
+  bool is_shown_ = false;
+};
+
+// Terminal when standard output is one, else lines; off when nothing but the result may be printed.
+[[nodiscard]] StatusLine::Mode status_mode(bool is_quiet);
+
+// Session time, real-time factor, nodes, plotted variables, coupling lamps, from what an observer knows.
+class StatusText {
+ public:
+  explicit StatusText(const scene::Scene& scene);
+  [[nodiscard]] std::string text(const SessionView& view, std::int64_t now_ns);
+
+ private:
+  std::vector<std::string> plotted_;  // patterns
+  std::vector<std::string> ports_;
+  double duration_;
+  std::int64_t last_ns_ = 0;  // wall clock and step of the last measure of the factor
+  StepIndex last_step_ = 0;
+  double factor_ = 0;
+};
+
+}  // namespace slew::cli

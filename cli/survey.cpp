@@ -1,0 +1,91 @@
+#include "cli/survey.h"
+
+#include <algorithm>
+#include <map>
+
+#include "cli_support/carrier.h"
+#include "cli_support/failure.h"
+#include "node/driver.h"
+#include "transport/codec.h"
+
+namespace slew::cli {
+namespace {
+
+using cli_support::Failure;
+
+constexpr SimDuration kSurveyTime = milliseconds(700);
+constexpr SimDuration kLongestWait = milliseconds(20);
+
+using Found = std::map<wire::SessionId, FoundSession>;
+
+void take(const transport::Received& message, Found& found) {
+  switch (message.topic) {
+    case wire::Topic::session: {
+      wire::SessionDescription description;
+      if (transport::decode(message.bytes, description)) {
+        FoundSession& session = found[description.header.session];
+        session.description = std::move(description);
+      }
+      return;
+    }
+    case wire::Topic::node_status: {
+      wire::NodeStatus status;
+      if (!transport::decode(message.bytes, status)) return;
+      const auto role = static_cast<std::size_t>(status.header.role);
+      if (role >= wire::kRoles) return;
+      FoundSession& session = found[status.header.session];
+      session.is_heard[role] = true;
+      session.nodes[role] = std::move(status);
+      return;
+    }
+    case wire::Topic::health: {
+      wire::Health health;
+      if (!transport::decode(message.bytes, health)) return;
+      FoundSession& session = found[health.header.session];
+      session.step = std::max(session.step, health.header.step);
+      return;
+    }
+    default:
+      return;
+  }
+}
+
+bool is_over(const FoundSession& session) {
+  const auto io = static_cast<std::size_t>(wire::Role::io);
+  return session.is_heard[io] && session.nodes[io].state >= wire::NodeState::ended;
+}
+
+}  // namespace
+
+std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time) {
+  const auto carrier = cli_support::open_survey(options);
+  Found found;
+  const std::int64_t end_ns = monotonic_ns() + time.ns;
+  while (monotonic_ns() < end_ns && node::stop_requested.load() == 0) {
+    transport::Received message;
+    while (carrier->take(message)) take(message, found);
+    carrier->wait_until(std::min(end_ns, monotonic_ns() + kLongestWait.ns));
+  }
+  std::vector<FoundSession> sessions;
+  for (auto& [id, session] : found) {
+    if (!session.description.name.empty() && !is_over(session)) sessions.push_back(std::move(session));
+  }
+  std::sort(sessions.begin(), sessions.end(),
+            [](const FoundSession& a, const FoundSession& b) { return a.description.name < b.description.name; });
+  return sessions;
+}
+
+std::string only_session(const cli_support::SessionOptions& options) {
+  const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime);
+  if (sessions.size() == 1) return sessions.front().description.name;
+  if (sessions.empty()) {
+    throw Failure(ExitCode::failed,
+                  "no session runs on domain " + std::to_string(options.domain) +
+                      "; start one with 'slewring run SCENE', or name its --domain, --interface and --peer");
+  }
+  std::string names;
+  for (const FoundSession& session : sessions) names += (names.empty() ? "" : ", ") + session.description.name;
+  throw Failure(ExitCode::bad_input, "several sessions run: " + names + "; name one with --session");
+}
+
+}  // namespace slew::cli

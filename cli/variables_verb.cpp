@@ -1,0 +1,93 @@
+// `slewring variables`: what a scene or a running session offers to plot, watch and control by.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/direct_session.h"
+#include "cli/display.h"
+#include "cli/observer.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+#include "scene/names.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+struct Options {
+  cli_support::SessionOptions session;
+  std::string scene;
+  std::vector<std::string> patterns;
+  bool is_json = false;
+};
+
+struct Named {
+  std::string name, unit, owner;
+};
+
+std::vector<Named> of_scene(const std::string& file) {
+  const scene::Scene scene = scene::load_file(file);
+  std::vector<Named> all;
+  for (const scene::InputDef& input : scene.inputs) {
+    for (const char* quantity : {".raw", ".control", ".age"}) all.push_back({input.name + quantity, "1", "io"});
+  }
+  for (const Role role : {Role::mechanics, Role::hydraulics}) {
+    const auto subsystem = make_subsystem(role, scene);
+    if (subsystem == nullptr) continue;
+    const char* owner = role == Role::mechanics ? "mechanics" : "hydraulics";
+    for (const ElementVariable& variable : subsystem->variables()) {
+      all.push_back({variable.name, std::string(info(variable.dimension).si_unit), owner});
+    }
+  }
+  return all;
+}
+
+std::vector<Named> of_session(const cli_support::SessionOptions& options) {
+  const auto observer = find_session(options);
+  if (!observer->wait_for([&] { return observer->view().has_whole_directory(); }, milliseconds(5000))) {
+    throw cli_support::Failure(ExitCode::failed, "session '" + observer->session_name() +
+                                                     "' has not named its variables within 5 s; it may still be "
+                                                     "starting: try again");
+  }
+  std::vector<Named> all;
+  for (const VariableView* variable : observer->view().variables()) all.push_back({variable->name, variable->unit, ""});
+  return all;
+}
+
+ExitCode list(const Options& options) {
+  std::vector<Named> all = options.scene.empty() ? of_session(options.session) : of_scene(options.scene);
+  std::erase_if(all, [&](const Named& variable) {
+    return !options.patterns.empty() &&
+           std::none_of(options.patterns.begin(), options.patterns.end(),
+                        [&](const std::string& pattern) { return scene::fits_pattern(variable.name, pattern); });
+  });
+  if (options.is_json) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const Named& variable : all) json.push_back({{"name", variable.name}, {"unit", variable.unit}});
+    fmt::print("{}\n", json.dump(2));
+    return ExitCode::ok;
+  }
+  std::vector<std::vector<std::string>> rows = {{"variable", "unit", options.scene.empty() ? "" : "node"}};
+  for (const Named& variable : all) rows.push_back({variable.name, variable.unit, variable.owner});
+  fmt::print("{}", table_text(rows, ""));
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+void add_variables(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("variables", "list the variables of a scene or of a running session");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  verb->add_option("scene", options->scene, "scene file; without it a running session")->type_name("SCENE");
+  verb->add_option("--only", options->patterns, "only these names, with * and ?; repeat for more")
+      ->type_name("PATTERN")
+      ->allow_extra_args(false);
+  cli_support::add_session_options(*verb, options->session, false);
+  verb->add_flag("--json", options->is_json, "for machines");
+  verb->footer("Example:\n  slewring variables scenes/truck_crane.yaml --only 'Cyl_*'");
+  verb->callback([&action, options] { action = [options] { return list(*options); }; });
+}
+
+}  // namespace slew::cli

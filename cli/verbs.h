@@ -1,0 +1,32 @@
+// The verbs of the program `slewring`: each adds its command line and, when it is the chosen one, its action.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "core/status.h"
+
+namespace slew::cli {
+
+using Action = std::function<ExitCode()>;
+
+void add_run(CLI::App& program, Action& action);
+void add_node(CLI::App& program, Action& action);
+void add_sessions(CLI::App& program, Action& action);
+void add_watch(CLI::App& program, Action& action);
+void add_param(CLI::App& program, Action& action);
+void add_control(CLI::App& program, Action& action);
+void add_check(CLI::App& program, Action& action);
+void add_describe(CLI::App& program, Action& action);
+void add_variables(CLI::App& program, Action& action);
+void add_schema(CLI::App& program, Action& action);
+void add_info(CLI::App& program, Action& action);
+void add_plot(CLI::App& program, Action& action);
+void add_export(CLI::App& program, Action& action);
+void add_replay(CLI::App& program, Action& action);
+void add_doctor(CLI::App& program, Action& action);
+
+// `slewring node ROLE ...` in the place of this program; gives a code only when that fails.
+[[nodiscard]] int become_node(int argc, char** argv);
+
+}  // namespace slew::cli

@@ -1,0 +1,98 @@
+// `slewring watch VAR...`: values of variables of a running session, a line at a time.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cli/display.h"
+#include "cli/observer.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+#include "cli_support/name_pattern.h"
+#include "node/driver.h"
+
+namespace slew::cli {
+namespace {
+
+struct Options {
+  cli_support::SessionOptions session;
+  std::vector<std::string> variables;
+  double interval = 0.2;  // s
+  std::int64_t count = 0;
+  bool is_json = false;
+};
+
+constexpr SimDuration kDirectoryTimeout = milliseconds(5000);
+
+std::vector<std::string> chosen_names(Observer& observer, const std::vector<std::string>& patterns) {
+  observer.wait_for([&] { return observer.view().has_whole_directory() || observer.view().is_over(); },
+                    kDirectoryTimeout);
+  std::vector<std::string> names;
+  for (const VariableView* variable : observer.view().variables()) names.push_back(variable->name);
+  if (names.empty()) {
+    throw cli_support::Failure(ExitCode::failed, "session '" + observer.session_name() +
+                                                     "' has not named its variables within 5 s; it may still be "
+                                                     "starting: try again, or look with 'slewring sessions'");
+  }
+  return cli_support::choose(patterns, names);
+}
+
+void print_line(const SessionView& view, const std::vector<std::string>& names, bool is_json) {
+  StepIndex step = kJoinStep;
+  for (const std::string& name : names) step = std::max(step, view.find(name)->step);
+  const double time = static_cast<double>(std::max<StepIndex>(0, step) * view.session().step_ns) * 1e-9;
+  if (is_json) {
+    nlohmann::json line = {{"step", step}, {"time", time}};
+    for (const std::string& name : names) {
+      const VariableView& variable = *view.find(name);
+      if (variable.step >= 0) line["values"][name] = variable.value;
+    }
+    fmt::print("{}\n", line.dump());
+  } else {
+    std::string line = fmt::format("{:10.3f} s", time);
+    for (const std::string& name : names) {
+      const VariableView& variable = *view.find(name);
+      line += fmt::format("  {} {}", name,
+                          variable.step >= 0 ? quantity_text(variable.value, variable.unit) : "not yet published");
+    }
+    fmt::print("{}\n", line);
+  }
+  std::fflush(stdout);
+}
+
+ExitCode watch(const Options& options) {
+  node::install_signal_handlers();
+  const auto observer = find_session(options.session);
+  const std::vector<std::string> names = chosen_names(*observer, options.variables);
+  const SimDuration interval{static_cast<std::int64_t>(options.interval * 1e9)};
+  for (std::int64_t lines = 0; options.count == 0 || lines < options.count; ++lines) {
+    observer->wait_for([&] { return observer->view().is_over(); }, interval);
+    print_line(observer->view(), names, options.is_json);
+    if (observer->view().is_over() || node::stop_requested.load() != 0) break;
+  }
+  return static_cast<ExitCode>(node::stop_requested.load());
+}
+
+}  // namespace
+
+void add_watch(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("watch", "print variables of a running session as they change");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  verb->add_option("variables", options->variables, "names, or patterns with * and ?")->required()->type_name("VAR");
+  cli_support::add_session_options(*verb, options->session, false);
+  verb->add_option("--every", options->interval, "seconds between two lines")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  verb->add_option("--count", options->count, "end after so many lines; 0: with the session")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N")
+      ->capture_default_str();
+  verb->add_flag("--json", options->is_json, "one JSON object a line, values in SI");
+  verb->footer(
+      "Without --session: the one that runs on the domain.\n\n"
+      "Example:\n  slewring watch Cyl_Lift.force 'Bag.position.*' --session truck_crane");
+  verb->callback([&action, options] { action = [options] { return watch(*options); }; });
+}
+
+}  // namespace slew::cli
