@@ -1,0 +1,93 @@
+#include "monolith/monolith.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/check.h"
+
+namespace slew::monolith {
+namespace {
+
+std::vector<double> tolerances(const SceneEquations& equations, double factor) {
+  std::vector<double> absolute = equations.absolute_scales();
+  for (double& a : absolute) a *= factor;
+  return absolute;
+}
+
+}  // namespace
+
+Monolith::Monolith(const scene::Scene& scene, MonolithOptions options)
+    : equations_(scene),
+      solver_(*this, tolerances(equations_, options.absolute_tolerance), options.relative_tolerance),
+      slope_(scene.inputs.size()),
+      control_end_(scene.inputs.size()),
+      slope_now_(scene.inputs.size()),
+      y_(equations_.size()),
+      values_(equations_.variables().size()) {}
+
+Status Monolith::start() {
+  const Status status = equations_.start(y_);
+  if (!status.is_ok()) return status;
+  std::fill(control_end_.begin(), control_end_.end(), 0.0);
+  std::fill(slope_now_.begin(), slope_now_.end(), 0.0);
+  time_ = {};
+  solver_.restart(0, y_);
+  must_restart_ = true;
+  equations_.observe(0, y_.data());
+  return Status::ok();
+}
+
+void Monolith::restart_with(std::span<const double> controls, std::span<const double> slopes) {
+  equations_.set_controls(time_.seconds(), controls, slopes);
+  const std::span<const double> now = solver_.y();
+  std::copy(now.begin(), now.end(), y_.begin());
+  equations_.normalize(y_);
+  solver_.restart(time_.seconds(), y_);
+  slope_now_.assign(slopes.begin(), slopes.end());
+  must_restart_ = false;
+}
+
+Status Monolith::advance_to(SimTime t, std::span<const double> controls) {
+  return advance_to(t, controls, controls);
+}
+
+Status Monolith::advance_to(SimTime t, std::span<const double> controls_begin, std::span<const double> controls_end) {
+  SLEW_CHECK(t > time_ && controls_begin.size() == slope_.size() && controls_end.size() == slope_.size());
+  const double duration = (t - time_).seconds();
+  bool has_kink = must_restart_;
+  for (std::size_t i = 0; i < slope_.size(); ++i) {
+    slope_[i] = (controls_end[i] - controls_begin[i]) / duration;
+    // a ramp that goes on may differ by rounding
+    const double rounding = 1e-9 * std::max(std::fabs(slope_[i]), std::fabs(slope_now_[i]));
+    has_kink = has_kink || controls_begin[i] != control_end_[i] || std::fabs(slope_[i] - slope_now_[i]) > rounding;
+    control_end_[i] = controls_end[i];
+  }
+  if (has_kink) restart_with(controls_begin, slope_);
+  const std::string failure = solver_.advance(t.seconds());
+  const std::span<const double> y = solver_.y();
+  time_ = t;
+  equations_.observe(solver_.time(), y.data());
+  if (failure.empty()) return Status::ok();
+  return Status::error(ExitCode::diverged, "the reference integration ended at " + std::to_string(solver_.time()) +
+                                               " s (" + failure + "); it could not follow " +
+                                               equations_.state_name(solver_.worst_state()));
+}
+
+Status Monolith::set_parameter(std::string_view path, double value) {
+  must_restart_ = true;
+  return equations_.set_parameter(path, value);
+}
+
+double Monolith::variable(std::string_view name) {
+  const std::span<const ElementVariable> all = variables();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].name != name) continue;
+    read_variables(values_);
+    return values_[i];
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace slew::monolith

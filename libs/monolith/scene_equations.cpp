@@ -1,0 +1,286 @@
+#include "monolith/scene_equations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "math/small_solve.h"
+#include "multibody/joint_law.h"
+#include "multibody/observe.h"
+#include "multibody/parameters.h"
+#include "multibody/passes.h"
+
+namespace slew::monolith {
+namespace {
+
+constexpr double kAngleScale = 1;           // rad, quaternion components
+constexpr double kLengthScale = 0.1;        // m: with 1e-9 an error of 0.01 N of a stiff oil spring
+constexpr double kMechanismSpeedScale = 1;  // rad/s, m/s
+constexpr double kWorkScale = 1e3;          // J
+
+std::vector<std::string> row_names(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const scene::PortDef& port : scene.ports) names.push_back(port.force);
+  for (const std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(joint);
+  return names;
+}
+
+// first entry of a joint's quaternion in q, or -1
+int quaternion_of(const multibody::Link& link) {
+  if (link.joint == multibody::LinkJoint::spherical) return link.q;
+  if (link.joint == multibody::LinkJoint::floating) return link.q + 3;
+  return -1;
+}
+
+}  // namespace
+
+SceneEquations::SceneEquations(const scene::Scene& scene)
+    : model_(multibody::build_model(scene.mechanics, row_names(scene))),
+      state_(multibody::start_state(model_)),
+      workspace_(model_),
+      row_force_(model_.rows.size()),
+      q_rate_(state_.q.size()),
+      u_rate_(state_.u.size()),
+      port_states_(scene.ports.size()) {
+  for (const scene::PortDef& port : scene.ports) {
+    ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
+  }
+  u_ = state_.q.size();
+  p_ = u_ + state_.u.size();
+  component_ = work_ = p_;
+  if (scene.has_hydraulics()) {
+    circuit_ = std::make_unique<hydraulics::Circuit>(scene.hydraulics);
+    const auto states = static_cast<std::size_t>(circuit_->state_count());
+    component_ = p_ + static_cast<std::size_t>(circuit_->volume_count());
+    work_ = component_ + states - static_cast<std::size_t>(circuit_->first_component_state());
+    circuit_y_.assign(states, 0);
+    circuit_rates_.assign(states, 0);
+    SLEW_CHECK(static_cast<std::size_t>(circuit_->actuator_count()) == ports_.size());
+  }
+  F_.assign(ports_.size(), 0);
+  size_ = work_ + ports_.size();
+  for (const scene::InputDef& input : scene.inputs) {
+    control_of_channel_.push_back(circuit_ ? circuit_->find_control(input.primitive) : -1);
+  }
+  control_.assign(scene.inputs.size(), 0);
+  control_slope_.assign(scene.inputs.size(), 0);
+  list_variables();
+}
+
+std::vector<double> SceneEquations::absolute_scales() const {
+  std::vector<double> scale(size_, kAngleScale);
+  for (std::size_t i = 1; i < model_.links.size(); ++i) {
+    const multibody::Link& link = model_.links[i];
+    const auto q = static_cast<std::ptrdiff_t>(link.q);
+    if (link.joint == multibody::LinkJoint::prismatic) scale[static_cast<std::size_t>(q)] = kLengthScale;
+    if (link.joint == multibody::LinkJoint::floating) std::fill_n(scale.begin() + q, 3, kLengthScale);
+  }
+  std::fill(scale.begin() + static_cast<std::ptrdiff_t>(u_), scale.begin() + static_cast<std::ptrdiff_t>(p_),
+            kMechanismSpeedScale);
+  if (circuit_) {
+    const std::vector<double>& of_circuit = circuit_->scales();
+    const auto volumes = static_cast<std::ptrdiff_t>(component_ - p_);
+    std::copy_n(of_circuit.begin(), volumes, scale.begin() + static_cast<std::ptrdiff_t>(p_));
+    std::copy(of_circuit.begin() + circuit_->first_component_state(), of_circuit.end(),
+              scale.begin() + static_cast<std::ptrdiff_t>(component_));
+  }
+  std::fill(scale.begin() + static_cast<std::ptrdiff_t>(work_), scale.end(), kWorkScale);
+  return scale;
+}
+
+std::string SceneEquations::state_name(std::size_t index) const {
+  if (index >= work_) return "the work of " + ports_[index - work_].name;
+  if (index >= component_) return "state " + std::to_string(index - component_) + " of the hydraulic components";
+  if (index >= p_) return "the pressure of " + circuit_->volume_name(static_cast<int>(index - p_));
+  const bool is_coordinate = index < u_;
+  const int at = static_cast<int>(is_coordinate ? index : index - u_);
+  int link = 0;
+  for (std::size_t i = 1; i < model_.links.size(); ++i) {
+    if ((is_coordinate ? model_.links[i].q : model_.links[i].u) <= at) link = static_cast<int>(i);
+  }
+  for (const multibody::Joint& joint : model_.joints) {
+    if (joint.link == link && link > 0) return (is_coordinate ? "the position of " : "the speed of ") + joint.name;
+  }
+  return "a joint";
+}
+
+// ---- start and changes ----------------------------------------------------------------------------------------
+
+// line forces that would hold the ports where they are, joint laws included: W F = -(a_free + W_ar f_r)
+Status SceneEquations::find_static_forces(std::span<double> F) {
+  const std::size_t m = ports_.size(), rows = model_.rows.size();
+  multibody::evaluate(model_, state_, workspace_);
+  const std::span<const double> W = multibody::row_mobility(workspace_);
+  std::vector<double> matrix(m * m);
+  for (std::size_t i = 0; i < m; ++i) {
+    double a = workspace_.row_a_free[i];
+    for (std::size_t r = m; r < rows; ++r) {
+      a += W[i * rows + r] * multibody::evaluate(model_.rows[r].law, workspace_.row_x[r], workspace_.row_v[r]).force;
+    }
+    F[i] = -ports_[i].ratio * a;
+    for (std::size_t j = 0; j < m; ++j) matrix[i * m + j] = ports_[i].ratio * W[i * rows + j] * ports_[j].ratio;
+  }
+  if (math::solve_in_place(matrix.data(), F.data(), m, 1)) return Status::ok();
+  return Status::error(ExitCode::failed,
+                       "no static force holds the actuators at the start: two of them move the same coordinate, or "
+                       "one moves nothing; look at their force elements");
+}
+
+Status SceneEquations::start(std::span<double> y) {
+  SLEW_CHECK(y.size() == size_);
+  state_ = multibody::start_state(model_);
+  std::fill(y.begin(), y.end(), 0.0);
+  std::copy(state_.q.begin(), state_.q.end(), y.begin());
+  std::copy(state_.u.begin(), state_.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));
+  std::fill(control_.begin(), control_.end(), 0.0);
+  std::fill(control_slope_.begin(), control_slope_.end(), 0.0);
+  if (circuit_ == nullptr) return Status::ok();
+  const Status status = find_static_forces(F_);
+  if (!status.is_ok()) return status;
+  circuit_->start(F_, circuit_y_);
+  std::copy_n(circuit_y_.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
+  std::copy(circuit_y_.begin() + circuit_->first_component_state(), circuit_y_.end(),
+            y.begin() + static_cast<std::ptrdiff_t>(component_));
+  return Status::ok();
+}
+
+void SceneEquations::set_controls(double t_0, std::span<const double> controls, std::span<const double> slopes) {
+  SLEW_CHECK(controls.size() == control_.size() && slopes.size() == control_.size());
+  control_time_ = t_0;
+  std::copy(controls.begin(), controls.end(), control_.begin());
+  std::copy(slopes.begin(), slopes.end(), control_slope_.begin());
+}
+
+Status SceneEquations::set_parameter(std::string_view path, double value) {
+  if (const auto parameter = multibody::find_parameter(model_, path)) {
+    multibody::set_parameter(model_, *parameter, value);
+    return Status::ok();
+  }
+  if (circuit_) {
+    const int index = circuit_->find_parameter(path);
+    if (index >= 0 && circuit_->set_parameter(index, value) == hydraulics::ParameterResult::ok) return Status::ok();
+    if (index >= 0) return Status::error(ExitCode::bad_input, std::string(path) + ": the value is out of its range");
+  }
+  return Status::error(ExitCode::bad_input, std::string(path) + ": there is no live parameter of this name");
+}
+
+// ---- equations ------------------------------------------------------------------------------------------------
+
+void SceneEquations::normalize(std::span<double> y) const noexcept {
+  for (std::size_t i = 1; i < model_.links.size(); ++i) {
+    const int first = quaternion_of(model_.links[i]);
+    if (first < 0) continue;
+    const auto k = static_cast<std::size_t>(first);
+    const math::Quaternion unit = math::normalized({y[k], y[k + 1], y[k + 2], y[k + 3]});
+    y[k] = unit.w;
+    y[k + 1] = unit.x;
+    y[k + 2] = unit.y;
+    y[k + 3] = unit.z;
+  }
+}
+
+void SceneEquations::take_controls(double t) noexcept {
+  for (std::size_t i = 0; i < control_.size(); ++i) {
+    if (control_of_channel_[i] < 0) continue;
+    circuit_->set_control(control_of_channel_[i], control_[i] + (t - control_time_) * control_slope_[i]);
+  }
+}
+
+void SceneEquations::take_state(double t, const double* y) noexcept {
+  std::copy_n(y, state_.q.size(), state_.q.begin());
+  normalize(state_.q);
+  std::copy_n(y + u_, state_.u.size(), state_.u.begin());
+  multibody::evaluate(model_, state_, workspace_);
+  if (circuit_ == nullptr) return;
+  take_controls(t);
+  std::copy_n(y + p_, component_ - p_, circuit_y_.begin());
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const int actuator = static_cast<int>(i);
+    const Port& port = ports_[i];
+    circuit_y_[static_cast<std::size_t>(circuit_->position(actuator))] = port.offset + port.ratio * workspace_.row_x[i];
+    circuit_y_[static_cast<std::size_t>(circuit_->speed(actuator))] = port.ratio * workspace_.row_v[i];
+  }
+  std::copy_n(y + component_, work_ - component_, circuit_y_.begin() + circuit_->first_component_state());
+}
+
+// (3), (4)
+void SceneEquations::evaluate_ports() noexcept {
+  if (circuit_) circuit_->pressure_forces(circuit_y_.data(), F_.data());
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const Port& port = ports_[i];
+    PortState& now = port_states_[i];
+    now.x = port.offset + port.ratio * workspace_.row_x[i];
+    now.v = port.ratio * workspace_.row_v[i];
+    now.F = F_[i];
+    now.line_force = port.law.evaluate(now.F, now.x, now.v).force;
+    row_force_[i] = port.ratio * now.line_force;
+  }
+  for (std::size_t r = ports_.size(); r < model_.rows.size(); ++r) {
+    row_force_[r] = multibody::evaluate(model_.rows[r].law, workspace_.row_x[r], workspace_.row_v[r]).force;
+  }
+}
+
+void SceneEquations::rates(double t, const double* y, double* f) noexcept {
+  take_state(t, y);
+  evaluate_ports();
+  // (2)
+  multibody::coordinate_rates(model_, workspace_, {y, u_}, state_.u, q_rate_);
+  multibody::accelerations(model_, workspace_, row_force_, u_rate_);
+  std::copy(q_rate_.begin(), q_rate_.end(), f);
+  std::copy(u_rate_.begin(), u_rate_.end(), f + u_);
+  // (5)
+  if (circuit_) {
+    circuit_->rates(circuit_y_.data(), circuit_rates_.data());
+    std::copy_n(circuit_rates_.begin(), component_ - p_, f + p_);
+    std::copy(circuit_rates_.begin() + circuit_->first_component_state(), circuit_rates_.end(), f + component_);
+  }
+  // (6)
+  for (std::size_t i = 0; i < ports_.size(); ++i) f[work_ + i] = port_states_[i].F * port_states_[i].v;
+}
+
+// ---- readings -------------------------------------------------------------------------------------------------
+
+void SceneEquations::observe(double t, const double* y) {
+  take_state(t, y);
+  evaluate_ports();
+  const std::size_t rows = model_.rows.size();
+  const std::span<const double> W = multibody::row_mobility(workspace_);
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    PortState& now = port_states_[i];
+    double a = workspace_.row_a_free[i];
+    for (std::size_t r = 0; r < rows; ++r) a += W[i * rows + r] * row_force_[r];
+    now.a = ports_[i].ratio * a;
+    now.friction = ports_[i].law.friction(now.F, now.v);
+    now.stop = ports_[i].law.stop_force(now.x, now.v);
+    now.work = y[work_ + i];
+    if (circuit_) circuit_->set_line_force(static_cast<int>(i), now.line_force);
+  }
+  multibody::observe(model_, state_, workspace_);
+}
+
+void SceneEquations::list_variables() {
+  variables_ = multibody::variables(model_);
+  model_variables_ = variables_.size();
+  for (const Port& port : ports_) {
+    variables_.push_back({port.name + ".line_force", Dimension::force});
+    variables_.push_back({port.name + ".friction_force", Dimension::force});
+    variables_.push_back({port.name + ".end_stop_force", Dimension::force});
+  }
+  if (circuit_ == nullptr) return;
+  const std::span<const ElementVariable> circuit = circuit_->variables();
+  variables_.insert(variables_.end(), circuit.begin(), circuit.end());
+}
+
+void SceneEquations::read_variables(std::span<double> values) {
+  SLEW_CHECK(values.size() == variables_.size());
+  multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
+  std::size_t k = model_variables_;
+  for (const PortState& port : port_states_) {
+    values[k++] = port.line_force;
+    values[k++] = port.friction;
+    values[k++] = port.stop;
+  }
+  if (circuit_) circuit_->read_variables(circuit_y_.data(), values.subspan(k));
+}
+
+}  // namespace slew::monolith

@@ -1,0 +1,111 @@
+// All physics of a scene as one system of ordinary differential equations y' = f(t, y), nothing split.
+//
+//   y = [ q | u | p of all volumes | component states | work of all ports ]                          (1)
+//   q' = multibody coordinate rates,   u' = u'_free + M^-1 J^T r                                     (2)
+//   row of port i:   r_i = ratio_i F_line,i(F_i, x_i, v_i),   x_i = offset_i + ratio_i * row coordinate,
+//                    F_i = p_A A_A - p_B A_B                                                         (3)
+//   row of joint j:  r_j = friction and limits(q_j, u_j)                                             (4)
+//   p', component states': the circuit's rates with the mechanism's x, v of every actuator           (5)
+//   W_i' = F_i v_i                                                                                   (6)
+//   control(t) = control_0 + (t - t_0) slope                                                         (7)
+//
+// The laws are the very code that the split simulation runs: multibody dynamics, coupling::LineForceLaw (3),
+// multibody::JointLaw (4), hydraulics::Circuit::rates (5). What differs is only that nothing is held, extrapolated or
+// replaced by a reduced model. Not covered: the circuit's clamp of pressures at the lowest pressure of its oil law (the
+// law itself keeps them above, see hydraulics/oil.h); contact.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/element_variable.h"
+#include "core/status.h"
+#include "coupling/line_force.h"
+#include "hydraulics/circuit.h"
+#include "multibody/dynamics.h"
+#include "scene/scene.h"
+
+namespace slew::monolith {
+
+// One actuator at an instant.
+struct PortState {
+  double x = 0, v = 0;    // stroke [m], speed [m/s]
+  double a = 0;           // m/s2
+  double F = 0;           // pressure force [N]
+  double line_force = 0;  // less friction plus end stop [N]
+  double friction = 0;    // N
+  double stop = 0;        // N
+  double work = 0;        // integral of F v dt since the start [J]
+};
+
+class SceneEquations {
+ public:
+  // Pre-condition: a validated scene. Only read during construction.
+  explicit SceneEquations(const scene::Scene& scene);
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t port_count() const noexcept { return ports_.size(); }
+  [[nodiscard]] const std::string& port_name(std::size_t port) const { return ports_[port].name; }
+  // Sizes by which an error counts as small: y_i matters down to 1e-9 absolute_scale_i or so.
+  [[nodiscard]] std::vector<double> absolute_scales() const;
+  // What y_i is, for messages.
+  [[nodiscard]] std::string state_name(std::size_t index) const;
+
+  // Start state of the scene: mechanism as the scene poses it, circuit from the static forces that hold the ports.
+  Status start(std::span<double> y);
+
+  // Input channels over the time from t_0 on, (7); both by channel index.
+  void set_controls(double t_0, std::span<const double> controls, std::span<const double> slopes);
+
+  // Error: no live parameter of that path, or a value out of range.
+  Status set_parameter(std::string_view path, double value);
+
+  // (2) to (6)
+  void rates(double t, const double* y, double* f) noexcept;
+  // Unit quaternions, as the multibody steps leave them.
+  void normalize(std::span<double> y) const noexcept;
+
+  // Everything below belongs to the last rates() or observe().
+  void observe(double t, const double* y);
+  [[nodiscard]] std::span<const PortState> ports() const noexcept { return port_states_; }
+  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }
+  void read_variables(std::span<double> values);
+  [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
+  [[nodiscard]] const multibody::State& mechanism_state() const noexcept { return state_; }
+
+ private:
+  struct Port {
+    std::string name;
+    double offset, ratio;
+    coupling::LineForceLaw law;
+  };
+
+  void take_state(double t, const double* y) noexcept;
+  void take_controls(double t) noexcept;
+  void evaluate_ports() noexcept;
+  [[nodiscard]] Status find_static_forces(std::span<double> F);
+  void list_variables();
+
+  multibody::Model model_;
+  multibody::State state_;
+  multibody::Workspace workspace_;
+  std::unique_ptr<hydraulics::Circuit> circuit_;  // null: none in the scene
+  std::vector<Port> ports_;
+  std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
+  double control_time_ = 0;
+  std::vector<double> control_, control_slope_;  // by channel
+  // layout (1)
+  std::size_t u_ = 0, p_ = 0, component_ = 0, work_ = 0, size_ = 0;
+  // at the instant
+  std::vector<double> circuit_y_, circuit_rates_, F_;
+  std::vector<double> row_force_;
+  std::vector<double> q_rate_, u_rate_;
+  std::vector<PortState> port_states_;
+  std::vector<ElementVariable> variables_;
+  std::size_t model_variables_ = 0;
+};
+
+}  // namespace slew::monolith
