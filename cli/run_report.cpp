@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
+#include "cli/load_limit.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
 #include "cli_support/failure.h"
@@ -137,6 +138,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
       const TickSpan span = tick_span(*reader);
       if (span.ticks > 0) report.steps = span.ticks - 1;  // the last one says END
       if (span.wall_time > 0) report.wall_time = span.wall_time;
+      report.notes = explain_stalls(scene, *reader);
       report.plots = write_plots(scene, outcome.recording);
     } catch (const cli_support::Failure& failure) {
       report.messages.emplace_back(failure.what());
