@@ -68,7 +68,9 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       force_mean_(model_.rows.size()),
       force_slope_(model_.rows.size()),
       row_force_(model_.rows.size()),
-      joint_slope_(model_.rows.size()) {
+      joint_slope_(model_.rows.size()),
+      heavier_(model_),
+      heavier_workspace_(model_) {
   for (const scene::PortDef& port : scene.ports) {
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
   }
@@ -80,6 +82,9 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
   matrix_.resize(rows * rows);
   right_.resize(rows * (ports_.size() + 1));
   coupling::resize(published_, ports_.size());
+  for (std::size_t i = 1; i < model_.bodies.size(); ++i) {
+    if (model_.bodies[i].link > 0) payload_ = static_cast<int>(i);
+  }
   list_variables();
 }
 
@@ -431,18 +436,58 @@ void MechanicsSubsystem::list_variables() {
     variables_.push_back({port.name + ".friction_force", Dimension::force});
     variables_.push_back({port.name + ".end_stop_force", Dimension::force});
     variables_.push_back({port.name + ".static_force", Dimension::force});
+    variables_.push_back({port.name + ".static_force_per_kg", Dimension::acceleration});
   }
+  if (payload_ > 0) variables_.push_back({model_.bodies[static_cast<std::size_t>(payload_)].name + ".mass", Dimension::mass});
+}
+
+double MechanicsSubsystem::payload_mass() const noexcept {
+  const int lumped = model_.bodies[static_cast<std::size_t>(payload_)].lumped;
+  return model_.lumped[static_cast<std::size_t>(lumped)].mass;
+}
+
+// Change of the static line forces with the payload's mass, by 1 kg: exact, since gravity is linear in the mass.
+void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noexcept {
+  const std::size_t m = ports_.size();
+  const std::size_t rows = model_.rows.size();
+  std::fill(slopes.begin(), slopes.end(), 0.0);
+  if (m == 0 || payload_ == 0) return;
+  const double mass = payload_mass();
+  // the same static problem twice, without joint laws: now and with more payload
+  const auto static_forces = [&](double payload, std::span<double> F) {
+    multibody::set_body_mass(heavier_, payload_, payload);
+    multibody::evaluate(heavier_, state_, heavier_workspace_);
+    coupling::PortMatrix W;
+    W.resize(m * m);
+    for (std::size_t i = 0; i < m; ++i) {
+      F[i] = -ports_[i].ratio * heavier_workspace_.row_a_free[i];
+      for (std::size_t j = 0; j < m; ++j) {
+        W[i * m + j] = ports_[i].ratio * heavier_workspace_.row_W[i * rows + j] * ports_[j].ratio;
+      }
+    }
+    return math::solve_in_place(W.data(), F.data(), m, 1);
+  };
+  coupling::PortArray now, more;
+  now.resize(m);
+  more.resize(m);
+  if (!static_forces(mass, now.span()) || !static_forces(mass + 1, more.span())) return;
+  for (std::size_t i = 0; i < m; ++i) slopes[i] = more[i] - now[i];
 }
 
 void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept {
   multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
   std::size_t k = model_variables_;
+  coupling::PortArray slopes;
+  slopes.resize(ports_.size());
+  find_payload_slopes(slopes.span());
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     values[k++] = published_.F_line[i];
     values[k++] = ports_[i].friction;
     values[k++] = ports_[i].stop;
     values[k++] = ports_[i].static_force;
+    values[k++] = slopes[i];
   }
+  if (payload_ > 0) values[k++] = payload_mass();
 }
 
 std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene) {

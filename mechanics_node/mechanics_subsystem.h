@@ -66,6 +66,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
   void find_static_forces(const coupling::MechanismSample& sample) noexcept;
   void list_variables();
+  [[nodiscard]] double payload_mass() const noexcept;
+  void find_payload_slopes(std::span<double> slopes) const noexcept;
   [[nodiscard]] std::int32_t first_not_finite() const noexcept;
   [[nodiscard]] double ratio_of(std::size_t row) const noexcept { return row < ports_.size() ? ports_[row].ratio : 1.0; }
 
@@ -92,6 +94,10 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   coupling::ParameterRamps ramps_;
   std::vector<ElementVariable> variables_;
   std::size_t model_variables_ = 0;
+  int payload_ = 0;  // the scene's last moving body: what hangs on the machine
+  // the same mechanism with 1 kg more of payload, for the static force that a load asks for
+  mutable multibody::Model heavier_;
+  mutable multibody::Workspace heavier_workspace_;
   bool has_failed_ = false;
   StepReport failure_;
   coupling::MechanismSample published_;
