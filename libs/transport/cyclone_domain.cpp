@@ -95,7 +95,7 @@ std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_ad
   <NackDelay>0ms</NackDelay><PreEmptiveAckDelay>1ms</PreEmptiveAckDelay>
   <AutoReschedNackDelay>5ms</AutoReschedNackDelay>
   <PrimaryReorderMaxSamples>1024</PrimaryReorderMaxSamples><SecondaryReorderMaxSamples>1024</SecondaryReorderMaxSamples>
-  <WriterLingerDuration>250ms</WriterLingerDuration>
+  <WriterLingerDuration>0ms</WriterLingerDuration>
   <Watermarks><WhcHigh>64 MB</WhcHigh><WhcHighInit>64 MB</WhcHighInit><WhcAdaptive>false</WhcAdaptive></Watermarks>
  </Internal>
 </Domain></CycloneDDS>)",

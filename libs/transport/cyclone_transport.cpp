@@ -5,6 +5,7 @@
 #include <slewring.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <climits>
 #include <utility>
@@ -148,6 +149,11 @@ Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publis
 CycloneTransport::~CycloneTransport() {
   if (taken_ != nullptr) ddsi_serdata_unref(taken_);
   for (; batch_next_ < batch_count_; ++batch_next_) ddsi_serdata_unref(batch_[batch_next_]);
+  // the last messages are to arrive, but a partner that has died must not hold us up
+  const std::int64_t deadline = monotonic_ns() + kFarewell.ns;
+  for (const dds_entity_t writer : writers_) {
+    if (writer > 0) dds_wait_for_acks(writer, std::max<std::int64_t>(0, deadline - monotonic_ns()));
+  }
   if (participant_ > 0) dds_delete(participant_);
 }
 

@@ -2,7 +2,8 @@
 //
 // Every endpoint is in the partition slewring/<session>. The participant does not hear itself. Messages are received on
 // Cyclone's thread and handed to the loop by ringing a doorbell; the loop thread sleeps on that, no thread of ours
-// between. publish() copies the bytes, sends them on the calling thread and blocks at most kMaxBlocking.
+// between. publish() copies the bytes, sends them on the calling thread and blocks at most kMaxBlocking. The destructor
+// waits at most kFarewell until the last messages have arrived.
 //
 // The only headers of this project that know of Cyclone are cyclone_*.h; none of the public ones includes its headers.
 #pragma once
@@ -25,7 +26,8 @@ struct ddsi_sertype;
 namespace slew::transport {
 
 inline constexpr SimDuration kMaxBlocking = milliseconds(20);
-inline constexpr const char* kAnySession = "*";  // of a pure reader: messages of all sessions of the domain
+inline constexpr SimDuration kFarewell = milliseconds(250);  // for the last messages to arrive, at the end
+inline constexpr const char* kAnySession = "*";              // of a pure reader: messages of all sessions of the domain
 
 struct CycloneOptions {
   std::string session;  // name, or kAnySession

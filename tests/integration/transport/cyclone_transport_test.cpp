@@ -203,6 +203,16 @@ TEST(CycloneDomainErrors, AnExhaustedParticipantIndexIsExplained) {
   EXPECT_EQ(one_too_many.wait(), 0);
 }
 
+TEST(CycloneLogging, AFloodOfMessagesBecomesOneLine) {
+  ::testing::internal::CaptureStderr();
+  {
+    CycloneLog log;
+    for (int i = 0; i < 1000; ++i) log.write("sendmsg failed\n", 15);
+    EXPECT_EQ(log.last_line(), "sendmsg failed");
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "slewring: DDS: sendmsg failed\n");
+}
+
 TEST(CycloneConfiguration, SendsOnlyToOwnHostUnlessPeersAreNamed) {
   const std::string alone = cyclone_xml({0, "lo", {}}, "127.0.0.1");
   EXPECT_NE(alone.find(R"(<Peers><Peer Address="127.0.0.1"/></Peers>)"), std::string::npos);
