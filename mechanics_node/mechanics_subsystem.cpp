@@ -219,10 +219,20 @@ coupling::PortStep MechanicsSubsystem::advance(double h, const coupling::Actuato
   return solved;
 }
 
-void MechanicsSubsystem::add_work(coupling::MechanismSample& sample) const noexcept {
+// Work and impulse of the sub-step. The mechanism moved by dx more than its reduced model in the port problem: the
+// pressure force follows the true way, and does its work on it. Without this the large static force times the tiny dx
+// would look like a coupling error.
+void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
+                                        coupling::MechanismSample& sample) noexcept {
+  evaluate();
   for (std::size_t k = 0; k < active_.size() && active_[k] < ports_.size(); ++k) {
-    sample.work[active_[k]] += dynamics_.work()[k];
-    sample.impulse[active_[k]] += dynamics_.impulse()[k];
+    const std::size_t row = active_[k];
+    Port& port = ports_[row];
+    const double dx = port.offset + port.ratio * workspace_.row_x[row] - dynamics_.x()[k];
+    const double K = partner == nullptr ? 0.0 : dynamics_.partner()[k].K;
+    sample.work[row] += dynamics_.work()[k] + (port.F - 0.5 * K * dx) * dx;
+    sample.impulse[row] += dynamics_.impulse()[k];
+    port.F -= K * dx;
   }
 }
 
@@ -233,9 +243,8 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     return failure_;
   }
   if (!ramps_.empty()) {
-    ramps_.apply(n, [this](int handle, double value) {
-      multibody::set_parameter(model_, parameter_of(handle), value);
-    });
+    ramps_.apply(n,
+                 [this](int handle, double value) { multibody::set_parameter(model_, parameter_of(handle), value); });
     is_evaluated_ = false;
   }
   StepReport report;
@@ -249,7 +258,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     if (!solved.has_converged) report.raise(StepFlag::not_converged);
     report.iterations += static_cast<std::uint32_t>(solved.iterations);
     report.residual = std::max(report.residual, solved.residual);
-    add_work(out);
+    finish_substep(partners.actuators, out);
   }
   report.substeps = static_cast<std::uint32_t>(substeps_);
   if (!multibody::is_finite(state_)) {
@@ -438,7 +447,8 @@ void MechanicsSubsystem::list_variables() {
     variables_.push_back({port.name + ".static_force", Dimension::force});
     variables_.push_back({port.name + ".static_force_per_kg", Dimension::acceleration});
   }
-  if (payload_ > 0) variables_.push_back({model_.bodies[static_cast<std::size_t>(payload_)].name + ".mass", Dimension::mass});
+  if (payload_ > 0)
+    variables_.push_back({model_.bodies[static_cast<std::size_t>(payload_)].name + ".mass", Dimension::mass});
 }
 
 double MechanicsSubsystem::payload_mass() const noexcept {

@@ -46,10 +46,10 @@ class MechanicsSubsystem final : public coupling::Subsystem {
     std::string name;
     double offset = 0, ratio = 1;  // x = offset + ratio * row coordinate
     coupling::LineForceLaw law;
-    double F = 0;                  // pressure force, this side's copy [N]
-    double friction = 0;           // [N]
-    double stop = 0;               // [N]
-    double static_force = 0;       // line force that would hold the mechanism where it is [N]
+    double F = 0;             // pressure force, this side's copy [N]
+    double friction = 0;      // [N]
+    double stop = 0;          // [N]
+    double static_force = 0;  // line force that would hold the mechanism where it is [N]
   };
   class Laws;
   using PortPositions = coupling::PortArray;
@@ -60,7 +60,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
   [[nodiscard]] coupling::PortStep advance(double h, const coupling::ActuatorSample* partner,
                                            bool is_first_substep) noexcept;
-  void add_work(coupling::MechanismSample& sample) const noexcept;
+  void finish_substep(const coupling::ActuatorSample* partner, coupling::MechanismSample& sample) noexcept;
   void publish(coupling::MechanismSample& sample) noexcept;
   void condense_joints(coupling::MechanismSample& sample) noexcept;
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
@@ -69,7 +69,9 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] double payload_mass() const noexcept;
   void find_payload_slopes(std::span<double> slopes) const noexcept;
   [[nodiscard]] std::int32_t first_not_finite() const noexcept;
-  [[nodiscard]] double ratio_of(std::size_t row) const noexcept { return row < ports_.size() ? ports_[row].ratio : 1.0; }
+  [[nodiscard]] double ratio_of(std::size_t row) const noexcept {
+    return row < ports_.size() ? ports_[row].ratio : 1.0;
+  }
 
   multibody::MechanicsDef def_;
   std::vector<std::string> row_names_;
@@ -77,7 +79,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   multibody::State state_;
   multibody::State last_good_;
   multibody::Workspace workspace_;
-  bool is_evaluated_ = false;        // workspace_ belongs to state_ and model_
+  bool is_evaluated_ = false;  // workspace_ belongs to state_ and model_
   coupling::Level level_;
   SimDuration H_;
   int substeps_ = 1;
@@ -88,8 +90,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::unique_ptr<Laws> laws_;
   coupling::PortDynamics dynamics_;
   std::vector<double> force_mean_, force_slope_;  // by row, for the Runge-Kutta step
-  std::vector<double> row_force_;    // by row, at the published instant, on the row's own coordinate
-  std::vector<double> joint_slope_;  // by joint row: -(dF/dv + H dF/dx)
+  std::vector<double> row_force_;                 // by row, at the published instant, on the row's own coordinate
+  std::vector<double> joint_slope_;               // by joint row: -(dF/dv + H dF/dx)
   std::vector<double> matrix_, right_;            // scratch of the condensation and the static forces
   coupling::ParameterRamps ramps_;
   std::vector<ElementVariable> variables_;
