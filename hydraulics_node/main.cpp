@@ -17,7 +17,7 @@ ExitCode run(const cli_support::NodeOptions& options) {
       wire::Role::hydraulics, *carrier,
       cli_support::subsystem_factory(
           [](const scene::Scene& scene) { return hydraulic_node::make_hydraulics_subsystem(scene); }, options.assets),
-      options.timeout());
+      options.timeout(), options.join());
   return cli_support::run_node(node);
 }
 

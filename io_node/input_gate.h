@@ -21,12 +21,12 @@ namespace slew::io {
 
 // One input of thesis table 22 as the gate needs it.
 struct ChannelConfig {
-  std::string name;          // "Input_Lift"
+  std::string name;  // "Input_Lift"
   bool is_digital = false;
-  double scale = 1;          // control value at raw 1
-  double dead_zone = 0;      // of raw, 0..1
-  double ramp = 0;           // s for a full stroke 0..1; 0: none
-  double neutral = 0;        // raw value of a channel that nobody moves
+  double scale = 1;      // control value at raw 1
+  double dead_zone = 0;  // of raw, 0..1
+  double ramp = 0;       // s for a full stroke 0..1; 0: none
+  double neutral = 0;    // raw value of a channel that nobody moves
 };
 
 struct GateConfig {
@@ -76,10 +76,10 @@ class InputGate {
     std::string holder;
     double controller_raw = 0;
     StepIndex written_step = 0;
-    std::int64_t written_ns = 0;   // wall clock of the last sign of life
+    std::int64_t written_ns = 0;  // wall clock of the last sign of life
     bool is_silent = false;
-    double raw = 0;                // after range, before dead zone
-    double ramped = 0;             // after dead zone and ramp
+    double raw = 0;     // after range, before dead zone
+    double ramped = 0;  // after dead zone and ramp
     double control = 0;
     std::uint32_t age = 0;
   };

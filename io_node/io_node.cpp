@@ -16,6 +16,9 @@ using wire::Role;
 using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
+std::string seconds_text(SimDuration duration) {
+  return std::to_string((duration.ns + 500'000'000) / 1'000'000'000) + " s";
+}
 constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -27,9 +30,6 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       is_paused_(config_.starts_paused),
       script_raw_(config_.channels.size(), kSaysNothing) {
   window_ = config_.pace == wire::Pace::free ? kWindowFree : kWindowReal;
-  description_.header.session = node::random_session_id();
-  description_.header.role = Role::io;
-  description_.header.incarnation = 1;
   description_.name = config_.session_name;
   description_.scene_name = config_.scene_name;
   description_.scene_text = config_.scene_text;
@@ -43,7 +43,9 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
   description_.host = member_.identity().host;
   description_.pid = member_.identity().pid;
   description_.started_ns = member_.identity().started_ns;
-  member_.adopt(description_);
+  description_.header = member_.header(Phase::join, kJoinStep);
+  description_.header.session = node::random_session_id();
+  static_cast<void>(member_.adopt(description_, 0));
 }
 
 bool IoNode::poll(std::int64_t now_ns) {
@@ -93,38 +95,47 @@ void IoNode::update_health() noexcept {
 
 void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
   switch (message.topic) {
-    case Topic::session: return receive_session(message.bytes);
+    case Topic::session:
+      return receive_session(message.bytes);
     case Topic::node_status: {
       const Status refusal = member_.on_node_status(message.bytes, now_ns);
       if (!refusal.is_ok()) {
-        member_.fail(refusal.code, refusal.text);
+        member_.step_aside(refusal.code, refusal.text);
         stage_ = Stage::finished;
       }
       return;
     }
-    case Topic::health: return member_.on_health(message.bytes, now_ns);
+    case Topic::health:
+      return member_.on_health(message.bytes, now_ns);
     case Topic::mechanism:
-    case Topic::actuators: return receive_sample(message.bytes, message.topic, now_ns);
-    case Topic::controller_input: return receive_controller(message.bytes, now_ns);
-    case Topic::control_request: return receive_control(message.bytes, now_ns);
-    case Topic::resend: return receive_resend(message.bytes);
-    default: return;
+    case Topic::actuators:
+      return receive_sample(message.bytes, message.topic, now_ns);
+    case Topic::controller_input:
+      return receive_controller(message.bytes, now_ns);
+    case Topic::control_request:
+      return receive_control(message.bytes, now_ns);
+    case Topic::resend:
+      return receive_resend(message.bytes);
+    default:
+      return;
   }
 }
 
-// two sessions of one name: the one that runs stays; of two that start together the lower id stays
+// Two sessions of one name: a description in phase JOIN claims the name, one in phase RUNNING holds it. The holder
+// stays; of two that claim or hold together, because both started at one instant, the lower id stays.
 void IoNode::receive_session(std::span<const std::byte> bytes) {
   wire::SessionDescription other;
   if (!transport::decode(bytes, other) || other.name != config_.session_name) return;
   if (other.header.session == description_.header.session) return;
-  const bool is_starting = stage_ == Stage::checking_name || stage_ == Stage::joining;
-  const bool other_runs = stage_ == Stage::checking_name && other.started_ns < description_.started_ns;
-  if (!is_starting || (!other_runs && description_.header.session < other.header.session)) return;
-  member_.fail(ExitCode::bad_input, "session '" + config_.session_name + "' is held by process " +
-                                        std::to_string(other.pid) + " on " +
-                                        other.host.substr(0, other.host.find('#')) + ", started " +
-                                        node::time_text(other.started_ns) +
-                                        "; this second one ends; stop the first, or choose another --session name");
+  if (stage_ != Stage::checking_name && stage_ != Stage::joining) return;
+  const bool other_holds = other.header.phase == Phase::running;
+  const bool this_holds = stage_ == Stage::joining;
+  if (this_holds && !other_holds) return;
+  if (this_holds == other_holds && description_.header.session < other.header.session) return;
+  member_.step_aside(ExitCode::bad_input,
+                     "session '" + config_.session_name + "' is held by process " + std::to_string(other.pid) + " on " +
+                         other.host.substr(0, other.host.find('#')) + ", started " + node::time_text(other.started_ns) +
+                         "; this second one ends; stop the first, or choose another --session name");
   stage_ = Stage::finished;
 }
 
@@ -192,7 +203,8 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
   if (request.session != config_.session_name) return;
   if (stage_ != Stage::ticking) return answer(request, false, "the session is not running yet", n_);
   switch (request.action) {
-    case wire::ControlAction::set_parameter: return set_parameter(request);
+    case wire::ControlAction::set_parameter:
+      return set_parameter(request);
     case wire::ControlAction::pause:
       is_paused_ = true;
       single_steps_ = 0;
@@ -226,7 +238,8 @@ void IoNode::set_parameter(const wire::ControlRequest& request) {
   if (!verdict.is_accepted) return answer(request, false, verdict.reason, n_);
   if (waiting_commands_.size() >= wire::kMaxCommandsPerTick) {
     return answer(request, false,
-                  "more than " + std::to_string(wire::kMaxCommandsPerTick) + " changes wait for one tick; send again", n_);
+                  "more than " + std::to_string(wire::kMaxCommandsPerTick) + " changes wait for one tick; send again",
+                  n_);
   }
   wire::Command command;
   command.request = request.request;
@@ -254,8 +267,8 @@ void IoNode::receive_resend(std::span<const std::byte> bytes) {
   // a node that missed a reset asks with the old epoch: it gets the tick that started the new one
   const bool is_late_epoch = request.header.epoch < member_.epoch();
   const StepIndex first = is_late_epoch ? kJoinStep : request.header.step;
-  const StepIndex last = is_late_epoch ? kJoinStep
-                                       : std::min(request.last_step, first + static_cast<StepIndex>(sent_.depth()));
+  const StepIndex last =
+      is_late_epoch ? kJoinStep : std::min(request.last_step, first + static_cast<StepIndex>(sent_.depth()));
   for (StepIndex step = first; step <= last; ++step) {
     const std::span<const std::byte> sent = sent_.find(step);
     if (sent.empty()) continue;
@@ -268,25 +281,18 @@ void IoNode::receive_resend(std::span<const std::byte> bytes) {
 
 bool IoNode::advance(std::int64_t now_ns) {
   switch (stage_) {
-    case Stage::checking_name: return advance_name_check(now_ns);
-    case Stage::joining: return advance_join(now_ns);
+    case Stage::checking_name:
+      return advance_name_check(now_ns);
+    case Stage::joining:
+      return advance_join(now_ns);
     case Stage::initialising:
-      if (!member_.all_required(NodeState::ready)) {
-        if (now_ns > deadline_ns_) {
-          begin_ending(ExitCode::failed, "not every node became ready within 10 s: " + member_.missing_join_text(),
-                       now_ns);
-        }
-        return false;
-      }
-      publish_directory();
-      member_.set_state(is_paused_ ? NodeState::holding : NodeState::running);
-      stage_ = Stage::ticking;
-      base_ns_ = now_ns;
-      last_tick_ns_ = now_ns - config_.step.ns;
-      return true;
-    case Stage::ticking: return advance_ticks(now_ns);
-    case Stage::ending: return advance_ending(now_ns);
-    case Stage::finished: return false;
+      return advance_initialising(now_ns);
+    case Stage::ticking:
+      return advance_ticks(now_ns);
+    case Stage::ending:
+      return advance_ending(now_ns);
+    case Stage::finished:
+      return false;
   }
   return false;
 }
@@ -298,22 +304,54 @@ bool IoNode::advance_name_check(std::int64_t now_ns) {
     if (config_.name_check.ns > 0) member_.publish(Topic::session, description_);
   }
   if (now_ns < deadline_ns_) return false;
-  if (config_.name_check.ns == 0) member_.publish(Topic::session, description_);
+  description_.header.phase = Phase::running;
+  member_.publish(Topic::session, description_);
   member_.set_state(NodeState::joining);
   stage_ = Stage::joining;
-  deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+  deadline_ns_ = now_ns + config_.join_timeout.ns;
   return true;
+}
+
+bool IoNode::advance_initialising(std::int64_t now_ns) {
+  if (!member_.all_required(NodeState::ready)) {
+    if (now_ns > deadline_ns_) {
+      begin_ending(ExitCode::failed,
+                   "not every node became ready within " + seconds_text(config_.join_timeout) + ": " + not_ready_text(),
+                   now_ns);
+    }
+    return false;
+  }
+  publish_directory();
+  member_.set_state(is_paused_ ? NodeState::holding : NodeState::running);
+  stage_ = Stage::ticking;
+  base_ns_ = now_ns;
+  last_tick_ns_ = now_ns - config_.step.ns;
+  last_progress_ns_ = now_ns;
+  return true;
+}
+
+std::string IoNode::not_ready_text() const {
+  std::string text;
+  for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
+    const node::Peer& peer = member_.peer(role);
+    if (!member_.requires_role(role) || (peer.is_known && peer.status.state >= NodeState::ready)) continue;
+    text += (text.empty() ? "" : "; ") + member_.describe_peer(role) + " is " + std::string(to_text(peer.status.state));
+  }
+  return text;
 }
 
 bool IoNode::advance_join(std::int64_t now_ns) {
   if (member_.is_heard_by_all()) {
     member_.set_state(NodeState::ready);
     stage_ = Stage::initialising;
-    deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+    deadline_ns_ = now_ns + config_.join_timeout.ns;
     return true;
   }
   if (now_ns > deadline_ns_) {
-    begin_ending(ExitCode::failed, "JOIN did not come about within 10 s: " + member_.missing_join_text(), now_ns);
+    begin_ending(
+        ExitCode::failed,
+        "JOIN did not come about within " + seconds_text(config_.join_timeout) + ": " + member_.missing_join_text(),
+        now_ns);
     return true;
   }
   if (member_.probe_is_due(now_ns)) {
@@ -376,7 +414,8 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
 
 void IoNode::ask_for_missing(std::int64_t now_ns) {
   if (now_ns < resend_due_ns_) return;
-  resend_due_ns_ = now_ns + std::min(std::max(node::kResendAfter.ns, now_ns - last_progress_ns_), node::kResendAtMost.ns);
+  resend_due_ns_ =
+      now_ns + std::min(std::max(node::kResendAfter.ns, now_ns - last_progress_ns_), node::kResendAtMost.ns);
   const auto ask = [&](Role role, Topic topic, StepIndex at) {
     if (!member_.requires_role(role) || at >= n_ - window_ + 1) return;
     wire::ResendRequest request;
@@ -398,7 +437,9 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   tick_.commands.clear();
   if (config_.source != nullptr) {
     config_.source->values(t, script_raw_);
-    config_.source->changes(t, t + config_.step, tick_.commands);
+    script_changes_.clear();
+    config_.source->changes(t, t + config_.step, script_changes_);
+    waiting_commands_.insert(waiting_commands_.end(), script_changes_.begin(), script_changes_.end());
   }
   for (double& raw : script_raw_) {
     const auto channel = static_cast<std::size_t>(&raw - script_raw_.data());
@@ -446,6 +487,7 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   member_.set_epoch(member_.epoch() + 1);
   gate_.reset();
   waiting_commands_.clear();
+  single_steps_ = 0;
   sent_.clear();
   n_ = 0;
   mechanics_at_ = hydraulics_at_ = kJoinStep;
@@ -456,7 +498,7 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
   stage_ = Stage::initialising;
-  deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+  deadline_ns_ = now_ns + config_.join_timeout.ns;
 }
 
 // ---- ending ---------------------------------------------------------------------------------------------------
@@ -489,27 +531,31 @@ bool IoNode::advance_ending(std::int64_t now_ns) {
 }
 
 void IoNode::watch(std::int64_t now_ns) {
-  if (stage_ == Stage::checking_name || stage_ == Stage::finished || stage_ == Stage::ending) return;
+  if (stage_ == Stage::checking_name || stage_ == Stage::finished) return;
+  Role about = Role::io;
+  const node::PeerEvent event = member_.watch_peers(now_ns, about);
+  if (stage_ == Stage::ending) return;
   for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
     const node::Peer& peer = member_.peer(role);
-    if (!member_.requires_role(role) || !peer.is_known || peer.status.state != NodeState::fault) continue;
+    if (!member_.requires_role(role) || !peer.is_known || peer.status.state < NodeState::ended) continue;
     return begin_ending(static_cast<ExitCode>(peer.status.exit_code),
-                        std::string(to_text(role)) + ": " + peer.status.reason, now_ns);
+                        member_.describe_peer(role) + ": " + peer.status.reason, now_ns);
   }
-  Role about = Role::io;
-  switch (member_.watch_peers(now_ns, about)) {
+  switch (event) {
     case node::PeerEvent::lost:
       return begin_ending(ExitCode::node_lost,
                           member_.describe_peer(about) + " is gone; the session was held after step " +
                               std::to_string(n_) + " and ended, what was recorded up to there is valid",
                           now_ns);
     case node::PeerEvent::silent:
-      if (stage_ == Stage::ticking) member_.set_state(NodeState::holding);
+      if (stage_ == Stage::ticking) member_.hold(member_.silence_text(about));
       return;
     case node::PeerEvent::back:
-      if (stage_ == Stage::ticking && !is_paused_) member_.set_state(NodeState::running);
+      if (stage_ == Stage::ticking) member_.set_state(is_paused_ ? NodeState::holding : NodeState::running);
+      if (is_paused_) member_.hold("");
       return;
-    case node::PeerEvent::none: return;
+    case node::PeerEvent::none:
+      return;
   }
 }
 

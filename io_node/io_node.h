@@ -44,14 +44,15 @@ struct IoConfig {
   std::vector<wire::Asset> assets;
   SimDuration step = milliseconds(1);
   wire::Pace pace = wire::Pace::real;
-  std::uint32_t required_roles = 0;         // includes io itself
-  StepIndex steps = -1;                     // END after so many; -1: until stopped
+  std::uint32_t required_roles = 0;  // includes io itself
+  StepIndex steps = -1;              // END after so many; -1: until stopped
   std::vector<ChannelConfig> channels;
   GateConfig gate;
-  std::unique_ptr<InputSource> source;      // may be null
+  std::unique_ptr<InputSource> source;  // may be null
   std::function<ParameterVerdict(const std::string& path, double value)> judge_parameter;
   std::uint32_t variables_every = 10;
   SimDuration name_check = milliseconds(300);  // listens so long for a holder of the name; 0 in one process
+  SimDuration join_timeout = node::kJoinTimeout;
   bool starts_paused = false;
 };
 
@@ -89,6 +90,7 @@ class IoNode final : public node::Node {
   bool advance_name_check(std::int64_t now_ns);
   bool advance_join(std::int64_t now_ns);
   bool advance_ticks(std::int64_t now_ns);
+  bool advance_initialising(std::int64_t now_ns);
   bool advance_ending(std::int64_t now_ns);
 
   [[nodiscard]] bool partners_allow(StepIndex n) const noexcept;
@@ -101,6 +103,7 @@ class IoNode final : public node::Node {
   void start_epoch(std::int64_t now_ns);
   void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void watch(std::int64_t now_ns);
+  [[nodiscard]] std::string not_ready_text() const;
   void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step);
   void set_parameter(const wire::ControlRequest& request);
   void publish_directory();
@@ -113,19 +116,20 @@ class IoNode final : public node::Node {
   Stage stage_ = Stage::checking_name;
   wire::SessionDescription description_;
   StepIndex window_ = kWindowReal;
-  StepIndex n_ = 0;                        // next tick
-  StepIndex mechanics_at_ = kJoinStep;     // highest sample seen without a gap
+  StepIndex n_ = 0;                     // next tick
+  StepIndex mechanics_at_ = kJoinStep;  // highest sample seen without a gap
   StepIndex hydraulics_at_ = kJoinStep;
   std::vector<wire::Command> waiting_commands_;
   bool is_paused_ = false;
-  StepIndex single_steps_ = 0;             // ticks still to issue while paused
-  std::int64_t base_ns_ = 0;               // wall time of tick 0 less slips
+  StepIndex single_steps_ = 0;  // ticks still to issue while paused
+  std::int64_t base_ns_ = 0;    // wall time of tick 0 less slips
   std::int64_t last_tick_ns_ = 0;
   std::int64_t slip_ns_ = 0;
-  std::int64_t deadline_ns_ = 0;           // of the stage
+  std::int64_t deadline_ns_ = 0;  // of the stage
   std::int64_t resend_due_ns_ = 0;
   std::int64_t last_progress_ns_ = 0;
   std::vector<double> script_raw_;
+  std::vector<wire::Command> script_changes_;
   wire::Tick tick_;
   wire::VariableBlock block_;
   std::vector<std::byte> buffer_;

@@ -22,7 +22,9 @@ ExitCode run(const IoOptions& options) {
   wish.session_name = options.node.session.session;
   wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
   wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
-  io::IoNode node(*carrier, io::make_config(scene, wish));
+  io::IoConfig config = io::make_config(scene, wish);
+  config.join_timeout = options.node.join();
+  io::IoNode node(*carrier, std::move(config));
   return cli_support::run_node(node);
 }
 

@@ -17,7 +17,7 @@ ExitCode run(const cli_support::NodeOptions& options) {
       wire::Role::mechanics, *carrier,
       cli_support::subsystem_factory(
           [](const scene::Scene& scene) { return mechanics::make_mechanics_subsystem(scene); }, options.assets),
-      options.timeout());
+      options.timeout(), options.join());
   return cli_support::run_node(node);
 }
 

@@ -18,9 +18,12 @@ using wire::Topic;
 constexpr StepIndex kReportSteps = 64;
 constexpr std::int64_t kReportNs = 100'000'000;
 
+// messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
+constexpr std::size_t kMaxEarly = 256;
+
 // type names as in idl/slewring.idl, by Topic
 constexpr std::string_view kTypeNames[] = {
-    "slewring::SessionDescription", "slewring::NodeStatus",     "slewring::Tick",
+    "slewring::SessionDescription", "slewring::NodeStatus",      "slewring::Tick",
     "slewring::MechanismMessage",   "slewring::ActuatorMessage", "slewring::VariableDirectory",
     "slewring::VariableBlock",      "slewring::ControllerInput", "slewring::ControllerLease",
     "slewring::ControlRequest",     "slewring::ControlReply",    "slewring::Health",
@@ -48,7 +51,9 @@ recording::ByteSpan bytes_of(const std::string& text) {
 RecorderNode::RecorderNode(transport::Transport& transport, RecorderConfig config)
     : member_(Role::recorder, transport, {}), config_(std::move(config)) {}
 
-RecorderNode::~RecorderNode() { close(); }
+RecorderNode::~RecorderNode() {
+  close();
+}
 
 bool RecorderNode::poll(std::int64_t now_ns) {
   bool any = false;
@@ -60,8 +65,9 @@ bool RecorderNode::poll(std::int64_t now_ns) {
   if (stage_ == Stage::waiting_for_session) {
     if (deadline_ns_ == 0) deadline_ns_ = now_ns + config_.session_timeout.ns;
     if (now_ns > deadline_ns_) {
-      member_.fail(ExitCode::failed, "no session was found; start the io node first, and compare --session, --domain, "
-                                     "--interface and --peer on both sides");
+      member_.fail(ExitCode::failed,
+                   "no session was found; start the io node first, and compare --session, --domain, "
+                   "--interface and --peer on both sides");
       stage_ = Stage::finished;
     }
   } else if (stage_ != Stage::finished) {
@@ -70,7 +76,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
     report_progress(now_ns);
     if (writer_ != nullptr) {
       const Status status = writer_->flush_if_due(now_ns);
-      if (!status.is_ok()) begin_ending(status.code, status.text, now_ns);
+      if (!status.is_ok()) begin_ending(status.code, status.text);
     }
   }
   member_.publish_status_if_changed();
@@ -79,10 +85,16 @@ bool RecorderNode::poll(std::int64_t now_ns) {
 }
 
 std::int64_t RecorderNode::next_deadline(std::int64_t now_ns) const {
-  return now_ns + (stage_ == Stage::ending ? node::kResendAfter.ns : node::kProbeInterval.ns);
+  return now_ns + (end_step_ >= 0 ? node::kResendAfter.ns : node::kProbeInterval.ns);
 }
 
-void RecorderNode::request_stop(ExitCode code) { begin_ending(code, "ended by a signal", 0); }
+void RecorderNode::request_stop(ExitCode code) {
+  if (stage_ == Stage::finished) return;
+  close();
+  member_.fail(code, "ended by a signal");
+  member_.publish_status_if_changed();
+  stage_ = Stage::finished;
+}
 
 void RecorderNode::update_health() noexcept {
   node::HealthState& h = health();
@@ -103,28 +115,41 @@ std::uint64_t RecorderNode::lost() const noexcept {
 
 void RecorderNode::receive(const transport::Received& message, std::int64_t now_ns) {
   switch (message.topic) {
-    case Topic::session: return receive_session(message, now_ns);
+    case Topic::session:
+      return receive_session(message, now_ns);
     case Topic::tick:
     case Topic::mechanism:
     case Topic::actuators:
-    case Topic::variables: return receive_stepped(message, now_ns);
+    case Topic::variables:
+      return receive_stepped(message, now_ns);
     case Topic::node_status: {
       const Status refusal = member_.on_node_status(message.bytes, now_ns);
-      if (!refusal.is_ok()) {
-        member_.fail(refusal.code, refusal.text);
-        close();
-        stage_ = Stage::finished;
-        return;
-      }
+      if (!refusal.is_ok()) return refuse(refusal);
       break;
     }
-    case Topic::health: member_.on_health(message.bytes, now_ns); break;
-    default: break;
+    case Topic::health:
+      member_.on_health(message.bytes, now_ns);
+      break;
+    default:
+      break;
   }
   // everything else is filed under the step that is being recorded
   if (writer_ != nullptr) {
     write(message, member_.epoch(), std::max<StepIndex>(0, complete_up_to()), static_cast<std::uint32_t>(++unstepped_));
   }
+}
+
+// another process records this session: this one was never part of it and leaves nothing behind
+void RecorderNode::refuse(const Status& refusal) {
+  if (writer_ != nullptr) {
+    close();
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+    std::filesystem::remove(path_.parent_path(), ignored);
+    path_.clear();
+  }
+  member_.step_aside(refusal.code, refusal.text);
+  stage_ = Stage::finished;
 }
 
 void RecorderNode::receive_session(const transport::Received& message, std::int64_t now_ns) {
@@ -133,8 +158,9 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
     ++member_.refusals().undecodable;
     return;
   }
-  if (member_.has_session()) return;
-  member_.adopt(session);
+  // a description in phase JOIN only claims the name
+  if (member_.has_session() || session.header.phase != Phase::running) return;
+  if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   Status status = Status::ok();
   if (session.protocol != wire::kProtocolVersion) {
     status = Status::error(ExitCode::bad_input, "session '" + session.name + "' speaks protocol version " +
@@ -176,8 +202,8 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   if (!status.is_ok()) return status;
   status = add_attachments(session);
   for (std::size_t i = 0; status.is_ok() && i < wire::kTopics; ++i) {
-    const recording::ChannelDef channel{std::string(to_text(static_cast<Topic>(i))), std::string(kTypeNames[i]),
-                                        kIdlText, {}};
+    const recording::ChannelDef channel{
+        std::string(to_text(static_cast<Topic>(i))), std::string(kTypeNames[i]), kIdlText, {}};
     status = writer_->add_channel(channel, channels_[i]);
   }
   return status;
@@ -201,30 +227,23 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
   if (member_.has_session() && message.topic == Topic::tick && header.phase == Phase::init &&
       header.session == member_.session().header.session && header.epoch == member_.epoch() + 1) {
     start_epoch(header.epoch);
+    receive_stepped(message, now_ns);
+    for (const Early& early : std::exchange(early_, {}))
+      receive_stepped({early.topic, early.bytes, early.source_ns}, now_ns);
+    return;
+  }
+  if (header.epoch == member_.epoch() + 1 && member_.has_session() &&
+      header.session == member_.session().header.session) {
+    return keep_for_next_epoch(message);
   }
   if (!member_.fits(header)) return;
   member_.heard(header, message.topic, now_ns);
   if (header.phase == Phase::join || writer_ == nullptr) return;
-  if (header.phase == Phase::init) return write(message, header.epoch, kJoinStep, static_cast<std::uint32_t>(header.role));
+  if (header.phase == Phase::init)
+    return write(message, header.epoch, kJoinStep, static_cast<std::uint32_t>(header.role));
+  if (message.topic == Topic::variables) return receive_variables(message, header);
 
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
-  if (message.topic == Topic::variables) {
-    // one stream per writer and block; blocks come every k-th step
-    wire::VariableBlock block;
-    if (!transport::decode(message.bytes, block)) {
-      ++member_.refusals().undecodable;
-      return;
-    }
-    const std::uint64_t key = (static_cast<std::uint64_t>(header.role) << 32) | block.first;
-    const auto [entry, is_new] = last_block_.try_emplace(key, header.step);
-    if (!is_new && header.step <= entry->second) {
-      ++counts.duplicates;
-      return;
-    }
-    entry->second = header.step;
-    return write(message, header.epoch, header.step,
-                 (static_cast<std::uint32_t>(header.role) << 16) | static_cast<std::uint32_t>(block.first));
-  }
   StreamGaps& stream = streams_.try_emplace({message.topic, header.role}).first->second;
   if (stream.arrived(header.step) == StreamGaps::Arrival::duplicate) {
     ++counts.duplicates;
@@ -239,6 +258,32 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
   }
   if (!stream.has_gap()) resend_.restart(now_ns);
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
+}
+
+// one stream per writer and block; blocks come every k-th step
+void RecorderNode::receive_variables(const transport::Received& message, const wire::Header& header) {
+  wire::VariableBlock block;
+  if (!transport::decode(message.bytes, block)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  const std::uint64_t key = (static_cast<std::uint64_t>(header.role) << 32) | block.first;
+  const auto [entry, is_new] = last_block_.try_emplace(key, header.step);
+  if (!is_new && header.step <= entry->second) {
+    ++counts_[static_cast<std::size_t>(message.topic)].duplicates;
+    return;
+  }
+  entry->second = header.step;
+  write(message, header.epoch, header.step, (static_cast<std::uint32_t>(header.role) << 16) | block.first);
+}
+
+// a fast node's first messages after a reset may overtake io's tick that began it
+void RecorderNode::keep_for_next_epoch(const transport::Received& message) {
+  if (early_.size() >= kMaxEarly) {
+    ++member_.refusals().other_epoch;
+    return;
+  }
+  early_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
 }
 
 void RecorderNode::start_epoch(std::uint32_t epoch) {
@@ -262,7 +307,7 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
   if (status.is_ok()) {
     ++counts_[topic].recorded;
   } else {
-    begin_ending(status.code, status.text, 0);
+    begin_ending(status.code, status.text);
   }
 }
 
@@ -294,11 +339,11 @@ void RecorderNode::report_progress(std::int64_t now_ns) {
     member_.set_step(at);
     member_.mark_status_changed();
   }
-  if (stage_ == Stage::recording && end_step_ >= 0 && at >= end_step_ - 1 && member_.all_required(NodeState::ended)) {
+  if (stage_ == Stage::recording && end_step_ >= 0 && at >= end_step_ && member_.all_required(NodeState::ended)) {
     begin_ending((end_flags_ & static_cast<std::uint32_t>(wire::TickFlag::fault)) != 0
                      ? static_cast<ExitCode>(end_flags_ >> 8)
                      : ExitCode::ok,
-                 "the session was ended because of a fault elsewhere", now_ns);
+                 "io ended the session: " + member_.peer(Role::io).status.reason);
   }
 }
 
@@ -329,10 +374,17 @@ void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
 void RecorderNode::watch(std::int64_t now_ns) {
   if (stage_ != Stage::recording) return;
   Role about = Role::io;
-  if (member_.watch_peers(now_ns, about) == node::PeerEvent::lost) {
-    return begin_ending(ExitCode::node_lost, member_.describe_peer(about) + " is gone; the recording was closed after step " +
-                                                 std::to_string(complete_up_to()),
-                        now_ns);
+  if (member_.watch_peers(now_ns, about) == node::PeerEvent::lost && lost_node_.empty()) {
+    lost_node_ = member_.describe_peer(about);
+    deadline_ns_ = now_ns + node::kSilentAfter.ns;
+  }
+  // a moment longer, so that the others' last messages are recorded
+  if (!lost_node_.empty()) {
+    if (member_.all_required(NodeState::ended) || now_ns > deadline_ns_) {
+      begin_ending(ExitCode::node_lost,
+                   lost_node_ + " is gone; the recording was closed after step " + std::to_string(complete_up_to()));
+    }
+    return;
   }
   // io ended or failed without an END tick that reached us: close when everybody is through
   const node::Peer& io = member_.peer(Role::io);
@@ -342,16 +394,14 @@ void RecorderNode::watch(std::int64_t now_ns) {
   }
   if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns / 2;
   if (member_.all_required(NodeState::ended) && end_step_ < 0) {
-    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason, now_ns);
+    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason);
   } else if (now_ns > deadline_ns_) {
-    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason, now_ns);
+    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason);
   }
 }
 
-void RecorderNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns) {
-  static_cast<void>(now_ns);
-  if (stage_ == Stage::ending || stage_ == Stage::finished) return;
-  stage_ = Stage::ending;
+void RecorderNode::begin_ending(ExitCode code, const std::string& reason) {
+  if (stage_ == Stage::finished) return;
   close();
   if (code == ExitCode::ok && lost() > 0) {
     member_.fail(ExitCode::losses, std::to_string(lost()) + " messages are missing in the recording");

@@ -51,11 +51,14 @@ class RecorderNode final : public node::Node {
   [[nodiscard]] std::uint64_t lost() const noexcept;
 
  private:
-  enum class Stage : std::uint8_t { waiting_for_session, recording, ending, finished };
+  enum class Stage : std::uint8_t { waiting_for_session, recording, finished };
 
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(const transport::Received& message, std::int64_t now_ns);
+  void refuse(const Status& refusal);
   void receive_stepped(const transport::Received& message, std::int64_t now_ns);
+  void receive_variables(const transport::Received& message, const wire::Header& header);
+  void keep_for_next_epoch(const transport::Received& message);
   Status create(const wire::SessionDescription& session);
   Status add_attachments(const wire::SessionDescription& session);
   void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
@@ -64,7 +67,7 @@ class RecorderNode final : public node::Node {
   void report_progress(std::int64_t now_ns);
   void ask_for_gaps(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
-  void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
+  void begin_ending(ExitCode code, const std::string& reason);
   void close();
   void update_health() noexcept;
 
@@ -82,6 +85,13 @@ class RecorderNode final : public node::Node {
   StepIndex reported_step_ = kJoinStep;
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
+  std::string lost_node_;  // who is gone, while the others are still saying so; empty: nobody
+  struct Early {
+    wire::Topic topic = wire::Topic::session;
+    std::int64_t source_ns = 0;
+    std::vector<std::byte> bytes;
+  };
+  std::vector<Early> early_;     // of the next epoch, heard before the tick that begins it
   std::uint64_t unstepped_ = 0;  // running number of messages without a step of their own
   node::ResendClock resend_;
 };

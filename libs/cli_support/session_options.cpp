@@ -65,6 +65,11 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->type_name("S")
       ->capture_default_str()
       ->group("Session");
+  app.add_option("--join-timeout", options.join_timeout, "seconds to wait for the other nodes of the session")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group("Session");
   app.add_flag("--rt", options.is_real_time, "real-time scheduling (SCHED_FIFO) and locked memory")->group("Real time");
   app.add_option("--priority", options.priority, "its priority")
       ->check(CLI::Range(1, 99))

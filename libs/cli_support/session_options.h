@@ -27,7 +27,9 @@ struct NodeOptions {
   bool is_real_time = false;
   int priority = kDefaultPriority;  // SCHED_FIFO, 1..99
   double session_timeout = 30;      // s
+  double join_timeout = 10;         // s
 
+  [[nodiscard]] SimDuration join() const noexcept { return {static_cast<std::int64_t>(join_timeout * 1e9)}; }
   [[nodiscard]] SimDuration timeout() const noexcept { return {static_cast<std::int64_t>(session_timeout * 1e9)}; }
 };
 

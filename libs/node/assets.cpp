@@ -41,7 +41,8 @@ Status check_assets(const std::filesystem::path& directory, std::span<const wire
     }
   }
   if (differing.empty()) return Status::ok();
-  return Status::error(ExitCode::bad_input, differing + "; this node does not take part; copy the session's files here");
+  return Status::error(ExitCode::bad_input,
+                       differing + "; this node does not take part; copy the session's files here");
 }
 
 }  // namespace slew::node

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <csignal>
+#include <cstdio>
 #include <mutex>
 #include <thread>
 
@@ -15,7 +16,9 @@ std::atomic<int> stop_requested{0};
 
 namespace {
 
-void on_signal(int signal) { stop_requested.store(signal == SIGINT ? 130 : 143); }
+void on_signal(int signal) {
+  stop_requested.store(signal == SIGINT ? 130 : 143);
+}
 
 // the loop wakes at least this often, for the stop flag and the watch over the others
 constexpr std::int64_t kLongestWaitNs = 20'000'000;
@@ -47,8 +50,7 @@ class HealthThread {
     HealthState& h = node_.health();
     if (!h.has_session.load(std::memory_order_acquire)) return;
     wire::Health message;
-    message.header = node_.member().header(wire::Phase::running, h.step.load());
-    message.header.epoch = h.epoch.load();
+    message.header = node_.member().header(wire::Phase::running, h.step.load(), h.epoch.load());
     message.state = static_cast<wire::NodeState>(h.state.load());
     message.is_waiting = h.is_waiting.load();
     message.waiting_for = static_cast<wire::Role>(h.waiting_for.load());
@@ -100,7 +102,11 @@ ExitCode run_alone(Node& node) {
       node.request_stop(static_cast<ExitCode>(stop));
     }
     std::int64_t now = monotonic_ns();
-    if (node.poll(now)) continue;
+    const bool was_busy = node.poll(now);
+    for (const std::string& warning : node.member().take_warnings()) {
+      std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node.member().role())).c_str(), warning.c_str());
+    }
+    if (was_busy) continue;
     now = monotonic_ns();
     node.member().transport().wait_until(std::min(node.next_deadline(now), now + kLongestWaitNs));
   }

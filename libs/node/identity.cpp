@@ -6,6 +6,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <ctime>
 #include <utility>
@@ -31,7 +32,9 @@ Identity this_process() {
   return identity;
 }
 
-std::string build_id() { return kBuildId; }
+std::string build_id() {
+  return kBuildId;
+}
 
 wire::SessionId random_session_id() {
   wire::SessionId id{};
@@ -51,36 +54,51 @@ std::string to_text(const wire::SessionId& id) {
 
 std::string_view to_text(wire::Role role) noexcept {
   switch (role) {
-    case wire::Role::io: return "io";
-    case wire::Role::mechanics: return "mechanics";
-    case wire::Role::hydraulics: return "hydraulics";
-    case wire::Role::flex: return "flex";
-    case wire::Role::recorder: return "recorder";
-    case wire::Role::observer: return "observer";
-    case wire::Role::controller: return "controller";
+    case wire::Role::io:
+      return "io";
+    case wire::Role::mechanics:
+      return "mechanics";
+    case wire::Role::hydraulics:
+      return "hydraulics";
+    case wire::Role::flex:
+      return "flex";
+    case wire::Role::recorder:
+      return "recorder";
+    case wire::Role::observer:
+      return "observer";
+    case wire::Role::controller:
+      return "controller";
   }
   return "unknown role";
 }
 
 std::string_view to_text(wire::NodeState state) noexcept {
   switch (state) {
-    case wire::NodeState::checking: return "checking";
-    case wire::NodeState::joining: return "joining";
-    case wire::NodeState::initialising: return "initialising";
-    case wire::NodeState::ready: return "ready";
-    case wire::NodeState::running: return "running";
-    case wire::NodeState::holding: return "holding";
-    case wire::NodeState::ended: return "ended";
-    case wire::NodeState::fault: return "fault";
+    case wire::NodeState::checking:
+      return "checking";
+    case wire::NodeState::joining:
+      return "joining";
+    case wire::NodeState::initialising:
+      return "initialising";
+    case wire::NodeState::ready:
+      return "ready";
+    case wire::NodeState::running:
+      return "running";
+    case wire::NodeState::holding:
+      return "holding";
+    case wire::NodeState::ended:
+      return "ended";
+    case wire::NodeState::fault:
+      return "fault";
   }
   return "unknown state";
 }
 
 std::string_view to_text(wire::Topic topic) noexcept {
-  constexpr std::string_view kNames[] = {"session",          "node_status",      "tick",
-                                         "mechanism",        "actuators",        "variable_directory",
-                                         "variables",        "controller_input", "controller_lease",
-                                         "control_request",  "control_reply",    "health",
+  constexpr std::string_view kNames[] = {"session",         "node_status",      "tick",
+                                         "mechanism",       "actuators",        "variable_directory",
+                                         "variables",       "controller_input", "controller_lease",
+                                         "control_request", "control_reply",    "health",
                                          "resend"};
   static_assert(std::size(kNames) == wire::kTopics);
   const auto index = static_cast<std::size_t>(topic);
@@ -97,21 +115,24 @@ std::string time_text(std::int64_t wall_clock_ns) {
 }
 
 ProcessWatch::ProcessWatch(std::uint32_t pid)
-    : fd_(static_cast<int>(syscall(SYS_pidfd_open, static_cast<pid_t>(pid), 0))) {}
+    : fd_(static_cast<int>(syscall(SYS_pidfd_open, static_cast<pid_t>(pid), 0))),
+      was_gone_(fd_ < 0 && errno == ESRCH) {}
 
 ProcessWatch::~ProcessWatch() {
   if (fd_ >= 0) close(fd_);
 }
 
-ProcessWatch::ProcessWatch(ProcessWatch&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+ProcessWatch::ProcessWatch(ProcessWatch&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), was_gone_(other.was_gone_) {}
 
 ProcessWatch& ProcessWatch::operator=(ProcessWatch&& other) noexcept {
   std::swap(fd_, other.fd_);
+  std::swap(was_gone_, other.was_gone_);
   return *this;
 }
 
 bool ProcessWatch::has_exited() const noexcept {
-  if (fd_ < 0) return false;
+  if (fd_ < 0) return was_gone_;
   pollfd request{fd_, POLLIN, 0};
   return poll(&request, 1, 0) == 1 && (request.revents & POLLIN) != 0;
 }

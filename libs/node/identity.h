@@ -9,7 +9,7 @@
 namespace slew::node {
 
 struct Identity {
-  std::string host;          // host name and process name space: equal strings mean that a pid can be looked up
+  std::string host;  // host name and process name space: equal strings mean that a pid can be looked up
   std::uint32_t pid = 0;
   std::int64_t started_ns = 0;  // wall clock
   std::string build;
@@ -47,6 +47,7 @@ class ProcessWatch {
 
  private:
   int fd_ = -1;
+  bool was_gone_ = false;  // there was no such process when the watch began
 };
 
 }  // namespace slew::node

@@ -23,15 +23,22 @@ std::span<const Topic> topics_of(Role role) {
   return role == Role::mechanics ? std::span<const Topic>(kMechanicsTopics) : std::span<const Topic>(kHydraulicsTopics);
 }
 
-Topic sample_topic(Role role) { return role == Role::mechanics ? Topic::mechanism : Topic::actuators; }
+std::string seconds_text(SimDuration duration) {
+  return std::to_string((duration.ns + 500'000'000) / 1'000'000'000) + " s";
+}
+
+Topic sample_topic(Role role) {
+  return role == Role::mechanics ? Topic::mechanism : Topic::actuators;
+}
 
 }  // namespace
 
 PhysicsNode::PhysicsNode(Role role, transport::Transport& transport, SubsystemFactory factory,
-                         SimDuration session_timeout)
+                         SimDuration session_timeout, SimDuration join_timeout)
     : member_(role, transport, topics_of(role)),
       factory_(std::move(factory)),
       session_timeout_(session_timeout),
+      join_timeout_(join_timeout),
       ticks_(kRingDepth),
       mechanisms_(kRingDepth),
       actuators_(kRingDepth) {
@@ -42,7 +49,9 @@ Role PhysicsNode::partner() const noexcept {
   return member_.role() == Role::mechanics ? Role::hydraulics : Role::mechanics;
 }
 
-bool PhysicsNode::has_partner() const noexcept { return member_.requires_role(partner()); }
+bool PhysicsNode::has_partner() const noexcept {
+  return member_.requires_role(partner());
+}
 
 bool PhysicsNode::poll(std::int64_t now_ns) {
   bool any = false;
@@ -60,10 +69,13 @@ bool PhysicsNode::poll(std::int64_t now_ns) {
 
 std::int64_t PhysicsNode::next_deadline(std::int64_t now_ns) const {
   switch (stage_) {
-    case Stage::joining: return now_ns + kProbeInterval.ns / 2;
+    case Stage::joining:
+      return now_ns + kProbeInterval.ns / 2;
     case Stage::initialising:
-    case Stage::stepping: return std::max(now_ns, resend_.due_ns());
-    default: return now_ns + kProbeInterval.ns;
+    case Stage::stepping:
+      return std::max(now_ns, resend_.due_ns());
+    default:
+      return now_ns + kProbeInterval.ns;
   }
 }
 
@@ -88,39 +100,50 @@ void PhysicsNode::update_health() noexcept {
 
 void PhysicsNode::receive(const transport::Received& message, std::int64_t now_ns) {
   switch (message.topic) {
-    case Topic::session: return receive_session(message.bytes);
+    case Topic::session:
+      return receive_session(message.bytes, now_ns);
     case Topic::node_status: {
       const Status refusal = member_.on_node_status(message.bytes, now_ns);
-      if (!refusal.is_ok()) {
-        member_.fail(refusal.code, refusal.text);
-        stage_ = Stage::finished;
-      }
+      if (!refusal.is_ok()) refuse(refusal);
       return;
     }
-    case Topic::health: return member_.on_health(message.bytes, now_ns);
-    case Topic::tick: return receive_tick(message.bytes, now_ns);
+    case Topic::health:
+      return member_.on_health(message.bytes, now_ns);
+    case Topic::tick:
+      return receive_tick(message.bytes, now_ns);
     case Topic::mechanism:
-    case Topic::actuators: return receive_sample(message.bytes, message.topic, now_ns);
-    case Topic::resend: return receive_resend(message.bytes);
-    default: return;
+    case Topic::actuators:
+      return receive_sample(message.bytes, message.topic, now_ns);
+    case Topic::resend:
+      return receive_resend(message.bytes);
+    default:
+      return;
   }
 }
 
-void PhysicsNode::receive_session(std::span<const std::byte> bytes) {
+// another process holds the role: this one was never part of the session
+void PhysicsNode::refuse(const Status& refusal) {
+  member_.step_aside(refusal.code, refusal.text);
+  stage_ = Stage::finished;
+}
+
+void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t now_ns) {
   wire::SessionDescription session;
   if (!transport::decode(bytes, session)) {
     ++member_.refusals().undecodable;
     return;
   }
-  if (member_.has_session()) return;
-  member_.adopt(session);
+  // a description in phase JOIN only claims the name
+  if (member_.has_session() || session.header.phase != Phase::running) return;
+  if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   if (session.protocol != wire::kProtocolVersion) {
     member_.fail(ExitCode::bad_input, "session '" + session.name + "' speaks protocol version " +
                                           std::to_string(session.protocol) + ", this program " +
                                           std::to_string(wire::kProtocolVersion) + "; use one version on all machines");
   } else if (!member_.requires_role(member_.role())) {
-    member_.fail(ExitCode::bad_input, "scene '" + session.scene_name + "' needs no " +
-                                          std::string(to_text(member_.role())) + " node; nothing to do here");
+    const std::string why = "scene '" + session.scene_name + "' needs no " + std::string(to_text(member_.role())) +
+                            " node; nothing to do here";
+    return refuse(Status::error(ExitCode::bad_input, why));
   } else if (const Status built = factory_(session, built_); !built.is_ok()) {
     member_.fail(built.code, built.text);
   }
@@ -201,29 +224,32 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
     case Stage::waiting_for_session:
       if (session_deadline_ns_ == 0) session_deadline_ns_ = now_ns + session_timeout_.ns;
       if (now_ns > session_deadline_ns_) {
-        member_.fail(ExitCode::failed, "no session was found within " +
-                                           std::to_string(session_timeout_.ns / 1'000'000'000) +
-                                           " s; start the io node first, and compare --session, --domain, --interface "
+        member_.fail(ExitCode::failed, "no session was found within " + seconds_text(session_timeout_) +
+                                           "; start the io node first, and compare --session, --domain, --interface "
                                            "and --peer on both sides");
         stage_ = Stage::finished;
       }
       return false;
-    case Stage::joining: return advance_join(now_ns);
-    case Stage::initialising: return advance_init(now_ns);
+    case Stage::joining:
+      return advance_join(now_ns);
+    case Stage::initialising:
+      return advance_init(now_ns);
     case Stage::stepping: {
       bool any = false;
       while (stage_ == Stage::stepping && advance_step(now_ns)) any = true;
       if (!any) ask_for_missing(now_ns);
       return any;
     }
-    case Stage::leaving: return advance_leaving(now_ns);
-    case Stage::finished: return false;
+    case Stage::leaving:
+      return advance_leaving(now_ns);
+    case Stage::finished:
+      return false;
   }
   return false;
 }
 
 bool PhysicsNode::advance_join(std::int64_t now_ns) {
-  if (join_deadline_ns_ == 0) join_deadline_ns_ = now_ns + kJoinTimeout.ns;
+  if (join_deadline_ns_ == 0) join_deadline_ns_ = now_ns + join_timeout_.ns;
   if (member_.is_heard_by_all()) {
     member_.set_state(NodeState::initialising);
     stage_ = Stage::initialising;
@@ -231,7 +257,8 @@ bool PhysicsNode::advance_join(std::int64_t now_ns) {
     return true;
   }
   if (now_ns > join_deadline_ns_) {
-    leave(ExitCode::failed, "JOIN did not come about within 10 s: " + member_.missing_join_text(), now_ns);
+    leave(ExitCode::failed,
+          "JOIN did not come about within " + seconds_text(join_timeout_) + ": " + member_.missing_join_text(), now_ns);
     return true;
   }
   if (member_.probe_is_due(now_ns)) {
@@ -307,14 +334,10 @@ bool PhysicsNode::advance_step(std::int64_t now_ns) {
   const wire::Tick* tick = ticks_.find(n_);
   if (tick == nullptr) return false;
   if ((tick->flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) {
-    const bool is_fault = (tick->flags & static_cast<std::uint32_t>(wire::TickFlag::fault)) != 0;
-    const auto code = static_cast<ExitCode>(tick->flags >> 8);
-    if (is_fault) {
-      leave(code, "the session was ended because of a fault elsewhere", now_ns);
-    } else {
-      leave(ExitCode::ok, "", now_ns);
-    }
-    return true;
+    // after a fault io's status says why, see watch()
+    is_ended_by_fault_ = (tick->flags & static_cast<std::uint32_t>(wire::TickFlag::fault)) != 0;
+    if (!is_ended_by_fault_) leave(ExitCode::ok, "", now_ns);
+    return !is_ended_by_fault_;
   }
   const coupling::PartnerSamples partners = partners_at(n_);
   if (has_partner() && partners.mechanism == nullptr && partners.actuators == nullptr) return false;
@@ -353,7 +376,7 @@ bool PhysicsNode::advance_leaving(std::int64_t now_ns) {
 }
 
 void PhysicsNode::restart(std::uint32_t epoch) {
-  if (built_.subsystem == nullptr) return;
+  if (stage_ != Stage::initialising && stage_ != Stage::stepping) return;
   member_.set_epoch(epoch);
   built_.subsystem->reset();
   ticks_.clear();
@@ -443,7 +466,7 @@ void PhysicsNode::publish_directory() {
 // ---- waiting --------------------------------------------------------------------------------------------------
 
 void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
-  if (!resend_.is_due(now_ns)) return;
+  if (is_ended_by_fault_ || !resend_.is_due(now_ns)) return;
   const auto ask = [&](Role role, Topic topic, StepIndex step) {
     wire::ResendRequest request;
     request.header = member_.header(Phase::running, step);
@@ -467,19 +490,32 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
 }
 
 void PhysicsNode::watch(std::int64_t now_ns) {
+  Role about = Role::io;
+  const PeerEvent event = member_.watch_peers(now_ns, about);
   if (stage_ == Stage::leaving) return;
   const Peer& io = member_.peer(Role::io);
-  if (io.is_known && io.status.state == NodeState::fault) {
+  if (io.status.state == NodeState::fault) {
     return leave(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason, now_ns);
   }
-  // the END tick normally comes first; io is through only after its own linger
-  if (io.is_known && io.status.state == NodeState::ended && resend_.due_ns() < now_ns - kSilentAfter.ns) {
-    return leave(ExitCode::ok, "", now_ns);
+  // the END tick normally comes first, and io answers for a while if it was lost
+  if (io.status.state == NodeState::ended) {
+    if (io_ended_ns_ == 0) io_ended_ns_ = now_ns;
+    if (now_ns - io_ended_ns_ > kSilentAfter.ns) leave(ExitCode::ok, "", now_ns);
+    return;
   }
-  Role about = Role::io;
-  if (member_.watch_peers(now_ns, about) == PeerEvent::lost) {
-    leave(ExitCode::node_lost,
-          member_.describe_peer(about) + " is gone; this node stopped after step " + std::to_string(n_), now_ns);
+  switch (event) {
+    case PeerEvent::lost:
+      return leave(ExitCode::node_lost,
+                   member_.describe_peer(about) + " is gone; this node stopped after step " + std::to_string(n_),
+                   now_ns);
+    case PeerEvent::silent:
+      if (stage_ == Stage::stepping) member_.hold(member_.silence_text(about));
+      return;
+    case PeerEvent::back:
+      if (member_.state() == NodeState::holding) member_.set_state(n_ > 0 ? NodeState::running : NodeState::ready);
+      return;
+    case PeerEvent::none:
+      return;
   }
 }
 

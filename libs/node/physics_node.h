@@ -29,7 +29,9 @@ using SubsystemFactory = std::function<Status(const wire::SessionDescription&, B
 
 class PhysicsNode final : public Node {
  public:
-  PhysicsNode(wire::Role role, transport::Transport& transport, SubsystemFactory factory, SimDuration session_timeout);
+  // session_timeout: longest wait for a session; join_timeout: for the others of the session.
+  PhysicsNode(wire::Role role, transport::Transport& transport, SubsystemFactory factory, SimDuration session_timeout,
+              SimDuration join_timeout = kJoinTimeout);
 
   bool poll(std::int64_t now_ns) override;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override;
@@ -41,7 +43,8 @@ class PhysicsNode final : public Node {
   enum class Stage : std::uint8_t { waiting_for_session, joining, initialising, stepping, leaving, finished };
 
   void receive(const transport::Received& message, std::int64_t now_ns);
-  void receive_session(std::span<const std::byte> bytes);
+  void receive_session(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void refuse(const Status& refusal);
   void receive_tick(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_sample(std::span<const std::byte> bytes, wire::Topic topic, std::int64_t now_ns);
   template <typename Message>
@@ -73,9 +76,12 @@ class PhysicsNode final : public Node {
   Stage stage_ = Stage::waiting_for_session;
   std::int64_t session_deadline_ns_ = 0;
   SimDuration session_timeout_;
+  SimDuration join_timeout_;
   std::int64_t join_deadline_ns_ = 0;
   std::int64_t leave_deadline_ns_ = 0;
-  StepIndex n_ = 0;  // next step to do
+  std::int64_t io_ended_ns_ = 0;    // when io's status first said so
+  StepIndex n_ = 0;                 // next step to do
+  bool is_ended_by_fault_ = false;  // an END tick said so; why follows in io's status
   bool first_sample_sent_ = false;
   bool has_mechanism_init_ = false;
   wire::MechanismMessage mechanism_init_;

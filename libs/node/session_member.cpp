@@ -1,7 +1,10 @@
 #include "node/session_member.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
+
+#include "transport/topics.h"
 
 namespace slew::node {
 namespace {
@@ -12,28 +15,55 @@ using wire::Topic;
 
 constexpr Role kAllRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex, Role::recorder};
 
-bool is_same_process(const wire::NodeStatus& a, const Identity& b) {
-  return a.host == b.host && a.pid == b.pid && a.started_ns == b.started_ns;
+bool is_over(NodeState state) {
+  return state == NodeState::ended || state == NodeState::fault;
 }
 
 // of two claimants of a role: the one that is further on, else the one that started first, else the lower pid
-bool other_goes_first(const wire::NodeStatus& other, NodeState own_state, const Identity& own) {
-  const bool other_runs = other.state >= NodeState::ready && other.state <= NodeState::holding;
-  const bool own_runs = own_state >= NodeState::ready && own_state <= NodeState::holding;
-  if (other_runs != own_runs) return other_runs;
-  if (other.started_ns != own.started_ns) return other.started_ns < own.started_ns;
-  return std::pair(other.pid, other.host) < std::pair(own.pid, own.host);
+bool goes_first(const wire::NodeStatus& a, const wire::NodeStatus& b) {
+  if (is_over(a.state) != is_over(b.state)) return is_over(b.state);
+  const auto runs = [](NodeState state) { return state >= NodeState::ready && state <= NodeState::holding; };
+  if (runs(a.state) != runs(b.state)) return runs(a.state);
+  if (a.started_ns != b.started_ns) return a.started_ns < b.started_ns;
+  return std::tie(a.pid, a.host) < std::tie(b.pid, b.host);
+}
+
+// tells processes of one role apart; not 0, which nobody has
+std::uint32_t incarnation_of(const Identity& identity) {
+  const std::uint64_t mixed = static_cast<std::uint64_t>(identity.started_ns) * 0x9e3779b97f4a7c15u + identity.pid;
+  return static_cast<std::uint32_t>(mixed >> 32) | 1u;
+}
+
+constexpr std::size_t kMaxEarlyStatuses = 64;
+
+// the topic by which a role is missed
+Topic main_topic(Role role) {
+  switch (role) {
+    case Role::io:
+      return Topic::tick;
+    case Role::mechanics:
+      return Topic::mechanism;
+    case Role::hydraulics:
+      return Topic::actuators;
+    default:
+      return Topic::node_status;
+  }
 }
 
 }  // namespace
 
 std::uint32_t readers_of(Topic topic) noexcept {
   switch (topic) {
-    case Topic::tick: return bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex) | bit(Role::recorder);
-    case Topic::mechanism: return bit(Role::io) | bit(Role::hydraulics) | bit(Role::flex) | bit(Role::recorder);
-    case Topic::actuators: return bit(Role::io) | bit(Role::mechanics) | bit(Role::recorder);
-    case Topic::variables: return bit(Role::recorder);
-    default: return 0;
+    case Topic::tick:
+      return bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex) | bit(Role::recorder);
+    case Topic::mechanism:
+      return bit(Role::io) | bit(Role::hydraulics) | bit(Role::flex) | bit(Role::recorder);
+    case Topic::actuators:
+      return bit(Role::io) | bit(Role::mechanics) | bit(Role::recorder);
+    case Topic::variables:
+      return bit(Role::recorder);
+    default:
+      return 0;
   }
 }
 
@@ -41,7 +71,8 @@ SessionMember::SessionMember(Role role, transport::Transport& transport, std::sp
     : role_(role),
       transport_(transport),
       step_topics_(step_topics.begin(), step_topics.end()),
-      identity_(this_process()) {
+      identity_(this_process()),
+      incarnation_(incarnation_of(identity_)) {
   status_.host = identity_.host;
   status_.pid = identity_.pid;
   status_.started_ns = identity_.started_ns;
@@ -49,19 +80,43 @@ SessionMember::SessionMember(Role role, transport::Transport& transport, std::sp
   status_.self_test = identity_.self_test;
 }
 
-void SessionMember::adopt(const wire::SessionDescription& session) {
+Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_t now_ns) {
   session_ = session;
   has_session_ = true;
   epoch_ = session.header.epoch;
+  // the owner is known from its own words, so that its end is seen even if nothing more comes from it
+  if (role_ != Role::io) {
+    Peer& io = peers_[static_cast<std::size_t>(Role::io)];
+    io.is_known = true;
+    io.incarnation = session.header.incarnation;
+    io.last_heard_ns = now_ns;
+    io.status.header = session.header;
+    io.status.state = NodeState::joining;
+    io.status.host = session.host;
+    io.status.pid = session.pid;
+    io.status.started_ns = session.started_ns;
+    if (session.host == identity_.host && session.pid != identity_.pid) io.process = ProcessWatch(session.pid);
+  }
+  Status refusal = Status::ok();
+  for (const wire::NodeStatus& status : std::exchange(early_statuses_, {})) {
+    const Status answer = take_status(status, now_ns);
+    if (refusal.is_ok()) refusal = answer;
+  }
+  return refusal;
 }
 
-wire::Header SessionMember::header(wire::Phase phase, StepIndex step) const noexcept {
-  return {session_.header.session, role_, 1, epoch_, phase, step};
+wire::Header SessionMember::header(wire::Phase phase, StepIndex step, std::uint32_t epoch) const noexcept {
+  return {session_.header.session, role_, incarnation_, epoch, phase, step};
 }
 
 bool SessionMember::fits(const wire::Header& header) noexcept {
   if (!has_session_ || header.session != session_.header.session) {
     ++refusals_.other_session;
+    return false;
+  }
+  const auto index = static_cast<std::size_t>(header.role);
+  if (index < wire::kRoles && (!peers_[index].is_known || peers_[index].incarnation != header.incarnation)) {
+    ++refusals_.unexpected_writer;
     return false;
   }
   if (header.epoch != epoch_) {
@@ -73,16 +128,27 @@ bool SessionMember::fits(const wire::Header& header) noexcept {
 
 void SessionMember::set_state(NodeState state) noexcept {
   if (status_.state == state) return;
+  if (status_.state == NodeState::holding) reason_.clear();
   status_.state = state;
+  status_changed_ = true;
+}
+
+void SessionMember::hold(std::string reason) {
+  set_state(NodeState::holding);
+  reason_ = std::move(reason);
   status_changed_ = true;
 }
 
 void SessionMember::fail(ExitCode code, std::string reason) {
   if (status_.state == NodeState::fault) return;
   status_.exit_code = static_cast<std::int32_t>(code);
-  reason.resize(std::min(reason.size(), wire::kMaxReasonLength));
-  status_.reason = std::move(reason);
   set_state(NodeState::fault);
+  reason_ = std::move(reason);
+}
+
+void SessionMember::step_aside(ExitCode code, std::string reason) {
+  fail(code, std::move(reason));
+  is_aside_ = true;
 }
 
 void SessionMember::end(ExitCode code) {
@@ -92,8 +158,9 @@ void SessionMember::end(ExitCode code) {
 }
 
 void SessionMember::publish_status_if_changed() {
-  if (!status_changed_ || !has_session_) return;
+  if (!status_changed_ || !has_session_ || is_aside_) return;
   status_changed_ = false;
+  status_.reason = reason_.substr(0, wire::kMaxReasonLength);
   const StepIndex step = status_.header.step;
   status_.header = header(wire::Phase::running, step);
   publish(Topic::node_status, status_);
@@ -105,39 +172,80 @@ Status SessionMember::on_node_status(std::span<const std::byte> bytes, std::int6
     ++refusals_.undecodable;
     return Status::ok();
   }
-  if (!has_session_ || status.header.session != session_.header.session) {
+  if (!has_session_) {
+    if (early_statuses_.size() < kMaxEarlyStatuses) early_statuses_.push_back(std::move(status));
+    return Status::ok();
+  }
+  return take_status(status, now_ns);
+}
+
+Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t now_ns) {
+  if (status.header.session != session_.header.session) {
     ++refusals_.other_session;
     return Status::ok();
   }
   const auto index = static_cast<std::size_t>(status.header.role);
   if (index >= wire::kRoles) return Status::ok();
-  if (status.header.role == role_) {
-    const bool is_over = status.state == NodeState::ended || status.state == NodeState::fault;
-    if (is_same_process(status, identity_) || is_over || !other_goes_first(status, status_.state, identity_)) {
+  if (status.header.role == role_) return on_own_role(status);
+  Peer& peer = peers_[index];
+  if (peer.is_known && peer.incarnation != status.header.incarnation) {
+    // a second process of the role takes over only from one that goes behind it
+    if (peer.is_lost || !goes_first(status, peer.status)) {
+      ++refusals_.unexpected_writer;
       return Status::ok();
     }
-    return Status::error(ExitCode::bad_input,
-                         "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
-                             "' is held by process " + std::to_string(status.pid) + " on " +
-                             status.host.substr(0, status.host.find('#')) + ", started " +
-                             time_text(status.started_ns) +
-                             "; this second one ends; stop the first, or choose another --session name");
+    peer = Peer{};
   }
-  Peer& peer = peers_[index];
-  if (!peer.is_known || peer.status.pid != status.pid) {
+  if (!peer.is_known) {
     if (status.host == identity_.host && status.pid != identity_.pid) peer.process = ProcessWatch(status.pid);
+    compare_builds(status);
   }
   peer.is_known = true;
-  peer.status = std::move(status);
+  peer.incarnation = status.header.incarnation;
+  peer.status = status;
   peer.last_heard_ns = now_ns;
   return Status::ok();
+}
+
+// another process that says it has this role
+Status SessionMember::on_own_role(const wire::NodeStatus& status) {
+  if (status.header.incarnation == incarnation_ || is_over(status.state)) return Status::ok();
+  wire::NodeStatus own = status_;
+  own.header.incarnation = incarnation_;
+  if (!goes_first(status, own)) return Status::ok();
+  return Status::error(ExitCode::bad_input,
+                       "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
+                           "' is held by process " + std::to_string(status.pid) + " on " +
+                           status.host.substr(0, status.host.find('#')) + ", started " + time_text(status.started_ns) +
+                           "; this second one ends; stop the first, or choose another --session name");
+}
+
+void SessionMember::compare_builds(const wire::NodeStatus& status) {
+  // the owner compares, so that each difference is told once
+  if (role_ != Role::io) return;
+  const std::string who =
+      std::string(to_text(status.header.role)) + " on " + status.host.substr(0, status.host.find('#'));
+  if (status.self_test != identity_.self_test) {
+    warnings_.push_back(
+        who + " computes the arithmetic self-test with another result than io: this session's bits " +
+        "cannot be compared with those of another layout; use processors of one family and one C library");
+  } else if (status.build != identity_.build) {
+    warnings_.push_back(who + " is of build '" + status.build + "', io of '" + identity_.build +
+                        "': bits may differ from those of one build; install one build on all machines");
+  }
+}
+
+std::vector<std::string> SessionMember::take_warnings() {
+  return std::exchange(warnings_, {});
 }
 
 void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now_ns) {
   wire::Health health;
   if (!transport::decode(bytes, health) || !has_session_ || health.header.session != session_.header.session) return;
   const auto index = static_cast<std::size_t>(health.header.role);
-  if (index < wire::kRoles) peers_[index].last_heard_ns = now_ns;
+  if (index < wire::kRoles && peers_[index].incarnation == health.header.incarnation) {
+    peers_[index].last_heard_ns = now_ns;
+  }
 }
 
 PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
@@ -171,11 +279,17 @@ std::string SessionMember::describe_peer(Role role) const {
          peer.status.host.substr(0, peer.status.host.find('#')) + ")";
 }
 
+std::string SessionMember::silence_text(Role role) const {
+  return "waits for " + describe_peer(role) + ", which has been silent for 0.3 s at step " +
+         std::to_string(status_.header.step) + "; it is given up after 2 s";
+}
+
 bool SessionMember::all_required(NodeState at_least) const noexcept {
   for (const Role role : kAllRoles) {
     if (role == role_ || !requires_role(role)) continue;
     const Peer& peer = peers_[static_cast<std::size_t>(role)];
-    if (peer.is_lost && at_least == NodeState::ended) continue;
+    // nobody waits for the end of one that is gone or never came
+    if (at_least == NodeState::ended && (peer.is_lost || !peer.is_known)) continue;
     if (!peer.is_known || peer.status.state < at_least) return false;
     // ready and running count only for the present epoch
     if (at_least < NodeState::ended && peer.status.header.epoch != epoch_) return false;
@@ -188,6 +302,7 @@ void SessionMember::heard(const wire::Header& from, Topic topic, std::int64_t no
   if (index < wire::kRoles) peers_[index].last_heard_ns = now_ns;
   const wire::Heard entry{from.role, from.incarnation, static_cast<std::uint8_t>(topic)};
   if (std::find(status_.heard.begin(), status_.heard.end(), entry) != status_.heard.end()) return;
+  if (status_.heard.size() == wire::kMaxHeard) return;
   status_.heard.push_back(entry);
   status_changed_ = true;
 }
@@ -198,9 +313,8 @@ bool SessionMember::must_read(Role reader, Topic topic) const noexcept {
 
 bool SessionMember::has_heard_me(Role reader, Topic topic) const noexcept {
   const Peer& peer = peers_[static_cast<std::size_t>(reader)];
-  const wire::Heard me{role_, 1, static_cast<std::uint8_t>(topic)};
-  return peer.is_known &&
-         std::find(peer.status.heard.begin(), peer.status.heard.end(), me) != peer.status.heard.end();
+  const wire::Heard me{role_, incarnation_, static_cast<std::uint8_t>(topic)};
+  return peer.is_known && std::find(peer.status.heard.begin(), peer.status.heard.end(), me) != peer.status.heard.end();
 }
 
 bool SessionMember::is_heard_on(Topic topic) const noexcept {
@@ -218,12 +332,22 @@ bool SessionMember::probe_is_due(std::int64_t now_ns) noexcept {
   return true;
 }
 
+// what the carrier knows about the writers of a topic that should be heard
+std::string SessionMember::found_writers(Topic topic) {
+  const transport::TopicTraits& expected = transport::traits(topic);
+  std::string text = std::string(" (expected topic ") + expected.name + ", type " + expected.type_name + "; found ";
+  const std::vector<std::string> found = transport_.discovered_writers(topic);
+  if (found.empty()) text += "no writer of it";
+  for (const std::string& writer : found) text += (&writer == &found.front() ? "" : ", ") + writer;
+  return text + ")";
+}
+
 std::string SessionMember::missing_join_text() {
   std::string text;
   for (const Role role : kAllRoles) {
     if (role != role_ && requires_role(role) && !peer(role).is_known) {
       text += (text.empty() ? "" : "; ") + std::string("no ") + std::string(to_text(role)) +
-              " node has been heard in session '" + session_.name + "'";
+              " node has been heard in session '" + session_.name + "'" + found_writers(main_topic(role));
     }
   }
   for (const Topic topic : step_topics_) {
@@ -231,7 +355,6 @@ std::string SessionMember::missing_join_text() {
       if (!peer(reader).is_known || !must_read(reader, topic) || has_heard_me(reader, topic)) continue;
       text += (text.empty() ? "" : "; ") + describe_peer(reader) + " has not heard topic '" +
               std::string(to_text(topic)) + "' of " + std::string(to_text(role_));
-      for (const std::string& writer : transport_.discovered_writers(topic)) text += ", found " + writer;
     }
   }
   return text;
@@ -241,8 +364,8 @@ void SessionMember::send(Topic topic, std::span<const std::byte> bytes) noexcept
   const Status status = transport_.publish(topic, bytes);
   if (!status.is_ok() && status_.state != NodeState::fault) {
     status_.exit_code = static_cast<std::int32_t>(status.code);
-    status_.reason = status.text.substr(0, wire::kMaxReasonLength);
     set_state(NodeState::fault);
+    reason_ = status.text;
   }
 }
 

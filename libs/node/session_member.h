@@ -28,7 +28,7 @@ inline constexpr SimDuration kLostAfter = {2'000'000'000};   // given up
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
-inline constexpr SimDuration kLinger = {2'000'000'000};      // answers resends after its own end, at most
+inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends after its own end, at most
 
 // Messages that were received but not applied, by cause.
 struct Refusals {
@@ -47,10 +47,11 @@ struct Refusals {
 struct Peer {
   bool is_known = false;
   wire::NodeStatus status;
+  std::uint32_t incarnation = 0;   // of the process that holds the role
   std::int64_t last_heard_ns = 0;  // monotonic
   ProcessWatch process;
-  bool is_silent = false;          // named once
-  bool is_lost = false;            // given up
+  bool is_silent = false;  // named once
+  bool is_lost = false;    // given up
 };
 
 enum class PeerEvent : std::uint8_t { none, silent, back, lost };
@@ -65,7 +66,9 @@ class SessionMember {
   [[nodiscard]] transport::Transport& transport() noexcept { return transport_; }
 
   // ---- session
-  void adopt(const wire::SessionDescription& session);
+  // Takes part in a session. NodeStatus messages that came before are taken now; returns a refusal when another
+  // process holds this role.
+  Status adopt(const wire::SessionDescription& session, std::int64_t now_ns);
   [[nodiscard]] bool has_session() const noexcept { return has_session_; }
   [[nodiscard]] const wire::SessionDescription& session() const noexcept { return session_; }
   [[nodiscard]] bool requires_role(wire::Role role) const noexcept {
@@ -73,9 +76,12 @@ class SessionMember {
   }
   [[nodiscard]] std::uint32_t epoch() const noexcept { return epoch_; }
   void set_epoch(std::uint32_t epoch) noexcept { epoch_ = epoch; }
-  [[nodiscard]] wire::Header header(wire::Phase phase, StepIndex step) const noexcept;
+  [[nodiscard]] wire::Header header(wire::Phase phase, StepIndex step) const noexcept {
+    return header(phase, step, epoch_);
+  }
+  [[nodiscard]] wire::Header header(wire::Phase phase, StepIndex step, std::uint32_t epoch) const noexcept;
 
-  // True when the message belongs to this session and epoch; counts it otherwise.
+  // True when the message belongs to this session and epoch and comes from the holder of its role; counts it otherwise.
   [[nodiscard]] bool fits(const wire::Header& header) noexcept;
   [[nodiscard]] Refusals& refusals() noexcept { return refusals_; }
 
@@ -86,19 +92,28 @@ class SessionMember {
   void set_recorded_step(StepIndex step) noexcept { status_.recorded_step = step; }
   void fail(ExitCode code, std::string reason);
   void end(ExitCode code);
+  // Ends without a word to the others: this process never held the role.
+  void step_aside(ExitCode code, std::string reason);
+  // Waits for somebody, and says for whom in its status; running again when the reason is gone.
+  void hold(std::string reason);
   [[nodiscard]] ExitCode exit_code() const noexcept { return static_cast<ExitCode>(status_.exit_code); }
-  [[nodiscard]] const std::string& reason() const noexcept { return status_.reason; }
+  [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
   void mark_status_changed() noexcept { status_changed_ = true; }
   void publish_status_if_changed();
 
   // ---- others
-  // Takes a NodeStatus or Health message. Returns a refusal when another process holds this role.
+  // Takes a NodeStatus or Health message. Returns a refusal when another process holds this role. Of several processes
+  // of one role the first holds it; what the others say is not heard.
   Status on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns);
   void on_health(std::span<const std::byte> bytes, std::int64_t now_ns);
   [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
   // Looks for silent and lost required peers; at most one event per call, with the role it is about.
   PeerEvent watch_peers(std::int64_t now_ns, wire::Role& about);
   [[nodiscard]] std::string describe_peer(wire::Role role) const;
+  // The named role has been silent for 0.3 s, for NodeStatus and logs.
+  [[nodiscard]] std::string silence_text(wire::Role role) const;
+  // What differs between this program and a peer's that may change the last bit of a result; empty: nothing. Once.
+  [[nodiscard]] std::vector<std::string> take_warnings();
   [[nodiscard]] bool all_required(wire::NodeState at_least) const noexcept;
 
   // ---- join
@@ -119,6 +134,10 @@ class SessionMember {
   void send(wire::Topic topic, std::span<const std::byte> bytes) noexcept;
 
  private:
+  [[nodiscard]] Status take_status(const wire::NodeStatus& status, std::int64_t now_ns);
+  [[nodiscard]] std::string found_writers(wire::Topic topic);
+  [[nodiscard]] Status on_own_role(const wire::NodeStatus& status);
+  void compare_builds(const wire::NodeStatus& status);
   [[nodiscard]] bool must_read(wire::Role reader, wire::Topic topic) const noexcept;
   [[nodiscard]] bool has_heard_me(wire::Role reader, wire::Topic topic) const noexcept;
 
@@ -129,8 +148,13 @@ class SessionMember {
   wire::SessionDescription session_;
   bool has_session_ = false;
   std::uint32_t epoch_ = 0;
+  std::uint32_t incarnation_ = 0;
   wire::NodeStatus status_;
   bool status_changed_ = false;
+  std::string reason_;  // whole; the message carries its beginning
+  bool is_aside_ = false;
+  std::vector<wire::NodeStatus> early_statuses_;  // came before the session's description
+  std::vector<std::string> warnings_;
   std::array<Peer, wire::kRoles> peers_;
   Refusals refusals_;
   std::int64_t next_probe_ns_ = 0;
