@@ -98,6 +98,7 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
                            "one moves nothing; look at their force elements");
     }
   }
+  for (std::size_t i = 0; i < m_; ++i) circuit_->set_line_force(static_cast<int>(i), F[i]);
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
   integrator_->refresh();
   publish(sample.actuators, 0);
