@@ -1,7 +1,7 @@
 // The accuracy reference: all physics of a scene as one ODE (scene_equations.h) in CVODE.
 //
 // A co-simulation is judged against it: same laws, same start, same controls, no coupling. BDF at rtol 1e-9 with
-// absolute tolerances of 1e-9 of each state's scale (1 rad, 0.1 m, 1 rad/s, pressure scale of the scene, 1 kJ); the
+// absolute tolerances of 1e-9 of each state's scale (0.01 rad, m, rad/s, m/s; pressure scale of the scene; 1 kJ); the
 // integration restarts at every change of a control, of its slope, or of a parameter, and quaternions are normalised
 // there. Controls are what the components receive (after dead zone, ramp and scale), by channel index; they are held
 // over a call of advance_to, as a tick holds them over a communication step, or go linearly over it.

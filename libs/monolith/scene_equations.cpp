@@ -13,10 +13,10 @@
 namespace slew::monolith {
 namespace {
 
-constexpr double kAngleScale = 1;           // rad, quaternion components
-constexpr double kLengthScale = 0.1;        // m: with 1e-9 an error of 0.01 N of a stiff oil spring
-constexpr double kMechanismSpeedScale = 1;  // rad/s, m/s
-constexpr double kWorkScale = 1e3;          // J
+constexpr double kAngleScale = 0.01;           // rad: with 1e-9 an error of about 1e-3 N of a stiff oil spring
+constexpr double kLengthScale = 0.01;          // m
+constexpr double kMechanismSpeedScale = 0.01;  // rad/s, m/s
+constexpr double kWorkScale = 1e3;             // J
 
 std::vector<std::string> row_names(const scene::Scene& scene) {
   std::vector<std::string> names;

@@ -1,0 +1,65 @@
+#include "monolith/stiff_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace slew::monolith {
+namespace {
+
+// Robertson (1966), the usual test of stiff solvers
+class Robertson final : public DifferentialEquation {
+ public:
+  void rates(double, const double* y, double* f) noexcept override {
+    f[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
+    f[2] = 3e7 * y[1] * y[1];
+    f[1] = -f[0] - f[2];
+  }
+};
+
+class Growth final : public DifferentialEquation {
+ public:
+  void rates(double, const double* y, double* f) noexcept override { f[0] = y[0] * y[0]; }
+};
+
+TEST(StiffSolver, FollowsRobertsonsKinetics) {
+  Robertson equation;
+  const std::array<double, 3> tolerance = {1e-12, 1e-16, 1e-12};
+  StiffSolver solver(equation, tolerance, 1e-9);
+  solver.restart(0, std::array<double, 3>{1, 0, 0});
+  ASSERT_EQ(solver.advance(40), "");
+  // Hairer and Wanner 1996, IV.10, from a run at 1e-14
+  EXPECT_NEAR(solver.y()[0], 0.7158270687, 1e-8);
+  EXPECT_NEAR(solver.y()[1], 9.185534765e-6, 1e-13);
+  EXPECT_NEAR(solver.y()[2], 0.2841637457, 1e-8);
+  EXPECT_EQ(solver.time(), 40);
+}
+
+TEST(StiffSolver, CountsOverRestarts) {
+  Robertson equation;
+  const std::array<double, 3> tolerance = {1e-9, 1e-12, 1e-9};
+  StiffSolver solver(equation, tolerance, 1e-6);
+  solver.restart(0, std::array<double, 3>{1, 0, 0});
+  ASSERT_EQ(solver.advance(1), "");
+  const SolverStatistics first = solver.statistics();
+  const std::array<double, 3> middle = {solver.y()[0], solver.y()[1], solver.y()[2]};
+  solver.restart(1, middle);
+  ASSERT_EQ(solver.advance(2), "");
+  EXPECT_GT(solver.statistics().steps, first.steps);
+  EXPECT_GT(solver.statistics().right_hand_sides, first.right_hand_sides);
+  EXPECT_EQ(solver.statistics().restarts, 2);
+}
+
+TEST(StiffSolver, SaysThatASolutionEscapes) {
+  // y = 1 / (1 - t) has no value at 1
+  Growth equation;
+  StiffSolver solver(equation, std::array<double, 1>{1e-9}, 1e-9);
+  solver.restart(0, std::array<double, 1>{1});
+  EXPECT_NE(solver.advance(2), "");
+  EXPECT_NEAR(solver.time(), 1, 1e-3);
+}
+
+}  // namespace
+}  // namespace slew::monolith
