@@ -310,6 +310,15 @@ int Circuit::first_cavitating(const double* y) const noexcept {
 
 std::uint32_t Circuit::flags(const double* y) noexcept {
   std::uint32_t flags = first_cavitating(y) < 0 ? 0 : static_cast<std::uint32_t>(StepFlag::cavitating);
+  for (const Piece& piece : pieces_) {
+    if (piece.position >= 0 && piece.is_closed(y)) flags |= static_cast<std::uint32_t>(StepFlag::clamp_active);
+  }
+  for (int j = 0; j < actuator_count(); ++j) {
+    const LineForceParameters& stop = actuators_[at(j)].line_force;
+    const double x = y[position(j)];
+    const bool is_in_stop = stop.end_stiffness > 0 && (x < stop.minimum_stroke || x > stop.maximum_stroke);
+    if (is_in_stop) flags |= static_cast<std::uint32_t>(StepFlag::limit_hit);
+  }
   evaluate_ls(y);
   const CircuitView now = view(y);
   for (const HydraulicComponent* component : active_) flags |= component->flags(now);

@@ -99,7 +99,8 @@ class Circuit {
   // Holds pressures at or above the lowest pressure; true when one had to be moved.
   bool bound(double* y) const noexcept;
 
-  // StepFlag bits that hold at y, and the first volume that cavitates (-1: none).
+  // StepFlag bits that hold at y: cavitating, relief_open, limit_hit (a piston in its stop), clamp_active (a chamber
+  // pressed shut); and the first volume that cavitates (-1: none).
   [[nodiscard]] std::uint32_t flags(const double* y) noexcept;
   [[nodiscard]] int first_cavitating(const double* y) const noexcept;
 

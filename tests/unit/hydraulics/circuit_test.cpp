@@ -256,6 +256,18 @@ TEST(Circuit, variables_have_names_of_their_own_and_finite_values) {
   }
 }
 
+TEST(Circuit, flags_pistons_in_their_stops_and_chambers_pressed_shut) {
+  Circuit circuit(crane_circuit());
+  std::vector<double> y(at(circuit.state_count()));
+  circuit.start_in_equilibrium(kCraneForces, y);
+  for (int j = 0; j < 3; ++j) y[at(circuit.position(j))] = kCraneStrokes[j];
+  EXPECT_EQ(circuit.flags(y.data()), 0u);
+  y[at(circuit.position(0))] = 1.051;
+  EXPECT_EQ(circuit.flags(y.data()), static_cast<std::uint32_t>(StepFlag::limit_hit));
+  y[at(circuit.position(0))] = 1.2;
+  EXPECT_TRUE(circuit.flags(y.data()) & static_cast<std::uint32_t>(StepFlag::clamp_active));
+}
+
 TEST(CircuitIntegrator, hash_changes_when_any_state_changes_by_one_ulp) {
   const HydraulicsDef def = crane_circuit();
   Circuit circuit(def);
