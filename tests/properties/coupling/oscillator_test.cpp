@@ -1,0 +1,70 @@
+// Stability of the levels on the linear oscillator, against the coupling study's analysis.
+#include "tests/properties/coupling/oscillator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace slew::coupling::test {
+namespace {
+
+// from far below to far above what a machine would be run at (warned about above 1)
+constexpr double kOmegas[] = {0.02, 0.05, 0.2, 0.5, 1, 1.5, 2, 3, 5, 10, 20, 50};
+
+TEST(LevelTwo, NeverGrowsAtAnyStepOnALinearPort) {
+  for (const double Omega : kOmegas) {
+    for (const double zeta : {0.0, 0.001, 0.05, 0.2}) {
+      for (const double lambda : {0.0, 0.1, 1.0, 10.0}) {
+        SplitOscillator oscillator({.Omega = Omega, .zeta = zeta, .lambda = lambda});
+        double largest = 0;
+        for (int i = 0; i < 400; ++i) {
+          oscillator.step();
+          largest = std::max(largest, oscillator.amplitude());
+        }
+        EXPECT_LT(largest, 1.001) << "Omega " << Omega << " zeta " << zeta << " lambda " << lambda;
+      }
+    }
+  }
+}
+
+TEST(LevelTwo, DampsAsTheOscillatorItselfDoes) {
+  // spurious damping would show in the growth rate, which is -zeta for a light damping
+  for (const double Omega : {0.05, 0.1, 0.2, 0.5}) {
+    const double zeta = 0.01;
+    const int exchanges = static_cast<int>(200 / Omega);
+    EXPECT_NEAR(growth_rate({.Omega = Omega, .zeta = zeta}, exchanges), -zeta, 0.05 * zeta) << Omega;
+  }
+}
+
+TEST(LevelHold, GrowsByHalfOmegaHWithoutTheVolumeCorrection) {
+  // growth rate omega^2 H / 2: forward Euler
+  for (const double Omega : {0.02, 0.05, 0.1}) {
+    const int exchanges = static_cast<int>(100 / Omega);
+    const double rate = growth_rate({.Omega = Omega, .level = Level::hold, .volume = Volume::own}, exchanges);
+    EXPECT_NEAR(rate, Omega / 2, 0.05 * Omega / 2) << Omega;
+  }
+}
+
+TEST(LevelHold, GrowsByAQuarterOmegaHWithTheVolumeCorrection) {
+  for (const double Omega : {0.02, 0.05, 0.1}) {
+    const int exchanges = static_cast<int>(100 / Omega);
+    EXPECT_NEAR(growth_rate({.Omega = Omega, .level = Level::hold}, exchanges), Omega / 4, 0.05 * Omega / 4) << Omega;
+  }
+}
+
+TEST(LevelHold, IsStableOnlyBelowFourZeta) {
+  // growth Omega / 4 against the damping zeta: the study's table has .04 for zeta .01 and .19 for .05
+  for (const double zeta : {0.01, 0.05}) {
+    const int exchanges = static_cast<int>(100 / zeta);
+    EXPECT_LT(growth_rate({.Omega = 3.6 * zeta, .zeta = zeta, .level = Level::hold}, exchanges), 0);
+    EXPECT_GT(growth_rate({.Omega = 4.2 * zeta, .zeta = zeta, .level = Level::hold}, exchanges), 0);
+  }
+}
+
+TEST(LevelHold, BlowsUpWhereLevelTwoIsUsable) {
+  EXPECT_GT(growth_rate({.Omega = 1, .zeta = 0.05, .level = Level::hold}, 200), 0.1);
+  EXPECT_LT(growth_rate({.Omega = 1, .zeta = 0.05}, 200), -0.04);
+}
+
+}  // namespace
+}  // namespace slew::coupling::test
