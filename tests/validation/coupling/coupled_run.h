@@ -1,0 +1,102 @@
+// Mechanics and hydraulics of a scene stepped side by side in one process, as two nodes would, and the same scene as a
+// monolith; controls come from the scene's script, sampled on a grid that all communication steps divide, so that all
+// runs receive the same signals.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "coupling/subsystem.h"
+#include "hydraulics_node/hydraulics_subsystem.h"
+#include "mechanics_node/mechanics_subsystem.h"
+#include "monolith/monolith.h"
+#include "scene/scene.h"
+#include "scene/script.h"
+
+namespace slew::coupling::test {
+
+// Script, dead zone, ramp and scale, evaluated every `grid` and held in between.
+class Operator {
+ public:
+  Operator(const scene::Scene& scene, SimDuration grid);
+  // Signals at t; t must not go back.
+  std::span<const double> controls(SimTime t);
+
+ private:
+  std::vector<scene::InputDef> inputs_;
+  scene::ScriptPlayer player_;
+  SimDuration grid_;
+  std::int64_t tick_ = -1;
+  std::vector<double> ramped_, controls_;
+};
+
+class CoupledRun {
+ public:
+  // scene outlives the run; its session's step and level are those of the construction.
+  explicit CoupledRun(const scene::Scene& scene);
+  Status start();
+  void step(std::span<const double> controls);
+  void change(std::string_view path, double value, SimDuration over);
+
+  [[nodiscard]] SimTime time() const { return start_of(n_, H_); }
+  [[nodiscard]] const MechanismSample& mechanism() const { return mechanics_sample_.mechanism; }
+  [[nodiscard]] const ActuatorSample& actuators() const { return hydraulics_sample_.actuators; }
+  [[nodiscard]] bool has_failed() const { return has_failed_; }
+  [[nodiscard]] std::uint32_t flags() const { return flags_; }  // all so far
+  [[nodiscard]] const Indicator& indicator() const { return hydraulics_.indicator(); }
+  [[nodiscard]] double variable(std::string_view name) const;
+  [[nodiscard]] mechanics::MechanicsSubsystem& mechanics() { return mechanics_; }
+  [[nodiscard]] hydraulic_node::HydraulicsSubsystem& hydraulics() { return hydraulics_; }
+
+ private:
+  SimDuration H_;
+  mechanics::MechanicsSubsystem mechanics_;
+  hydraulic_node::HydraulicsSubsystem hydraulics_;
+  OwnSample mechanics_sample_, hydraulics_sample_, mechanics_next_, hydraulics_next_;
+  StepIndex n_ = 0;
+  std::uint32_t flags_ = 0;
+  bool has_failed_ = false;
+};
+
+// One port over time.
+struct Trace {
+  std::vector<double> x, v, F;
+};
+
+// By port, one entry every `grid` from 0 to duration inclusive.
+using Traces = std::vector<Trace>;
+
+inline constexpr SimDuration kControlGrid = milliseconds(20);
+inline constexpr SimDuration kTraceGrid = milliseconds(1);
+
+[[nodiscard]] Traces reference_traces(const scene::Scene& scene, double duration,
+                                      std::int64_t* right_hand_sides = nullptr);
+
+// What a coupled run did, compared with a reference on the trace grid or on its own, coarser steps.
+struct PortError {
+  double x = 0;          // largest |x - x_ref| [m]
+  double F = 0;          // largest |F - F_ref| [N]
+  double F_range = 0;    // of the reference [N]
+  double F_largest = 0;  // of the reference [N]
+  double work = 0;       // sum |W_mech| [J]
+  double residual = 0;   // sum |dE*| [J]
+  double net = 0;        // sum dE* [J]
+  double spring = 0;     // largest F^2 / 2K [J]
+  [[nodiscard]] double eta() const { return residual / (work > spring ? work : spring); }
+};
+struct Comparison {
+  std::vector<PortError> ports;
+  std::uint32_t flags = 0;
+  bool has_failed = false;
+  double omega_H = 0;          // largest
+  double seconds_of_work = 0;  // wall time of all steps
+};
+[[nodiscard]] Comparison compare(const scene::Scene& scene, const Traces& reference, double duration);
+
+// The same with another communication step and level, which the scene keeps.
+[[nodiscard]] Comparison compare(scene::Scene& scene, double step, Level level, const Traces& reference,
+                                 double duration);
+
+}  // namespace slew::coupling::test
