@@ -26,8 +26,8 @@ Mat3 rotation_of(const Quaternion& q) noexcept {
   const double xx = sx * q.x, yy = sy * q.y, zz = sz * q.z;
   const double xy = sx * q.y, xz = sx * q.z, yz = sy * q.z;
   const double wx = sx * q.w, wy = sy * q.w, wz = sz * q.w;
-  return {{Vec3(1 - (yy + zz), xy + wz, xz - wy), Vec3(xy - wz, 1 - (xx + zz), yz + wx),
-           Vec3(xz + wy, yz - wx, 1 - (xx + yy))}};
+  return {Vec3(1 - (yy + zz), xy + wz, xz - wy), Vec3(xy - wz, 1 - (xx + zz), yz + wx),
+          Vec3(xz + wy, yz - wx, 1 - (xx + yy))};
 }
 
 Quaternion quaternion_of(const Mat3& R) noexcept {
@@ -58,17 +58,17 @@ Quaternion derivative(const Quaternion& q, Vec3 w_A) noexcept {
 
 Mat3 rotation_x(double angle) noexcept {
   const auto [s, c] = sin_cos(angle);
-  return {{Vec3(1, 0, 0), Vec3(0, c, s), Vec3(0, -s, c)}};
+  return {Vec3(1, 0, 0), Vec3(0, c, s), Vec3(0, -s, c)};
 }
 
 Mat3 rotation_y(double angle) noexcept {
   const auto [s, c] = sin_cos(angle);
-  return {{Vec3(c, 0, -s), Vec3(0, 1, 0), Vec3(s, 0, c)}};
+  return {Vec3(c, 0, -s), Vec3(0, 1, 0), Vec3(s, 0, c)};
 }
 
 Mat3 rotation_z(double angle) noexcept {
   const auto [s, c] = sin_cos(angle);
-  return {{Vec3(c, s, 0), Vec3(-s, c, 0), Vec3(0, 0, 1)}};
+  return {Vec3(c, s, 0), Vec3(-s, c, 0), Vec3(0, 0, 1)};
 }
 
 Mat3 rotation_zxz(const std::array<double, 3>& angles) noexcept {

@@ -73,34 +73,49 @@ template <int I>
   return __builtin_shufflevector(a.lanes, a.lanes, I, I, I, I);
 }
 
-// 3 x 3 matrix as three columns.
+// 3 x 3 matrix as three columns. Copies go column by column: the compiler would copy the whole by halves of a column,
+// and reading a column back then waits for both halves.
 struct Mat3 {
   Vec3 c[3];
 
+  constexpr Mat3() = default;
+  constexpr Mat3(Vec3 c0, Vec3 c1, Vec3 c2) : c{c0, c1, c2} {}
+  constexpr Mat3(const Mat3& b) : c{b.c[0], b.c[1], b.c[2]} {}
+  constexpr Mat3& operator=(const Mat3& b) noexcept {
+    c[0] = b.c[0];
+    c[1] = b.c[1];
+    c[2] = b.c[2];
+    return *this;
+  }
+
   [[nodiscard]] static Mat3 identity() noexcept { return diagonal(1, 1, 1); }
   [[nodiscard]] static Mat3 diagonal(double a, double b, double d) noexcept {
-    return {{Vec3(a, 0, 0), Vec3(0, b, 0), Vec3(0, 0, d)}};
+    return {Vec3(a, 0, 0), Vec3(0, b, 0), Vec3(0, 0, d)};
   }
   [[nodiscard]] double operator()(int row, int column) const noexcept { return c[column][row]; }
 
   Mat3& operator+=(const Mat3& b) noexcept {
-    for (int i = 0; i < 3; ++i) c[i] += b.c[i];
+    c[0] += b.c[0];
+    c[1] += b.c[1];
+    c[2] += b.c[2];
     return *this;
   }
   Mat3& operator-=(const Mat3& b) noexcept {
-    for (int i = 0; i < 3; ++i) c[i] -= b.c[i];
+    c[0] -= b.c[0];
+    c[1] -= b.c[1];
+    c[2] -= b.c[2];
     return *this;
   }
 };
 
-[[nodiscard]] inline Mat3 operator+(Mat3 a, const Mat3& b) noexcept {
-  return a += b;
+[[nodiscard]] inline Mat3 operator+(const Mat3& a, const Mat3& b) noexcept {
+  return {a.c[0] + b.c[0], a.c[1] + b.c[1], a.c[2] + b.c[2]};
 }
-[[nodiscard]] inline Mat3 operator-(Mat3 a, const Mat3& b) noexcept {
-  return a -= b;
+[[nodiscard]] inline Mat3 operator-(const Mat3& a, const Mat3& b) noexcept {
+  return {a.c[0] - b.c[0], a.c[1] - b.c[1], a.c[2] - b.c[2]};
 }
 [[nodiscard]] inline Mat3 operator*(const Mat3& a, double s) noexcept {
-  return {{a.c[0] * s, a.c[1] * s, a.c[2] * s}};
+  return {a.c[0] * s, a.c[1] * s, a.c[2] * s};
 }
 
 [[nodiscard]] inline Vec3 operator*(const Mat3& a, Vec3 b) noexcept {
@@ -108,16 +123,15 @@ struct Mat3 {
 }
 
 [[nodiscard]] inline Mat3 operator*(const Mat3& a, const Mat3& b) noexcept {
-  return {{a * b.c[0], a * b.c[1], a * b.c[2]}};
+  return {a * b.c[0], a * b.c[1], a * b.c[2]};
 }
 
 [[nodiscard]] inline Mat3 transpose(const Mat3& a) noexcept {
   const Lanes low = __builtin_shufflevector(a.c[0].lanes, a.c[1].lanes, 0, 4, 2, 6);   // a00 a01 a20 a21
   const Lanes high = __builtin_shufflevector(a.c[0].lanes, a.c[1].lanes, 1, 5, 3, 7);  // a10 a11 0 0
   const Lanes third = a.c[2].lanes;                                                    // a02 a12 a22 0
-  return {{Vec3(__builtin_shufflevector(low, third, 0, 1, 4, 7)),
-           Vec3(__builtin_shufflevector(high, third, 0, 1, 5, 7)),
-           Vec3(__builtin_shufflevector(low, third, 2, 3, 6, 7))}};
+  return {Vec3(__builtin_shufflevector(low, third, 0, 1, 4, 7)), Vec3(__builtin_shufflevector(high, third, 0, 1, 5, 7)),
+          Vec3(__builtin_shufflevector(low, third, 2, 3, 6, 7))};
 }
 
 // transpose(a) b without forming the transpose
@@ -127,26 +141,26 @@ struct Mat3 {
 
 // a b^T
 [[nodiscard]] inline Mat3 outer(Vec3 a, Vec3 b) noexcept {
-  return {{Vec3(a.lanes * broadcast<0>(b)), Vec3(a.lanes * broadcast<1>(b)), Vec3(a.lanes * broadcast<2>(b))}};
+  return {Vec3(a.lanes * broadcast<0>(b)), Vec3(a.lanes * broadcast<1>(b)), Vec3(a.lanes * broadcast<2>(b))};
 }
 
 // [a]x: skew(a) b = a x b
 [[nodiscard]] inline Mat3 skew(Vec3 a) noexcept {
-  return {{Vec3(0, a[2], -a[1]), Vec3(-a[2], 0, a[0]), Vec3(a[1], -a[0], 0)}};
+  return {Vec3(0, a[2], -a[1]), Vec3(-a[2], 0, a[0]), Vec3(a[1], -a[0], 0)};
 }
 
 // a skew(r)
 [[nodiscard]] inline Mat3 times_skew(const Mat3& a, Vec3 r) noexcept {
   const Lanes x = broadcast<0>(r), y = broadcast<1>(r), z = broadcast<2>(r);
-  return {{Vec3(a.c[1].lanes * z - a.c[2].lanes * y), Vec3(a.c[2].lanes * x - a.c[0].lanes * z),
-           Vec3(a.c[0].lanes * y - a.c[1].lanes * x)}};
+  return {Vec3(a.c[1].lanes * z - a.c[2].lanes * y), Vec3(a.c[2].lanes * x - a.c[0].lanes * z),
+          Vec3(a.c[0].lanes * y - a.c[1].lanes * x)};
 }
 
 // Inverse of a symmetric positive definite matrix by cofactors; the caller knows that it is one.
 [[nodiscard]] inline Mat3 inverse_symmetric(const Mat3& a) noexcept {
   const Vec3 c0 = cross(a.c[1], a.c[2]), c1 = cross(a.c[2], a.c[0]), c2 = cross(a.c[0], a.c[1]);
   const double scale = 1 / dot(a.c[0], c0);
-  return {{c0 * scale, c1 * scale, c2 * scale}};
+  return {c0 * scale, c1 * scale, c2 * scale};
 }
 
 // Eigenvalues of a symmetric matrix in ascending order (Jacobi rotations; for checks at load).

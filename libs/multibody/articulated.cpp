@@ -69,7 +69,7 @@ void add_locked(const CoupledMass& mass, const CoupledMotion& m, ArticulatedIner
 void add_to_parent(const ArticulatedInertia& I, Vec3 r, ArticulatedInertia& parent) noexcept {
   const Mat3 M_r = times_skew(I.M, r);
   const Mat3 B = I.K - M_r * 0.5;
-  const Mat3 Y = {{cross(r, B.c[0]), cross(r, B.c[1]), cross(r, B.c[2])}};
+  const Mat3 Y = {cross(r, B.c[0]), cross(r, B.c[1]), cross(r, B.c[2])};
   parent.J += I.J + Y + transpose(Y);
   parent.K += I.K - M_r;
   parent.M += I.M;
@@ -259,65 +259,47 @@ void solve_forward(const Model& model, Workspace& ws, std::span<const double> re
   }
 }
 
-void solve_backward(const Model& model, Workspace& ws, std::span<const double> tau,
-                    std::span<double> residual) noexcept {
-  for (std::size_t i = 0; i < model.links.size(); ++i) ws.pass_n[i] = ws.pass_f[i] = Vec3();
-  for (std::size_t i = model.links.size() - 1; i > 0; --i) {
-    const Link& link = model.links[i];
-    const JointFactor& factor = ws.factor[i];
-    Vec3 n = ws.pass_n[i], f = ws.pass_f[i];
+void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
+                    std::span<double> residual, std::span<double> rate) noexcept {
+  for (const int i : supports) ws.pass_n[at(i)] = ws.pass_f[at(i)] = Vec3();
+  for (const int i : supports) {
+    const Link& link = model.links[at(i)];
+    const JointFactor& factor = ws.factor[at(i)];
+    Vec3 n = ws.pass_n[at(i)], f = ws.pass_f[at(i)];
     switch (link.joint) {
       case LinkJoint::revolute:
       case LinkJoint::prismatic: {
         const Vec3 carried = link.joint == LinkJoint::revolute ? n : f;
-        const double rest = tau[at(link.u)] - dot(ws.motion[i].axis, carried);
+        const double rest = tau[at(link.u)] - dot(ws.motion[at(i)].axis, carried);
         residual[at(link.u)] = rest;
-        n += factor.U_ang.c[0] * (factor.d_inv * rest);
-        f += factor.U_lin.c[0] * (factor.d_inv * rest);
+        rate[at(link.u)] = factor.d_inv * rest;
+        n += factor.U_ang.c[0] * rate[at(link.u)];
+        f += factor.U_lin.c[0] * rate[at(link.u)];
         break;
       }
       case LinkJoint::spherical: {
         const Vec3 rest = load(tau, link.u) - n;
+        const Vec3 turn = factor.D_inv * rest;
         store(residual, link.u, rest);
-        const Vec3 rate = factor.D_inv * rest;
-        n += factor.U_ang * rate;
-        f += factor.U_lin * rate;
+        store(rate, link.u, turn);
+        n += factor.U_ang * turn;
+        f += factor.U_lin * turn;
         break;
       }
       case LinkJoint::floating: {
-        const Vec3 rest = load(tau, link.u) - f;
-        store(residual, link.u, rest);
-        store(residual, link.u + 3, load(tau, link.u + 3) - n - factor.U_ang * rest);
+        const Vec3 push = load(tau, link.u) - f;
+        const Vec3 turn = load(tau, link.u + 3) - n - factor.U_ang * push;
+        store(residual, link.u, push);
+        store(residual, link.u + 3, turn);
+        store(rate, link.u, factor.U_lin * push);
+        store(rate, link.u + 3, factor.D_inv * turn);
         continue;
       }
     }
-    const auto parent = at(link.parent);
-    ws.pass_n[parent] += n + cross(ws.motion[i].r, f);
-    ws.pass_f[parent] += f;
+    if (link.parent == 0) continue;
+    ws.pass_n[at(link.parent)] += n + cross(ws.motion[at(i)].r, f);
+    ws.pass_f[at(link.parent)] += f;
   }
-}
-
-double residual_product(const Model& model, const Workspace& ws, std::span<const double> a,
-                        std::span<const double> b) noexcept {
-  double sum = 0;
-  for (std::size_t i = 1; i < model.links.size(); ++i) {
-    const Link& link = model.links[i];
-    const JointFactor& factor = ws.factor[i];
-    switch (link.joint) {
-      case LinkJoint::revolute:
-      case LinkJoint::prismatic:
-        sum += a[at(link.u)] * factor.d_inv * b[at(link.u)];
-        break;
-      case LinkJoint::spherical:
-        sum += dot(load(a, link.u), factor.D_inv * load(b, link.u));
-        break;
-      case LinkJoint::floating:
-        sum += dot(load(a, link.u), factor.U_lin * load(b, link.u)) +
-               dot(load(a, link.u + 3), factor.D_inv * load(b, link.u + 3));
-        break;
-    }
-  }
-  return sum;
 }
 
 }  // namespace slew::multibody

@@ -22,7 +22,7 @@ const Mat3 kReverse = Mat3::diagonal(1, -1, -1);
 Mat3 inertia_about_center(const BodyDef& def) {
   const auto [xx, yy, zz] = def.inertia;
   const auto [xy, xz, yz] = def.products;
-  Mat3 I{{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)}};
+  Mat3 I{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)};
   if (def.inertia_about == InertiaPoint::body_origin) {
     const Mat3 c = math::skew(Vec3(def.center_of_mass));
     I += (c * c) * def.mass;
@@ -367,7 +367,22 @@ class Builder {
                  .limit_damping = def.limit_damping};
     }
     SLEW_CHECK(row.path_end > row.first_path);
+    add_support(row);
     model_.rows.push_back(row);
+  }
+
+  // links that the row's force reaches on its way to Ground
+  void add_support(Row& row) {
+    std::vector<bool> is_reached(model_.links.size(), false);
+    for (int i = row.first_path; i < row.path_end; ++i) {
+      for (int link = model_.paths[at(i)].link; link > 0; link = model_.links[at(link)].parent)
+        is_reached[at(link)] = true;
+    }
+    row.first_support = static_cast<int>(model_.supports.size());
+    for (std::size_t link = is_reached.size(); link-- > 1;) {
+      if (is_reached[link]) model_.supports.push_back(static_cast<int>(link));
+    }
+    row.support_end = static_cast<int>(model_.supports.size());
   }
 
   const MechanicsDef& def_;

@@ -97,10 +97,10 @@ struct RotationalForceDef {
 struct ForceDummyDef {
   std::string name{};
   std::string relative_to{};  // translational force
-  std::int64_t index = 1;   // 1: at body 1's end, 2: at body 2's end
-  double mass = 0;          // kg
-  Triple center_of_mass{};  // m, element frame; on the x axis
-  Triple inertia{};         // kg m2 about the centre of mass, element frame; Iyy = Izz, Ixx has no effect
+  std::int64_t index = 1;     // 1: at body 1's end, 2: at body 2's end
+  double mass = 0;            // kg
+  Triple center_of_mass{};    // m, element frame; on the x axis
+  Triple inertia{};           // kg m2 about the centre of mass, element frame; Iyy = Izz, Ixx has no effect
 };
 
 // Mass fixed to a body.

@@ -47,7 +47,7 @@ void accelerations(const Model& model, Workspace& ws, std::span<const double> ro
   const std::size_t dof = ws.udot.size();
   std::copy(ws.residual_free.begin(), ws.residual_free.end(), ws.residual.begin());
   for (std::size_t k = 0; k < row_forces.size(); ++k) {
-    if (!ws.row_is_active[k]) continue;
+    if (ws.row_is_active[k] == 0) continue;
     const double* residual = ws.row_residual.data() + k * dof;
     for (std::size_t j = 0; j < dof; ++j) ws.residual[j] += residual[j] * row_forces[k];
   }

@@ -40,14 +40,13 @@ void update_angle(const Model& model, const AngleElement& element, std::span<con
                   AngleMotion& m) noexcept {
   const LinkMotion& link1 = ws.motion[at(element.link1)];
   const LinkMotion& link2 = ws.motion[at(element.link2)];
-  m.axis = link1.R * element.axis;
   if (element.is_coaxial) {
     m.angle = element.offset;
     for (int i = element.first_path; i < element.path_end; ++i) {
       const PathEntry& entry = model.paths[at(i)];
       m.angle += entry.turn * q[at(model.links[at(entry.link)].q)];
     }
-    m.n = m.axis;
+    m.n = link1.R * element.axis;
   } else {
     // angle of f2's shadow on the plane of f1 and g1; n is its gradient
     const Vec3 f1 = link1.R * element.f1, g1 = link1.R * element.g1, f2 = link2.R * element.f2;
@@ -78,9 +77,11 @@ void turn(const AngleElement& element, Vec3 torque, Workspace& ws) noexcept {
 }  // namespace
 
 Vec3 torque_of(const AngleElement& element, const AngleMotion& m, const Workspace& ws) noexcept {
-  const Vec3 w_rel = ws.motion[at(element.link2)].w - ws.motion[at(element.link1)].w;
+  const LinkMotion& link1 = ws.motion[at(element.link1)];
+  const Vec3 w_rel = ws.motion[at(element.link2)].w - link1.w;
   // the damper acts about the axis itself, so that three of them at right angles damp any rotation alike
-  Vec3 torque = m.axis * (-element.law.damping * dot(m.axis, w_rel));
+  const Vec3 axis = link1.R * element.axis;
+  Vec3 torque = axis * (-element.law.damping * dot(axis, w_rel));
   if (has_spring(element.law)) torque += m.n * force_of(element.law, m.angle, m.rate, 0);
   return torque;
 }
@@ -91,11 +92,7 @@ void update_elements(const Model& model, std::span<const double> q, Elements whi
   }
   for (std::size_t i = 0; i < model.angles.size(); ++i) {
     const AngleElement& element = model.angles[i];
-    if (which == Elements::all || needs_angle(element)) {
-      update_angle(model, element, q, ws, ws.angles[i]);
-    } else if (element.law.is_active) {
-      ws.angles[i].axis = ws.motion[at(element.link1)].R * element.axis;
-    }
+    if (which == Elements::all || needs_angle(element)) update_angle(model, element, q, ws, ws.angles[i]);
   }
 }
 
@@ -115,7 +112,7 @@ void apply_elements(const Model& model, Workspace& ws) noexcept {
 
 void apply_row_forces(const Model& model, Workspace& ws) noexcept {
   for (std::size_t i = 0; i < model.rows.size(); ++i) {
-    if (!ws.row_is_active[i]) continue;
+    if (ws.row_is_active[i] == 0) continue;
     const Row& row = model.rows[i];
     const double force = ws.row_force[i];
     switch (row.kind) {

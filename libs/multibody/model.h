@@ -132,6 +132,8 @@ struct Row {
   int link = 0;        // of a joint row
   int first_path = 0;  // entries of Model::paths
   int path_end = 0;
+  int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
+  int support_end = 0;
   JointLaw law;  // of a joint row
 };
 
@@ -144,6 +146,7 @@ struct Model {
   std::vector<LineElement> lines;
   std::vector<AngleElement> angles;
   std::vector<PathEntry> paths;
+  std::vector<int> supports;
   std::vector<Row> rows;
   std::vector<Body> bodies;  // [0] is Ground
   std::vector<Joint> joints;

@@ -13,7 +13,7 @@ namespace {
 // R Rz(angle)
 Mat3 turned_about_z(const Mat3& R, double angle) noexcept {
   const auto [s, c] = math::sin_cos(angle);
-  return {{R.c[0] * c + R.c[1] * s, R.c[1] * c - R.c[0] * s, R.c[2]}};
+  return {R.c[0] * c + R.c[1] * s, R.c[1] * c - R.c[0] * s, R.c[2]};
 }
 
 math::Quaternion quaternion_at(std::span<const double> q, std::size_t i) noexcept {

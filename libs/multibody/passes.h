@@ -31,13 +31,12 @@ void factorize(const Model& model, Workspace& ws) noexcept;
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
                    std::span<double> udot) noexcept;
 
-// Residual of the generalised forces tau alone (no bias, no velocities), with the factors of factorize().
-void solve_backward(const Model& model, Workspace& ws, std::span<const double> tau,
-                    std::span<double> residual) noexcept;
-
-// a^T D^-1 b over all joints: with residuals of two right-hand sides this is their product through M^-1.
-[[nodiscard]] double residual_product(const Model& model, const Workspace& ws, std::span<const double> a,
-                                      std::span<const double> b) noexcept;
+// Backward pass of generalised forces tau alone (no bias, no velocities) with the factors of factorize(), over the
+// links of `supports` (outermost first), outside of which tau is zero. Gives the residual r and the rate D^-1 r: the
+// product of two right-hand sides through M^-1 is the sum of one's residual times the other's rate. Entries of other
+// links are left alone.
+void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
+                    std::span<double> residual, std::span<double> rate) noexcept;
 
 // q' of the coordinates for speeds u; needs the motion of the same q and u.
 void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,

@@ -114,14 +114,16 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
       break;
     }
   }
-  if (!ws.row_is_active[k]) {
+  if (ws.row_is_active[k] == 0) {
     ws.row_a_free[k] = 0;
     return;
   }
   const std::span<double> J(ws.row_J.data() + k * dof, dof);
   write_jacobian(model, ws, row, J);
   ws.row_a_free[k] = bias + fixed_dot(J, ws.udot_free);
-  solve_backward(model, ws, J, {ws.row_residual.data() + k * dof, dof});
+  const std::span<const int> supports(model.supports.data() + row.first_support,
+                                      model.supports.data() + row.support_end);
+  solve_backward(model, ws, supports, J, {ws.row_residual.data() + k * dof, dof}, {ws.row_rate.data() + k * dof, dof});
 }
 
 }  // namespace
@@ -129,24 +131,25 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
 void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexcept {
   const std::size_t rows = model.rows.size(), dof = ws.udot.size();
   for (std::size_t k = 0; k < rows; ++k) evaluate_row(model, state, k, ws);
-  const auto residual_of = [&](std::size_t k) {
-    return std::span<const double>(ws.row_residual.data() + k * dof, dof);
-  };
   for (std::size_t k = 0; k < rows; ++k) {
+    const double* residual = ws.row_residual.data() + k * dof;
     for (std::size_t l = 0; l <= k; ++l) {
-      const bool is_active = ws.row_is_active[k] && ws.row_is_active[l];
-      const double w = is_active ? residual_product(model, ws, residual_of(k), residual_of(l)) : 0;
+      const double* rate = ws.row_rate.data() + l * dof;
+      double w = 0;
+      if (ws.row_is_active[k] != 0 && ws.row_is_active[l] != 0) {
+        for (std::size_t j = 0; j < dof; ++j) w += residual[j] * rate[j];
+      }
       ws.row_W[k * rows + l] = ws.row_W[l * rows + k] = w;
     }
   }
 }
 
 void activate_row(Workspace& ws, int row) noexcept {
-  ws.row_is_active[at(row)] = true;
+  ws.row_is_active[at(row)] = 1;
 }
 
 void deactivate_row(Workspace& ws, int row) noexcept {
-  ws.row_is_active[at(row)] = false;
+  ws.row_is_active[at(row)] = 0;
 }
 
 }  // namespace slew::multibody

@@ -23,8 +23,9 @@ Workspace::Workspace(const Model& model)
   for (auto* by_row : {&row_x, &row_v, &row_a_free, &row_force}) by_row->assign(rows, 0.0);
   row_J.assign(rows * nu, 0.0);
   row_residual.assign(rows * nu, 0.0);
+  row_rate.assign(rows * nu, 0.0);
   row_W.assign(rows * rows, 0.0);
-  row_is_active.assign(rows, true);
+  row_is_active.assign(rows, 1);
   motion[0].R = math::Mat3::identity();
 }
 

@@ -55,8 +55,7 @@ struct LineMotion {
 };
 
 struct AngleMotion {
-  math::Vec3 axis;  // a, fixed in body 1
-  math::Vec3 n;     // gradient: d(angle)/dt = w_rel . n
+  math::Vec3 n;  // gradient: d(angle)/dt = w_rel . n
   double angle = 0, rate = 0;
 };
 
@@ -85,11 +84,12 @@ struct Workspace {
 
   // rows: filled by evaluate_rows()
   std::vector<double> row_x, row_v, row_a_free;
-  std::vector<double> row_J;         // rows x dof
-  std::vector<double> row_residual;  // rows x dof
-  std::vector<double> row_W;         // rows x rows
-  std::vector<double> row_force;     // of the stage under way
-  std::vector<bool> row_is_active;
+  std::vector<double> row_J;                 // rows x dof
+  std::vector<double> row_residual;          // rows x dof, r of solve_backward()
+  std::vector<double> row_rate;              // rows x dof, D^-1 r
+  std::vector<double> row_W;                 // rows x rows
+  std::vector<double> row_force;             // of the stage under way
+  std::vector<unsigned char> row_is_active;  // 0 or 1
 
   // by body of the scene: what joint_reactions() gathers, about the origin of the body's link
   std::vector<math::Vec3> body_n, body_f;

@@ -159,7 +159,7 @@ class Validator {
   void check_inertia(const BodyDef& body) {
     const auto [xx, yy, zz] = body.inertia;
     const auto [xy, xz, yz] = body.products;
-    Mat3 I{{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)}};
+    Mat3 I{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)};
     const bool is_about_origin = body.inertia_about == InertiaPoint::body_origin;
     if (is_about_origin) {
       const Mat3 c = math::skew(Vec3(body.center_of_mass));

@@ -22,7 +22,7 @@ std::vector<double> holding_forces(Mechanism& mechanism) {
   evaluate(mechanism.model, mechanism.state, mechanism.ws);
   const auto W = row_mobility(mechanism.ws);
   const auto a = row_free_accelerations(mechanism.ws);
-  const math::Mat3 matrix{{math::Vec3(W[0], W[3], W[6]), math::Vec3(W[1], W[4], W[7]), math::Vec3(W[2], W[5], W[8])}};
+  const math::Mat3 matrix{math::Vec3(W[0], W[3], W[6]), math::Vec3(W[1], W[4], W[7]), math::Vec3(W[2], W[5], W[8])};
   return [](const math::Vec3& f) {
     return std::vector<double>{f[0], f[1], f[2]};
   }(math::inverse_symmetric(matrix) * math::Vec3(-a[0], -a[1], -a[2]));
