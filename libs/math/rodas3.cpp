@@ -106,6 +106,12 @@ std::int32_t Rodas3::first_non_finite() const noexcept {
   return -1;
 }
 
+// A step cut short by the end of the interval does not shorten the next one.
+double Rodas3::next_step(double wanted_before, double used, double factor, double longest) const noexcept {
+  const double wanted = factor >= 1 ? std::max(wanted_before, used * factor) : used * factor;
+  return std::min(std::max(wanted, options_.minimum_step), longest);
+}
+
 Rodas3Report Rodas3::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
   SLEW_ASSERT(y.size() == size_);
   Rodas3Report report;
@@ -151,11 +157,7 @@ Rodas3Report Rodas3::advance(StiffSystem& system, std::span<double> y, double du
     std::copy(new_.begin(), new_.end(), y.begin());
     J = nullptr;
     rest = is_last ? 0 : rest - used;
-    // a step cut short by the end of the interval does not shorten the next one
-    if (!report.is_over_budget) {
-      const double wanted = used * factor;
-      h = std::clamp(factor >= 1 ? std::max(h, wanted) : wanted, options_.minimum_step, duration);
-    }
+    if (!report.is_over_budget) h = next_step(h, used, factor, duration);
   }
   step_size_ = report.is_over_budget ? options_.minimum_step : h;
   return report;

@@ -67,6 +67,7 @@ class Rodas3 {
   [[nodiscard]] bool factorise(const double* J, double c, Rodas3Report& report) noexcept;
   void solve(double* b) noexcept;
   [[nodiscard]] std::int32_t first_non_finite() const noexcept;
+  [[nodiscard]] double next_step(double wanted_before, double used, double factor, double longest) const noexcept;
   [[nodiscard]] double try_step(StiffSystem& system, const double* y, double h) noexcept;
 
   std::size_t size_;
