@@ -1,0 +1,155 @@
+// The same scene and the same ticks give the same bits in every state at every step, however the nodes are laid out.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <thread>
+
+#include "cli/replay.h"
+#include "direct_chain.h"
+#include "node/identity.h"
+#include "recording/reader.h"
+#include "session.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::Role;
+
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+
+// input within the first second, so that valves move and friction slips
+const std::vector<std::string> kFree = {"--pace", "free", "--duration", "1.6s"};
+constexpr StepIndex kSteps = 1600;
+
+// the chain that all others must equal, computed once by the nodes on one thread
+const RecordedSession& reference() {
+  static const RecordedSession session = [] {
+    const ScratchFolder folder;
+    return run_in_one_process(load_scene(kScene, "1.6s"), folder.path() / "runs");
+  }();
+  return session;
+}
+
+void expect_same_as_in_one_process(Session& session) {
+  ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_TRUE(recorded.has_all_messages);
+  EXPECT_EQ(recorded.losses(), 0);
+  ASSERT_EQ(recorded.epochs.size(), 1u);
+  EXPECT_EQ(recorded.last_complete_step(), kSteps);
+  EXPECT_EQ(first_difference(recorded.chain(), reference().chain()), "");
+}
+
+TEST(Determinism, OneProcessRecordsEveryStepOfEveryNode) {
+  EXPECT_EQ(reference().problem, "");
+  EXPECT_EQ(reference().losses(), 0);
+  ASSERT_EQ(reference().epochs.size(), 1u);
+  // INIT, and samples 0 to the end; the last one has no tick after it
+  ASSERT_EQ(reference().chain().size(), static_cast<std::size_t>(kSteps + 2));
+  EXPECT_NE(reference().chain().at(kJoinStep).mechanics, 0u);
+  for (const auto& [step, hashes] : reference().chain()) {
+    if (step < 0) continue;
+    EXPECT_NE(hashes.mechanics, 0u) << step;
+    EXPECT_NE(hashes.hydraulics, 0u) << step;
+    EXPECT_EQ(hashes.io == 0, step == kSteps) << step;
+  }
+  // the machine moves: no two states are alike
+  EXPECT_NE(reference().chain().at(100), reference().chain().at(101));
+}
+
+TEST(Determinism, OneProcessTwiceGivesTheSameBits) {
+  const ScratchFolder folder;
+  const RecordedSession again = run_in_one_process(load_scene(kScene, "1.6s"), folder.path() / "runs");
+  EXPECT_EQ(first_difference(again.chain(), reference().chain()), "");
+}
+
+TEST(Determinism, SeparateProcessesGiveTheSameBits) {
+  Session session(kFree);
+  session.start_all();
+  expect_same_as_in_one_process(session);
+}
+
+TEST(Determinism, RealPaceGivesTheSameBitsAsFreePace) {
+  Session session({"--pace", "real", "--duration", "1.6s"});
+  session.start_all();
+  expect_same_as_in_one_process(session);
+}
+
+TEST(Determinism, ReplayOfADistributedRunGivesTheSameBits) {
+  Session session(kFree);
+  session.start_all();
+  ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  const HashChain replayed = chain_of_ticks(load_scene(kScene, "1.6s"), recorded.ticks.at(0));
+  EXPECT_EQ(first_difference(replayed, physics_only(recorded.chain())), "");
+  // and as `slewring replay --verify` does it, from the scene inside the recording
+  std::unique_ptr<recording::Reader> reader;
+  ASSERT_TRUE(recording::Reader::open(only_recording(session.runs()), reader).is_ok());
+  const cli::ReplayResult result = cli::replay(*reader, cli::OnDifference::stop);
+  EXPECT_TRUE(result.is_equal()) << result.problem;
+  EXPECT_EQ(result.steps, kSteps);
+}
+
+TEST(Determinism, LoadOnEveryCoreChangesNoBit) {
+  std::atomic<bool> is_done{false};
+  std::vector<std::thread> burners;
+  for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i) {
+    burners.emplace_back([&is_done] {
+      volatile std::uint64_t work = 0;
+      while (!is_done.load(std::memory_order_relaxed)) work = work + 1;
+    });
+  }
+  {
+    Session session(kFree);
+    session.start_all();
+    expect_same_as_in_one_process(session);
+  }
+  is_done = true;
+  for (std::thread& burner : burners) burner.join();
+}
+
+class StoppedNode : public ::testing::TestWithParam<Role> {};
+
+TEST_P(StoppedNode, For200MillisecondsChangesNoBit) {
+  Session session(kFree);
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
+  session.node(GetParam()).send(SIGSTOP);
+  EXPECT_LT(observer.step(), kSteps - 1) << "the stop came too late to be one in mid-run";
+  EXPECT_FALSE(observer.wait_until([] { return false; }, 200'000'000));
+  session.node(GetParam()).send(SIGCONT);
+  expect_same_as_in_one_process(session);
+}
+
+std::string name_of(const ::testing::TestParamInfo<Role>& role) {
+  return std::string(node::to_text(role.param));
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, StoppedNode, ::testing::ValuesIn(kAllNodes), name_of);
+
+using Order = std::array<Role, 4>;
+class StartOrder : public ::testing::TestWithParam<Order> {};
+
+TEST_P(StartOrder, ChangesNoBit) {
+  Session session(kFree);
+  for (const Role role : GetParam()) {
+    Program& program = session.start(role);
+    // the next one starts when this one is up: it shows itself by its first breath or by waiting for a session
+    ASSERT_TRUE(program.is_running()) << program.err();
+    static_cast<void>(session.observer().wait_until([] { return false; }, 100'000'000));
+  }
+  expect_same_as_in_one_process(session);
+}
+
+INSTANTIATE_TEST_SUITE_P(Permutations, StartOrder,
+                         ::testing::Values(Order{Role::io, Role::mechanics, Role::hydraulics, Role::recorder},
+                                           Order{Role::recorder, Role::hydraulics, Role::mechanics, Role::io},
+                                           Order{Role::hydraulics, Role::io, Role::recorder, Role::mechanics},
+                                           Order{Role::mechanics, Role::recorder, Role::io, Role::hydraulics}));
+
+}  // namespace
+}  // namespace slew::testing

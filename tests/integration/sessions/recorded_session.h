@@ -1,0 +1,57 @@
+// What a test wants to know of a recording: the hash of every state by epoch and step, what the nodes said, losses.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/time.h"
+#include "transport/wire.h"
+
+namespace slew::testing {
+
+// State hashes at t_step; io's is of the tick of that step. 0: there is none.
+struct StepHashes {
+  std::uint64_t io = 0;
+  std::uint64_t mechanics = 0;
+  std::uint64_t hydraulics = 0;
+  bool operator==(const StepHashes&) const = default;
+};
+
+// By step; step -1 holds INIT.
+using HashChain = std::map<StepIndex, StepHashes>;
+
+// A NodeStatus with the wall time at which it was sent.
+struct SaidStatus {
+  wire::NodeStatus status;
+  std::int64_t sent_ns = 0;
+};
+
+struct RecordedSession {
+  std::vector<HashChain> epochs;
+  std::vector<std::map<StepIndex, wire::Tick>> ticks;  // by epoch
+  std::vector<SaidStatus> statuses;
+  std::vector<wire::ControlReply> replies;
+  std::map<std::string, std::string> summary;  // what the recorder counted
+  std::string problem;                         // why the file is not valid; empty: every byte is as it was written
+  bool has_all_messages = false;               // closed in order
+
+  [[nodiscard]] const HashChain& chain() const { return epochs.at(0); }
+  // Sum of all "<topic>.lost" of the summary; -1 without a summary.
+  [[nodiscard]] std::int64_t losses() const;
+  // Newest step of which both physics samples are there, in the last epoch; -1: none.
+  [[nodiscard]] StepIndex last_complete_step() const;
+};
+
+// path: the recording, or the folder in which exactly one run has one. Throws when there is none.
+[[nodiscard]] RecordedSession read_session(const std::filesystem::path& path);
+
+// The recording in a folder of runs; throws unless there is exactly one.
+[[nodiscard]] std::filesystem::path only_recording(const std::filesystem::path& runs);
+
+// "step 17: mechanics 0123.. and 4567.."; empty when the chains are equal.
+[[nodiscard]] std::string first_difference(const HashChain& a, const HashChain& b);
+
+}  // namespace slew::testing

@@ -1,0 +1,200 @@
+#include "session.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "core/time.h"
+#include "node/identity.h"
+#include "transport/codec.h"
+#include "transport/cyclone_transport.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::Role;
+using wire::Topic;
+
+constexpr std::int64_t kAskAgainNs = 500'000'000;
+
+}  // namespace
+
+// ---- observer -------------------------------------------------------------------------------------------------
+
+Observer::Observer(std::uint32_t domain, const std::string& session) : session_(session) {
+  const transport::CycloneNetwork network{domain, "lo", {}};
+  const transport::CycloneOptions endpoint{
+      session, "observer", {Topic::controller_input, Topic::control_request}, transport::TopicSet::all()};
+  std::unique_ptr<transport::CycloneTransport> carrier;
+  if (const Status status = transport::CycloneTransport::open(network, endpoint, carrier); !status.is_ok()) {
+    throw std::runtime_error(status.text);
+  }
+  carrier_ = std::move(carrier);
+}
+
+bool Observer::wait_until(const std::function<bool()>& condition, std::int64_t longest_ns) {
+  const std::int64_t deadline_ns = monotonic_ns() + longest_ns;
+  while (true) {
+    transport::Received message;
+    while (carrier_->take(message)) take(message);
+    if (condition()) return true;
+    const std::int64_t now_ns = monotonic_ns();
+    if (now_ns >= deadline_ns) return false;
+    carrier_->wait_until(std::min(deadline_ns, now_ns + 20'000'000));
+  }
+}
+
+bool Observer::wait_for_step(StepIndex step) {
+  return wait_until([&] { return step_ >= step; });
+}
+
+void Observer::take(const transport::Received& message) {
+  switch (message.topic) {
+    case Topic::session: {
+      wire::SessionDescription description;
+      if (transport::decode(message.bytes, description)) descriptions_[description.header.session] = description;
+      return;
+    }
+    case Topic::node_status: {
+      wire::NodeStatus status;
+      if (!transport::decode(message.bytes, status)) return;
+      status_[static_cast<std::size_t>(status.header.role)] = status;
+      return;
+    }
+    case Topic::tick: {
+      if (!transport::decode(message.bytes, tick_)) return;
+      if (tick_.header.phase == wire::Phase::join) return;
+      if (tick_.header.epoch > epoch_) step_ = -1;
+      epoch_ = tick_.header.epoch;
+      step_ = std::max(step_, tick_.header.step);
+      return;
+    }
+    case Topic::control_reply: {
+      wire::ControlReply reply;
+      if (transport::decode(message.bytes, reply)) replies_[reply.request] = reply;
+      return;
+    }
+    case Topic::controller_lease: {
+      wire::ControllerLease lease;
+      if (transport::decode(message.bytes, lease)) leases_.push_back(lease);
+      return;
+    }
+    case Topic::variable_directory: {
+      wire::VariableDirectory directory;
+      if (!transport::decode(message.bytes, directory)) return;
+      for (std::size_t i = 0; i < directory.entries.size(); ++i) {
+        places_[directory.entries[i].name] = {directory.header.role, directory.first + i};
+      }
+      return;
+    }
+    case Topic::variables: {
+      wire::VariableBlock block;
+      if (!transport::decode(message.bytes, block) || block.header.phase != wire::Phase::running) return;
+      for (std::size_t i = 0; i < block.values.size(); ++i) {
+        values_[{block.header.role, block.first + i}] = block.values[i];
+      }
+      return;
+    }
+    default:
+      return;
+  }
+}
+
+std::optional<double> Observer::variable(const std::string& name) const {
+  const auto place = places_.find(name);
+  if (place == places_.end()) return std::nullopt;
+  const auto value = values_.find(place->second);
+  if (value == values_.end()) return std::nullopt;
+  return value->second;
+}
+
+wire::ControlReply Observer::request(wire::ControlAction action, double value, const std::string& path,
+                                     std::int64_t over_ns) {
+  wire::ControlRequest request;
+  request.session = session_;
+  request.request = next_request_++;
+  request.action = action;
+  request.value = value;
+  request.path = path;
+  request.over_ns = over_ns;
+  if (!transport::encode(request, buffer_)) throw std::runtime_error("the request cannot be encoded");
+  // the writer may not be known to io yet; an unanswered question is asked again
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    static_cast<void>(carrier_->publish(Topic::control_request, buffer_));
+    if (wait_until([&] { return replies_.count(request.request) != 0; }, kAskAgainNs)) {
+      return replies_.at(request.request);
+    }
+  }
+  throw std::runtime_error("io does not answer a request");
+}
+
+void Observer::send(const wire::ControllerInput& input) {
+  if (!transport::encode(input, buffer_)) throw std::runtime_error("the input cannot be encoded");
+  static_cast<void>(carrier_->publish(Topic::controller_input, buffer_));
+}
+
+wire::ControllerLease Observer::acquire(const std::string& controller, const std::string& channel) {
+  leases_.clear();
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    send({session_, controller, channel, wire::ControllerAction::acquire, 0, 0, kJoinStep});
+    const auto is_answer = [&](const wire::ControllerLease& lease) {
+      return lease.controller == controller && lease.channel == channel;
+    };
+    const auto answered = [&] { return std::any_of(leases_.begin(), leases_.end(), is_answer); };
+    if (wait_until(answered, kAskAgainNs)) return *std::find_if(leases_.begin(), leases_.end(), is_answer);
+  }
+  throw std::runtime_error("io does not answer a controller");
+}
+
+// ---- session --------------------------------------------------------------------------------------------------
+
+Session::Session(std::vector<std::string> io_arguments, std::string scene)
+    : io_arguments_(std::move(io_arguments)), scene_(std::move(scene)) {}
+
+std::vector<std::string> Session::arguments(Role role) const {
+  std::vector<std::string> arguments;
+  if (role == Role::io) arguments.push_back(scene_);
+  arguments.insert(arguments.end(), {"--session", name_, "--domain", std::to_string(domain_.number())});
+  if (role == Role::io) arguments.insert(arguments.end(), io_arguments_.begin(), io_arguments_.end());
+  if (role == Role::recorder) arguments.insert(arguments.end(), {"--out", runs().string()});
+  return arguments;
+}
+
+Program& Session::start(Role role, const std::vector<std::string>& more, const std::string& copy) {
+  std::vector<std::string> all = arguments(role);
+  all.insert(all.end(), more.begin(), more.end());
+  const std::string name(node::to_text(role));
+  auto program = std::make_unique<Program>(program_path(name + "_node"), all, folder_.path() / (name + copy));
+  if (!copy.empty()) {
+    copies_.push_back(std::move(program));
+    return *copies_.back();
+  }
+  nodes_[role] = std::move(program);
+  return *nodes_[role];
+}
+
+void Session::start_all() {
+  for (const Role role : kAllNodes) start(role);
+}
+
+std::map<Role, int> Session::wait_all(std::int64_t longest_ns) {
+  const std::int64_t deadline_ns = monotonic_ns() + longest_ns;
+  std::map<Role, int> codes;
+  for (const auto& [role, program] : nodes_) {
+    codes[role] = program->wait(std::max<std::int64_t>(0, deadline_ns - monotonic_ns())).value_or(-1000);
+  }
+  return codes;
+}
+
+std::string Session::said() const {
+  std::string text;
+  for (const auto& [role, program] : nodes_) text += std::string(node::to_text(role)) + ": " + program->err() + "\n";
+  return text;
+}
+
+Observer& Session::observer() {
+  if (observer_ == nullptr) observer_ = std::make_unique<Observer>(domain_.number(), name_);
+  return *observer_;
+}
+
+}  // namespace slew::testing

@@ -1,0 +1,112 @@
+// A session of real node processes on a DDS domain of its own, and an observer inside the test that hears everything.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program.h"
+#include "recorded_session.h"
+#include "support/test_domain.h"
+#include "transport/transport.h"
+#include "transport/wire.h"
+
+namespace slew::testing {
+
+// Hears every topic of a session, and can publish what a cli or a controller publishes.
+class Observer {
+ public:
+  Observer(std::uint32_t domain, const std::string& session);
+
+  // Takes what comes until the condition holds; false when it does not within the time.
+  [[nodiscard]] bool wait_until(const std::function<bool()>& condition, std::int64_t longest_ns = kSoonNs);
+  // The tick of this step of the present epoch, or a later one, has been seen.
+  [[nodiscard]] bool wait_for_step(StepIndex step);
+
+  // Sends a request until it is answered.
+  [[nodiscard]] wire::ControlReply request(wire::ControlAction action, double value = 0, const std::string& path = "",
+                                           std::int64_t over_ns = -1);
+  void send(const wire::ControllerInput& input);
+  // Asks for a channel until it is answered.
+  [[nodiscard]] wire::ControllerLease acquire(const std::string& controller, const std::string& channel);
+
+  [[nodiscard]] StepIndex step() const noexcept { return step_; }
+  [[nodiscard]] std::uint32_t epoch() const noexcept { return epoch_; }
+  [[nodiscard]] const wire::Tick& tick() const noexcept { return tick_; }
+  [[nodiscard]] const std::optional<wire::NodeStatus>& status(wire::Role role) const {
+    return status_[static_cast<std::size_t>(role)];
+  }
+  [[nodiscard]] std::uint64_t sessions_seen() const noexcept { return descriptions_.size(); }
+  [[nodiscard]] const std::string& name() const noexcept { return session_; }
+  // Newest value of a variable; none before it is known.
+  [[nodiscard]] std::optional<double> variable(const std::string& name) const;
+
+ private:
+  void take(const transport::Received& message);
+
+  std::string session_;
+  std::unique_ptr<transport::Transport> carrier_;
+  StepIndex step_ = -1;
+  std::uint32_t epoch_ = 0;
+  wire::Tick tick_;
+  std::array<std::optional<wire::NodeStatus>, wire::kRoles> status_;
+  std::map<wire::SessionId, wire::SessionDescription> descriptions_;
+  std::map<std::uint64_t, wire::ControlReply> replies_;
+  std::vector<wire::ControllerLease> leases_;
+  std::map<std::string, std::pair<wire::Role, std::size_t>> places_;
+  std::map<std::pair<wire::Role, std::size_t>, double> values_;
+  std::uint64_t next_request_ = 1;
+  std::vector<std::byte> buffer_;
+};
+
+inline constexpr std::array<wire::Role, 4> kAllNodes = {wire::Role::io, wire::Role::mechanics, wire::Role::hydraulics,
+                                                        wire::Role::recorder};
+
+class Session {
+ public:
+  // io: io_node's arguments after --session and --domain, "--pace", "free", ... the scene is truck_crane unless said.
+  explicit Session(std::vector<std::string> io_arguments = {},
+                   std::string scene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml");
+
+  // Starts a node. `copy`: names the output of a second process of the role.
+  Program& start(wire::Role role, const std::vector<std::string>& more = {}, const std::string& copy = "");
+  void start_all();
+  [[nodiscard]] Program& node(wire::Role role) { return *nodes_.at(role); }
+  [[nodiscard]] bool has(wire::Role role) const { return nodes_.count(role) != 0; }
+
+  // Waits for the end of every node; its exit codes. -1000: it still ran.
+  [[nodiscard]] std::map<wire::Role, int> wait_all(std::int64_t longest_ns = kSoonNs);
+  // Everything the nodes wrote to standard error, for messages of failed expectations.
+  [[nodiscard]] std::string said() const;
+
+  [[nodiscard]] Observer& observer();
+  [[nodiscard]] RecordedSession recorded() const { return read_session(runs()); }
+  [[nodiscard]] std::filesystem::path runs() const { return folder_.path() / "runs"; }
+  [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_.path(); }
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] std::uint32_t domain() const noexcept { return domain_.number(); }
+  [[nodiscard]] std::vector<std::string> arguments(wire::Role role) const;
+
+ private:
+  ScratchFolder folder_;
+  TestDomain domain_;
+  std::string name_ = "s";
+  std::vector<std::string> io_arguments_;
+  std::string scene_;
+  std::unique_ptr<Observer> observer_;
+  std::map<wire::Role, std::unique_ptr<Program>> nodes_;
+  std::vector<std::unique_ptr<Program>> copies_;
+};
+
+// The exit codes of a session in which nothing went wrong.
+[[nodiscard]] inline std::map<wire::Role, int> all_ok() {
+  return {{wire::Role::io, 0}, {wire::Role::mechanics, 0}, {wire::Role::hydraulics, 0}, {wire::Role::recorder, 0}};
+}
+
+}  // namespace slew::testing
