@@ -15,6 +15,8 @@ bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
   const ArticulatedInertia& I = ws.inertia[i];
   const JointFactor& factor = ws.factor[i];
   const double turning = I.J(0, 0) + I.J(1, 1) + I.J(2, 2);
+  // a singular joint further out spoils what it passes on: that one is named
+  if (!std::isfinite(turning)) return false;
   switch (link.joint) {
     case LinkJoint::revolute:
       return !(1 / factor.d_inv > kSmallestShare * turning);
@@ -26,8 +28,12 @@ bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
   }
   // the largest element of the inverse against the size of the inertia
   double largest = 0;
-  for (int k = 0; k < 9; ++k) largest = std::fmax(largest, std::abs(factor.D_inv(k / 3, k % 3)));
-  return !std::isfinite(largest) || !(1 / largest > kSmallestShare * turning);
+  for (int k = 0; k < 9; ++k) {
+    const double element = std::abs(factor.D_inv(k / 3, k % 3));
+    if (!std::isfinite(element)) return true;
+    largest = std::fmax(largest, element);
+  }
+  return !(1 / largest > kSmallestShare * turning);
 }
 
 }  // namespace

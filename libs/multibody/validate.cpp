@@ -59,7 +59,10 @@ class Validator {
 
   void check_section() {
     if (m_.formulation == Formulation::recursive) return;
-    add("mechanics.formulation", "only the formulation 'recursive' is in this version", "recursive");
+    constexpr const char* kNames[] = {"recursive", "lagrange", "augmented", "penalty"};
+    add("mechanics.formulation",
+        fmt::format("the formulation '{}' is not in this version", kNames[static_cast<int>(m_.formulation)]),
+        "recursive");
   }
 
   // ranges of the field tables, for Defs that no scene reader has seen

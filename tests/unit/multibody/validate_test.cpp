@@ -1,0 +1,270 @@
+// Every rule of validate(): the path and the first words of the message.
+#include "multibody/validate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "multibody/field_tables.h"
+#include "tests/validation/multibody/crane_def.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace {
+
+// a hinge, a ball and a strut with a cylinder: sound
+MechanicsDef sound() {
+  MechanicsDef def;
+  def.bodies = {{.name = "Arm", .mass = 2, .center_of_mass = {0.5, 0, 0}, .inertia = {0.1, 1, 1}},
+                {.name = "Load", .relative_to = "Arm", .position = {1, 0, 0}, .mass = 5, .inertia = {1, 1, 1}}};
+  def.joints = {{.name = "Hinge", .body2 = "Arm"},
+                {.name = "Ball", .type = JointType::spherical, .body1 = "Arm", .point1 = {1, 0, 0}, .body2 = "Load"}};
+  def.translational_forces = {
+      {.name = "Strut", .body1 = "Ground", .point1 = {0, -1, 0}, .body2 = "Arm", .point2 = {0.5, 0, 0}}};
+  def.rotational_forces = {{.name = "Damper", .body1 = "Arm", .body2 = "Load"}};
+  def.force_dummies = {
+      {.name = "Tube", .relative_to = "Strut", .mass = 3, .center_of_mass = {-0.3, 0, 0}, .inertia = {0.01, 0.2, 0.2}}};
+  def.static_dummies = {{.name = "Box", .relative_to = "Arm", .mass = 1, .inertia = {1, 1, 1}}};
+  return def;
+}
+
+Problems problems_of(const std::function<void(MechanicsDef&)>& change) {
+  MechanicsDef def = sound();
+  change(def);
+  Problems problems;
+  validate(def, problems);
+  return problems;
+}
+
+void expect_problem(const std::function<void(MechanicsDef&)>& change, const std::string& path,
+                    const std::string& what) {
+  const Problems problems = problems_of(change);
+  const bool is_found = std::any_of(problems.begin(), problems.end(), [&](const Problem& problem) {
+    return problem.path == path && problem.what.find(what) != std::string::npos;
+  });
+  EXPECT_TRUE(is_found) << "expected " << path << ": " << what << "\ngot " << testing::text_of(problems);
+}
+
+TEST(Validate, FindsNothingInASoundMechanism) {
+  EXPECT_EQ(testing::text_of(problems_of([](MechanicsDef&) {})), "");
+  Problems problems;
+  validate(testing::crane_def(), problems);
+  EXPECT_EQ(testing::text_of(problems), "");
+}
+
+TEST(Validate, NamesOtherFormulationsAsMissing) {
+  expect_problem([](auto& d) { d.formulation = Formulation::penalty; }, "mechanics.formulation",
+                 "'penalty' is not in this version");
+}
+
+TEST(Validate, NamesDanglingBodies) {
+  expect_problem([](auto& d) { d.bodies[1].relative_to = "Army"; }, "Load.relative_to", "there is no body 'Army'");
+  expect_problem([](auto& d) { d.joints[1].body2 = "Bag"; }, "Ball.body2", "there is no body 'Bag'");
+  expect_problem([](auto& d) { d.translational_forces[0].body1 = ""; }, "Strut.body1", "there is no body ''");
+  expect_problem([](auto& d) { d.rotational_forces[0].body2 = "X"; }, "Damper.body2", "there is no body 'X'");
+  expect_problem([](auto& d) { d.static_dummies[0].relative_to = "X"; }, "Box.relative_to", "there is no body 'X'");
+  expect_problem([](auto& d) { d.force_dummies[0].relative_to = "X"; }, "Tube.relative_to",
+                 "no translational force 'X'");
+}
+
+TEST(Validate, NamesAJointOfABodyWithItself) {
+  expect_problem([](auto& d) { d.joints[1].body1 = "Load"; }, "Ball.body2", "both bodies are 'Load'");
+}
+
+TEST(Validate, NamesNamesThatAreTaken) {
+  expect_problem([](auto& d) { d.joints[1].name = "Arm"; }, "Arm", "is taken");
+  expect_problem([](auto& d) { d.bodies[0].name = "Ground"; }, "Ground", "is taken");
+}
+
+TEST(Validate, NamesALoopOfJointsWithItsBodies) {
+  expect_problem(
+      [](auto& d) {
+        d.joints.push_back({.name = "Third", .type = JointType::spherical, .point1 = {1, 0, 0}, .body2 = "Load"});
+      },
+      "Ball", "closes a loop: Load - Ground and Arm - Ground");
+}
+
+TEST(Validate, NamesBodiesWithoutAWayToGround) {
+  expect_problem([](auto& d) { d.joints.pop_back(); }, "Load", "this body has no joint");
+  expect_problem([](auto& d) { d.joints.erase(d.joints.begin()); }, "Arm", "no chain of joints leads");
+}
+
+TEST(Validate, NamesACycleOfReferences) {
+  expect_problem([](auto& d) { d.bodies[0].relative_to = "Load"; }, "Arm.relative_to", "does not end");
+}
+
+TEST(Validate, WantsFloatingJointsToStartFromGround) {
+  expect_problem([](auto& d) { d.joints[1].type = JointType::floating; }, "Ball.body1",
+                 "floating joint starts from 'Arm'");
+}
+
+TEST(Validate, WantsMassesAndInertiaOfRealBodies) {
+  expect_problem([](auto& d) { d.bodies[0].mass = 0; }, "Arm.mass", "0 kg is out of range");
+  expect_problem([](auto& d) { d.bodies[0].mass = -1; }, "Arm.mass", "-1 kg is out of range");
+  expect_problem([](auto& d) { d.bodies[0].mass = std::nan(""); }, "Arm.mass", "out of range");
+  expect_problem([](auto& d) { d.bodies[0].inertia[1] = -1; }, "Arm.inertia", "out of range");
+  expect_problem([](auto& d) { d.bodies[1].inertia = {1, 1, 2.1}; }, "Load.inertia", "break the triangle rule");
+  expect_problem([](auto& d) { d.bodies[1].products = {1.5, 0, 0}; }, "Load.inertia", "is not positive");
+  expect_problem([](auto& d) { d.static_dummies[0].inertia = {1, 1, 3}; }, "Box.inertia", "break the triangle rule");
+}
+
+TEST(Validate, SeesTheWrongSignOfPrintedProducts) {
+  // the pillar with the CAD program's +60.25 instead of the tensor's element
+  MechanicsDef def = testing::crane_def();
+  def.bodies[0].products[0] = 60.25371;
+  Problems problems;
+  validate(def, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].path, "Truck_Pillar.inertia");
+  EXPECT_NE(problems[0].what.find("(taken to the centre of mass) is not positive"), std::string::npos);
+}
+
+TEST(Validate, RefusesTheInertiaPrintedForTheJibBoom) {
+  MechanicsDef def = testing::crane_def();
+  def.bodies[3].inertia = {53.61867, 21713.77286, 21682.20193};
+  def.bodies[3].products = {167.73081, 784.03676, -7.506971};
+  Problems problems;
+  validate(def, problems);
+  // a body of that tensor could exist, so only the geometry could tell; the sum of moments decides
+  for (const Problem& problem : problems) EXPECT_EQ(problem.path, "Truck_JibBoom.inertia");
+}
+
+TEST(Validate, NamesPartsThatNothingKeepsFromSpinning) {
+  expect_problem([](auto& d) { d.bodies[1].inertia = {}; }, "Ball", "has no inertia about a direction");
+  expect_problem(
+      [](auto& d) {
+        d.bodies[0].inertia = d.bodies[0].center_of_mass = {};
+        d.joints.pop_back();
+        d.bodies.pop_back();
+        d.rotational_forces.clear();
+        d.static_dummies.clear();
+        d.force_dummies.clear();
+      },
+      "Hinge", "has no inertia about a direction");
+}
+
+TEST(Validate, WantsJointFramesToAgreeAtTheStart) {
+  expect_problem([](auto& d) { d.joints[1].point1[1] = 2e-6; }, "Ball.point2", "2e-06 m apart");
+  expect_problem([](auto& d) { d.joints[0].orientation2[0] = 0.01; }, "Hinge.orientation2", "axes are 0.01 rad apart");
+  const auto slider = [](auto& d) { d.joints[0].type = JointType::prismatic; };
+  EXPECT_EQ(testing::text_of(problems_of(slider)), "");
+  expect_problem([&](auto& d) { slider(d), d.joints[0].point2[0] = 0.1; }, "Hinge.point2",
+                 "0.1 m apart at the start across");
+  expect_problem([&](auto& d) { slider(d), d.joints[0].orientation2[2] = 0.1; }, "Hinge.orientation2",
+                 "frames are turned 0.1 rad");
+  expect_problem([](auto& d) { d.joints[0].type = JointType::fixed, d.joints[0].orientation2[2] = 0.1; },
+                 "Hinge.orientation2", "frames are turned 0.1 rad");
+}
+
+TEST(Validate, NamesSwappedLimits) {
+  expect_problem([](auto& d) { d.joints[0].limit_min = 1, d.joints[0].limit_max = -1; }, "Hinge.limit_min",
+                 "not below the upper limit");
+  expect_problem([](auto& d) { d.joints[0].limit_min = -1; }, "Hinge.limit_stiffness", "no stiffness");
+  expect_problem([](auto& d) { d.translational_forces[0].min_length = 2, d.translational_forces[0].max_length = 1; },
+                 "Strut.min_length", "not below the largest");
+  expect_problem([](auto& d) { d.rotational_forces[0].min_angle = 2, d.rotational_forces[0].max_angle = 1; },
+                 "Damper.min_angle", "not below the largest");
+  // all zero, as the thesis prints for forces that a cylinder overrides: no end dampers
+  EXPECT_EQ(testing::text_of(problems_of([](auto& d) { d.translational_forces[0].max_length = 0; })), "");
+}
+
+TEST(Validate, WantsDirectionsAtRightAngles) {
+  expect_problem([](auto& d) { d.rotational_forces[0].g1 = {1, 0, 1}; }, "Damper.g1", "enclose 45 deg");
+  expect_problem([](auto& d) { d.rotational_forces[0].f2 = {}; }, "Damper.f2", "the direction is zero");
+}
+
+TEST(Validate, WantsTheForcesPointsApart) {
+  expect_problem([](auto& d) { d.translational_forces[0].point1 = {0.5, 0, 0}; }, "Strut.point2", "coincide");
+}
+
+TEST(Validate, WantsDummiesOnTheLineOfForce) {
+  expect_problem([](auto& d) { d.force_dummies[0].center_of_mass[1] = 0.1; }, "Tube.center_of_mass", "off the line");
+  expect_problem(
+      [](auto& d) {
+        d.force_dummies[0].inertia = {0.01, 0.2, 0.3};
+      },
+      "Tube.inertia", "differ by more than 1 %");
+  expect_problem([](auto& d) { d.force_dummies[0].inertia = {1, 0.2, 0.2}; }, "Tube.inertia", "triangle rule");
+  expect_problem([](auto& d) { d.force_dummies[0].index = 3; }, "Tube.index", "out of range");
+}
+
+TEST(Validate, RefusesDummiesAcrossMoreThanOneJoint) {
+  expect_problem([](auto& d) { d.translational_forces[0].body2 = "Load"; }, "Tube.relative_to",
+                 "more than one joint connects");
+  // a fixed joint does not count
+  EXPECT_EQ(testing::text_of(problems_of([](auto& d) {
+              d.translational_forces[0].body2 = "Load";
+              d.joints[1].type = JointType::fixed;
+            })),
+            "");
+}
+
+TEST(Validate, WantsUnitsOfSenseInTheSection) {
+  expect_problem([](auto& d) { d.max_substep = 0; }, "mechanics.max_substep", "out of range");
+  expect_problem([](auto& d) { d.gravity[1] = std::numeric_limits<double>::infinity(); }, "mechanics.gravity",
+                 "out of range");
+}
+
+TEST(ValidateRows, NamesWhatCannotBeActedOn) {
+  const MechanicsDef def = sound();
+  const auto problem_with = [&](const std::vector<std::string>& rows) {
+    Problems problems;
+    validate_rows(def, rows, problems);
+    return testing::text_of(problems);
+  };
+  EXPECT_EQ(problem_with({"Strut", "Damper", "Hinge"}), "");
+  EXPECT_NE(problem_with({"Ball"}).find("no force and no joint with one coordinate"), std::string::npos);
+  EXPECT_NE(problem_with(std::vector<std::string>(33, "Strut")).find("at most 32"), std::string::npos);
+}
+
+// every number's range: a value outside is named by its key
+TEST(FieldTables, RangesAreChecked) {
+  for (std::size_t s = 0; s < sections().size(); ++s) {
+    for (const ElementType& type : sections()[s].types) {
+      for (const Field& row : type.fields) {
+        if (row.type != FieldType::number) continue;
+        MechanicsDef def;
+        void* element = type.append(def, "X");
+        *static_cast<double*>(row.member(element)) = std::nan("");
+        Problems problems;
+        validate(def, problems);
+        const bool is_named = std::any_of(problems.begin(), problems.end(), [&](const Problem& problem) {
+          return problem.path == "X." + std::string(row.key) && problem.what.find("out of range") != std::string::npos;
+        });
+        EXPECT_TRUE(is_named) << type.name << " " << row.key;
+      }
+    }
+  }
+}
+
+TEST(FieldTables, AppendAndFindGiveTheSameDef) {
+  MechanicsDef def;
+  for (const Section& section : sections()) {
+    for (const ElementType& type : section.types) {
+      const std::string name = std::string(section.name) + "_" + std::string(type.name);
+      void* appended = type.append(def, name);
+      const FoundElement found = find_element(def, name);
+      EXPECT_EQ(found.def, appended);
+      ASSERT_NE(found.type, nullptr);
+      EXPECT_EQ(found.type->name, type.name);
+    }
+  }
+  EXPECT_EQ(find_element(def, "Nobody").def, nullptr);
+}
+
+TEST(FieldTables, KeysAreUniqueAndDocumented) {
+  for (const Section& section : sections()) {
+    for (const ElementType& type : section.types) {
+      for (std::size_t i = 0; i < type.fields.size(); ++i) {
+        EXPECT_FALSE(type.fields[i].doc.empty()) << type.fields[i].key;
+        for (std::size_t k = 0; k < i; ++k) EXPECT_NE(type.fields[i].key, type.fields[k].key);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slew::multibody
