@@ -1,0 +1,26 @@
+// Errors over the communication step on two logarithmic axes, as self-contained SVG.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace slew::benchmarks {
+
+struct ErrorCurve {
+  std::string name;
+  int colour = 0;
+  bool is_dashed = false;
+  std::vector<std::pair<double, double>> points;  // step [ms], error; both > 0
+  std::vector<bool> is_flagged;                   // per point: drawn open
+};
+
+struct LogLogPlot {
+  std::string title, subtitle, x_label, y_label;
+  double x_low = 0.08, x_high = 25;
+  double y_low = 1e-7, y_high = 1e1;  // what lies above is drawn at the edge
+};
+
+[[nodiscard]] std::string log_log_svg(const std::vector<ErrorCurve>& curves, const LogLogPlot& plot);
+
+}  // namespace slew::benchmarks
