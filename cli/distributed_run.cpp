@@ -248,6 +248,7 @@ class Supervisor {
   RunOutcome outcome() {
     RunOutcome outcome;
     outcome.code = code();
+    outcome.has_begun = are_others_started_ && observer_->view().has_session();
     // nobody says "io ended it" when io has said why
     outcome.messages = causes_.empty() && !is_node_killed_ ? consequences_ : causes_;
     outcome.recording = recording_;

@@ -153,6 +153,7 @@ class InProcessRun {
     }
     if (interrupt_code() != 0) outcome.code = static_cast<ExitCode>(interrupt_code());
     if (recorder_ != nullptr) outcome.recording = recorder_->recording().string();
+    outcome.has_begun = true;
     outcome.steps = io_->next_step();
     outcome.wall_time = started_ns_ > 0 ? static_cast<double>(ended_ns_ - started_ns_) * 1e-9 : 0;
     outcome.view = observer_->view();

@@ -107,8 +107,8 @@ std::vector<std::string> explain_stalls(const scene::Scene& scene, const recordi
   if (scene.mechanics.bodies.empty()) return notes;
   const std::string payload = scene.mechanics.bodies.back().name;
   for (const PortLimit& limit : port_limits(scene)) {
-    const std::vector<std::string> names = {limit.valve + ".control_signal", limit.port + ".speed",
-                                            limit.port + ".pressure_b",      limit.port + ".static_force",
+    const std::vector<std::string> names = {limit.valve + ".control_signal",     limit.port + ".speed",
+                                            limit.port + ".pressure_b",          limit.port + ".static_force",
                                             limit.port + ".static_force_per_kg", payload + ".mass"};
     std::vector<plotting::Series> curves;
     for (const std::string& name : names) {
@@ -120,7 +120,9 @@ std::vector<std::string> explain_stalls(const scene::Scene& scene, const recordi
     if (curves.size() != names.size()) continue;
     std::vector<PortLoad> history;
     for (std::size_t i = 0; i < curves[0].time.size(); ++i) {
-      const auto at = [&](std::size_t curve) { return i < curves[curve].values.size() ? curves[curve].values[i] : 0.0; };
+      const auto at = [&](std::size_t curve) {
+        return i < curves[curve].values.size() ? curves[curve].values[i] : 0.0;
+      };
       history.push_back({curves[0].time[i], at(0), at(1), at(2), at(3), at(4), at(5)});
     }
     if (std::optional<std::string> text = explain_stall(limit, payload, history)) notes.push_back(std::move(*text));

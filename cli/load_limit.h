@@ -20,13 +20,13 @@ namespace slew::cli {
 
 // What valve and pump can give one port that pushes.
 struct PortLimit {
-  std::string port;     // actuator
+  std::string port;  // actuator
   std::string valve;
-  double area_a = 0, area_b = 0;   // m2
-  double pressure = 0;             // p_limit, absolute [Pa]
-  double valve_ls = 0;             // Pa above tank
-  double compensator = 0;          // Pa
-  double moves_above = 0;          // control signal that leaves the overlap
+  double area_a = 0, area_b = 0;  // m2
+  double pressure = 0;            // p_limit, absolute [Pa]
+  double valve_ls = 0;            // Pa above tank
+  double compensator = 0;         // Pa
+  double moves_above = 0;         // control signal that leaves the overlap
   double efficiency = 1, seal_friction = 0, breakaway = 1;
 };
 
@@ -35,13 +35,13 @@ struct PortLimit {
 
 // One instant of one port.
 struct PortLoad {
-  double time = 0;          // s
-  double control = 0;       // of the valve, positive: A side pressurised
-  double speed = 0;         // m/s
-  double return_pressure = 0;  // p_B [Pa]
-  double static_force = 0;  // N
+  double time = 0;                 // s
+  double control = 0;              // of the valve, positive: A side pressurised
+  double speed = 0;                // m/s
+  double return_pressure = 0;      // p_B [Pa]
+  double static_force = 0;         // N
   double static_force_per_kg = 0;  // N/kg
-  double payload = 0;       // kg
+  double payload = 0;              // kg
 };
 
 // A sentence for the summary when the port was asked to push for at least a second and could not; empty otherwise.

@@ -28,6 +28,7 @@ struct RunOptions {
 
 struct RunOutcome {
   ExitCode code = ExitCode::ok;
+  bool has_begun = false;             // the session came into being
   std::vector<std::string> messages;  // why it did not end well, the cause first
   std::string recording;              // path; empty: none
   SessionView view;                   // as seen while it ran

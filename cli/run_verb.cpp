@@ -29,6 +29,10 @@ ExitCode run(RunOptions options) {
                                "--in-process and --remote exclude each other; nothing was started; leave one out");
   }
   const RunOutcome outcome = options.is_in_process ? run_in_process(options, scene) : run_distributed(options, scene);
+  if (!outcome.has_begun) {
+    for (const std::string& message : outcome.messages) std::fprintf(stderr, "%s\n", message.c_str());
+    return outcome.code;
+  }
   const RunReport report = make_report(outcome, scene);
   if (options.is_json) {
     fmt::print("{}\n", to_json_text(report));

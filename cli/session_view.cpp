@@ -1,6 +1,7 @@
 #include "cli/session_view.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "transport/codec.h"
 
@@ -9,6 +10,13 @@ namespace slew::cli {
 using wire::Role;
 using wire::Topic;
 
+namespace {
+
+// directories of 64 messages a node, some statuses; more than that is not said once
+constexpr std::size_t kMostEarly = 1024;
+
+}  // namespace
+
 NodeView* SessionView::node_of(const wire::Header& header) {
   const auto index = static_cast<std::size_t>(header.role);
   if (!session_ || header.session != session_->header.session || index >= wire::kRoles) return nullptr;
@@ -16,27 +24,44 @@ NodeView* SessionView::node_of(const wire::Header& header) {
 }
 
 void SessionView::take(Topic topic, std::span<const std::byte> bytes) {
+  // topics arrive in any order; those that are said only once must wait for the session they belong to
+  const bool is_said_once =
+      topic == Topic::node_status || topic == Topic::variable_directory || topic == Topic::controller_lease;
+  if (!session_ && is_said_once && early_.size() < kMostEarly) {
+    early_.push_back({topic, {bytes.begin(), bytes.end()}});
+    return;
+  }
   switch (topic) {
     case Topic::session:
       return take_session(bytes);
-    case Topic::node_status: {
-      wire::NodeStatus status;
-      if (!transport::decode(bytes, status)) return;
-      if (NodeView* node = node_of(status.header); node != nullptr) {
-        node->is_known = true;
-        node->status = std::move(status);
-      }
-      return;
-    }
+    case Topic::node_status:
+      return take_status(bytes);
     case Topic::health:
       return take_health(bytes);
     case Topic::variable_directory:
       return take_directory(bytes);
     case Topic::variables:
       return take_block(bytes);
+    case Topic::controller_lease:
+      return take_lease(bytes);
     default:
       return;
   }
+}
+
+void SessionView::take_status(std::span<const std::byte> bytes) {
+  wire::NodeStatus status;
+  if (!transport::decode(bytes, status)) return;
+  if (NodeView* node = node_of(status.header); node != nullptr) {
+    node->is_known = true;
+    node->status = std::move(status);
+  }
+}
+
+void SessionView::take_lease(std::span<const std::byte> bytes) {
+  wire::ControllerLease lease;
+  if (!transport::decode(bytes, lease) || node_of(lease.header) == nullptr) return;
+  leases_[{lease.controller, lease.channel}] = lease;
 }
 
 // a session that starts under the same name after this one takes its place
@@ -53,6 +78,7 @@ void SessionView::take_session(std::span<const std::byte> bytes) {
   index_.clear();
   leases_.clear();
   step_ = kJoinStep;
+  for (const Early& early : std::exchange(early_, {})) take(early.topic, early.bytes);
 }
 
 void SessionView::take_health(std::span<const std::byte> bytes) {

@@ -70,13 +70,21 @@ class SessionView {
 
  private:
   void take_session(std::span<const std::byte> bytes);
+  void take_lease(std::span<const std::byte> bytes);
+  void take_status(std::span<const std::byte> bytes);
   void take_health(std::span<const std::byte> bytes);
   void take_directory(std::span<const std::byte> bytes);
   void take_block(std::span<const std::byte> bytes);
   [[nodiscard]] NodeView* node_of(const wire::Header& header);
 
+  struct Early {
+    wire::Topic topic;
+    std::vector<std::byte> bytes;
+  };
+
   std::string name_;
   std::optional<wire::SessionDescription> session_;
+  std::vector<Early> early_;  // kept messages that came before the session was known
   std::array<NodeView, wire::kRoles> nodes_;
   std::array<std::vector<VariableView>, wire::kRoles> variables_;
   std::array<std::uint32_t, wire::kRoles> named_{};  // variables whose name has come

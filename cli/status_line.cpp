@@ -19,7 +19,7 @@ using wire::Role;
 
 constexpr std::int64_t kTerminalPeriodNs = 200'000'000;
 constexpr std::int64_t kLinesPeriodNs = 2'000'000'000;
-constexpr std::int64_t kFactorPeriodNs = 1'000'000'000;
+constexpr std::int64_t kFactorPeriodNs = 500'000'000;
 constexpr std::size_t kMostVariables = 6;
 
 std::size_t terminal_width() {
@@ -109,7 +109,7 @@ std::string StatusText::text(const SessionView& view, std::int64_t now_ns) {
   }
   std::string text = fmt::format("{:7.2f} s", static_cast<double>(step) * H);
   if (duration_ > 0) text += fmt::format(" of {:g}", duration_);
-  text += fmt::format("  x{:.2f}", factor_);
+  if (factor_ > 0) text += fmt::format("  x{:.2f}", factor_);
   // nodes: named only when they are not simply running
   std::string nodes;
   for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::recorder}) {

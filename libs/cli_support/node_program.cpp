@@ -9,6 +9,7 @@
 #include "node/driver.h"
 #include "node/identity.h"
 #include "scene/diagnostic.h"
+#include "scene/suggestion.h"
 
 namespace slew::cli_support {
 namespace {
@@ -17,6 +18,17 @@ int report(const std::string& program, const char* text, ExitCode code) noexcept
   std::fflush(stdout);
   std::fprintf(stderr, "%s: %s\n", program.c_str(), text);
   return static_cast<int>(code);
+}
+
+// A word where a verb should stand is the likelier mistake than a verb that is missing.
+std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
+  const std::vector<const CLI::App*> verbs = used.get_subcommands([](const CLI::App*) { return true; });
+  const std::vector<std::string> rest = used.remaining();
+  if (verbs.empty() || rest.empty()) return error.what();
+  std::vector<std::string_view> names;
+  for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
+  const std::string meant = scene::closest(rest.front(), names);
+  return "there is no '" + rest.front() + "' here" + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
 }
 
 }  // namespace
@@ -58,12 +70,13 @@ bool parse(CLI::App& app, int argc, char** argv, int& exit_code) {
     }
     // the verb that was being parsed knows its own help
     std::string verb = app.get_name();
-    for (const CLI::App* used = &app; !used->get_subcommands().empty();) {
+    const CLI::App* used = &app;
+    while (!used->get_subcommands().empty()) {
       used = used->get_subcommands().front();
       verb += ' ' + used->get_name();
     }
-    std::fprintf(stderr, "%s: %s; nothing was done; see '%s --help'\n", app.get_name().c_str(), error.what(),
-                 verb.c_str());
+    std::fprintf(stderr, "%s: %s; nothing was done; see '%s --help'\n", app.get_name().c_str(),
+                 what_is_wrong(*used, error).c_str(), verb.c_str());
     exit_code = static_cast<int>(ExitCode::bad_input);
     return false;
   }

@@ -1,0 +1,176 @@
+// Sessions as processes, and the verbs that look at them and change them.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+
+#include "../../support/test_domain.h"
+#include "command.h"
+#include "sample_hashes.h"
+
+namespace slew::testing {
+namespace {
+
+class Distributed : public ::testing::Test {
+ protected:
+  std::vector<std::string> with_domain(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--domain", std::to_string(domain_.number())});
+    return arguments;
+  }
+  CommandResult slewring(const std::vector<std::string>& arguments) const {
+    return run("slewring", with_domain(arguments), work_.path());
+  }
+  std::unique_ptr<Command> start(const std::string& scene, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"run", scene_file(scene)});
+    return std::make_unique<Command>("slewring", with_domain(more), work_.path());
+  }
+  static bool is_running(const Command& command) { return command.out().find("  running") != std::string::npos; }
+  static bool wait_until_running(Command& command) {
+    return wait_until([&] { return is_running(command) || command.has_ended(); }) && !command.has_ended();
+  }
+
+  TestDomain domain_;
+  WorkFolder work_;
+};
+
+TEST_F(Distributed, CraneHasTheSameHashesAsInOneProcess) {
+  const CommandResult apart = slewring(
+      {"run", scene_file("truck_crane.yaml"), "--pace", "free", "--duration", "2", "--json", "--out", "apart"});
+  ASSERT_EQ(apart.code, 0) << apart.err;
+  const CommandResult together = run("slewring",
+                                     {"run", scene_file("truck_crane.yaml"), "--pace", "free", "--duration", "2",
+                                      "--in-process", "--json", "--out", "together"},
+                                     work_.path());
+  ASSERT_EQ(together.code, 0) << together.err;
+  const SampleHashes hashes = sample_hashes(only_recording_below(work_.path() / "apart"));
+  EXPECT_EQ(hashes.size(), 2u * 2001 + 1);
+  EXPECT_EQ(hashes, sample_hashes(only_recording_below(work_.path() / "together")));
+  const nlohmann::json report = nlohmann::json::parse(apart.out);
+  EXPECT_EQ(report.at("lost"), "none");
+  EXPECT_EQ(report.at("nodes").size(), 4u);
+}
+
+TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
+  const auto session = start("truck_crane.yaml", {"--duration", "0", "--session", "seen"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+
+  const nlohmann::json sessions = nlohmann::json::parse(slewring({"sessions", "--json"}).out);
+  ASSERT_EQ(sessions.size(), 1u);
+  EXPECT_EQ(sessions.at(0).at("name"), "seen");
+  EXPECT_EQ(sessions.at(0).at("nodes").size(), 4u);
+
+  // without --session: the only one
+  const CommandResult watched = slewring({"watch", "Cyl_*.force", "--count", "2", "--json"});
+  ASSERT_EQ(watched.code, 0) << watched.err;
+  EXPECT_TRUE(
+      nlohmann::json::parse(watched.out.substr(0, watched.out.find('\n'))).at("values").contains("Cyl_Jib.force"));
+  const CommandResult typo = slewring({"watch", "Cyl_Lft.force"});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_NE(typo.err.find("did you mean 'Cyl_Lift.force'?"), std::string::npos) << typo.err;
+  EXPECT_NE(slewring({"variables"}).out.find("Bag.position.y"), std::string::npos);
+
+  const CommandResult set = slewring({"param", "set", "Bag.mass=1500kg", "--over", "0.1 s"});
+  EXPECT_EQ(set.code, 0) << set.err;
+  EXPECT_TRUE(set.out.starts_with("accepted(")) << set.out;
+  EXPECT_EQ(slewring({"param", "set", "Bag.mass=-1"}).code, 2);
+  EXPECT_EQ(slewring({"param", "set", "Cyl_Lift.piston_diameter=1"}).code, 2);
+
+  EXPECT_EQ(slewring({"control", "step"}).code, 2);  // not paused
+  EXPECT_EQ(slewring({"control", "pause"}).code, 0);
+  EXPECT_EQ(slewring({"control", "step", "10"}).code, 0);
+  EXPECT_EQ(slewring({"control", "resume"}).code, 0);
+  EXPECT_EQ(slewring({"control", "stop", "--session", "seen"}).code, 0);
+  const CommandResult result = session->wait();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(slewring({"replay", work_.recording().string(), "--verify"}).code, 0);
+}
+
+TEST_F(Distributed, ResetIsRecordedAndReplayed) {
+  const auto session = start("truck_crane.yaml", {"--duration", "0"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  EXPECT_EQ(slewring({"control", "reset"}).code, 0);
+  EXPECT_EQ(slewring({"watch", "Bag.position.y", "--count", "2"}).code, 0);
+  EXPECT_EQ(slewring({"control", "stop"}).code, 0);
+  EXPECT_EQ(session->wait().code, 0);
+  const CommandResult replayed = slewring({"replay", work_.recording().string(), "--verify", "--json"});
+  EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+  EXPECT_EQ(nlohmann::json::parse(replayed.out).at("epochs"), 2);
+}
+
+TEST_F(Distributed, ASecondSessionOfTheNameIsRefusedNamingTheFirst) {
+  const auto first = start("truck_crane.yaml", {"--duration", "0", "--session", "one"});
+  ASSERT_TRUE(wait_until_running(*first)) << first->err();
+  const CommandResult second = slewring({"run", scene_file("first_steps.yaml"), "--session", "one"});
+  EXPECT_EQ(second.code, 2);
+  EXPECT_NE(second.err.find("session 'one' is held by process "), std::string::npos) << second.err;
+  EXPECT_FALSE(first->has_ended());
+  first->send(SIGTERM);
+  EXPECT_EQ(first->wait().code, 143);
+}
+
+TEST_F(Distributed, CtrlCEndsInOrderWithAValidRecording) {
+  const auto session = start("truck_crane.yaml", {"--duration", "0"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  session->send(SIGINT);
+  const CommandResult result = session->wait();
+  EXPECT_EQ(result.code, 130) << result.err;
+  EXPECT_EQ(slewring({"replay", work_.recording().string(), "--verify"}).code, 0);
+  EXPECT_NE(slewring({"info", work_.recording().string()}).out.find("closed in order"), std::string::npos);
+}
+
+TEST_F(Distributed, AKilledNodeIsNamedAndTheRecordingStaysValid) {
+  for (const char* node : {"mechanics_node", "io_node"}) {
+    const std::string folder = std::string("runs_") + node;
+    const auto session = start("truck_crane.yaml", {"--duration", "0", "--out", folder});
+    ASSERT_TRUE(wait_until_running(*session)) << session->err();
+    const pid_t pid = child_of(session->pid(), node);
+    ASSERT_GT(pid, 0) << node;
+    kill(pid, SIGKILL);
+    const CommandResult result = session->wait();
+    EXPECT_EQ(result.code, 4) << result.err;
+    const std::string role = std::string(node).substr(0, std::string(node).find('_'));
+    EXPECT_NE(result.err.find("the " + role + " node (process " + std::to_string(pid) + ") was killed by signal 9"),
+              std::string::npos)
+        << result.err;
+    const CommandResult replayed = slewring({"replay", only_recording_below(work_.path() / folder).string(), "--json"});
+    EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0) << replayed.err;
+  }
+}
+
+TEST_F(Distributed, NodesDieWithTheirSupervisor) {
+  const auto session = start("truck_crane.yaml", {"--duration", "0"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  std::vector<pid_t> nodes;
+  for (const char* node : {"io_node", "mechanics_node", "hydraulics_node", "recorder_node"}) {
+    nodes.push_back(child_of(session->pid(), node));
+    ASSERT_GT(nodes.back(), 0) << node;
+  }
+  session->send(SIGKILL);
+  EXPECT_EQ(session->wait().code, -SIGKILL);
+  for (const pid_t node : nodes) EXPECT_TRUE(wait_until([&] { return kill(node, 0) != 0; }, 20)) << node;
+}
+
+TEST_F(Distributed, ARemoteRoleIsLeftToOthers) {
+  const auto session =
+      start("truck_crane.yaml", {"--duration", "1", "--pace", "free", "--session", "split", "--remote", "hydraulics"});
+  EXPECT_TRUE(wait_until([&] { return child_of(session->pid(), "mechanics_node") > 0; }));
+  EXPECT_EQ(child_of(session->pid(), "hydraulics_node"), 0);
+  const CommandResult node = slewring({"node", "hydraulics", "--session", "split"});
+  EXPECT_EQ(node.code, 0) << node.err;
+  const CommandResult result = session->wait();
+  EXPECT_EQ(result.code, 0) << result.err;
+}
+
+TEST_F(Distributed, ASessionThatIsNotThereIsNamed) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"watch", "x", "--session", "nobody"}, {"control", "pause", "--session", "nobody"}}) {
+    const CommandResult result = slewring(arguments);
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find("no session 'nobody' was found on domain"), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(slewring({"control", "pause"}).code, 1);
+  EXPECT_EQ(slewring({"sessions"}).code, 0);
+}
+
+}  // namespace
+}  // namespace slew::testing

@@ -1,0 +1,139 @@
+// Sessions in one process: run, record, look, replay.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "command.h"
+#include "sample_hashes.h"
+
+namespace slew::testing {
+namespace {
+
+class InProcess : public ::testing::Test {
+ protected:
+  CommandResult slewring(const std::vector<std::string>& arguments) { return run("slewring", arguments, work_.path()); }
+
+  CommandResult run_scene(const std::string& scene, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"run", scene_file(scene), "--in-process", "--pace", "free", "--json"});
+    return slewring(more);
+  }
+
+  WorkFolder work_;
+};
+
+TEST_F(InProcess, FirstStepsAreRunRecordedDrawnAndReplayed) {
+  const CommandResult result = run_scene("first_steps.yaml");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report.at("steps"), 10'000);
+  EXPECT_EQ(report.at("lost"), "none");
+  EXPECT_EQ(report.at("recording"), std::filesystem::relative(work_.recording(), work_.path()).string());
+  EXPECT_TRUE(std::filesystem::exists(work_.path() / report.at("plots").get<std::string>()));
+
+  const CommandResult replayed = slewring({"replay", work_.recording().string(), "--verify", "--json"});
+  EXPECT_EQ(replayed.code, 0) << replayed.err;
+  const nlohmann::json replay = nlohmann::json::parse(replayed.out);
+  EXPECT_EQ(replay.at("steps"), 10'000);
+  EXPECT_EQ(replay.at("compared"), 10'001);
+  EXPECT_EQ(replay.at("unrecorded"), 0);
+}
+
+TEST_F(InProcess, TheLastLineIsThePathOfTheRecording) {
+  const CommandResult result =
+      slewring({"run", scene_file("first_steps.yaml"), "--in-process", "--pace", "free", "--duration", "0.1"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  std::istringstream lines(result.out);
+  std::string last;
+  for (std::string line; std::getline(lines, line);) last = line;
+  EXPECT_EQ(work_.path() / last, work_.recording());
+}
+
+TEST_F(InProcess, TwoRunsOfTheCraneHaveTheSameHashAtEveryStep) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "2", "--out", "first"}).code, 0);
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "2", "--out", "second"}).code, 0);
+  const SampleHashes first = sample_hashes(only_recording_below(work_.path() / "first"));
+  const SampleHashes second = sample_hashes(only_recording_below(work_.path() / "second"));
+  ASSERT_EQ(first.size(), 2u * 2001 + 1);
+  EXPECT_EQ(first, second);
+}
+
+TEST_F(InProcess, ASettingChangesTheRun) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.1", "--out", "first"}).code, 0);
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.1", "--out", "second", "--set", "Bag.mass=501 kg"}).code,
+            0);
+  EXPECT_NE(sample_hashes(only_recording_below(work_.path() / "first")),
+            sample_hashes(only_recording_below(work_.path() / "second")));
+}
+
+TEST_F(InProcess, TheScriptsParameterChangesAreReplayed) {
+  std::ofstream(work_.path() / "input.yaml") << "inputs:\n  Input_Lift: [[0 s, 0], [0.2 s, 1]]\n"
+                                                "parameters:\n  - {at: 0.5 s, set: Bag.mass, value: 800 kg}\n";
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "2", "--input", "input.yaml"}).code, 0);
+  const CommandResult replayed = slewring({"replay", work_.recording().string(), "--verify"});
+  EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+}
+
+TEST_F(InProcess, ReplayStopsAtTheEndOfACutRecording) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "2"}).code, 0);
+  const std::filesystem::path recording = work_.recording();
+  std::filesystem::resize_file(recording, std::filesystem::file_size(recording) * 2 / 3);
+  const CommandResult result = slewring({"replay", recording.string(), "--verify", "--json"});
+  const nlohmann::json replay = nlohmann::json::parse(result.out);
+  EXPECT_GT(replay.at("steps"), 100);
+  EXPECT_LT(replay.at("steps"), 2000);
+  EXPECT_EQ(replay.at("different"), 0);
+  EXPECT_NE(result.err.find("warning"), std::string::npos) << result.err;
+}
+
+TEST_F(InProcess, NoRecordLeavesNothingBehind) {
+  const CommandResult result = run_scene("first_steps.yaml", {"--no-record", "--duration", "0.5"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report.at("recording"), "");
+  EXPECT_FALSE(report.at("variables").empty());
+  EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
+}
+
+TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "1"}).code, 0);
+  const std::string recording = work_.recording().string();
+
+  const nlohmann::json info = nlohmann::json::parse(slewring({"info", recording, "--verify", "--json"}).out);
+  EXPECT_EQ(info.at("scene"), "truck_crane");
+  EXPECT_EQ(info.at("step_ns"), 1'000'000);
+  EXPECT_TRUE(info.at("complete").get<bool>());
+  EXPECT_EQ(info.at("topics").at("tick").at("recorded"), 1001);  // the last one says END
+  EXPECT_EQ(info.at("topics").at("mechanism").at("lost"), "0");
+
+  const CommandResult plotted = slewring({"plot", recording, "Cyl_*.force", "Bag.position.y", "-o", "out.svg"});
+  ASSERT_EQ(plotted.code, 0) << plotted.err;
+  std::ostringstream svg;
+  svg << std::ifstream(work_.path() / "out.svg").rdbuf();
+  EXPECT_NE(svg.str().find("<svg"), std::string::npos);
+  EXPECT_NE(svg.str().find("Cyl_Lift.force"), std::string::npos);
+  EXPECT_NE(svg.str().find("kN"), std::string::npos);
+
+  const CommandResult table = slewring({"export", recording, "Bag.position.y", "--csv"});
+  ASSERT_EQ(table.code, 0) << table.err;
+  EXPECT_TRUE(table.out.starts_with("time [s],Bag.position.y [m]")) << table.out.substr(0, 100);
+  EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 102);  // heading, then every 10th of 1000 steps
+
+  const CommandResult typo = slewring({"plot", recording, "Cyl_Lft.force"});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_NE(typo.err.find("did you mean 'Cyl_Lift.force'?"), std::string::npos) << typo.err;
+}
+
+TEST_F(InProcess, CtrlCEndsTheSessionInOrder) {
+  Command command("slewring", {"run", scene_file("truck_crane.yaml"), "--in-process", "--duration", "0"}, work_.path());
+  ASSERT_TRUE(wait_until([&] { return command.out().find(" running") != std::string::npos; })) << command.err();
+  command.send(SIGINT);
+  const CommandResult result = command.wait();
+  EXPECT_EQ(result.code, 130) << result.err;
+  const CommandResult replayed = slewring({"replay", work_.recording().string(), "--verify"});
+  EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+}
+
+}  // namespace
+}  // namespace slew::testing

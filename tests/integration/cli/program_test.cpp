@@ -1,0 +1,209 @@
+// The command line of every program: help, versions, exit codes, texts of errors.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+
+namespace slew::testing {
+namespace {
+
+class Program : public ::testing::Test {
+ protected:
+  CommandResult slewring(const std::vector<std::string>& arguments) { return run("slewring", arguments, work_.path()); }
+  WorkFolder work_;
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
+  const std::vector<std::vector<std::string>> verbs = {{},
+                                                       {"run"},
+                                                       {"check"},
+                                                       {"describe"},
+                                                       {"variables"},
+                                                       {"schema"},
+                                                       {"sessions"},
+                                                       {"watch"},
+                                                       {"param"},
+                                                       {"param", "list"},
+                                                       {"param", "get"},
+                                                       {"param", "set"},
+                                                       {"control"},
+                                                       {"control", "pause"},
+                                                       {"control", "resume"},
+                                                       {"control", "step"},
+                                                       {"control", "reset"},
+                                                       {"control", "stop"},
+                                                       {"info"},
+                                                       {"plot"},
+                                                       {"export"},
+                                                       {"replay"},
+                                                       {"node"},
+                                                       {"doctor"}};
+  for (std::vector<std::string> arguments : verbs) {
+    std::string verb = "slewring";
+    for (const std::string& word : arguments) verb += ' ' + word;
+    arguments.emplace_back("--help");
+    const CommandResult result = slewring(arguments);
+    EXPECT_EQ(result.code, 0) << verb;
+    EXPECT_TRUE(contains(result.out, "Example")) << verb;
+    EXPECT_TRUE(contains(result.out, "slewring ")) << verb;
+    EXPECT_TRUE(result.err.empty()) << verb << ": " << result.err;
+  }
+}
+
+TEST_F(Program, EveryNodeExplainsItselfWithAnExample) {
+  for (const char* role : {"io", "mechanics", "hydraulics", "flex", "recorder"}) {
+    const CommandResult through = slewring({"node", role, "--help"});
+    EXPECT_EQ(through.code, 0) << role;
+    EXPECT_TRUE(contains(through.out, std::string(role) + "_node")) << role;
+    EXPECT_TRUE(contains(through.out, "Example")) << role;
+    EXPECT_EQ(run(std::string(role) + "_node", {"--help"}, work_.path()).out, through.out) << role;
+  }
+}
+
+TEST_F(Program, EveryProgramTellsTheSameBuild) {
+  const std::string own = slewring({"--version"}).out;
+  ASSERT_TRUE(own.starts_with("slewring 0.")) << own;
+  for (const char* node : {"io_node", "mechanics_node", "hydraulics_node", "flex_node", "recorder_node"}) {
+    const CommandResult result = run(node, {"--version"}, work_.path());
+    EXPECT_EQ(result.code, 0);
+    EXPECT_EQ(result.out, node + own.substr(std::string("slewring").size()));
+  }
+}
+
+TEST_F(Program, UsageErrorsSayWhatWhereAndWhatToDoAndExitWith2) {
+  struct Case {
+    std::vector<std::string> arguments;
+    const char* says;
+  };
+  const std::vector<Case> cases = {
+      {{}, "slewring: A subcommand is required; nothing was done; see 'slewring --help'\n"},
+      {{"chek"}, "slewring: there is no 'chek' here; did you mean 'check'?; nothing was done; see 'slewring --help'\n"},
+      {{"control", "puase"}, "did you mean 'pause'?; nothing was done; see 'slewring control --help'\n"},
+      {{"run"}, "slewring: scene is required; nothing was done; see 'slewring run --help'\n"},
+      {{"run", "x.yaml", "--pace", "slow"}, "--pace: slow not in {real,free}"},
+      {{"run", "x.yaml", "--domain", "500"}, "--domain: Value 500 not in range 0 to 230"},
+      {{"watch", "x", "--session", "*"}, "a session's name consists of letters, digits"},
+      {{"node"}, "a role is missing"},
+      {{"node", "mechanic"}, "there is no role 'mechanic'; nothing was started; did you mean 'mechanics'?\n"},
+      {{"node", "mechanics"}, "mechanics_node: --session is required; nothing was done; see 'mechanics_node --help'\n"},
+      {{"node", "io", "--session", "s"}, "io_node: scene is required"},
+  };
+  for (const Case& c : cases) {
+    const CommandResult result = slewring(c.arguments);
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_TRUE(contains(result.err, c.says)) << result.err << "\nexpected: " << c.says;
+    EXPECT_TRUE(result.out.empty()) << result.out;
+  }
+}
+
+TEST_F(Program, FlexNodeRefusesByName) {
+  const CommandResult result = slewring({"node", "flex", "--session", "s"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_TRUE(contains(result.err, "this version has no flexible bodies: flex_node has nothing to do"));
+}
+
+TEST_F(Program, CheckTellsEveryProblemWithItsPlace) {
+  std::ofstream(work_.path() / "bad.yaml") << "bodies:\n  Rod: {mas: 2 kg, mass: -1 kg}\n";
+  const CommandResult result = slewring({"check", "bad.yaml"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_TRUE(contains(result.err, "bad.yaml:2:9: Rod.mas: ")) << result.err;
+  EXPECT_TRUE(contains(result.err, "did you mean 'mass'?")) << result.err;
+  EXPECT_TRUE(contains(result.err, "bad.yaml:2:")) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(slewring({"check", "bad.yaml", "--json"}).out);
+  EXPECT_FALSE(json.at("ok").get<bool>());
+  EXPECT_EQ(json.at("problems").at(0).at("line"), 2);
+}
+
+TEST_F(Program, CheckAcceptsTheScenesOfTheRepository) {
+  for (const char* scene : {"first_steps.yaml", "truck_crane.yaml"}) {
+    const CommandResult result = slewring({"check", scene_file(scene)});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_TRUE(contains(result.out, "ok")) << result.out;
+  }
+}
+
+TEST_F(Program, AMissingSceneIsNamed) {
+  const CommandResult result = slewring({"run", "nowhere.yaml"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_TRUE(contains(result.err, "nowhere.yaml")) << result.err;
+}
+
+TEST_F(Program, DescribeCountsTheCrane) {
+  const nlohmann::json json =
+      nlohmann::json::parse(slewring({"describe", scene_file("truck_crane.yaml"), "--json"}).out);
+  EXPECT_EQ(json.at("mechanics").at("degrees_of_freedom"), 6);
+  EXPECT_EQ(json.at("mechanics").at("merged").size(), 2u);
+  EXPECT_EQ(json.at("hydraulics").at("pressure_states"), 7);
+  EXPECT_EQ(json.at("ports").size(), 3u);
+  for (const nlohmann::json& node : json.at("nodes")) {
+    EXPECT_EQ(node.at("needed").get<bool>(), node.at("role") != "flex") << node;
+    EXPECT_FALSE(node.at("reason").get<std::string>().empty());
+  }
+  const std::string pendulum = slewring({"describe", scene_file("first_steps.yaml")}).out;
+  EXPECT_TRUE(contains(pendulum, "not needed: no volumes")) << pendulum;
+}
+
+TEST_F(Program, VariablesOfASceneHaveUnits) {
+  const CommandResult result =
+      slewring({"variables", scene_file("truck_crane.yaml"), "--only", "Cyl_Lift.*", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  bool has_force = false;
+  for (const nlohmann::json& variable : nlohmann::json::parse(result.out)) {
+    EXPECT_TRUE(variable.at("name").get<std::string>().starts_with("Cyl_Lift."));
+    if (variable.at("name") == "Cyl_Lift.force") has_force = variable.at("unit") == "N";
+  }
+  EXPECT_TRUE(has_force);
+}
+
+TEST_F(Program, ParametersOfASceneAreListedAndSuggested) {
+  const std::string scene = scene_file("truck_crane.yaml");
+  EXPECT_TRUE(contains(slewring({"param", "get", "Bag.mass", "--scene", scene}).out, "Bag.mass = 500 kg"));
+  const nlohmann::json list =
+      nlohmann::json::parse(slewring({"param", "list", "Bag.*", "--live", "--json", "--scene", scene}).out);
+  ASSERT_FALSE(list.empty());
+  EXPECT_EQ(list.at(0).at("path"), "Bag.mass");
+  const CommandResult typo = slewring({"param", "get", "Bag.mas", "--scene", scene});
+  EXPECT_EQ(typo.code, 2);
+  EXPECT_TRUE(contains(typo.err, "did you mean 'Bag.mass'?")) << typo.err;
+}
+
+TEST_F(Program, SchemaIsJson) {
+  const nlohmann::json schema = nlohmann::json::parse(slewring({"schema"}).out);
+  EXPECT_TRUE(schema.contains("$schema"));
+  EXPECT_TRUE(schema.at("properties").contains("bodies"));
+}
+
+TEST_F(Program, DoctorJudgesThisMachine) {
+  const CommandResult result = slewring({"doctor", "--json"});
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(result.code, json.at("fit").get<bool>() ? 0 : 7);
+  EXPECT_GE(json.at("findings").size(), 8u);
+  const CommandResult nowhere = slewring({"doctor", "--interface", "no_such_if"});
+  EXPECT_EQ(nowhere.code, 7);
+  EXPECT_TRUE(contains(nowhere.out, "no_such_if")) << nowhere.out;
+}
+
+TEST_F(Program, WhatIsNoRecordingIsRefused) {
+  std::ofstream(work_.path() / "text.mcap") << "this is no recording\n";
+  for (const char* verb : {"info", "replay", "export", "plot"}) {
+    const CommandResult result = slewring({verb, "text.mcap"});
+    EXPECT_EQ(result.code, 2) << verb << result.err;
+    EXPECT_TRUE(contains(result.err, "text.mcap")) << verb << result.err;
+  }
+  EXPECT_NE(slewring({"info", "nowhere.mcap"}).code, 0);
+}
+
+TEST_F(Program, KeyboardNeedsATerminal) {
+  const CommandResult result = slewring({"run", scene_file("truck_crane.yaml"), "--input", "keyboard", "--in-process"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_TRUE(contains(result.err, "standard input is not a terminal")) << result.err;
+}
+
+}  // namespace
+}  // namespace slew::testing
