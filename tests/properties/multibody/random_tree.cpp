@@ -106,7 +106,7 @@ class Generator {
 
   // a force between neighbours, with or without dummies; sometimes the body comes first
   void add_line(int i, const std::string& body, const std::string& parent, JointType type) {
-    if (pick(3) == 0) return;
+    if (pick(3) == 0 || (parent == kGroundName && !options_.lines_to_ground)) return;
     const std::string name = "F" + std::to_string(i);
     const bool is_swapped = pick(2) == 0;
     const Triple far = {number(1, 2), number(-2, -1), number(1, 2)};
