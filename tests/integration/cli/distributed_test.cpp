@@ -20,6 +20,10 @@ class Distributed : public ::testing::Test {
   CommandResult slewring(const std::vector<std::string>& arguments) const {
     return run("slewring", with_domain(arguments), work_.path());
   }
+  // a verb that reads a file and takes no domain
+  CommandResult offline(const std::vector<std::string>& arguments) const {
+    return run("slewring", arguments, work_.path());
+  }
   std::unique_ptr<Command> start(const std::string& scene, std::vector<std::string> more = {}) const {
     more.insert(more.begin(), {"run", scene_file(scene)});
     return std::make_unique<Command>("slewring", with_domain(more), work_.path());
@@ -82,7 +86,7 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
   EXPECT_EQ(slewring({"control", "stop", "--session", "seen"}).code, 0);
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(slewring({"replay", work_.recording().string(), "--verify"}).code, 0);
+  EXPECT_EQ(offline({"replay", work_.recording().string(), "--verify"}).code, 0);
 }
 
 TEST_F(Distributed, ResetIsRecordedAndReplayed) {
@@ -92,7 +96,7 @@ TEST_F(Distributed, ResetIsRecordedAndReplayed) {
   EXPECT_EQ(slewring({"watch", "Bag.position.y", "--count", "2"}).code, 0);
   EXPECT_EQ(slewring({"control", "stop"}).code, 0);
   EXPECT_EQ(session->wait().code, 0);
-  const CommandResult replayed = slewring({"replay", work_.recording().string(), "--verify", "--json"});
+  const CommandResult replayed = offline({"replay", work_.recording().string(), "--verify", "--json"});
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("epochs"), 2);
 }
@@ -114,8 +118,8 @@ TEST_F(Distributed, CtrlCEndsInOrderWithAValidRecording) {
   session->send(SIGINT);
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 130) << result.err;
-  EXPECT_EQ(slewring({"replay", work_.recording().string(), "--verify"}).code, 0);
-  EXPECT_NE(slewring({"info", work_.recording().string()}).out.find("closed in order"), std::string::npos);
+  EXPECT_EQ(offline({"replay", work_.recording().string(), "--verify"}).code, 0);
+  EXPECT_NE(offline({"info", work_.recording().string()}).out.find("closed in order"), std::string::npos);
 }
 
 TEST_F(Distributed, AKilledNodeIsNamedAndTheRecordingStaysValid) {
@@ -132,7 +136,7 @@ TEST_F(Distributed, AKilledNodeIsNamedAndTheRecordingStaysValid) {
     EXPECT_NE(result.err.find("the " + role + " node (process " + std::to_string(pid) + ") was killed by signal 9"),
               std::string::npos)
         << result.err;
-    const CommandResult replayed = slewring({"replay", only_recording_below(work_.path() / folder).string(), "--json"});
+    const CommandResult replayed = offline({"replay", only_recording_below(work_.path() / folder).string(), "--json"});
     EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0) << replayed.err;
   }
 }
