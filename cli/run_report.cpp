@@ -12,6 +12,7 @@
 #include "cli/load_limit.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
+#include "cli/stall_report.h"
 #include "cli_support/failure.h"
 #include "coupling/indicator.h"
 #include "node/identity.h"
@@ -139,6 +140,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
       if (span.ticks > 0) report.steps = span.ticks - 1;  // the last one says END
       if (span.wall_time > 0) report.wall_time = span.wall_time;
       report.notes = explain_stalls(scene, *reader);
+      report.notes = explain_stalls(*reader, scene);
       report.plots = write_plots(scene, outcome.recording);
     } catch (const cli_support::Failure& failure) {
       report.messages.emplace_back(failure.what());

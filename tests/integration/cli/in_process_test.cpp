@@ -125,6 +125,37 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_NE(typo.err.find("did you mean 'Cyl_Lift.force'?"), std::string::npos) << typo.err;
 }
 
+TEST_F(InProcess, TheSummarySaysWhyALoadCannotBeLiftedAndHowMuchCouldBe) {
+  const CommandResult heavy = run_scene("truck_crane_heavy.yaml", {"--out", "heavy"});
+  ASSERT_EQ(heavy.code, 0) << heavy.err;
+  const nlohmann::json notes = nlohmann::json::parse(heavy.out).at("notes");
+  ASSERT_EQ(notes.size(), 1u);
+  const std::string note = notes.at(0);
+  EXPECT_NE(note.find("Cyl_Lift did not extend"), std::string::npos) << note;
+  EXPECT_NE(note.find("maximum_ls_pressure_a"), std::string::npos) << note;
+  const std::size_t at = note.find("up to ", note.find("Bag weighs 1500 kg"));
+  ASSERT_NE(at, std::string::npos) << note;
+  const int most = std::stoi(note.substr(at + 6));
+  EXPECT_GT(most, 1100);
+  EXPECT_LT(most, 1400);
+
+  // a little less than what it says is lifted indeed
+  std::ofstream(work_.path() / "less.yaml")
+      << "interpolation: step\ninputs:\n  Input_Lift: [[0 s, 0], [8 s, 1], [14 s, 0]]\n"
+      << "parameters:\n  - {at: 1 s, set: Bag.mass, value: " << most * 0.97 << " kg, over: 1 s}\n";
+  const CommandResult less = run_scene("truck_crane_heavy.yaml", {"--out", "less", "--input", "less.yaml"});
+  ASSERT_EQ(less.code, 0) << less.err;
+  const nlohmann::json report = nlohmann::json::parse(less.out);
+  const nlohmann::json& angle = report.at("variables").at("Pillar_LiftBoom.position");
+  EXPECT_GT(angle.at("last").get<double>(), angle.at("min").get<double>() + 0.02) << angle;
+}
+
+TEST_F(InProcess, ALoadThatIsLiftedNeedsNoNote) {
+  const CommandResult result = run_scene("truck_crane.yaml");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_TRUE(nlohmann::json::parse(result.out).at("notes").empty()) << result.out;
+}
+
 TEST_F(InProcess, CtrlCEndsTheSessionInOrder) {
   Command command("slewring", {"run", scene_file("truck_crane.yaml"), "--in-process", "--duration", "0"}, work_.path());
   ASSERT_TRUE(wait_until([&] { return command.out().find(" running") != std::string::npos; })) << command.err();

@@ -1,0 +1,214 @@
+#include "cli/stall_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "cli/direct_session.h"
+#include "cli/display.h"
+#include "cli/recorded.h"
+#include "cli_support/failure.h"
+#include "hydraulics/components/double_acting_cylinder.h"
+#include "hydraulics/components/l90ls_valve.h"
+#include "node/identity.h"
+#include "transport/codec.h"
+
+namespace slew::cli {
+namespace {
+
+using hydraulics::DoubleActingCylinderDef;
+using hydraulics::L90lsValveDef;
+using wire::Role;
+
+constexpr double kFullyOpen = 0.9;      // of the maximum control signal
+constexpr double kSettling = 1.0;       // s: spool, load sensing and pump have answered
+constexpr double kShortestStall = 0.5;  // s
+constexpr double kStandstill = 2e-3;    // m/s
+constexpr double kEndOfStroke = 1e-3;   // m
+
+// A cylinder, the valve that feeds it, and the side that is fed: direction +1 extends, through A.
+struct Drive {
+  const DoubleActingCylinderDef* cylinder = nullptr;
+  const L90lsValveDef* valve = nullptr;
+  int direction = 1;
+
+  [[nodiscard]] double area_a() const { return std::numbers::pi / 4 * std::pow(cylinder->piston_diameter, 2); }
+  [[nodiscard]] double area_b() const { return area_a() - std::numbers::pi / 4 * std::pow(cylinder->rod_diameter, 2); }
+  [[nodiscard]] double fed_area() const { return direction > 0 ? area_a() : area_b(); }
+  [[nodiscard]] double other_area() const { return direction > 0 ? area_b() : area_a(); }
+  [[nodiscard]] const std::string& fed_volume() const { return direction > 0 ? cylinder->port_a : cylinder->port_b; }
+  // above tank
+  [[nodiscard]] double feed_limit() const {
+    return (direction > 0 ? valve->maximum_ls_pressure_a : valve->maximum_ls_pressure_b) + valve->compensator_pressure;
+  }
+};
+
+struct Stall {
+  double from = 0, to = 0;    // s
+  double other_pressure = 0;  // Pa, at the end
+  double static_force = 0;    // N, against the direction: positive
+};
+
+std::vector<Drive> drives_of(const scene::Scene& scene) {
+  std::vector<Drive> drives;
+  for (const auto& component : scene.hydraulics.components) {
+    const auto* cylinder = dynamic_cast<const DoubleActingCylinderDef*>(component.get());
+    if (cylinder == nullptr) continue;
+    for (const auto& other : scene.hydraulics.components) {
+      const auto* valve = dynamic_cast<const L90lsValveDef*>(other.get());
+      if (valve == nullptr || valve->port_a != cylinder->port_a || valve->port_b != cylinder->port_b) continue;
+      drives.push_back({cylinder, valve, 1});
+      drives.push_back({cylinder, valve, -1});
+    }
+  }
+  return drives;
+}
+
+// The longest stall of a drive.
+std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& drive) {
+  const std::string& name = drive.cylinder->name;
+  const std::vector<std::string> wanted = {drive.valve->name + ".control_signal", name + ".speed", name + ".stroke",
+                                           name + ".static_force",
+                                           name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
+  const std::vector<plotting::Series> curves = read_series(reader, wanted, Units::si);
+  const std::size_t size = curves[0].values.size();
+  for (const plotting::Series& curve : curves) {
+    if (curve.values.size() != size) return std::nullopt;  // written by nodes that did not end together
+  }
+  const double sign = drive.direction;
+  std::optional<Stall> longest;
+  Stall stall;
+  double open_since = -1, standing_since = -1;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double time = curves[0].time[i];
+    const bool is_open = sign * curves[0].values[i] >= kFullyOpen * drive.valve->maximum_control_signal;
+    if (!is_open) open_since = -1;
+    if (is_open && open_since < 0) open_since = time;
+    const bool is_at_end = drive.direction > 0 ? curves[2].values[i] > drive.cylinder->maximum_stroke - kEndOfStroke
+                                               : curves[2].values[i] < drive.cylinder->minimum_stroke + kEndOfStroke;
+    const bool stands = is_open && time - open_since >= kSettling && !is_at_end &&
+                        sign * curves[1].values[i] < kStandstill && sign * curves[3].values[i] > 0;
+    if (!stands) standing_since = -1;
+    if (stands && standing_since < 0) standing_since = time;
+    if (!stands || time - standing_since < kShortestStall) continue;
+    stall = {standing_since, time, curves[4].values[i], sign * curves[3].values[i]};
+    if (!longest || stall.to - stall.from >= longest->to - longest->from) longest = stall;
+  }
+  return longest;
+}
+
+// The body that hangs at the end of a chain, the heaviest one: what a person calls the load.
+const multibody::BodyDef* load_of(const scene::Scene& scene) {
+  const multibody::BodyDef* load = nullptr;
+  for (const multibody::BodyDef& body : scene.mechanics.bodies) {
+    const bool carries = std::any_of(scene.mechanics.joints.begin(), scene.mechanics.joints.end(),
+                                     [&](const multibody::JointDef& joint) { return joint.body1 == body.name; });
+    if (!carries && (load == nullptr || body.mass > load->mass)) load = &body;
+  }
+  return load;
+}
+
+double variable_of(const coupling::Subsystem& subsystem, const std::string& name) {
+  const std::span<const ElementVariable> variables = subsystem.variables();
+  std::vector<double> values(variables.size());
+  subsystem.read_variables(values);
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    if (variables[i].name == name) return values[i];
+  }
+  return std::nan("");
+}
+
+// The mass now, when the last command that changed it has run its course.
+struct LoadSlope {
+  double mass = 0;   // kg, at the stall
+  double force = 0;  // N, static force at the stall
+  double slope = 0;  // N/kg
+};
+
+// Computes the session again up to the stall and varies the load's mass there. Nothing when it was reset on the way.
+std::optional<LoadSlope> find_slope(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
+                                    const multibody::BodyDef& load, double until) {
+  DirectSession session(scene);
+  if (!session.start().is_ok() || session.subsystem(Role::mechanics) == nullptr) return std::nullopt;
+  const std::string path = load.name + ".mass";
+  const auto last = static_cast<StepIndex>(std::llround(until / scene.session.step_duration().seconds()));
+  double mass = load.mass;
+  StepIndex next = 0;
+  wire::Tick tick;
+  recording::MessageFilter filter;
+  filter.topics = {std::string(node::to_text(wire::Topic::tick))};
+  const Status read = reader.for_each(filter, [&](const recording::RecordedMessage& message) {
+    using Visit = recording::Reader::Visit;
+    if (!transport::decode(message.payload, tick) || tick.header.epoch != 0) return Visit::stop;
+    if (tick.header.phase != wire::Phase::running || tick.header.step != next) return Visit::go_on;
+    for (const wire::Command& command : tick.commands) {
+      if (command.path == path) mass = command.value;
+    }
+    session.step(next, tick.commands, tick.controls.span());
+    return ++next < last ? Visit::go_on : Visit::stop;
+  });
+  if (!read.is_ok() || next < last) return std::nullopt;
+  const coupling::Subsystem& mechanics = *session.subsystem(Role::mechanics);
+  const std::string variable = drive.cylinder->name + ".static_force";
+  LoadSlope result{mass, drive.direction * variable_of(mechanics, variable), 0};
+  // half the mass at the same place: a step moves nothing that matters
+  wire::Command half;
+  half.path = path;
+  half.value = mass / 2;
+  session.step(next, {&half, 1}, tick.controls.span());
+  result.slope = (result.force - drive.direction * variable_of(mechanics, variable)) / (mass / 2);
+  return result;
+}
+
+std::string sentence(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
+                     const Stall& stall) {
+  const DoubleActingCylinderDef& cylinder = *drive.cylinder;
+  const double tank = [&] {
+    for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {
+      if (volume.name == drive.valve->port_t) return volume.initial_pressure;
+    }
+    return 0.0;
+  }();
+  const double needed = ((stall.static_force + cylinder.seal_friction) / cylinder.cylinder_coefficient +
+                         stall.other_pressure * drive.other_area()) /
+                        drive.fed_area();
+  const double limit = tank + drive.feed_limit();
+  std::string text =
+      fmt::format("{} did not {} from {:.1f} to {:.1f} s with {} fully open: moving the load takes {} in {}",
+                  cylinder.name, drive.direction > 0 ? "extend" : "retract", stall.from, stall.to, drive.valve->name,
+                  quantity_text(needed, "Pa"), drive.fed_volume());
+  if (needed <= limit) return text + ", which the valve could feed; look at the pump's pressure in a plot";
+  text += fmt::format(", but {} feeds up to {} only (maximum_ls_pressure_{} and compensator_pressure above tank)",
+                      drive.valve->name, quantity_text(limit, "Pa"), drive.direction > 0 ? "a" : "b");
+  const double available =
+      (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * cylinder.cylinder_coefficient -
+      cylinder.seal_friction;
+  const multibody::BodyDef* load = load_of(scene);
+  const std::optional<LoadSlope> slope =
+      load != nullptr ? find_slope(reader, scene, drive, *load, stall.to) : std::nullopt;
+  if (!slope || !(slope->slope > 0)) return text;
+  const double mass = slope->mass - (slope->force - available) / slope->slope;
+  if (!(mass > 0)) return text + fmt::format("; not even {} without load could be moved there", load->name);
+  return text +
+         fmt::format("; {} weighs {:.4g} kg, up to {:.0f} kg could be moved there", load->name, slope->mass, mass);
+}
+
+}  // namespace
+
+std::vector<std::string> explain_stalls(const recording::Reader& reader, const scene::Scene& scene) {
+  std::vector<std::string> sentences;
+  for (const Drive& drive : drives_of(scene)) {
+    try {
+      const std::optional<Stall> stall = find_stall(reader, drive);
+      if (stall) sentences.push_back(sentence(reader, scene, drive, *stall));
+    } catch (const cli_support::Failure&) {
+      // the scene does not record what this looks at
+    }
+  }
+  return sentences;
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,24 @@
+// Why a cylinder did not move although its valve was fully open: a sentence for the summary of a run.
+//
+// A stall is a time of at least half a second, from one second after the valve was told to open fully, in which a
+// double-acting cylinder does not move against its load. The pressure that would move it,
+//   p = (F + p_other A_other) / A,   F = (F_static + F_seal) / eta                                        (1)
+// (F_static: force that holds the load, eta: the cylinder's efficiency) is compared with the pressure at which an L90LS
+// valve stops feeding, p_LSmax + p_comp above tank. The load that could be moved follows from F_static, which is linear
+// in the mass of a body: the ticks are computed again up to the stall, and the mass is varied there.
+//
+// Not covered: other valves and cylinders, several cylinders on one load, a pump that another section has saturated.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "recording/reader.h"
+#include "scene/scene.h"
+
+namespace slew::cli {
+
+// One sentence for each cylinder that stalled. Empty also when the recording lacks the variables it needs.
+[[nodiscard]] std::vector<std::string> explain_stalls(const recording::Reader& reader, const scene::Scene& scene);
+
+}  // namespace slew::cli
