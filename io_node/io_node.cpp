@@ -535,11 +535,19 @@ void IoNode::watch(std::int64_t now_ns) {
   Role about = Role::io;
   const node::PeerEvent event = member_.watch_peers(now_ns, about);
   if (stage_ == Stage::ending) return;
+  // of several that went wrong in the same moment the one of the earliest step is named, then by the order of roles
+  const node::Peer* first = nullptr;
   for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
     const node::Peer& peer = member_.peer(role);
     if (!member_.requires_role(role) || !peer.is_known || peer.status.state < NodeState::ended) continue;
-    return begin_ending(static_cast<ExitCode>(peer.status.exit_code),
-                        member_.describe_peer(role) + ": " + peer.status.reason, now_ns);
+    if (first == nullptr || peer.status.header.step < first->status.header.step) first = &peer;
+  }
+  if (first != nullptr) {
+    if (fault_seen_ns_ == 0) fault_seen_ns_ = now_ns;
+    if (now_ns - fault_seen_ns_ < kFaultGathering.ns) return;
+    const Role role = first->status.header.role;
+    return begin_ending(static_cast<ExitCode>(first->status.exit_code),
+                        member_.describe_peer(role) + ": " + first->status.reason, now_ns);
   }
   switch (event) {
     case node::PeerEvent::lost:

@@ -61,6 +61,7 @@ inline constexpr StepIndex kWindowReal = 1;
 inline constexpr StepIndex kWindowFree = 4;
 inline constexpr StepIndex kRecorderWindow = 512;
 inline constexpr SimDuration kLagLimit = milliseconds(50);
+inline constexpr SimDuration kFaultGathering = milliseconds(20);  // others may have gone wrong in the same step
 
 class IoNode final : public node::Node {
  public:
@@ -128,6 +129,7 @@ class IoNode final : public node::Node {
   std::int64_t deadline_ns_ = 0;  // of the stage
   std::int64_t resend_due_ns_ = 0;
   std::int64_t last_progress_ns_ = 0;
+  std::int64_t fault_seen_ns_ = 0;
   std::vector<double> script_raw_;
   std::vector<wire::Command> script_changes_;
   wire::Tick tick_;

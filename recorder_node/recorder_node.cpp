@@ -85,7 +85,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
 }
 
 std::int64_t RecorderNode::next_deadline(std::int64_t now_ns) const {
-  return now_ns + (end_step_ >= 0 ? node::kResendAfter.ns : node::kProbeInterval.ns);
+  return now_ns + (is_ending() ? node::kResendAfter.ns : node::kProbeInterval.ns);
 }
 
 void RecorderNode::request_stop(ExitCode code) {
@@ -176,6 +176,7 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
     stage_ = Stage::finished;
     return;
   }
+  begin_streams();
   write(message, session.header.epoch, kJoinStep, 0);
   // nothing to prove for a node without step topics, nothing to initialise: it is ready when it listens
   member_.set_state(NodeState::ready);
@@ -249,15 +250,17 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
     ++counts.duplicates;
     return;
   }
-  if (message.topic == Topic::tick) {
-    wire::Tick tick;
-    if (transport::decode(message.bytes, tick) && (tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) {
-      end_step_ = header.step;
-      end_flags_ = tick.flags;
-    }
-  }
   if (!stream.has_gap()) resend_.restart(now_ns);
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
+}
+
+// what must be complete: the ticks and the samples of every role that takes part
+void RecorderNode::begin_streams() {
+  streams_.clear();
+  for (const auto& [topic, role] : {std::pair(Topic::tick, Role::io), std::pair(Topic::mechanism, Role::mechanics),
+                                    std::pair(Topic::actuators, Role::hydraulics)}) {
+    if (member_.requires_role(role)) streams_.try_emplace({topic, role});
+  }
 }
 
 // one stream per writer and block; blocks come every k-th step
@@ -291,10 +294,9 @@ void RecorderNode::start_epoch(std::uint32_t epoch) {
     stream.close_at(stream.newest());
     counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
   }
-  streams_.clear();
+  begin_streams();
   last_block_.clear();
   member_.set_epoch(epoch);
-  end_step_ = -1;
   reported_step_ = kJoinStep;
   member_.set_recorded_step(kJoinStep);
   member_.mark_status_changed();
@@ -313,21 +315,35 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
 
 // ---- progress -------------------------------------------------------------------------------------------------
 
-// all required streams are complete below the step after this one
+// every stream is complete up to this step
 StepIndex RecorderNode::complete_up_to() const noexcept {
   StepIndex least = -1;
   bool is_first = true;
-  const auto consider = [&](Topic topic, Role role) {
-    if (!member_.has_session() || !member_.requires_role(role)) return;
-    const auto found = streams_.find({topic, role});
-    const StepIndex at = found == streams_.end() ? -1 : found->second.next() - 1;
-    least = is_first ? at : std::min(least, at);
+  for (const auto& [key, stream] : streams_) {
+    least = is_first ? stream.next() - 1 : std::min(least, stream.next() - 1);
     is_first = false;
-  };
-  consider(Topic::tick, Role::io);
-  consider(Topic::mechanism, Role::mechanics);
-  consider(Topic::actuators, Role::hydraulics);
+  }
   return least;
+}
+
+// last step of a stream as its writer said when it ended; before that, or when it is gone, the newest that came
+StepIndex RecorderNode::final_step(Role writer, const StreamGaps& stream) const noexcept {
+  const node::Peer& peer = member_.peer(writer);
+  const bool has_said = peer.is_known && !peer.is_lost && peer.status.state >= NodeState::ended &&
+                        peer.status.header.epoch == member_.epoch();
+  return has_said ? peer.status.header.step : stream.newest();
+}
+
+bool RecorderNode::is_ending() const noexcept {
+  return member_.peer(Role::io).status.state >= NodeState::ended || !lost_node_.empty();
+}
+
+// everybody who is still there has ended, and all that they sent has come
+bool RecorderNode::has_everything() const noexcept {
+  return member_.all_required(NodeState::ended) &&
+         std::all_of(streams_.begin(), streams_.end(), [&](const auto& entry) {
+           return entry.second.next() > final_step(entry.first.second, entry.second);
+         });
 }
 
 void RecorderNode::report_progress(std::int64_t now_ns) {
@@ -339,25 +355,19 @@ void RecorderNode::report_progress(std::int64_t now_ns) {
     member_.set_step(at);
     member_.mark_status_changed();
   }
-  if (stage_ == Stage::recording && end_step_ >= 0 && at >= end_step_ && member_.all_required(NodeState::ended)) {
-    begin_ending((end_flags_ & static_cast<std::uint32_t>(wire::TickFlag::fault)) != 0
-                     ? static_cast<ExitCode>(end_flags_ >> 8)
-                     : ExitCode::ok,
-                 "io ended the session: " + member_.peer(Role::io).status.reason);
-  }
 }
 
 void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
   if (!resend_.is_due(now_ns)) return;
   bool any = false;
   for (const auto& [key, stream] : streams_) {
-    const bool waits_for_end = end_step_ >= 0 && stream.next() < end_step_ + (key.first == Topic::tick ? 0 : 1);
-    if (!stream.has_gap() && !waits_for_end) continue;
+    const StepIndex last = stream.has_gap() ? stream.gap_end() : final_step(key.second, stream);
+    if (stream.next() > last) continue;
     wire::ResendRequest request;
     request.header = member_.header(Phase::running, stream.next());
     request.role = key.second;
     request.topic = static_cast<std::uint8_t>(key.first);
-    request.last_step = stream.has_gap() ? stream.gap_end() : end_step_;
+    request.last_step = last;
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
     any = true;
@@ -378,26 +388,20 @@ void RecorderNode::watch(std::int64_t now_ns) {
     lost_node_ = member_.describe_peer(about);
     deadline_ns_ = now_ns + node::kSilentAfter.ns;
   }
-  // a moment longer, so that the others' last messages are recorded
-  if (!lost_node_.empty()) {
-    if (member_.all_required(NodeState::ended) || now_ns > deadline_ns_) {
-      begin_ending(ExitCode::node_lost,
-                   lost_node_ + " is gone; the recording was closed after step " + std::to_string(complete_up_to()));
-    }
-    return;
-  }
-  // io ended or failed without an END tick that reached us: close when everybody is through
-  const node::Peer& io = member_.peer(Role::io);
-  if (!io.is_known || io.status.state < NodeState::ended) {
+  if (!is_ending()) {
     deadline_ns_ = 0;
     return;
   }
+  // a moment longer, so that the others' last messages are recorded
   if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns / 2;
-  if (member_.all_required(NodeState::ended) && end_step_ < 0) {
-    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason);
-  } else if (now_ns > deadline_ns_) {
-    begin_ending(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason);
+  if (!has_everything() && now_ns < deadline_ns_) return;
+  if (!lost_node_.empty()) {
+    return begin_ending(ExitCode::node_lost, lost_node_ + " is gone; the recording was closed after step " +
+                                                 std::to_string(complete_up_to()));
   }
+  const wire::NodeStatus& io = member_.peer(Role::io).status;
+  const ExitCode code = io.state == NodeState::fault ? static_cast<ExitCode>(io.exit_code) : ExitCode::ok;
+  begin_ending(code, "io ended the session: " + io.reason);
 }
 
 void RecorderNode::begin_ending(ExitCode code, const std::string& reason) {
@@ -416,13 +420,13 @@ void RecorderNode::begin_ending(ExitCode code, const std::string& reason) {
 
 void RecorderNode::close() {
   if (writer_ == nullptr) return;
+  const StepIndex last_step = complete_up_to();
   for (auto& [key, stream] : streams_) {
-    const StepIndex last = end_step_ < 0 ? stream.newest() : end_step_ - (key.first == Topic::tick ? 1 : 0);
-    if (end_step_ >= 0 && (end_flags_ & static_cast<std::uint32_t>(wire::TickFlag::fault)) == 0) stream.close_at(last);
+    stream.close_at(final_step(key.second, stream));
     counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
   }
   recording::TextMap summary;
-  summary["last_step"] = std::to_string(complete_up_to());
+  summary["last_step"] = std::to_string(last_step);
   for (std::size_t i = 0; i < wire::kTopics; ++i) {
     if (counts_[i].recorded == 0) continue;
     const std::string name(to_text(static_cast<Topic>(i)));

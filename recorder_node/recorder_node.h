@@ -63,7 +63,11 @@ class RecorderNode final : public node::Node {
   Status add_attachments(const wire::SessionDescription& session);
   void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
   void start_epoch(std::uint32_t epoch);
+  void begin_streams();
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
+  [[nodiscard]] StepIndex final_step(wire::Role writer, const StreamGaps& stream) const noexcept;
+  [[nodiscard]] bool is_ending() const noexcept;
+  [[nodiscard]] bool has_everything() const noexcept;
   void report_progress(std::int64_t now_ns);
   void ask_for_gaps(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
@@ -80,8 +84,6 @@ class RecorderNode final : public node::Node {
   std::array<TopicCounts, wire::kTopics> counts_{};
   std::map<std::pair<wire::Topic, wire::Role>, StreamGaps> streams_;  // ticks and samples, by writer
   std::map<std::uint64_t, StepIndex> last_block_;                     // newest variable block, by writer and first
-  StepIndex end_step_ = -1;                                           // of the END tick; -1: not yet
-  std::uint32_t end_flags_ = 0;
   StepIndex reported_step_ = kJoinStep;
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;

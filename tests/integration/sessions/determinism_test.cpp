@@ -6,10 +6,8 @@
 #include <csignal>
 #include <thread>
 
-#include "cli/replay.h"
 #include "direct_chain.h"
 #include "node/identity.h"
-#include "recording/reader.h"
 #include "session.h"
 
 namespace slew::testing {
@@ -86,11 +84,9 @@ TEST(Determinism, ReplayOfADistributedRunGivesTheSameBits) {
   const HashChain replayed = chain_of_ticks(load_scene(kScene, "1.6s"), recorded.ticks.at(0));
   EXPECT_EQ(first_difference(replayed, physics_only(recorded.chain())), "");
   // and as `slewring replay --verify` does it, from the scene inside the recording
-  std::unique_ptr<recording::Reader> reader;
-  ASSERT_TRUE(recording::Reader::open(only_recording(session.runs()), reader).is_ok());
-  const cli::ReplayResult result = cli::replay(*reader, cli::OnDifference::stop);
-  EXPECT_TRUE(result.is_equal()) << result.problem;
-  EXPECT_EQ(result.steps, kSteps);
+  Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
+                 session.folder() / "replay");
+  EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
 }
 
 TEST(Determinism, LoadOnEveryCoreChangesNoBit) {

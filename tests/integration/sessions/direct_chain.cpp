@@ -1,13 +1,15 @@
 #include "direct_chain.h"
 
 #include <array>
+#include <memory>
 #include <stdexcept>
 
-#include "cli/direct_session.h"
 #include "cli_support/carrier.h"
 #include "cli_support/scene_options.h"
 #include "cli_support/subsystem_factory.h"
+#include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
+#include "mechanics_node/mechanics_subsystem.h"
 #include "node/driver.h"
 #include "node/physics_node.h"
 #include "recorder_node/recorder_node.h"
@@ -16,6 +18,57 @@
 namespace slew::testing {
 
 using wire::Role;
+
+namespace {
+
+std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scene& scene) {
+  return role == Role::mechanics ? mechanics::make_mechanics_subsystem(scene)
+                                 : hydraulic_node::make_hydraulics_subsystem(scene);
+}
+
+// both subsystems stepped by hand: each step from the partner's sample of the same instant
+class Pair {
+ public:
+  explicit Pair(const scene::Scene& scene)
+      : mechanics_(make_subsystem(Role::mechanics, scene)), hydraulics_(make_subsystem(Role::hydraulics, scene)) {}
+
+  // Gives the mechanics' hash at INIT.
+  std::uint64_t start() {
+    coupling::OwnSample init;
+    static_cast<void>(mechanics_->first_sample(init));
+    const std::uint64_t hash = mechanics_->state_hash();
+    require(hydraulics_->start({&init.mechanism, nullptr}, hydraulics_now_));
+    require(mechanics_->start({nullptr, &hydraulics_now_.actuators}, mechanics_now_));
+    return hash;
+  }
+
+  void step(const wire::Tick& tick) {
+    const StepIndex n = tick.header.step;
+    for (const wire::Command& command : tick.commands) {
+      for (coupling::Subsystem* subsystem : {mechanics_.get(), hydraulics_.get()}) {
+        subsystem->change_parameter(n, {command.path, command.value, {command.over_ns}});
+      }
+    }
+    coupling::OwnSample mechanics_next, hydraulics_next;
+    const std::span<const double> controls = tick.controls.span();
+    mechanics_->step(n, {nullptr, &hydraulics_now_.actuators}, controls, mechanics_next);
+    hydraulics_->step(n, {&mechanics_now_.mechanism, nullptr}, controls, hydraulics_next);
+    mechanics_now_ = mechanics_next;
+    hydraulics_now_ = hydraulics_next;
+  }
+
+  [[nodiscard]] StepHashes hashes() const { return {0, mechanics_->state_hash(), hydraulics_->state_hash()}; }
+
+ private:
+  static void require(const Status& status) {
+    if (!status.is_ok()) throw std::runtime_error(status.text);
+  }
+
+  std::unique_ptr<coupling::Subsystem> mechanics_, hydraulics_;
+  coupling::OwnSample mechanics_now_, hydraulics_now_;
+};
+
+}  // namespace
 
 scene::Scene load_scene(const std::string& file, const std::string& duration,
                         const std::vector<std::string>& overrides) {
@@ -28,18 +81,14 @@ scene::Scene load_scene(const std::string& file, const std::string& duration,
 }
 
 HashChain chain_of_ticks(const scene::Scene& scene, const std::map<StepIndex, wire::Tick>& ticks) {
-  cli::DirectSession session(scene);
-  if (const Status status = session.start(); !status.is_ok()) throw std::runtime_error(status.text);
+  Pair pair(scene);
   HashChain chain;
-  const auto keep = [&](StepIndex step) {
-    chain[step] = {0, session.state_hash(Role::mechanics), session.state_hash(Role::hydraulics)};
-  };
-  chain[kJoinStep].mechanics = session.init_hash();
-  keep(0);
+  chain[kJoinStep].mechanics = pair.start();
+  chain[0] = pair.hashes();
   for (const auto& [step, tick] : ticks) {
     if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0 || step < 0) continue;
-    session.step(step, tick.commands, tick.controls.span());
-    keep(step + 1);
+    pair.step(tick);
+    chain[step + 1] = pair.hashes();
   }
   return chain;
 }
@@ -55,7 +104,7 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
   config.name_check = {};
   io::IoNode io(*ends[0], std::move(config));
   const auto physics = [](Role role) {
-    return cli_support::subsystem_factory([role](const scene::Scene& s) { return cli::make_subsystem(role, s); }, ".");
+    return cli_support::subsystem_factory([role](const scene::Scene& s) { return make_subsystem(role, s); }, ".");
   };
   node::PhysicsNode mechanics(Role::mechanics, *ends[1], physics(Role::mechanics), milliseconds(10'000));
   node::PhysicsNode hydraulics(Role::hydraulics, *ends[2], physics(Role::hydraulics), milliseconds(10'000));

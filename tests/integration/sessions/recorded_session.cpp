@@ -35,6 +35,7 @@ void take(RecordedSession& session, const recording::RecordedMessage& recorded) 
   } else if (topic == "mechanism") {
     const auto sample = decoded<wire::MechanismMessage>(recorded);
     epoch_of(session, sample.header)[sample.header.step].mechanics = sample.state.state_hash;
+    if (sample.header.phase == wire::Phase::running) session.mechanisms.push_back(sample);
   } else if (topic == "actuators") {
     const auto sample = decoded<wire::ActuatorMessage>(recorded);
     epoch_of(session, sample.header)[sample.header.step].hydraulics = sample.state.state_hash;

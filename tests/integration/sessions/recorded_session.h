@@ -32,6 +32,7 @@ struct SaidStatus {
 struct RecordedSession {
   std::vector<HashChain> epochs;
   std::vector<std::map<StepIndex, wire::Tick>> ticks;  // by epoch
+  std::vector<wire::MechanismMessage> mechanisms;      // running samples in the order of the file
   std::vector<SaidStatus> statuses;
   std::vector<wire::ControlReply> replies;
   std::map<std::string, std::string> summary;  // what the recorder counted

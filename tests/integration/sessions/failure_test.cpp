@@ -1,0 +1,391 @@
+// What happens when something goes wrong in a session: it is named at once, everybody ends with the right code, and
+// the recording is valid.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "core/step_report.h"
+#include "core/time.h"
+#include "node/identity.h"
+#include "recording/reader.h"
+#include "session.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::NodeState;
+using wire::Role;
+
+// promised by the design; the tests allow twice as much, since a loaded machine schedules late
+constexpr std::int64_t kNamedWithinNs = 500'000'000;
+constexpr std::int64_t kOrderlyEndNs = 1'000'000'000;
+
+std::string role_name(const ::testing::TestParamInfo<Role>& role) {
+  return std::string(node::to_text(role.param));
+}
+
+std::string pid_text(const Program& program) {
+  return "process " + std::to_string(program.pid());
+}
+
+// ---- killed nodes ---------------------------------------------------------------------------------------------
+
+class KilledNode : public ::testing::TestWithParam<Role> {};
+
+// ticks run ahead of the samples by so many steps
+constexpr StepIndex kWindow = 4;
+
+// pace_step_ns: wall time of a step in real pace; 0 in free pace
+void expect_named_and_ended(Session& session, Role victim, std::int64_t killed_ns, StepIndex killed_at,
+                            std::int64_t pace_step_ns) {
+  const std::map<Role, int> codes = session.wait_all();
+  for (const auto& [role, code] : codes) {
+    EXPECT_EQ(code, role == victim ? -SIGKILL : 4) << node::to_text(role) << "\n" << session.said();
+    if (role == victim) continue;
+    const std::string said = session.node(role).err();
+    EXPECT_NE(said.find(std::string(node::to_text(victim)) + " (" + pid_text(session.node(victim))), std::string::npos)
+        << node::to_text(role) << " does not name the victim: " << said;
+    EXPECT_NE(said.find("is gone"), std::string::npos) << said;
+  }
+  const std::filesystem::path path = only_recording(session.runs());
+  if (victim == Role::recorder) {
+    // nobody closed it: it is readable up to what was handed over last
+    std::unique_ptr<recording::Reader> reader;
+    ASSERT_TRUE(recording::Reader::open(path, reader).is_ok());
+    EXPECT_FALSE(reader->has_all_messages());
+    // every message is in the file after a second at the latest
+    if (pace_step_ns == 0) return;
+    EXPECT_GE(read_session(path).last_complete_step(), killed_at - 1'100'000'000 / pace_step_ns);
+    return;
+  }
+  const RecordedSession recorded = read_session(path);
+  EXPECT_EQ(recorded.problem, "");
+  // every step that the victim's last words made possible is there, without a gap
+  EXPECT_GE(recorded.last_complete_step(), killed_at - kWindow);
+  for (const auto& [step, hashes] : recorded.chain()) {
+    if (step < 0 || step >= recorded.last_complete_step()) continue;
+    EXPECT_NE(hashes.mechanics, 0u) << step;
+    EXPECT_NE(hashes.hydraulics, 0u) << step;
+  }
+  // somebody said so within the promised time, and the recording knows it
+  std::int64_t first_named_ns = INT64_MAX;
+  for (const SaidStatus& said : recorded.statuses) {
+    if (said.status.reason.find("is gone") == std::string::npos) continue;
+    first_named_ns = std::min(first_named_ns, said.sent_ns - killed_ns);
+  }
+  EXPECT_LT(first_named_ns, kNamedWithinNs);
+}
+
+TEST_P(KilledNode, IsNamedAndEndsTheSessionWithCode4) {
+  std::mt19937_64 random(20'260'500 + static_cast<std::uint64_t>(GetParam()));
+  for (int round = 0; round < 3; ++round) {
+    Session session({"--pace", "real", "--duration", "20s"});
+    Observer& observer = session.observer();
+    session.start_all();
+    const auto step = static_cast<StepIndex>((GetParam() == Role::recorder ? 1300 : 20) + random() % 400);
+    ASSERT_TRUE(observer.wait_for_step(step)) << session.said();
+    const std::int64_t killed_ns = wall_clock_ns();
+    session.node(GetParam()).send(SIGKILL);
+    expect_named_and_ended(session, GetParam(), killed_ns, step, 1'000'000);
+  }
+}
+
+TEST_P(KilledNode, InFreePaceIsNamedAsWell) {
+  Session session({"--pace", "free", "--duration", "100s"});
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(1000)) << session.said();
+  const std::int64_t killed_ns = wall_clock_ns();
+  session.node(GetParam()).send(SIGKILL);
+  expect_named_and_ended(session, GetParam(), killed_ns, 1000, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, KilledNode, ::testing::ValuesIn(kAllNodes), role_name);
+
+TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
+  Session session({"--pace", "real", "--duration", "20s"});
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
+  session.node(Role::hydraulics).send(SIGSTOP);
+  const std::int64_t stopped_ns = monotonic_ns();
+  const auto holds = [&] {
+    const auto& io = observer.status(Role::io);
+    return io && io->state == NodeState::holding && io->reason.find("hydraulics") != std::string::npos;
+  };
+  ASSERT_TRUE(observer.wait_until(holds)) << session.said();
+  EXPECT_GE(monotonic_ns() - stopped_ns, 200'000'000);
+  EXPECT_NE(observer.status(Role::io)->reason.find("silent for 0.3 s"), std::string::npos);
+  EXPECT_EQ(session.node(Role::io).wait(), 4) << session.said();
+  EXPECT_EQ(session.node(Role::mechanics).wait(), 4) << session.said();
+  EXPECT_EQ(session.node(Role::recorder).wait(), 4) << session.said();
+  // when it comes back it finds that the others have gone
+  session.node(Role::hydraulics).send(SIGCONT);
+  EXPECT_EQ(session.node(Role::hydraulics).wait(), 4) << session.said();
+  EXPECT_EQ(session.recorded().problem, "");
+}
+
+// ---- signals --------------------------------------------------------------------------------------------------
+
+void expect_orderly_end(Session& session, int signal, std::int64_t asked_ns) {
+  Program& io = session.node(Role::io);
+  EXPECT_EQ(io.wait(), signal == SIGINT ? 130 : 143) << session.said();
+  EXPECT_LT(io.ended_ns() - asked_ns, kOrderlyEndNs);
+  // those that never learned of the session are ended as a supervisor does it
+  for (const Role role : kAllNodes) {
+    if (session.has(role)) session.node(role).send(signal);
+  }
+  for (const auto& [role, code] : session.wait_all()) {
+    EXPECT_TRUE(code == 0 || code == 128 + signal) << node::to_text(role) << " ended with " << code << session.said();
+    EXPECT_LT(session.node(role).ended_ns() - asked_ns, 2 * kOrderlyEndNs);
+    EXPECT_EQ(session.node(role).err(), "");
+  }
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(session.folder())) {
+    if (entry.path().extension() != ".mcap") continue;
+    const RecordedSession recorded = read_session(entry.path());
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_TRUE(recorded.has_all_messages);
+  }
+}
+
+TEST(Interrupted, InMidRunEndsInOrderWithinASecond) {
+  std::mt19937_64 random(7);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Session session({"--pace", "real", "--duration", "20s"});
+    session.start_all();
+    const auto step = static_cast<StepIndex>(1 + random() % 300);
+    ASSERT_TRUE(session.observer().wait_for_step(step)) << session.said();
+    session.node(Role::io).send(signal);
+    expect_orderly_end(session, signal, monotonic_ns());
+    const RecordedSession recorded = session.recorded();
+    EXPECT_EQ(recorded.losses(), 0);
+    EXPECT_GE(recorded.last_complete_step(), step);
+  }
+}
+
+TEST(Interrupted, AtAnyMomentOfTheStartEndsInOrder) {
+  std::mt19937_64 random(11);
+  for (int round = 0; round < 8; ++round) {
+    Session session({"--pace", "free", "--duration", "100s"});
+    session.start_all();
+    // between 0 and 600 ms: name check, JOIN, INIT, first steps
+    const std::int64_t moment_ns = static_cast<std::int64_t>(random() % 600) * 1'000'000;
+    static_cast<void>(session.observer().wait_until([] { return false; }, moment_ns));
+    session.node(Role::io).send(SIGINT);
+    const std::int64_t asked_ns = monotonic_ns();
+    if (session.node(Role::io).wait() == -SIGINT) continue;  // before the program took charge of its signals
+    expect_orderly_end(session, SIGINT, asked_ns);
+    if (HasFailure()) FAIL() << "moment " << moment_ns / 1'000'000 << " ms";
+  }
+}
+
+TEST(Interrupted, WhileTheOthersAreMissingEndsWithinASecond) {
+  Session session({"--pace", "real", "--duration", "20s"});
+  session.start(Role::io);
+  session.start(Role::mechanics);
+  const auto joins = [&] { return session.observer().status(Role::mechanics).has_value(); };
+  ASSERT_TRUE(session.observer().wait_until(joins)) << session.said();
+  session.node(Role::io).send(SIGINT);
+  expect_orderly_end(session, SIGINT, monotonic_ns());
+}
+
+TEST_P(KilledNode, AskedToEndByASignalEndsTheSessionInOrder) {
+  Session session({"--pace", "real", "--duration", "20s"});
+  session.start_all();
+  ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
+  session.node(GetParam()).send(SIGTERM);
+  for (const auto& [role, code] : session.wait_all(5'000'000'000)) {
+    EXPECT_TRUE(code == 143 || code == 0) << node::to_text(role) << " ended with " << code << "\n" << session.said();
+  }
+  EXPECT_EQ(session.node(GetParam()).wait(), 143);
+  EXPECT_EQ(session.node(Role::io).wait(), 143);
+  EXPECT_EQ(session.recorded().problem, "");
+}
+
+// ---- second ones ----------------------------------------------------------------------------------------------
+
+class SecondNode : public ::testing::TestWithParam<Role> {};
+
+TEST_P(SecondNode, IsRefusedNamingTheFirstWhichGoesOn) {
+  Session session({"--pace", "real", "--duration", "2.5s"});
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
+  Program& second = session.start(GetParam(), {}, "_second");
+  EXPECT_EQ(second.wait(), 2) << second.err();
+  const std::string said = second.err();
+  EXPECT_NE(said.find(pid_text(session.node(GetParam()))), std::string::npos) << said;
+  EXPECT_NE(said.find("started 20"), std::string::npos) << said;
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  EXPECT_NE(said.find(host), std::string::npos) << said;
+  // the first goes on to its end, and only its words are recorded
+  EXPECT_LT(observer.step(), 2499) << "the second one ended too late to prove anything";
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(recorded.losses(), 0);
+  EXPECT_EQ(recorded.last_complete_step(), 2500);
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, SecondNode, ::testing::ValuesIn(kAllNodes), role_name);
+
+class StartedTogether : public ::testing::TestWithParam<Role> {};
+
+TEST_P(StartedTogether, ExactlyOneOfTwoStays) {
+  Session session({"--pace", "real", "--duration", "1s"});
+  Program* both[2] = {nullptr, nullptr};
+  for (const Role role : kAllNodes) {
+    Program& first = session.start(role);
+    if (role == GetParam()) {
+      both[0] = &first;
+      both[1] = &session.start(role, {}, "_second");
+    }
+  }
+  const int codes[2] = {both[0]->wait().value_or(-1000), both[1]->wait().value_or(-1000)};
+  EXPECT_EQ(std::min(codes[0], codes[1]), 0) << both[0]->err() << both[1]->err();
+  EXPECT_EQ(std::max(codes[0], codes[1]), 2) << both[0]->err() << both[1]->err();
+  const Program& loser = *both[codes[0] == 2 ? 0 : 1];
+  EXPECT_NE(loser.err().find(pid_text(*both[codes[0] == 2 ? 1 : 0])), std::string::npos) << loser.err();
+  for (const auto& [role, code] : session.wait_all()) {
+    if (role == GetParam()) continue;
+    EXPECT_EQ(code, 0) << node::to_text(role) << "\n" << session.said();
+  }
+  EXPECT_EQ(session.recorded().last_complete_step(), 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, StartedTogether, ::testing::ValuesIn(kAllNodes), role_name);
+
+// ---- refusals and missing nodes -------------------------------------------------------------------------------
+
+TEST(MissingNode, IsNamedWhenJoinDoesNotComeAbout) {
+  Session session({"--duration", "1s", "--join-timeout", "1"});
+  session.start(Role::io);
+  session.start(Role::mechanics);
+  session.start(Role::recorder);
+  const std::map<Role, int> codes = session.wait_all();
+  EXPECT_EQ(codes.at(Role::io), 1) << session.said();
+  EXPECT_EQ(codes.at(Role::mechanics), 1) << session.said();
+  EXPECT_EQ(codes.at(Role::recorder), 1) << session.said();
+  const std::string said = session.node(Role::io).err();
+  EXPECT_NE(said.find("JOIN did not come about within 1 s"), std::string::npos) << said;
+  EXPECT_NE(said.find("no hydraulics node has been heard"), std::string::npos) << said;
+  EXPECT_NE(said.find("slewring/actuators, type slewring::ActuatorMessage; found no writer of it"), std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("no mechanics node"), std::string::npos) << said;
+}
+
+TEST(MissingSession, IsNamedByANodeThatWaitsForIt) {
+  Session session;
+  Program& mechanics = session.start(Role::mechanics, {"--session-timeout", "1"});
+  EXPECT_EQ(mechanics.wait(), 1);
+  EXPECT_NE(mechanics.err().find("no session was found within 1 s"), std::string::npos) << mechanics.err();
+}
+
+// a session whose scene names a file beside it
+class AssetSession {
+ public:
+  AssetSession() : session({"--duration", "0.2s", "--pace", "free"}, write_scene()) {}
+
+  // A folder with another or the same content of the file.
+  std::string folder_with(const std::string& content) {
+    const std::filesystem::path folder = session.folder() / ("assets_" + content);
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "table.csv") << content;
+    return folder.string();
+  }
+
+  ScratchFolder scenes;
+  Session session;
+
+ private:
+  std::string write_scene() {
+    std::ifstream source(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml");
+    std::ofstream scene(scenes.path() / "crane.yaml");
+    scene << source.rdbuf() << "\nassets: [table.csv]\n";
+    std::ofstream(scenes.path() / "table.csv") << "same";
+    return (scenes.path() / "crane.yaml").string();
+  }
+};
+
+TEST(Assets, ThatDifferAreNamedAndTheNodeDoesNotTakePart) {
+  AssetSession assets;
+  Session& session = assets.session;
+  session.start(Role::io);
+  session.start(Role::recorder);
+  session.start(Role::hydraulics, {"--assets", assets.folder_with("same")});
+  session.start(Role::mechanics, {"--assets", assets.folder_with("other")});
+  const std::map<Role, int> codes = session.wait_all();
+  EXPECT_EQ(codes.at(Role::mechanics), 2) << session.said();
+  const std::string said = session.node(Role::mechanics).err();
+  EXPECT_NE(said.find("asset 'table.csv' differs from the session's (5 bytes here, 4 there)"), std::string::npos)
+      << said;
+  // the session cannot take place and says why
+  EXPECT_EQ(codes.at(Role::io), 2) << session.said();
+  EXPECT_NE(session.node(Role::io).err().find("asset 'table.csv' differs"), std::string::npos) << session.said();
+}
+
+TEST(Assets, ThatAreMissingAreNamed) {
+  AssetSession assets;
+  Session& session = assets.session;
+  session.start(Role::io);
+  session.start(Role::mechanics, {"--assets", session.folder().string()});
+  EXPECT_EQ(session.node(Role::mechanics).wait(), 2);
+  EXPECT_NE(session.node(Role::mechanics).err().find("asset 'table.csv' is not in"), std::string::npos)
+      << session.said();
+}
+
+TEST(Assets, ThatAreTheSameLetTheSessionRun) {
+  AssetSession assets;
+  Session& session = assets.session;
+  session.start(Role::io);
+  session.start(Role::recorder);
+  session.start(Role::hydraulics, {"--assets", assets.folder_with("same")});
+  session.start(Role::mechanics, {"--assets", assets.scenes.path().string()});
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+}
+
+// ---- divergence -----------------------------------------------------------------------------------------------
+
+// a damper that no explicit sub-step can follow
+const char* const kUnstable = "ForceR_FrictionX.damping_constant=1e9 Nms/rad";
+
+TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5) {
+  Session session({"--pace", "free", "--duration", "5s", "--set", kUnstable});
+  session.start_all();
+  for (const auto& [role, code] : session.wait_all())
+    EXPECT_EQ(code, 5) << node::to_text(role) << "\n" << session.said();
+  const std::string said = session.node(Role::io).err();
+  EXPECT_NE(said.find("mechanics"), std::string::npos) << said;
+  EXPECT_NE(said.find("diverged in step"), std::string::npos) << said;
+  EXPECT_NE(said.find("Body_Pillar is not finite"), std::string::npos) << said;
+  EXPECT_EQ(session.recorded().problem, "");
+}
+
+TEST(Divergence, KeepsTheLastGoodStateInTheRecording) {
+  Session session({"--pace", "free", "--duration", "5s", "--set", kUnstable});
+  session.start_all();
+  static_cast<void>(session.wait_all());
+  const std::vector<wire::MechanismMessage> samples = session.recorded().mechanisms;
+  ASSERT_GE(samples.size(), 2u);
+  const wire::MechanismMessage& last = samples.back();
+  const wire::MechanismMessage& before = samples[samples.size() - 2];
+  EXPECT_NE(last.state.flags & static_cast<std::uint32_t>(StepFlag::non_finite), 0u);
+  EXPECT_GE(last.state.offender, 0);
+  EXPECT_EQ(before.state.flags & static_cast<std::uint32_t>(StepFlag::non_finite), 0u);
+  for (std::size_t i = 0; i < last.sample.x.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(last.sample.x[i]));
+    EXPECT_EQ(last.sample.x[i], before.sample.x[i]);
+    EXPECT_EQ(last.sample.v[i], before.sample.v[i]);
+  }
+}
+
+}  // namespace
+}  // namespace slew::testing
