@@ -42,6 +42,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
       f_(y_),
       F_(m_),
       F_dot_(m_),
+      F_mean_(m_),
       da_dF_(m_ * m_),
       da_dx_(m_ * m_),
       da_dv_(m_ * m_),
@@ -107,12 +108,14 @@ void CircuitIntegrator::accepted(double h, const double* y_before, const double*
   const double weight = h * h / 12;
   for (std::size_t j = 0; j < m_; ++j) {
     const Actuator& actuator = circuit_.actuators()[j];
-    const int v = circuit_.speed(static_cast<int>(j));
+    const int x = circuit_.position(static_cast<int>(j)), v = circuit_.speed(static_cast<int>(j));
     const double F_0 = y_before[actuator.port_a] * actuator.area_a - y_before[actuator.port_b] * actuator.area_b;
     const double F_1 = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
     const double F_dot = f_before[actuator.port_a] * actuator.area_a - f_before[actuator.port_b] * actuator.area_b;
-    published_[j].work +=
-        0.5 * h * (F_0 * y_before[v] + F_1 * y[v]) + weight * (F_dot * y_before[v] + F_0 * f_before[v]);
+    const double half = 0.5 * (F_1 - F_0);
+    F_mean_[j] = 0.5 * (F_0 + F_1);
+    published_[j].work += F_mean_[j] * (y[x] - y_before[x]) + 0.5 * h * half * (y[v] - y_before[v]) +
+                          weight * (F_dot * y_before[v] - half * f_before[v]);
     published_[j].impulse += 0.5 * h * (F_0 + F_1) + weight * F_dot;
   }
   open_quadrature_ = weight;
@@ -126,7 +129,7 @@ void CircuitIntegrator::close_quadrature(const double* y, const double* f) noexc
     const int v = circuit_.speed(static_cast<int>(j));
     const double F = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
     const double F_dot = f[actuator.port_a] * actuator.area_a - f[actuator.port_b] * actuator.area_b;
-    published_[j].work -= open_quadrature_ * (F_dot * y[v] + F * f[v]);
+    published_[j].work -= open_quadrature_ * (F_dot * y[v] + (F - F_mean_[j]) * f[v]);
     published_[j].impulse -= open_quadrature_ * F_dot;
   }
   open_quadrature_ = 0;

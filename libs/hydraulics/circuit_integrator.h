@@ -3,7 +3,10 @@
 // Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for RODAS3:
 //   y' = rates(y),  x' = v,  v' = a(F, x, v),  F = p_A A_A - p_B A_B
 // Work and impulse of each actuator are integrated beside it with the cubic through both ends of a sub-step:
-//   int g dt = h/2 (g_0 + g_1) + h^2/12 (g_0' - g_1'),  g = F v and F                                            (1)
+//   int g dt = h/2 (g_0 + g_1) + h^2/12 (g_0' - g_1')                                                           (1)
+// for g = F (impulse) and, about the sub-step's mean force F_m = (F_0 + F_1)/2,
+//   work = F_m (x_1 - x_0) + int (F - F_m) v dt,  the integral by (1):
+// a piston that stands under load then shows no work of its integrator's errors in v.
 //
 // Published at the end (coupling study, section 8; K_A = A_A^2/C_A, K_B = A_B^2/C_B):
 //   F, F_dot = A_A p_A' - A_B p_B',  K = K_A + K_B,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C             (2)
@@ -76,7 +79,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   const PistonMotion* motion_ = nullptr;  // during step()
   std::size_t m_;
   std::vector<double> y_, y_start_, f_;
-  std::vector<double> F_, F_dot_, da_dF_, da_dx_, da_dv_, C_, outflow_;
+  std::vector<double> F_, F_dot_, F_mean_, da_dF_, da_dx_, da_dv_, C_, outflow_;
   std::vector<ActuatorLinearisation> published_;
   double open_quadrature_ = 0;  // h^2/12 of the last sub-step, whose end slope is not known yet
   bool was_clamped_ = false;
