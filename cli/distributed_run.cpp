@@ -45,8 +45,7 @@ class Supervisor {
     count_interrupts();
     started_wall_ns_ = wall_clock_ns();
     if (is_ours(Role::io)) start(Role::io);
-    observer_ = std::make_unique<Observer>(cli_support::open_carrier(Role::observer, options_.session),
-                                           options_.session.session);
+    observer_ = std::make_unique<Observer>(open_carrier(), options_.session.session);
     if (!is_ours(Role::io)) start_others();
     while (!all_ended()) {
       wait_for_output();
@@ -68,6 +67,15 @@ class Supervisor {
     bool is_reported = false;
     bool is_killed_by_us = false;
   };
+
+  // values are needed for the status line, and for the summary of a run that is not recorded here
+  [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier() const {
+    const bool shows_values = !options_.is_quiet && !options_.is_json;
+    if (shows_values || keyboard_ || !is_ours(Role::recorder)) {
+      return cli_support::open_carrier(Role::observer, options_.session);
+    }
+    return cli_support::open_observer_without_values(options_.session);
+  }
 
   // ---- starting -----------------------------------------------------------------------------------------------
 

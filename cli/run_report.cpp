@@ -164,7 +164,7 @@ void print(const RunReport& report) {
   if (report.pace == "real") rows.push_back({"slip", duration_text(report.slip)});
   for (const NodeReport& node : report.nodes) {
     std::string text;
-    if (node.times.steps > 0) {
+    if (node.times.sum > 0) {
       text = fmt::format("step {} mean, {} max; ", duration_text(node.times.mean()), duration_text(node.times.max));
     }
     text += fmt::format("resends {} asked, {} answered", node.resends_asked, node.resends_answered);

@@ -107,8 +107,8 @@ std::string StatusText::text(const SessionView& view, std::int64_t now_ns) {
     last_ns_ = now_ns;
     last_step_ = step;
   }
-  std::string text = fmt::format("{:7.2f} s", static_cast<double>(step) * H);
-  if (duration_ > 0) text += fmt::format(" of {:g}", duration_);
+  std::string text = view.step() < 0 ? "starting" : fmt::format("{:7.2f} s", static_cast<double>(step) * H);
+  if (duration_ > 0 && view.step() >= 0) text += fmt::format(" of {:g}", duration_);
   if (factor_ > 0) text += fmt::format("  x{:.2f}", factor_);
   // nodes: named only when they are not simply running
   std::string nodes;

@@ -72,6 +72,13 @@ std::unique_ptr<transport::Transport> open_carrier(Role role, const SessionOptio
   return open(options, {options.session, std::string(node::to_text(role)), topics_written(role), topics_read(role)});
 }
 
+std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options) {
+  return open(options, {options.session,
+                        "observer",
+                        topics_written(Role::observer),
+                        {Topic::session, Topic::node_status, Topic::control_reply, Topic::health}});
+}
+
 std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options) {
   return open(options, {transport::kAnySession, "survey", {}, {Topic::session, Topic::node_status, Topic::health}});
 }

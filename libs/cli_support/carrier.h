@@ -18,6 +18,10 @@ namespace slew::cli_support {
 // Throws Failure with the carrier's text.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier(wire::Role role, const SessionOptions& options);
 
+// An observer that does not look at the variables' values: for a run that shows none, since every reader costs the
+// writers time.
+[[nodiscard]] std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options);
+
 // Reads what all sessions of the domain say about themselves; writes nothing.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options);
 
