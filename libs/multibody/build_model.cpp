@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/check.h"
+#include "multibody/build_rows.h"
 #include "multibody/model.h"
 #include "multibody/topology.h"
 
@@ -51,7 +52,7 @@ class Builder {
     for (const RotationalForceDef& force : def_.rotational_forces) add_angle(force);
     add_static_dummies();
     add_force_dummies();
-    for (const std::string& row : rows) add_row(row);
+    for (const std::string& row : rows) add_row(def_, row, model_);
     mark_used_elements(model_);
     for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
     return std::move(model_);
@@ -222,21 +223,10 @@ class Builder {
                                  .end_spring = def.end_spring_constant,
                                  .end_damping = def.end_damping_constant}};
     element.first_path = static_cast<int>(model_.paths.size());
-    add_path(element.link1, element.link2);
+    add_path(model_, element.link1, element.link2);
     element.path_end = static_cast<int>(model_.paths.size());
     find_coaxial(element);
     model_.angles.push_back(element);
-  }
-
-  // joints between two links: those that move link 1 with sign -1, those that move link 2 with sign +1
-  void add_path(int link1, int link2) {
-    while (link1 != link2) {
-      // the deeper one has the larger number, or is at least no ancestor of the other
-      int& deeper = link1 > link2 ? link1 : link2;
-      const double sign = link1 > link2 ? -1 : 1;
-      model_.paths.push_back({.link = deeper, .sign = sign});
-      deeper = model_.links[at(deeper)].parent;
-    }
   }
 
   // with all joints on the way about one axis the angle is a sum of joint angles, whatever the number of turns
@@ -332,59 +322,6 @@ class Builder {
     add(line.p2 + e * coupled.c2, coupled.m2, 0, line.body2);
   }
 
-  void add_row(const std::string& name) {
-    Row row;
-    for (std::size_t i = 0; i < model_.lines.size(); ++i) {
-      if (model_.lines[i].name != name) continue;
-      row.kind = RowKind::length;
-      row.element = static_cast<int>(i);
-      row.first_path = static_cast<int>(model_.paths.size());
-      add_path(model_.lines[i].link1, model_.lines[i].link2);
-      row.path_end = static_cast<int>(model_.paths.size());
-    }
-    for (std::size_t i = 0; i < model_.angles.size(); ++i) {
-      if (model_.angles[i].name != name) continue;
-      row.kind = RowKind::angle;
-      row.element = static_cast<int>(i);
-      row.first_path = model_.angles[i].first_path;
-      row.path_end = model_.angles[i].path_end;
-    }
-    for (std::size_t i = 0; i < def_.joints.size(); ++i) {
-      const JointDef& def = def_.joints[i];
-      if (def.name != name) continue;
-      row.kind = RowKind::joint;
-      row.element = static_cast<int>(i);
-      row.link = model_.joints[i].link;
-      row.first_path = static_cast<int>(model_.paths.size());
-      model_.paths.push_back({.link = row.link, .sign = 1});
-      row.path_end = row.first_path + 1;
-      row.law = {.coulomb = def.coulomb_friction,
-                 .viscous = def.viscous_friction,
-                 .friction_speed = def.friction_speed,
-                 .limit_min = def.limit_min,
-                 .limit_max = def.limit_max,
-                 .limit_stiffness = def.limit_stiffness,
-                 .limit_damping = def.limit_damping};
-    }
-    SLEW_CHECK(row.path_end > row.first_path);
-    add_support(row);
-    model_.rows.push_back(row);
-  }
-
-  // links that the row's force reaches on its way to Ground
-  void add_support(Row& row) {
-    std::vector<bool> is_reached(model_.links.size(), false);
-    for (int i = row.first_path; i < row.path_end; ++i) {
-      for (int link = model_.paths[at(i)].link; link > 0; link = model_.links[at(link)].parent)
-        is_reached[at(link)] = true;
-    }
-    row.first_support = static_cast<int>(model_.supports.size());
-    for (std::size_t link = is_reached.size(); link-- > 1;) {
-      if (is_reached[link]) model_.supports.push_back(static_cast<int>(link));
-    }
-    row.support_end = static_cast<int>(model_.supports.size());
-  }
-
   const MechanicsDef& def_;
   Model model_;
   std::vector<Pose> poses_;
@@ -392,55 +329,7 @@ class Builder {
   std::vector<Pose> link_pose_;  // at the start, by link
 };
 
-bool has_one_coordinate(const JointDef& joint) {
-  return joint.type == JointType::revolute || joint.type == JointType::prismatic;
-}
-
 }  // namespace
-
-std::vector<std::string> joint_rows(const MechanicsDef& mechanics) {
-  std::vector<std::string> names;
-  for (const JointDef& joint : mechanics.joints) {
-    const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
-    if (has_one_coordinate(joint) && (has_limits || joint.coulomb_friction > 0 || joint.viscous_friction > 0)) {
-      names.push_back(joint.name);
-    }
-  }
-  return names;
-}
-
-void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems) {
-  if (rows.size() > static_cast<std::size_t>(kMaxRows)) {
-    problems.push_back({"mechanics",
-                        std::to_string(rows.size()) + " actuators and joints with friction or limits",
-                        "at most " + std::to_string(kMaxRows),
-                        {}});
-  }
-  Problems ignored;
-  const std::vector<int> merged = merged_into(mechanics, find_tree(mechanics, ignored));
-  const auto is_merged = [&](const std::string& body1, const std::string& body2) {
-    const int a = find_body(mechanics, body1), b = find_body(mechanics, body2);
-    return a == kNoBody || b == kNoBody || merged[at(a)] == merged[at(b)];
-  };
-  for (const std::string& name : rows) {
-    bool is_known = false, is_rigid = false;
-    for (const TranslationalForceDef& force : mechanics.translational_forces) {
-      if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
-    }
-    for (const RotationalForceDef& force : mechanics.rotational_forces) {
-      if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
-    }
-    for (const JointDef& joint : mechanics.joints) is_known |= joint.name == name && has_one_coordinate(joint);
-    if (!is_known) {
-      problems.push_back({name,
-                          "nothing can act here: '" + name + "' is no force and no joint with one coordinate",
-                          "a translational or rotational force, or a revolute or prismatic joint",
-                          {}});
-    } else if (is_rigid) {
-      problems.push_back({name, "the force acts between bodies that fixed joints merge", "bodies that can move", {}});
-    }
-  }
-}
 
 Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows) {
   return Builder(mechanics).run(rows);

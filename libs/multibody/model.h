@@ -134,7 +134,7 @@ struct Row {
   int path_end = 0;
   int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
   int support_end = 0;
-  JointLaw law;  // of a joint row
+  JointLaw law{};  // of a joint row
 };
 
 struct Model {

@@ -36,7 +36,7 @@ TEST(SimplePendulum, FollowsTheEllipticFunctions) {
     largest_drift = std::max(largest_drift, std::abs(pendulum.total_energy() - energy));
     pendulum.run(0.01, kStep);
   }
-  RecordProperty("position_error_m", std::to_string(largest_error));
+  RecordProperty("position_error_nm", std::to_string(largest_error * 1e9));
   EXPECT_LT(largest_error, 1e-3);
   EXPECT_LT(largest_error, 1e-7) << "worse than what fourth order gives";
   EXPECT_LT(largest_drift, 5e-5);

@@ -1,0 +1,135 @@
+#include "multibody/build_rows.h"
+
+#include <cmath>
+#include <cstddef>
+
+#include "core/check.h"
+#include "multibody/topology.h"
+
+namespace slew::multibody {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+bool has_one_coordinate(const JointDef& joint) {
+  return joint.type == JointType::revolute || joint.type == JointType::prismatic;
+}
+
+// links that the row's force reaches on its way to Ground
+void add_support(Model& model, Row& row) {
+  std::vector<bool> is_reached(model.links.size(), false);
+  for (int i = row.first_path; i < row.path_end; ++i) {
+    for (int link = model.paths[at(i)].link; link > 0; link = model.links[at(link)].parent) is_reached[at(link)] = true;
+  }
+  row.first_support = static_cast<int>(model.supports.size());
+  for (std::size_t link = is_reached.size(); link-- > 1;) {
+    if (is_reached[link]) model.supports.push_back(static_cast<int>(link));
+  }
+  row.support_end = static_cast<int>(model.supports.size());
+}
+
+Row length_row(Model& model, std::size_t line) {
+  Row row{.kind = RowKind::length, .element = static_cast<int>(line)};
+  row.first_path = static_cast<int>(model.paths.size());
+  add_path(model, model.lines[line].link1, model.lines[line].link2);
+  row.path_end = static_cast<int>(model.paths.size());
+  return row;
+}
+
+Row angle_row(const Model& model, std::size_t angle) {
+  return {.kind = RowKind::angle,
+          .element = static_cast<int>(angle),
+          .first_path = model.angles[angle].first_path,
+          .path_end = model.angles[angle].path_end};
+}
+
+Row joint_row(const JointDef& def, std::size_t joint, Model& model) {
+  Row row{.kind = RowKind::joint, .element = static_cast<int>(joint), .link = model.joints[joint].link};
+  row.first_path = static_cast<int>(model.paths.size());
+  row.path_end = row.first_path + 1;
+  model.paths.push_back({.link = row.link, .sign = 1});
+  row.law = {.coulomb = def.coulomb_friction,
+             .viscous = def.viscous_friction,
+             .friction_speed = def.friction_speed,
+             .limit_min = def.limit_min,
+             .limit_max = def.limit_max,
+             .limit_stiffness = def.limit_stiffness,
+             .limit_damping = def.limit_damping};
+  return row;
+}
+
+}  // namespace
+
+void add_path(Model& model, int link1, int link2) {
+  while (link1 != link2) {
+    // a parent has the smaller number, so the larger one is no ancestor of the other
+    int& deeper = link1 > link2 ? link1 : link2;
+    const double sign = link1 > link2 ? -1 : 1;
+    model.paths.push_back({.link = deeper, .sign = sign});
+    deeper = model.links[at(deeper)].parent;
+  }
+}
+
+void add_row(const MechanicsDef& mechanics, const std::string& name, Model& model) {
+  Row row;
+  for (std::size_t i = 0; i < model.lines.size(); ++i) {
+    if (model.lines[i].name == name) row = length_row(model, i);
+  }
+  for (std::size_t i = 0; i < model.angles.size(); ++i) {
+    if (model.angles[i].name == name) row = angle_row(model, i);
+  }
+  for (std::size_t i = 0; i < mechanics.joints.size(); ++i) {
+    if (mechanics.joints[i].name == name) row = joint_row(mechanics.joints[i], i, model);
+  }
+  SLEW_CHECK(row.path_end > row.first_path);
+  add_support(model, row);
+  model.rows.push_back(row);
+}
+
+std::vector<std::string> joint_rows(const MechanicsDef& mechanics) {
+  std::vector<std::string> names;
+  for (const JointDef& joint : mechanics.joints) {
+    const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
+    if (has_one_coordinate(joint) && (has_limits || joint.coulomb_friction > 0 || joint.viscous_friction > 0)) {
+      names.push_back(joint.name);
+    }
+  }
+  return names;
+}
+
+void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems) {
+  if (rows.size() > static_cast<std::size_t>(kMaxRows)) {
+    problems.push_back({"mechanics",
+                        std::to_string(rows.size()) + " actuators and joints with friction or limits",
+                        "at most " + std::to_string(kMaxRows),
+                        {}});
+  }
+  Problems ignored;
+  const std::vector<int> merged = merged_into(mechanics, find_tree(mechanics, ignored));
+  const auto is_merged = [&](const std::string& body1, const std::string& body2) {
+    const int a = find_body(mechanics, body1), b = find_body(mechanics, body2);
+    return a == kNoBody || b == kNoBody || merged[at(a)] == merged[at(b)];
+  };
+  for (const std::string& name : rows) {
+    bool is_known = false, is_rigid = false;
+    for (const TranslationalForceDef& force : mechanics.translational_forces) {
+      if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
+    }
+    for (const RotationalForceDef& force : mechanics.rotational_forces) {
+      if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
+    }
+    for (const JointDef& joint : mechanics.joints) is_known |= joint.name == name && has_one_coordinate(joint);
+    if (!is_known) {
+      problems.push_back({name,
+                          "nothing can act here: '" + name + "' is no force and no joint with one coordinate",
+                          "a translational or rotational force, or a revolute or prismatic joint",
+                          {}});
+    } else if (is_rigid) {
+      problems.push_back({name, "the force acts between bodies that fixed joints merge", "bodies that can move", {}});
+    }
+  }
+}
+
+}  // namespace slew::multibody
