@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
-#include "cli/load_limit.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
 #include "cli/stall_report.h"
@@ -139,7 +138,6 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
       const TickSpan span = tick_span(*reader);
       if (span.ticks > 0) report.steps = span.ticks - 1;  // the last one says END
       if (span.wall_time > 0) report.wall_time = span.wall_time;
-      report.notes = explain_stalls(scene, *reader);
       report.notes = explain_stalls(*reader, scene);
       report.plots = write_plots(scene, outcome.recording);
     } catch (const cli_support::Failure& failure) {

@@ -7,21 +7,17 @@
 #include <numbers>
 #include <optional>
 
-#include "cli/direct_session.h"
 #include "cli/display.h"
 #include "cli/recorded.h"
 #include "cli_support/failure.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/l90ls_valve.h"
-#include "node/identity.h"
-#include "transport/codec.h"
 
 namespace slew::cli {
 namespace {
 
 using hydraulics::DoubleActingCylinderDef;
 using hydraulics::L90lsValveDef;
-using wire::Role;
 
 constexpr double kFullyOpen = 0.9;      // of the maximum control signal
 constexpr double kSettling = 1.0;       // s: spool, load sensing and pump have answered
@@ -100,67 +96,32 @@ std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& dr
   return longest;
 }
 
-// The body that hangs at the end of a chain, the heaviest one: what a person calls the load.
-const multibody::BodyDef* load_of(const scene::Scene& scene) {
-  const multibody::BodyDef* load = nullptr;
-  for (const multibody::BodyDef& body : scene.mechanics.bodies) {
-    const bool carries = std::any_of(scene.mechanics.joints.begin(), scene.mechanics.joints.end(),
-                                     [&](const multibody::JointDef& joint) { return joint.body1 == body.name; });
-    if (!carries && (load == nullptr || body.mass > load->mass)) load = &body;
-  }
-  return load;
-}
-
-double variable_of(const coupling::Subsystem& subsystem, const std::string& name) {
-  const std::span<const ElementVariable> variables = subsystem.variables();
-  std::vector<double> values(variables.size());
-  subsystem.read_variables(values);
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    if (variables[i].name == name) return values[i];
-  }
-  return std::nan("");
-}
-
-// The mass now, when the last command that changed it has run its course.
-struct LoadSlope {
+// The load as the mechanics sees it: its mass and what each kilogram asks of the cylinder.
+struct Load {
+  std::string body;
   double mass = 0;   // kg, at the stall
-  double force = 0;  // N, static force at the stall
-  double slope = 0;  // N/kg
+  double slope = 0;  // N/kg, of the static force against the direction
 };
 
-// Computes the session again up to the stall and varies the load's mass there. Nothing when it was reset on the way.
-std::optional<LoadSlope> find_slope(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
-                                    const multibody::BodyDef& load, double until) {
-  DirectSession session(scene);
-  if (!session.start().is_ok() || session.subsystem(Role::mechanics) == nullptr) return std::nullopt;
-  const std::string path = load.name + ".mass";
-  const auto last = static_cast<StepIndex>(std::llround(until / scene.session.step_duration().seconds()));
-  double mass = load.mass;
-  StepIndex next = 0;
-  wire::Tick tick;
-  recording::MessageFilter filter;
-  filter.topics = {std::string(node::to_text(wire::Topic::tick))};
-  const Status read = reader.for_each(filter, [&](const recording::RecordedMessage& message) {
-    using Visit = recording::Reader::Visit;
-    if (!transport::decode(message.payload, tick) || tick.header.epoch != 0) return Visit::stop;
-    if (tick.header.phase != wire::Phase::running || tick.header.step != next) return Visit::go_on;
-    for (const wire::Command& command : tick.commands) {
-      if (command.path == path) mass = command.value;
-    }
-    session.step(next, tick.commands, tick.controls.span());
-    return ++next < last ? Visit::go_on : Visit::stop;
-  });
-  if (!read.is_ok() || next < last) return std::nullopt;
-  const coupling::Subsystem& mechanics = *session.subsystem(Role::mechanics);
-  const std::string variable = drive.cylinder->name + ".static_force";
-  LoadSlope result{mass, drive.direction * variable_of(mechanics, variable), 0};
-  // half the mass at the same place: a step moves nothing that matters
-  wire::Command half;
-  half.path = path;
-  half.value = mass / 2;
-  session.step(next, {&half, 1}, tick.controls.span());
-  result.slope = (result.force - drive.direction * variable_of(mechanics, variable)) / (mass / 2);
-  return result;
+// Value of a variable at a time.
+double value_at(const recording::Reader& reader, const std::string& name, double time) {
+  const std::string wanted[] = {name};
+  const plotting::Series curve = read_series(reader, wanted, Units::si).front();
+  const auto at = std::lower_bound(curve.time.begin(), curve.time.end(), time);
+  if (at == curve.time.end()) return curve.values.back();
+  return curve.values[static_cast<std::size_t>(at - curve.time.begin())];
+}
+
+// The mechanics states the mass of its last moving body, and every port's static force per kilogram of it.
+std::optional<Load> find_load(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
+                              double time) {
+  const SessionView view = view_recording(reader, Values::none);
+  for (const multibody::BodyDef& body : scene.mechanics.bodies) {
+    if (view.find(body.name + ".mass") == nullptr) continue;
+    return Load{body.name, value_at(reader, body.name + ".mass", time),
+                drive.direction * value_at(reader, drive.cylinder->name + ".static_force_per_kg", time)};
+  }
+  return std::nullopt;
 }
 
 std::string sentence(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
@@ -186,14 +147,11 @@ std::string sentence(const recording::Reader& reader, const scene::Scene& scene,
   const double available =
       (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * cylinder.cylinder_coefficient -
       cylinder.seal_friction;
-  const multibody::BodyDef* load = load_of(scene);
-  const std::optional<LoadSlope> slope =
-      load != nullptr ? find_slope(reader, scene, drive, *load, stall.to) : std::nullopt;
-  if (!slope || !(slope->slope > 0)) return text;
-  const double mass = slope->mass - (slope->force - available) / slope->slope;
-  if (!(mass > 0)) return text + fmt::format("; not even {} without load could be moved there", load->name);
-  return text +
-         fmt::format("; {} weighs {:.4g} kg, up to {:.0f} kg could be moved there", load->name, slope->mass, mass);
+  const std::optional<Load> load = find_load(reader, scene, drive, stall.to);
+  if (!load || !(load->slope > 0)) return text;
+  const double mass = load->mass - (stall.static_force - available) / load->slope;
+  if (!(mass > 0)) return text + fmt::format("; not even {} without load could be moved there", load->body);
+  return text + fmt::format("; {} weighs {:.4g} kg, up to {:.0f} kg could be moved there", load->body, load->mass, mass);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 //   p = (F + p_other A_other) / A,   F = (F_static + F_seal) / eta                                        (1)
 // (F_static: force that holds the load, eta: the cylinder's efficiency) is compared with the pressure at which an L90LS
 // valve stops feeding, p_LSmax + p_comp above tank. The load that could be moved follows from F_static, which is linear
-// in the mass of a body: the ticks are computed again up to the stall, and the mass is varied there.
+// in the load's mass; the mechanics states its slope (`Cyl_Lift.static_force_per_kg`).
 //
 // Not covered: other valves and cylinders, several cylinders on one load, a pump that another section has saturated.
 #pragma once
