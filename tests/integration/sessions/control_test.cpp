@@ -1,0 +1,323 @@
+// Pause, step, resume, reset, parameters and controllers, spoken to a running session over the middleware.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/time.h"
+#include "direct_chain.h"
+#include "node/identity.h"
+#include "session.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::ControlAction;
+using wire::ControllerAction;
+using wire::ControllerLease;
+using wire::ControlReply;
+using wire::Role;
+
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+
+// the chain without any request
+const HashChain& undisturbed() {
+  static const HashChain chain = [] {
+    const ScratchFolder folder;
+    return run_in_one_process(load_scene(kScene, "1.6s"), folder.path() / "runs").chain();
+  }();
+  return chain;
+}
+
+// a chain may end early; as far as it goes it must be the other's
+void expect_prefix(const HashChain& part, const HashChain& whole) {
+  for (const auto& [step, hashes] : part) {
+    const auto found = whole.find(step);
+    ASSERT_NE(found, whole.end()) << step;
+    if (hashes.mechanics != 0) {
+      ASSERT_EQ(hashes.mechanics, found->second.mechanics) << step;
+    }
+    if (hashes.hydraulics != 0) {
+      ASSERT_EQ(hashes.hydraulics, found->second.hydraulics) << step;
+    }
+    if (hashes.io != 0) {
+      ASSERT_EQ(hashes.io, found->second.io) << step;
+    }
+  }
+}
+
+class Control : public ::testing::Test {
+ protected:
+  // a session in real pace that has done some steps
+  void start(const std::vector<std::string>& io_arguments, StepIndex step) {
+    session_ = std::make_unique<Session>(io_arguments);
+    observer_ = &session_->observer();
+    session_->start_all();
+    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->said();
+  }
+  void pass(std::int64_t ns) {
+    static_cast<void>(observer_->wait_until([] { return false; }, ns));
+  }
+  void expect_ends_well() { EXPECT_EQ(session_->wait_all(), all_ok()) << session_->said(); }
+
+  std::unique_ptr<Session> session_;
+  Observer* observer_ = nullptr;
+};
+
+// ---- pause, step, resume --------------------------------------------------------------------------------------
+
+TEST_F(Control, PauseStepAndResumeChangeNoBit) {
+  start({"--pace", "real", "--duration", "1.6s"}, 200);
+  const ControlReply early = observer_->request(ControlAction::step, 3);
+  EXPECT_FALSE(early.is_accepted);
+  EXPECT_EQ(early.reason, "pause the session first");
+  const ControlReply paused = observer_->request(ControlAction::pause);
+  ASSERT_TRUE(paused.is_accepted);
+  pass(100'000'000);
+  EXPECT_EQ(observer_->step(), paused.header.step - 1);
+  // longer than a lost node's 2 s is not needed: health goes on while nothing steps
+  pass(500'000'000);
+  EXPECT_EQ(observer_->step(), paused.header.step - 1);
+  EXPECT_EQ(observer_->status(Role::io)->state, wire::NodeState::holding);
+  ASSERT_TRUE(observer_->request(ControlAction::step, 5).is_accepted);
+  ASSERT_TRUE(observer_->wait_for_step(paused.header.step + 4));
+  pass(50'000'000);
+  EXPECT_EQ(observer_->step(), paused.header.step + 4);
+  EXPECT_FALSE(observer_->request(ControlAction::step, 0).is_accepted);
+  EXPECT_FALSE(observer_->request(ControlAction::step, std::numeric_limits<double>::quiet_NaN()).is_accepted);
+  ASSERT_TRUE(observer_->request(ControlAction::resume).is_accepted);
+  expect_ends_well();
+  const RecordedSession recorded = session_->recorded();
+  EXPECT_EQ(recorded.losses(), 0);
+  EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
+}
+
+TEST_F(Control, StopEndsTheSessionInOrder) {
+  start({"--pace", "real", "--duration", "20s"}, 50);
+  EXPECT_TRUE(observer_->request(ControlAction::stop).is_accepted);
+  expect_ends_well();
+  EXPECT_TRUE(session_->recorded().has_all_messages);
+  EXPECT_EQ(session_->recorded().losses(), 0);
+}
+
+TEST_F(Control, StopEndsAPausedSession) {
+  start({"--pace", "real", "--duration", "20s"}, 50);
+  EXPECT_TRUE(observer_->request(ControlAction::pause).is_accepted);
+  EXPECT_TRUE(observer_->request(ControlAction::stop).is_accepted);
+  expect_ends_well();
+}
+
+// ---- reset ----------------------------------------------------------------------------------------------------
+
+TEST_F(Control, ResetBeginsANewEpochWithTheSameBits) {
+  start({"--pace", "real", "--duration", "1.6s"}, 300);
+  ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
+  ASSERT_TRUE(observer_->wait_until([this] { return observer_->epoch() == 1 && observer_->step() > 400; }));
+  ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
+  expect_ends_well();
+  const RecordedSession recorded = session_->recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(recorded.losses(), 0);
+  ASSERT_EQ(recorded.epochs.size(), 3u);
+  expect_prefix(recorded.epochs[0], undisturbed());
+  expect_prefix(recorded.epochs[1], undisturbed());
+  // the INIT tick of a later epoch has no counterpart in the first
+  HashChain last = recorded.epochs[2];
+  EXPECT_EQ(last.at(kJoinStep).mechanics, undisturbed().at(kJoinStep).mechanics);
+  EXPECT_EQ(first_difference(last, undisturbed()), "");
+}
+
+TEST_F(Control, ResetInFreePaceLosesNoMessage) {
+  start({"--pace", "free", "--duration", "1.6s"}, 300);
+  ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
+  expect_ends_well();
+  const RecordedSession recorded = session_->recorded();
+  EXPECT_EQ(recorded.losses(), 0);
+  ASSERT_EQ(recorded.epochs.size(), 2u);
+  EXPECT_EQ(first_difference(recorded.epochs[1], undisturbed()), "");
+}
+
+TEST_F(Control, ResetOfAPausedSessionStaysPausedAtStepZero) {
+  start({"--pace", "real", "--duration", "1.6s"}, 100);
+  ASSERT_TRUE(observer_->request(ControlAction::pause).is_accepted);
+  ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
+  const auto is_back = [this] {
+    return observer_->epoch() == 1 && observer_->status(Role::io)->state == wire::NodeState::holding &&
+           observer_->status(Role::io)->header.epoch == 1;
+  };
+  ASSERT_TRUE(observer_->wait_until(is_back)) << session_->said();
+  pass(50'000'000);
+  EXPECT_EQ(observer_->step(), kJoinStep);
+  ASSERT_TRUE(observer_->request(ControlAction::resume).is_accepted);
+  expect_ends_well();
+  EXPECT_EQ(first_difference(session_->recorded().epochs.at(1), undisturbed()), "");
+}
+
+// ---- parameters -----------------------------------------------------------------------------------------------
+
+TEST_F(Control, AcceptedParameterEntersTheTickItWasPromisedFor) {
+  start({"--pace", "real", "--duration", "1.6s"}, 200);
+  const ControlReply reply = observer_->request(ControlAction::set_parameter, 1500, "Bag.mass");
+  ASSERT_TRUE(reply.is_accepted) << reply.reason;
+  expect_ends_well();
+  const RecordedSession recorded = session_->recorded();
+  const wire::Tick& tick = recorded.ticks.at(0).at(reply.header.step);
+  ASSERT_EQ(tick.commands.size(), 1u);
+  EXPECT_EQ(tick.commands[0].request, reply.request);
+  EXPECT_EQ(tick.commands[0].path, "Bag.mass");
+  EXPECT_EQ(tick.commands[0].value, 1500);
+  EXPECT_EQ(tick.commands[0].over_ns, 1'000'000'000);
+  // same bits up to that tick, others after it, and those that the ticks alone reproduce
+  EXPECT_EQ(recorded.chain().at(reply.header.step), undisturbed().at(reply.header.step));
+  EXPECT_NE(recorded.chain().at(reply.header.step + 1).mechanics, undisturbed().at(reply.header.step + 1).mechanics);
+  const HashChain replayed = chain_of_ticks(load_scene(kScene, "1.6s"), recorded.ticks.at(0));
+  EXPECT_EQ(first_difference(replayed, physics_only(recorded.chain())), "");
+}
+
+TEST_F(Control, SeveralParametersInOneTickAreOneDeterministicLog) {
+  start({"--pace", "real", "--duration", "1.6s"}, 200);
+  ASSERT_TRUE(observer_->request(ControlAction::pause).is_accepted);
+  const ControlReply mass = observer_->request(ControlAction::set_parameter, 1500, "Bag.mass", 300'000'000);
+  const ControlReply pump = observer_->request(ControlAction::set_parameter, 2e6, "MainPump.set_pressure", 0);
+  const ControlReply again = observer_->request(ControlAction::set_parameter, 800, "Bag.mass", 100'000'000);
+  ASSERT_TRUE(mass.is_accepted && again.is_accepted) << mass.reason << again.reason;
+  ASSERT_TRUE(pump.is_accepted) << pump.reason;
+  ASSERT_TRUE(observer_->request(ControlAction::resume).is_accepted);
+  expect_ends_well();
+  const RecordedSession recorded = session_->recorded();
+  const wire::Tick& tick = recorded.ticks.at(0).at(mass.header.step);
+  ASSERT_EQ(tick.commands.size(), 3u);
+  EXPECT_EQ(tick.commands[0].request, mass.request);
+  EXPECT_EQ(tick.commands[1].request, pump.request);
+  EXPECT_EQ(tick.commands[2].request, again.request);
+  const HashChain replayed = chain_of_ticks(load_scene(kScene, "1.6s"), recorded.ticks.at(0));
+  EXPECT_EQ(first_difference(replayed, physics_only(recorded.chain())), "");
+}
+
+TEST_F(Control, WrongParametersAreRefusedWithTheReasonAndTouchNothing) {
+  start({"--pace", "real", "--duration", "1.6s"}, 200);
+  const auto refusal = [this](const std::string& path, double value) {
+    const ControlReply reply = observer_->request(ControlAction::set_parameter, value, path);
+    EXPECT_FALSE(reply.is_accepted) << path;
+    return reply.reason;
+  };
+  EXPECT_NE(refusal("Bag.mas", 1500).find("Bag.mass"), std::string::npos);
+  EXPECT_NE(refusal("Bag.mass", -1), "");
+  EXPECT_NE(refusal("Bag.mass", std::numeric_limits<double>::quiet_NaN()), "");
+  EXPECT_NE(refusal("Cyl_Lift.piston_diameter", 0.1), "");
+  EXPECT_NE(refusal("session.step", 0.002), "");
+  expect_ends_well();
+  EXPECT_EQ(first_difference(session_->recorded().chain(), undisturbed()), "");
+}
+
+// ---- controllers ----------------------------------------------------------------------------------------------
+
+class Controller : public Control {
+ protected:
+  static constexpr const char* kChannel = "Input_Lift";
+  static constexpr std::size_t kIndex = 1;
+
+  void start_session() { start({"--pace", "real", "--duration", "20s", "--input", "none"}, 50); }
+  void write(const std::string& name, double value, ControllerAction action = ControllerAction::write) {
+    observer_->send({session_->name(), name, kChannel, action, value, ++sequence_, observer_->step()});
+  }
+  // writes at 100 Hz until the condition holds
+  [[nodiscard]] bool write_until(const std::string& name, double value, const std::function<bool()>& condition) {
+    const std::int64_t deadline_ns = monotonic_ns() + kSoonNs;
+    while (monotonic_ns() < deadline_ns) {
+      write(name, value);
+      if (observer_->wait_until(condition, 10'000'000)) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] double control() const {
+    const wire::Tick& tick = observer_->tick();
+    return kIndex < tick.controls.size() ? tick.controls[kIndex] : 0;
+  }
+  [[nodiscard]] double rejected() const { return observer_->variable("session.rejected_inputs").value_or(-1); }
+  void stop() {
+    EXPECT_TRUE(observer_->request(ControlAction::stop).is_accepted);
+    expect_ends_well();
+  }
+
+  std::uint64_t sequence_ = 0;
+};
+
+TEST_F(Controller, MovesAChannelThroughRampAndScaleAndTheTicksReproduceIt) {
+  start_session();
+  ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
+  ASSERT_TRUE(write_until("a", 1.0, [this] { return control() == 500; }));
+  ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
+  // below the dead zone of 0.2
+  ASSERT_TRUE(write_until("a", 0.19, [this] { return control() == 0; }));
+  // beyond the range it is held at the bound
+  ASSERT_TRUE(write_until("a", -7, [this] { return control() == -500; }));
+  stop();
+  const RecordedSession recorded = session_->recorded();
+  // the ramp of 0.5 s for a full stroke: 1 unit of 500 each millisecond
+  double previous = 0;
+  for (const auto& [step, tick] : recorded.ticks.at(0)) {
+    if (tick.controls.size() <= kIndex) continue;
+    EXPECT_LE(std::fabs(tick.controls[kIndex] - previous), 1.0 + 1e-9) << step;
+    previous = tick.controls[kIndex];
+  }
+  const HashChain replayed = chain_of_ticks(load_scene(kScene, "20s"), recorded.ticks.at(0));
+  EXPECT_EQ(first_difference(replayed, physics_only(recorded.chain())), "");
+}
+
+TEST_F(Controller, NotANumberIsRejectedCountedAndMovesNothing) {
+  start_session();
+  ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
+  ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
+  const double before = rejected();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_TRUE(write_until("a", nan, [&] { return rejected() >= before + 3; }));
+  EXPECT_EQ(control(), 250);
+  const double counted = rejected();
+  ASSERT_TRUE(write_until("a", std::numeric_limits<double>::infinity(), [&] { return rejected() > counted + 3; }));
+  EXPECT_EQ(control(), 250);
+  stop();
+}
+
+TEST_F(Controller, ChannelIsLeasedToOneAtATime) {
+  start_session();
+  ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
+  const ControllerLease refused = observer_->acquire("b", kChannel);
+  EXPECT_FALSE(refused.is_granted);
+  EXPECT_EQ(refused.holder, "a");
+  EXPECT_NE(refused.reason.find("held by 'a'"), std::string::npos) << refused.reason;
+  EXPECT_FALSE(observer_->acquire("b", "Input_Nothing").is_granted);
+  // what another one writes is counted, not applied
+  const double before = rejected();
+  ASSERT_TRUE(write_until("b", 1.0, [&] { return rejected() >= before + 3; }));
+  EXPECT_EQ(control(), 0);
+  write("a", 0, ControllerAction::release);
+  const auto is_free = [this] { return observer_->acquire("b", kChannel).is_granted; };
+  EXPECT_TRUE(is_free());
+  stop();
+}
+
+TEST_F(Controller, SilentControllerGoesToNeutral) {
+  start_session();
+  ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
+  ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
+  // nobody writes any more
+  ASSERT_TRUE(observer_->wait_until([this] { return control() == 0; }));
+  // it still holds the channel, and its next word counts again
+  EXPECT_FALSE(observer_->acquire("b", kChannel).is_granted);
+  ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
+  stop();
+}
+
+TEST_F(Controller, MayNotMoveTheScriptsChannelBeforeItHasTheLease) {
+  start({"--pace", "real", "--duration", "1.6s"}, 100);
+  for (int i = 0; i < 20; ++i) {
+    write("a", -1);
+    pass(5'000'000);
+  }
+  expect_ends_well();
+  EXPECT_EQ(first_difference(physics_only(session_->recorded().chain()), physics_only(undisturbed())), "");
+}
+
+}  // namespace
+}  // namespace slew::testing
