@@ -57,6 +57,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
 
   [[nodiscard]] const coupling::Indicator& indicator() const noexcept { return indicator_; }
+  [[nodiscard]] hydraulics::CircuitIntegrator& integrator() noexcept { return *integrator_; }  // for tests and tools
 
  private:
   void take_mechanism(const coupling::MechanismSample& mechanism) noexcept;

@@ -1,0 +1,219 @@
+// Who belongs to a session and who does not, over the bus of one process.
+#include <gtest/gtest.h>
+
+#include "node/session_member.h"
+#include "transport/in_process_bus.h"
+
+namespace slew::node {
+namespace {
+
+using transport::InProcessBus;
+using transport::InProcessEndpoint;
+using wire::NodeState;
+using wire::NodeStatus;
+using wire::Phase;
+using wire::Role;
+using wire::Topic;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+wire::SessionDescription description() {
+  wire::SessionDescription session;
+  session.header.session[0] = 42;
+  session.header.role = Role::io;
+  session.header.incarnation = 9;
+  session.header.phase = Phase::running;
+  session.name = "s";
+  session.required_roles = bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::recorder);
+  session.host = "elsewhere#1";
+  session.pid = 77;
+  return session;
+}
+
+NodeStatus status_of(Role role, std::uint32_t incarnation, NodeState state = NodeState::running) {
+  NodeStatus status;
+  status.header.session = description().header.session;
+  status.header.role = role;
+  status.header.incarnation = incarnation;
+  status.state = state;
+  status.host = "elsewhere#1";
+  status.pid = 1000 + incarnation;
+  status.started_ns = incarnation;
+  return status;
+}
+
+class Member : public ::testing::Test {
+ protected:
+  static constexpr Topic kTopics[] = {Topic::mechanism};
+  Status hear(const NodeStatus& status, std::int64_t now_ns = 0) {
+    std::vector<std::byte> bytes;
+    EXPECT_TRUE(transport::encode(status, bytes));
+    return member.on_node_status(bytes, now_ns);
+  }
+  void hear_health(Role role, std::uint32_t incarnation, std::int64_t now_ns) {
+    wire::Health health;
+    health.header = status_of(role, incarnation).header;
+    std::vector<std::byte> bytes;
+    ASSERT_TRUE(transport::encode(health, bytes));
+    member.on_health(bytes, now_ns);
+  }
+  // next event; the role it is about in `about`
+  PeerEvent watch(std::int64_t now_ns) { return member.watch_peers(now_ns, about); }
+
+  InProcessBus bus;
+  InProcessEndpoint end{bus, {"mechanics", {Topic::node_status, Topic::mechanism}, transport::TopicSet::all()}};
+  SessionMember member{Role::mechanics, end, kTopics};
+  Role about = Role::io;
+};
+
+TEST_F(Member, KnowsTheOwnerFromTheDescriptionAlone) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  EXPECT_TRUE(member.peer(Role::io).is_known);
+  EXPECT_EQ(member.describe_peer(Role::io), "io (process 77 on elsewhere)");
+  EXPECT_EQ(watch(2'001 * kMs), PeerEvent::lost);
+  EXPECT_EQ(about, Role::io);
+}
+
+TEST_F(Member, KeepsStatusesThatComeBeforeTheSession) {
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
+  EXPECT_FALSE(member.peer(Role::hydraulics).is_known);
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  EXPECT_TRUE(member.peer(Role::hydraulics).is_known);
+}
+
+TEST_F(Member, IsRefusedWhenItsRoleWasHeldBeforeItCame) {
+  ASSERT_TRUE(hear(status_of(Role::mechanics, 5)).is_ok());
+  const Status refusal = member.adopt(description(), 0);
+  EXPECT_EQ(refusal.code, ExitCode::bad_input);
+  EXPECT_NE(refusal.text.find("the role mechanics of session 's' is held by process 1005 on elsewhere"),
+            std::string::npos)
+      << refusal.text;
+}
+
+TEST_F(Member, GivesWayToAnEarlierProcessOfItsRoleAndNotToALaterOne) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  NodeStatus later = status_of(Role::mechanics, 6, NodeState::joining);
+  later.started_ns = INT64_MAX;
+  EXPECT_TRUE(hear(later).is_ok());
+  EXPECT_EQ(hear(status_of(Role::mechanics, 5, NodeState::joining)).code, ExitCode::bad_input);
+  // one that has ended holds nothing
+  EXPECT_TRUE(hear(status_of(Role::mechanics, 5, NodeState::ended)).is_ok());
+}
+
+TEST_F(Member, DoesNotHearASecondProcessOfAnotherRole) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 6, NodeState::fault)).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).status.state, NodeState::running);
+  EXPECT_TRUE(member.fits(status_of(Role::hydraulics, 5).header));
+  EXPECT_FALSE(member.fits(status_of(Role::hydraulics, 6).header));
+  EXPECT_EQ(member.refusals().unexpected_writer, 2u);
+}
+
+TEST_F(Member, TakesTheSuccessorOfANodeThatEndedBeforeTheStart) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5, NodeState::fault)).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 6, NodeState::joining)).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).status.pid, 1006u);
+}
+
+TEST_F(Member, CountsMessagesThatDoNotFitPerCause) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
+  wire::Header header = status_of(Role::hydraulics, 5).header;
+  EXPECT_TRUE(member.fits(header));
+  header.epoch = 1;
+  EXPECT_FALSE(member.fits(header));
+  header.session[0] = 43;
+  EXPECT_FALSE(member.fits(header));
+  EXPECT_EQ(member.refusals().other_epoch, 1u);
+  EXPECT_EQ(member.refusals().other_session, 1u);
+}
+
+TEST_F(Member, NamesASilentNodeOnceAndTakesItBack) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5), 0).is_ok());
+  hear_health(Role::io, 9, 299 * kMs);
+  EXPECT_EQ(watch(300 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(301 * kMs), PeerEvent::silent);
+  EXPECT_EQ(about, Role::hydraulics);
+  EXPECT_EQ(watch(302 * kMs), PeerEvent::none);
+  // the health of another process of the role is no sign of life
+  hear_health(Role::hydraulics, 6, 310 * kMs);
+  EXPECT_EQ(watch(311 * kMs), PeerEvent::none);
+  hear_health(Role::hydraulics, 5, 320 * kMs);
+  EXPECT_EQ(watch(321 * kMs), PeerEvent::back);
+}
+
+TEST_F(Member, IsHeardOnlyWhenEveryRequiredReaderSaysSo) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  const std::uint32_t own = member.header(Phase::join, kJoinStep).incarnation;
+  for (const Role reader : {Role::io, Role::hydraulics, Role::recorder}) {
+    EXPECT_FALSE(member.is_heard_by_all());
+    NodeStatus status = status_of(reader, reader == Role::io ? 9u : 5u, NodeState::joining);
+    // another process of this role was heard: that proves nothing for this one
+    status.heard = {{Role::mechanics, own + 2, static_cast<std::uint8_t>(Topic::mechanism)}};
+    ASSERT_TRUE(hear(status).is_ok());
+    EXPECT_FALSE(member.is_heard_by_all());
+    status.heard.push_back({Role::mechanics, own, static_cast<std::uint8_t>(Topic::mechanism)});
+    ASSERT_TRUE(hear(status).is_ok());
+  }
+  EXPECT_TRUE(member.is_heard_by_all());
+}
+
+TEST_F(Member, NamesWhatJoinIsMissing) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::recorder, 5, NodeState::ready)).is_ok());
+  const std::string text = member.missing_join_text();
+  EXPECT_NE(text.find("no hydraulics node has been heard in session 's' (expected topic slewring/actuators, type "
+                      "slewring::ActuatorMessage; found no writer of it)"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("recorder (process 1005 on elsewhere) has not heard topic 'mechanism' of mechanics"),
+            std::string::npos)
+      << text;
+}
+
+TEST_F(Member, WaitsForTheEndOfNobodyWhoNeverCame) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::io, 9, NodeState::ended)).is_ok());
+  EXPECT_TRUE(member.all_required(NodeState::ended));
+  EXPECT_FALSE(member.all_required(NodeState::ready));
+}
+
+TEST_F(Member, CountsReadyOnlyForThePresentEpoch) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  for (const Role role : {Role::io, Role::hydraulics, Role::recorder}) {
+    ASSERT_TRUE(hear(status_of(role, role == Role::io ? 9u : 5u, NodeState::ready)).is_ok());
+  }
+  EXPECT_TRUE(member.all_required(NodeState::ready));
+  member.set_epoch(1);
+  EXPECT_FALSE(member.all_required(NodeState::ready));
+}
+
+TEST_F(Member, ThatStepsAsideSaysNothing) {
+  InProcessEndpoint other(bus, {"io", {}, {Topic::node_status}});
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  member.step_aside(ExitCode::bad_input, "held");
+  member.publish_status_if_changed();
+  transport::Received message;
+  EXPECT_FALSE(other.take(message));
+  EXPECT_EQ(member.exit_code(), ExitCode::bad_input);
+  EXPECT_EQ(member.reason(), "held");
+}
+
+TEST_F(Member, KeepsALongReasonWholeForItsOwnMessage) {
+  InProcessEndpoint other(bus, {"io", {}, {Topic::node_status}});
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  member.fail(ExitCode::failed, std::string(1000, 'x'));
+  member.publish_status_if_changed();
+  transport::Received message;
+  ASSERT_TRUE(other.take(message));
+  NodeStatus status;
+  ASSERT_TRUE(transport::decode(message.bytes, status));
+  EXPECT_EQ(status.reason.size(), wire::kMaxReasonLength);
+  EXPECT_EQ(member.reason().size(), 1000u);
+}
+
+}  // namespace
+}  // namespace slew::node

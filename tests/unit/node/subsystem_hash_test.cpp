@@ -1,0 +1,148 @@
+// The hash of a subsystem's state covers every bit that its future depends on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "support/crane_pair.h"
+
+namespace slew::testing {
+namespace {
+
+double next(double value) {
+  return std::nextafter(value, 1e300);
+}
+
+class SubsystemHash : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    crane.start();
+    for (int i = 0; i < 400; ++i) crane.step(CranePair::levers(crane.n));
+  }
+  // every number, one after the other, one unit in the last place up and back
+  void expect_each_counts(coupling::Subsystem& subsystem, std::span<double> values, const char* what) {
+    const std::uint64_t before = subsystem.state_hash();
+    std::set<std::uint64_t> seen = {before};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double value = values[i];
+      values[i] = next(value);
+      EXPECT_TRUE(seen.insert(subsystem.state_hash()).second) << what << "[" << i << "] is not in the hash";
+      values[i] = value;
+    }
+    EXPECT_EQ(subsystem.state_hash(), before);
+  }
+
+  const scene::Scene scene = CranePair::load();
+  CranePair crane{scene};
+};
+
+TEST_F(SubsystemHash, OfMechanicsChangesWithEveryCoordinateAndSpeedByOneUlp) {
+  multibody::State& state = crane.mechanics->mutable_state();
+  ASSERT_GE(state.q.size(), 7u);
+  expect_each_counts(*crane.mechanics, state.q, "q");
+  expect_each_counts(*crane.mechanics, state.u, "u");
+}
+
+TEST_F(SubsystemHash, OfHydraulicsChangesWithEveryStateAndTheStepSizeByOneUlp) {
+  hydraulics::CircuitIntegrator& integrator = crane.hydraulics->integrator();
+  expect_each_counts(*crane.hydraulics, integrator.mutable_state(), "y");
+  const std::uint64_t before = crane.hydraulics->state_hash();
+  integrator.set_step_size(next(integrator.step_size()));
+  EXPECT_NE(crane.hydraulics->state_hash(), before);
+}
+
+TEST_F(SubsystemHash, OfMechanicsHoldsItsOwnCopyOfThePortForces) {
+  // two mechanics that differ in one ulp of one cylinder's force at the start, and in nothing else
+  for (std::size_t port = 0; port < crane.hydraulics_now.actuators.F.size(); ++port) {
+    std::uint64_t hashes[2] = {};
+    for (int changed = 0; changed < 2; ++changed) {
+      CranePair fresh(scene);
+      fresh.start();
+      coupling::ActuatorSample start = fresh.hydraulics_now.actuators;
+      if (changed == 1) start.F[port] = next(start.F[port]);
+      ASSERT_TRUE(fresh.mechanics->start({nullptr, &start}, fresh.mechanics_now).is_ok());
+      hashes[changed] = fresh.mechanics->state_hash();
+    }
+    EXPECT_NE(hashes[0], hashes[1]) << port;
+  }
+}
+
+TEST_F(SubsystemHash, ChangesWithAParameterChangeUnderWay) {
+  for (const auto& [subsystem, path, value] :
+       {std::tuple<coupling::Subsystem*, const char*, double>{crane.mechanics.get(), "Bag.mass", 1500},
+        std::tuple<coupling::Subsystem*, const char*, double>{crane.hydraulics.get(), "MainPump.set_pressure", 2e6}}) {
+    const std::uint64_t before = subsystem->state_hash();
+    ASSERT_TRUE(subsystem->change_parameter(crane.n, {path, value, milliseconds(100)}));
+    const std::uint64_t under_way = subsystem->state_hash();
+    EXPECT_NE(under_way, before) << path;
+    // another target, another duration, another beginning: each is another state
+    ASSERT_TRUE(subsystem->change_parameter(crane.n, {path, next(value), milliseconds(100)}));
+    const std::uint64_t other_target = subsystem->state_hash();
+    ASSERT_TRUE(subsystem->change_parameter(crane.n, {path, value, milliseconds(101)}));
+    const std::uint64_t other_duration = subsystem->state_hash();
+    ASSERT_TRUE(subsystem->change_parameter(crane.n + 1, {path, value, milliseconds(100)}));
+    const std::uint64_t other_step = subsystem->state_hash();
+    EXPECT_EQ((std::set<std::uint64_t>{under_way, other_target, other_duration, other_step}.size()), 4u) << path;
+  }
+}
+
+TEST_F(SubsystemHash, ChangesWithTheValueOfAParameterThatHasArrived) {
+  CranePair other(scene);
+  other.start();
+  for (int i = 0; i < 400; ++i) other.step(CranePair::levers(other.n));
+  ASSERT_EQ(other.mechanics->state_hash(), crane.mechanics->state_hash());
+  ASSERT_TRUE(other.mechanics->change_parameter(other.n, {"Bag.mass", next(500), {}}));
+  ASSERT_TRUE(other.hydraulics->change_parameter(other.n, {"MainPump.set_pressure", next(2.5e6), {}}));
+  other.step(CranePair::levers(other.n));
+  crane.step(CranePair::levers(crane.n));
+  EXPECT_NE(other.mechanics->state_hash(), crane.mechanics->state_hash());
+  EXPECT_NE(other.hydraulics->state_hash(), crane.hydraulics->state_hash());
+}
+
+TEST(SubsystemHashOfAPendulum, TellsWhetherAJointLimitTakesPart) {
+  const scene::Scene scene = scene::load_text(R"(
+bodies:
+  Rod: {position: [0, 2 m, 0], mass: 2 kg, center_of_mass: [0.5 m, 0, 0], inertia: [0, 0.167, 0.167]}
+joints:
+  Hinge: {type: revolute, body1: Ground, point1: [0, 2 m, 0], body2: Rod, limit_min: -1, limit_max: 1,
+          limit_stiffness: 1e4 Nm/rad}
+)",
+                                              "pendulum");
+  mechanics::MechanicsSubsystem pendulum(scene);
+  coupling::OwnSample sample;
+  static_cast<void>(pendulum.first_sample(sample));
+  ASSERT_TRUE(pendulum.start({}, sample).is_ok());
+  const multibody::State start = pendulum.state();
+  const std::uint64_t taking_part = pendulum.state_hash();
+  // far from its limits the first step leaves them out; with the coordinates put back nothing else is different
+  pendulum.step(0, {}, {}, sample);
+  pendulum.mutable_state() = start;
+  EXPECT_NE(pendulum.state_hash(), taking_part);
+}
+
+TEST_F(SubsystemHash, TellsAFailedStateFromAGoodOne) {
+  const std::uint64_t before = crane.mechanics->state_hash();
+  crane.mechanics->mutable_state().u[0] = std::numeric_limits<double>::infinity();
+  crane.step(CranePair::levers(crane.n));
+  EXPECT_NE(crane.mechanics->state_hash(), before);
+}
+
+TEST_F(SubsystemHash, AfterAResetIsThatOfAFreshOneAtEveryStep) {
+  ASSERT_TRUE(crane.mechanics->change_parameter(crane.n, {"Bag.mass", 1500, milliseconds(100)}));
+  ASSERT_TRUE(crane.hydraulics->change_parameter(crane.n, {"MainPump.set_pressure", 2e6, {}}));
+  for (int i = 0; i < 50; ++i) crane.step(CranePair::levers(crane.n));
+  crane.mechanics->reset();
+  crane.hydraulics->reset();
+  crane.start();
+  CranePair fresh(scene);
+  fresh.start();
+  for (int i = 0; i < 600; ++i) {
+    ASSERT_EQ(crane.mechanics->state_hash(), fresh.mechanics->state_hash()) << i;
+    ASSERT_EQ(crane.hydraulics->state_hash(), fresh.hydraulics->state_hash()) << i;
+    crane.step(CranePair::levers(crane.n));
+    fresh.step(CranePair::levers(fresh.n));
+  }
+}
+
+}  // namespace
+}  // namespace slew::testing
