@@ -164,13 +164,25 @@ Program& Session::start(Role role, const std::vector<std::string>& more, const s
   std::vector<std::string> all = arguments(role);
   all.insert(all.end(), more.begin(), more.end());
   const std::string name(node::to_text(role));
-  auto program = std::make_unique<Program>(program_path(name + "_node"), all, folder_.path() / (name + copy));
+  std::filesystem::path path = program_path(name + "_node");
+  if (const auto around = surroundings_.find(role); around != surroundings_.end()) {
+    const Surroundings& s = around->second;
+    all.insert(all.end(), s.more.begin(), s.more.end());
+    all.insert(all.begin(), path.string());
+    all.insert(all.begin(), s.command.begin() + 1, s.command.end());
+    path = s.command.front();
+  }
+  auto program = std::make_unique<Program>(path, all, folder_.path() / (name + copy));
   if (!copy.empty()) {
     copies_.push_back(std::move(program));
     return *copies_.back();
   }
   nodes_[role] = std::move(program);
   return *nodes_[role];
+}
+
+void Session::run_under(Role role, std::vector<std::string> command, std::vector<std::string> more) {
+  surroundings_[role] = {std::move(command), std::move(more)};
 }
 
 void Session::start_all() {

@@ -77,6 +77,8 @@ class Session {
   // Starts a node. `copy`: names the output of a second process of the role.
   Program& start(wire::Role role, const std::vector<std::string>& more = {}, const std::string& copy = "");
   void start_all();
+  // Command in front of this role's program, {"/sbin/ip", "netns", "exec", "a"}, and arguments behind its own.
+  void run_under(wire::Role role, std::vector<std::string> command, std::vector<std::string> more);
   [[nodiscard]] Program& node(wire::Role role) { return *nodes_.at(role); }
   [[nodiscard]] bool has(wire::Role role) const { return nodes_.count(role) != 0; }
 
@@ -99,6 +101,11 @@ class Session {
   std::string name_ = "s";
   std::vector<std::string> io_arguments_;
   std::string scene_;
+  struct Surroundings {
+    std::vector<std::string> command;
+    std::vector<std::string> more;
+  };
+  std::map<wire::Role, Surroundings> surroundings_;
   std::unique_ptr<Observer> observer_;
   std::map<wire::Role, std::unique_ptr<Program>> nodes_;
   std::vector<std::unique_ptr<Program>> copies_;

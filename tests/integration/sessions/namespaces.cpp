@@ -1,0 +1,82 @@
+#include "namespaces.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+
+#include "program.h"
+
+namespace slew::testing {
+namespace {
+
+constexpr const char* kIp = "/sbin/ip";
+constexpr const char* kNamespaces = "/run/netns";
+const std::string kPrefix = "slewring-test-";
+
+}  // namespace
+
+std::vector<std::string> NamespacePair::Side::command() const {
+  return {kIp, "netns", "exec", name};
+}
+
+NamespacePair::NamespacePair() {
+  const std::string own = std::to_string(getpid());
+  left_ = {kPrefix + own + "-a", "va" + own, "10.77.0.1"};
+  right_ = {kPrefix + own + "-b", "vb" + own, "10.77.0.2"};
+  if (access(kIp, X_OK) != 0) {
+    problem_ = "there is no /sbin/ip (package iproute2)";
+    return;
+  }
+  remove_left_behind();
+  for (const Side* side : {&left_, &right_}) {
+    if (!ip({"netns", "add", side->name})) return;
+  }
+  if (!ip({"link", "add", left_.interface, "netns", left_.name, "type", "veth", "peer", "name", right_.interface,
+           "netns", right_.name})) {
+    return;
+  }
+  for (const Side* side : {&left_, &right_}) {
+    if (!ip({"-n", side->name, "addr", "add", side->address + "/24", "dev", side->interface})) return;
+    if (!ip({"-n", side->name, "link", "set", side->interface, "up"})) return;
+    if (!ip({"-n", side->name, "link", "set", "lo", "up"})) return;
+  }
+}
+
+NamespacePair::~NamespacePair() {
+  problem_.clear();
+  static_cast<void>(ip({"netns", "del", left_.name}));
+  static_cast<void>(ip({"netns", "del", right_.name}));
+}
+
+void NamespacePair::unplug() {
+  static_cast<void>(ip({"-n", left_.name, "link", "set", left_.interface, "down"}));
+}
+
+bool NamespacePair::ip(const std::vector<std::string>& arguments) {
+  const ScratchFolder folder;
+  Program program(kIp, arguments, folder.path() / "ip");
+  if (program.wait() == 0) return true;
+  problem_ = "ip";
+  for (const std::string& argument : arguments) problem_ += " " + argument;
+  problem_ += ": " + program.err();
+  return false;
+}
+
+void NamespacePair::remove_left_behind() {
+  std::error_code ignored;
+  std::vector<std::string> dead;
+  for (const auto& entry : std::filesystem::directory_iterator(kNamespaces, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind(kPrefix, 0) != 0) continue;
+    const pid_t owner = std::atoi(name.c_str() + kPrefix.size());
+    if (owner <= 0 || (kill(owner, 0) != 0 && errno == ESRCH)) dead.push_back(name);
+  }
+  for (const std::string& name : dead) static_cast<void>(ip({"netns", "del", name}));
+  problem_.clear();
+}
+
+}  // namespace slew::testing

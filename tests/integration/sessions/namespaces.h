@@ -1,0 +1,39 @@
+// Two network namespaces joined by a veth pair: two machines as far as the network is concerned.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace slew::testing {
+
+class NamespacePair {
+ public:
+  // Makes both, or leaves problem() with the reason why that is not possible here. Removes what killed tests left.
+  NamespacePair();
+  ~NamespacePair();
+  NamespacePair(const NamespacePair&) = delete;
+  NamespacePair& operator=(const NamespacePair&) = delete;
+
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+
+  struct Side {
+    std::string name;       // of the namespace
+    std::string interface;  // its end of the cable
+    std::string address;
+    // in front of a program that is to run there
+    [[nodiscard]] std::vector<std::string> command() const;
+  };
+  [[nodiscard]] const Side& left() const noexcept { return left_; }
+  [[nodiscard]] const Side& right() const noexcept { return right_; }
+
+  void unplug();
+
+ private:
+  [[nodiscard]] bool ip(const std::vector<std::string>& arguments);
+  void remove_left_behind();
+
+  std::string problem_;
+  Side left_, right_;
+};
+
+}  // namespace slew::testing

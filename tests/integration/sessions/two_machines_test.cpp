@@ -1,0 +1,65 @@
+// A session over a cable: mechanics and recorder in one network namespace, hydraulics and io in another.
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "direct_chain.h"
+#include "namespaces.h"
+#include "node/identity.h"
+#include "session.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::Role;
+
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+
+class TwoMachines : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
+  }
+  // the options that two_machines.md tells the user
+  void distribute(Session& session) const {
+    for (const Role role : kAllNodes) {
+      const bool is_left = role == Role::mechanics || role == Role::recorder;
+      const NamespacePair::Side& here = is_left ? cable.left() : cable.right();
+      const NamespacePair::Side& there = is_left ? cable.right() : cable.left();
+      session.run_under(role, here.command(), {"--interface", here.interface, "--peer", there.address});
+    }
+  }
+  NamespacePair cable;
+};
+
+TEST_F(TwoMachines, GiveTheSameBitsAsOneProcess) {
+  Session session({"--pace", "free", "--duration", "1.6s"});
+  distribute(session);
+  session.start_all();
+  ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(recorded.losses(), 0);
+  const ScratchFolder folder;
+  const RecordedSession reference = run_in_one_process(load_scene(kScene, "1.6s"), folder.path() / "runs");
+  EXPECT_EQ(first_difference(recorded.chain(), reference.chain()), "");
+}
+
+TEST_F(TwoMachines, WhoseCableBreaksNameEachOtherAndEndWithCode4) {
+  Session session({"--pace", "real", "--duration", "20s"});
+  distribute(session);
+  session.start_all();
+  // nobody outside the namespaces can listen; the recording grows when the session runs
+  ASSERT_FALSE(session.node(Role::io).wait(1'500'000'000).has_value()) << session.said();
+  cable.unplug();
+  for (const auto& [role, code] : session.wait_all())
+    EXPECT_EQ(code, 4) << node::to_text(role) << "\n" << session.said();
+  EXPECT_NE(session.node(Role::io).err().find(" is gone"), std::string::npos) << session.said();
+  EXPECT_NE(session.node(Role::mechanics).err().find(" is gone"), std::string::npos) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_GT(recorded.last_complete_step(), 0);
+}
+
+}  // namespace
+}  // namespace slew::testing
