@@ -18,17 +18,17 @@ const char* remedy_of(int error) noexcept {
   switch (error) {
     case ENOSPC:
     case EDQUOT:
-      return "free space on that file system, or record elsewhere with --record DIR";
+      return "free space on that file system, or record elsewhere with --out DIR";
     case EFBIG:
       return "raise the file size limit (ulimit -f), or record to another file system";
     case EACCES:
     case EPERM:
     case EROFS:
-      return "choose a directory that you may write to with --record DIR";
+      return "choose a directory that you may write to with --out DIR";
     case EIO:
-      return "check the disk (dmesg), and record elsewhere with --record DIR";
+      return "check the disk (dmesg), and record elsewhere with --out DIR";
     default:
-      return "record elsewhere with --record DIR";
+      return "record elsewhere with --out DIR";
   }
 }
 

@@ -39,7 +39,7 @@ Status create_run_directory(const std::filesystem::path& root, std::string_view 
   if (error) {
     return Status::error(ExitCode::storage,
                          fmt::format("{}: cannot create the directory for recordings ({}); nothing is recorded; choose "
-                                     "another one with --record DIR",
+                                     "another one with --out DIR",
                                      root.string(), error.message()));
   }
   const std::string name = run_name(scene, wall_clock_ns);
@@ -51,7 +51,7 @@ Status create_run_directory(const std::filesystem::path& root, std::string_view 
   }
   return Status::error(ExitCode::storage,
                        fmt::format("{}: cannot create the directory of this run ({}); nothing is recorded; choose "
-                                   "another place with --record DIR",
+                                   "another place with --out DIR",
                                    created.string(), std::strerror(errno)));
 }
 
