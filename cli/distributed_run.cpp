@@ -220,7 +220,8 @@ class Supervisor {
     }
     if (first_step_ns_ != 0 && !view.is_over()) last_step_ns_ = now_ns;
     if (keyboard_) keyboard_->poll(*observer_, now_ns);
-    if (status_.is_due(now_ns) && deadline_ns_ == 0) status_.show(text_.text(view, now_ns), now_ns);
+    text_.measure(view, now_ns);
+    if (status_.is_due(now_ns) && deadline_ns_ == 0) status_.show(text_.text(view), now_ns);
   }
 
   // The newest recording of this scene since the start: for a recorder that could not say its path.

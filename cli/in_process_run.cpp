@@ -137,7 +137,8 @@ class InProcessRun {
     if (started_ns_ == 0 && io_->next_step() > 0) started_ns_ = now_ns;
     if (io_->member().state() < wire::NodeState::ended) ended_ns_ = now_ns;
     if (keyboard_) keyboard_->poll(*observer_, now_ns);
-    if (status_.is_due(now_ns)) status_.show(text_.text(observer_->view(), now_ns), now_ns);
+    text_.measure(observer_->view(), now_ns);
+    if (status_.is_due(now_ns)) status_.show(text_.text(observer_->view()), now_ns);
   }
 
   void finish(RunOutcome& outcome) {

@@ -36,4 +36,7 @@ struct RunOutcome {
   StepIndex steps = 0;
 };
 
+// Messages "program: reason" without those that only repeat the reason of another, in the order given.
+[[nodiscard]] std::vector<std::string> without_echoes(const std::vector<std::string>& messages);
+
 }  // namespace slew::cli

@@ -118,7 +118,7 @@ std::string write_plots(const scene::Scene& scene, const std::string& recording)
 RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
   RunReport report;
   report.code = outcome.code;
-  report.messages = outcome.messages;
+  report.messages = without_echoes(outcome.messages);
   report.recording = outcome.recording;
   report.scene = scene.name;
   report.step = scene.session.step_duration().seconds();
@@ -161,6 +161,7 @@ void print(const RunReport& report) {
   }
   if (report.pace == "real") rows.push_back({"slip", duration_text(report.slip)});
   for (const NodeReport& node : report.nodes) {
+    if (report.steps == 0) break;  // nothing has been done
     std::string text;
     if (node.times.sum > 0) {
       text = fmt::format("step {} mean, {} max; ", duration_text(node.times.mean()), duration_text(node.times.max));

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include "cli/distributed_run.h"
 #include "cli/in_process_run.h"
@@ -12,11 +10,6 @@
 #include "cli_support/failure.h"
 
 namespace slew::cli {
-
-std::string RunOptions::assets() const {
-  const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();
-  return folder.empty() ? "." : folder.string();
-}
 
 namespace {
 
@@ -30,7 +23,7 @@ ExitCode run(RunOptions options) {
   }
   const RunOutcome outcome = options.is_in_process ? run_in_process(options, scene) : run_distributed(options, scene);
   if (!outcome.has_begun) {
-    for (const std::string& message : outcome.messages) std::fprintf(stderr, "%s\n", message.c_str());
+    for (const std::string& message : without_echoes(outcome.messages)) std::fprintf(stderr, "%s\n", message.c_str());
     return outcome.code;
   }
   const RunReport report = make_report(outcome, scene);

@@ -151,7 +151,8 @@ std::string sentence(const recording::Reader& reader, const scene::Scene& scene,
   if (!load || !(load->slope > 0)) return text;
   const double mass = load->mass - (stall.static_force - available) / load->slope;
   if (!(mass > 0)) return text + fmt::format("; not even {} without load could be moved there", load->body);
-  return text + fmt::format("; {} weighs {:.4g} kg, up to {:.0f} kg could be moved there", load->body, load->mass, mass);
+  return text +
+         fmt::format("; {} weighs {:.4g} kg, up to {:.0f} kg could be moved there", load->body, load->mass, mass);
 }
 
 }  // namespace

@@ -95,32 +95,33 @@ StatusText::StatusText(const scene::Scene& scene) : duration_(scene.session.dura
   for (const scene::PortDef& port : scene.ports) ports_.push_back(port.name);
 }
 
-std::string StatusText::text(const SessionView& view, std::int64_t now_ns) {
-  if (!view.has_session()) return "waiting for the session";
-  const double H = static_cast<double>(view.session().step_ns) * 1e-9;
+void StatusText::measure(const SessionView& view, std::int64_t now_ns) {
+  if (!view.has_session()) return;
   const StepIndex step = std::max<StepIndex>(0, view.step());
   if (last_ns_ == 0 || step < last_step_) {
     last_ns_ = now_ns;
     last_step_ = step;
   } else if (now_ns - last_ns_ >= kFactorPeriodNs) {
+    const double H = static_cast<double>(view.session().step_ns) * 1e-9;
     factor_ = static_cast<double>(step - last_step_) * H / (static_cast<double>(now_ns - last_ns_) * 1e-9);
     last_ns_ = now_ns;
     last_step_ = step;
   }
-  std::string text = view.step() < 0 ? "starting" : fmt::format("{:7.2f} s", static_cast<double>(step) * H);
-  if (duration_ > 0 && view.step() >= 0) text += fmt::format(" of {:g}", duration_);
-  if (factor_ > 0) text += fmt::format("  x{:.2f}", factor_);
-  // nodes: named only when they are not simply running
+}
+
+std::string StatusText::nodes_text(const SessionView& view) {
   std::string nodes;
   for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::recorder}) {
     if ((view.session().required_roles & bit(role)) == 0) continue;
-    const bool is_usual = view.node(role).is_known &&
-                          (view.node(role).status.state == wire::NodeState::running ||
-                           (role == Role::recorder && view.node(role).status.state == wire::NodeState::ready));
+    const wire::NodeState state = view.node(role).status.state;
+    const bool is_usual = view.node(role).is_known && (state == wire::NodeState::running ||
+                                                       (role == Role::recorder && state == wire::NodeState::ready));
     if (!is_usual) nodes += (nodes.empty() ? "" : ", ") + node_text(view, role);
   }
-  text += "  " + (nodes.empty() ? "running" : nodes);
-  // coupling
+  return nodes.empty() ? "running" : nodes;
+}
+
+std::string StatusText::coupling_text(const SessionView& view) const {
   std::string lamps;
   for (const std::string& port : ports_) {
     const VariableView* eta = view.find(port + ".coupling_eta");
@@ -131,8 +132,11 @@ std::string StatusText::text(const SessionView& view, std::int64_t now_ns) {
     defects.net = net != nullptr ? net->value : 0;
     lamps += fmt::format("{}{}", lamps.empty() ? "" : "/", lamp_text(coupling::lamp_of(defects)));
   }
-  if (!lamps.empty()) text += "  coupling " + lamps;
-  // plotted variables
+  return lamps.empty() ? "" : "  coupling " + lamps;
+}
+
+std::string StatusText::variables_text(const SessionView& view) const {
+  std::string text;
   std::size_t shown = 0;
   for (const VariableView* variable : view.variables()) {
     if (shown == kMostVariables) break;
@@ -145,6 +149,15 @@ std::string StatusText::text(const SessionView& view, std::int64_t now_ns) {
     text += "  " + variable->name + " " + quantity_text(variable->value, variable->unit);
   }
   return text;
+}
+
+std::string StatusText::text(const SessionView& view) const {
+  if (!view.has_session()) return "waiting for the session";
+  const double H = static_cast<double>(view.session().step_ns) * 1e-9;
+  std::string text = view.step() < 0 ? "starting" : fmt::format("{:7.2f} s", static_cast<double>(view.step()) * H);
+  if (duration_ > 0 && view.step() >= 0) text += fmt::format(" of {:g}", duration_);
+  if (factor_ > 0) text += fmt::format("  x{:.2f}", factor_);
+  return text + "  " + nodes_text(view) + coupling_text(view) + variables_text(view);
 }
 
 }  // namespace slew::cli

@@ -37,9 +37,16 @@ class StatusLine {
 class StatusText {
  public:
   explicit StatusText(const scene::Scene& scene);
-  [[nodiscard]] std::string text(const SessionView& view, std::int64_t now_ns);
+  // To be called in every round: follows how fast the session runs.
+  void measure(const SessionView& view, std::int64_t now_ns);
+  [[nodiscard]] std::string text(const SessionView& view) const;
 
  private:
+  // nodes are named only when they are not simply running
+  [[nodiscard]] static std::string nodes_text(const SessionView& view);
+  [[nodiscard]] std::string coupling_text(const SessionView& view) const;
+  [[nodiscard]] std::string variables_text(const SessionView& view) const;
+
   std::vector<std::string> plotted_;  // patterns
   std::vector<std::string> ports_;
   double duration_;

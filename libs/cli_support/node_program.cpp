@@ -20,6 +20,16 @@ int report(const std::string& program, const char* text, ExitCode code) noexcept
   return static_cast<int>(code);
 }
 
+bool check_processor(const std::string& program) noexcept {
+  const char* missing = nullptr;
+  if (processor_fits(missing)) return true;
+  std::fprintf(stderr,
+               "%s: this processor lacks %s, which this build uses; nothing was started; build with "
+               "-DSLEWRING_MARCH=x86-64-v2 on all machines of a session\n",
+               program.c_str(), missing);
+  return false;
+}
+
 // A word where a verb should stand is the likelier mistake than a verb that is missing.
 std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> verbs = used.get_subcommands([](const CLI::App*) { return true; });
@@ -34,14 +44,6 @@ std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
 }  // namespace
 
 int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept {
-  const char* missing = nullptr;
-  if (!processor_fits(missing)) {
-    std::fprintf(stderr,
-                 "%s: this processor lacks %s, which this build uses; nothing was started; build with "
-                 "-DSLEWRING_MARCH=x86-64-v2 on all machines of a session\n",
-                 program.c_str(), missing);
-    return static_cast<int>(ExitCode::resources);
-  }
   try {
     return static_cast<int>(body());
   } catch (const Failure& failure) {
@@ -60,6 +62,10 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
 }
 
 bool parse(CLI::App& app, int argc, char** argv, int& exit_code) {
+  if (!check_processor(app.get_name())) {
+    exit_code = static_cast<int>(ExitCode::resources);
+    return false;
+  }
   try {
     app.parse(argc, argv);
     return true;

@@ -15,7 +15,8 @@ namespace slew::cli_support {
 // Failure: its own code; a scene's LoadError: bad_input; no memory: resources; anything else: failed.
 [[nodiscard]] int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept;
 
-// Parses; true when the program goes on. Otherwise `exit_code` is 0 (help, version) or bad_input.
+// Parses; true when the program goes on. Otherwise `exit_code` is 0 (help, version) or bad_input, or resources on a
+// processor that this build is not for.
 [[nodiscard]] bool parse(CLI::App& app, int argc, char** argv, int& exit_code);
 
 // --version of every program: name and build id.
