@@ -229,7 +229,7 @@ int main(int argc, char** argv) {
   int steady = 0;  // values in a row within the tolerance
   while (std::chrono::duration<double>(Clock::now() - begin).count() < options.seconds && steady < 100) {
     dds_waitset_wait(waitset, nullptr, 0, DDS_MSECS(20));
-    if (!loop.has_place()) loop.find_variable();
+    loop.find_variable();  // also empties the reader, which would wake the waitset again and again
     loop.read_lease();
     if (!loop.refusal().empty()) {
       std::fprintf(stderr, "position_controller: refused: %s\n", loop.refusal().c_str());
