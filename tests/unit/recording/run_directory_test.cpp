@@ -35,7 +35,7 @@ TEST(RunDirectory, RefusalNamesPlaceAndRemedy) {
   const Status status = create_run_directory(scratch / "runs", "crane", kNoon, created);
   EXPECT_EQ(status.code, ExitCode::storage);
   EXPECT_NE(status.text.find("runs"), std::string::npos);
-  EXPECT_NE(status.text.find("--record DIR"), std::string::npos);
+  EXPECT_NE(status.text.find("--out DIR"), std::string::npos);
 }
 
 }  // namespace

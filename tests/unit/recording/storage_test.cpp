@@ -66,7 +66,7 @@ TEST(RecordingStorage, AMissingDirectoryIsNamedWithTheRemedy) {
   const Status status = Writer::create(scratch / "none/a.mcap", sample_identity(), {}, writer);
   EXPECT_EQ(status.code, ExitCode::storage);
   EXPECT_NE(status.text.find("No such file or directory"), std::string::npos);
-  EXPECT_NE(status.text.find("--record DIR"), std::string::npos);
+  EXPECT_NE(status.text.find("--out DIR"), std::string::npos);
 }
 
 TEST(RecordingStorage, FailureAtAnyByteLeavesAReadableFileAndCountsTheRest) {
