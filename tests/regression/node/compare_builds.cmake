@@ -1,12 +1,13 @@
 # Runs hash_chain of this build and of the other one beside it and compares every line.
-#   cmake -DOWN=.../bin/hash_chain -DOTHERS="a;b" -P compare_builds.cmake
-# Prints SKIPPED when there is no other build, or one that is older than this.
+#   cmake -DOWN=.../bin/hash_chain -DOTHERS="a;b" [-DONLY_NEWER=ON] -P compare_builds.cmake
+# Prints SKIPPED when there is no other build, or with ONLY_NEWER one that is older than this: launch_scripts/test builds
+# Release first, so that a Debug build beside it may still be of older sources.
 set(compared FALSE)
 foreach(other ${OTHERS})
   if(NOT EXISTS ${other})
     continue()
   endif()
-  if(${OWN} IS_NEWER_THAN ${other})
+  if(ONLY_NEWER AND ${OWN} IS_NEWER_THAN ${other})
     message(STATUS "${other} is older than ${OWN}: not compared")
     continue()
   endif()
