@@ -65,7 +65,7 @@ class Supervisor {
     Role role = Role::io;
     std::unique_ptr<ChildProcess> process;
     bool is_reported = false;
-    bool is_killed_by_us = false;
+    bool is_asked_to_end = false;  // a signal is then no accident, even for one that does not catch it yet
   };
 
   // values are needed for the status line, and for the summary of a run that is not recorded here
@@ -153,7 +153,7 @@ class Supervisor {
   void report_end(Node& node) {
     node.is_reported = true;
     const ProcessEnd& end = *node.process->poll_end();
-    if (end.signal != 0 && !node.is_killed_by_us) {
+    if (end.signal != 0 && !node.is_asked_to_end) {
       is_node_killed_ = true;
       const std::string line = "slewring: the " + node.process->name() + " node (process " +
                                std::to_string(node.process->pid()) + ") " + end.text() +
@@ -171,8 +171,8 @@ class Supervisor {
   void send_to_all(int signal) {
     for (Node& node : nodes_) {
       if (node.process->poll_end()) continue;
+      node.is_asked_to_end = true;
       if (signal == SIGKILL) {
-        node.is_killed_by_us = true;
         status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
                     ") does not end; it was killed");
       }
@@ -189,6 +189,7 @@ class Supervisor {
     if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
     if (is_ours(Role::io)) {
       // io ends the session in order: END, the recorder closes, everybody leaves
+      nodes_.front().is_asked_to_end = true;
       nodes_.front().process->send_signal(SIGTERM);
       return;
     }
@@ -243,7 +244,9 @@ class Supervisor {
     ExitCode of_io = ExitCode::ok, of_others = ExitCode::ok;
     for (const Node& node : nodes_) {
       const ProcessEnd& end = *node.process->poll_end();
-      const auto of_node = static_cast<ExitCode>(end.signal != 0 ? static_cast<int>(ExitCode::failed) : end.exit_code);
+      // one that had to be killed although nobody asked the session to end is a lost one
+      const ExitCode of_killed = interrupt_code() != 0 ? ExitCode::terminated : ExitCode::node_lost;
+      const auto of_node = end.signal != 0 ? of_killed : static_cast<ExitCode>(end.exit_code);
       if (node.role == Role::io) of_io = of_node;
       if (node.role != Role::io && of_others == ExitCode::ok) of_others = of_node;
     }

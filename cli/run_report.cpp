@@ -138,8 +138,10 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
       const TickSpan span = tick_span(*reader);
       if (span.ticks > 0) report.steps = span.ticks - 1;  // the last one says END
       if (span.wall_time > 0) report.wall_time = span.wall_time;
-      report.notes = explain_stalls(*reader, scene);
-      report.plots = write_plots(scene, outcome.recording);
+      if (report.steps > 0) {
+        report.notes = explain_stalls(*reader, scene);
+        report.plots = write_plots(scene, outcome.recording);
+      }
     } catch (const cli_support::Failure& failure) {
       report.messages.emplace_back(failure.what());
       if (report.code == ExitCode::ok) report.code = failure.code();

@@ -122,6 +122,21 @@ TEST_F(Distributed, CtrlCEndsInOrderWithAValidRecording) {
   EXPECT_NE(offline({"info", work_.recording().string()}).out.find("closed in order"), std::string::npos);
 }
 
+TEST_F(Distributed, CtrlCBeforeTheFirstStepIsOrderlyToo) {
+  // moments of the start: nothing yet, processes, JOIN, INIT
+  for (const char* sign : {"", "waiting for the session", "starting"}) {
+    const auto session = start("truck_crane.yaml", {"--duration", "0", "--out", std::string("runs_") + sign});
+    ASSERT_TRUE(wait_until([&] {
+      return is_running(*session) || session->out().find(sign) != std::string::npos || session->has_ended();
+    }));
+    session->send(SIGINT);
+    const CommandResult result = session->wait();
+    EXPECT_TRUE(result.code == 130 || result.code == -SIGINT) << result.code << result.err;
+    EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("no variable"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(Distributed, AKilledNodeIsNamedAndTheRecordingStaysValid) {
   for (const char* node : {"mechanics_node", "io_node"}) {
     const std::string folder = std::string("runs_") + node;
