@@ -352,6 +352,22 @@ TEST(Assets, ThatAreTheSameLetTheSessionRun) {
   EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
 }
 
+// ---- storage --------------------------------------------------------------------------------------------------
+
+TEST(Storage, ThatIsFullEndsTheSessionWithCode6AndAValidRecording) {
+  Session session({"--pace", "free", "--duration", "100s"});
+  // no file above 1.2 MB, as on a full disk
+  session.run_under(Role::recorder, {"/bin/sh", "-c", "trap '' XFSZ; exec prlimit --fsize=1200000 \"$@\"", "sh"}, {});
+  session.start_all();
+  for (const auto& [role, code] : session.wait_all())
+    EXPECT_EQ(code, 6) << node::to_text(role) << "\n" << session.said();
+  const std::string said = session.node(Role::recorder).err();
+  EXPECT_NE(said.find("session.mcap"), std::string::npos) << said;
+  EXPECT_NE(session.node(Role::io).err().find("session.mcap"), std::string::npos) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_GT(recorded.last_complete_step(), 0);
+}
+
 // ---- divergence -----------------------------------------------------------------------------------------------
 
 // a damper that no explicit sub-step can follow
