@@ -23,6 +23,9 @@ std::span<const Topic> topics_of(Role role) {
   return role == Role::mechanics ? std::span<const Topic>(kMechanicsTopics) : std::span<const Topic>(kHydraulicsTopics);
 }
 
+// io knows all roles: it is given the time to say which one is missing
+constexpr SimDuration kOwnerFirst = milliseconds(1000);
+
 std::string seconds_text(SimDuration duration) {
   return std::to_string((duration.ns + 500'000'000) / 1'000'000'000) + " s";
 }
@@ -249,7 +252,7 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
 }
 
 bool PhysicsNode::advance_join(std::int64_t now_ns) {
-  if (join_deadline_ns_ == 0) join_deadline_ns_ = now_ns + join_timeout_.ns;
+  if (join_deadline_ns_ == 0) join_deadline_ns_ = now_ns + join_timeout_.ns + kOwnerFirst.ns;
   if (member_.is_heard_by_all()) {
     member_.set_state(NodeState::initialising);
     stage_ = Stage::initialising;

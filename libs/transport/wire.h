@@ -39,7 +39,7 @@ enum class Phase : std::uint8_t { join, init, running, ended };
 struct Header {
   SessionId session{};
   Role role = Role::observer;      // of the writer
-  std::uint32_t incarnation = 0;   // of the writer's role in this session, from 1
+  std::uint32_t incarnation = 0;   // tells processes of one role apart; not 0
   std::uint32_t epoch = 0;         // grows by one with every reset
   Phase phase = Phase::join;
   StepIndex step = kJoinStep;
@@ -103,7 +103,8 @@ struct Asset {
 
 enum class Pace : std::uint8_t { real, free };
 
-// Published by io_node, transient-local: all that another node needs to take part.
+// Published by io_node, transient-local: all that another node needs to take part. In phase JOIN it only claims the name
+// and is for other io nodes; in phase RUNNING the session is to be joined.
 struct SessionDescription {
   Header header;
   std::uint32_t protocol = kProtocolVersion;
