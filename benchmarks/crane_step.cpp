@@ -132,6 +132,7 @@ void BM_Session(benchmark::State& state) {
     const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
     io::IoConfig config = io_config();
     config.pace = wire::Pace::free;
+    config.window = 4;
     config.name_check = {0};
     config.steps = kSteps;
     io::IoNode io(*io_end, std::move(config));

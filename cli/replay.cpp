@@ -51,7 +51,7 @@ class Replay {
       return has_stopped_ || node::stop_requested.load() != 0 ? Visit::stop : Visit::go_on;
     });
     if (!status.is_ok()) throw Failure(status.code, status.text);
-    if (!has_stopped_) finish_epoch();
+    if (!has_stopped_) finish_epoch(EpochEnd::recording);
     if (result_.steps == 0 && result_.problem.empty()) {
       throw Failure(ExitCode::bad_input, "the recording has no tick 0; there is nothing to replay");
     }
@@ -87,13 +87,18 @@ class Replay {
     keep_hashes();
   }
 
-  void finish_epoch() {
+  // A reset overtakes the last ticks: what nobody computed any more is not missing.
+  enum class EpochEnd : std::uint8_t { recording, reset };
+
+  void finish_epoch(EpochEnd end) {
     if (!waiting_ticks_.empty()) {
       return stop(fmt::format("gap: tick {} of epoch {} is missing, tick {} follows", next_, epoch_,
                               waiting_ticks_.begin()->first));
     }
     for (const Hashes& of_role : hashes_) {
-      for (std::size_t i = 0; i < of_role.is_compared.size(); ++i) {
+      std::size_t expected = of_role.is_compared.size();
+      while (end == EpochEnd::reset && expected > 0 && !of_role.is_compared[expected - 1]) --expected;
+      for (std::size_t i = 0; i < expected; ++i) {
         if (!of_role.is_compared[i]) ++result_.unrecorded;
       }
     }
@@ -105,7 +110,7 @@ class Replay {
     if (!transport::decode(bytes, tick_)) return stop("a tick cannot be decoded");
     const wire::Header& header = tick_.header;
     if (header.phase == Phase::init && header.epoch == epoch_ + 1) {
-      finish_epoch();
+      finish_epoch(EpochEnd::reset);
       if (has_stopped_) return;
       epoch_ = header.epoch;
       session_.reset();
@@ -124,7 +129,7 @@ class Replay {
       }
       step(tick);
     }
-    if (waiting_ticks_.size() > kMostWaiting) finish_epoch();
+    if (waiting_ticks_.size() > kMostWaiting) finish_epoch(EpochEnd::recording);
   }
 
   void step(const wire::Tick& tick) {

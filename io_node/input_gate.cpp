@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace slew::io {
+namespace {
+
+constexpr double kFullSwing = 2;  // of a raw value, from -1 to 1
+
+}  // namespace
 
 InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, SimDuration communication_step)
     : config_(config), H_(communication_step.seconds()) {
@@ -110,7 +115,8 @@ void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::in
     channel.raw = raw;
     // dead zone cuts, ramp limits the rate, scale makes it a control value
     const double wanted = std::fabs(raw) < channel.config.dead_zone ? 0.0 : raw;
-    const double most = channel.config.ramp > 0 ? H_ / channel.config.ramp : 2.0;
+    double most = channel.config.ramp > 0 ? H_ / channel.config.ramp : kFullSwing;
+    if (channel.config.rate_limit > 0) most = std::min(most, H_ * channel.config.rate_limit);
     channel.ramped += std::clamp(wanted - channel.ramped, -most, most);
     channel.control = channel.config.scale * channel.ramped;
   }

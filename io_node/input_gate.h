@@ -2,7 +2,7 @@
 //
 // A raw value passes, in this order: finite (a NaN or infinity is rejected and counted), range (-1..1 analog, 0..1
 // digital; what is outside is held at the bound and counted), dead zone (|raw| below it is cut to 0, nothing is
-// rescaled), operator ramp (rate limit), scale. The result is the control value of the tick.
+// rescaled), operator ramp and rate limit (the slower one), scale. The result is the control value of the tick.
 //
 // Who may move a channel is a lease: the first controller that asks holds it until it releases it or falls silent. A
 // silent holder's channel goes to neutral after `neutral_after` and is free again after `release_after`.
@@ -23,10 +23,11 @@ namespace slew::io {
 struct ChannelConfig {
   std::string name;  // "Input_Lift"
   bool is_digital = false;
-  double scale = 1;      // control value at raw 1
-  double dead_zone = 0;  // of raw, 0..1
-  double ramp = 0;       // s for a full stroke 0..1; 0: none
-  double neutral = 0;    // raw value of a channel that nobody moves
+  double scale = 1;       // control value at raw 1
+  double dead_zone = 0;   // of raw, 0..1
+  double ramp = 0;        // s for a full stroke 0..1; 0: none
+  double rate_limit = 0;  // 1/s, of the raw value; 0: none
+  double neutral = 0;     // raw value of a channel that nobody moves
 };
 
 struct GateConfig {

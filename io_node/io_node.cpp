@@ -29,7 +29,6 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       gate_(config_.channels, config_.gate, config_.step),
       is_paused_(config_.starts_paused),
       script_raw_(config_.channels.size(), kSaysNothing) {
-  window_ = config_.pace == wire::Pace::free ? kWindowFree : kWindowReal;
   description_.name = config_.session_name;
   description_.scene_name = config_.scene_name;
   description_.scene_text = config_.scene_text;
@@ -38,7 +37,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
   description_.self_test = member_.identity().self_test;
   description_.step_ns = config_.step.ns;
   description_.pace = config_.pace;
-  description_.window = static_cast<std::uint32_t>(window_);
+  description_.window = static_cast<std::uint32_t>(config_.window);
   description_.required_roles = config_.required_roles;
   description_.host = member_.identity().host;
   description_.pid = member_.identity().pid;
@@ -82,8 +81,8 @@ void IoNode::update_health() noexcept {
   h.slip_ns = slip_ns_;
   h.refused = member_.refusals().total();
   h.is_waiting = stage_ == Stage::ticking && !partners_allow(n_);
-  const bool waits_for_mechanics = member_.requires_role(Role::mechanics) && mechanics_at_ < n_ - window_ + 1;
-  const bool waits_for_hydraulics = member_.requires_role(Role::hydraulics) && hydraulics_at_ < n_ - window_ + 1;
+  const bool waits_for_mechanics = member_.requires_role(Role::mechanics) && mechanics_at_ < n_ - config_.window + 1;
+  const bool waits_for_hydraulics = member_.requires_role(Role::hydraulics) && hydraulics_at_ < n_ - config_.window + 1;
   h.waiting_for = static_cast<std::uint8_t>(waits_for_mechanics    ? Role::mechanics
                                             : waits_for_hydraulics ? Role::hydraulics
                                                                    : Role::recorder);
@@ -364,7 +363,7 @@ bool IoNode::advance_join(std::int64_t now_ns) {
 }
 
 bool IoNode::partners_allow(StepIndex n) const noexcept {
-  const StepIndex needed = n - window_ + 1;
+  const StepIndex needed = n - config_.window + 1;
   if (member_.requires_role(Role::mechanics) && mechanics_at_ < needed) return false;
   if (member_.requires_role(Role::hydraulics) && hydraulics_at_ < needed) return false;
   if (config_.pace == wire::Pace::free && member_.requires_role(Role::recorder)) {
@@ -417,12 +416,12 @@ void IoNode::ask_for_missing(std::int64_t now_ns) {
   resend_due_ns_ =
       now_ns + std::min(std::max(node::kResendAfter.ns, now_ns - last_progress_ns_), node::kResendAtMost.ns);
   const auto ask = [&](Role role, Topic topic, StepIndex at) {
-    if (!member_.requires_role(role) || at >= n_ - window_ + 1) return;
+    if (!member_.requires_role(role) || at >= n_ - config_.window + 1) return;
     wire::ResendRequest request;
     request.header = member_.header(Phase::running, at + 1);
     request.role = role;
     request.topic = static_cast<std::uint8_t>(topic);
-    request.last_step = n_ - window_ + 1;
+    request.last_step = n_ - config_.window + 1;
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
   };

@@ -44,6 +44,7 @@ struct IoConfig {
   std::vector<wire::Asset> assets;
   SimDuration step = milliseconds(1);
   wire::Pace pace = wire::Pace::real;
+  StepIndex window = 1;              // W: ticks ahead of the slowest physics node, at least 1
   std::uint32_t required_roles = 0;  // includes io itself
   StepIndex steps = -1;              // END after so many; -1: until stopped
   std::vector<ChannelConfig> channels;
@@ -56,9 +57,7 @@ struct IoConfig {
   bool starts_paused = false;
 };
 
-// Window W and recorder window of architecture section 2.
-inline constexpr StepIndex kWindowReal = 1;
-inline constexpr StepIndex kWindowFree = 4;
+// Recorder window of architecture section 2.
 inline constexpr StepIndex kRecorderWindow = 512;
 inline constexpr SimDuration kLagLimit = milliseconds(50);
 inline constexpr SimDuration kFaultGathering = milliseconds(20);  // others may have gone wrong in the same step
@@ -116,7 +115,6 @@ class IoNode final : public node::Node {
   InputGate gate_;
   Stage stage_ = Stage::checking_name;
   wire::SessionDescription description_;
-  StepIndex window_ = kWindowReal;
   StepIndex n_ = 0;                     // next tick
   StepIndex mechanics_at_ = kJoinStep;  // highest sample seen without a gap
   StepIndex hydraulics_at_ = kJoinStep;

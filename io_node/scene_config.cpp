@@ -34,6 +34,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   for (const scene::Asset& asset : scene.assets) config.assets.push_back({asset.name, asset.size, asset.sha256});
   config.step = scene.session.step_duration();
   config.pace = scene.session.pace == scene::Pace::free ? wire::Pace::free : wire::Pace::real;
+  config.window = scene.session.window_steps();
   config.required_roles = required_roles(scene, wish.recording);
   config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;
   for (const scene::InputDef& input : scene.inputs) {
@@ -43,6 +44,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
     channel.scale = input.scale;
     channel.dead_zone = input.dead_zone;
     channel.ramp = input.ramp;
+    channel.rate_limit = input.rate_limit;
     config.channels.push_back(std::move(channel));
   }
   config.gate.neutral_after = {static_cast<std::int64_t>(scene.session.controller_timeout * 1e9)};

@@ -114,6 +114,8 @@ void MechanicsSubsystem::evaluate() noexcept {
 
 bool MechanicsSubsystem::first_sample(coupling::OwnSample& sample) noexcept {
   evaluate();
+  // nothing has been done yet: no work, no impulse, whatever the sample held before a reset
+  coupling::resize(sample.mechanism, ports_.size());
   publish(sample.mechanism);
   return true;
 }
@@ -128,6 +130,7 @@ Status MechanicsSubsystem::start(const coupling::PartnerSamples& partners, coupl
     }
     for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].F = partners.actuators->F[i];
   }
+  coupling::resize(sample.mechanism, ports_.size());
   publish(sample.mechanism);
   return Status::ok();
 }
@@ -325,7 +328,6 @@ std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noe
 void MechanicsSubsystem::publish(coupling::MechanismSample& sample) noexcept {
   evaluate();
   const std::size_t m = ports_.size();
-  if (sample.x.size() != m) coupling::resize(sample, m);
   const std::size_t rows = model_.rows.size();
   const std::span<const double> W = multibody::row_mobility(workspace_);
   for (std::size_t i = 0; i < m; ++i) {

@@ -10,8 +10,17 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMs = 1'000'000;
 
+ChannelConfig channel(const char* name, double scale, double ramp) {
+  ChannelConfig config;
+  config.name = name;
+  config.scale = scale;
+  config.dead_zone = 0.2;
+  config.ramp = ramp;
+  return config;
+}
+
 InputGate crane_gate(double ramp = 0) {
-  return InputGate({{"Input_Slew", false, -500, 0.2, ramp, 0}, {"Input_Lift", false, 500, 0.2, ramp, 0}}, GateConfig{},
+  return InputGate({channel("Input_Slew", -500, ramp), channel("Input_Lift", 500, ramp)}, GateConfig{},
                    milliseconds(1));
 }
 
@@ -31,6 +40,17 @@ TEST(InputGate, RampTakesItsTimeForAFullStroke) {
   EXPECT_NEAR(gate.control(1), 250, 1e-9);
   for (StepIndex n = 250; n < 500; ++n) gate.advance(n, std::vector<double>{0, 1}, 0);
   EXPECT_NEAR(gate.control(1), 500, 1e-9);
+}
+
+TEST(InputGate, RateLimitHoldsWhereTheRampIsFaster) {
+  ChannelConfig channel;
+  channel.name = "Input_Lift";
+  channel.scale = 500;
+  channel.ramp = 0.1;
+  channel.rate_limit = 2;
+  InputGate gate({channel}, GateConfig{}, milliseconds(1));
+  for (StepIndex n = 0; n < 250; ++n) gate.advance(n, std::vector<double>{1}, 0);
+  EXPECT_NEAR(gate.control(0), 250, 1e-9);
 }
 
 TEST(InputGate, NanAndOutOfRangeAreCountedAndNeverPassOn) {
@@ -90,7 +110,10 @@ TEST(InputGate, HolderOverridesTheScript) {
 }
 
 TEST(InputGate, DigitalInputIsZeroOrOne) {
-  InputGate gate({{"Horn", true, 1, 0, 0, 0}}, GateConfig{}, milliseconds(1));
+  ChannelConfig horn;
+  horn.name = "Horn";
+  horn.is_digital = true;
+  InputGate gate({horn}, GateConfig{}, milliseconds(1));
   gate.advance(0, std::vector<double>{0.4}, 0);
   EXPECT_EQ(gate.control(0), 0);
   gate.advance(1, std::vector<double>{0.6}, 0);
