@@ -12,8 +12,8 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// ticks come up to the window ahead, samples one step ahead; a power of two with room
-constexpr std::size_t kRingDepth = 32;
+// ticks come up to the window (64 at most) ahead, samples one step ahead
+constexpr std::size_t kRingDepth = 128;
 
 // variables are read by the recorder only; the sample topic is what the partner needs
 constexpr Topic kMechanicsTopics[] = {Topic::mechanism, Topic::variables};
