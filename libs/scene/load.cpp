@@ -73,7 +73,24 @@ class SceneReader {
     Problems errors, warnings;
     check(errors, warnings);
     for (const Problem& problem : errors) add_problem(problem);
-    for (const Problem& problem : warnings) add_warning(problem);
+    add_warnings(warnings);
+  }
+
+  // one line for all elements that are warned about in the same words
+  void add_warnings(const Problems& warnings) {
+    for (auto first = warnings.begin(); first != warnings.end(); ++first) {
+      const auto says_the_same = [first](const Problem& other) {
+        return other.what == first->what && other.expected == first->expected;
+      };
+      if (std::any_of(warnings.begin(), first, says_the_same)) continue;
+      Problem problem = *first;
+      std::string others;
+      for (auto other = std::next(first); other != warnings.end(); ++other) {
+        if (says_the_same(*other)) others += (others.empty() ? "" : ", ") + other->path;
+      }
+      if (!others.empty()) problem.what += " (and " + others + ")";
+      add_warning(problem);
+    }
   }
 
   void check_top_level() {
