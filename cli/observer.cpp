@@ -56,6 +56,17 @@ std::uint64_t Observer::send(wire::ControlRequest request) {
   return request.request;
 }
 
+// A request is lost when io_node does not know this reader yet; its health shows that both have found each other.
+bool Observer::wait_until_heard() {
+  return wait_for(
+      [this] {
+        const NodeView& io = view_.node(wire::Role::io);
+        return io.health.header.session == view_.session().header.session &&
+               cli_support::is_heard(*carrier_, Topic::control_request);
+      },
+      kAnswerTimeout);
+}
+
 wire::ControlReply Observer::ask(wire::ControlRequest request) {
   wire::ControlReply answer;
   bool is_answered = false;
@@ -65,8 +76,10 @@ wire::ControlReply Observer::ask(wire::ControlRequest request) {
     answer = reply;
     is_answered = true;
   };
-  number = send(std::move(request));
-  wait_for([&] { return is_answered; }, kAnswerTimeout);
+  if (wait_until_heard()) {
+    number = send(std::move(request));
+    wait_for([&] { return is_answered; }, kAnswerTimeout);
+  }
   on_reply_ = nullptr;
   if (!is_answered) {
     throw Failure(ExitCode::failed, "session '" + session_ +

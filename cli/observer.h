@@ -35,6 +35,8 @@ class Observer {
   void send(const wire::ControllerInput& input);
 
  private:
+  bool wait_until_heard();
+
   std::unique_ptr<transport::Transport> carrier_;
   std::string session_;
   SessionView view_;

@@ -64,10 +64,11 @@ void SessionView::take_lease(std::span<const std::byte> bytes) {
   leases_[{lease.controller, lease.channel}] = lease;
 }
 
-// a session that starts under the same name after this one takes its place
+// A session that starts under the same name after this one takes its place; one that only claims the name does not.
 void SessionView::take_session(std::span<const std::byte> bytes) {
   wire::SessionDescription session;
   if (!transport::decode(bytes, session) || (!name_.empty() && session.name != name_)) return;
+  if (session.header.phase != wire::Phase::running) return;
   if (session_ && session.header.session == session_->header.session) return;
   if (session_ && session.started_ns < session_->started_ns) return;
   name_ = session.name;

@@ -15,7 +15,7 @@ using wire::Role;
 
 struct Options {
   cli_support::SessionOptions network;
-  double seconds = 0.7;
+  double seconds = 1;
   bool is_json = false;
 };
 
@@ -58,8 +58,8 @@ nlohmann::json to_json(const FoundSession& session) {
 }
 
 ExitCode show(const Options& options) {
-  const std::vector<FoundSession> sessions =
-      find_sessions(options.network, {static_cast<std::int64_t>(options.seconds * 1e9)});
+  const SimDuration listening{static_cast<std::int64_t>(options.seconds * 1e9)};
+  const std::vector<FoundSession> sessions = find_sessions(options.network, listening, listening);
   if (options.is_json) {
     nlohmann::json all = nlohmann::json::array();
     for (const FoundSession& session : sessions) all.push_back(to_json(session));

@@ -14,6 +14,7 @@ namespace {
 using cli_support::Failure;
 
 constexpr SimDuration kSurveyTime = milliseconds(700);
+constexpr SimDuration kLongestSurvey = milliseconds(3000);  // on a machine that is busy
 constexpr SimDuration kLongestWait = milliseconds(20);
 
 using Found = std::map<wire::SessionId, FoundSession>;
@@ -22,7 +23,8 @@ void take(const transport::Received& message, Found& found) {
   switch (message.topic) {
     case wire::Topic::session: {
       wire::SessionDescription description;
-      if (transport::decode(message.bytes, description)) {
+      // one in phase JOIN only claims the name
+      if (transport::decode(message.bytes, description) && description.header.phase == wire::Phase::running) {
         FoundSession& session = found[description.header.session];
         session.description = std::move(description);
       }
@@ -50,25 +52,32 @@ void take(const transport::Received& message, Found& found) {
   }
 }
 
-bool is_over(const FoundSession& session) {
+bool is_running(const FoundSession& session) {
   const auto io = static_cast<std::size_t>(wire::Role::io);
-  return session.is_heard[io] && session.nodes[io].state >= wire::NodeState::ended;
+  const bool is_over = session.is_heard[io] && session.nodes[io].state >= wire::NodeState::ended;
+  return !session.description.name.empty() && !is_over;
 }
 
 }  // namespace
 
-std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time) {
+std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time,
+                                        SimDuration longest) {
   const auto carrier = cli_support::open_survey(options);
   Found found;
-  const std::int64_t end_ns = monotonic_ns() + time.ns;
-  while (monotonic_ns() < end_ns && node::stop_requested.load() == 0) {
+  const std::int64_t begin_ns = monotonic_ns();
+  const auto end_ns = [&] {
+    const bool is_any =
+        std::any_of(found.begin(), found.end(), [](const auto& entry) { return is_running(entry.second); });
+    return begin_ns + (is_any ? time.ns : std::max(time.ns, longest.ns));
+  };
+  while (monotonic_ns() < end_ns() && node::stop_requested.load() == 0) {
     transport::Received message;
     while (carrier->take(message)) take(message, found);
-    carrier->wait_until(std::min(end_ns, monotonic_ns() + kLongestWait.ns));
+    carrier->wait_until(std::min(end_ns(), monotonic_ns() + kLongestWait.ns));
   }
   std::vector<FoundSession> sessions;
   for (auto& [id, session] : found) {
-    if (!session.description.name.empty() && !is_over(session)) sessions.push_back(std::move(session));
+    if (is_running(session)) sessions.push_back(std::move(session));
   }
   std::sort(sessions.begin(), sessions.end(),
             [](const FoundSession& a, const FoundSession& b) { return a.description.name < b.description.name; });
@@ -76,7 +85,7 @@ std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& optio
 }
 
 std::string only_session(const cli_support::SessionOptions& options) {
-  const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime);
+  const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime, kLongestSurvey);
   if (sessions.size() == 1) return sessions.front().description.name;
   if (sessions.empty()) {
     throw Failure(ExitCode::failed,

@@ -17,8 +17,10 @@ struct FoundSession {
   StepIndex step = kJoinStep;
 };
 
-// All sessions that speak within the time, by name. Those that are over are left out.
-[[nodiscard]] std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time);
+// All sessions that speak within the time, by name; while there are none, waits on up to the longest time. Those that
+// are over are left out.
+[[nodiscard]] std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time,
+                                                      SimDuration longest);
 
 // Name of the one session of the domain. Throws Failure when there is none or more than one.
 [[nodiscard]] std::string only_session(const cli_support::SessionOptions& options);

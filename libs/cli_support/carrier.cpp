@@ -88,4 +88,9 @@ std::unique_ptr<transport::Transport> open_carrier(Role role, transport::InProce
       bus, transport::InProcessOptions{std::string(node::to_text(role)), topics_written(role), topics_read(role)});
 }
 
+bool is_heard(const transport::Transport& carrier, Topic topic) {
+  const auto* cyclone = dynamic_cast<const transport::CycloneTransport*>(&carrier);
+  return cyclone == nullptr || cyclone->matched_readers(topic) > 0;
+}
+
 }  // namespace slew::cli_support

@@ -27,4 +27,7 @@ namespace slew::cli_support {
 
 [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier(wire::Role role, transport::InProcessBus& bus);
 
+// True when somebody would hear a message on this topic now. A topic that keeps nothing loses what is said earlier.
+[[nodiscard]] bool is_heard(const transport::Transport& carrier, wire::Topic topic);
+
 }  // namespace slew::cli_support

@@ -117,6 +117,18 @@ TEST_F(SessionViewTest, ALaterSessionOfTheNameTakesThePlaceOfTheFirst) {
   EXPECT_EQ(view.find("A.force"), nullptr);
 }
 
+TEST_F(SessionViewTest, OneThatOnlyClaimsTheNameTakesNoPlace) {
+  SessionView view("crane");
+  wire::SessionDescription claim = session_;
+  claim.header.session = {7};
+  claim.header.phase = wire::Phase::join;
+  claim.started_ns = session_.started_ns + 1;
+  tell(view, claim);
+  EXPECT_FALSE(view.has_session());
+  tell(view, session_);
+  EXPECT_EQ(view.session().header.session, session_.header.session);
+}
+
 TEST_F(SessionViewTest, StepTimesAreWeightedByTheStepsTheyWereMeasuredOver) {
   SessionView view("crane");
   tell(view, session_);
