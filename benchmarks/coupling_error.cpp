@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "benchmarks/coupling_figures.h"
+#include "build_paths.h"
 #include "cli/plotting/svg_plot.h"
 #include "tests/validation/coupling/coupled_run.h"
 

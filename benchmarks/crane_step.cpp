@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
@@ -83,9 +84,8 @@ const Tape& tape() {
 }
 
 void report(benchmark::State& state, StepIndex steps_per_iteration) {
-  state.counters["per_simulated_ms"] =
-      benchmark::Counter(static_cast<double>(state.iterations() * steps_per_iteration),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["per_simulated_ms"] = benchmark::Counter(static_cast<double>(state.iterations() * steps_per_iteration),
+                                                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 // one side, given what the other said on the tape
@@ -116,10 +116,14 @@ void step_hydraulics(coupling::Subsystem&, coupling::Subsystem& hydraulics, Step
   hydraulics.step(n, {&t.mechanism[i], nullptr}, t.controls[i], h);
 }
 
-void BM_Mechanics(benchmark::State& state) { run_side(state, step_mechanics); }
+void BM_Mechanics(benchmark::State& state) {
+  run_side(state, step_mechanics);
+}
 BENCHMARK(BM_Mechanics)->Unit(benchmark::kMillisecond);
 
-void BM_Hydraulics(benchmark::State& state) { run_side(state, step_hydraulics); }
+void BM_Hydraulics(benchmark::State& state) {
+  run_side(state, step_hydraulics);
+}
 BENCHMARK(BM_Hydraulics)->Unit(benchmark::kMillisecond);
 
 void BM_Session(benchmark::State& state) {

@@ -60,12 +60,11 @@ endfunction()
 # One GoogleTest program; every case in it becomes one ctest entry with the label.
 function(slewring_test name)
   cmake_parse_arguments(ARG "SERIAL" "LABEL;TIMEOUT" "SOURCES;DEPENDS;LINK" ${ARGN})
-  slewring_program(${name} SOURCES ${ARG_SOURCES} DEPENDS ${ARG_DEPENDS} LINK ${ARG_LINK} GTest::gtest_main)
+  slewring_program(${name} SOURCES ${ARG_SOURCES} DEPENDS ${ARG_DEPENDS}
+                   LINK ${ARG_LINK} slewring_build_paths GTest::gtest_main)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
-  target_compile_definitions(${name} PRIVATE SLEWRING_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-                                             SLEWRING_BINARY_DIR="${PROJECT_BINARY_DIR}")
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT}
                        RUN_SERIAL $<BOOL:${ARG_SERIAL}>)
 endfunction()

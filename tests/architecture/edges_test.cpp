@@ -12,12 +12,14 @@
 #include <string>
 #include <vector>
 
+#include "build_paths.h"
+
 namespace {
 
 namespace fs = std::filesystem;
 
 struct Edges {
-  std::map<std::string, std::set<std::string>> allowed;             // part -> parts
+  std::map<std::string, std::set<std::string>> allowed;               // part -> parts
   std::vector<std::pair<std::string, std::set<std::string>>> system;  // header prefix -> parts
 };
 
@@ -67,7 +69,8 @@ std::vector<std::string> violations(const Edges& edges, const std::string& part,
     for (const std::string& header : includes_of(entry.path())) {
       const std::string where = fs::relative(entry.path(), SLEWRING_SOURCE_DIR).string() + " includes " + header;
       const std::string head = header.substr(0, header.find('/'));
-      if (head != part && edges.allowed.contains(head) && !edges.allowed.at(part).contains(head)) found.push_back(where);
+      if (head != part && edges.allowed.contains(head) && !edges.allowed.at(part).contains(head))
+        found.push_back(where);
       for (const auto& [prefix, parts] : edges.system) {
         if (header.starts_with(prefix) && !parts.contains(part)) found.push_back(where);
       }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "scene/scene.h"

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "build_paths.h"
 #include "core/time.h"
 
 namespace slew::testing {

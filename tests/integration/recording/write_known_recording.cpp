@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "build_paths.h"
 #include "recording/writer.h"
 #include "transport/codec.h"
 #include "transport/topics.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "build_paths.h"
 #include "core/time.h"
 #include "direct_chain.h"
 #include "node/identity.h"

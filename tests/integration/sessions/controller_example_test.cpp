@@ -2,6 +2,7 @@
 // loop on a real session.
 #include <gtest/gtest.h>
 
+#include "build_paths.h"
 #include "direct_chain.h"
 #include "session.h"
 

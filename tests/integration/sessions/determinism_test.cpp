@@ -6,6 +6,7 @@
 #include <csignal>
 #include <thread>
 
+#include "build_paths.h"
 #include "direct_chain.h"
 #include "node/identity.h"
 #include "session.h"

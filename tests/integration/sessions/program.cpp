@@ -15,6 +15,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "build_paths.h"
 #include "core/time.h"
 
 namespace slew::testing {

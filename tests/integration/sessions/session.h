@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "build_paths.h"
 #include "program.h"
 #include "recorded_session.h"
 #include "support/test_domain.h"

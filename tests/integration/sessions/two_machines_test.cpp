@@ -3,6 +3,7 @@
 
 #include <csignal>
 
+#include "build_paths.h"
 #include "direct_chain.h"
 #include "namespaces.h"
 #include "node/identity.h"

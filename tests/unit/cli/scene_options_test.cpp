@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "build_paths.h"
 #include "io_node/scene_config.h"
 
 namespace slew::cli_support {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 

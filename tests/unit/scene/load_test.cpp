@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "build_paths.h"
 #include "scene/canonical.h"
 #include "scene/scene.h"
 #include "scene_text.h"

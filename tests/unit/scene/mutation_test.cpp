@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "build_paths.h"
 #include "scene/scene.h"
 
 namespace slew::scene {

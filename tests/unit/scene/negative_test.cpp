@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "build_paths.h"
 #include "scene/scene.h"
 #include "scene/source.h"
 #include "temporary_folder.h"

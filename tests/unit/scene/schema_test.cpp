@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "build_paths.h"
 #include "scene/sections.h"
 
 namespace slew::scene {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "build_paths.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"

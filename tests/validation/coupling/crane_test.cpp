@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "build_paths.h"
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "build_paths.h"
 #include "monolith/monolith.h"
 
 namespace slew::monolith {

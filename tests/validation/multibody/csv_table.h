@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "build_paths.h"
+
 namespace slew::multibody::testing {
 
 inline std::vector<std::vector<double>> read_table(const std::string& name) {
