@@ -8,6 +8,7 @@
 #include "hydraulics/circuit.h"
 #include "multibody/model.h"
 #include "multibody/observe.h"
+#include "scene/ports.h"
 #include "scene/scene.h"
 
 namespace slew::cli {
@@ -41,18 +42,12 @@ struct Description {
   std::vector<std::string> left_out;
 };
 
-std::vector<std::string> row_names(const scene::Scene& scene) {
-  std::vector<std::string> names;
-  for (const scene::PortDef& port : scene.ports) names.push_back(port.force);
-  for (const std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(joint);
-  return names;
-}
-
 void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.bodies = scene.mechanics.bodies.size();
   d.joints = scene.mechanics.joints.size();
   if (!scene.has_mechanics()) return;
-  const multibody::Description m = multibody::describe(multibody::build_model(scene.mechanics, row_names(scene)));
+  const multibody::Description m =
+      multibody::describe(multibody::build_model(scene.mechanics, scene::row_names(scene)));
   d.links = m.links.size();
   d.rows = static_cast<std::size_t>(m.rows);
   d.degrees_of_freedom = m.degrees_of_freedom;

@@ -4,6 +4,11 @@
 
 namespace slew::io {
 
+// a scene that was loaded fits the wire
+static_assert(scene::kMaxSceneNameLength <= wire::kMaxNameLength);
+static_assert(scene::kMaxAssetNameLength <= wire::kMaxReasonLength);
+static_assert(scene::kMaxExpandedBytes <= wire::kMaxSceneBytes);
+
 void ScriptSource::values(SimTime t, std::span<double> raw) {
   for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = player_.value(i, t);
 }

@@ -7,6 +7,7 @@
 #include "multibody/joint_law.h"
 #include "multibody/observe.h"
 #include "multibody/parameters.h"
+#include "scene/ports.h"
 
 namespace slew::mechanics {
 namespace {
@@ -16,13 +17,6 @@ constexpr double kMicroStep = 0.25e-3;
 
 // a limit takes part in the port problem when it could be reached within so many sub-steps
 constexpr double kLimitLookAhead = 4;
-
-std::vector<std::string> row_names(const scene::Scene& scene) {
-  std::vector<std::string> names;
-  for (const scene::PortDef& port : scene.ports) names.push_back(port.force);
-  for (const std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(joint);
-  return names;
-}
 
 // a multibody parameter as the one number that ParameterRamps keeps
 int handle_of(multibody::Parameter parameter) {
@@ -55,7 +49,7 @@ class MechanicsSubsystem::Laws final : public coupling::RowLaws {
 
 MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
     : def_(scene.mechanics),
-      row_names_(row_names(scene)),
+      row_names_(scene::row_names(scene)),
       model_(multibody::build_model(def_, row_names_)),
       state_(multibody::start_state(model_)),
       last_good_(state_),

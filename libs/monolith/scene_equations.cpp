@@ -9,6 +9,7 @@
 #include "multibody/observe.h"
 #include "multibody/parameters.h"
 #include "multibody/passes.h"
+#include "scene/ports.h"
 
 namespace slew::monolith {
 namespace {
@@ -17,13 +18,6 @@ constexpr double kAngleScale = 0.01;           // rad: with 1e-9 an error of abo
 constexpr double kLengthScale = 0.01;          // m
 constexpr double kMechanismSpeedScale = 0.01;  // rad/s, m/s
 constexpr double kWorkScale = 1e3;             // J
-
-std::vector<std::string> row_names(const scene::Scene& scene) {
-  std::vector<std::string> names;
-  for (const scene::PortDef& port : scene.ports) names.push_back(port.force);
-  for (const std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(joint);
-  return names;
-}
 
 // first entry of a joint's quaternion in q, or -1
 int quaternion_of(const multibody::Link& link) {
@@ -35,7 +29,7 @@ int quaternion_of(const multibody::Link& link) {
 }  // namespace
 
 SceneEquations::SceneEquations(const scene::Scene& scene)
-    : model_(multibody::build_model(scene.mechanics, row_names(scene))),
+    : model_(multibody::build_model(scene.mechanics, scene::row_names(scene))),
       state_(multibody::start_state(model_)),
       workspace_(model_),
       row_force_(model_.rows.size()),

@@ -101,7 +101,7 @@ std::vector<std::string> joint_rows(const MechanicsDef& mechanics) {
 
 void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems) {
   if (rows.size() > static_cast<std::size_t>(kMaxRows)) {
-    problems.push_back({"mechanics",
+    problems.push_back({"joints",
                         std::to_string(rows.size()) + " actuators and joints with friction or limits",
                         "at most " + std::to_string(kMaxRows),
                         {}});

@@ -151,6 +151,15 @@ std::string canonical_text(Scene& scene) {
   }
   for (const std::string_view section : element_sections()) write_elements(text, all, section);
   write_script(text, scene.script);
+  if (text.size() > kMaxExpandedBytes) {
+    throw LoadError(
+        {{.file = scene.name,
+          .path = "",
+          .what = fmt::format("the scene with its script has {} bytes when it is sent to the nodes", text.size()),
+          .expected = fmt::format("at most {}", kMaxExpandedBytes),
+          .suggestion = ""}},
+        0);
+  }
   return text;
 }
 

@@ -9,6 +9,7 @@
 
 namespace slew::scene {
 
+// Throws LoadError when the text is longer than kMaxExpandedBytes.
 [[nodiscard]] std::string canonical_text(Scene& scene);
 
 // The value of one field as YAML; empty when it has none that a scene could hold.

@@ -93,6 +93,9 @@ inline constexpr double kMaxStep = 20e-3;                    // s
 inline constexpr double kMinUsualStep = 0.1e-3;              // s, warned about below
 inline constexpr double kMaxUsualStep = 10e-3;               // s, warned about above
 inline constexpr std::size_t kMaxNameLength = 32;            // of an element: "name.quantity" must fit the wire's 63
+inline constexpr std::size_t kMaxSceneNameLength = 63;       // on the wire
+inline constexpr std::size_t kMaxAssetNameLength = 255;      // on the wire
+inline constexpr std::size_t kMaxExpandedBytes = 4 << 20;    // of Scene::expanded_text on the wire
 inline constexpr std::size_t kMaxInputs = 64;                // channels on the wire
 inline constexpr std::size_t kMaxScriptChangesPerStep = 16;  // commands in one tick
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "multibody/model.h"
 #include "multibody/validate.h"
 #include "scene/assets.h"
 #include "scene/canonical.h"
@@ -47,7 +48,10 @@ class SceneReader {
     const bool mechanics_is_sound = read_mechanics();
     const bool hydraulics_is_sound = read_hydraulics();
     if (mechanics_is_sound && hydraulics_is_sound) {
-      check_problems([&](Problems& errors, Problems&) { make_ports(scene_, errors); });
+      check_problems([&](Problems& errors, Problems&) {
+        make_ports(scene_, errors);
+        if (errors.empty()) multibody::validate_rows(scene_.mechanics, row_names(scene_), errors);
+      });
     }
     read_inputs();
     read_outputs();
@@ -117,6 +121,12 @@ class SceneReader {
       } else {
         *text = entry->value.text;
       }
+    }
+    if (scene_.name.size() > kMaxSceneNameLength) {
+      const Node::Entry* entry = root_.find("scene");
+      report_.add(entry == nullptr ? root_.mark : entry->value.mark, "scene",
+                  {fmt::format("the scene's name has {} characters", scene_.name.size()),
+                   fmt::format("at most {}", kMaxSceneNameLength), ""});
     }
     if (const Node::Entry* assets = root_.find("assets")) read_assets(assets->value, surroundings_, scene_, report_);
   }

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "coupling/samples.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
+#include "multibody/model.h"
 
 namespace slew::scene {
 namespace {
@@ -80,6 +82,13 @@ void make_ports(Scene& scene, Problems& problems) {
                         fmt::format("there are {} cylinders", scene.ports.size()),
                         fmt::format("at most {}", coupling::kMaxPorts), ""});
   }
+}
+
+std::vector<std::string> row_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const PortDef& port : scene.ports) names.push_back(port.force);
+  for (std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(std::move(joint));
+  return names;
 }
 
 }  // namespace slew::scene

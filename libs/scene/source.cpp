@@ -58,7 +58,7 @@ std::string megabytes(std::size_t bytes) {
 }
 
 Complaint too_large(std::size_t bytes) {
-  return {"is " + megabytes(bytes) + " large", "at most " + megabytes(kMaxSceneBytes), ""};
+  return {"is " + megabytes(bytes) + " large", "at most " + megabytes(kMaxFileBytes), ""};
 }
 
 // The kind and size of the file, before it is opened.
@@ -69,7 +69,7 @@ std::optional<Complaint> refuse_file(const std::string& path) {
   }
   if (S_ISDIR(status.st_mode)) return Complaint{"is a directory", "a file", ""};
   if (!S_ISREG(status.st_mode)) return Complaint{"is not a regular file", "a file", ""};
-  if (static_cast<std::size_t>(status.st_size) > kMaxSceneBytes) {
+  if (static_cast<std::size_t>(status.st_size) > kMaxFileBytes) {
     return too_large(static_cast<std::size_t>(status.st_size));
   }
   return std::nullopt;
@@ -90,7 +90,7 @@ Mark SourceText::mark_at(std::size_t byte) const {
 }
 
 std::optional<SourceText> check_source(std::string text, int source, Report& report) {
-  if (text.size() > kMaxSceneBytes) {
+  if (text.size() > kMaxFileBytes) {
     report.add({source, 0, 0}, "", too_large(text.size()));
     return std::nullopt;
   }
@@ -122,7 +122,7 @@ std::optional<SourceText> read_source(const std::string& path, int source, Repor
   // a file that grows while it is read stops at the limit
   std::string text;
   std::array<char, 65536> block;
-  while (text.size() <= kMaxSceneBytes) {
+  while (text.size() <= kMaxFileBytes) {
     const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
     text.append(block.data(), count);
     if (count < block.size()) break;

@@ -11,7 +11,7 @@
 
 namespace slew::scene {
 
-inline constexpr std::size_t kMaxSceneBytes = 10'000'000;
+inline constexpr std::size_t kMaxFileBytes = 10'000'000;
 
 // Text of one source with the byte offsets of its lines, for marks in characters.
 struct SourceText {
@@ -23,7 +23,7 @@ struct SourceText {
   [[nodiscard]] Mark mark_at(std::size_t byte) const;
 };
 
-// Reads a regular file of at most kMaxSceneBytes; a problem goes to the report and nothing is returned.
+// Reads a regular file of at most kMaxFileBytes; a problem goes to the report and nothing is returned.
 [[nodiscard]] std::optional<SourceText> read_source(const std::string& path, int source, Report& report);
 
 // Checks text that is already in memory: size, UTF-8, no NUL or control characters. A UTF-8 byte order mark is dropped.

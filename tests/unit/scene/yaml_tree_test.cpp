@@ -100,7 +100,7 @@ TEST(YamlTree, BracketsWithoutEndAreRefusedAtOnce) {
 }
 
 TEST(YamlTree, TextOverTenMegabytesIsRefused) {
-  EXPECT_EQ(parse(std::string(kMaxSceneBytes + 1, ' ')).problems, "f: is 10.0 MB large; expected at most 10.0 MB");
+  EXPECT_EQ(parse(std::string(kMaxFileBytes + 1, ' ')).problems, "f: is 10.0 MB large; expected at most 10.0 MB");
 }
 
 TEST(YamlTree, ManyKeysAreReadInLinearTime) {
