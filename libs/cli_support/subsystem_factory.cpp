@@ -4,12 +4,13 @@
 
 #include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
-#include "node/assets.h"
 
 namespace slew::cli_support {
 
 Status check_session_assets(const wire::SessionDescription& session, const std::string& assets) {
-  return node::check_assets(assets, session.assets);
+  std::vector<scene::Asset> manifest;
+  for (const wire::Asset& asset : session.assets) manifest.push_back({asset.name, asset.size, asset.sha256});
+  return scene::check_assets(manifest, assets);
 }
 
 std::vector<std::uint32_t> published_variables(const scene::Scene& scene, const coupling::Subsystem& subsystem) {

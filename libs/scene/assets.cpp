@@ -1,5 +1,7 @@
 #include "scene/assets.h"
 
+#include <openssl/evp.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -9,8 +11,6 @@
 #include <system_error>
 #include <utility>
 #include <vector>
-
-#include "scene/sha256.h"
 
 namespace slew::scene {
 namespace {
@@ -35,14 +35,17 @@ Measured measure(const std::string& name, const std::string& path) {
   const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
   if (!file) return {std::nullopt, std::string("cannot be read: ") + std::strerror(errno)};
   Asset asset{.name = name};
-  Sha256Stream hash;
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+  bool is_hashed = hash && EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr) == 1;
   std::vector<std::uint8_t> bytes(kReadBytes);
   while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file.get())) {
-    hash.add({bytes.data(), count});
+    is_hashed = is_hashed && EVP_DigestUpdate(hash.get(), bytes.data(), count) == 1;
     asset.size += count;
   }
   if (std::ferror(file.get()) != 0) return {std::nullopt, std::string("cannot be read: ") + std::strerror(errno)};
-  asset.sha256 = hash.finish();
+  if (!is_hashed || EVP_DigestFinal_ex(hash.get(), asset.sha256.data(), nullptr) != 1) {
+    return {std::nullopt, "cannot be hashed: OpenSSL has no SHA-256"};
+  }
   return {std::move(asset), ""};
 }
 
@@ -71,6 +74,12 @@ void read_assets(const Node& section, const Surroundings& surroundings, Scene& s
       report.add(item.mark, "assets", {"an entry is " + describe(item), "a file in the scene's folder", ""});
       continue;
     }
+    if (item.text.size() > kMaxAssetNameLength) {
+      report.add(item.mark, "assets",
+                 {"a file's name has " + std::to_string(item.text.size()) + " characters",
+                  "at most " + std::to_string(kMaxAssetNameLength), ""});
+      continue;
+    }
     if (!surroundings.has_folder) {
       scene.assets.push_back({.name = item.text});
       continue;
@@ -91,19 +100,18 @@ Status check_assets(std::span<const Asset> manifest, const std::string& folder) 
     const Measured found = measure(wanted.name, surroundings.path_of(wanted.name));
     if (found.asset == wanted) continue;
     differences += differences.empty() ? "" : "; ";
-    differences += wanted.name;
+    differences += "asset '" + wanted.name + "' ";
     if (!found.asset) {
-      differences += " " + found.problem;
-    } else if (found.asset->size != wanted.size) {
-      differences +=
-          " has " + std::to_string(found.asset->size) + " bytes, the session's has " + std::to_string(wanted.size);
+      differences += found.problem;
     } else {
-      differences += " has other contents than the session's";
+      differences += "differs from the session's (" + std::to_string(found.asset->size) + " bytes here, " +
+                     std::to_string(wanted.size) + " there)";
     }
   }
   if (differences.empty()) return Status::ok();
-  return Status::error(ExitCode::bad_input, "assets differ from the session's: " + differences +
-                                                "; copy the scene's folder to this machine and start again");
+  return Status::error(ExitCode::bad_input, differences +
+                                                "; this node does not take part; copy the session's files to " +
+                                                folder + ", or name their folder with --assets");
 }
 
 }  // namespace slew::scene

@@ -116,22 +116,48 @@ TEST(Load, SeveralDiagnosticsAreOrderedByPlaceAndCounted) {
   }
 }
 
+TEST(Load, ATextThatIsTooLongForTheWireIsRefused) {
+  std::string text = "description: \"" + std::string(kMaxExpandedBytes, 'x') + "\"\n" + kPendulum;
+  try {
+    (void)load_text(std::move(text), "long");
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("when it is sent to the nodes; expected at most 4194304"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Assets, HaveNamesThatFitTheWire) {
+  const std::string name(kMaxAssetNameLength + 1, 'a');
+  try {
+    (void)load_text("assets: [" + name + "]\n" + kPendulum, "test");
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_STREQ(error.what(), "test:1:10: assets: a file's name has 256 characters; expected at most 255");
+  }
+}
+
 TEST(Assets, AreMeasuredAndComparedByContents) {
   const TemporaryFolder here, there;
   here.write("mesh.stl", "abc");
   const Scene scene = load_file(here.write("scene.yaml", "assets: [mesh.stl]\n" + kPendulum));
   ASSERT_EQ(scene.assets.size(), 1u);
   EXPECT_EQ(scene.assets[0].size, 3u);
+  // FIPS 180, digest of "abc": ba7816bf ... f20015ad
   EXPECT_EQ(scene.assets[0].sha256[0], 0xba);
+  EXPECT_EQ(scene.assets[0].sha256[31], 0xad);
   EXPECT_TRUE(check_assets(scene.assets, here.path()).is_ok());
 
   const Status missing = check_assets(scene.assets, there.path());
   EXPECT_EQ(missing.code, ExitCode::bad_input);
-  EXPECT_NE(missing.text.find("mesh.stl cannot be read"), std::string::npos) << missing.text;
+  EXPECT_NE(missing.text.find("asset 'mesh.stl' cannot be read"), std::string::npos) << missing.text;
   there.write("mesh.stl", "abd");
-  EXPECT_NE(check_assets(scene.assets, there.path()).text.find("mesh.stl has other contents"), std::string::npos);
+  EXPECT_NE(check_assets(scene.assets, there.path()).text.find("differs from the session's (3 bytes here, 3 there)"),
+            std::string::npos);
   there.write("mesh.stl", "abcd");
-  EXPECT_NE(check_assets(scene.assets, there.path()).text.find("mesh.stl has 4 bytes"), std::string::npos);
+  EXPECT_NE(check_assets(scene.assets, there.path()).text.find("differs from the session's (4 bytes here, 3 there)"),
+            std::string::npos);
 }
 
 TEST(Assets, KeepTheirNamesInTheCanonicalText) {
