@@ -15,6 +15,7 @@
 #include "cli_support/failure.h"
 #include "coupling/indicator.h"
 #include "node/identity.h"
+#include "recording/run_directory.h"
 #include "scene/names.h"
 
 namespace slew::cli {
@@ -104,7 +105,8 @@ std::string write_plots(const scene::Scene& scene, const std::string& recording)
   options.title = scene.name;
   options.subtitle =
       "session " + reader->identity().session_name + ", " + node::time_text(reader->identity().started_ns);
-  const std::filesystem::path path = std::filesystem::path(recording).parent_path() / (scene.name + ".svg");
+  const std::filesystem::path path =
+      std::filesystem::path(recording).parent_path() / (recording::file_name(scene.name) + ".svg");
   std::ofstream file(path, std::ios::binary);
   file << plotting::plot_svg(curves, options);
   if (!file.flush()) {

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 #include <utility>
 
 #include "core/arithmetic_self_test.h"
@@ -22,9 +23,12 @@ Identity this_process() {
   char name[256] = {};
   gethostname(name, sizeof name - 1);
   identity.host = name;
-  // a pid means the same process only within one name space
+  // a pid means the same process only within one name space of one running kernel: names of machines and numbers of
+  // name spaces are often equal
   struct stat name_space {};
   if (stat("/proc/self/ns/pid", &name_space) == 0) identity.host += "#" + std::to_string(name_space.st_ino);
+  std::string boot_id;
+  if (std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot_id)) identity.host += "#" + boot_id;
   identity.pid = static_cast<std::uint32_t>(getpid());
   identity.started_ns = wall_clock_ns();
   identity.build = build_id();

@@ -9,7 +9,7 @@
 namespace slew::node {
 
 struct Identity {
-  std::string host;  // host name and process name space: equal strings mean that a pid can be looked up
+  std::string host;  // host name, process name space, boot: equal strings mean that a pid can be looked up
   std::uint32_t pid = 0;
   std::int64_t started_ns = 0;  // wall clock
   std::string build;
@@ -18,7 +18,7 @@ struct Identity {
 
 [[nodiscard]] Identity this_process();
 
-// Build id of this program: version, source revision, build type and compiler.
+// Build id of this program: version, source revision when it was built, compiler and processor family.
 [[nodiscard]] std::string build_id();
 
 // 128 random bits from the operating system.

@@ -16,7 +16,7 @@ constexpr std::size_t kMostSceneLetters = 100;  // file systems take 255 bytes
 
 }  // namespace
 
-std::string run_name(std::string_view scene, std::int64_t wall_clock_ns) {
+std::string file_name(std::string_view scene) {
   std::string name;
   for (const char c : scene.substr(0, kMostSceneLetters)) {
     const bool is_plain =
@@ -25,11 +25,15 @@ std::string run_name(std::string_view scene, std::int64_t wall_clock_ns) {
   }
   // no hidden directory, none that a command takes for an option
   if (name.empty() || name.front() == '.' || name.front() == '-') name.insert(0, "scene");
+  return name;
+}
+
+std::string run_name(std::string_view scene, std::int64_t wall_clock_ns) {
   const std::time_t seconds = wall_clock_ns / 1'000'000'000;
   std::tm local{};
   ::localtime_r(&seconds, &local);
-  return fmt::format("{}-{:04}{:02}{:02}-{:02}{:02}{:02}", name, local.tm_year + 1900, local.tm_mon + 1, local.tm_mday,
-                     local.tm_hour, local.tm_min, local.tm_sec);
+  return fmt::format("{}-{:04}{:02}{:02}-{:02}{:02}{:02}", file_name(scene), local.tm_year + 1900, local.tm_mon + 1,
+                     local.tm_mday, local.tm_hour, local.tm_min, local.tm_sec);
 }
 
 Status create_run_directory(const std::filesystem::path& root, std::string_view scene, std::int64_t wall_clock_ns,

@@ -12,8 +12,10 @@ namespace slew::recording {
 
 inline constexpr const char* kRecordingFileName = "session.mcap";
 
-// "<scene>-<YYYYMMDD>-<HHMMSS>" in local time; characters of the scene's name other than letters, digits, '.', '_' and
-// '-' become '_'.
+// A scene's name as the beginning of a file's: characters other than letters, digits, '.', '_' and '-' become '_'.
+[[nodiscard]] std::string file_name(std::string_view scene);
+
+// "<file_name(scene)>-<YYYYMMDD>-<HHMMSS>" in local time.
 [[nodiscard]] std::string run_name(std::string_view scene, std::int64_t wall_clock_ns);
 
 // Creates root/<run_name>, or root/<run_name>-2, -3 ... when it exists; two programs at the same instant get two
