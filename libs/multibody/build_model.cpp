@@ -306,20 +306,21 @@ class Builder {
 
   // both points on one link: the dummies are part of it
   void lump_dummies(const LineElement& line, const CoupledMass& coupled) {
+    model_.welded.push_back(coupled);
     if (line.link1 == kGround) return;
     const Vec3 d = line.p1 - line.p2;
     const Vec3 e = d * (1 / math::norm(d));
     const Mat3 across = Mat3::identity() - math::outer(e, e);
-    const auto add = [&](Vec3 center, double mass, double transverse, int owner) {
+    const auto add = [&](Vec3 center, double mass, double transverse) {
       model_.lumped.push_back({.c_L = center,
                                .I_c = across * transverse,
                                .mass = mass,
                                .reference_mass = mass,
                                .link = line.link1,
-                               .owner = owner});
+                               .owner = kNoBody});
     };
-    add(line.p1 + e * coupled.c1, coupled.m1, coupled.transverse, line.body1);
-    add(line.p2 + e * coupled.c2, coupled.m2, 0, line.body2);
+    add(line.p1 + e * coupled.c1, coupled.m1, coupled.transverse);
+    add(line.p2 + e * coupled.c2, coupled.m2, 0);
   }
 
   const MechanicsDef& def_;

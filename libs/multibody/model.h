@@ -51,7 +51,7 @@ struct LumpedMass {
   double mass = 0;            // kg, now
   double reference_mass = 0;  // kg, of the scene
   int link = 0;
-  int owner = 0;  // body that carries it: itself, or a dummy's body
+  int owner = 0;  // body that carries it: itself, or a dummy's body; -1: two bodies, by Model::welded
 };
 
 struct Body {
@@ -106,10 +106,11 @@ struct AngleElement {
   int path_end = 0;
 };
 
-// Dummies of one force whose points lie on a link and on its parent: masses without degrees of freedom.
+// Dummies of one force: masses without degrees of freedom, whose points lie on a link and on its parent, or on one
+// link.
 struct CoupledMass {
   int line = 0;   // LineElement
-  int child = 0;  // link whose joint it spans
+  int child = 0;  // link whose joint it spans; of one link: 0
   bool is_point1_on_child = false;
   double m1 = 0, c1 = 0;  // kg, m: cylinder; centre at P1 + c1 e
   double m2 = 0, c2 = 0;  // kg, m: piston; centre at P2 + c2 e
@@ -143,6 +144,7 @@ struct Model {
   std::vector<Link> links;    // [0] is Ground
   std::vector<LumpedMass> lumped;
   std::vector<CoupledMass> coupled;  // by child link
+  std::vector<CoupledMass> welded;   // within one link: lumped into it, but carried by both bodies of their line
   std::vector<LineElement> lines;
   std::vector<AngleElement> angles;
   std::vector<PathEntry> paths;

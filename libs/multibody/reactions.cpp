@@ -117,10 +117,15 @@ class ReactionSum {
 void joint_reactions(const Model& model, const State& state, Workspace& ws, std::span<const double> row_forces,
                      std::span<JointReaction> reactions) noexcept {
   forward_dynamics(model, state.q, state.u, row_forces, ws);
+  if (!model.welded.empty())
+    update_elements(model, state.q, Elements::all, ws);  // their lines need no motion in a step
   std::fill(reactions.begin(), reactions.end(), JointReaction{});
   ReactionSum sum(model, ws);
-  for (const LumpedMass& part : model.lumped) sum.add_inertia(part);
+  for (const LumpedMass& part : model.lumped) {
+    if (part.owner >= 0) sum.add_inertia(part);
+  }
   for (const CoupledMass& mass : model.coupled) sum.add_coupled(mass);
+  for (const CoupledMass& mass : model.welded) sum.add_coupled(mass);
   sum.subtract_elements();
   sum.subtract_rows(row_forces);
   sum.pass_on(reactions);

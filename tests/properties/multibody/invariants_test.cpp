@@ -167,6 +167,12 @@ TEST_P(Invariants, ReactionsOnGroundChangeTheMomentum) {
     if (part.link != 0 || part.owner == 0) continue;
     for (std::size_t k = 0; k < 3; ++k) expected[k] += part.mass * mechanism.model.gravity[static_cast<int>(k)];
   }
+  for (const CoupledMass& part : mechanism.model.welded) {
+    if (mechanism.model.lines[static_cast<std::size_t>(part.line)].link1 != 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      expected[k] += (part.m1 + part.m2) * mechanism.model.gravity[static_cast<int>(k)];
+    }
+  }
   State ahead = mechanism.state, back = mechanism.state;
   constexpr double kStep = 1e-4;
   advance_free(mechanism.model, ahead, mechanism.ws, kStep);

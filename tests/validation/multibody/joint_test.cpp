@@ -75,6 +75,23 @@ TEST(StaticJoint, SphericalHangsWithoutMoment) {
   expect_near(reaction.moment, {}, 1e-10);
 }
 
+// two cylinder parts of 4 and 6 kg on a horizontal line of 2 m, 0.5 m from their ends: the lever rule
+TEST(StaticJoint, FixedCarriesItsShareOfACylinderAcrossIt) {
+  MechanicsDef def = static_body(JointType::fixed, {});
+  def.translational_forces = {
+      {.name = "Strut", .body1 = "Ground", .point1 = {-1.7, -0.2, 0.1}, .body2 = "Block", .point2 = {0.3, -0.2, 0.1}}};
+  def.force_dummies = {{"Tube", "Strut", 1, 4, {-0.5, 0, 0}, {}}, {"Rod", "Strut", 2, 6, {0.5, 0, 0}, {}}};
+  for (const bool is_ground_first : {true, false}) {
+    if (!is_ground_first) std::swap(def.joints[0].body1, def.joints[0].body2);
+    Mechanism weld(def);
+    // 4/4 + 6 3/4 kg on the block's point, beside its own 10 kg
+    const double share = (10 + 5.5) / 10, sign = is_ground_first ? 1 : -1;
+    const JointReaction reaction = reaction_of(weld);
+    expect_near(reaction.force, {0, 0, sign * share * kWeight[2]}, 1e-10);
+    expect_near(reaction.moment, {sign * share * kMoment[0], sign * share * kMoment[1], 0}, 1e-10);
+  }
+}
+
 TEST(StaticJoint, ReactionDoesNotDependOnTheOrderOfTheBodies) {
   MechanicsDef def = static_body(JointType::revolute, {0.3, 0.2, 0});
   std::swap(def.joints[0].body1, def.joints[0].body2);
