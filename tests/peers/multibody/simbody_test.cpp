@@ -1,0 +1,153 @@
+// Case P01: the same mechanisms in Simbody 3.7, built from the same definitions through its own interface
+// (simbody_peer.h): the crane of scenes/truck_crane.yaml at 12 random states, seeds 1 to 12, and 48 random trees of 2
+// to 10 bodies, seeds 1 to 48 (revolute, prismatic, spherical, floating and fixed joints in both directions, springs,
+// dampers, dummies), with random forces on cylinders, drives and joints.
+//
+// An instant: accelerations of all bodies, reactions of all joints, kinetic energy, and what a partner of the coupling
+// is told (x, v, a_free, W). Both recursions are exact; what is left is rounding, which loops of light cylinders on
+// heavy booms enlarge: 4e-14 at most, 1e-12 allowed.
+//
+// A motion: the crane falls for 2 s from the scene's start without actuators, limits and joint friction; the trees of
+// seeds 1 to 16 move for 0.5 s under gravity alone, since the kinks of end springs cost either integrator its order.
+// Simbody integrates by Runge-Kutta-Merson with local errors of 1e-12.
+//   sub-step 0.1 ms: 1e-10 rad and m, energies 1e-10 of the peak kinetic energy; four times what is reached, which is
+//   Simbody's own error: ours would be 1e-13
+//   sub-step 1 ms, the scene's: 1e-8 likewise, eight times what is reached; the error of ours, order 4
+#include "tests/peers/multibody/agreement.h"
+#include "tests/peers/multibody/simbody_peer.h"
+
+namespace slew::multibody::testing {
+namespace {
+
+constexpr double kTolerance = 1e-12;
+
+class Mechanisms : public ::testing::TestWithParam<Case> {
+ protected:
+  const Sample sample{GetParam(), ForceDummies::with};
+};
+
+TEST_P(Mechanisms, AccelerateAsSimbodySays) {
+  const double difference = accelerations_differ_by<SimbodyPeer>(sample, sample.def);
+  record("difference", difference);
+  EXPECT_LT(difference, kTolerance);
+}
+
+TEST_P(Mechanisms, ShowTheRowsThatSimbodySees) {
+  if (sample.rows.empty()) GTEST_SKIP() << "nothing to act on";
+  expect_same_rows(rows_differ_by<SimbodyPeer>(sample), kTolerance);
+}
+
+TEST_P(Mechanisms, LoadTheirJointsAsSimbodySays) {
+  MechanicsDef def = sample.def;
+  // no motion tells about which axis a rotational spring turns two bodies that are welded together
+  for (RotationalForceDef& force : def.rotational_forces) force.spring_constant = 0;
+  Mechanism ours(def);
+  std::vector<JointReaction> expected(def.joints.size());
+  joint_reactions(ours.model, sample.state, ours.ws, {}, expected);
+  SimbodyPeer peer(def);
+  peer.set_motion(motions_of(ours.model, ours.ws));
+  static_cast<void>(peer.accelerate(Wrenches(def.bodies.size() + 1)));
+  const double difference = reaction_difference(peer.reactions(), expected);
+  record("difference", difference);
+  EXPECT_LT(difference, kTolerance);
+}
+
+TEST_P(Mechanisms, HaveTheKineticEnergyThatSimbodySees) {
+  Mechanism ours(sample.def);
+  ours.state = sample.state;
+  ours.see();
+  const double expected = energy(ours.model, ours.ws).kinetic;
+  SimbodyPeer peer(sample.def);
+  peer.set_motion(motions_of(ours.model, ours.ws));
+  const double difference = std::abs(peer.energy().kinetic - expected) / expected;
+  record("difference", difference);
+  EXPECT_LT(difference, kTolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfOurs, Mechanisms, ::testing::ValuesIn(cases()), name_of);
+
+TEST(ComparisonWithSimbody, SeesAMassThatIsAMillionthOff) {
+  const Sample sample({Case::Kind::truck_crane, 1}, ForceDummies::with);
+  for (std::size_t i = 0; i < sample.def.force_dummies.size(); ++i) {
+    MechanicsDef other = sample.def;
+    other.force_dummies[i].mass *= 1 + 1e-6;
+    EXPECT_GT(accelerations_differ_by<SimbodyPeer>(sample, other), kTolerance) << other.force_dummies[i].name;
+  }
+  MechanicsDef other = sample.def;
+  other.bodies.back().mass *= 1 + 1e-6;
+  EXPECT_GT(accelerations_differ_by<SimbodyPeer>(sample, other), 1e4 * kTolerance);
+}
+
+struct MotionDifference {
+  double pose = 0;    // rad and m
+  double energy = 0;  // of the change of either kind of energy, relative to the peak kinetic energy
+};
+
+// Ours in steps of h beside Simbody's for a time of 20 looks.
+MotionDifference motions_differ_by(const MechanicsDef& def, const State& start, double time, double h) {
+  constexpr double kAccuracy = 1e-12;
+  constexpr int kLooks = 20;
+  Mechanism ours(def);
+  ours.state = start;
+  ours.see();
+  SimbodyPeer peer(def);
+  peer.set_motion(motions_of(ours.model, ours.ws));
+  const Energy our_start = energy(ours.model, ours.ws), peer_start = peer.energy();
+  MotionDifference largest;
+  double peak = 0;
+  for (int i = 0; i < kLooks; ++i) {
+    ours.run(time / kLooks, h);
+    peer.run(time / kLooks, kAccuracy);
+    const Motions moved = peer.accelerate(Wrenches(def.bodies.size() + 1));
+    grow(largest.pose, pose_difference(motions_of(ours.model, ours.ws), moved));
+    const Energy here = energy(ours.model, ours.ws), there = peer.energy();
+    const double potential = (here.potential - our_start.potential) - (there.potential - peer_start.potential);
+    grow(largest.energy, std::abs(here.kinetic - there.kinetic));
+    grow(largest.energy, std::abs(potential));
+    grow(peak, there.kinetic);
+  }
+  largest.energy /= peak;
+  return largest;
+}
+
+void expect_small(const MotionDifference& difference, const MotionDifference& allowed) {
+  record("pose", difference.pose);
+  record("energy", difference.energy);
+  EXPECT_LT(difference.pose, allowed.pose);
+  EXPECT_LT(difference.energy, allowed.energy);
+}
+
+constexpr MotionDifference kFine = {.pose = 1e-10, .energy = 1e-10}, kCoarse = {.pose = 1e-8, .energy = 1e-8};
+
+class RandomTrees : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomTrees, MoveAsInSimbody) {
+  const Sample sample({Case::Kind::random_tree, GetParam()}, ForceDummies::with);
+  MechanicsDef def = bare(sample.def);
+  def.gravity = sample.def.gravity;
+  expect_small(motions_differ_by(def, sample.state, 0.5, 1e-4), kFine);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomTrees, ::testing::Range(1u, 17u));
+
+class TruckCrane : public ::testing::Test {
+ protected:
+  std::vector<std::string> rows;
+  const MechanicsDef def = truck_crane(rows);
+  const State start = Mechanism(def).state;
+};
+
+TEST_F(TruckCrane, FallsAsInSimbody) {
+  expect_small(motions_differ_by(undamped(def), start, 2, 1e-4), kFine);
+}
+
+TEST_F(TruckCrane, FallsAsInSimbodyWithItsDampers) {
+  expect_small(motions_differ_by(def, start, 2, 1e-4), kFine);
+}
+
+TEST_F(TruckCrane, FallsAsInSimbodyAtTheSubStepOfTheScene) {
+  expect_small(motions_differ_by(undamped(def), start, 2, def.max_substep), kCoarse);
+}
+
+}  // namespace
+}  // namespace slew::multibody::testing
