@@ -68,7 +68,7 @@ void HydraulicsSubsystem::reset() {
   circuit_ = std::make_unique<hydraulics::Circuit>(scene_.hydraulics);
   integrator_ = std::make_unique<hydraulics::CircuitIntegrator>(*circuit_, scene_.hydraulics);
   indicator_.reset();
-  ramps_.clear();
+  ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
   failure_ = StepReport{};
   coupling::resize(published_, m_);
 }
@@ -168,7 +168,8 @@ bool HydraulicsSubsystem::change_parameter(StepIndex n, const coupling::Paramete
   const int parameter = circuit_->find_parameter(change.path);
   if (parameter < 0) return false;
   const double now = *circuit_->parameters()[static_cast<std::size_t>(parameter)].value;
-  return ramps_.begin(parameter, now, change.value, n, std::max<StepIndex>(1, change.over.ns / H_.ns));
+  ramps_.begin(parameter, now, change.value, n, change.over, H_);
+  return true;
 }
 
 std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {

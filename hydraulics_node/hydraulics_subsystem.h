@@ -75,7 +75,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   ReducedMechanics reduced_;
   hydraulics::HeldSpeed held_;
   coupling::Indicator indicator_;
-  coupling::ParameterRamps ramps_;
+  coupling::ParameterRamps ramps_{0};  // sized with the circuit
   std::vector<ElementVariable> variables_;
   coupling::ActuatorSample published_;
   StepReport failure_;

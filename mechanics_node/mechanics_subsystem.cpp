@@ -63,6 +63,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       force_slope_(model_.rows.size()),
       row_force_(model_.rows.size()),
       joint_slope_(model_.rows.size()),
+      ramps_(multibody::parameter_count(model_)),
       heavier_(model_),
       heavier_workspace_(model_) {
   for (const scene::PortDef& port : scene.ports) {
@@ -419,8 +420,8 @@ void MechanicsSubsystem::find_static_forces(const coupling::MechanismSample& sam
 bool MechanicsSubsystem::change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept {
   const std::optional<multibody::Parameter> parameter = multibody::find_parameter(model_, change.path);
   if (!parameter) return false;
-  const StepIndex steps = std::max<StepIndex>(1, change.over.ns / H_.ns);
-  return ramps_.begin(handle_of(*parameter), multibody::get_parameter(model_, *parameter), change.value, n, steps);
+  ramps_.begin(handle_of(*parameter), multibody::get_parameter(model_, *parameter), change.value, n, change.over, H_);
+  return true;
 }
 
 std::uint64_t MechanicsSubsystem::state_hash() const noexcept {

@@ -3,34 +3,36 @@
 //   value(n) = from + (to - from) min(1, (n - begin + 1) / steps)
 //
 // A handle is the owner's number for a parameter. A new change of the same parameter replaces the one under way and
-// begins at the value reached. No allocation.
+// begins at the value reached; so there is room for all changes when there is room for all parameters. Only the
+// constructor allocates.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
+#include "core/check.h"
 #include "core/state_hash.h"
-#include "core/static_vector.h"
 #include "core/time.h"
 
 namespace slew::coupling {
 
 class ParameterRamps {
  public:
-  static constexpr std::size_t kCapacity = 64;
+  // parameters: number of different handles that may come.
+  explicit ParameterRamps(std::size_t parameters) { ramps_.reserve(parameters); }
 
-  // steps: at least 1, in which the target is reached. False when too many changes are under way.
-  bool begin(int handle, double from, double to, StepIndex n, StepIndex steps) noexcept {
-    Ramp ramp{handle, from, to, n, std::max<StepIndex>(1, steps)};
-    for (Ramp& other : ramps_) {
-      if (other.handle == handle) {
-        other = ramp;
-        return true;
-      }
+  // over: the target is reached after its whole steps, at least one.
+  void begin(int handle, double from, double to, StepIndex n, SimDuration over, SimDuration step) noexcept {
+    const Ramp ramp{handle, from, to, n, std::max<StepIndex>(1, over.ns / step.ns)};
+    const auto under_way =
+        std::find_if(ramps_.begin(), ramps_.end(), [&](const Ramp& r) { return r.handle == handle; });
+    if (under_way != ramps_.end()) {
+      *under_way = ramp;
+      return;
     }
-    if (ramps_.size() == kCapacity) return false;
+    SLEW_CHECK(ramps_.size() < ramps_.capacity());
     ramps_.push_back(ramp);
-    return true;
   }
 
   // Calls set(handle, value) for every change under way; drops those that reached their target.
@@ -47,6 +49,9 @@ class ParameterRamps {
     ramps_.resize(kept);
   }
 
+  [[nodiscard]] bool is_under_way(int handle) const noexcept {
+    return std::any_of(ramps_.begin(), ramps_.end(), [&](const Ramp& r) { return r.handle == handle; });
+  }
   void clear() noexcept { ramps_.clear(); }
   [[nodiscard]] bool empty() const noexcept { return ramps_.empty(); }
 
@@ -66,7 +71,7 @@ class ParameterRamps {
     double from = 0, to = 0;
     StepIndex begin = 0, steps = 1;
   };
-  StaticVector<Ramp, kCapacity> ramps_;
+  std::vector<Ramp> ramps_;
 };
 
 }  // namespace slew::coupling

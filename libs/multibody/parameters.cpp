@@ -1,5 +1,6 @@
 #include "multibody/parameters.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -86,6 +87,14 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
     return member_of(ParameterKind::joint_law, i, member_index(kJointMembers, key));
   }
   return std::nullopt;
+}
+
+std::size_t parameter_count(const Model& model) noexcept {
+  const auto joint_rows = static_cast<std::size_t>(
+      std::count_if(model.rows.begin(), model.rows.end(), [](const Row& row) { return row.kind == RowKind::joint; }));
+  const std::size_t moving_bodies = model.bodies.size() - 1;  // [0] is Ground
+  return kGravityKeys.size() + moving_bodies + model.lines.size() * kLineMembers.size() +
+         model.angles.size() * kAngleMembers.size() + joint_rows * kJointMembers.size();
 }
 
 double get_parameter(const Model& model, Parameter parameter) noexcept {

@@ -6,6 +6,7 @@
 //   "mechanics.gravity.x" (y, z)   gravity
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -24,6 +25,9 @@ struct Parameter {
 
 // Empty when the path names nothing that can change here while running.
 [[nodiscard]] std::optional<Parameter> find_parameter(const Model& model, std::string_view path) noexcept;
+
+// How many there are.
+[[nodiscard]] std::size_t parameter_count(const Model& model) noexcept;
 
 [[nodiscard]] double get_parameter(const Model& model, Parameter parameter) noexcept;
 
