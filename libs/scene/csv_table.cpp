@@ -94,7 +94,7 @@ class TimeTableReader {
 
   void read_row(const std::vector<Cell>& cells) {
     if (cells.size() != columns_.size() + 1) {
-      complain(cells[0], {fmt::format("the line has {} cells", cells.size()),
+      complain(cells[0], {fmt::format("the line has {} cell{}", cells.size(), cells.size() == 1 ? "" : "s"),
                           fmt::format("{} as in the header", columns_.size() + 1), ""});
       return;
     }

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "multibody/model.h"
 #include "scene/field_reader.h"
 #include "scene/sections.h"
 #include "scene/suggestion.h"
@@ -51,6 +53,23 @@ std::vector<ElementRef> everything(const Scene& scene) {
   return all;
 }
 
+// Why a live field of this element would change nothing in this scene: the mechanism has no row that it belongs to.
+// Empty: it changes something.
+std::string obstacle(const Scene& scene, const ElementRef& element, const Field& field) {
+  const auto restart = [&](std::string_view with) {
+    return fmt::format("; start it again with --set {}.{}=VALUE", element.name, with);
+  };
+  if (element.section == "mechanics" && !scene.has_mechanics()) return "the scene has no bodies";
+  if (element.section != "joints") return {};
+  const auto& joint = *static_cast<const multibody::JointDef*>(element.def);
+  const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
+  const bool is_of_limits = field.key == "limit_stiffness" || field.key == "limit_damping";
+  if (is_of_limits && !has_limits) return "the joint has no limits" + restart("limit_max");
+  const std::vector<std::string> rows = multibody::joint_rows(scene.mechanics);
+  if (std::find(rows.begin(), rows.end(), element.name) != rows.end()) return {};
+  return "the scene gives the joint neither friction nor limits, so none is computed" + restart(field.key);
+}
+
 Assignment refused(std::string text) {
   Assignment assignment;
   assignment.status = Status::error(ExitCode::bad_input, std::move(text));
@@ -63,7 +82,15 @@ std::vector<ParameterInfo> parameters(const Scene& scene) {
   std::vector<ParameterInfo> all;
   for (const ElementRef& element : everything(scene)) {
     for (const Field& field : element.fields) {
+      const std::size_t first = all.size();
       add_field(all, field, std::string(element.name) + "." + std::string(field.key), element.def);
+      if (field.change != Change::live) continue;
+      const std::string reason = obstacle(scene, element, field);
+      if (reason.empty()) continue;
+      for (std::size_t i = first; i < all.size(); ++i) {
+        all[i].change = Change::restart;
+        all[i].obstacle = reason;
+      }
     }
   }
   return all;
@@ -98,6 +125,7 @@ Assignment ParameterDirectory::check(std::string_view path, double value) const 
     const std::string suggestion = closest(path, live);
     return refused("no parameter '" + name + "'" + (suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?"));
   }
+  if (!parameter->obstacle.empty()) return refused(name + " would change nothing: " + parameter->obstacle);
   if (parameter->change == Change::restart) {
     return refused(name + " cannot be changed while the session runs; start it again with --set " + name + "=VALUE");
   }

@@ -22,7 +22,8 @@ struct ParameterInfo {
   Dimension dimension = Dimension::none;
   Range range;
   Change change = Change::restart;
-  double ramp = 0;  // s, over which a live change is spread by default
+  std::string obstacle{};  // why a parameter that is live elsewhere would change nothing in this scene, and is not
+  double ramp = 0;         // s, over which a live change is spread by default
   bool is_integer = false;
   std::string_view doc;
 };

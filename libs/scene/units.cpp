@@ -186,12 +186,6 @@ std::string name_of(const Unit& unit) {
   return names;
 }
 
-// Dimensions whose values are written without a unit; a fraction may be in %.
-bool is_plain_number(Dimension dimension) {
-  return dimension == Dimension::none || dimension == Dimension::electric_signal ||
-         dimension == Dimension::flow_coefficient || dimension == Dimension::number_of_dimensions;
-}
-
 bool has_dimension(const Unit& unit, Dimension dimension) {
   if (dimension == Dimension::electric_signal || dimension == Dimension::flow_coefficient ||
       dimension == Dimension::number_of_dimensions) {
@@ -264,6 +258,11 @@ const Unit* UnitSystem::find(std::string_view text) {
     found = known_.emplace(std::string(text), unit).first;
   }
   return found->second ? &*found->second : nullptr;
+}
+
+bool is_plain_number(Dimension dimension) {
+  return dimension == Dimension::none || dimension == Dimension::electric_signal ||
+         dimension == Dimension::flow_coefficient || dimension == Dimension::number_of_dimensions;
 }
 
 std::string expected_quantity(Dimension dimension) {

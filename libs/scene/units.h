@@ -54,6 +54,9 @@ struct QuantityResult {
 [[nodiscard]] QuantityResult read_quantity(std::string_view text, Writing writing, Dimension dimension,
                                            UnitSystem& units);
 
+// True for dimensions whose values are written without a unit; a fraction may be in %.
+[[nodiscard]] bool is_plain_number(Dimension dimension);
+
 // "a pressure such as '250 bar', or a bare number in Pa"
 [[nodiscard]] std::string expected_quantity(Dimension dimension);
 

@@ -61,6 +61,26 @@ TEST_F(Parameters, AnAssignmentIsRefusedWithAReason) {
             "'Rod.mass' is not an assignment; expected Element.key=value, such as 'Bag.mass=1500kg'");
 }
 
+TEST(ParametersOfAJoint, ThatAreNotPartOfTheMechanismAreRefusedNamingWhy) {
+  const ParameterDirectory bare(load_text(kPendulum, "test"));
+  EXPECT_EQ(bare.find("Hinge.viscous_friction")->change, Change::restart);
+  EXPECT_EQ(
+      bare.check("Hinge.viscous_friction", 5).status.text,
+      "Hinge.viscous_friction would change nothing: the scene gives the joint neither friction nor limits, so none "
+      "is computed; start it again with --set Hinge.viscous_friction=VALUE");
+  EXPECT_EQ(bare.check("Hinge.limit_damping", 5).status.text,
+            "Hinge.limit_damping would change nothing: the joint has no limits; start it again with --set "
+            "Hinge.limit_max=VALUE");
+
+  // with one of them there is a row, and all its constants can change; without limits those of the limits cannot
+  const ParameterDirectory rubbing(load_text(kPendulum, "test", {"Hinge.coulomb_friction=1 N m"}));
+  EXPECT_TRUE(rubbing.check("Hinge.viscous_friction", 5).status.is_ok());
+  EXPECT_FALSE(rubbing.check("Hinge.limit_damping", 5).status.is_ok());
+  const ParameterDirectory limited(load_text(kPendulum, "test", {"Hinge.limit_max=1 rad", "Hinge.limit_stiffness=10"}));
+  EXPECT_TRUE(limited.check("Hinge.limit_damping", 5).status.is_ok());
+  EXPECT_TRUE(limited.check("Hinge.coulomb_friction", 5).status.is_ok());
+}
+
 TEST_F(Parameters, AValueFromTheWireIsCheckedInTheSameWay) {
   EXPECT_TRUE(directory.check("Rod.mass", 3).status.is_ok());
   EXPECT_FALSE(directory.check("Rod.mass", 0).status.is_ok());
