@@ -79,7 +79,7 @@ void IoNode::update_health() noexcept {
   h.step = n_;
   h.epoch = member_.epoch();
   h.slip_ns = slip_ns_;
-  h.refused = member_.refusals().total();
+  h.refused = member_.refusals().refused();
   h.is_waiting = stage_ == Stage::ticking && !partners_allow(n_);
   const bool waits_for_mechanics = member_.requires_role(Role::mechanics) && mechanics_at_ < n_ - config_.window + 1;
   const bool waits_for_hydraulics = member_.requires_role(Role::hydraulics) && hydraulics_at_ < n_ - config_.window + 1;

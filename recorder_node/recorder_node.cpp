@@ -101,7 +101,7 @@ void RecorderNode::update_health() noexcept {
   h.state = static_cast<std::uint8_t>(member_.state());
   h.step = complete_up_to();
   h.epoch = member_.epoch();
-  h.refused = member_.refusals().total();
+  h.refused = member_.refusals().refused();
   h.has_session.store(member_.has_session(), std::memory_order_release);
 }
 

@@ -91,7 +91,7 @@ void PhysicsNode::update_health() noexcept {
   h.state = static_cast<std::uint8_t>(member_.state());
   h.step = n_;
   h.epoch = member_.epoch();
-  h.refused = member_.refusals().total();
+  h.refused = member_.refusals().refused();
   const bool waits_for_tick = ticks_.find(n_) == nullptr;
   h.is_waiting = stage_ == Stage::stepping;
   h.waiting_for = static_cast<std::uint8_t>(waits_for_tick ? Role::io : partner());
@@ -197,9 +197,9 @@ void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, 
 // puts a message of a step that is still to be done into its ring, once
 template <typename Message>
 void PhysicsNode::keep(std::span<const std::byte> bytes, StepIndex step, StepRing<Message>& ring) {
-  if (step < n_ || step >= n_ + static_cast<StepIndex>(kRingDepth)) {
-    ++member_.refusals().unexpected_step;
-  } else if (ring.find(step) != nullptr) {
+  if (step >= n_ + static_cast<StepIndex>(kRingDepth)) {
+    ++member_.refusals().too_far_ahead;
+  } else if (step < n_ || ring.find(step) != nullptr) {
     ++member_.refusals().duplicate;
   } else if (!transport::decode(bytes, ring.put(step))) {
     ring.remove(step);

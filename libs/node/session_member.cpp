@@ -111,12 +111,12 @@ wire::Header SessionMember::header(wire::Phase phase, StepIndex step, std::uint3
 
 bool SessionMember::fits(const wire::Header& header) noexcept {
   if (!has_session_ || header.session != session_.header.session) {
-    ++refusals_.other_session;
+    ++(has_session_ ? refusals_.other_session : refusals_.early);
     return false;
   }
   const auto index = static_cast<std::size_t>(header.role);
   if (index < wire::kRoles && (!peers_[index].is_known || peers_[index].incarnation != header.incarnation)) {
-    ++refusals_.unexpected_writer;
+    ++(peers_[index].is_known ? refusals_.unexpected_writer : refusals_.early);
     return false;
   }
   if (header.epoch != epoch_) {

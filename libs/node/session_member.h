@@ -32,14 +32,17 @@ inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends afte
 
 // Messages that were received but not applied, by cause.
 struct Refusals {
+  // something is wrong: a damaged message, a foreign session, two processes of one role, a writer that runs ahead
   std::uint64_t undecodable = 0;
   std::uint64_t other_session = 0;
-  std::uint64_t other_epoch = 0;
-  std::uint64_t unexpected_step = 0;  // already done or too far ahead
-  std::uint64_t duplicate = 0;
   std::uint64_t unexpected_writer = 0;
-  [[nodiscard]] std::uint64_t total() const noexcept {
-    return undecodable + other_session + other_epoch + unexpected_step + unexpected_writer;
+  std::uint64_t too_far_ahead = 0;
+  // part of every healthy session
+  std::uint64_t early = 0;        // before this node knew the session or the writer; said again until JOIN is done
+  std::uint64_t other_epoch = 0;  // on their way while the session was reset
+  std::uint64_t duplicate = 0;    // of a step that is there or done: an answer to a resend that came twice
+  [[nodiscard]] std::uint64_t refused() const noexcept {
+    return undecodable + other_session + unexpected_writer + too_far_ahead;
   }
 };
 

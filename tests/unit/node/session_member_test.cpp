@@ -128,6 +128,18 @@ TEST_F(Member, CountsMessagesThatDoNotFitPerCause) {
   EXPECT_FALSE(member.fits(header));
   EXPECT_EQ(member.refusals().other_epoch, 1u);
   EXPECT_EQ(member.refusals().other_session, 1u);
+  EXPECT_EQ(member.refusals().refused(), 1u) << "what is on its way during a reset is nothing to refuse";
+}
+
+TEST_F(Member, DoesNotCallWhatCameBeforeItsWriterWasKnownRefused) {
+  const wire::Header header = status_of(Role::hydraulics, 5).header;
+  EXPECT_FALSE(member.fits(header));
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  EXPECT_FALSE(member.fits(header));
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
+  EXPECT_TRUE(member.fits(header));
+  EXPECT_EQ(member.refusals().early, 2u);
+  EXPECT_EQ(member.refusals().refused(), 0u);
 }
 
 TEST_F(Member, NamesASilentNodeOnceAndTakesItBack) {
