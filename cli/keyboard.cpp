@@ -102,12 +102,9 @@ void Keyboard::publish(Observer& observer, std::size_t lever, wire::ControllerAc
 
 // asking again for a channel that is held would put it to neutral
 void Keyboard::acquire_missing(Observer& observer) {
-  const std::uint32_t epoch = observer.view().node(wire::Role::io).health.header.epoch;
-  const bool is_reset = epoch != epoch_;
-  epoch_ = epoch;
   for (std::size_t i = 0; i < levers_.size(); ++i) {
     const wire::ControllerLease* lease = observer.view().lease(kName, levers_.channel(i));
-    if (lease == nullptr || !lease->is_granted || is_reset) publish(observer, i, wire::ControllerAction::acquire);
+    if (lease == nullptr || !lease->is_granted) publish(observer, i, wire::ControllerAction::acquire);
   }
 }
 

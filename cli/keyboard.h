@@ -63,7 +63,6 @@ class Keyboard {
   termios saved_{};
   std::int64_t next_write_ns_ = 0;
   std::int64_t next_acquire_ns_ = 0;
-  std::uint32_t epoch_ = 0;  // a reset takes the channels back
   std::uint64_t sequence_ = 0;
 };
 

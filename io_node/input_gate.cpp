@@ -20,9 +20,17 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
   reset();
 }
 
-void InputGate::reset() noexcept {
-  for (Channel& channel : channels_) {
-    channel.holder.clear();
+void InputGate::take_lease(std::size_t index, std::string reason) {
+  Channel& channel = channels_[index];
+  if (channel.holder.empty()) return;
+  lost_.push_back({index, std::exchange(channel.holder, {}), std::move(reason)});
+}
+
+void InputGate::reset() {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    Channel& channel = channels_[i];
+    take_lease(i, "the session was reset: channel " + channel.config.name +
+                      " is at neutral and free; acquire it again to go on");
     channel.is_silent = false;
     channel.controller_raw = channel.raw = channel.config.neutral;
     channel.ramped = channel.config.neutral;
@@ -93,7 +101,10 @@ void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::in
     Channel& channel = channels_[i];
     // a silent holder first goes to neutral, then loses the channel
     const std::int64_t silent_ns = channel.holder.empty() ? 0 : now_ns - channel.written_ns;
-    if (silent_ns > config_.release_after.ns) channel.holder.clear();
+    if (silent_ns > config_.release_after.ns) {
+      take_lease(i, "no value came for " + std::to_string(config_.release_after.ns / 1'000'000) + " ms: channel " +
+                        channel.config.name + " is free; acquire it again to go on");
+    }
     if (!channel.holder.empty() && silent_ns > config_.neutral_after.ns && !channel.is_silent) {
       channel.is_silent = true;
       channel.controller_raw = channel.config.neutral;

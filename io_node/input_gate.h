@@ -5,13 +5,15 @@
 // rescaled), operator ramp and rate limit (the slower one), scale. The result is the control value of the tick.
 //
 // Who may move a channel is a lease: the first controller that asks holds it until it releases it or falls silent. A
-// silent holder's channel goes to neutral after `neutral_after` and is free again after `release_after`.
+// silent holder's channel goes to neutral after `neutral_after` and is free again after `release_after`; a reset frees
+// all channels. Who loses a channel so is to be told.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/state_hash.h"
@@ -41,6 +43,13 @@ struct LeaseAnswer {
   std::string reason;
 };
 
+// A controller that holds a channel no longer, without having released it.
+struct LostLease {
+  std::size_t channel = 0;
+  std::string controller;
+  std::string reason;
+};
+
 class InputGate {
  public:
   InputGate(std::vector<ChannelConfig> channels, GateConfig config, SimDuration communication_step);
@@ -63,7 +72,9 @@ class InputGate {
   [[nodiscard]] const ChannelConfig& config(std::size_t channel) const noexcept { return channels_[channel].config; }
 
   // Back to neutral without holders.
-  void reset() noexcept;
+  void reset();
+  // The leases that silence or a reset has taken since the last call.
+  [[nodiscard]] std::vector<LostLease> take_lost_leases() { return std::exchange(lost_, {}); }
   void add_to(StateHash& hash) const noexcept;
 
   [[nodiscard]] std::uint64_t rejected_not_finite() const noexcept { return rejected_not_finite_; }
@@ -86,8 +97,10 @@ class InputGate {
   };
 
   double accepted(Channel& channel, double raw) noexcept;
+  void take_lease(std::size_t channel, std::string reason);
 
   std::vector<Channel> channels_;
+  std::vector<LostLease> lost_;
   GateConfig config_;
   double H_;
   std::uint64_t rejected_not_finite_ = 0;

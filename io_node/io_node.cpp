@@ -27,6 +27,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
     : member_(Role::io, transport, kOwnTopics),
       config_(std::move(config)),
       gate_(config_.channels, config_.gate, config_.step),
+      parameters_(config_.parameters, config_.step),
       is_paused_(config_.starts_paused),
       script_raw_(config_.channels.size(), kSaysNothing) {
   description_.name = config_.session_name;
@@ -200,8 +201,11 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
     return;
   }
   if (request.session != config_.session_name) return;
+  if (request.action == wire::ControlAction::get_parameter) return tell_parameter(request);
   if (stage_ != Stage::ticking) return answer(request, false, "the session is not running yet", n_);
   switch (request.action) {
+    case wire::ControlAction::get_parameter:
+      return;  // answered above, in every stage
     case wire::ControlAction::set_parameter:
       return set_parameter(request);
     case wire::ControlAction::pause:
@@ -211,7 +215,7 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
       return answer(request, true, "", n_);
     case wire::ControlAction::resume:
       is_paused_ = false;
-      keep_time(now_ns);
+      base_ns_ = std::max(base_ns_, now_ns - n_ * config_.step.ns);  // a pause is no slip
       member_.set_state(NodeState::running);
       return answer(request, true, "", n_);
     case wire::ControlAction::step:
@@ -237,7 +241,8 @@ void IoNode::set_parameter(const wire::ControlRequest& request) {
   if (!verdict.is_accepted) return answer(request, false, verdict.reason, n_);
   if (waiting_commands_.size() >= wire::kMaxCommandsPerTick) {
     return answer(request, false,
-                  "more than " + std::to_string(wire::kMaxCommandsPerTick) + " changes wait for one tick; send again",
+                  std::to_string(wire::kMaxCommandsPerTick) +
+                      " changes already wait for the next step; send it again after that step",
                   n_);
   }
   wire::Command command;
@@ -249,11 +254,24 @@ void IoNode::set_parameter(const wire::ControlRequest& request) {
   answer(request, true, "", n_);
 }
 
-void IoNode::answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step) {
+void IoNode::tell_parameter(const wire::ControlRequest& request) {
+  const int parameter = parameters_.find(request.path);
+  if (parameter < 0) return answer(request, false, "no live parameter '" + request.path + "' in this session", n_);
+  const bool is_waiting = std::any_of(waiting_commands_.begin(), waiting_commands_.end(),
+                                      [&](const wire::Command& command) { return command.path == request.path; });
+  const char* const remark = is_waiting                           ? "a change waits for the next step"
+                             : parameters_.is_changing(parameter) ? "on its way to a new value"
+                                                                  : "";
+  answer(request, true, remark, n_, parameters_.value(parameter));
+}
+
+void IoNode::answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step,
+                    double value) {
   wire::ControlReply reply;
   reply.header = member_.header(Phase::running, step);
   reply.request = request.request;
   reply.is_accepted = accepted;
+  reply.value = value;
   reply.reason = reason.substr(0, wire::kMaxReasonLength);
   member_.publish(Topic::control_reply, reply);
 }
@@ -445,11 +463,14 @@ void IoNode::issue_tick(std::int64_t now_ns) {
     if (std::isnan(raw)) raw = gate_.config(channel).neutral;
   }
   gate_.advance(n_, script_raw_, now_ns);
+  tell_lost_leases();
   // commands of this step; what does not fit waits for the next tick
   while (!waiting_commands_.empty() && tick_.commands.size() < wire::kMaxCommandsPerTick) {
+    parameters_.begin(waiting_commands_.front(), n_);
     tick_.commands.push_back(waiting_commands_.front());
     waiting_commands_.erase(waiting_commands_.begin());
   }
+  parameters_.advance(n_);
   // the tick
   tick_.header = member_.header(Phase::running, n_);
   tick_.flags = 0;
@@ -485,6 +506,7 @@ void IoNode::send_tick(StepIndex step) {
 void IoNode::start_epoch(std::int64_t now_ns) {
   member_.set_epoch(member_.epoch() + 1);
   gate_.reset();
+  parameters_.reset();
   waiting_commands_.clear();
   single_steps_ = 0;
   sent_.clear();
@@ -493,11 +515,23 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   tick_ = wire::Tick{};
   tick_.header = member_.header(Phase::init, kJoinStep);
   send_tick(kJoinStep);
+  tell_lost_leases();
   member_.set_step(0);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
   stage_ = Stage::initialising;
   deadline_ns_ = now_ns + config_.join_timeout.ns;
+}
+
+void IoNode::tell_lost_leases() {
+  for (LostLease& lost : gate_.take_lost_leases()) {
+    wire::ControllerLease lease;
+    lease.header = member_.header(Phase::running, n_);
+    lease.controller = std::move(lost.controller);
+    lease.channel = gate_.config(lost.channel).name;
+    lease.reason = std::move(lost.reason);
+    member_.publish(Topic::controller_lease, lease);
+  }
 }
 
 // ---- ending ---------------------------------------------------------------------------------------------------

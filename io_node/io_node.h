@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "io_node/input_gate.h"
+#include "io_node/live_parameters.h"
 #include "node/node.h"
 #include "node/sent_cache.h"
 
@@ -51,6 +52,7 @@ struct IoConfig {
   GateConfig gate;
   std::unique_ptr<InputSource> source;  // may be null
   std::function<ParameterVerdict(const std::string& path, double value)> judge_parameter;
+  std::vector<LiveParameter> parameters;  // those that may change while the session runs
   std::uint32_t variables_every = 10;
   SimDuration name_check = milliseconds(300);  // listens so long for a holder of the name; 0 in one process
   SimDuration join_timeout = node::kJoinTimeout;
@@ -104,8 +106,11 @@ class IoNode final : public node::Node {
   void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   [[nodiscard]] std::string not_ready_text() const;
-  void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step);
+  void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step,
+              double value = 0);
   void set_parameter(const wire::ControlRequest& request);
+  void tell_parameter(const wire::ControlRequest& request);
+  void tell_lost_leases();
   void publish_directory();
   void publish_variables();
   void update_health() noexcept;
@@ -113,6 +118,7 @@ class IoNode final : public node::Node {
   node::SessionMember member_;
   IoConfig config_;
   InputGate gate_;
+  LiveParameters parameters_;
   Stage stage_ = Stage::checking_name;
   wire::SessionDescription description_;
   StepIndex n_ = 0;                     // next tick

@@ -58,6 +58,9 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   }
   // std::function needs a copyable owner; the directory itself is built once
   const auto directory = std::make_shared<const scene::ParameterDirectory>(scene);
+  for (const scene::ParameterInfo& parameter : directory->all()) {
+    if (parameter.change == Change::live) config.parameters.push_back({parameter.path, parameter.value});
+  }
   config.judge_parameter = [directory](const std::string& path, double value) {
     const scene::Assignment assignment = directory->check(path, value);
     return ParameterVerdict{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};

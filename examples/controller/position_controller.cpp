@@ -168,8 +168,13 @@ class Loop {
   void read_lease() {
     take_all<slewring_ControllerLease>(e_.lease, [&](const slewring_ControllerLease& lease) {
       if (options_.name != lease.controller || options_.channel != lease.channel) return;
+      const bool is_taken_away = has_lease_ && !lease.is_granted && *lease.holder == '\0';
       has_lease_ = lease.is_granted && options_.name == lease.holder;
-      if (!lease.is_granted) refusal_ = lease.reason;
+      if (is_taken_away) {
+        std::fprintf(stderr, "position_controller: %s\n", lease.reason);
+      } else if (!lease.is_granted) {
+        refusal_ = lease.reason;
+      }
     });
   }
 

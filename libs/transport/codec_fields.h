@@ -54,7 +54,7 @@ inline constexpr std::uint32_t kEnumerators<wire::NodeState> = 8;
 template <>
 inline constexpr std::uint32_t kEnumerators<wire::ControllerAction> = 3;
 template <>
-inline constexpr std::uint32_t kEnumerators<wire::ControlAction> = 6;
+inline constexpr std::uint32_t kEnumerators<wire::ControlAction> = 7;
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::Header>& m) {
@@ -158,7 +158,7 @@ void fields(A& a, typename A::template Of<wire::ControlRequest>& m) {
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::ControlReply>& m) {
-  a(m.header, m.request, m.is_accepted, sentence(m.reason));
+  a(m.header, m.request, m.is_accepted, m.value, sentence(m.reason));
 }
 
 template <typename A>

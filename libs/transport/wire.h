@@ -17,7 +17,7 @@
 
 namespace slew::wire {
 
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
@@ -160,7 +160,7 @@ struct Health {
   std::uint64_t overruns = 0;
   std::uint64_t resends_asked = 0;
   std::uint64_t resends_answered = 0;
-  std::uint64_t refused_messages = 0;  // that did not fit session, epoch or order
+  std::uint64_t refused_messages = 0;  // that nothing can be done with: damaged, another session's, a second writer's
   double step_time_mean = 0;       // s, of Subsystem::step over the last second
   double step_time_max = 0;        // s
   std::int64_t slip_ns = 0;        // io_node: wall time given up so far
@@ -214,7 +214,7 @@ struct ControllerLease {
   bool operator==(const ControllerLease&) const = default;
 };
 
-enum class ControlAction : std::uint8_t { set_parameter, pause, resume, step, reset, stop };
+enum class ControlAction : std::uint8_t { set_parameter, pause, resume, step, reset, stop, get_parameter };
 
 struct ControlRequest {
   std::string session;
@@ -230,6 +230,7 @@ struct ControlReply {
   Header header;                   // step: from which it holds
   std::uint64_t request = 0;
   bool is_accepted = false;
+  double value = 0;                // get_parameter: SI, at present
   std::string reason;
   bool operator==(const ControlReply&) const = default;
 };

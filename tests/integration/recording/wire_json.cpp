@@ -163,6 +163,7 @@ json to_json(const wire::ControlReply& m) {
   return {{"header", header_of(m.header)},
           {"request", value_of(m.request)},
           {"is_accepted", m.is_accepted},
+          {"value", value_of(m.value)},
           {"reason", m.reason}};
 }
 

@@ -220,7 +220,8 @@ void write_occasional(KnownRecording& recording, StepIndex step) {
                   step);
   recording.write(wire::ControlRequest{"verification", ~n, wire::ControlAction::set_parameter, "Bag.mass", 1'500, -1},
                   step);
-  recording.write(wire::ControlReply{header_at(step, wire::Role::io), ~n, true, ""}, step);
+  recording.write(wire::ControlReply{header_at(step, wire::Role::io), ~n, true, 0.5 * static_cast<double>(step), ""},
+                  step);
   wire::Health health;
   health.header = header_at(step, wire::Role::recorder);
   health.state = wire::NodeState::holding;

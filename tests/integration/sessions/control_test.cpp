@@ -211,6 +211,43 @@ TEST_F(Control, WrongParametersAreRefusedWithTheReasonAndTouchNothing) {
   EXPECT_EQ(first_difference(session_->recorded().chain(), undisturbed()), "");
 }
 
+TEST_F(Control, PresentValueOfAParameterIsToldInAPauseToLatecomersAndAfterAReset) {
+  start({"--pace", "real", "--duration", "0"}, 200);
+  const auto present = [this](const std::string& path) {
+    const ControlReply reply = observer_->request(ControlAction::get_parameter, 0, path);
+    EXPECT_TRUE(reply.is_accepted) << reply.reason;
+    return reply;
+  };
+  EXPECT_EQ(present("Bag.mass").value, 500);
+  ASSERT_TRUE(observer_->request(ControlAction::pause).is_accepted);
+  ASSERT_TRUE(observer_->request(ControlAction::set_parameter, 1500, "Bag.mass", 4'000'000).is_accepted);
+  EXPECT_EQ(present("Bag.mass").value, 500);
+  EXPECT_EQ(present("Bag.mass").reason, "a change waits for the next step");
+  ASSERT_TRUE(observer_->request(ControlAction::step, 3).is_accepted);
+  ASSERT_TRUE(observer_->wait_until([&] { return present("Bag.mass").value == 1250; }));
+  EXPECT_EQ(present("Bag.mass").reason, "on its way to a new value");
+  ASSERT_TRUE(observer_->request(ControlAction::step, 1).is_accepted);
+  ASSERT_TRUE(observer_->wait_until([&] { return present("Bag.mass").value == 1500; }));
+  EXPECT_EQ(present("Bag.mass").reason, "");
+  EXPECT_EQ(present("MainPump.set_pressure").value, 2.5e6);
+  EXPECT_FALSE(observer_->request(ControlAction::get_parameter, 0, "Cyl_Lift.piston_diameter").is_accepted);
+  EXPECT_FALSE(observer_->request(ControlAction::get_parameter, 0, "Bag.mas").is_accepted);
+  ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
+  EXPECT_EQ(present("Bag.mass").value, 500);
+  ASSERT_TRUE(observer_->wait_until([&] { return observer_->request(ControlAction::stop).is_accepted; }));
+  expect_ends_well();
+}
+
+TEST_F(Control, ConstantsOfAJointWithoutRowAreRefusedNamingWhy) {
+  start({"--pace", "real", "--duration", "1.6s"}, 200);
+  const ControlReply reply = observer_->request(ControlAction::set_parameter, 5, "Body_Pillar.limit_damping");
+  EXPECT_FALSE(reply.is_accepted);
+  EXPECT_NE(reply.reason.find("Body_Pillar.limit_damping would change nothing: the joint has no limits"),
+            std::string::npos)
+      << reply.reason;
+  expect_ends_well();
+}
+
 // ---- controllers ----------------------------------------------------------------------------------------------
 
 class Controller : public Control {
@@ -295,6 +332,24 @@ TEST_F(Controller, ChannelIsLeasedToOneAtATime) {
   write("a", 0, ControllerAction::release);
   const auto is_free = [this] { return observer_->acquire("b", kChannel).is_granted; };
   EXPECT_TRUE(is_free());
+  stop();
+}
+
+TEST_F(Controller, ResetTellsTheHolderThatItsChannelIsFree) {
+  start_session();
+  ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
+  ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
+  ASSERT_TRUE(observer_->request(ControlAction::reset).is_accepted);
+  const auto is_told = [this] {
+    const std::vector<ControllerLease>& leases = observer_->leases();
+    return std::any_of(leases.begin(), leases.end(), [](const ControllerLease& lease) {
+      return lease.controller == "a" && lease.channel == kChannel && !lease.is_granted && lease.holder.empty() &&
+             lease.header.epoch == 1 && lease.reason.find("the session was reset") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(observer_->wait_until(is_told));
+  ASSERT_TRUE(observer_->wait_until([this] { return observer_->epoch() == 1 && observer_->step() > 0; }));
+  EXPECT_TRUE(observer_->acquire("b", kChannel).is_granted);
   stop();
 }
 

@@ -35,6 +35,8 @@ class Observer {
                                            std::int64_t over_ns = -1);
   void send(const wire::ControllerInput& input);
   // Asks for a channel until it is answered.
+  // What io has said to controllers since the last acquire().
+  [[nodiscard]] const std::vector<wire::ControllerLease>& leases() const noexcept { return leases_; }
   [[nodiscard]] wire::ControllerLease acquire(const std::string& controller, const std::string& channel);
 
   [[nodiscard]] StepIndex step() const noexcept { return step_; }

@@ -99,6 +99,28 @@ TEST(InputGate, SilentControllerGoesToNeutralAndLaterLosesTheChannel) {
   EXPECT_EQ(gate.control(1), 250);
 }
 
+TEST(InputGate, WhoeverLosesAChannelWithoutReleasingItIsNamedOnce) {
+  InputGate gate = crane_gate();
+  ASSERT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  ASSERT_TRUE(gate.release(0, "joystick").is_granted);
+  EXPECT_TRUE(gate.take_lost_leases().empty());
+  gate.advance(0, std::vector<double>{0, 0}, 5001 * kMs);
+  std::vector<LostLease> lost = gate.take_lost_leases();
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(lost[0].controller, "pid");
+  EXPECT_EQ(lost[0].channel, 1u);
+  EXPECT_NE(lost[0].reason.find("no value came for 5000 ms"), std::string::npos) << lost[0].reason;
+  EXPECT_TRUE(gate.take_lost_leases().empty());
+
+  ASSERT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
+  gate.reset();
+  lost = gate.take_lost_leases();
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(lost[0].controller, "joystick");
+  EXPECT_NE(lost[0].reason.find("reset"), std::string::npos) << lost[0].reason;
+}
+
 TEST(InputGate, HolderOverridesTheScript) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);

@@ -1,0 +1,33 @@
+#include "io_node/live_parameters.h"
+
+namespace slew::io {
+
+LiveParameters::LiveParameters(const std::vector<LiveParameter>& parameters, SimDuration step)
+    : ramps_(parameters.size()), step_(step) {
+  for (const LiveParameter& parameter : parameters) {
+    index_.emplace(parameter.path, static_cast<int>(scene_values_.size()));
+    scene_values_.push_back(parameter.value);
+  }
+  values_ = scene_values_;
+}
+
+int LiveParameters::find(std::string_view path) const noexcept {
+  const auto found = index_.find(path);
+  return found == index_.end() ? -1 : found->second;
+}
+
+void LiveParameters::begin(const wire::Command& command, StepIndex n) noexcept {
+  const int parameter = find(command.path);
+  if (parameter >= 0) ramps_.begin(parameter, value(parameter), command.value, n, {command.over_ns}, step_);
+}
+
+void LiveParameters::advance(StepIndex n) noexcept {
+  ramps_.apply(n, [this](int parameter, double value) { values_[static_cast<std::size_t>(parameter)] = value; });
+}
+
+void LiveParameters::reset() noexcept {
+  ramps_.clear();
+  values_ = scene_values_;
+}
+
+}  // namespace slew::io
