@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/direct_session.h"
+#include "cli/display.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
@@ -64,9 +65,10 @@ ExitCode check(const Options& options) {
       return ExitCode::ok;
     }
     for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    fmt::print("{}: ok ({} bodies, {} volumes, {} components, {} inputs)\n", options.scene,
-               scene.mechanics.bodies.size(), scene.hydraulics.volumes.size(), scene.hydraulics.components.size(),
-               scene.inputs.size());
+    fmt::print("{}: ok ({}, {}, {}, {})\n", options.scene, counted(scene.mechanics.bodies.size(), "body", "bodies"),
+               counted(scene.hydraulics.volumes.size(), "volume", "volumes"),
+               counted(scene.hydraulics.components.size(), "component", "components"),
+               counted(scene.inputs.size(), "input", "inputs"));
     return ExitCode::ok;
   } catch (const scene::LoadError& error) {
     if (!options.is_json) throw;

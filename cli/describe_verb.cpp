@@ -69,11 +69,11 @@ void describe_hydraulics(const scene::Scene& scene, Description& d) {
 void describe_nodes(const scene::Scene& scene, Description& d) {
   d.nodes.push_back({"io", true, "owns the session, gives the clock, takes the input"});
   d.nodes.push_back(
-      {"mechanics", scene.has_mechanics(), scene.has_mechanics() ? fmt::format("{} bodies", d.bodies) : "no bodies"});
+      {"mechanics", scene.has_mechanics(), scene.has_mechanics() ? counted(d.bodies, "body", "bodies") : "no bodies"});
   d.nodes.push_back({"hydraulics", scene.has_hydraulics(),
-                     scene.has_hydraulics()
-                         ? fmt::format("{} volumes, {} components", scene.hydraulics.volumes.size(), d.components)
-                         : "no volumes"});
+                     scene.has_hydraulics() ? counted(scene.hydraulics.volumes.size(), "volume", "volumes") + ", " +
+                                                  counted(d.components, "component", "components")
+                                            : "no volumes"});
   d.nodes.push_back({"flex", false, "no flexible bodies"});
   d.nodes.push_back({"recorder", true, "unless --no-record is given"});
   if (!scene.has_mechanics()) d.left_out.emplace_back("mechanics: no bodies, no process, no states");
@@ -137,12 +137,16 @@ void print(const Description& d) {
       {"scene", d.name},
       {"session", fmt::format("step {}, duration {}, pace {}", duration_text(d.step),
                               d.duration > 0 ? duration_text(d.duration) : "until stopped", d.pace)},
-      {"mechanics", fmt::format("{} bodies, {} joints, {} moving links, {} degrees of freedom", d.bodies, d.joints,
-                                d.links, d.degrees_of_freedom)},
+      {"mechanics",
+       joined({counted(d.bodies, "body", "bodies"), counted(d.joints, "joint", "joints"),
+               counted(d.links, "moving link", "moving links"),
+               counted(static_cast<std::uint64_t>(d.degrees_of_freedom), "degree of freedom", "degrees of freedom")})},
       {"motions", joined(d.motions)},
       {"merged", joined(d.merged)},
-      {"hydraulics", fmt::format("{} components, {} pressure states, {} fixed pressures, {} states in all",
-                                 d.components, d.free_volumes, d.fixed_volumes, d.hydraulic_states)},
+      {"hydraulics", joined({counted(d.components, "component", "components"),
+                             counted(d.free_volumes, "pressure state", "pressure states"),
+                             counted(d.fixed_volumes, "fixed pressure", "fixed pressures"),
+                             counted(static_cast<std::uint64_t>(d.hydraulic_states), "state", "states") + " in all"})},
       {"ports", joined(d.ports)},
       {"inputs", joined(d.inputs)}};
   for (const NodeNeed& node : d.nodes) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <utility>
 
@@ -26,6 +27,28 @@ constexpr std::pair<std::string_view, DisplayUnit> kUnits[] = {{"Pa", {1e-5, "ba
                                                                {"1", {1, ""}},
                                                                {"rad/s2", {kDegrees, "deg/s2"}}};
 
+// further units in which people choose values
+constexpr std::pair<std::string_view, DisplayUnit> kUnitsOfData[] = {
+    {"m", {1e3, "mm"}},     {"m2", {1e4, "cm2"}},
+    {"m3", {1e6, "cm3"}},   {"rad/s", {30 / std::numbers::pi, "rpm"}},
+    {"m2/s", {1e6, "cSt"}}, {"m3/rad", {2e6 * std::numbers::pi, "cm3/rev"}}};
+
+// the fewest digits that give the value again, at most six
+std::string few_digits(double value) {
+  constexpr int kMostDigits = 6;
+  constexpr double kSame = 1e-9;  // relative; scaling to another unit costs some 1e-16
+  double rounded = value;
+  for (int digits = 1; digits <= kMostDigits; ++digits) {
+    rounded = std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+    if (std::fabs(rounded - value) <= kSame * std::fabs(value)) break;
+  }
+  return rounded == 0 ? "0" : fmt::format("{}", rounded);
+}
+
+std::string with_unit(std::string text, std::string_view unit) {
+  return unit.empty() ? text : text + ' ' + std::string(unit);
+}
+
 std::size_t characters(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -44,7 +67,26 @@ std::string quantity_text(double si_value, std::string_view si_unit) {
   const DisplayUnit shown = display_unit(si_unit);
   std::string text = fmt::format("{:.4g}", si_value * shown.factor);
   if (text == "-0") text = "0";
-  return shown.unit.empty() ? text : text + ' ' + std::string(shown.unit);
+  return with_unit(std::move(text), shown.unit);
+}
+
+std::string chosen_text(double si_value, std::string_view si_unit) {
+  if (std::isinf(si_value)) return "unlimited";
+  const auto in = [&](const DisplayUnit& unit) { return with_unit(few_digits(si_value * unit.factor), unit.unit); };
+  std::string shortest = in(display_unit(si_unit));
+  const bool is_zero = !(std::fabs(si_value) > 0);  // short in every unit
+  const auto offer = [&](std::string text) {
+    if (!is_zero && text.size() < shortest.size()) shortest = std::move(text);
+  };
+  offer(in({1, si_unit}));
+  for (const auto& [unit, of_data] : kUnitsOfData) {
+    if (unit == si_unit) offer(in(of_data));
+  }
+  return shortest;
+}
+
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 std::string duration_text(double seconds) {

@@ -1,6 +1,7 @@
 // How quantities are shown to people: the units of the workshop, and as many digits as can be read.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,14 @@ struct DisplayUnit {
 
 // "47.2 kN" style: value in the display unit with four significant digits.
 [[nodiscard]] std::string quantity_text(double si_value, std::string_view si_unit);
+
+// A value that somebody has chosen, as a person would write it: at most six digits, in the unit of those usual that
+// makes it shortest: "30 deg", "1500 rpm", "0.1 l/min", "500 kg". Reading it back gives the value to 1e-9 where six
+// digits can; infinite bounds are "unlimited".
+[[nodiscard]] std::string chosen_text(double si_value, std::string_view si_unit);
+
+// "1 body", "2 bodies".
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 
 // "1.9 us", "12 ms", "3.2 s".
 [[nodiscard]] std::string duration_text(double seconds);

@@ -50,7 +50,8 @@ Finding check_processor() {
             fmt::format("lacks {}; build with -DSLEWRING_MARCH=x86-64-v2 on all machines of a session", missing)};
   }
   return {"processor", Verdict::good,
-          fmt::format("{} cores, arithmetic {:016x}", std::thread::hardware_concurrency(), arithmetic_self_test())};
+          fmt::format("{}, arithmetic {:016x}", counted(std::thread::hardware_concurrency(), "core", "cores"),
+                      arithmetic_self_test())};
 }
 
 Finding check_programs() {

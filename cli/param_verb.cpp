@@ -29,67 +29,141 @@ struct Options {
   bool is_json = false;
 };
 
-// The parameters as the scene file, or the session's scene, states them.
-scene::ParameterDirectory directory_of(const Options& options) {
-  if (!options.scene.empty()) return scene::ParameterDirectory(scene::load_file(options.scene));
-  const auto observer = find_session(options.session);
-  const wire::SessionDescription& session = observer->view().session();
-  return scene::ParameterDirectory(scene::load_text(session.scene_text, session.scene_name));
+// A parameter with its present value: the scene's, or what a running session computes with.
+struct Present {
+  const scene::ParameterInfo* about = nullptr;
+  double value = 0;      // SI
+  StepIndex step = -1;   // the value is the one before this step; -1: the scene's
+  std::string remark{};  // whether a change is under way
+};
+
+// The parameters of a scene file, or of a session and what it says about them.
+class Source {
+ public:
+  explicit Source(const Options& options)
+      : observer_(options.scene.empty() ? find_session(options.session) : nullptr),
+        directory_(
+            observer_ ? scene::load_text(observer_->view().session().scene_text, observer_->view().session().scene_name)
+                      : scene::load_file(options.scene)) {}
+
+  [[nodiscard]] const scene::ParameterDirectory& directory() const noexcept { return directory_; }
+  [[nodiscard]] bool is_session() const noexcept { return observer_ != nullptr; }
+
+  // Only a live parameter can have another value than the scene's.
+  [[nodiscard]] Present present(const scene::ParameterInfo& parameter) const {
+    Present present{.about = &parameter, .value = parameter.value};
+    if (!is_session() || parameter.change != Change::live) return present;
+    wire::ControlRequest request;
+    request.action = wire::ControlAction::get_parameter;
+    request.path = parameter.path;
+    wire::ControlReply reply = observer_->ask(request);
+    if (!reply.is_accepted) throw Failure(ExitCode::failed, parameter.path + ": " + reply.reason);
+    present.value = reply.value;
+    present.step = reply.header.step;
+    present.remark = std::move(reply.reason);
+    return present;
+  }
+
+ private:
+  std::unique_ptr<Observer> observer_;
+  scene::ParameterDirectory directory_;
+};
+
+std::string value_text(double value, Dimension dimension) {
+  return chosen_text(value, scene::is_plain_number(dimension) ? std::string_view() : info(dimension).si_unit);
 }
 
-nlohmann::json to_json(const scene::ParameterInfo& parameter) {
+nlohmann::json to_json(const Present& present, bool is_of_session) {
+  const scene::ParameterInfo& parameter = *present.about;
   nlohmann::json json = {{"path", parameter.path},
-                         {"value", parameter.value},
+                         {"value", present.value},
                          {"unit", info(parameter.dimension).si_unit},
                          {"live", parameter.change == Change::live},
                          {"range", scene::range_text(parameter.range, parameter.dimension)},
                          {"doc", parameter.doc}};
   if (parameter.change == Change::live) json["spread_over_s"] = parameter.ramp;
+  if (!parameter.obstacle.empty()) json["not_live_because"] = parameter.obstacle;
+  if (is_of_session) json["scene_value"] = parameter.value;
+  if (present.step >= 0) json["step"] = present.step;
+  if (!present.remark.empty()) json["remark"] = present.remark;
   return json;
 }
 
-ExitCode list(const Options& options) {
-  const scene::ParameterDirectory directory = directory_of(options);
+bool is_wanted(const scene::ParameterInfo& parameter, const Options& options) {
+  if (options.only_live && parameter.change != Change::live) return false;
+  return options.words.empty() ||
+         std::any_of(options.words.begin(), options.words.end(),
+                     [&](const std::string& pattern) { return scene::fits_pattern(parameter.path, pattern); });
+}
+
+std::string table_of(const std::vector<Present>& all) {
+  const auto is_changed = [](const Present& present) { return present.value != present.about->value; };
+  const bool has_changed = std::any_of(all.begin(), all.end(), is_changed);
   std::vector<std::vector<std::string>> rows = {{"parameter", "value", "change", "range", "meaning"}};
-  nlohmann::json all = nlohmann::json::array();
-  for (const scene::ParameterInfo& parameter : directory.all()) {
-    if (options.only_live && parameter.change != Change::live) continue;
-    const bool is_wanted = options.words.empty() ||
-                           std::any_of(options.words.begin(), options.words.end(), [&](const std::string& pattern) {
-                             return scene::fits_pattern(parameter.path, pattern);
-                           });
-    if (!is_wanted) continue;
-    all.push_back(to_json(parameter));
-    rows.push_back({parameter.path, scene::with_unit(parameter.value, parameter.dimension),
+  if (has_changed) rows.front().insert(rows.front().begin() + 2, "in the scene");
+  for (const Present& present : all) {
+    const scene::ParameterInfo& parameter = *present.about;
+    rows.push_back({parameter.path, value_text(present.value, parameter.dimension),
                     parameter.change == Change::live ? "live" : "restart",
                     scene::range_text(parameter.range, parameter.dimension), std::string(parameter.doc)});
+    if (!has_changed) continue;
+    rows.back().insert(rows.back().begin() + 2,
+                       is_changed(present) ? value_text(parameter.value, parameter.dimension) : "");
+  }
+  return table_text(rows, "");
+}
+
+ExitCode list(const Options& options) {
+  node::install_signal_handlers();
+  const Source source(options);
+  std::vector<Present> all;
+  for (const scene::ParameterInfo& parameter : source.directory().all()) {
+    if (is_wanted(parameter, options)) all.push_back(source.present(parameter));
   }
   if (options.is_json) {
-    fmt::print("{}\n", all.dump(2));
-  } else {
-    fmt::print("{}", table_text(rows, ""));
+    nlohmann::json json = nlohmann::json::array();
+    for (const Present& present : all) json.push_back(to_json(present, source.is_session()));
+    fmt::print("{}\n", json.dump(2));
+    return ExitCode::ok;
   }
+  if (all.empty()) {
+    throw Failure(ExitCode::bad_input, "no parameter fits; 'slewring param list' without names lists all");
+  }
+  fmt::print("{}", table_of(all));
   return ExitCode::ok;
 }
 
+// "at step 5880, on its way to a new value; the scene: 500 kg; can be changed ..."
+std::string circumstances(const Present& present, bool is_of_session) {
+  const scene::ParameterInfo& parameter = *present.about;
+  std::string text = is_of_session && present.step < 0 ? "of the scene" : "as the scene states it";
+  if (present.step >= 0) text = fmt::format("at step {}", present.step);
+  if (!present.remark.empty()) text += ", " + present.remark;
+  if (present.value != parameter.value) text += "; the scene: " + value_text(parameter.value, parameter.dimension);
+  if (!parameter.obstacle.empty()) return text + "; a change would do nothing: " + parameter.obstacle;
+  const bool is_live = parameter.change == Change::live;
+  return text + (is_live ? "; can be changed while the session runs" : "; fixed while the session runs");
+}
+
 ExitCode get(const Options& options) {
-  const scene::ParameterDirectory directory = directory_of(options);
+  node::install_signal_handlers();
+  const Source source(options);
   const std::string& path = options.words.front();
-  const scene::ParameterInfo* parameter = directory.find(path);
+  const scene::ParameterInfo* parameter = source.directory().find(path);
   if (parameter == nullptr) {
     std::vector<std::string_view> paths;
-    for (const scene::ParameterInfo& candidate : directory.all()) paths.push_back(candidate.path);
+    for (const scene::ParameterInfo& candidate : source.directory().all()) paths.push_back(candidate.path);
     const std::string meant = scene::closest(path, paths);
     throw Failure(ExitCode::bad_input,
                   "there is no parameter '" + path + "'; " +
                       (meant.empty() ? "'slewring param list' lists all" : "did you mean '" + meant + "'?"));
   }
+  const Present present = source.present(*parameter);
   if (options.is_json) {
-    fmt::print("{}\n", to_json(*parameter).dump(2));
+    fmt::print("{}\n", to_json(present, source.is_session()).dump(2));
   } else {
-    const bool is_live = parameter->change == Change::live;
-    fmt::print("{} = {} (as the scene states it; {})\n", path, scene::with_unit(parameter->value, parameter->dimension),
-               is_live ? "can be changed while the session runs" : "fixed while the session runs");
+    fmt::print("{} = {} ({})\n", path, value_text(present.value, parameter->dimension),
+               circumstances(present, source.is_session()));
   }
   return ExitCode::ok;
 }
@@ -122,7 +196,7 @@ ExitCode set(const Options& options) {
   request.over_ns = over_ns;
   const wire::ControlReply reply = observer->ask(request);
   const Dimension dimension = directory.find(assignment.path)->dimension;
-  const std::string value = scene::with_unit(assignment.value, dimension);
+  const std::string value = value_text(assignment.value, dimension);
   if (options.is_json) {
     fmt::print("{}\n", nlohmann::json({{"path", assignment.path},
                                        {"value", assignment.value},
@@ -137,8 +211,8 @@ ExitCode set(const Options& options) {
   }
   if (!options.is_json) {
     const double over = static_cast<double>(over_ns >= 0 ? over_ns : assignment.over.ns) * 1e-9;
-    fmt::print("accepted({}): {} = {}, spread over {}\n", reply.header.step, assignment.path, value,
-               duration_text(over));
+    fmt::print("accepted({}): {} = {}, {}\n", reply.header.step, assignment.path, value,
+               over > 0 ? "spread over " + duration_text(over) : "at once");
   }
   return ExitCode::ok;
 }
@@ -166,12 +240,15 @@ void add_param(CLI::App& program, Action& action) {
   list_part->add_option("patterns", options->words, "only these paths, with * and ?")->type_name("PATH");
   list_part->add_option("--scene", options->scene, "of a scene file, without a session")->type_name("SCENE");
   list_part->add_flag("--live", options->only_live, "only those that can be changed while the session runs");
-  list_part->footer("Example:\n  slewring param list 'Bag.*' --scene scenes/truck_crane.yaml");
+  list_part->footer(
+      "Of a running session: the present values.\n\nExample:\n  slewring param list 'Bag.*' --scene "
+      "scenes/truck_crane.yaml");
 
-  CLI::App* get_part = add_part(*verb, "get", "one parameter as the scene states it", get, action, options);
+  CLI::App* get_part = add_part(*verb, "get", "one parameter: its present value", get, action, options);
   get_part->add_option("path", options->words, "Element.key")->required()->expected(1)->type_name("PATH");
   get_part->add_option("--scene", options->scene, "of a scene file, without a session")->type_name("SCENE");
-  get_part->footer("Example:\n  slewring param get Bag.mass --session truck_crane");
+  get_part->footer(
+      "Of a running session: the present value.\n\nExample:\n  slewring param get Bag.mass --session truck_crane");
 
   CLI::App* set_part = add_part(*verb, "set", "change a live parameter of a running session", set, action, options);
   set_part->add_option("assignment", options->words, "PATH=VALUE, or PATH VALUE")

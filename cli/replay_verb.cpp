@@ -35,12 +35,13 @@ ExitCode run(const Options& options) {
   if (options.is_json) {
     fmt::print("{}\n", to_json(result).dump(2));
   } else {
-    fmt::print("{} steps computed again in {} ({} a step), {} hashes compared, {} different\n", result.steps,
-               duration_text(result.compute_time),
+    fmt::print("{} computed again in {} ({} a step), {} compared, {} different\n",
+               counted(static_cast<std::uint64_t>(result.steps), "step", "steps"), duration_text(result.compute_time),
                duration_text(result.compute_time / static_cast<double>(std::max<StepIndex>(1, result.steps))),
-               result.compared, result.different);
-    if (result.unrecorded > 0)
-      fmt::print("{} samples are not in the recording and were not compared\n", result.unrecorded);
+               counted(result.compared, "hash", "hashes"), result.different);
+    if (result.unrecorded > 0) {
+      fmt::print("not in the recording and not compared: {}\n", counted(result.unrecorded, "sample", "samples"));
+    }
   }
   const bool is_same_build = reader->identity().build == node::build_id();
   if (!result.is_equal()) {
