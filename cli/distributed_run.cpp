@@ -215,11 +215,8 @@ class Supervisor {
   void show() {
     const std::int64_t now_ns = monotonic_ns();
     const SessionView& view = observer_->view();
-    if (first_step_ns_ == 0 && view.step() > 0) {
-      first_step_ns_ = now_ns;
-      first_step_ = view.step();
-    }
-    if (first_step_ns_ != 0 && !view.is_over()) last_step_ns_ = now_ns;
+    has_stepped_ = has_stepped_ || view.step() > 0;
+    if (has_stepped_ && !view.is_over()) clock_.measure(now_ns, view.step(), view.is_paused());
     if (keyboard_) keyboard_->poll(*observer_, now_ns);
     text_.measure(view, now_ns);
     if (status_.is_due(now_ns) && deadline_ns_ == 0) status_.show(text_.text(view), now_ns);
@@ -267,7 +264,8 @@ class Supervisor {
     if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
     outcome.view = observer_->view();
     outcome.steps = std::max<StepIndex>(0, outcome.view.step());
-    outcome.wall_time = first_step_ns_ > 0 ? static_cast<double>(last_step_ns_ - first_step_ns_) * 1e-9 : 0;
+    outcome.wall_time = clock_.running();
+    outcome.paused_time = clock_.paused();
     return outcome;
   }
 
@@ -285,9 +283,8 @@ class Supervisor {
   int obeyed_ = 0;
   std::int64_t deadline_ns_ = 0;
   std::int64_t started_wall_ns_ = 0;
-  std::int64_t first_step_ns_ = 0;
-  std::int64_t last_step_ns_ = 0;
-  StepIndex first_step_ = 0;
+  bool has_stepped_ = false;
+  RunClock clock_;
   std::string recording_;
   std::vector<std::string> causes_;
   std::vector<std::string> consequences_;

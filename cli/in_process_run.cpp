@@ -134,8 +134,10 @@ class InProcessRun {
     const std::int64_t now_ns = monotonic_ns();
     health_.send_if_due(nodes_, now_ns);
     observer_->drain();
-    if (started_ns_ == 0 && io_->next_step() > 0) started_ns_ = now_ns;
-    if (io_->member().state() < wire::NodeState::ended) ended_ns_ = now_ns;
+    has_stepped_ = has_stepped_ || io_->next_step() > 0;
+    if (has_stepped_ && io_->member().state() < wire::NodeState::ended) {
+      clock_.measure(now_ns, io_->next_step(), io_->is_paused());
+    }
     if (keyboard_) keyboard_->poll(*observer_, now_ns);
     text_.measure(observer_->view(), now_ns);
     if (status_.is_due(now_ns)) status_.show(text_.text(observer_->view()), now_ns);
@@ -156,7 +158,8 @@ class InProcessRun {
     if (recorder_ != nullptr) outcome.recording = recorder_->recording().string();
     outcome.has_begun = true;
     outcome.steps = io_->next_step();
-    outcome.wall_time = started_ns_ > 0 ? static_cast<double>(ended_ns_ - started_ns_) * 1e-9 : 0;
+    outcome.wall_time = clock_.running();
+    outcome.paused_time = clock_.paused();
     outcome.view = observer_->view();
     for (const auto& node : physics_) {
       const node::HealthState& health = node->health();
@@ -184,8 +187,8 @@ class InProcessRun {
   std::unique_ptr<Observer> observer_;
   std::optional<Keyboard> keyboard_;
   HealthReports health_;
-  std::int64_t started_ns_ = 0;
-  std::int64_t ended_ns_ = 0;
+  bool has_stepped_ = false;
+  RunClock clock_;
 };
 
 }  // namespace

@@ -67,14 +67,16 @@ void print(const recording::Reader& reader, double simulated) {
       {"started", node::time_text(identity.started_ns)},
       {"build", identity.build},
       {"step", duration_text(identity.communication_step.seconds())},
-      {"length", fmt::format("{}, {} ticks in {} of wall time", duration_text(simulated), span.ticks,
-                             duration_text(span.wall_time))},
+      {"length",
+       fmt::format("{}, {} in {} of wall time", duration_text(simulated),
+                   counted(static_cast<std::uint64_t>(span.steps), "step", "steps"), duration_text(span.wall_time))},
       {"end", reader.has_all_messages() ? "closed in order" : "cut: " + reader.damage_text()}};
   for (const auto& [topic, count] : counts_of(reader)) {
-    rows.push_back({"topic", fmt::format("{}: {} messages, {} lost", topic, count.recorded, count.lost)});
+    rows.push_back(
+        {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
   }
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
-    rows.push_back({"attached", fmt::format("{} ({} bytes)", attachment.name, attachment.size)});
+    rows.push_back({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});
   }
   fmt::print("{}", table_text(rows, ""));
 }

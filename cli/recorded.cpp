@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <map>
 
 #include "cli/display.h"
@@ -55,6 +56,15 @@ void add_block(const wire::VariableBlock& block, double time, const Places& plac
     curve.time.push_back(time);
     curve.values.push_back(block.values[index - block.first]);
   }
+}
+
+bool was_paused(const std::map<std::uint64_t, bool>& paused_since, std::uint64_t from_ns, std::uint64_t to_ns) {
+  auto change = paused_since.upper_bound(from_ns);
+  if (change != paused_since.begin() && std::prev(change)->second) return true;
+  for (; change != paused_since.end() && change->first < to_ns; ++change) {
+    if (change->second) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -127,15 +137,29 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
 
 TickSpan tick_span(const Reader& reader) {
   TickSpan span;
-  std::uint64_t first = 0, last = 0;
-  read_all(reader, only({Topic::tick}), [&](const recording::RecordedMessage& message) {
-    if (message.publish_time_ns == 0) return Visit::go_on;
-    if (first == 0) first = message.publish_time_ns;
-    last = std::max(last, message.publish_time_ns);
-    ++span.ticks;
+  std::vector<std::uint64_t> ticks;            // ns, wall clock of their writer
+  std::map<std::uint64_t, bool> paused_since;  // ns, at each status of io_node
+  wire::Tick tick;
+  wire::NodeStatus status;
+  read_all(reader, only({Topic::tick, Topic::node_status}), [&](const recording::RecordedMessage& message) {
+    if (topic_of(*message.channel) == Topic::tick && transport::decode(message.payload, tick)) {
+      const bool is_end = (tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0;
+      if (tick.header.phase == wire::Phase::running && !is_end) ++span.steps;
+      if (message.publish_time_ns != 0) ticks.push_back(message.publish_time_ns);
+    } else if (transport::decode(message.payload, status) && status.header.role == wire::Role::io) {
+      paused_since[message.publish_time_ns] = is_pause(status);
+    }
     return Visit::go_on;
   });
-  span.wall_time = static_cast<double>(last - first) * 1e-9;
+  std::sort(ticks.begin(), ticks.end());
+  const auto step_ns = static_cast<std::uint64_t>(reader.identity().communication_step.ns);
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const std::uint64_t gap_ns = ticks[i] - ticks[i - 1];
+    const bool is_paused = was_paused(paused_since, ticks[i - 1], ticks[i]);
+    const std::uint64_t running_ns = is_paused ? std::min(gap_ns, step_ns) : gap_ns;
+    span.wall_time += static_cast<double>(running_ns) * 1e-9;
+    span.paused_time += static_cast<double>(gap_ns - running_ns) * 1e-9;
+  }
   return span;
 }
 

@@ -29,10 +29,12 @@ enum class Units : std::uint8_t { si, display };
 [[nodiscard]] std::vector<plotting::Series> read_series(const recording::Reader& reader,
                                                         std::span<const std::string> patterns, Units units);
 
-// Wall time between the first and the last tick as their writer stamped them, and the number of ticks.
+// Steps that were done, in all epochs, and the wall time from the first tick to the last as their writer stamped them.
+// Of the time between two ticks around which the session was paused one step counts as running, the rest as paused.
 struct TickSpan {
-  double wall_time = 0;  // s
-  StepIndex ticks = 0;
+  double wall_time = 0;    // s, without pauses
+  double paused_time = 0;  // s
+  StepIndex steps = 0;
 };
 [[nodiscard]] TickSpan tick_span(const recording::Reader& reader);
 

@@ -20,6 +20,13 @@ std::string RunOptions::assets() const {
   return folder.empty() ? "." : folder.string();
 }
 
+void RunClock::measure(std::int64_t now_ns, StepIndex step, bool is_paused) noexcept {
+  const bool stands = is_paused && step == last_step_;
+  if (last_ns_ != 0) (stands ? paused_ns_ : running_ns_) += now_ns - last_ns_;
+  last_ns_ = now_ns;
+  last_step_ = step;
+}
+
 std::vector<std::string> without_echoes(const std::vector<std::string>& messages) {
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < messages.size(); ++i) {

@@ -26,13 +26,27 @@ struct RunOptions {
   [[nodiscard]] std::string assets() const;
 };
 
+// Wall time of a run, looked at again and again. Time in which a paused session does no step is counted apart.
+class RunClock {
+ public:
+  void measure(std::int64_t now_ns, StepIndex step, bool is_paused) noexcept;
+  [[nodiscard]] double running() const noexcept { return static_cast<double>(running_ns_) * 1e-9; }  // s
+  [[nodiscard]] double paused() const noexcept { return static_cast<double>(paused_ns_) * 1e-9; }    // s
+
+ private:
+  std::int64_t last_ns_ = 0;
+  StepIndex last_step_ = 0;
+  std::int64_t running_ns_ = 0, paused_ns_ = 0;
+};
+
 struct RunOutcome {
   ExitCode code = ExitCode::ok;
   bool has_begun = false;             // the session came into being
   std::vector<std::string> messages;  // why it did not end well, the cause first
   std::string recording;              // path; empty: none
   SessionView view;                   // as seen while it ran
-  double wall_time = 0;               // s, from the first tick to the last
+  double wall_time = 0;               // s, from the first tick to the last, without pauses
+  double paused_time = 0;             // s
   StepIndex steps = 0;
 };
 

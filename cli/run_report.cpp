@@ -23,6 +23,8 @@ namespace {
 
 using wire::Role;
 
+constexpr double kShortestPause = 0.01;  // s, below it nobody has paused
+
 std::string lamp_of(double eta, double net) {
   coupling::PortDefects defects;
   defects.eta = eta;
@@ -127,6 +129,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
   report.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
   report.steps = outcome.steps;
   report.wall_time = outcome.wall_time;
+  report.paused_time = outcome.paused_time;
   if (outcome.view.has_session()) report.session = outcome.view.session().name;
   report_nodes(outcome.view, report);
   if (outcome.recording.empty()) {
@@ -138,14 +141,18 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
       report_variables(view_recording(*reader, Values::all), scene, report);
       report.lost = losses(*reader);
       const TickSpan span = tick_span(*reader);
-      if (span.ticks > 0) report.steps = span.ticks - 1;  // the last one says END
-      if (span.wall_time > 0) report.wall_time = span.wall_time;
+      report.steps = span.steps;
+      if (span.wall_time > 0) {
+        report.wall_time = span.wall_time;
+        report.paused_time = span.paused_time;
+      }
       if (report.steps > 0) {
         report.notes = explain_stalls(*reader, scene);
         report.plots = write_plots(scene, outcome.recording);
       }
     } catch (const cli_support::Failure& failure) {
-      report.messages.emplace_back(failure.what());
+      // of a session that failed before its first step there is nothing to read, and that is no further failure
+      if (report.steps > 0 || report.code == ExitCode::ok) report.messages.emplace_back(failure.what());
       if (report.code == ExitCode::ok) report.code = failure.code();
     }
   }
@@ -154,6 +161,10 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
 }
 
 void print(const RunReport& report) {
+  if (report.steps == 0 && report.code != ExitCode::ok) {
+    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
+    return;
+  }
   std::vector<std::vector<std::string>> rows;
   rows.push_back({"session", fmt::format("{} of scene {}, step {}, pace {}", report.session, report.scene,
                                          duration_text(report.step), report.pace)});
@@ -163,15 +174,15 @@ void print(const RunReport& report) {
                                         report.simulated_time / report.wall_time,
                                         static_cast<double>(report.steps) / report.wall_time)});
   }
+  if (report.paused_time > kShortestPause) rows.push_back({"paused", duration_text(report.paused_time)});
   if (report.pace == "real") rows.push_back({"slip", duration_text(report.slip)});
   for (const NodeReport& node : report.nodes) {
-    if (report.steps == 0) break;  // nothing has been done
     std::string text;
     if (node.times.sum > 0) {
       text = fmt::format("step {} mean, {} max; ", duration_text(node.times.mean()), duration_text(node.times.max));
     }
     text += fmt::format("resends {} asked, {} answered", node.resends_asked, node.resends_answered);
-    if (node.refused_messages > 0) text += fmt::format("; {} messages refused", node.refused_messages);
+    if (node.refused_messages > 0) text += "; " + counted(node.refused_messages, "message", "messages") + " refused";
     rows.push_back({node.role, text});
   }
   if (!report.lost.empty()) rows.push_back({"lost", report.lost});
@@ -223,6 +234,7 @@ std::string to_json_text(const RunReport& report) {
                          {"steps", report.steps},
                          {"simulated_time", report.simulated_time},
                          {"wall_time", report.wall_time},
+                         {"paused_time", report.paused_time},
                          {"real_time_factor", is_timed ? report.simulated_time / report.wall_time : 0},
                          {"steps_per_second", is_timed ? static_cast<double>(report.steps) / report.wall_time : 0},
                          {"slip", report.slip},

@@ -35,7 +35,8 @@ struct RunReport {
   double step = 0;  // s
   StepIndex steps = 0;
   double simulated_time = 0;  // s
-  double wall_time = 0;       // s
+  double wall_time = 0;       // s, without pauses
+  double paused_time = 0;     // s
   double slip = 0;            // s
   std::vector<NodeReport> nodes;
   std::string lost;  // "tick 0, mechanism 0, ..."; empty: not recorded
@@ -51,7 +52,8 @@ struct RunReport {
 // Collects the report, from the recording where there is one, and writes the scene's plots beside it.
 [[nodiscard]] RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene);
 
-// For people; the path of the recording is the last line.
+// For people; the path of the recording is the last line. Of a session that failed before its first step: why, and
+// nothing else.
 void print(const RunReport& report);
 [[nodiscard]] std::string to_json_text(const RunReport& report);
 

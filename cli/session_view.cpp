@@ -129,6 +129,14 @@ void SessionView::take_block(std::span<const std::byte> bytes) {
   step_ = std::max(step_, block_.header.step);
 }
 
+bool is_pause(const wire::NodeStatus& io) noexcept {
+  return io.state == wire::NodeState::holding && io.reason.empty();
+}
+
+bool SessionView::is_paused() const noexcept {
+  return is_pause(node(Role::io).status);
+}
+
 bool SessionView::is_over() const noexcept {
   const NodeView& io = node(Role::io);
   return io.is_known && io.status.state >= wire::NodeState::ended;

@@ -42,6 +42,9 @@ struct VariableView {
   StepIndex step = kJoinStep;  // of the value
 };
 
+// io_node's status in a pause that somebody asked for; when it holds for a node it gives a reason.
+[[nodiscard]] bool is_pause(const wire::NodeStatus& io) noexcept;
+
 class SessionView {
  public:
   // name: of the session to look at; empty takes the first one that is heard.
@@ -56,6 +59,8 @@ class SessionView {
   void set_times(wire::Role role, const StepTimes& times) { nodes_[static_cast<std::size_t>(role)].times = times; }
   // Highest step that a message of the session has named.
   [[nodiscard]] StepIndex step() const noexcept { return step_; }
+  // Somebody has paused the session: it stands because it was told to, not because it waits for a node.
+  [[nodiscard]] bool is_paused() const noexcept;
   // io_node has said that the session is over.
   [[nodiscard]] bool is_over() const noexcept;
 

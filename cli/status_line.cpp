@@ -45,6 +45,7 @@ std::string node_text(const SessionView& view, Role role) {
   const NodeView& node = view.node(role);
   const std::string name(node::to_text(role));
   if (!node.is_known) return name + " not heard";
+  if (role == Role::io && view.is_paused()) return "paused";
   if (role == Role::io && node.health.is_waiting && node.status.state == wire::NodeState::holding) {
     return fmt::format("io holds, waits for {} at step {}", node::to_text(node.health.waiting_for),
                        node.health.waiting_step);

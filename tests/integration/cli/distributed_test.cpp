@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "../../support/test_domain.h"
@@ -76,6 +77,17 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
   const CommandResult set = slewring({"param", "set", "Bag.mass=1500kg", "--over", "0.1 s"});
   EXPECT_EQ(set.code, 0) << set.err;
   EXPECT_TRUE(set.out.starts_with("accepted(")) << set.out;
+  const auto present = [this](const char* path) {
+    const CommandResult got = slewring({"param", "get", path, "--json"});
+    EXPECT_EQ(got.code, 0) << got.err;
+    return nlohmann::json::parse(got.out);
+  };
+  EXPECT_TRUE(wait_until([&] { return present("Bag.mass").at("value") == 1500; }));
+  EXPECT_EQ(present("Bag.mass").at("scene_value"), 500);
+  EXPECT_EQ(present("Cyl_Lift.piston_diameter").at("value"), 0.2);
+  const CommandResult listed = slewring({"param", "list", "Bag.mass", "MainPump.set_pressure"});
+  EXPECT_NE(listed.out.find("1500 kg  500 kg"), std::string::npos) << listed.out;
+  EXPECT_NE(listed.out.find("25 bar"), std::string::npos) << listed.out;
   EXPECT_EQ(slewring({"param", "set", "Bag.mass=-1"}).code, 2);
   EXPECT_EQ(slewring({"param", "set", "Cyl_Lift.piston_diameter=1"}).code, 2);
 
@@ -93,6 +105,33 @@ TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(offline({"replay", work_.recording().string(), "--verify"}).code, 0);
+}
+
+TEST_F(Distributed, APauseIsNeitherRunningTimeNorSlip) {
+  const auto session = start("truck_crane.yaml", {"--duration", "0", "--json"});
+  const auto says = [this](std::vector<std::string> arguments) { return slewring(arguments).code; };
+  ASSERT_TRUE(wait_until([&] { return says({"control", "pause"}) == 0; })) << session->err();
+  EXPECT_EQ(says({"sessions", "--time", "4"}), 0);  // four seconds of pause, at least
+  EXPECT_EQ(says({"control", "resume"}), 0);
+  EXPECT_EQ(says({"watch", "Bag.position.y", "--count", "2"}), 0);
+  EXPECT_EQ(says({"control", "stop"}), 0);
+  const CommandResult result = session->wait();
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json report = nlohmann::json::parse(result.out);
+  const double paused = report.at("paused_time");
+  EXPECT_GT(paused, 4);
+  EXPECT_GT(report.at("wall_time"), 0);
+  EXPECT_LT(report.at("slip"), paused / 2);
+  for (const auto& [role, node] : report.at("nodes").items()) EXPECT_EQ(node.at("refused_messages"), 0) << role;
+}
+
+TEST_F(Distributed, AFailedStartPrintsItsReasonAndNothingElse) {
+  const CommandResult result =
+      slewring({"run", scene_file("first_steps.yaml"), "--remote", "recorder", "--quiet", "--out", "runs"});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.out, "");
+  EXPECT_TRUE(result.err.starts_with("io_node: JOIN did not come about within 10 s: no recorder node")) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }
 
 TEST_F(Distributed, ResetIsRecordedAndReplayed) {

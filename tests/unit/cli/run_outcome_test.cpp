@@ -24,6 +24,20 @@ TEST(Messages, DifferentReasonsAreAllTold) {
   EXPECT_EQ(without_echoes(all), all);
 }
 
+TEST(RunClock, CountsAPauseApartButNotTheStepsDoneInIt) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  RunClock clock;
+  clock.measure(5 * kSecond, 1, false);
+  EXPECT_EQ(clock.running(), 0);
+  clock.measure(7 * kSecond, 2000, false);
+  clock.measure(17 * kSecond, 2000, true);
+  clock.measure(18 * kSecond, 2500, true);  // single steps
+  clock.measure(21 * kSecond, 2500, true);
+  clock.measure(22 * kSecond, 3500, false);
+  EXPECT_DOUBLE_EQ(clock.running(), 4);
+  EXPECT_DOUBLE_EQ(clock.paused(), 13);
+}
+
 TEST(RunOptions, AssetsAreBesideTheScene) {
   RunOptions options;
   options.scene.file = "scenes/crane.yaml";

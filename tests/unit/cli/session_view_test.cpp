@@ -56,6 +56,22 @@ class SessionViewTest : public testing::Test {
   wire::SessionDescription session_;
 };
 
+TEST_F(SessionViewTest, IsPausedWhenIoHoldsWithoutAReason) {
+  SessionView view("crane");
+  tell(view, session_);
+  wire::NodeStatus status;
+  status.header = header(Role::io);
+  status.state = wire::NodeState::running;
+  tell(view, status);
+  EXPECT_FALSE(view.is_paused());
+  status.state = wire::NodeState::holding;
+  tell(view, status);
+  EXPECT_TRUE(view.is_paused());
+  status.reason = "mechanics is silent";
+  tell(view, status);
+  EXPECT_FALSE(view.is_paused());
+}
+
 TEST_F(SessionViewTest, KeepsValueAndExtremesOfEveryVariable) {
   SessionView view("crane");
   tell(view, session_);
