@@ -98,8 +98,13 @@ std::string write_plots(const scene::Scene& scene, const std::string& recording)
   const auto reader = open_recording(recording);
   std::vector<plotting::Series> curves;
   for (const scene::PlotDef& plot : scene.plots) {
-    for (plotting::Series& curve : read_series(*reader, plot.variables, Units::display)) {
-      curves.push_back(std::move(curve));
+    try {
+      for (plotting::Series& curve : read_series(*reader, plot.variables, Units::display)) {
+        curves.push_back(std::move(curve));
+      }
+    } catch (const cli_support::Failure& failure) {
+      throw cli_support::Failure(
+          failure.code(), "no plots were drawn; the recording is complete; plot " + plot.name + ": " + failure.what());
     }
   }
   if (curves.empty()) return "";

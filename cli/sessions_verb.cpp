@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
+#include "cli/session_view.h"
 #include "cli/survey.h"
 #include "cli/verbs.h"
 #include "node/identity.h"
@@ -28,8 +29,11 @@ std::string nodes_text(const FoundSession& session) {
   for (std::size_t role = 0; role < wire::kRoles; ++role) {
     const bool is_required = (session.description.required_roles & (1u << role)) != 0;
     if (!is_required) continue;
+    const wire::NodeStatus& status = session.nodes[role];
+    const bool is_paused = static_cast<Role>(role) == Role::io && is_pause(status);
+    const std::string state = is_paused ? "paused" : std::string(node::to_text(status.state));
     text += (text.empty() ? "" : ", ") + std::string(node::to_text(static_cast<Role>(role))) + ' ' +
-            (session.is_heard[role] ? std::string(node::to_text(session.nodes[role].state)) : "not heard");
+            (session.is_heard[role] ? state : "not heard");
   }
   return text;
 }

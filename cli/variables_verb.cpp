@@ -69,6 +69,9 @@ ExitCode list(const Options& options) {
     fmt::print("{}\n", json.dump(2));
     return ExitCode::ok;
   }
+  if (all.empty()) {
+    throw cli_support::Failure(ExitCode::bad_input, "no variable fits; 'slewring variables' without --only lists all");
+  }
   std::vector<std::vector<std::string>> rows = {{"variable", "unit", options.scene.empty() ? "" : "node"}};
   for (const Named& variable : all) rows.push_back({variable.name, variable.unit, variable.owner});
   fmt::print("{}", table_text(rows, ""));

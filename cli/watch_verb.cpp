@@ -40,6 +40,7 @@ std::vector<std::string> chosen_names(Observer& observer, const std::vector<std:
 void print_line(const SessionView& view, const std::vector<std::string>& names, bool is_json) {
   StepIndex step = kJoinStep;
   for (const std::string& name : names) step = std::max(step, view.find(name)->step);
+  if (step < 0) step = view.step();
   const double time = static_cast<double>(std::max<StepIndex>(0, step) * view.session().step_ns) * 1e-9;
   if (is_json) {
     nlohmann::json line = {{"step", step}, {"time", time}};
@@ -50,10 +51,10 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
     fmt::print("{}\n", line.dump());
   } else {
     std::string line = fmt::format("{:10.3f} s", time);
+    const char* const missing = view.is_paused() ? "comes with the next step, after the pause" : "not yet published";
     for (const std::string& name : names) {
       const VariableView& variable = *view.find(name);
-      line += fmt::format("  {} {}", name,
-                          variable.step >= 0 ? quantity_text(variable.value, variable.unit) : "not yet published");
+      line += fmt::format("  {} {}", name, variable.step >= 0 ? quantity_text(variable.value, variable.unit) : missing);
     }
     fmt::print("{}\n", line);
   }

@@ -40,6 +40,19 @@ TEST_F(InProcess, FirstStepsAreRunRecordedDrawnAndReplayed) {
   EXPECT_EQ(replay.at("unrecorded"), 0);
 }
 
+TEST_F(InProcess, APlotOfAVariableThatIsNotThereIsNamedAndTheRecordingIsKept) {
+  std::ofstream(work_.path() / "rod.yaml") << "bodies:\n  Rod: {mass: 2 kg, inertia: [1, 1, 1]}\n"
+                                              "joints:\n  Hinge: {type: revolute, body2: Rod}\n"
+                                              "plots:\n  Swing: {variables: [Rod.nothing]}\n";
+  const CommandResult result =
+      slewring({"run", "rod.yaml", "--in-process", "--pace", "free", "--duration", "0.1", "--json"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_EQ(result.err,
+            "no plots were drawn; the recording is complete; plot Swing: there is no variable 'Rod.nothing'; "
+            "'slewring variables' lists all\n");
+  EXPECT_EQ(slewring({"replay", work_.recording().string(), "--verify"}).code, 0);
+}
+
 TEST_F(InProcess, TheLastLineIsThePathOfTheRecording) {
   const CommandResult result =
       slewring({"run", scene_file("first_steps.yaml"), "--in-process", "--pace", "free", "--duration", "0.1"});
