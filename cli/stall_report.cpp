@@ -31,11 +31,13 @@ struct Drive {
   const L90lsValveDef* valve = nullptr;
   int direction = 1;
 
-  [[nodiscard]] double area_a() const { return std::numbers::pi / 4 * std::pow(cylinder->piston_diameter, 2); }
+  [[nodiscard]] double area_a() const { return std::numbers::pi / 4 * std::pow(cylinder->common.piston_diameter, 2); }
   [[nodiscard]] double area_b() const { return area_a() - std::numbers::pi / 4 * std::pow(cylinder->rod_diameter, 2); }
   [[nodiscard]] double fed_area() const { return direction > 0 ? area_a() : area_b(); }
   [[nodiscard]] double other_area() const { return direction > 0 ? area_b() : area_a(); }
-  [[nodiscard]] const std::string& fed_volume() const { return direction > 0 ? cylinder->port_a : cylinder->port_b; }
+  [[nodiscard]] const std::string& fed_volume() const {
+    return direction > 0 ? cylinder->common.port_a : cylinder->common.port_b;
+  }
   // above tank
   [[nodiscard]] double feed_limit() const {
     return (direction > 0 ? valve->maximum_ls_pressure_a : valve->maximum_ls_pressure_b) + valve->compensator_pressure;
@@ -55,7 +57,8 @@ std::vector<Drive> drives_of(const scene::Scene& scene) {
     if (cylinder == nullptr) continue;
     for (const auto& other : scene.hydraulics.components) {
       const auto* valve = dynamic_cast<const L90lsValveDef*>(other.get());
-      if (valve == nullptr || valve->port_a != cylinder->port_a || valve->port_b != cylinder->port_b) continue;
+      if (valve == nullptr) continue;
+      if (valve->port_a != cylinder->common.port_a || valve->port_b != cylinder->common.port_b) continue;
       drives.push_back({cylinder, valve, 1});
       drives.push_back({cylinder, valve, -1});
     }
@@ -83,8 +86,9 @@ std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& dr
     const bool is_open = sign * curves[0].values[i] >= kFullyOpen * drive.valve->maximum_control_signal;
     if (!is_open) open_since = -1;
     if (is_open && open_since < 0) open_since = time;
-    const bool is_at_end = drive.direction > 0 ? curves[2].values[i] > drive.cylinder->maximum_stroke - kEndOfStroke
-                                               : curves[2].values[i] < drive.cylinder->minimum_stroke + kEndOfStroke;
+    const bool is_at_end = drive.direction > 0
+                               ? curves[2].values[i] > drive.cylinder->common.maximum_stroke - kEndOfStroke
+                               : curves[2].values[i] < drive.cylinder->common.minimum_stroke + kEndOfStroke;
     const bool stands = is_open && time - open_since >= kSettling && !is_at_end &&
                         sign * curves[1].values[i] < kStandstill && sign * curves[3].values[i] > 0;
     if (!stands) standing_since = -1;
@@ -133,7 +137,7 @@ std::string sentence(const recording::Reader& reader, const scene::Scene& scene,
     }
     return 0.0;
   }();
-  const double needed = ((stall.static_force + cylinder.seal_friction) / cylinder.cylinder_coefficient +
+  const double needed = ((stall.static_force + cylinder.common.seal_friction) / cylinder.common.cylinder_coefficient +
                          stall.other_pressure * drive.other_area()) /
                         drive.fed_area();
   const double limit = tank + drive.feed_limit();
@@ -145,8 +149,8 @@ std::string sentence(const recording::Reader& reader, const scene::Scene& scene,
   text += fmt::format(", but {} feeds up to {} only (maximum_ls_pressure_{} and compensator_pressure above tank)",
                       drive.valve->name, quantity_text(limit, "Pa"), drive.direction > 0 ? "a" : "b");
   const double available =
-      (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * cylinder.cylinder_coefficient -
-      cylinder.seal_friction;
+      (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * cylinder.common.cylinder_coefficient -
+      cylinder.common.seal_friction;
   const std::optional<Load> load = find_load(reader, scene, drive, stall.to);
   if (!load || !(load->slope > 0)) return text;
   const double mass = load->mass - (stall.static_force - available) / load->slope;

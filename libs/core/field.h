@@ -9,6 +9,9 @@
 //                                      .change = Change::live, .doc = "mass of the body"}),
 //   };
 //
+// A Def that is composed of parts names the way to the member:
+//     field<&SlewCylinderDef::common, &CylinderParameters::leak_flow>("leak_flow", {...})
+//
 // Member types: double, std::int64_t, bool, std::string (text or reference), Triple, Table, std::vector<double>,
 // std::vector<std::string>, and any enum with underlying type int (with `choices`, whose order is the enum's).
 #pragma once
@@ -20,6 +23,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "core/dimension.h"
@@ -88,7 +92,6 @@ struct MemberOf;
 template <typename Class, typename Value>
 struct MemberOf<Value Class::*> {
   using class_type = Class;
-  using value_type = Value;
 };
 
 template <typename Value>
@@ -115,20 +118,34 @@ constexpr FieldType field_type_of() {
   }
 }
 
+// The member of a member ... of an object.
+template <auto First, auto... Rest>
+constexpr auto& member_at(auto& object) {
+  if constexpr (sizeof...(Rest) == 0) {
+    return object.*First;
+  } else {
+    return member_at<Rest...>(object.*First);
+  }
+}
+
 }  // namespace detail
 
-template <auto Member>
+template <auto First, auto... Rest>
 [[nodiscard]] constexpr Field field(std::string_view key, const FieldOptions& options) {
-  using Class = typename detail::MemberOf<decltype(Member)>::class_type;
-  using Value = typename detail::MemberOf<decltype(Member)>::value_type;
+  using Class = typename detail::MemberOf<decltype(First)>::class_type;
+  using Value = std::remove_reference_t<decltype(detail::member_at<First, Rest...>(std::declval<Class&>()))>;
   Field row;
   static_cast<FieldOptions&>(row) = options;
   row.key = key;
   row.type = detail::field_type_of<Value>();
-  row.member = [](void* def) -> void* { return &(static_cast<Class*>(def)->*Member); };
+  row.member = [](void* def) -> void* { return &detail::member_at<First, Rest...>(*static_cast<Class*>(def)); };
   if constexpr (std::is_enum_v<Value>) {
-    row.set_choice = [](void* def, int index) { static_cast<Class*>(def)->*Member = static_cast<Value>(index); };
-    row.get_choice = [](const void* def) { return static_cast<int>(static_cast<const Class*>(def)->*Member); };
+    row.set_choice = [](void* def, int index) {
+      detail::member_at<First, Rest...>(*static_cast<Class*>(def)) = static_cast<Value>(index);
+    };
+    row.get_choice = [](const void* def) {
+      return static_cast<int>(detail::member_at<First, Rest...>(*static_cast<const Class*>(def)));
+    };
   }
   return row;
 }

@@ -20,10 +20,9 @@ bool has_element(const std::vector<Def>& defs, std::string_view name) {
 }
 
 // What both kinds of cylinder say about the line force.
-template <typename Cylinder>
-PortDef port_of(const Cylinder& cylinder) {
+PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& cylinder) {
   PortDef port;
-  port.name = cylinder.name;
+  port.name = name;
   port.force = cylinder.force;
   port.line_force.efficiency = cylinder.cylinder_coefficient;
   port.line_force.seal_friction = cylinder.seal_friction;
@@ -62,16 +61,17 @@ void make_ports(Scene& scene, Problems& problems) {
   for (const auto& component : scene.hydraulics.components) {
     PortDef port;
     if (const auto* line = dynamic_cast<const hydraulics::DoubleActingCylinderDef*>(component.get())) {
-      port = port_of(*line);
+      port = port_of(line->name, line->common);
       port.offset = -(line->attachment_length + line->rod_length);
-      take_curve(port, line->friction_curve, scene, problems);
-      check_force(port, "translational", has_element(scene.mechanics.translational_forces, line->force), problems);
+      take_curve(port, line->common.friction_curve, scene, problems);
+      check_force(port, "translational", has_element(scene.mechanics.translational_forces, line->common.force),
+                  problems);
     } else if (const auto* slew = dynamic_cast<const hydraulics::SlewCylinderDef*>(component.get())) {
-      port = port_of(*slew);
+      port = port_of(slew->name, slew->common);
       port.offset = slew->stroke_offset;
       port.ratio = slew->pinion_radius;
-      take_curve(port, slew->friction_curve, scene, problems);
-      check_force(port, "rotational", has_element(scene.mechanics.rotational_forces, slew->force), problems);
+      take_curve(port, slew->common.friction_curve, scene, problems);
+      check_force(port, "rotational", has_element(scene.mechanics.rotational_forces, slew->common.force), problems);
     } else {
       continue;
     }

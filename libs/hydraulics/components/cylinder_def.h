@@ -1,4 +1,4 @@
-// What the linear and the slew cylinder have in common, as the two sides of the power port need it.
+// What every cylinder has, whatever it drives: its parameters, and what the two sides of the power port need of them.
 #pragma once
 
 #include "hydraulics/component_def.h"
@@ -23,6 +23,30 @@ struct LineForceParameters {
 struct PortCoordinate {
   double offset = 0;  // m
   double ratio = 1;   // 1, or m/rad
+};
+
+// Part of every cylinder's Def.
+struct CylinderParameters {
+  std::string force;                  // force element it drives
+  std::string friction_curve;         // curve; empty: no friction proportional to the force
+  std::string port_a;                 // volume; its pressure pushes x to grow
+  std::string port_b;                 // volume
+  double piston_diameter = 0;         // m
+  double piston_length = 0;           // m
+  double chamber_length = 0;          // m
+  double minimum_stroke = 0;          // m, lower end damper
+  double maximum_stroke = 0;          // m, upper end damper
+  double bulk_modulus = 1e10;         // Pa, of the barrel
+  double cylinder_coefficient = 0.9;  // eta, 1 = no friction
+  double seal_friction = 0;           // N
+  double leak_flow = 0;               // m3/s across the piston ...
+  double leak_pressure = 100e5;       // Pa ... at this difference
+  double end_stiffness = 5e7;         // N/m
+  double end_damping = 5e5;           // N s/m
+  double dead_volume = 0;             // m3 in each chamber
+
+  // L_chamber - L_piston, the piston's free way [m].
+  [[nodiscard]] double free_way() const noexcept { return chamber_length - piston_length; }
 };
 
 }  // namespace slew::hydraulics

@@ -10,53 +10,56 @@ namespace {
 constexpr double kStopPressure = 300e5;  // Pa, load pressure that may press the piston into its stop
 
 // Smallest volume of the chamber when the piston is `way` from closing it and in its stop.
-void check_chamber(const CylinderNumbers& c, char port, double area, double way, const char* key, Problems& errors) {
+void check_chamber(const std::string& name, const CylinderParameters& c, char port, double area, double way,
+                   const char* key, Problems& errors) {
   const double piston_area = 0.25 * std::numbers::pi * c.piston_diameter * c.piston_diameter;
   const double compression = c.end_stiffness > 0 ? kStopPressure * piston_area / c.end_stiffness : 0;
   const double volume = area * (way - compression) + c.dead_volume;
   if (volume > 0) return;
-  errors.push_back({c.def.name + "." + key,
+  errors.push_back({name + "." + key,
                     fmt::format("the volume of chamber {} is not positive over the stroke: {:.4g} l with the stop "
                                 "compressed by {:.3g} mm",
                                 port, volume * 1e3, compression * 1e3),
                     "a stroke inside the chamber, a stiffer stop or a dead volume", ""});
 }
 
-void check_friction_curve(const HydraulicsDef& circuit, const CylinderNumbers& c, Problems& errors) {
+void check_friction_curve(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& c,
+                          Problems& errors) {
   for (const CurveDef& curve : circuit.curves) {
     if (curve.name != c.friction_curve) continue;
     bool is_braking = curve.odd;
     for (const auto& point : curve.points) is_braking = is_braking && point[0] >= 0 && point[1] >= 0;
     if (is_braking) return;
-    errors.push_back({c.def.name + ".friction_curve", "the curve '" + curve.name + "' would drive the piston",
+    errors.push_back({name + ".friction_curve", "the curve '" + curve.name + "' would drive the piston",
                       "odd: true with coefficients >= 0 over speeds >= 0", ""});
   }
 }
 
 }  // namespace
 
-void check_cylinder(const HydraulicsDef& circuit, const CylinderNumbers& c, Problems& errors) {
+void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& c,
+                    double rod_diameter, Problems& errors) {
   if (c.port_a == c.port_b) {
-    errors.push_back({c.def.name + ".port_b", "both ports are connected to '" + c.port_a + "'", "two volumes", ""});
+    errors.push_back({name + ".port_b", "both ports are connected to '" + c.port_a + "'", "two volumes", ""});
   }
-  check_friction_curve(circuit, c, errors);
-  if (!(c.span > 0)) {
+  check_friction_curve(circuit, name, c, errors);
+  if (!(c.free_way() > 0)) {
     errors.push_back(
-        {c.def.name + ".chamber_length", "the chamber is not longer than the piston", "more than piston_length", ""});
+        {name + ".chamber_length", "the chamber is not longer than the piston", "more than piston_length", ""});
     return;
   }
   if (!(c.minimum_stroke < c.maximum_stroke)) {
-    errors.push_back({c.def.name + ".maximum_stroke",
+    errors.push_back({name + ".maximum_stroke",
                       fmt::format("the stroke limits are swapped: minimum {:.4g} m, maximum {:.4g} m", c.minimum_stroke,
                                   c.maximum_stroke),
                       "more than minimum_stroke", ""});
     return;
   }
-  const double D = c.piston_diameter, d = c.rod_diameter;
-  check_chamber(c, 'A', 0.25 * std::numbers::pi * D * D, c.minimum_stroke, "minimum_stroke", errors);
+  const double D = c.piston_diameter, d = rod_diameter;
+  check_chamber(name, c, 'A', 0.25 * std::numbers::pi * D * D, c.minimum_stroke, "minimum_stroke", errors);
   if (d < D) {
-    check_chamber(c, 'B', 0.25 * std::numbers::pi * (D * D - d * d), c.span - c.maximum_stroke, "maximum_stroke",
-                  errors);
+    check_chamber(name, c, 'B', 0.25 * std::numbers::pi * (D * D - d * d), c.free_way() - c.maximum_stroke,
+                  "maximum_stroke", errors);
   }
 }
 

@@ -3,24 +3,14 @@
 
 #include <string>
 
+#include "hydraulics/components/cylinder_def.h"
 #include "hydraulics/hydraulics_def.h"
 
 namespace slew::hydraulics {
 
-struct CylinderNumbers {
-  const ComponentDef& def;
-  const std::string& friction_curve;
-  const std::string& port_a;
-  const std::string& port_b;
-  double minimum_stroke, maximum_stroke;
-  double span;  // the piston's free way: chamber length less piston length
-  double dead_volume;
-  double end_stiffness;
-  double piston_diameter, rod_diameter;
-};
-
 // Strokes in order, chambers positive over the stroke and the stops' compression, ports apart, a friction curve that
-// can only brake.
-void check_cylinder(const HydraulicsDef& circuit, const CylinderNumbers& cylinder, Problems& errors);
+// can only brake. name: of the cylinder; rod_diameter: 0 for a rod on neither side [m].
+void check_cylinder(const HydraulicsDef& circuit, const std::string& name, const CylinderParameters& cylinder,
+                    double rod_diameter, Problems& errors);
 
 }  // namespace slew::hydraulics

@@ -13,31 +13,16 @@
 // mechanics' dummies carry it), cushioning orifices.
 #pragma once
 
+#include "hydraulics/component_def.h"
 #include "hydraulics/components/cylinder_def.h"
 
 namespace slew::hydraulics {
 
 struct DoubleActingCylinderDef final : ComponentDef {
-  std::string force;                  // translational force element it drives
-  std::string friction_curve;         // curve; empty: no friction proportional to the force
-  std::string port_a;                 // volume, piston side
-  std::string port_b;                 // volume, rod side
-  double piston_diameter = 0;         // m
-  double rod_diameter = 0;            // m
-  double piston_length = 0;           // m
-  double chamber_length = 0;          // m
-  double rod_length = 0;              // m
-  double attachment_length = 0;       // m
-  double minimum_stroke = 0;          // m, lower end damper
-  double maximum_stroke = 0;          // m, upper end damper
-  double bulk_modulus = 1e10;         // Pa, of the barrel
-  double cylinder_coefficient = 0.9;  // eta, 1 = no friction
-  double seal_friction = 0;           // N
-  double leak_flow = 0;               // m3/s across the piston ...
-  double leak_pressure = 100e5;       // Pa ... at this difference
-  double end_stiffness = 5e7;         // N/m
-  double end_damping = 5e5;           // N s/m
-  double dead_volume = 0;             // m3 in each chamber
+  CylinderParameters common;     // force: translational; port A: piston side, port B: rod side
+  double rod_diameter = 0;       // m
+  double rod_length = 0;         // m
+  double attachment_length = 0;  // m
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "double_acting_cylinder"; }
   [[nodiscard]] void* address() noexcept override { return this; }

@@ -61,15 +61,15 @@ inline L90lsValveDef& add_valve(HydraulicsDef& circuit, const std::string& axis)
   return valve;
 }
 
-inline DoubleActingCylinderDef& add_cylinder(HydraulicsDef& circuit, const std::string& axis) {
-  DoubleActingCylinderDef& cylinder = add<DoubleActingCylinderDef>(circuit, "Cyl_" + axis);
-  cylinder.force = "ForceT_" + axis;
-  cylinder.friction_curve = "Spline_CylinderFriction";
-  cylinder.port_a = "Vol_" + axis + "Cyl_A", cylinder.port_b = "Vol_" + axis + "Cyl_B";
-  cylinder.seal_friction = 1e3;
-  cylinder.leak_flow = 0.1 * kLeak;
-  cylinder.dead_volume = 1e-4;
-  return cylinder;
+// What all cylinders of the crane have alike, and the lengths of piston and chamber, the stroke limits [m].
+inline void set_cylinder(CylinderParameters& common, const std::string& axis, double diameter, double piston,
+                         double chamber, double lowest, double highest) {
+  common.friction_curve = "Spline_CylinderFriction";
+  common.port_a = "Vol_" + axis + "Cyl_A", common.port_b = "Vol_" + axis + "Cyl_B";
+  common.seal_friction = 1e3;
+  common.leak_flow = 0.1 * kLeak;
+  common.piston_diameter = diameter, common.piston_length = piston, common.chamber_length = chamber;
+  common.minimum_stroke = lowest, common.maximum_stroke = highest;
 }
 
 // Cylinders in the order lift, jib, slew.
@@ -91,19 +91,17 @@ inline HydraulicsDef crane_circuit() {
   add_valve(circuit, "Lift").nominal_flow_at = 30 * kLitrePerMinute;
   add_valve(circuit, "Jib").nominal_flow_at = 30 * kLitrePerMinute;
 
-  DoubleActingCylinderDef& lift = add_cylinder(circuit, "Lift");
-  lift.piston_diameter = 0.2, lift.rod_diameter = 0.105, lift.piston_length = 0.05, lift.chamber_length = 1.12;
-  lift.rod_length = 1.137, lift.attachment_length = 0.1, lift.minimum_stroke = 0.7, lift.maximum_stroke = 1.05;
-  DoubleActingCylinderDef& jib = add_cylinder(circuit, "Jib");
-  jib.piston_diameter = 0.16, jib.rod_diameter = 0.09, jib.piston_length = 0.05, jib.chamber_length = 1.02;
-  jib.rod_length = 0.9, jib.attachment_length = 0.1, jib.minimum_stroke = 0.55, jib.maximum_stroke = 0.95;
-
+  DoubleActingCylinderDef& lift = add<DoubleActingCylinderDef>(circuit, "Cyl_Lift");
+  set_cylinder(lift.common, "Lift", 0.2, 0.05, 1.12, 0.7, 1.05);
+  lift.common.force = "ForceT_Lift", lift.common.dead_volume = 1e-4;
+  lift.rod_diameter = 0.105, lift.rod_length = 1.137, lift.attachment_length = 0.1;
+  DoubleActingCylinderDef& jib = add<DoubleActingCylinderDef>(circuit, "Cyl_Jib");
+  set_cylinder(jib.common, "Jib", 0.16, 0.05, 1.02, 0.55, 0.95);
+  jib.common.force = "ForceT_Jib", jib.common.dead_volume = 1e-4;
+  jib.rod_diameter = 0.09, jib.rod_length = 0.9, jib.attachment_length = 0.1;
   SlewCylinderDef& rack = add<SlewCylinderDef>(circuit, "SlewCyl_CraneSlew");
-  rack.force = "ForceR_Pillar", rack.friction_curve = "Spline_CylinderFriction";
-  rack.port_a = "Vol_SlewCyl_A", rack.port_b = "Vol_SlewCyl_B";
-  rack.piston_diameter = 0.1, rack.piston_length = 0.3, rack.chamber_length = 1.3, rack.pinion_radius = 0.144;
-  rack.stroke_offset = 0.5, rack.minimum_stroke = 0.02, rack.maximum_stroke = 0.98;
-  rack.seal_friction = 1e3, rack.leak_flow = 0.1 * kLeak;
+  set_cylinder(rack.common, "Slew", 0.1, 0.3, 1.3, 0.02, 0.98);
+  rack.common.force = "ForceR_Pillar", rack.pinion_radius = 0.144, rack.stroke_offset = 0.5;
 
   LsShuttleDef& inner = add<LsShuttleDef>(circuit, "LSPressure_Lift_Jib");
   inner.port_1 = "L90Lift", inner.port_2 = "L90Jib";

@@ -116,16 +116,16 @@ TEST(HydraulicsValidation, rod_thicker_than_the_piston_is_refused) {
 TEST(HydraulicsValidation, swapped_stroke_limits_are_refused) {
   HydraulicsDef def = crane_circuit();
   DoubleActingCylinderDef& lift = component<DoubleActingCylinderDef>(def, "Cyl_Lift");
-  std::swap(lift.minimum_stroke, lift.maximum_stroke);
+  std::swap(lift.common.minimum_stroke, lift.common.maximum_stroke);
   EXPECT_EQ(what_at(findings(def).errors, "Cyl_Lift.maximum_stroke"),
             "the stroke limits are swapped: minimum 1.05 m, maximum 0.7 m");
 }
 
 TEST(HydraulicsValidation, a_chamber_that_closes_within_the_stops_compression_is_refused) {
   HydraulicsDef def = crane_circuit();
-  component<DoubleActingCylinderDef>(def, "Cyl_Lift").dead_volume = 0;
-  component<DoubleActingCylinderDef>(def, "Cyl_Lift").maximum_stroke = 1.06;
-  component<SlewCylinderDef>(def, "SlewCyl_CraneSlew").minimum_stroke = 0.001;
+  component<DoubleActingCylinderDef>(def, "Cyl_Lift").common.dead_volume = 0;
+  component<DoubleActingCylinderDef>(def, "Cyl_Lift").common.maximum_stroke = 1.06;
+  component<SlewCylinderDef>(def, "SlewCyl_CraneSlew").common.minimum_stroke = 0.001;
   const Problems errors = findings(def).errors;
   EXPECT_NE(what_at(errors, "Cyl_Lift.maximum_stroke").find("chamber B is not positive"), std::string::npos);
   EXPECT_NE(what_at(errors, "SlewCyl_CraneSlew.minimum_stroke").find("chamber A is not positive"), std::string::npos);
@@ -133,14 +133,14 @@ TEST(HydraulicsValidation, a_chamber_that_closes_within_the_stops_compression_is
 
 TEST(HydraulicsValidation, a_chamber_not_longer_than_its_piston_is_refused) {
   HydraulicsDef def = crane_circuit();
-  component<SlewCylinderDef>(def, "SlewCyl_CraneSlew").piston_length = 1.3;
+  component<SlewCylinderDef>(def, "SlewCyl_CraneSlew").common.piston_length = 1.3;
   EXPECT_EQ(what_at(findings(def).errors, "SlewCyl_CraneSlew.chamber_length"),
             "the chamber is not longer than the piston");
 }
 
 TEST(HydraulicsValidation, both_ports_on_one_volume_are_refused) {
   HydraulicsDef def = crane_circuit();
-  component<DoubleActingCylinderDef>(def, "Cyl_Jib").port_b = "Vol_JibCyl_A";
+  component<DoubleActingCylinderDef>(def, "Cyl_Jib").common.port_b = "Vol_JibCyl_A";
   component<L90lsValveDef>(def, "L90Lift").port_b = "Vol_LiftCyl_A";
   const Problems errors = findings(def).errors;
   EXPECT_NE(what_at(errors, "Cyl_Jib.port_b"), "");
@@ -170,7 +170,7 @@ TEST(HydraulicsValidation, a_name_used_twice_is_refused) {
 
 TEST(HydraulicsValidation, two_cylinders_on_one_force_are_refused) {
   HydraulicsDef def = crane_circuit();
-  component<DoubleActingCylinderDef>(def, "Cyl_Jib").force = "ForceT_Lift";
+  component<DoubleActingCylinderDef>(def, "Cyl_Jib").common.force = "ForceT_Lift";
   EXPECT_EQ(what_at(findings(def).errors, "Cyl_Jib.force"), "'ForceT_Lift' is driven by another cylinder already");
 }
 

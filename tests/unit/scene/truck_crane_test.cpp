@@ -100,7 +100,7 @@ TEST_F(TruckCrane, HasTheHydraulicsOfItsTables) {
   const auto& pump = component<hydraulics::LsPumpDef>("MainPump");
   EXPECT_NEAR(pump.displacement * pump.speed * pump.volumetric_coefficient * 60000, 195.3, 0.1);  // l/min
   EXPECT_EQ(pump.controller_gain, 3.5e-7);
-  EXPECT_EQ(component<hydraulics::DoubleActingCylinderDef>("Cyl_Jib").piston_diameter, 0.16);
+  EXPECT_EQ(component<hydraulics::DoubleActingCylinderDef>("Cyl_Jib").common.piston_diameter, 0.16);
 }
 
 TEST_F(TruckCrane, HasTheInputsOfTable22) {

@@ -82,11 +82,12 @@ double oil_column_frequency(double x_0) {
   add_volume(def, "A", 50e5);
   add_volume(def, "B", 50e5);
   DoubleActingCylinderDef& cylinder = add<DoubleActingCylinderDef>(def, "Cylinder");
-  cylinder.force = "Force", cylinder.port_a = "A", cylinder.port_b = "B";
-  cylinder.piston_diameter = 0.1, cylinder.rod_diameter = 0.056, cylinder.piston_length = 0;
-  cylinder.chamber_length = 0.535, cylinder.rod_length = 1;
-  cylinder.minimum_stroke = 0, cylinder.maximum_stroke = 0.535;
-  cylinder.dead_volume = 1.9e-4, cylinder.bulk_modulus = 1e18, cylinder.end_stiffness = 0;
+  cylinder.rod_diameter = 0.056, cylinder.rod_length = 1;
+  CylinderParameters& common = cylinder.common;
+  common.force = "Force", common.port_a = "A", common.port_b = "B";
+  common.piston_diameter = 0.1, common.piston_length = 0, common.chamber_length = 0.535;
+  common.minimum_stroke = 0, common.maximum_stroke = 0.535;
+  common.dead_volume = 1.9e-4, common.bulk_modulus = 1e18, common.end_stiffness = 0;
   def.start = StartState::table13;
   def.relative_tolerance = 1e-6;
   expect_valid(def);

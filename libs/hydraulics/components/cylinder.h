@@ -1,0 +1,66 @@
+// The component behind all cylinder types: two chambers, the leak between them, and the port to the mechanics. The
+// types differ in geometry only; equations in their headers.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "hydraulics/circuit_builder.h"
+#include "hydraulics/component.h"
+
+namespace slew::hydraulics {
+
+enum class Motion { linear, rotary };
+
+// What sets a cylinder type apart.
+struct CylinderGeometry {
+  double area_b = 0;  // m2, on the side of port B; on A it is the piston's
+  PortCoordinate coordinate = {};
+  StartRule start = StartRule::return_pressure;
+  Motion motion = Motion::linear;  // rotary: coordinate.ratio turns the line force into a torque
+};
+
+class Cylinder final : public HydraulicComponent {
+ public:
+  // def: the component's own copy of its Def; common: the part of it that all cylinders have.
+  Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& common, const CylinderGeometry& geometry,
+           CircuitBuilder& builder);
+
+  void declare_dependencies(DependencyList& dependencies) const override;
+  void add_rates(const CircuitView& view, Rates& rates) const noexcept override;
+  void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override;
+  void list_variables(std::vector<ElementVariable>& variables) const override;
+  double* read_variables(const CircuitView& view, double* values) const noexcept override;
+  [[nodiscard]] void* def_address() noexcept override { return def_->address(); }
+  void apply_parameters() noexcept override { G_leak_ = common_.leak_flow / common_.leak_pressure; }
+
+ private:
+  [[nodiscard]] double leak(const CircuitView& view) const noexcept { return G_leak_ * (view[a_] - view[b_]); }
+
+  std::unique_ptr<ComponentDef> def_;
+  const CylinderParameters& common_;
+  StateIndex a_, b_;
+  double A_a_, A_b_;
+  Motion motion_;
+  double ratio_;  // m/rad when rotary
+  int actuator_ = 0;
+  StateIndex x_ = 0, v_ = 0;
+  double G_leak_ = 0;  // m3/s/Pa
+};
+
+// The area of a full piston [m2].
+[[nodiscard]] double piston_area(const CylinderParameters& common) noexcept;
+
+// Def: the final Def of `component`, with a member `CylinderParameters common`.
+template <typename Def>
+[[nodiscard]] std::unique_ptr<HydraulicComponent> make_cylinder(const ComponentDef& component,
+                                                                CylinderGeometry (*geometry_of)(const Def&),
+                                                                CircuitBuilder& builder) {
+  auto def = std::make_unique<Def>(static_cast<const Def&>(component));
+  const CylinderParameters& common = def->common;
+  const CylinderGeometry geometry = geometry_of(*def);
+  return std::make_unique<Cylinder>(std::move(def), common, geometry, builder);
+}
+
+}  // namespace slew::hydraulics
