@@ -1,6 +1,7 @@
 #include "coupling/line_force.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace slew::coupling {
@@ -17,8 +18,10 @@ LineForceLaw::Coefficient LineForceLaw::curve_at(double speed) const noexcept {
   if (curve.empty()) return {0, 0};
   if (speed >= curve.back()[0]) return {curve.back()[1], 0};
   if (speed < curve.front()[0]) return {curve.front()[1], 0};
-  std::size_t i = 0;
-  while (i + 2 < curve.size() && speed >= curve[i + 1][0]) ++i;
+  // the segment that starts at or before the speed; the last point's case is above
+  const auto after = std::upper_bound(curve.begin(), curve.end(), speed,
+                                      [](double v, const std::array<double, 2>& point) { return v < point[0]; });
+  const auto i = static_cast<std::size_t>(after - curve.begin()) - 1;
   return {curve[i][1] + segment_slope_[i] * (speed - curve[i][0]), segment_slope_[i]};
 }
 

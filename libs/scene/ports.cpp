@@ -9,6 +9,7 @@
 #include "coupling/samples.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
+#include "hydraulics/curve.h"
 #include "multibody/model.h"
 
 namespace slew::scene {
@@ -33,19 +34,14 @@ PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& c
   return port;
 }
 
-void take_curve(PortDef& port, const std::string& curve, const Scene& scene, Problems& problems) {
-  for (const hydraulics::CurveDef& def : scene.hydraulics.curves) {
-    if (def.name != curve) continue;
-    port.line_force.friction_curve = def.points;
-    if (def.interpolation != hydraulics::Interpolation::linear) {
-      problems.push_back({curve + ".interpolation",
-                          "a friction curve ('" + port.name + "' uses it) is piecewise linear", "linear", ""});
-    }
-    if (!def.points.empty() && def.points.front()[0] < 0) {
-      problems.push_back({curve + ".points",
-                          "a friction curve ('" + port.name + "' uses it) is over the magnitude of the speed",
-                          "speeds of 0 and more", ""});
-    }
+void take_curve(PortDef& port, const std::string& name, const Scene& scene, Problems& problems) {
+  const hydraulics::CurveDef* curve = hydraulics::find_curve(scene.hydraulics, name);
+  if (curve == nullptr) return;
+  port.line_force.friction_curve = hydraulics::straight_lines(*curve);
+  if (curve->points.front()[0] < 0) {
+    problems.push_back({name + ".points",
+                        "a friction curve ('" + port.name + "' uses it) is over the magnitude of the speed",
+                        "speeds of 0 and more", ""});
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -71,6 +72,23 @@ TEST_F(TruckCrane, HasThreePortsInComponentOrder) {
   ASSERT_EQ(lift.line_force.friction_curve.size(), 12u);
   EXPECT_EQ(lift.line_force.friction_curve[2][1], 0.9);
   EXPECT_EQ(scene_->ports[2].name, "Cyl_Jib");
+}
+
+TEST_F(TruckCrane, TakesAMonotoneCubicAsFrictionCurve) {
+  const Scene scene =
+      load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml", {"Spline_CylinderFriction.interpolation=pchip"});
+  for (std::size_t port = 0; port < 3; ++port) {
+    const Table& lines = scene_->ports[port].line_force.friction_curve;
+    const Table& cubic = scene.ports[port].line_force.friction_curve;
+    // through the points of the scene, and flat at the curve's minimum
+    ASSERT_GT(cubic.size(), lines.size());
+    for (const auto& point : lines) EXPECT_NE(std::find(cubic.begin(), cubic.end(), point), cubic.end());
+    const auto minimum = std::find(cubic.begin(), cubic.end(), std::array<double, 2>{0.1, 0.2});
+    ASSERT_NE(minimum, cubic.end());
+    const auto next = minimum + 1;
+    EXPECT_LT((*next)[1] - 0.2, 0.2 * ((*next)[0] - 0.1));  // the straight line rises by 1 per m/s
+    EXPECT_GT((*next)[1], 0.2);
+  }
 }
 
 // distance of the two points of a force in the plane of the boom, at the pose of the scene
