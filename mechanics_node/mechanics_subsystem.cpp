@@ -322,6 +322,8 @@ std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noe
 // Work, impulse and mean speed are the finished step's and stay as they are.
 void MechanicsSubsystem::publish(coupling::MechanismSample& sample) noexcept {
   evaluate();
+  // variables show every element, a step moves only those that carry a force or a row
+  multibody::observe(model_, state_, workspace_);
   const std::size_t m = ports_.size();
   const std::size_t rows = model_.rows.size();
   const std::span<const double> W = multibody::row_mobility(workspace_);

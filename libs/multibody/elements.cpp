@@ -76,12 +76,15 @@ void turn(const AngleElement& element, Vec3 torque, Workspace& ws) noexcept {
 
 }  // namespace
 
-Vec3 torque_of(const AngleElement& element, const AngleMotion& m, const Workspace& ws) noexcept {
+double damper_speed(const AngleElement& element, const Workspace& ws) noexcept {
   const LinkMotion& link1 = ws.motion[at(element.link1)];
-  const Vec3 w_rel = ws.motion[at(element.link2)].w - link1.w;
+  return dot(link1.R * element.axis, ws.motion[at(element.link2)].w - link1.w);
+}
+
+Vec3 torque_of(const AngleElement& element, const AngleMotion& m, const Workspace& ws) noexcept {
   // the damper acts about the axis itself, so that three of them at right angles damp any rotation alike
-  const Vec3 axis = link1.R * element.axis;
-  Vec3 torque = axis * (-element.law.damping * dot(axis, w_rel));
+  const Vec3 axis = ws.motion[at(element.link1)].R * element.axis;
+  Vec3 torque = axis * (-element.law.damping * damper_speed(element, ws));
   if (has_spring(element.law)) torque += m.n * force_of(element.law, m.angle, m.rate, 0);
   return torque;
 }

@@ -14,6 +14,9 @@ void update_motion(const Model& model, std::span<const double> q, std::span<cons
 enum class Elements { used, all };
 void update_elements(const Model& model, std::span<const double> q, Elements which, Workspace& ws) noexcept;
 
+// Relative angular speed about a rotational element's axis, a . w_rel: what its damper acts on [rad/s].
+[[nodiscard]] double damper_speed(const AngleElement& element, const Workspace& ws) noexcept;
+
 // Torque of a rotational element's own law on its second link; needs its motion.
 [[nodiscard]] math::Vec3 torque_of(const AngleElement& element, const AngleMotion& motion,
                                    const Workspace& ws) noexcept;

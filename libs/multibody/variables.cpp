@@ -3,6 +3,7 @@
 
 #include "multibody/element_law.h"
 #include "multibody/observe.h"
+#include "multibody/passes.h"
 
 namespace slew::multibody {
 
@@ -137,7 +138,7 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
     const AngleMotion& angle = ws.angles[i];
     out.add(angle.angle);
     out.add(angle.rate);
-    out.add(force_of(model.angles[i].law, angle.angle, angle.rate, angle.rate) +
+    out.add(force_of(model.angles[i].law, angle.angle, angle.rate, damper_speed(model.angles[i], ws)) +
             row_force_on(model, RowKind::angle, i, row_forces));
   }
   const Energy sum = energy(model, ws);

@@ -10,6 +10,7 @@
 #include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
+#include "multibody/observe.h"
 
 namespace slew::monolith {
 namespace {
@@ -43,6 +44,60 @@ TEST(Monolith, StartsWhereTheSubsystemsStart) {
   expect_same_start("truck_crane.yaml", {});
   expect_same_start("truck_crane.yaml", {"hydraulics.start=table13"});
   expect_same_start("single_cylinder.yaml", {});
+}
+
+double mechanics_variable(const mechanics::MechanicsSubsystem& mechanics, std::string_view name) {
+  std::vector<double> values(mechanics.variables().size());
+  mechanics.read_variables(values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (mechanics.variables()[i].name == name) return values[i];
+  }
+  ADD_FAILURE() << "no variable " << name;
+  return 0;
+}
+
+TEST(Monolith, ShowsTheMechanismAsTheSubsystemDoes) {
+  const scene::Scene scene = scene::load_file(kScenes + "truck_crane.yaml");
+  mechanics::MechanicsSubsystem mechanics(scene);
+  coupling::OwnSample first;
+  ASSERT_TRUE(mechanics.first_sample(first));
+  Monolith monolith(scene);
+  ASSERT_TRUE(monolith.start().is_ok());
+  const std::vector<ElementVariable> names = multibody::variables(mechanics.model());
+  for (const ElementVariable& variable : names) {
+    // forces wait for the partner's first sample
+    if (variable.dimension == Dimension::force || variable.dimension == Dimension::torque) continue;
+    const double value = monolith.variable(variable.name);
+    EXPECT_NEAR(mechanics_variable(mechanics, variable.name), value, 1e-14 * (1 + std::fabs(value))) << variable.name;
+  }
+  EXPECT_NEAR(mechanics_variable(mechanics, "ForceR_FrictionZ.angle"), -10 * std::numbers::pi / 180, 1e-9);
+}
+
+TEST(Monolith, AndTheSubsystemShowTheDampersOfASwingingBag) {
+  // a bag on a ball joint, thrown: nothing but dampers, of which a step needs neither angle nor rate
+  const scene::Scene scene = scene::load_text(R"(
+bodies:
+  Bag: {position: [0, 2 m, 0], mass: 500 kg, center_of_mass: [0, -0.6 m, 0], inertia: [100, 100, 100]}
+joints:
+  Hook: {type: spherical, body1: Ground, point1: [0, 2 m, 0], body2: Bag,
+         initial_angular_velocity: [0.3 rad/s, 0.1 rad/s, -0.2 rad/s]}
+forces:
+  Damper: {type: rotational, body1: Ground, body2: Bag, damping_constant: 50 Nms/rad}
+)",
+                                              "bag");
+  mechanics::MechanicsSubsystem mechanics(scene);
+  coupling::OwnSample sample;
+  ASSERT_TRUE(mechanics.first_sample(sample));
+  ASSERT_TRUE(mechanics.start({}, sample).is_ok());
+  Monolith monolith(scene);
+  ASSERT_TRUE(monolith.start().is_ok());
+  for (int n = 0; n < 500; ++n) mechanics.step(n, {}, {}, sample);
+  ASSERT_TRUE(monolith.advance_to({500'000'000}, std::vector<double>{}).is_ok());
+  for (const char* name : {"Damper.angle", "Damper.rate", "Damper.torque"}) {
+    const double value = monolith.variable(name);
+    EXPECT_GT(std::fabs(value), 1e-3) << name;
+    EXPECT_NEAR(mechanics_variable(mechanics, name), value, 1e-6 * std::fabs(value)) << name;
+  }
 }
 
 TEST(Monolith, RestartsOnlyWhereAControlOrItsSlopeChanges) {

@@ -237,6 +237,26 @@ TEST(JointLaw, LimitsNeverPullAndFrictionNeverDrives) {
   EXPECT_NEAR(evaluate(friction, 0, 1).force, -7, 1e-12);
 }
 
+TEST(RotationalForce, ShowsTheTorqueThatItsDamperExerts) {
+  // on a ball joint, turned away from the axis: the gradient of the angle is another direction than the axis
+  MechanicsDef def;
+  def.gravity = {0, 0, 0};
+  def.bodies = {{.name = "Ball", .mass = 2, .inertia = {0.4, 0.4, 0.4}}};
+  def.joints = {{.name = "Joint", .type = JointType::spherical, .body2 = "Ball", .initial_rotation = {1, 2, 3}}};
+  def.rotational_forces = {{.name = "Damper", .body1 = "Ground", .body2 = "Ball", .damping_constant = 5}};
+  Mechanism ball(def);
+  ball.state.q = {std::cos(0.4), std::sin(0.4), 0, 0};
+  ball.see();
+  const Triple w = ball.pose("Ball").angular_velocity;
+  const double shown = ball.value("Damper.torque");
+  EXPECT_NEAR(shown, -5 * w[1], 1e-12);  // the axis is y
+  EXPECT_GT(std::fabs(ball.value("Damper.rate") - w[1]), 0.1);
+  // and it is the torque about the axis that turns the ball
+  const Triple before = momentum(ball.model, ball.ws).angular;
+  ball.run(1e-6, 1e-6);
+  EXPECT_NEAR((momentum(ball.model, ball.ws).angular[1] - before[1]) / 1e-6, shown, 1e-3);
+}
+
 TEST(RotationalForce, CountsTurnsOfACoaxialHinge) {
   MechanicsDef def;
   def.gravity = {};
