@@ -4,6 +4,8 @@
 //     positive part with a continuous slope, exact outside (0, w); below by at most 4/27 w inside
 //   root(d, d_t) = d / (d^2 + d_t^2)^(1/4)                                                                      (2)
 //     sgn(d) sqrt|d| for |d| >> d_t, d / sqrt(d_t) for |d| << d_t
+//   least(a, b, w) = a - ramp(a - b, w_a),  w_a = a - a^2/(4 w) for a < 2 w, else w                             (3)
+//     lower of a, b >= 0 as smooth_min, with a width that shrinks with a: 0 where either is 0
 #pragma once
 
 #include <cmath>
@@ -40,6 +42,24 @@ inline constexpr double kSteepestRamp = 4.0 / 3;
 [[nodiscard]] inline ValueSlope smooth_max(double a, double b, double w) noexcept {
   const ValueSlope over = ramp(b - a, w);
   return {a + over.value, 1 - over.slope};
+}
+
+struct ValueSlopes {
+  double value, slope_a, slope_b;
+};
+
+// Equation (3); pre-condition: a, b >= 0.
+[[nodiscard]] inline ValueSlopes least(double a, double b, double w) noexcept {
+  const bool is_narrow = a < 2 * w;
+  const double width = is_narrow ? a - a * a / (4 * w) : w;
+  const ValueSlope over = ramp(a - b, width);
+  double slope_a = 1 - over.slope;
+  if (is_narrow && a > b && a - b < width) {
+    // d ramp(x, w)/dw = -2 t^2 (1 - t)
+    const double t = (a - b) / width;
+    slope_a += 2 * t * t * (1 - t) * (1 - a / (2 * w));
+  }
+  return {a - over.value, slope_a, over.slope};
 }
 
 [[nodiscard]] inline ValueSlope root(double d, double transition) noexcept {

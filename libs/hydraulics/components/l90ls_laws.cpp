@@ -26,12 +26,12 @@ SupplyFlow supply(const L90Side& side, double opening, double drop, double load)
   const double share = side.K_comp_2 / (side.K_comp_2 + K * K);
   const ValueSlope lock = ramp(drop, side.opening_rise);
   const double available = lock.value * share;
-  // (4)
-  const ValueSlope dp = smooth_min(held.value, available, kLsWidth);
+  // (4), closed by the compensator as well as by the lock-hold
+  const ValueSlopes dp = least(held.value, available, kLsWidth);
   const ValueSlope r = root(dp.value, side.transition);
-  const double d_available = K * r.slope * (1 - dp.slope);
+  const double d_available = K * r.slope * dp.slope_b;
   flow.Q += K * r.value;
-  flow.d_load = -K * r.slope * dp.slope * held.slope * over.slope;
+  flow.d_load = -K * r.slope * dp.slope_a * held.slope * over.slope;
   flow.d_drop += d_available * share * lock.slope;
   flow.d_opening = side.K_supply * (r.value - d_available * lock.value * 2 * K * share * share / side.K_comp_2);
   return flow;
