@@ -1,7 +1,7 @@
 // Pilot-operated relief valve, closed without piloting.
 //
 //   tau u' = clip((p_pilot - p_2 - setting) / opening_pressure_rise, 0, 1) - u,   tau = step_response / 3
-//   Q_12 = u K root(p_1 - p_2),  K = nominal_flow / sqrt(nominal_pressure_drop)
+//   Q_12 = u K root(p_1 - p_2),  K = nominal_flow / sqrt(nominal_pressure_drop), the drop from port 1 to port 2
 //
 // Source: the flexible-body tutorial thesis (Saimaa UAS 2017), table 20; root(d) = d / (d^2 + d_t^2)^(1/4).
 // Not covered: flow forces, hysteresis.

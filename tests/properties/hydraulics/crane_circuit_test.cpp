@@ -129,15 +129,22 @@ TEST(CraneCircuit, pump_line_rests_at_stand_by_less_the_droop_of_bleed_and_leak)
   EXPECT_GT(flow, 0.009);
 }
 
-TEST(CraneCircuit, full_swash_against_a_closed_line_settles_near_277_bar) {
+TEST(CraneCircuit, full_swash_against_a_closed_line_settles_at_271_4_bar_above_tank) {
   HydraulicsDef def = crane_circuit();
   for (auto& component : def.components) {
     if (component->name == "MainPump") static_cast<LsPumpDef&>(*component).standby_pressure = 400 * kBar;
   }
   CraneCircuit crane(std::move(def));
   const StepReport report = crane.run(2);
-  // 195 l/min less leak and bleed through a valve stated at 180 l/min and 10 bar: fully open needs 277 bar
-  EXPECT_NEAR(crane.variable("Vol_MainPump.pressure") / kBar, 1 + 274.2, 3.5);
+  // by hand, in bar above tank and l/min: what pump leak and bleed leave of the pump's flow opens the valve by a fifth
+  double p = 270;
+  for (int i = 0; i < 20; ++i) {
+    const double flow = 0.140 * 1500 * 0.93 - 0.1 * p / 100 - 2 * std::sqrt(p / 25);
+    p = 270 + 7 * flow / (180 * std::sqrt(p / 10));
+  }
+  EXPECT_NEAR(p, 271.41, 0.01);
+  // the spools' leaks out of P take up to 2 l/min more
+  EXPECT_NEAR(crane.variable("Vol_MainPump.pressure") / kBar, 1 + p, 0.02);
   EXPECT_TRUE(report.has(StepFlag::relief_open));
 }
 
@@ -200,7 +207,7 @@ TEST(CraneCircuit, passive_parts_never_create_power) {
       }
       for (int j = 0; j < circuit.actuator_count(); ++j) y[static_cast<std::size_t>(circuit.position(j))] = 0.75;
       for (auto k = static_cast<std::size_t>(circuit.first_component_state()); k < n; ++k) {
-        y[k] = circuit.scales()[k] > 1 ? 2e7 * unit(random) : 2 * unit(random) - (circuit.find_volume("Vol_Tank") < 0);
+        y[k] = circuit.scales()[k] > 1 ? 2e7 * unit(random) : 2 * unit(random) - 1;  // LS pressures, spools
       }
       // a relief valve's opening is never negative
       y.back() = std::fabs(y.back());
