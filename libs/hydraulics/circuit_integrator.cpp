@@ -1,6 +1,7 @@
 #include "hydraulics/circuit_integrator.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 #include "core/reductions.h"
@@ -137,10 +138,14 @@ void CircuitIntegrator::close_quadrature(const double* y, const double* f) noexc
 
 StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcept {
   StepReport report;
-  if (has_failed_ || !all_finite(y_)) {
+  if (!has_failed_ && !all_finite(y_)) {
     has_failed_ = true;
+    const auto first = std::find_if(y_.begin(), y_.end(), [](double value) { return !std::isfinite(value); });
+    offender_ = static_cast<StateIndex>(first - y_.begin());
+  }
+  if (has_failed_) {
     report.raise(StepFlag::non_finite);
-    report.offender = report_.worst_state;
+    report.offender = offender_;
     return report;
   }
   motion_ = &motion;
@@ -150,6 +155,7 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
   report_ = solver_.advance(*this, y_, H);
   if (!report_.is_finite) {
     has_failed_ = true;
+    offender_ = report_.worst_state;
     std::copy(y_start_.begin(), y_start_.end(), y_.begin());
     open_quadrature_ = 0;
   }

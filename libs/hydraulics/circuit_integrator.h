@@ -84,6 +84,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   double open_quadrature_ = 0;  // h^2/12 of the last sub-step, whose end slope is not known yet
   bool was_clamped_ = false;
   bool has_failed_ = false;
+  StateIndex offender_ = -1;  // of the failure
   math::Rodas3 solver_;
   math::Rodas3Report report_;
 };
