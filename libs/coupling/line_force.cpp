@@ -25,46 +25,43 @@ LineForceLaw::Coefficient LineForceLaw::curve_at(double speed) const noexcept {
   return {curve[i][1] + segment_slope_[i] * (speed - curve[i][0]), segment_slope_[i]};
 }
 
-double LineForceLaw::friction_scale(double F) const noexcept { return std::fabs(F) * (1 - def_.efficiency); }
-
-double LineForceLaw::friction(double F, double v) const noexcept {
-  const double speed = std::fabs(v);
-  const double magnitude =
-      friction_scale(F) * curve_at(speed).value + def_.seal_friction * std::min(speed / def_.seal_speed, 1.0);
-  return std::copysign(magnitude, v);
+double LineForceLaw::friction_scale(double F) const noexcept {
+  return std::fabs(F) * (1 - def_.efficiency);
 }
 
-double LineForceLaw::stop_force(double x, double v) const noexcept {
-  double force = 0;
-  if (x < def_.stroke_min) {
-    force += std::max(0.0, def_.stop_stiffness * (def_.stroke_min - x) - def_.stop_damping * v);
-  }
-  if (x > def_.stroke_max) {
-    force -= std::max(0.0, def_.stop_stiffness * (x - def_.stroke_max) + def_.stop_damping * v);
-  }
-  return force;
-}
-
-LineForce LineForceLaw::evaluate(double F, double x, double v) const noexcept {
-  LineForce line;
-  // friction (2) and its slopes
+// (2) and its slopes
+LineForceLaw::Friction LineForceLaw::friction_at(double F, double v) const noexcept {
   const double speed = std::fabs(v);
   const double direction = v > 0 ? 1.0 : (v < 0 ? -1.0 : 0.0);
   const Coefficient f = curve_at(speed);
   const bool seal_slips = speed >= def_.seal_speed;
   const double scale = friction_scale(F);
   const double magnitude = scale * f.value + def_.seal_friction * (seal_slips ? 1.0 : speed / def_.seal_speed);
-  line.force = F - direction * magnitude;
-  line.d_pressure = 1 - direction * std::copysign(1 - def_.efficiency, F) * f.value;
-  line.d_speed = -scale * f.slope - (seal_slips ? 0.0 : def_.seal_friction / def_.seal_speed);
-  // end stops (3): slopes only while the stop pushes
-  const double stop = stop_force(x, v);
-  line.force += stop;
-  if (stop != 0) {
-    line.d_position = -def_.stop_stiffness;
-    line.d_speed -= def_.stop_damping;
-  }
-  return line;
+  return {.force = direction * magnitude,
+          .d_pressure = direction * std::copysign(1 - def_.efficiency, F) * f.value,
+          .d_speed = scale * f.slope + (seal_slips ? 0.0 : def_.seal_friction / def_.seal_speed)};
+}
+
+// (3) and its slopes
+math::StopForce LineForceLaw::stop_at(double x, double v) const noexcept {
+  return math::stop_force(x, v, def_.stroke_min, def_.stroke_max, def_.stop_stiffness, def_.stop_damping);
+}
+
+double LineForceLaw::friction(double F, double v) const noexcept {
+  return friction_at(F, v).force;
+}
+
+double LineForceLaw::stop_force(double x, double v) const noexcept {
+  return stop_at(x, v).force;
+}
+
+LineForce LineForceLaw::evaluate(double F, double x, double v) const noexcept {
+  const Friction friction = friction_at(F, v);
+  const math::StopForce stop = stop_at(x, v);
+  return {.force = F - friction.force + stop.force,
+          .d_pressure = 1 - friction.d_pressure,
+          .d_position = stop.d_x,
+          .d_speed = stop.d_v - friction.d_speed};
 }
 
 }  // namespace slew::coupling

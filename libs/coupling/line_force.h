@@ -16,11 +16,12 @@
 #include <vector>
 
 #include "core/field.h"
+#include "math/stop.h"
 
 namespace slew::coupling {
 
 struct LineForceDef {
-  Table friction_curve;         // speed [m/s >= 0], coefficient [-]; empty: no curve
+  Table friction_curve;         // speed [m/s >= 0], coefficient [-], from [0, 0] on; empty: no curve
   double efficiency = 1;        // eta, 0 < eta <= 1
   double seal_friction = 0;     // F_seal [N], >= 0
   double seal_speed = 1e-4;     // v_seal [m/s], > 0: speed at which the seal friction is fully there
@@ -53,7 +54,12 @@ class LineForceLaw {
   struct Coefficient {
     double value, slope;
   };
+  struct Friction {
+    double force, d_pressure, d_speed;
+  };
   [[nodiscard]] Coefficient curve_at(double speed) const noexcept;
+  [[nodiscard]] Friction friction_at(double F, double v) const noexcept;
+  [[nodiscard]] math::StopForce stop_at(double x, double v) const noexcept;
 
   LineForceDef def_;
   std::vector<double> segment_slope_;  // of the curve, by segment

@@ -101,8 +101,9 @@ void check_curve(const CurveDef& curve, Problems& errors) {
   if (!curve.odd) return;
   if (curve.points.front()[0] < 0) {
     errors.push_back({path, "an odd curve has points at negative arguments", "arguments >= 0", ""});
-  } else if (curve.points.front()[0] == 0 && curve.points.front()[1] != 0) {
-    errors.push_back({path, "an odd curve is not zero at zero", "[0, 0] as the first point", ""});
+  } else if (curve.points.front()[0] != 0 || curve.points.front()[1] != 0) {
+    errors.push_back(
+        {path, "an odd curve does not begin at zero and would jump there", "[0, 0] as the first point", ""});
   }
 }
 

@@ -4,6 +4,7 @@
 // the last two while x is outside its range: an end damper pushes back and never pulls.
 #pragma once
 
+#include "math/stop.h"
 #include "multibody/model.h"
 
 namespace slew::multibody {
@@ -11,15 +12,7 @@ namespace slew::multibody {
 // damper_speed replaces v in the second term: a rotational damper acts about the axis, its spring along the gradient.
 [[nodiscard]] inline double force_of(const ElementLaw& law, double x, double v, double damper_speed) noexcept {
   double force = -law.spring * (x - law.free) - law.damping * damper_speed;
-  if (law.end_spring > 0) {
-    if (x < law.min) {
-      const double push = law.end_spring * (law.min - x) - law.end_damping * v;
-      if (push > 0) force += push;
-    } else if (x > law.max) {
-      const double push = law.end_spring * (x - law.max) + law.end_damping * v;
-      if (push > 0) force -= push;
-    }
-  }
+  if (law.end_spring > 0) force += math::stop_force(x, v, law.min, law.max, law.end_spring, law.end_damping).force;
   return force;
 }
 

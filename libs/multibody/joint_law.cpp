@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "math/stop.h"
+
 namespace slew::multibody {
 
 JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
@@ -9,22 +11,11 @@ JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
   const double t = std::tanh(v / law.friction_speed);
   result.force = -law.coulomb * t - law.viscous * v;
   result.d_v = -law.coulomb * (1 - t * t) / law.friction_speed - law.viscous;
-  // depth and its rate are counted into the stop; only a positive sum pushes
-  if (x < law.limit_min) {
-    const double push = law.limit_stiffness * (law.limit_min - x) - law.limit_damping * v;
-    if (push > 0) {
-      result.force += push;
-      result.d_x -= law.limit_stiffness;
-      result.d_v -= law.limit_damping;
-    }
-  } else if (x > law.limit_max) {
-    const double push = law.limit_stiffness * (x - law.limit_max) + law.limit_damping * v;
-    if (push > 0) {
-      result.force -= push;
-      result.d_x -= law.limit_stiffness;
-      result.d_v -= law.limit_damping;
-    }
-  }
+  const math::StopForce limit =
+      math::stop_force(x, v, law.limit_min, law.limit_max, law.limit_stiffness, law.limit_damping);
+  result.force += limit.force;
+  result.d_x = limit.d_x;
+  result.d_v += limit.d_v;
   return result;
 }
 

@@ -37,6 +37,25 @@ TEST(LineForce, FrictionHasTheValuesOfTheCurve) {
   EXPECT_NEAR(law.friction(2e5, 5.0), 2e5 * 0.1 * 0.8 + 1000, 1e-9);  // last value held
 }
 
+TEST(LineForce, IsMadeOfTheFrictionAndTheStopThatAreShown) {
+  const LineForceLaw law(crane_lift());
+  for (const double F : {-1e5, 0.0, 3e5}) {
+    for (const double x : {0.69, 0.9, 1.06}) {
+      for (const double v : {-0.2, -3e-5, -0.0, 0.0, 4e-5, 0.3}) {
+        EXPECT_EQ(law.evaluate(F, x, v).force, F - law.friction(F, v) + law.stop_force(x, v)) << F << ' ' << v;
+      }
+    }
+  }
+}
+
+TEST(LineForce, HasNoFrictionAtRestWhateverTheCurve) {
+  LineForceDef def = crane_lift();
+  def.friction_curve = {{0.001, 1}, {1, 0.8}};
+  const LineForceLaw law(def);
+  EXPECT_EQ(law.friction(3e5, 0.0), 0);
+  EXPECT_EQ(law.evaluate(3e5, 0.9, 0.0).force, 3e5);
+}
+
 TEST(LineForce, StopPushesOnlyAndOnlyOutside) {
   const LineForceLaw law(crane_lift());
   EXPECT_EQ(law.stop_force(0.8, 1.0), 0.0);
@@ -54,9 +73,7 @@ TEST(LineForce, SlopesAgreeWithDifferences) {
     for (const double x : {0.69, 0.9, 1.06}) {
       for (const double v : {-0.2, -3e-5, 4e-5, 0.03, 0.3}) {
         const LineForce line = law.evaluate(F, x, v);
-        const auto force = [&](double dF, double dx, double dv) {
-          return law.evaluate(F + dF, x + dx, v + dv).force;
-        };
+        const auto force = [&](double dF, double dx, double dv) { return law.evaluate(F + dF, x + dx, v + dv).force; };
         EXPECT_NEAR(line.d_pressure, (force(1, 0, 0) - force(-1, 0, 0)) / 2, 1e-6);
         EXPECT_NEAR(line.d_position, (force(0, h, 0) - force(0, -h, 0)) / (2 * h), 1e-6 * 5e7);
         EXPECT_NEAR(line.d_speed, (force(0, 0, h) - force(0, 0, -h)) / (2 * h), 1e-6 * 3e8);

@@ -200,7 +200,11 @@ TEST(HydraulicsValidation, curves_must_increase_and_friction_must_brake) {
             "the curve 'Spline_CylinderFriction' would drive the piston");
   def = crane_circuit();
   def.curves[0].points[0] = {0, 0.1};
-  EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"), "an odd curve is not zero at zero");
+  EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"),
+            "an odd curve does not begin at zero and would jump there");
+  def.curves[0].points = {{0.001, 1}, {1, 0.8}};
+  EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"),
+            "an odd curve does not begin at zero and would jump there");
   def.curves[0].points[0] = {-1, 0.1};
   EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"),
             "an odd curve has points at negative arguments");
