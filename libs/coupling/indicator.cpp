@@ -9,6 +9,11 @@ namespace {
 // enough for two digits of the largest eigenvalue; the figure is a warning level, not a result
 constexpr int kPowerIterations = 12;
 
+// rounded up, so that buckets of few steps do not shorten the window
+std::int64_t steps_per_bucket(std::int64_t bucket_ns, SimDuration step) {
+  return (bucket_ns + step.ns - 1) / step.ns;
+}
+
 }  // namespace
 
 Lamp lamp_of(const PortDefects& defects) noexcept {
@@ -19,8 +24,8 @@ Lamp lamp_of(const PortDefects& defects) noexcept {
 Indicator::Indicator(std::size_t ports, SimDuration communication_step)
     : ports_(ports),
       H_(communication_step.seconds()),
-      steps_per_bucket_(std::max<std::int64_t>(
-          1, kIndicatorWindow.ns / (static_cast<std::int64_t>(kBuckets) * communication_step.ns))),
+      steps_per_bucket_(
+          steps_per_bucket(kIndicatorWindow.ns / static_cast<std::int64_t>(kBuckets), communication_step)),
       alarm_after_steps_(std::max<std::int64_t>(1, kNetAlarmAfter.ns / communication_step.ns)),
       window_(ports),
       steps_below_alarm_(ports, 0),
@@ -36,10 +41,12 @@ void Indicator::reset() noexcept {
 }
 
 void Indicator::start_bucket() noexcept {
-  if (++steps_in_bucket_ < steps_per_bucket_) return;
-  steps_in_bucket_ = 0;
-  current_ = (current_ + 1) % kBuckets;
-  for (auto& buckets : window_) buckets[current_] = Bucket{};
+  if (steps_in_bucket_ == steps_per_bucket_) {
+    steps_in_bucket_ = 0;
+    current_ = (current_ + 1) % kBuckets;
+    for (auto& buckets : window_) buckets[current_] = Bucket{};
+  }
+  ++steps_in_bucket_;
 }
 
 void Indicator::evaluate_window(std::size_t port) noexcept {
@@ -87,38 +94,42 @@ bool Indicator::creates_energy() const noexcept {
   return std::any_of(defects_.begin(), defects_.end(), [](const PortDefects& d) { return d.creates_energy; });
 }
 
-double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept {
-  const std::size_t m = K.size();
-  if (m == 0) return 0;
-  // power iteration on S = sqrt(K) W sqrt(K), which has the eigenvalues of W K
-  std::array<double, kMaxPorts> root{}, vector{}, image{};
-  // it starts from the stiffest port alone: a symmetric start could miss the mode in which two ports work against
-  // each other
-  std::size_t stiffest = 0;
-  for (std::size_t i = 0; i < m; ++i) {
-    root[i] = std::sqrt(std::max(0.0, K[i]));
-    if (K[i] * W[i * m + i] > K[stiffest] * W[stiffest * m + stiffest]) stiffest = i;
-  }
-  vector[stiffest] = 1;
+namespace {
+
+// Largest Rayleigh quotient of S = diag(r) W diag(r) on the way of a power iteration from the unit vector `start`.
+double largest_eigenvalue_from(std::size_t start, const PortMatrix& W, const std::array<double, kMaxPorts>& r,
+                               std::size_t m) noexcept {
+  std::array<double, kMaxPorts> vector{}, image{};
+  vector[start] = 1;
   double eigenvalue = 0;
   for (int iteration = 0; iteration < kPowerIterations; ++iteration) {
-    double largest = 0;
+    double largest = 0, numerator = 0, denominator = 0;
     for (std::size_t i = 0; i < m; ++i) {
       double sum = 0;
-      for (std::size_t j = 0; j < m; ++j) sum += W[i * m + j] * root[j] * vector[j];
-      image[i] = root[i] * sum;
+      for (std::size_t j = 0; j < m; ++j) sum += W[i * m + j] * r[j] * vector[j];
+      image[i] = r[i] * sum;
       largest = std::max(largest, std::fabs(image[i]));
-    }
-    if (!(largest > 0)) return 0;
-    double numerator = 0, denominator = 0;
-    for (std::size_t i = 0; i < m; ++i) {
       numerator += vector[i] * image[i];
       denominator += vector[i] * vector[i];
     }
+    if (!(largest > 0)) return eigenvalue;
     eigenvalue = numerator / denominator;
     for (std::size_t i = 0; i < m; ++i) vector[i] = image[i] / largest;
   }
-  return eigenvalue > 0 ? H * std::sqrt(eigenvalue) : 0.0;
+  return eigenvalue;
+}
+
+}  // namespace
+
+double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept {
+  // S = sqrt(K) W sqrt(K) has the eigenvalues of W K; from every port, since one start could lie in a part of the
+  // machine that does not touch the others
+  const std::size_t m = K.size();
+  std::array<double, kMaxPorts> root{};
+  for (std::size_t i = 0; i < m; ++i) root[i] = std::sqrt(std::max(0.0, K[i]));
+  double eigenvalue = 0;
+  for (std::size_t i = 0; i < m; ++i) eigenvalue = std::max(eigenvalue, largest_eigenvalue_from(i, W, root, m));
+  return H * std::sqrt(eigenvalue);
 }
 
 }  // namespace slew::coupling

@@ -61,7 +61,7 @@ class Indicator {
   struct Bucket {
     double residual = 0, net = 0, work = 0, force = 0, stiffness = 0;
   };
-  static constexpr std::size_t kBuckets = 20;
+  static constexpr std::size_t kBuckets = 20;  // of whole steps; the oldest is dropped as a whole
 
   void start_bucket() noexcept;
   void evaluate_window(std::size_t port) noexcept;

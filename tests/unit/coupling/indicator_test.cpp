@@ -56,7 +56,7 @@ TEST(Indicator, EnergyThatTheCouplingCreatesRaisesTheAlarmAfterItsTime) {
     indicator.update(pair.mechanism, pair.actuators);
     ++steps;
   }
-  EXPECT_NEAR(steps, 200, 20);
+  EXPECT_EQ(steps, 200);
   EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::red);
 }
 
@@ -66,6 +66,38 @@ TEST(Indicator, CouplingFrequencyUsesTheFullMobility) {
   const PortArray K{1.5e8, 1.5e8};
   // eigenvalues of W K: 5.9e-5 K and 0.1e-5 K
   EXPECT_NEAR(coupling_frequency(W, K, 1e-3), 1e-3 * std::sqrt(5.9e-5 * 1.5e8), 2e-3 * 0.094);
+}
+
+TEST(Indicator, CouplingFrequencySeesEveryPartOfTheMachine) {
+  // two boom ports and one that does not touch them, with the largest entry of its own
+  PortMatrix W;
+  for (const double w : {3e-5, -2.9e-5, 0.0, -2.9e-5, 3e-5, 0.0, 0.0, 0.0, 3.2e-5}) W.push_back(w);
+  const PortArray K{1.5e8, 1.5e8, 1.5e8};
+  EXPECT_NEAR(coupling_frequency(W, K, 1e-3), 1e-3 * std::sqrt(5.9e-5 * 1.5e8), 1e-6);
+  // and the other way round
+  W[8] = 7e-5;
+  EXPECT_NEAR(coupling_frequency(W, K, 1e-3), 1e-3 * std::sqrt(7e-5 * 1.5e8), 1e-6);
+}
+
+TEST(Indicator, ForgetsAnErrorAfterItsWindow) {
+  for (const double step : {1e-3, 5e-3, 20e-3}) {
+    const SimDuration H = milliseconds(static_cast<std::int64_t>(step * 1e3));
+    Indicator indicator(1, H);
+    Pair pair = one_port();
+    pair.mechanism.work[0] = 10;
+    pair.actuators.work[0] = 10 + 0.5;
+    indicator.update(pair.mechanism, pair.actuators);
+    pair.actuators.work[0] = 10;
+    int steps = 1;
+    while (indicator.port(0).eta > 0 && steps < 100000) {
+      indicator.update(pair.mechanism, pair.actuators);
+      ++steps;
+    }
+    // the step that forgets it begins the bucket after its window
+    const double window = (steps - 1) * step;
+    EXPECT_GE(window, 1.0 - 1e-9) << step;
+    EXPECT_LE(window, 1.2 + 1e-9) << step;
+  }
 }
 
 }  // namespace
