@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/reductions.h"
 #include "math/small_solve.h"
 
 namespace slew::coupling {
@@ -25,8 +26,8 @@ constexpr double kAbsoluteTolerance = 1e-15;
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
   SLEW_CHECK(capacity <= kMaxRows);
   for (std::vector<double>* values :
-       {&x_, &v_, &z_, &a_free_, &x_base_, &v_base_, &z_base_, &x_stage_, &v_stage_, &z_stage_, &f_, &slope_, &f_mean_,
-        &f_slope_, &f_end_, &work_, &impulse_, &residual_, &k_x_, &k_v_, &k_z_}) {
+       {&x_, &v_,     &z_,      &a_free_,  &x_base_, &v_base_,  &z_base_,   &x_stage_, &v_stage_, &z_stage_,
+        &f_, &slope_, &f_mean_, &f_slope_, &work_,   &impulse_, &residual_, &k_x_,     &k_v_,     &k_z_}) {
     values->assign(capacity, 0.0);
   }
   W_.assign(capacity * capacity, 0.0);
@@ -45,8 +46,7 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
     const RowPartner& p = partner_[i];
     const double shrink = 1 / (1 + weight * p.lambda);
     x_stage_[i] = x_base_[i] + weight * v_stage_[i];
-    z_stage_[i] =
-        (z_base_[i] + weight * (p.F_dot - p.K * (v_stage_[i] - p.v_ref) + p.lambda * p.F_n)) * shrink;
+    z_stage_[i] = (z_base_[i] + weight * (p.F_dot - p.K * (v_stage_[i] - p.v_ref) + p.lambda * p.F_n)) * shrink;
     const RowForce law = laws.evaluate(i, z_stage_[i] - p.D * (v_stage_[i] - p.v_ref), x_stage_[i], v_stage_[i]);
     f_[i] = law.force;
     slope_[i] = law.d_v + weight * law.d_x - law.d_z * (weight * p.K * shrink + p.D);
@@ -56,34 +56,34 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
 // v = v_base + weight (a_free + W f(v)) for the stage speeds
 bool PortDynamics::solve_stage(double weight, const RowLaws& laws, PortStep& report) noexcept {
   const std::size_t m = rows_;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0;; ++iteration) {
     evaluate_rows(weight, laws);
-    double largest = 0;
     double scale = 0;
     for (std::size_t i = 0; i < m; ++i) {
       double acceleration = a_free_[i];
       for (std::size_t j = 0; j < m; ++j) acceleration += W_[i * m + j] * f_[j];
       residual_[i] = v_base_[i] + weight * acceleration - v_stage_[i];
-      largest = std::max(largest, std::fabs(residual_[i]));
       scale = std::max({scale, std::fabs(v_stage_[i]), std::fabs(weight * a_free_[i])});
     }
+    const double largest = fixed_max_abs({residual_.data(), m});
     ++report.iterations;
-    if (largest <= kAbsoluteTolerance + kRelativeTolerance * scale) {
-      report.residual = std::max(report.residual, largest);
-      return true;
-    }
-    for (std::size_t i = 0; i < m; ++i) {
-      for (std::size_t j = 0; j < m; ++j) {
-        A_[i * m + j] = (i == j ? 1.0 : 0.0) - weight * W_[i * m + j] * slope_[j];
+    const bool has_converged = largest <= kAbsoluteTolerance + kRelativeTolerance * scale;
+    bool is_over = has_converged || iteration == kMaxIterations || std::isnan(largest);
+    if (!is_over) {
+      for (std::size_t i = 0; i < m; ++i) {
+        for (std::size_t j = 0; j < m; ++j) {
+          A_[i * m + j] = (i == j ? 1.0 : 0.0) - weight * W_[i * m + j] * slope_[j];
+        }
       }
+      is_over = !math::solve_in_place(A_.data(), residual_.data(), m, 1);
     }
-    if (!math::solve_in_place(A_.data(), residual_.data(), m, 1)) break;
+    if (is_over) {
+      if (!(largest <= report.residual)) report.residual = largest;
+      return has_converged;
+    }
     const double damping = iteration < kDampedAfter ? 1.0 : 0.5;
     for (std::size_t i = 0; i < m; ++i) v_stage_[i] += damping * residual_[i];
-    if (iteration + 1 == kMaxIterations) report.residual = std::max(report.residual, largest);
   }
-  evaluate_rows(weight, laws);
-  return false;
 }
 
 PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noexcept {
@@ -125,7 +125,6 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
     f_mean_[i] /= h;
     // least-squares slope of a line about the middle of the sub-step: integral of f (t - h/2) over h^3 / 12
     f_slope_[i] *= 12 / (h * h * h);
-    f_end_[i] = f_[i];
   }
   return report;
 }

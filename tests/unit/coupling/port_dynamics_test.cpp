@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/allocation_guard.h"
 #include "coupling/line_force.h"
@@ -106,25 +107,76 @@ TEST(PortDynamics, EndStopBringsAMovingMassToRest) {
   EXPECT_LT(deepest, 0.5 * std::sqrt(5000 / 5e7));  // less than without the damper
 }
 
+// a force that is linear in time, by a partner without stiffness: z' = F_dot
+TEST(PortDynamics, GivesMeanAndSlopeOfALinearForce) {
+  PortDynamics ports(1);
+  ports.W()[0] = 3e-5;
+  ports.partner()[0] = {.F_dot = -7e5};
+  const double h = 1e-3, gamma = 1 - std::sqrt(0.5);
+  for (const int micro_steps : {1, 4, 64}) {
+    ports.z()[0] = 4000;
+    ports.solve(h, micro_steps, PassThrough());
+    EXPECT_NEAR(ports.f_mean()[0], 4000 - 7e5 * h / 2, 1e-9 * 4000);
+    // second moment of the stages at gamma and 1, against 1/3
+    const double excess = 12 * ((1 - gamma) * gamma * gamma + gamma - 1.0 / 3) / (micro_steps * micro_steps);
+    EXPECT_NEAR(ports.f_slope()[0], -7e5 * (1 + excess), 1e-9 * 7e5) << micro_steps;
+  }
+}
+
 TEST(PortDynamics, MeanAndSlopeReproduceTheMotion) {
-  // v(h) - v(0) = h (a_free + W f_mean); first moment of f from its slope
   const PassThrough laws;
   PortDynamics ports(2);
   const double W[4] = {3e-5, -2.5e-5, -2.5e-5, 3e-5};
   std::copy(W, W + 4, ports.W().begin());
-  ports.x()[0] = 1e-3;
   ports.a_free()[0] = 1;
   ports.a_free()[1] = -2;
   ports.partner()[0] = {1e5, 1.6e8, 10, 0, 0, 0};
   ports.partner()[1] = {0, 1.2e8, 0, 2e4, 0, 0.01};
-  const double v0[2] = {0.02, -0.01};
-  std::copy(v0, v0 + 2, ports.v().begin());
-  const double h = 1e-3;
-  ports.solve(h, 4, laws);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double expected = v0[i] + h * (ports.a_free()[i] + W[2 * i] * ports.f_mean()[0] + W[2 * i + 1] * ports.f_mean()[1]);
-    EXPECT_NEAR(ports.v()[i], expected, 1e-14);
-  }
+  const double x0[2] = {1e-3, 0}, v0[2] = {0.02, -0.01};
+  // of the position that mean and slope give, from that of the solver's own fine steps
+  const auto position_error = [&](double h) {
+    std::copy(x0, x0 + 2, ports.x().begin());
+    std::copy(v0, v0 + 2, ports.v().begin());
+    ports.z()[0] = ports.z()[1] = 0;
+    ports.solve(h, 64, laws);
+    double error = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto row = [&](std::span<const double> f) { return W[2 * i] * f[0] + W[2 * i + 1] * f[1]; };
+      EXPECT_NEAR(ports.v()[i], v0[i] + h * (ports.a_free()[i] + row(ports.f_mean())), 1e-14);
+      const double x = x0[i] + h * v0[i] + h * h / 2 * (ports.a_free()[i] + row(ports.f_mean())) -
+                       h * h * h / 12 * row(ports.f_slope());
+      error = std::max(error, std::fabs(x - ports.x()[i]));
+    }
+    return error;
+  };
+  // the slope's share of the position at 1 ms is some 1e-8 m
+  EXPECT_LT(position_error(1e-3), 2e-9);
+  EXPECT_GT(std::log2(position_error(2e-3) / position_error(1e-3)), 2.5);
+}
+
+TEST(PortDynamics, SaysThatANumberWasLost) {
+  PortDynamics ports(1);
+  ports.W()[0] = 1;
+  ports.a_free()[0] = std::numeric_limits<double>::quiet_NaN();
+  const PortStep step = ports.solve(1e-3, 1, PassThrough());
+  EXPECT_FALSE(step.has_converged);
+  EXPECT_TRUE(std::isnan(step.residual));
+}
+
+TEST(PortDynamics, StatesTheResidualThatItStoppedAt) {
+  // a force that jumps with the speed: no speed solves v = h (1 - 5 sgn v)
+  class Jump final : public RowLaws {
+   public:
+    RowForce evaluate(std::size_t, double, double, double v) const noexcept override {
+      return {v > 0 ? -5.0 : 5.0, 0, 0, 0};
+    }
+  };
+  PortDynamics ports(1);
+  ports.W()[0] = 1;
+  ports.a_free()[0] = 1;
+  const PortStep step = ports.solve(1e-3, 1, Jump());
+  EXPECT_FALSE(step.has_converged);
+  EXPECT_GT(step.residual, 1e-4);
 }
 
 TEST(PortDynamics, DoesNotAllocate) {
