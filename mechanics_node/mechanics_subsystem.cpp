@@ -62,6 +62,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       force_mean_(model_.rows.size()),
       force_slope_(model_.rows.size()),
       row_force_(model_.rows.size()),
+      joint_mean_(model_.rows.size()),
       joint_slope_(model_.rows.size()),
       ramps_(multibody::parameter_count(model_)),
       heavier_(model_),
@@ -255,7 +256,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     const coupling::PortStep solved = advance(h, partners.actuators, i == 0);
     if (!solved.has_converged) report.raise(StepFlag::not_converged);
     report.iterations += static_cast<std::uint32_t>(solved.iterations);
-    report.residual = std::max(report.residual, solved.residual);
+    if (!(solved.residual <= report.residual)) report.residual = solved.residual;  // NaN stays
     finish_substep(partners.actuators, out);
   }
   report.substeps = static_cast<std::uint32_t>(substeps_);
@@ -342,8 +343,9 @@ void MechanicsSubsystem::publish(coupling::MechanismSample& sample) noexcept {
   published_ = sample;
 }
 
-// Joint laws behind the ports, implicit over H: with f_r = f_0 - S H a_r, S = -(dF/dv + H dF/dx),
-//   (I + H S W_rr) f_r = f_0 - H S (a_r + W_ra F_a)
+// Joint laws behind the ports, implicit over H: with f_r = f_m - S H a_r, S = -(dF/dv + H dF/dx), and f_m the mean force
+// on the way with the present speed, f_0 + H/2 dF/dx v,
+//   (I + H S W_rr) f_r = f_m - H S (a_r + W_ra F_a)
 // so that a_free += W_ar f_r(F_a = 0) and W -= W_ar (I + H S W_rr)^-1 H S W_ra.
 void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noexcept {
   const std::size_t m = ports_.size();
@@ -357,6 +359,7 @@ void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noex
     const multibody::JointForce law =
         multibody::evaluate(model_.rows[row].law, workspace_.row_x[row], workspace_.row_v[row]);
     row_force_[row] = law.force;
+    joint_mean_[row] = law.force + 0.5 * H * law.d_x * workspace_.row_v[row];
     joint_slope_[row] = std::max(0.0, -(law.d_v + H * law.d_x));
     active_.push_back(row);
   }
@@ -370,7 +373,7 @@ void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noex
     for (std::size_t b = 0; b < r; ++b) {
       matrix_[a * r + b] = (a == b ? 1.0 : 0.0) + HS * W[active_[a] * rows + active_[b]];
     }
-    right_[a * columns] = row_force_[active_[a]] - HS * workspace_.row_a_free[active_[a]];
+    right_[a * columns] = joint_mean_[active_[a]] - HS * workspace_.row_a_free[active_[a]];
     for (std::size_t i = 0; i < m; ++i) {
       right_[a * columns + 1 + i] = -HS * W[active_[a] * rows + i] * ports_[i].ratio;
     }
