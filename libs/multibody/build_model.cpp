@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/check.h"
+#include "multibody/body_inertia.h"
 #include "multibody/build_rows.h"
 #include "multibody/model.h"
 #include "multibody/topology.h"
@@ -19,17 +20,6 @@ std::size_t at(int index) {
 
 // half a turn about x: reverses a joint's axis, so that q keeps its sign when the tree walks the joint backwards
 const Mat3 kReverse = Mat3::diagonal(1, -1, -1);
-
-Mat3 inertia_about_center(const BodyDef& def) {
-  const auto [xx, yy, zz] = def.inertia;
-  const auto [xy, xz, yz] = def.products;
-  Mat3 I{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)};
-  if (def.inertia_about == InertiaPoint::body_origin) {
-    const Mat3 c = math::skew(Vec3(def.center_of_mass));
-    I += (c * c) * def.mass;
-  }
-  return I;
-}
 
 Mat3 rotated(const Mat3& R, const Mat3& I) {
   return R * I * math::transpose(R);
@@ -154,13 +144,12 @@ class Builder {
     Pose child = {frame2.R, frame1.p};
     if (def.type == JointType::revolute) {
       link.joint = LinkJoint::revolute;
-      const double c = math::dot(frame1.R.c[0], frame2.R.c[0]), s = math::dot(frame1.R.c[1], frame2.R.c[0]);
-      q.push_back(std::atan2(s, c));
+      q.push_back(start_coordinate(def.type, frames));
       u.push_back(def.initial_velocity);
       child.R = frame1.R * math::rotation_z(q.back());
     } else if (def.type == JointType::prismatic) {
       link.joint = LinkJoint::prismatic;
-      q.push_back(math::dot(frame1.R.c[2], frame2.p - frame1.p));
+      q.push_back(start_coordinate(def.type, frames));
       u.push_back(def.initial_velocity);
       child = {frame1.R, frame1.p + frame1.R.c[2] * q.back()};
     } else {

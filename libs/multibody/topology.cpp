@@ -1,5 +1,6 @@
 #include "multibody/topology.h"
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -123,6 +124,12 @@ std::vector<Pose> start_poses(const MechanicsDef& mechanics, Problems& problems)
 JointFrames joint_frames(const JointDef& joint, const Pose& body1, const Pose& body2) noexcept {
   return {{body1.R * math::rotation_xyz(joint.orientation1), body1.p + body1.R * math::Vec3(joint.point1)},
           {body2.R * math::rotation_xyz(joint.orientation2), body2.p + body2.R * math::Vec3(joint.point2)}};
+}
+
+double start_coordinate(JointType type, const JointFrames& frames) noexcept {
+  const auto& [frame1, frame2] = frames;
+  if (type == JointType::prismatic) return math::dot(frame1.R.c[2], frame2.p - frame1.p);
+  return std::atan2(math::dot(frame1.R.c[1], frame2.R.c[0]), math::dot(frame1.R.c[0], frame2.R.c[0]));
 }
 
 std::vector<int> merged_into(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree) {

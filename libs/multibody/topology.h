@@ -45,7 +45,10 @@ struct JointFrames {
 };
 [[nodiscard]] JointFrames joint_frames(const JointDef& joint, const Pose& body1, const Pose& body2) noexcept;
 
-// For every body, the number of the lowest body that fixed joints merge it with (itself when there is none).
+// Start coordinate of a revolute joint, in (-pi, pi] [rad], or of a prismatic one [m].
+[[nodiscard]] double start_coordinate(JointType type, const JointFrames& frames) noexcept;
+
+// For every body, the number of the body nearest to Ground that fixed joints merge it with (itself when there is none).
 [[nodiscard]] std::vector<int> merged_into(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree);
 
 }  // namespace slew::multibody

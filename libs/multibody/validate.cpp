@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "multibody/body_inertia.h"
 #include "multibody/field_tables.h"
 #include "multibody/singularity.h"
 #include "multibody/topology.h"
@@ -25,6 +26,11 @@ constexpr double kInertiaTolerance = 1e-6;
 constexpr double kRightAngleTolerance = 1e-3;
 // transverse moments of a cylinder as CAD prints them
 constexpr double kTransverseTolerance = 1e-2;
+// a start on a limit, by numbers with six digits and more
+constexpr double kLimitTolerance = 1e-6;  // m, rad
+
+// a body's mass may lie outside of its points, but hardly by more than this
+constexpr double kLargestGyration = 3;
 
 class Validator {
  public:
@@ -161,16 +167,9 @@ class Validator {
 
   void check_inertia(const BodyDef& body) {
     const auto [xx, yy, zz] = body.inertia;
-    const auto [xy, xz, yz] = body.products;
-    Mat3 I{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)};
-    const bool is_about_origin = body.inertia_about == InertiaPoint::body_origin;
-    if (is_about_origin) {
-      const Mat3 c = math::skew(Vec3(body.center_of_mass));
-      I += (c * c) * body.mass;
-    }
-    const auto [a, b, c] = math::symmetric_eigenvalues(I);
+    const auto [a, b, c] = math::symmetric_eigenvalues(inertia_about_center(body));
     const double tolerance = kInertiaTolerance * std::max({xx, yy, zz, std::abs(c)});
-    const std::string point = is_about_origin ? " (taken to the centre of mass)" : "";
+    const std::string point = body.inertia_about == InertiaPoint::body_origin ? " (taken to the centre of mass)" : "";
     if (a < -tolerance) {
       add(body.name + ".inertia",
           fmt::format("the tensor{} is not positive: smallest principal moment {:.6g} kg m2", point, a),
@@ -273,6 +272,7 @@ class Validator {
                       joint.type == JointType::prismatic ? " across the axis" : ""),
           fmt::format("points that agree within {} m", kFrameTolerance));
     }
+    check_start(joint, {frame1, frame2});
     if (joint.type == JointType::spherical) return;
     const double tilt = joint.type == JointType::revolute
                             ? std::atan2(math::norm(math::cross(z, frame2.R.c[2])), math::dot(z, frame2.R.c[2]))
@@ -283,6 +283,20 @@ class Validator {
                       joint.type == JointType::revolute ? "axes are" : "frames are turned", tilt),
           fmt::format("joint frames that agree within {} rad", kFrameTolerance));
     }
+  }
+
+  // a limit that is passed at the start would throw the machine
+  void check_start(const JointDef& joint, const JointFrames& frames) {
+    if (joint.type != JointType::revolute && joint.type != JointType::prismatic) return;
+    if (joint.limit_min >= joint.limit_max) return;
+    const double start = start_coordinate(joint.type, frames);
+    const bool is_below = start < joint.limit_min - kLimitTolerance;
+    if (!is_below && start <= joint.limit_max + kLimitTolerance) return;
+    const char* unit = joint.type == JointType::revolute ? "rad" : "m";
+    add(joint.name + (is_below ? ".limit_min" : ".limit_max"),
+        fmt::format("the joint starts at {:.4g} {}, outside of its limits", start, unit),
+        fmt::format("limits that hold {0:.4g} {2}, or poses that start between {1:.4g} and {3:.4g} {2}", start,
+                    joint.limit_min, unit, joint.limit_max));
   }
 
   void check_start_length(const TranslationalForceDef& force, const std::vector<Pose>& poses) {
@@ -325,6 +339,28 @@ void validate(const MechanicsDef& mechanics, Problems& problems) {
   Problems own;
   Validator(mechanics, own).run();
   problems.insert(problems.end(), own.begin(), own.end());
+}
+
+void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
+  for (const BodyDef& body : mechanics.bodies) {
+    double extent = 0;
+    const auto see = [&](const std::string& owner, const Triple& point) {
+      if (owner == body.name) extent = std::max(extent, math::norm(Vec3(point) - Vec3(body.center_of_mass)));
+    };
+    for (const JointDef& joint : mechanics.joints) see(joint.body1, joint.point1), see(joint.body2, joint.point2);
+    for (const TranslationalForceDef& force : mechanics.translational_forces) {
+      see(force.body1, force.point1), see(force.body2, force.point2);
+    }
+    const double largest = math::symmetric_eigenvalues(inertia_about_center(body))[2];
+    const double gyration = std::sqrt(std::max(0.0, largest) / body.mass);
+    // a body whose points all lie in its centre says nothing about its size
+    if (extent == 0 || gyration <= kLargestGyration * extent) continue;
+    warnings.push_back({body.name + ".inertia",
+                        fmt::format("the radius of gyration is {:.3g} m, all points on the body are within {:.3g} m of "
+                                    "its centre of mass",
+                                    gyration, extent),
+                        "the inertia about inertia_about, in kg m2", ""});
+  }
 }
 
 }  // namespace slew::multibody

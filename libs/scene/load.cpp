@@ -51,6 +51,7 @@ class SceneReader {
       check_problems([&](Problems& errors, Problems&) {
         make_ports(scene_, errors);
         if (errors.empty()) multibody::validate_rows(scene_.mechanics, row_names(scene_), errors);
+        if (errors.empty() && !scene_.ports.empty()) check_start(scene_, errors);
       });
     }
     read_inputs();
@@ -198,7 +199,10 @@ class SceneReader {
     for (const std::string_view section : kMechanicsSections) read_section(section);
     resolve_references();
     if (report_.size() > problems || !has_sound_names_) return false;
-    check_problems([&](Problems& errors, Problems&) { multibody::validate(scene_.mechanics, errors); });
+    check_problems([&](Problems& errors, Problems& warnings) {
+      multibody::validate(scene_.mechanics, errors);
+      if (errors.empty()) multibody::find_unlikely_inertia(scene_.mechanics, warnings);
+    });
     return report_.size() == problems;
   }
 

@@ -10,10 +10,13 @@
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/curve.h"
-#include "multibody/model.h"
+#include "multibody/dynamics.h"
 
 namespace slew::scene {
 namespace {
+
+// a start at the end of the stroke, by numbers with six digits and more
+constexpr double kStrokeTolerance = 1e-6;  // m
 
 template <typename Def>
 bool has_element(const std::vector<Def>& defs, std::string_view name) {
@@ -51,6 +54,18 @@ void check_force(const PortDef& port, std::string_view wanted, bool fits, Proble
                       fmt::format("a force of type {}", wanted), ""});
 }
 
+// Piston positions at the start, from the poses of the scene.
+std::vector<double> start_strokes(const Scene& scene) {
+  const multibody::Model model = multibody::build_model(scene.mechanics, row_names(scene));
+  multibody::Workspace workspace(model);
+  multibody::evaluate(model, multibody::start_state(model), workspace);
+  std::vector<double> strokes;
+  for (std::size_t i = 0; i < scene.ports.size(); ++i) {
+    strokes.push_back(scene.ports[i].offset + scene.ports[i].ratio * workspace.row_x[i]);
+  }
+  return strokes;
+}
+
 }  // namespace
 
 void make_ports(Scene& scene, Problems& problems) {
@@ -85,6 +100,19 @@ std::vector<std::string> row_names(const Scene& scene) {
   for (const PortDef& port : scene.ports) names.push_back(port.force);
   for (std::string& joint : multibody::joint_rows(scene.mechanics)) names.push_back(std::move(joint));
   return names;
+}
+
+void check_start(const Scene& scene, Problems& problems) {
+  const std::vector<double> strokes = start_strokes(scene);
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    const PortDef& port = scene.ports[i];
+    const double min = port.line_force.stroke_min, max = port.line_force.stroke_max;
+    if (strokes[i] >= min - kStrokeTolerance && strokes[i] <= max + kStrokeTolerance) continue;
+    problems.push_back(
+        {port.name + (port.ratio == 1 ? ".rod_length" : ".stroke_offset"),
+         fmt::format("the stroke at the start is {:.4g} m, outside of minimum_stroke to maximum_stroke", strokes[i]),
+         fmt::format("a length and poses that give {:.4g} to {:.4g} m", min, max), ""});
+  }
 }
 
 }  // namespace slew::scene

@@ -122,14 +122,22 @@ TEST(Validate, SeesTheWrongSignOfPrintedProducts) {
   EXPECT_NE(problems[0].what.find("(taken to the centre of mass) is not positive"), std::string::npos);
 }
 
-TEST(Validate, RefusesTheInertiaPrintedForTheJibBoom) {
+TEST(Validate, WarnsOfTheInertiaPrintedForTheJibBoom) {
+  Problems warnings;
+  find_unlikely_inertia(testing::crane_def(), warnings);
+  find_unlikely_inertia(sound(), warnings);
+  EXPECT_EQ(testing::text_of(warnings), "");
+  // a body of that tensor could exist: 128 kg with a radius of gyration of 13 m, on a boom of 6.5 m
   MechanicsDef def = testing::crane_def();
   def.bodies[3].inertia = {53.61867, 21713.77286, 21682.20193};
   def.bodies[3].products = {167.73081, 784.03676, -7.506971};
   Problems problems;
   validate(def, problems);
-  // a body of that tensor could exist, so only the geometry could tell; the sum of moments decides
-  for (const Problem& problem : problems) EXPECT_EQ(problem.path, "Truck_JibBoom.inertia");
+  EXPECT_EQ(testing::text_of(problems), "");
+  find_unlikely_inertia(def, warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].path, "Truck_JibBoom.inertia");
+  EXPECT_NE(warnings[0].what.find("the radius of gyration is 13 m"), std::string::npos) << warnings[0].what;
 }
 
 TEST(Validate, NamesPartsThatNothingKeepsFromSpinning) {
@@ -169,6 +177,23 @@ TEST(Validate, NamesSwappedLimits) {
                  "Damper.min_angle", "not below the largest");
   // all zero, as the thesis prints for forces that a cylinder overrides: no end dampers
   EXPECT_EQ(testing::text_of(problems_of([](auto& d) { d.translational_forces[0].max_length = 0; })), "");
+}
+
+TEST(Validate, WantsJointsToStartInsideTheirLimits) {
+  const auto limits = [](double min, double max) {
+    return [=](MechanicsDef& d) {
+      d.joints[0].limit_min = min, d.joints[0].limit_max = max, d.joints[0].limit_stiffness = 1e4;
+    };
+  };
+  EXPECT_EQ(testing::text_of(problems_of(limits(-1, 1))), "");
+  EXPECT_EQ(testing::text_of(problems_of(limits(0, 1))), "");
+  expect_problem(limits(0.1, 1), "Hinge.limit_min", "the joint starts at 0 rad, outside of its limits");
+  expect_problem(limits(-1, -0.1), "Hinge.limit_max", "the joint starts at 0 rad, outside of its limits");
+  const auto slider = [&](MechanicsDef& d) {
+    limits(0.1, 1)(d);
+    d.joints[0].type = JointType::prismatic;
+  };
+  expect_problem(slider, "Hinge.limit_min", "the joint starts at 0 m, outside of its limits");
 }
 
 TEST(Validate, WantsDirectionsAtRightAngles) {
