@@ -308,8 +308,10 @@ class Builder {
                                .link = line.link1,
                                .owner = kNoBody});
     };
-    add(line.p1 + e * coupled.c1, coupled.m1, coupled.transverse);
-    add(line.p2 + e * coupled.c2, coupled.m2, 0);
+    // with the end that has mass, since inertia scales with it
+    const bool has_cylinder = coupled.m1 > 0;
+    add(line.p1 + e * coupled.c1, coupled.m1, has_cylinder ? coupled.transverse : 0);
+    add(line.p2 + e * coupled.c2, coupled.m2, has_cylinder ? 0 : coupled.transverse);
   }
 
   const MechanicsDef& def_;

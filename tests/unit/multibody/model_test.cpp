@@ -237,6 +237,31 @@ TEST(JointLaw, LimitsNeverPullAndFrictionNeverDrives) {
   EXPECT_NEAR(evaluate(friction, 0, 1).force, -7, 1e-12);
 }
 
+TEST(ForceDummies, OnBodiesThatAreOneKeepTheirInertia) {
+  // a cylinder or a piston alone, on a line along x between an arm and a load that is welded to it
+  for (const std::int64_t index : {1, 2}) {
+    MechanicsDef def;
+    def.bodies = {{.name = "Arm", .mass = 2, .inertia = {0.1, 0.1, 0.1}},
+                  {.name = "Load", .relative_to = "Arm", .position = {1, 0, 0}, .mass = 5, .inertia = {1, 1, 1}}};
+    def.joints = {{.name = "Hinge", .body2 = "Arm"},
+                  {.name = "Weld", .type = JointType::fixed, .body1 = "Arm", .point1 = {1, 0, 0}, .body2 = "Load"}};
+    def.translational_forces = {{.name = "Strut", .body1 = "Arm", .point1 = {0.2, 0, 0}, .body2 = "Load"}};
+    def.force_dummies = {{.name = "Part",
+                          .relative_to = "Strut",
+                          .index = index,
+                          .mass = 3,
+                          .center_of_mass = {index == 1 ? -0.1 : 0.1, 0, 0},
+                          .inertia = {0.01, 0.7, 0.7}}};
+    Mechanism arm(def);
+    arm.state.u[0] = 1;
+    arm.see();
+    // element axis: from the load to the arm, -x; centres at 0.3 and 0.9 m
+    const double r = index == 1 ? 0.3 : 0.9;
+    const double inertia = 0.1 + 1 + 5 * 1.0 + 0.7 + 3 * r * r;
+    EXPECT_NEAR(energy(arm.model, arm.ws).kinetic, 0.5 * inertia, 1e-12) << index;
+  }
+}
+
 TEST(RotationalForce, ShowsTheTorqueThatItsDamperExerts) {
   // on a ball joint, turned away from the axis: the gradient of the angle is another direction than the axis
   MechanicsDef def;
