@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/reductions.h"
-#include "math/small_solve.h"
+#include "coupling/static_forces.h"
 
 namespace slew::hydraulic_node {
 namespace {
@@ -75,7 +74,9 @@ void HydraulicsSubsystem::reset() {
 
 // ---- start ----------------------------------------------------------------------------------------------------
 
-bool HydraulicsSubsystem::first_sample(coupling::OwnSample&) noexcept { return false; }
+bool HydraulicsSubsystem::first_sample(coupling::OwnSample&) noexcept {
+  return false;
+}
 
 Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) {
   std::array<double, kMaxPorts> x{}, v{}, F{};
@@ -89,13 +90,8 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
     const coupling::MechanismSample& mechanism = *partners.mechanism;
     std::copy(mechanism.x.begin(), mechanism.x.end(), x.begin());
     std::copy(mechanism.v.begin(), mechanism.v.end(), v.begin());
-    // static line forces: W F = -a_free
-    coupling::PortMatrix W = mechanism.W;
-    for (std::size_t i = 0; i < m_; ++i) F[i] = -mechanism.a_free[i];
-    if (!math::solve_in_place(W.data(), F.data(), m_, 1)) {
-      return Status::error(ExitCode::failed,
-                           "no static force holds the actuators at the start: two of them move the same coordinate, or "
-                           "one moves nothing; look at their force elements");
+    if (!coupling::static_forces(mechanism.W.span(), mechanism.a_free.span(), {F.data(), m_})) {
+      return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
     }
   }
   for (std::size_t i = 0; i < m_; ++i) circuit_->set_line_force(static_cast<int>(i), F[i]);
@@ -126,8 +122,8 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   }
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(*partners.mechanism);
   const bool is_hold = level_ == coupling::Level::hold;
-  StepReport report = integrator_->step(
-      H_.seconds(), is_hold ? static_cast<const hydraulics::PistonMotion&>(held_) : reduced_);
+  StepReport report =
+      integrator_->step(H_.seconds(), is_hold ? static_cast<const hydraulics::PistonMotion&>(held_) : reduced_);
   if (indicator_.creates_energy()) report.raise(StepFlag::coupling_creates_energy);
   if (report.has_failed()) {
     failure_ = report;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/static_forces.h"
 #include "math/small_solve.h"
 #include "multibody/joint_law.h"
 #include "multibody/observe.h"
@@ -14,6 +15,9 @@ namespace {
 
 // micro-step of the port problem: resolves an oil spring of 300 rad/s to 1e-3 of its phase
 constexpr double kMicroStep = 0.25e-3;
+
+// what the rules of a scene allow is what the port problem holds
+static_assert(multibody::kMaxRows <= static_cast<int>(coupling::kMaxRows));
 
 // a limit takes part in the port problem when it could be reached within so many sub-steps
 constexpr double kLimitLookAhead = 4;
@@ -304,18 +308,7 @@ std::int32_t MechanicsSubsystem::first_not_finite() const noexcept {
 }
 
 std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noexcept {
-  // the joint whose coordinate or speed it is
-  const auto q_count = static_cast<std::int32_t>(state_.q.size());
-  const bool is_coordinate = index < q_count;
-  const std::int32_t at = is_coordinate ? index : index - q_count;
-  int link = 0;
-  for (std::size_t i = 1; i < model_.links.size(); ++i) {
-    if ((is_coordinate ? model_.links[i].q : model_.links[i].u) <= at) link = static_cast<int>(i);
-  }
-  for (const multibody::Joint& joint : model_.joints) {
-    if (joint.link == link && link > 0) return joint.name;
-  }
-  return "a joint";
+  return multibody::joint_of(model_, index);
 }
 
 // ---- publishing -----------------------------------------------------------------------------------------------
@@ -343,8 +336,8 @@ void MechanicsSubsystem::publish(coupling::MechanismSample& sample) noexcept {
   published_ = sample;
 }
 
-// Joint laws behind the ports, implicit over H: with f_r = f_m - S H a_r, S = -(dF/dv + H dF/dx), and f_m the mean force
-// on the way with the present speed, f_0 + H/2 dF/dx v,
+// Joint laws behind the ports, implicit over H: with f_r = f_m - S H a_r, S = -(dF/dv + H dF/dx), and f_m the mean
+// force on the way with the present speed, f_0 + H/2 dF/dx v,
 //   (I + H S W_rr) f_r = f_m - H S (a_r + W_ra F_a)
 // so that a_free += W_ar f_r(F_a = 0) and W -= W_ar (I + H S W_rr)^-1 H S W_ra.
 void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noexcept {
@@ -413,11 +406,10 @@ void MechanicsSubsystem::update_line_forces(coupling::MechanismSample& sample) n
 
 // line forces that would hold the ports where they are: W F = -a_free
 void MechanicsSubsystem::find_static_forces(const coupling::MechanismSample& sample) noexcept {
-  const std::size_t m = ports_.size();
-  std::copy(sample.W.begin(), sample.W.end(), matrix_.begin());
-  for (std::size_t i = 0; i < m; ++i) right_[i] = -sample.a_free[i];
-  const bool is_regular = math::solve_in_place(matrix_.data(), right_.data(), m, 1);
-  for (std::size_t i = 0; i < m; ++i) ports_[i].static_force = is_regular ? right_[i] : 0.0;
+  coupling::PortArray F;
+  F.resize(ports_.size());
+  const bool is_regular = coupling::static_forces(sample.W.span(), sample.a_free.span(), F.span());
+  for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].static_force = is_regular ? F[i] : 0.0;
 }
 
 // ---- parameters, hash, variables ------------------------------------------------------------------------------
@@ -458,7 +450,8 @@ double MechanicsSubsystem::payload_mass() const noexcept {
   return model_.lumped[static_cast<std::size_t>(lumped)].mass;
 }
 
-// Change of the static line forces with the payload's mass, by 1 kg: exact, since gravity is linear in the mass.
+// Change of the static line forces with the payload's mass, by 1 kg: exact, since gravity is linear in the
+// mass.
 void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noexcept {
   const std::size_t m = ports_.size();
   const std::size_t rows = model_.rows.size();
@@ -470,14 +463,16 @@ void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noe
     multibody::set_body_mass(heavier_, payload_, payload);
     multibody::evaluate(heavier_, state_, heavier_workspace_);
     coupling::PortMatrix W;
+    coupling::PortArray a_free;
     W.resize(m * m);
+    a_free.resize(m);
     for (std::size_t i = 0; i < m; ++i) {
-      F[i] = -ports_[i].ratio * heavier_workspace_.row_a_free[i];
+      a_free[i] = ports_[i].ratio * heavier_workspace_.row_a_free[i];
       for (std::size_t j = 0; j < m; ++j) {
         W[i * m + j] = ports_[i].ratio * heavier_workspace_.row_W[i * rows + j] * ports_[j].ratio;
       }
     }
-    return math::solve_in_place(W.data(), F.data(), m, 1);
+    return coupling::static_forces(W.span(), a_free.span(), F);
   };
   coupling::PortArray now, more;
   now.resize(m);

@@ -94,7 +94,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::vector<double> row_force_;                 // by row, at the published instant, on the row's own coordinate
   std::vector<double> joint_mean_;                // by joint row: f_0 + H/2 dF/dx v
   std::vector<double> joint_slope_;               // by joint row: -(dF/dv + H dF/dx)
-  std::vector<double> matrix_, right_;            // scratch of the condensation and the static forces
+  std::vector<double> matrix_, right_;            // scratch of the condensation
   coupling::ParameterRamps ramps_;
   std::vector<ElementVariable> variables_;
   std::size_t model_variables_ = 0;

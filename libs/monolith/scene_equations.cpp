@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "math/small_solve.h"
+#include "coupling/static_forces.h"
 #include "multibody/joint_law.h"
 #include "multibody/observe.h"
 #include "multibody/parameters.h"
@@ -86,16 +86,8 @@ std::string SceneEquations::state_name(std::size_t index) const {
   if (index >= work_) return "the work of " + ports_[index - work_].name;
   if (index >= component_) return "state " + std::to_string(index - component_) + " of the hydraulic components";
   if (index >= p_) return "the pressure of " + circuit_->volume_name(static_cast<int>(index - p_));
-  const bool is_coordinate = index < u_;
-  const int at = static_cast<int>(is_coordinate ? index : index - u_);
-  int link = 0;
-  for (std::size_t i = 1; i < model_.links.size(); ++i) {
-    if ((is_coordinate ? model_.links[i].q : model_.links[i].u) <= at) link = static_cast<int>(i);
-  }
-  for (const multibody::Joint& joint : model_.joints) {
-    if (joint.link == link && link > 0) return (is_coordinate ? "the position of " : "the speed of ") + joint.name;
-  }
-  return "a joint";
+  return (index < u_ ? "the position of " : "the speed of ") +
+         std::string(multibody::joint_of(model_, static_cast<int>(index)));
 }
 
 // ---- start and changes ----------------------------------------------------------------------------------------
@@ -105,19 +97,17 @@ Status SceneEquations::find_static_forces(std::span<double> F) {
   const std::size_t m = ports_.size(), rows = model_.rows.size();
   multibody::evaluate(model_, state_, workspace_);
   const std::span<const double> W = multibody::row_mobility(workspace_);
-  std::vector<double> matrix(m * m);
+  std::vector<double> matrix(m * m), a_free(m);
   for (std::size_t i = 0; i < m; ++i) {
     double a = workspace_.row_a_free[i];
     for (std::size_t r = m; r < rows; ++r) {
       a += W[i * rows + r] * multibody::evaluate(model_.rows[r].law, workspace_.row_x[r], workspace_.row_v[r]).force;
     }
-    F[i] = -ports_[i].ratio * a;
+    a_free[i] = ports_[i].ratio * a;
     for (std::size_t j = 0; j < m; ++j) matrix[i * m + j] = ports_[i].ratio * W[i * rows + j] * ports_[j].ratio;
   }
-  if (math::solve_in_place(matrix.data(), F.data(), m, 1)) return Status::ok();
-  return Status::error(ExitCode::failed,
-                       "no static force holds the actuators at the start: two of them move the same coordinate, or "
-                       "one moves nothing; look at their force elements");
+  if (coupling::static_forces(matrix, a_free, F)) return Status::ok();
+  return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
 }
 
 Status SceneEquations::start(std::span<double> y) {

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/element_variable.h"
@@ -56,6 +57,9 @@ void joint_reactions(const Model& model, const State& state, Workspace& ws, std:
 // `force` of their element or joint together with its own law; empty: zero.
 void read_variables(const Model& model, const State& state, const Workspace& ws, std::span<const double> row_forces,
                     std::span<double> values) noexcept;
+
+// Name of the joint that a coordinate (index < coordinates) or a speed (counted on from there) belongs to.
+[[nodiscard]] std::string_view joint_of(const Model& model, int state_index) noexcept;
 
 // For `slewring describe`.
 struct LinkDescription {

@@ -75,6 +75,20 @@ BodyPose body_pose(const Model& model, const Workspace& ws, int body) noexcept {
           .angular_velocity = m.w.array()};
 }
 
+std::string_view joint_of(const Model& model, int state_index) noexcept {
+  const int coordinates = model.coordinate_count();
+  const bool is_coordinate = state_index < coordinates;
+  int moved = 0;
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const int first = is_coordinate ? model.links[i].q : model.links[i].u + coordinates;
+    if (first <= state_index) moved = static_cast<int>(i);
+  }
+  for (const Joint& joint : model.joints) {
+    if (joint.link == moved && moved > 0) return joint.name;
+  }
+  return "a joint";
+}
+
 std::vector<ElementVariable> variables(const Model& model) {
   using enum Dimension;
   Names names;
