@@ -92,6 +92,7 @@ MechanicsSubsystem::~MechanicsSubsystem() = default;
 
 void MechanicsSubsystem::reset() {
   model_ = multibody::build_model(def_, row_names_);
+  heavier_ = model_;
   state_ = multibody::start_state(model_);
   last_good_ = state_;
   workspace_ = multibody::Workspace(model_);
@@ -246,8 +247,10 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     return failure_;
   }
   if (!ramps_.empty()) {
-    ramps_.apply(n,
-                 [this](int handle, double value) { multibody::set_parameter(model_, parameter_of(handle), value); });
+    ramps_.apply(n, [this](int handle, double value) {
+      for (multibody::Model* model : {&model_, &heavier_})
+        multibody::set_parameter(*model, parameter_of(handle), value);
+    });
     is_evaluated_ = false;
   }
   StepReport report;
@@ -450,7 +453,7 @@ double MechanicsSubsystem::payload_mass() const noexcept {
   return model_.lumped[static_cast<std::size_t>(lumped)].mass;
 }
 
-// Change of the static line forces with the payload's mass, by 1 kg: exact, since gravity is linear in the
+// Change of the static line forces with the payload's mass, by 1 kg: exact at rest, since gravity is linear in the
 // mass.
 void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noexcept {
   const std::size_t m = ports_.size();

@@ -73,6 +73,26 @@ TEST(Monolith, ShowsTheMechanismAsTheSubsystemDoes) {
   EXPECT_NEAR(mechanics_variable(mechanics, "ForceR_FrictionZ.angle"), -10 * std::numbers::pi / 180, 1e-9);
 }
 
+TEST(MechanicsSubsystem, StaticForcePerKilogramFollowsLiveChanges) {
+  const scene::Scene scene = scene::load_file(kScenes + "truck_crane.yaml");
+  mechanics::MechanicsSubsystem mechanics(scene);
+  hydraulic_node::HydraulicsSubsystem hydraulics(scene);
+  coupling::OwnSample sample, start;
+  ASSERT_TRUE(mechanics.first_sample(sample));
+  ASSERT_TRUE(hydraulics.start({&sample.mechanism, nullptr}, start).is_ok());
+  ASSERT_TRUE(mechanics.start({nullptr, &start.actuators}, sample).is_ok());
+  const auto per_kilogram = [&] { return mechanics_variable(mechanics, "Cyl_Lift.static_force_per_kg"); };
+  const double before = per_kilogram();
+  // lever of the bag over that of the cylinder, times 9.81 m/s2
+  EXPECT_NEAR(before, (627e3 - 251e3) / 1000, 0.02 * before);
+  ASSERT_TRUE(mechanics.change_parameter(0, {"mechanics.gravity.y", -0.5 * 9.81, {}}));
+  mechanics.step(0, {nullptr, &start.actuators}, {}, sample);
+  EXPECT_NEAR(per_kilogram(), 0.5 * before, 1e-3 * before);
+  mechanics.reset();
+  ASSERT_TRUE(mechanics.first_sample(sample));
+  EXPECT_EQ(per_kilogram(), before);
+}
+
 TEST(Monolith, AndTheSubsystemShowTheDampersOfASwingingBag) {
   // a bag on a ball joint, thrown: nothing but dampers, of which a step needs neither angle nor rate
   const scene::Scene scene = scene::load_text(R"(
