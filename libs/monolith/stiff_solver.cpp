@@ -98,12 +98,17 @@ std::span<const double> StiffSolver::y() const noexcept {
 
 std::size_t StiffSolver::worst_state() const {
   const auto n = static_cast<std::size_t>(N_VGetLength(memory_->y));
-  if (CVodeGetEstLocalErrors(memory_->cvode, memory_->work) != CV_SUCCESS) return 0;
+  // the solver's own weights, of relative and absolute tolerance together
+  const std::unique_ptr<_generic_N_Vector, void (*)(N_Vector)> weights(N_VClone(memory_->work), N_VDestroy);
+  if (weights == nullptr || CVodeGetEstLocalErrors(memory_->cvode, memory_->work) != CV_SUCCESS ||
+      CVodeGetErrWeights(memory_->cvode, weights.get()) != CV_SUCCESS) {
+    return 0;
+  }
   const double* const error = N_VGetArrayPointer(memory_->work);
-  const double* const tolerance = N_VGetArrayPointer(memory_->tolerance);
+  const double* const weight = N_VGetArrayPointer(weights.get());
   std::size_t worst = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (!(std::fabs(error[i]) / tolerance[i] <= std::fabs(error[worst]) / tolerance[worst])) worst = i;
+    if (!(std::fabs(error[i]) * weight[i] <= std::fabs(error[worst]) * weight[worst])) worst = i;
   }
   return worst;
 }

@@ -52,6 +52,24 @@ TEST(StiffSolver, CountsOverRestarts) {
   EXPECT_EQ(solver.statistics().restarts, 2);
 }
 
+TEST(StiffSolver, NamesTheStateThatTheErrorTestIsAbout) {
+  // a large state with a large error of which its relative tolerance allows more, and a small one that sets the step
+  class Waves final : public DifferentialEquation {
+   public:
+    void rates(double t, const double*, double* f) noexcept override {
+      f[0] = 1e3 * std::cos(t);
+      f[1] = 3 * std::cos(3 * t);
+    }
+  };
+  Waves equation;
+  StiffSolver solver(equation, std::array<double, 2>{1e-6, 1e-6}, 1e-6);
+  solver.restart(0, std::array<double, 2>{1e7, 0});
+  for (int i = 1; i <= 10; ++i) {
+    ASSERT_EQ(solver.advance(0.7 * i), "");
+    EXPECT_EQ(solver.worst_state(), 1u) << i;
+  }
+}
+
 TEST(StiffSolver, SaysThatASolutionEscapes) {
   // y = 1 / (1 - t) has no value at 1
   Growth equation;
