@@ -6,17 +6,6 @@
 
 namespace slew {
 
-double fixed_sum(std::span<const double> a) noexcept {
-  double s[4] = {0, 0, 0, 0};
-  std::size_t i = 0;
-  for (; i + 4 <= a.size(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) s[k] += a[i + k];
-  }
-  double sum = (s[0] + s[1]) + (s[2] + s[3]);
-  for (; i < a.size(); ++i) sum += a[i];
-  return sum;
-}
-
 double fixed_dot(std::span<const double> a, std::span<const double> b) noexcept {
   SLEW_ASSERT(a.size() == b.size());
   double s[4] = {0, 0, 0, 0};
@@ -36,11 +25,6 @@ double fixed_max_abs(std::span<const double> a) noexcept {
     largest = std::fmax(largest, std::fabs(value));
   }
   return largest;
-}
-
-void fixed_multiply(std::span<const double> A, std::span<const double> x, std::span<double> y) noexcept {
-  SLEW_ASSERT(A.size() == x.size() * y.size());
-  for (std::size_t row = 0; row < y.size(); ++row) y[row] = fixed_dot(A.subspan(row * x.size(), x.size()), x);
 }
 
 bool all_finite(std::span<const double> a) noexcept {

@@ -1,8 +1,7 @@
 // Vectors and matrices of three-dimensional space, four lanes wide so that one instruction handles a column.
 //
 // A Vec3 holds x, y, z and a fourth lane that stays zero. All operations are element by element in a fixed order, so
-// the bits do not depend on the build type. Eigen's fixed-size types would give the same bits; they leave the lanes
-// unused, and the articulated-body recursion spends its time here.
+// the bits do not depend on the build type. The articulated-body recursion spends its time here.
 #pragma once
 
 #include <array>

@@ -41,15 +41,9 @@ TEST(Reductions, DoNotDependOnTheAddress) {
   }
 }
 
-TEST(Reductions, SumAndProductAreRight) {
+TEST(Reductions, ProductIsRight) {
   const std::vector<double> a = {1, 2, 3, 4, 5, 6, 7};
-  EXPECT_EQ(fixed_sum(a), 28);
   EXPECT_EQ(fixed_dot(a, a), 140);
-  const std::vector<double> A = {1, 2, 3, 4, 5, 6};
-  const std::vector<double> x = {1, 10, 100};
-  std::vector<double> y(2);
-  fixed_multiply(A, x, y);
-  EXPECT_EQ(y, (std::vector<double>{321, 654}));
 }
 
 TEST(Reductions, LargestAbsoluteValueReportsNan) {
