@@ -10,8 +10,4 @@ void StateHash::add_bytes(const void* bytes, std::size_t size) noexcept {
   digest_ = XXH3_64bits_withSeed(bytes, size, digest_);
 }
 
-std::uint64_t hash_bytes(const void* bytes, std::size_t size, std::uint64_t seed) noexcept {
-  return XXH3_64bits_withSeed(bytes, size, seed);
-}
-
 }  // namespace slew

@@ -26,7 +26,4 @@ class StateHash {
   std::uint64_t digest_ = 0;
 };
 
-// Hash of one block of bytes; the same function on every machine of one byte order.
-[[nodiscard]] std::uint64_t hash_bytes(const void* bytes, std::size_t size, std::uint64_t seed = 0) noexcept;
-
 }  // namespace slew

@@ -6,26 +6,24 @@
 namespace slew {
 
 enum class StepFlag : std::uint32_t {
-  not_converged = 1u << 0,   // an iteration reached its limit; the residual was accepted
-  step_budget = 1u << 1,     // the sub-step budget of H was used up; the last step was accepted with its error
-  limit_hit = 1u << 2,       // a joint limit or an end stop is in contact
-  clamp_active = 1u << 3,    // a quantity was held at a bound of its validity (pressure floor, input range)
-  late_input = 1u << 4,      // a partner's sample was replaced by its continued copy
-  overrun = 1u << 5,         // the deadline passed
-  non_finite = 1u << 6,      // the state became NaN or infinite: latched, outputs are the last good ones
+  not_converged = 1u << 0,  // an iteration reached its limit; the residual was accepted
+  step_budget = 1u << 1,    // the sub-step budget of H was used up; the last step was accepted with its error
+  limit_hit = 1u << 2,      // a joint limit or an end stop is in contact
+  clamp_active = 1u << 3,   // a quantity was held at a bound of its validity (pressure floor, input range)
+  late_input = 1u << 4,     // a partner's sample was replaced by its continued copy; reserved, no node continues yet
+  overrun = 1u << 5,        // the deadline passed; reserved, io counts slips instead
+  non_finite = 1u << 6,     // the state became NaN or infinite: latched, outputs are the last good ones
   coupling_creates_energy = 1u << 7,
   cavitating = 1u << 8,
   relief_open = 1u << 9
 };
 
-// offender: index (in the owner's variables or elements, see Subsystem::offender_name) of the first one that raised a
-// serious flag; -1 for none.
 struct StepReport {
-  std::uint32_t flags = 0;
-  std::int32_t offender = -1;
-  std::uint32_t substeps = 0;
-  std::uint32_t iterations = 0;
-  double residual = 0;
+  std::uint32_t flags = 0;     // StepFlag bits
+  std::int32_t offender = -1;  // state or volume that raised the most serious flag (Subsystem::offender_name); -1: none
+  std::uint32_t substeps = 0;  // of H that were accepted
+  std::uint32_t iterations = 0;  // mechanics: Newton iterations of all stages; hydraulics: sub-steps tried
+  double residual = 0;  // mechanics: largest speed residual [m/s or rad/s]; hydraulics: largest error over tolerance
 
   void raise(StepFlag flag) noexcept { flags |= static_cast<std::uint32_t>(flag); }
   [[nodiscard]] bool has(StepFlag flag) const noexcept { return (flags & static_cast<std::uint32_t>(flag)) != 0; }

@@ -21,12 +21,20 @@ inline constexpr std::size_t kMaxRows = 32;
 
 // Partner's linearisation for one row, equation (2), and its feed-through -D (v - v_ref).
 struct RowPartner {
-  double F_dot = 0, K = 0, lambda = 0, D = 0, F_n = 0, v_ref = 0;
+  double F_dot = 0;   // N/s
+  double K = 0;       // N/m
+  double lambda = 0;  // 1/s
+  double D = 0;       // N s/m
+  double F_n = 0;     // N
+  double v_ref = 0;   // m/s
 };
 
-// Value and slopes of one row's force.
+// Value and slopes of one row's force, on the row's own coordinate: N and m, or N m and rad.
 struct RowForce {
-  double force = 0, d_z = 0, d_x = 0, d_v = 0;
+  double force = 0;  // N
+  double d_z = 0;    // 1
+  double d_x = 0;    // N/m
+  double d_v = 0;    // N s/m
 };
 
 // The rows' force laws; row i depends on its own z, x, v only.

@@ -179,16 +179,6 @@ ParameterResult Circuit::set_parameter(int index, double value) noexcept {
   return ParameterResult::ok;
 }
 
-ParameterResult Circuit::set_parameter(std::string_view element, std::string_view key, double value) noexcept {
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const LiveParameter& parameter = parameters_[i];
-    if (parameter.field->key == key && components_[parameter.component]->name() == element) {
-      return set_parameter(static_cast<int>(i), value);
-    }
-  }
-  return ParameterResult::unknown;
-}
-
 void Circuit::evaluate_ls(const double* y) noexcept {
   const CircuitView now = view(y);
   for (const LsSource& source : ls_order_) ls_[at(source.index)] = source.component->ls_pressure(now);

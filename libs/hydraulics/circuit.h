@@ -60,7 +60,6 @@ class Circuit {
   [[nodiscard]] const std::vector<double>& relatives() const noexcept { return relative_; }  // 1, or 0 for positions
   [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }   // of jacobian()
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
-  [[nodiscard]] double pressure_floor() const noexcept { return floor_; }
 
   // start states [y without x and v, which the caller owns]
   // Equilibrium: linear cylinders hold F with the rod side at the return pressure, slew cylinders around their mean
@@ -81,7 +80,6 @@ class Circuit {
   [[nodiscard]] int find_parameter(std::string_view path) const noexcept;                               // -1: none
   [[nodiscard]] std::span<const double> parameter_values() const noexcept { return parameter_value_; }  // same order
   ParameterResult set_parameter(int index, double value) noexcept;
-  ParameterResult set_parameter(std::string_view element, std::string_view key, double value) noexcept;
 
   // equations (1) to (3)
   void rates(const double* y, double* f) noexcept;

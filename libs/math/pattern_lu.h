@@ -38,8 +38,6 @@ class PatternLu {
   // Replaces b by the solution.
   void solve(double* b) noexcept;
 
-  [[nodiscard]] std::size_t non_zeros() const noexcept { return value_.size(); }    // of L and U with fill-in
-  [[nodiscard]] std::size_t operations() const noexcept { return update_.size(); }  // multiply-adds of a factorisation
 
  private:
   using Slot = std::uint16_t;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/check.h"
-#include "core/reductions.h"
 
 namespace slew::math {
 namespace {

@@ -61,7 +61,6 @@ class Rodas3 {
   // Size that the next sub-step would like to have; set it back to 0 after a jump of the state.
   [[nodiscard]] double step_size() const noexcept { return step_size_; }
   void set_step_size(double h) noexcept { step_size_ = h; }
-  [[nodiscard]] const PatternLu& factors() const noexcept { return lu_; }
 
  private:
   [[nodiscard]] bool factorise(const double* J, double c, Rodas3Report& report) noexcept;

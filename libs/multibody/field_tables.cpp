@@ -288,14 +288,6 @@ constexpr ElementType kDummyTypes[] = {
 constexpr Section kSections[] = {
     {"bodies", kBodyTypes}, {"joints", kJointTypes}, {"forces", kForceTypes}, {"dummies", kDummyTypes}};
 
-template <typename Def>
-Def* find_in(std::vector<Def>& defs, std::string_view element) noexcept {
-  for (Def& def : defs) {
-    if (def.name == element) return &def;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 std::span<const Section> sections() noexcept {
@@ -304,16 +296,6 @@ std::span<const Section> sections() noexcept {
 
 std::span<const Field> mechanics_fields() noexcept {
   return kMechanicsFields;
-}
-
-FoundElement find_element(MechanicsDef& mechanics, std::string_view element) noexcept {
-  if (BodyDef* def = find_in(mechanics.bodies, element)) return {&kBodyTypes[0], def};
-  if (JointDef* def = find_in(mechanics.joints, element)) return {&kJointTypes[static_cast<int>(def->type)], def};
-  if (auto* def = find_in(mechanics.translational_forces, element)) return {&kForceTypes[0], def};
-  if (auto* def = find_in(mechanics.rotational_forces, element)) return {&kForceTypes[1], def};
-  if (auto* def = find_in(mechanics.force_dummies, element)) return {&kDummyTypes[0], def};
-  if (auto* def = find_in(mechanics.static_dummies, element)) return {&kDummyTypes[1], def};
-  return {};
 }
 
 }  // namespace slew::multibody

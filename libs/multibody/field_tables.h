@@ -32,11 +32,4 @@ struct Section {
 // Rows of the section `mechanics`; they bind to MechanicsDef itself.
 [[nodiscard]] std::span<const Field> mechanics_fields() noexcept;
 
-// A Def found by its name, with its type; def is nullptr when there is none. For live changes of parameters.
-struct FoundElement {
-  const ElementType* type = nullptr;
-  void* def = nullptr;
-};
-[[nodiscard]] FoundElement find_element(MechanicsDef& mechanics, std::string_view element) noexcept;
-
 }  // namespace slew::multibody

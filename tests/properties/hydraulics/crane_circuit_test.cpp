@@ -331,12 +331,12 @@ TEST(CraneCircuit, cavitation_is_flagged_and_recovers) {
 TEST(CraneCircuit, one_thousand_steps_do_not_allocate) {
   CraneCircuit crane;
   crane.run(0.1);
-  const int lift = crane.circuit.find_control("L90Lift");
+  const int lift = crane.circuit.find_control("L90Lift"), overlap = crane.circuit.find_parameter("L90Lift.overlap");
   std::vector<double> x(3), v(3);
   AllocationGuard guard;
   for (int k = 0; k < 1000; ++k) {
     crane.circuit.set_control(lift, k < 500 ? 500 : -500);
-    crane.circuit.set_parameter("L90Lift", "overlap", 0.3 + 1e-5 * k);
+    crane.circuit.set_parameter(overlap, 0.3 + 1e-5 * k);
     for (std::size_t j = 0; j < 3; ++j) {
       x[j] = crane.integrator.actuators()[j].x + 1e-8;
       v[j] = crane.integrator.actuators()[j].v;

@@ -237,13 +237,13 @@ TEST(Circuit, live_parameters_act_at_once_and_others_are_refused) {
   for (int j = 0; j < 3; ++j) y[at(circuit.position(j))] = kCraneStrokes[j];
   const auto B = at(circuit.find_volume("Vol_LiftCyl_B"));
   circuit.rates(y.data(), f.data());
-  EXPECT_EQ(circuit.set_parameter("L90Lift", "leak_flow", 10 * kLeak), ParameterResult::ok);
+  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.leak_flow"), 10 * kLeak), ParameterResult::ok);
   circuit.rates(y.data(), g.data());
   EXPECT_LT(f[B] - g[B], 0);
-  EXPECT_EQ(circuit.set_parameter("L90Lift", "leak_flow", -1), ParameterResult::out_of_range);
-  EXPECT_EQ(circuit.set_parameter("L90Lift", "overlap", 2), ParameterResult::out_of_range);
-  EXPECT_EQ(circuit.set_parameter("L90Lift", "step_response", 1), ParameterResult::unknown);
-  EXPECT_EQ(circuit.set_parameter("Nothing", "overlap", 0.1), ParameterResult::unknown);
+  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.leak_flow"), -1), ParameterResult::out_of_range);
+  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.overlap"), 2), ParameterResult::out_of_range);
+  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.step_response"), 1), ParameterResult::unknown);
+  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("Nothing.overlap"), 0.1), ParameterResult::unknown);
   EXPECT_EQ(circuit.set_parameter(-1, 0.1), ParameterResult::unknown);
   const int index = circuit.find_parameter("PRV_MainPump.setting_pressure");
   ASSERT_GE(index, 0);
@@ -319,7 +319,7 @@ TEST(CircuitIntegrator, hash_changes_when_any_state_changes_by_one_ulp) {
   EXPECT_NE(digest(), before);
   integrator.set_step_size(h);
   EXPECT_EQ(digest(), before);
-  EXPECT_EQ(circuit.set_parameter("L90Lift", "overlap", std::nextafter(0.32, 1.0)), ParameterResult::ok);
+  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.overlap"), std::nextafter(0.32, 1.0)), ParameterResult::ok);
   EXPECT_NE(digest(), before);
 }
 
