@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <string>
 
 #include "slewring.h"
@@ -31,33 +32,64 @@ struct Options {
   double seconds = 15;         // gives up after this wall time
   unsigned domain = 0;
 };
+constexpr double kLastDomain = 230;  // DDS: a port is 7400 + 250 domain + ...
 
-int usage(const char* problem) {
-  std::fprintf(stderr,
-               "%s\nusage: position_controller --session NAME [--variable Cyl_Lift.stroke] [--channel Input_Lift]\n"
-               "         [--target 0.86] [--tolerance 0.001] [--gain 20] [--overlap 0.32] [--seconds 15]\n"
-               "         [--name position_controller] [--domain 0]\n",
-               problem);
-  return 2;
+constexpr char kUsage[] =
+    "usage: position_controller --session NAME [--variable Cyl_Lift.stroke] [--channel Input_Lift]\n"
+    "         [--target 0.86] [--tolerance 0.001] [--gain 20] [--overlap 0.32] [--seconds 15]\n"
+    "         [--name position_controller] [--domain 0]\n"
+    "Example, with `slewring run scenes/truck_crane.yaml --input none --duration 0` in another terminal:\n"
+    "  position_controller --session truck_crane --variable Cyl_Lift.stroke --channel Input_Lift --target 0.86\n";
+
+// the whole text as a finite number
+bool read_number(const char* text, double& number) {
+  char* end = nullptr;
+  number = std::strtod(text, &end);
+  return end != text && *end == '\0' && std::isfinite(number);
 }
 
+// Fills the options; a problem is told with what was expected.
 bool parse(int argc, char** argv, Options& options) {
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string key = argv[i];
+  const auto refuse = [](const char* key, const char* problem) {
+    std::fprintf(stderr, "position_controller: %s: %s; nothing was moved\n%s", key, problem, kUsage);
+    return false;
+  };
+  const struct {
+    const char* key;
+    double* number;
+  } numbers[] = {{"--target", &options.target},
+                 {"--tolerance", &options.tolerance},
+                 {"--gain", &options.gain},
+                 {"--overlap", &options.overlap},
+                 {"--seconds", &options.seconds}};
+  const struct {
+    const char* key;
+    std::string* text;
+  } texts[] = {{"--session", &options.session},
+               {"--variable", &options.variable},
+               {"--channel", &options.channel},
+               {"--name", &options.name}};
+  for (int i = 1; i < argc; i += 2) {
+    const char* key = argv[i];
+    const auto is_key = [key](const auto& option) { return std::strcmp(option.key, key) == 0; };
+    const auto number = std::find_if(std::begin(numbers), std::end(numbers), is_key);
+    const auto text = std::find_if(std::begin(texts), std::end(texts), is_key);
+    const bool is_domain = std::strcmp(key, "--domain") == 0;
+    if (number == std::end(numbers) && text == std::end(texts) && !is_domain) return refuse(key, "unknown option");
+    if (i + 1 == argc) return refuse(key, "expected a value");
     const char* value = argv[i + 1];
-    if (key == "--session") options.session = value;
-    else if (key == "--variable") options.variable = value;
-    else if (key == "--channel") options.channel = value;
-    else if (key == "--name") options.name = value;
-    else if (key == "--target") options.target = std::atof(value);
-    else if (key == "--tolerance") options.tolerance = std::atof(value);
-    else if (key == "--gain") options.gain = std::atof(value);
-    else if (key == "--overlap") options.overlap = std::atof(value);
-    else if (key == "--seconds") options.seconds = std::atof(value);
-    else if (key == "--domain") options.domain = static_cast<unsigned>(std::atoi(value));
-    else return false;
+    if (text != std::end(texts)) *text->text = value;
+    if (number != std::end(numbers) && !read_number(value, *number->number)) return refuse(key, "expected a number");
+    if (is_domain) {
+      double domain = 0;
+      if (!read_number(value, domain) || domain < 0 || domain > kLastDomain || domain != std::floor(domain)) {
+        return refuse(key, "expected a whole number, 0 to 230");
+      }
+      options.domain = static_cast<unsigned>(domain);
+    }
   }
-  return argc % 2 == 1 && !options.session.empty();
+  if (options.session.empty()) return refuse("--session", "expected the name of a running session");
+  return true;
 }
 
 // loopback only, unicast, with timers that repair a lost packet within milliseconds
@@ -219,7 +251,12 @@ class Loop {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!parse(argc, argv, options)) return usage("position_controller: an option is missing or unknown");
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help") != 0 && std::strcmp(argv[i], "-h") != 0) continue;
+    std::fputs(kUsage, stdout);
+    return 0;
+  }
+  if (!parse(argc, argv, options)) return 2;
   const Endpoints endpoints = connect(options);
   const dds_entity_t waitset = dds_create_waitset(endpoints.participant);
   for (const dds_entity_t reader : {endpoints.directory, endpoints.variables, endpoints.lease}) {
@@ -232,6 +269,7 @@ int main(int argc, char** argv) {
   const auto begin = Clock::now();
   auto asked = begin - std::chrono::seconds(1);
   int steady = 0;  // values in a row within the tolerance
+  bool had_lease = false;
   while (std::chrono::duration<double>(Clock::now() - begin).count() < options.seconds && steady < 100) {
     dds_waitset_wait(waitset, nullptr, 0, DDS_MSECS(20));
     loop.find_variable();  // also empties the reader, which would wake the waitset again and again
@@ -241,6 +279,7 @@ int main(int argc, char** argv) {
       return 1;
     }
     const bool is_new = loop.read_variable();
+    had_lease |= loop.has_lease();
     if (!loop.has_lease()) {
       // ask until the session answers
       if (loop.has_place() && Clock::now() - asked > std::chrono::milliseconds(100)) {
@@ -258,6 +297,12 @@ int main(int argc, char** argv) {
   if (!loop.has_place()) {
     std::fprintf(stderr, "position_controller: no session '%s' in domain %u publishes %s\n", options.session.c_str(),
                  options.domain, options.variable.c_str());
+    return 1;
+  }
+  if (!had_lease) {
+    std::fprintf(stderr,
+                 "position_controller: session '%s' did not answer for channel %s within %g s; nothing was moved\n",
+                 options.session.c_str(), options.channel.c_str(), options.seconds);
     return 1;
   }
   std::printf("%s = %.5f, target %.5f: %s\n", options.variable.c_str(), loop.value(), options.target,

@@ -13,18 +13,68 @@ using wire::Role;
 
 constexpr std::int64_t kBuildNs = 120'000'000'000;
 
+// kept between runs, so that a second one has nothing to compile
+constexpr const char* kFolder = SLEWRING_BINARY_DIR "/example_controller";
+
+void build_example() {
+  const ScratchFolder output;
+  Program configure(SLEWRING_CMAKE, {"-S", SLEWRING_SOURCE_DIR "/examples/controller", "-B", kFolder},
+                    output.path() / "configure");
+  ASSERT_EQ(configure.wait(kBuildNs), 0) << configure.out() << configure.err();
+  Program build(SLEWRING_CMAKE, {"--build", kFolder}, output.path() / "build");
+  ASSERT_EQ(build.wait(kBuildNs), 0) << build.out() << build.err();
+}
+
+// The example alone, without a session.
+class ControllerExampleOptions : public ::testing::Test {
+ protected:
+  void SetUp() override { build_example(); }
+  std::unique_ptr<Program> controller(const std::vector<std::string>& arguments) {
+    return std::make_unique<Program>(std::string(kFolder) + "/position_controller", arguments,
+                                     output.path() / "controller");
+  }
+  ScratchFolder output;
+};
+
+TEST_F(ControllerExampleOptions, HelpHasAnExample) {
+  const auto program = controller({"--help"});
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  EXPECT_NE(program->out().find("usage: position_controller --session"), std::string::npos) << program->out();
+  EXPECT_NE(program->out().find("Example"), std::string::npos) << program->out();
+}
+
+TEST_F(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
+  for (const char* option : {"--target", "--tolerance", "--gain", "--overlap", "--seconds", "--domain"}) {
+    for (const char* value : {"abc", "", "0.8m", "nan", "inf"}) {
+      const auto program = controller({"--session", "nobody", option, value});
+      EXPECT_EQ(program->wait(), 2) << option << " '" << value << "' " << program->out();
+      EXPECT_NE(program->err().find(std::string("position_controller: ") + option), std::string::npos)
+          << program->err();
+    }
+  }
+}
+
+TEST_F(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
+  const struct {
+    std::vector<std::string> arguments;
+    const char* problem;
+  } cases[] = {{{}, "--session: expected the name"},
+               {{"--session"}, "--session: expected a value"},
+               {{"--session", "nobody", "--domain", "231"}, "--domain: expected a whole number, 0 to 230"},
+               {{"--session", "nobody", "--domain", "1.5"}, "--domain: expected a whole number, 0 to 230"},
+               {{"--session", "nobody", "--taget", "1"}, "--taget: unknown option"}};
+  for (const auto& c : cases) {
+    const auto program = controller(c.arguments);
+    EXPECT_EQ(program->wait(), 2) << c.problem;
+    EXPECT_NE(program->err().find(c.problem), std::string::npos) << program->err();
+  }
+}
+
 class ControllerExample : public ::testing::Test {
  protected:
-  // kept between runs, so that a second one has nothing to compile
-  static constexpr const char* kFolder = SLEWRING_BINARY_DIR "/example_controller";
-
   void SetUp() override {
-    const ScratchFolder output;
-    Program configure(SLEWRING_CMAKE, {"-S", SLEWRING_SOURCE_DIR "/examples/controller", "-B", kFolder},
-                      output.path() / "configure");
-    ASSERT_EQ(configure.wait(kBuildNs), 0) << configure.out() << configure.err();
-    Program build(SLEWRING_CMAKE, {"--build", kFolder}, output.path() / "build");
-    ASSERT_EQ(build.wait(kBuildNs), 0) << build.out() << build.err();
+    build_example();
+    if (HasFatalFailure()) return;
     session.start_all();
     ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
   }
