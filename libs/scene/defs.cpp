@@ -56,8 +56,12 @@ constexpr Field kInputFields[] = {
                                               .reference = "component",
                                               .doc = "component that gets the signal; it must have a control signal"}),
     field<&InputDef::sub>("sub", {.choices = kSubs, .doc = "which of the component's signals"}),
-    field<&InputDef::block>("block", {.range = kBlockRange, .doc = "I/O block: number of the joystick"}),
-    field<&InputDef::channel>("channel", {.range = kChannelRange, .doc = "I/O channel: axis or button of the block"}),
+    field<&InputDef::block>(
+        "block", {.range = kBlockRange,
+                  .doc = "I/O block: number of the joystick; an address for I/O boards, no source uses it yet"}),
+    field<&InputDef::channel>(
+        "channel",
+        {.range = kChannelRange, .doc = "I/O channel: axis or button of the block; two inputs must not share one"}),
     field<&InputDef::scale>("scale", {.dimension = Dimension::electric_signal,
                                       .doc = "control signal at full stick; negative turns the direction round"}),
     field<&InputDef::dead_zone>(
