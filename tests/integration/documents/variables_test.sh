@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# docs/variables.md against what the program names:  variables_test.sh SOURCE_TREE SLEWRING
+#
+# Every variable of the scenes, which together have every type of docs/scene-format.md, needs a row with its quantity and
+# unit; every quantity of a row must be a variable of one of them.
+set -euo pipefail
+
+source=$1 slewring=$2
+page=$source/docs/variables.md
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+scenes=("$source"/scenes/*.yaml "$here/every_type.yaml")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# types that no scene has
+for type in $(sed -n 's/^`type: \([a-z0-9_]*\)`.*/\1/p' "$source/docs/scene-format.md"); do
+  grep -qE "type: $type\b" "${scenes[@]}" || echo "no scene here has the type $type: add it to every_type.yaml"
+done > "$scratch/wrong"
+
+# quantity and unit of all variables: El.position.x becomes El.position, what belongs to no element keeps its name
+for scene in "${scenes[@]}"; do "$slewring" variables "$scene" 2> /dev/null; done |
+  awk '$1 != "variable" {
+    name = $1; $1 = ""; $NF = ""; gsub(/^ +| +$/, "")
+    if (name !~ /^(mechanics|hydraulics)\./) { sub(/^[^.]*/, "El", name); sub(/\.[wxyz]$/, "", name) }
+    print name "\t" $0 }' | sort -u > "$scratch/variables"
+
+# quantities and the text that holds the units: the second column of a row, or the third
+grep '^| .*`' "$page" | awk -F'|' '{
+  text = $2 $3
+  while (match(text, /`[A-Za-z_]+\.[A-Za-z_.]+`/)) {
+    name = substr(text, RSTART + 1, RLENGTH - 2); text = substr(text, RSTART + RLENGTH)
+    sub(/\.[wxyz]$/, "", name)
+    units = " ; " $3 " ; " $4 " ; "; gsub(/[;,()]/, " ; ", units); gsub(/ +/, " ", units)
+    print name "\t" units }
+  }' > "$scratch/rows"
+
+awk -F'\t' -v variables="$scratch/variables" '
+  { rows[$1] = rows[$1] $2 }
+  END {
+    while ((getline line < variables) > 0) {
+      split(line, v, "\t"); is_variable[v[1]] = 1; ++count
+      if (!(v[1] in rows)) print v[1] " has no row"
+      else if (index(rows[v[1]], "; " v[2] " ;") == 0) print v[1] ": no row says its unit " v[2]
+    }
+    for (name in rows) if (!(name in is_variable) && name !~ /^session\./) print name " is no variable"
+    if (count < 60) print "only " count + 0 " variables were found"
+  }' "$scratch/rows" >> "$scratch/wrong"
+
+[ ! -s "$scratch/wrong" ] && exit 0
+echo "docs/variables.md:" >&2
+sort "$scratch/wrong" >&2
+exit 1
