@@ -24,7 +24,7 @@ namespace {
 using wire::NodeState;
 using wire::Role;
 
-// promised by the design; the tests allow twice as much, since a loaded machine schedules late
+// promised by the design; what comes after the owner's end may take as long again
 constexpr std::int64_t kNamedWithinNs = 500'000'000;
 constexpr std::int64_t kOrderlyEndNs = 1'000'000'000;
 
