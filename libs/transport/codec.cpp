@@ -101,6 +101,12 @@ class Encoder {
     sink_.put(value.c_str(), value.size() + 1);
   }
 
+  template <typename N>
+  void item(const detail::Bounded<const N>& number) noexcept {
+    is_within_caps_ = is_within_caps_ && number.is_within();
+    item(number.value);
+  }
+
   template <typename T>
   void item(const detail::List<const std::vector<T>>& list) noexcept {
     is_within_caps_ = is_within_caps_ && list.values.size() <= list.cap;
@@ -202,6 +208,12 @@ class Decoder {
       return;
     }
     text.value.assign(reinterpret_cast<const char*>(at), n - 1);
+  }
+
+  template <typename N>
+  void item(detail::Bounded<N>& number) {
+    item(number.value);
+    if (is_good_ && !number.is_within()) is_good_ = false;
   }
 
   template <typename T>

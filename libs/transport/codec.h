@@ -4,11 +4,12 @@
 // fields, n zero bytes up to a multiple of four. They are the bytes that Cyclone DDS makes of the generated types.
 //
 // encode() replaces the contents of `buffer`; it allocates only while the buffer grows. False: a text or a list is
-// longer than its cap, or a text holds a NUL; nothing may be sent then.
+// longer than its cap, a text holds a NUL, a step or a number of variables is out of range; nothing may be sent then.
 // decode() accepts any bytes and reads none beyond the span. False: truncated, too long by four bytes or more, not
-// XCDR1 little endian, a length above its cap, an unknown enumerator, a text without its NUL. `message` then holds
-// rubbish. Texts and vectors of `message` keep their capacity, so that a reused message needs no new memory.
-// Cost: below 0.5 us for a step message with three ports. Real-time safe after warm-up, except for Tick.commands.
+// XCDR1 little endian, a length above its cap, an unknown enumerator, a text without its NUL, a step outside
+// [-1, kMaxStep], a number of variables above kMaxVariables. `message` then holds rubbish. Texts and vectors of
+// `message` keep their capacity, so that a reused message needs no new memory. Cost: below 0.5 us for a step message
+// with three ports. Real-time safe after warm-up, except for Tick.commands.
 //
 // Not covered: big-endian writers, XCDR2, UTF-8 validity, finiteness of numbers, agreement of array lengths with the
 // number of ports.

@@ -1,10 +1,12 @@
 // The fields of every message in the order of idl/slewring.idl, once for both directions.
 //
 // An archive A is called with the fields of a struct; A::Of<T> is `const T` when it reads the struct (encoder) and `T`
-// when it fills it (decoder). Texts and lists without a cap in their type go through text() and list().
+// when it fills it (decoder). Texts and lists without a cap in their type are wrapped in Text and List, steps
+// and numbers of variables in Bounded.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,33 @@ struct List {
   V& values;
   std::size_t cap;
 };
+
+// A number that indexes or counts something: outside [least, most] it is a fault of its writer.
+template <typename N>
+struct Bounded {
+  N& value;
+  std::int64_t least;
+  std::int64_t most;
+  [[nodiscard]] bool is_within() const noexcept {
+    return static_cast<std::int64_t>(value) >= least && static_cast<std::int64_t>(value) <= most;
+  }
+};
+
+template <typename N>
+[[nodiscard]] Bounded<N> step(N& value) {
+  return {value, kJoinStep, wire::kMaxStep};
+}
+
+template <typename N>
+[[nodiscard]] Bounded<N> variables(N& value) {
+  return {value, 0, static_cast<std::int64_t>(wire::kMaxVariables)};
+}
+
+// index of the first variable of a message
+template <typename N>
+[[nodiscard]] Bounded<N> variable(N& value) {
+  return {value, 0, static_cast<std::int64_t>(wire::kMaxVariables) - 1};
+}
 
 template <typename S>
 [[nodiscard]] Text<S> name(S& value) {
@@ -58,7 +87,7 @@ inline constexpr std::uint32_t kEnumerators<wire::ControlAction> = 7;
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::Header>& m) {
-  a(m.session, m.role, m.incarnation, m.epoch, m.phase, m.step);
+  a(m.session, m.role, m.incarnation, m.epoch, m.phase, step(m.step));
 }
 
 template <typename A>
@@ -117,12 +146,12 @@ void fields(A& a, typename A::template Of<wire::Heard>& m) {
 template <typename A>
 void fields(A& a, typename A::template Of<wire::NodeStatus>& m) {
   a(m.header, m.state, sentence(m.host), m.pid, m.started_ns, sentence(m.build), m.self_test);
-  a(List{m.heard, wire::kMaxHeard}, m.recorded_step, sentence(m.reason), m.exit_code);
+  a(List{m.heard, wire::kMaxHeard}, step(m.recorded_step), sentence(m.reason), m.exit_code);
 }
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::Health>& m) {
-  a(m.header, m.state, m.is_waiting, m.waiting_for, m.waiting_step, m.steps_done, m.overruns, m.resends_asked);
+  a(m.header, m.state, m.is_waiting, m.waiting_for, step(m.waiting_step), m.steps_done, m.overruns, m.resends_asked);
   a(m.resends_answered, m.refused_messages, m.step_time_mean, m.step_time_max, m.slip_ns);
 }
 
@@ -133,12 +162,12 @@ void fields(A& a, typename A::template Of<wire::VariableEntry>& m) {
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::VariableDirectory>& m) {
-  a(m.header, m.total, m.first, List{m.entries, wire::kMaxVariablesPerBlock});
+  a(m.header, variables(m.total), variable(m.first), List{m.entries, wire::kMaxVariablesPerBlock});
 }
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::VariableBlock>& m) {
-  a(m.header, m.first, m.values);
+  a(m.header, variable(m.first), m.values);
 }
 
 template <typename A>
@@ -163,7 +192,7 @@ void fields(A& a, typename A::template Of<wire::ControlReply>& m) {
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::ResendRequest>& m) {
-  a(m.header, m.role, m.topic, m.last_step);
+  a(m.header, m.role, m.topic, step(m.last_step));
 }
 
 }  // namespace slew::transport::detail

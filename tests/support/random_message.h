@@ -62,6 +62,12 @@ class RandomFields {
     for (char& character : text.value) character = static_cast<char>(1 + below(255));
   }
 
+  template <typename N>
+  void item(transport::detail::Bounded<N> number) {
+    const auto span = static_cast<std::uint64_t>(number.most - number.least) + 1;
+    number.value = static_cast<N>(number.least + static_cast<std::int64_t>(random_() % span));
+  }
+
   template <typename T>
   void item(transport::detail::List<std::vector<T>>& list) {
     using transport::detail::fields;

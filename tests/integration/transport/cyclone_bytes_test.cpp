@@ -123,6 +123,7 @@ TEST(IdlCaps, AreTheConstantsOfTheMessages) {
   EXPECT_EQ(slewring_kMaxChannels, wire::kMaxChannels);
   EXPECT_EQ(slewring_kMaxCommandsPerTick, wire::kMaxCommandsPerTick);
   EXPECT_EQ(slewring_kMaxVariablesPerBlock, wire::kMaxVariablesPerBlock);
+  EXPECT_EQ(slewring_kMaxVariables, wire::kMaxVariables);
   EXPECT_EQ(slewring_kMaxHeard, wire::kMaxHeard);
   EXPECT_EQ(slewring_kMaxAssets, wire::kMaxAssets);
   EXPECT_EQ(slewring_kMaxNameLength, wire::kMaxNameLength);

@@ -127,6 +127,47 @@ TEST(Codec, RefusesToEncodeAboveTheCaps) {
   EXPECT_FALSE(encode(session, buffer));
 }
 
+// overwrites a number of an encoded message
+template <typename N>
+ByteBuffer with_number(ByteBuffer bytes, std::size_t at, N number) {
+  std::memcpy(bytes.data() + at, &number, sizeof number);
+  return bytes;
+}
+
+TEST(Codec, RefusesStepsAndNumbersOfVariablesOutOfRange) {
+  constexpr std::size_t kStepAt = 4 + 32;  // of every header
+  ByteBuffer buffer;
+  wire::Tick tick;
+  tick.header.step = wire::kMaxStep;
+  ASSERT_TRUE(encode(tick, buffer));
+  ASSERT_TRUE(decode(buffer, tick));
+  wire::Header header;
+  for (const std::int64_t step :
+       {wire::kMaxStep + 1, std::int64_t{INT64_MAX}, std::int64_t{INT64_MIN}, kJoinStep - 1}) {
+    EXPECT_FALSE(decode(with_number(buffer, kStepAt, step), tick)) << step;
+    EXPECT_FALSE(decode_header(with_number(buffer, kStepAt, step), header)) << step;
+    tick.header.step = step;
+    ByteBuffer unsent;
+    EXPECT_FALSE(encode(tick, unsent)) << step;
+  }
+  EXPECT_TRUE(decode(with_number(buffer, kStepAt, kJoinStep), tick));
+
+  wire::VariableDirectory directory;
+  directory.total = wire::kMaxVariables;
+  directory.first = wire::kMaxVariables - 1;
+  ASSERT_TRUE(encode(directory, buffer));
+  ASSERT_TRUE(decode(buffer, directory));
+  EXPECT_FALSE(decode(with_number(buffer, kStepAt + 8, std::uint32_t{4'000'000'000}), directory));
+  EXPECT_FALSE(decode(with_number(buffer, kStepAt + 12, std::uint32_t{wire::kMaxVariables}), directory));
+  wire::VariableBlock block;
+  ASSERT_TRUE(encode(block, buffer));
+  EXPECT_FALSE(decode(with_number(buffer, kStepAt + 8, std::uint32_t{4'000'000'000}), block));
+  wire::ResendRequest request;
+  ASSERT_TRUE(encode(request, buffer));
+  ASSERT_TRUE(decode(buffer, request));
+  EXPECT_FALSE(decode(with_number(buffer, buffer.size() - 8, std::int64_t{INT64_MAX}), request));
+}
+
 // offset of the first byte that changes when the message changes
 template <typename M>
 std::size_t first_difference(const M& a, const M& b) {
