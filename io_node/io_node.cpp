@@ -145,9 +145,14 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
     ++member_.refusals().undecodable;
     return;
   }
-  if (!member_.fits(header)) return;
+  if (!member_.fits(header, topic)) return;
   member_.heard(header, topic, now_ns);
   if (header.phase != Phase::running) return;
+  // nobody can be further than the ticks that were sent
+  if (header.step > n_) {
+    ++member_.refusals().too_far_ahead;
+    return;
+  }
   StepIndex& at = topic == Topic::mechanism ? mechanics_at_ : hydraulics_at_;
   // samples come in order from one writer; one that was lost and asked for again may close a gap
   if (header.step == at + 1) {
@@ -278,8 +283,11 @@ void IoNode::answer(const wire::ControlRequest& request, bool accepted, const st
 
 void IoNode::receive_resend(std::span<const std::byte> bytes) {
   wire::ResendRequest request;
-  if (!transport::decode(bytes, request) || request.role != Role::io) return;
-  if (request.header.session != description_.header.session) return;
+  if (!transport::decode(bytes, request)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (request.role != Role::io || !member_.is_of_session(request.header, Topic::resend)) return;
   if (request.topic != static_cast<std::uint8_t>(Topic::tick)) return;
   // a node that missed a reset asks with the old epoch: it gets the tick that started the new one
   const bool is_late_epoch = request.header.epoch < member_.epoch();

@@ -225,19 +225,18 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
     ++member_.refusals().undecodable;
     return;
   }
-  if (member_.has_session() && message.topic == Topic::tick && header.phase == Phase::init &&
-      header.session == member_.session().header.session && header.epoch == member_.epoch() + 1) {
+  if (message.topic == Topic::tick && member_.begins_next_epoch(header)) {
     start_epoch(header.epoch);
     receive_stepped(message, now_ns);
     for (const Early& early : std::exchange(early_, {}))
       receive_stepped({early.topic, early.bytes, early.source_ns}, now_ns);
     return;
   }
-  if (header.epoch == member_.epoch() + 1 && member_.has_session() &&
-      header.session == member_.session().header.session) {
-    return keep_for_next_epoch(message);
+  if (header.epoch == member_.epoch() + 1) {
+    if (member_.is_of_session(header, message.topic)) keep_for_next_epoch(message);
+    return;
   }
-  if (!member_.fits(header)) return;
+  if (!member_.fits(header, message.topic)) return;
   member_.heard(header, message.topic, now_ns);
   if (header.phase == Phase::join || writer_ == nullptr) return;
   if (header.phase == Phase::init)
@@ -246,9 +245,15 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
 
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
   StreamGaps& stream = streams_.try_emplace({message.topic, header.role}).first->second;
-  if (stream.arrived(header.step) == StreamGaps::Arrival::duplicate) {
-    ++counts.duplicates;
-    return;
+  switch (stream.arrived(header.step)) {
+    case StreamGaps::Arrival::duplicate:
+      ++counts.duplicates;
+      return;
+    case StreamGaps::Arrival::too_far:
+      ++member_.refusals().too_far_ahead;
+      return;
+    case StreamGaps::Arrival::new_step:
+      break;
   }
   if (!stream.has_gap()) resend_.restart(now_ns);
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
@@ -308,6 +313,9 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
   const Status status = writer_->write(channels_[topic], {epoch, step, sequence, message.source_ns}, message.bytes);
   if (status.is_ok()) {
     ++counts_[topic].recorded;
+  } else if (status.code == ExitCode::failed) {
+    // a message that no recording can hold; the session is not at fault
+    ++counts_[topic].lost;
   } else {
     begin_ending(status.code, status.text);
   }

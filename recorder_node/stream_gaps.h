@@ -1,6 +1,7 @@
 // Which steps of one writer's topic have come: the contiguous part, and what lies ahead of a gap.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,11 +15,19 @@ class StreamGaps {
   // depth: how far ahead of a gap steps are remembered; a gap that is left further behind counts as lost.
   explicit StreamGaps(std::size_t depth = 4096) : ahead_(depth, false) {}
 
-  enum class Arrival : std::uint8_t { new_step, duplicate };
+  enum class Arrival : std::uint8_t { new_step, duplicate, too_far };
 
+  // A step two depths ahead or more is not believed before a second one near it: one odd number must not give up all
+  // that is to come, but a reader that stood still for long must find its stream again.
   Arrival arrived(StepIndex step) {
+    const auto depth = static_cast<StepIndex>(ahead_.size());
     if (step < next_) return Arrival::duplicate;
-    while (step >= next_ + static_cast<StepIndex>(ahead_.size())) give_up_one();
+    if (step >= next_ + 2 * depth) {
+      const bool is_confirmed = doubted_ >= 0 && step > doubted_ && step - doubted_ < depth;
+      doubted_ = step;
+      if (!is_confirmed) return Arrival::too_far;
+    }
+    give_up_below(step - depth + 1);
     if (ahead_[slot(step)]) return Arrival::duplicate;
     ahead_[slot(step)] = true;
     if (step > newest_) newest_ = step;
@@ -42,15 +51,19 @@ class StreamGaps {
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
   // Counts every step up to and including `last` that has not come as lost.
-  void close_at(StepIndex last) {
-    while (next_ <= last) give_up_one();
-  }
+  void close_at(StepIndex last) { give_up_below(last + 1); }
 
  private:
-  void give_up_one() {
-    if (!ahead_[slot(next_)]) ++lost_;
-    ahead_[slot(next_)] = false;
-    ++next_;
+  void give_up_below(StepIndex end) {
+    // no more than a depth is remembered; what lies behind it was never there
+    const StepIndex remembered = std::min(end, next_ + static_cast<StepIndex>(ahead_.size()));
+    for (; next_ < remembered; ++next_) {
+      if (!ahead_[slot(next_)]) ++lost_;
+      ahead_[slot(next_)] = false;
+    }
+    if (next_ >= end) return;
+    lost_ += static_cast<std::uint64_t>(end - next_);
+    next_ = end;
   }
   [[nodiscard]] std::size_t slot(StepIndex step) const noexcept {
     return static_cast<std::size_t>(step) % ahead_.size();
@@ -59,6 +72,7 @@ class StreamGaps {
   std::vector<bool> ahead_;
   StepIndex next_ = 0;
   StepIndex newest_ = -1;
+  StepIndex doubted_ = -1;  // last step that was not believed
   std::uint64_t lost_ = 0;
 };
 

@@ -149,6 +149,11 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     return refuse(Status::error(ExitCode::bad_input, why));
   } else if (const Status built = factory_(session, built_); !built.is_ok()) {
     member_.fail(built.code, built.text);
+  } else if (built_.published_variables.size() > wire::kMaxVariables) {
+    member_.fail(ExitCode::bad_input,
+                 "scene '" + session.scene_name + "' publishes " + std::to_string(built_.published_variables.size()) +
+                     " variables of this node, at most " + std::to_string(wire::kMaxVariables) +
+                     " can be told apart; this node does not take part; name fewer in recording.variables");
   }
   if (member_.state() == NodeState::fault) {
     member_.publish_status_if_changed();
@@ -167,11 +172,8 @@ void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t no
     return;
   }
   // a new epoch starts with an INIT tick
-  if (header.phase == Phase::init && member_.has_session() && header.session == member_.session().header.session &&
-      header.epoch == member_.epoch() + 1) {
-    return restart(header.epoch);
-  }
-  if (!member_.fits(header)) return;
+  if (member_.begins_next_epoch(header)) return restart(header.epoch);
+  if (!member_.fits(header, Topic::tick)) return;
   member_.heard(header, Topic::tick, now_ns);
   if (header.phase == Phase::running) keep(bytes, header.step, ticks_);
 }
@@ -183,7 +185,7 @@ void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, 
     ++member_.refusals().undecodable;
     return;
   }
-  if (!member_.fits(header)) return;
+  if (!member_.fits(header, topic)) return;
   member_.heard(header, topic, now_ns);
   if (header.phase == Phase::init && topic == Topic::mechanism) {
     has_mechanism_init_ = transport::decode(bytes, mechanism_init_);
@@ -209,7 +211,11 @@ void PhysicsNode::keep(std::span<const std::byte> bytes, StepIndex step, StepRin
 
 void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
   wire::ResendRequest request;
-  if (!transport::decode(bytes, request) || request.role != member_.role() || !member_.fits(request.header)) return;
+  if (!transport::decode(bytes, request)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (request.role != member_.role() || !member_.fits(request.header, Topic::resend)) return;
   if (request.topic != static_cast<std::uint8_t>(sample_topic(member_.role()))) return;
   const StepIndex last = std::min(request.last_step, request.header.step + static_cast<StepIndex>(sent_.depth()));
   for (StepIndex step = request.header.step; step <= last; ++step) {

@@ -52,6 +52,25 @@ Topic main_topic(Role role) {
 
 }  // namespace
 
+std::uint32_t writers_of(Topic topic) noexcept {
+  switch (topic) {
+    case Topic::session:
+    case Topic::tick:
+    case Topic::controller_lease:
+    case Topic::control_reply:
+      return bit(Role::io);
+    case Topic::mechanism:
+      return bit(Role::mechanics);
+    case Topic::actuators:
+      return bit(Role::hydraulics);
+    case Topic::variable_directory:
+    case Topic::variables:
+      return bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex);
+    default:
+      return (1u << wire::kRoles) - 1;
+  }
+}
+
 std::uint32_t readers_of(Topic topic) noexcept {
   switch (topic) {
     case Topic::tick:
@@ -109,16 +128,37 @@ wire::Header SessionMember::header(wire::Phase phase, StepIndex step, std::uint3
   return {session_.header.session, role_, incarnation_, epoch, phase, step};
 }
 
-bool SessionMember::fits(const wire::Header& header) noexcept {
-  if (!has_session_ || header.session != session_.header.session) {
+bool SessionMember::is_in_session(const wire::Header& header) const noexcept {
+  return has_session_ && header.session == session_.header.session;
+}
+
+// the process that holds the role, and the role writes the topic
+bool SessionMember::is_writer(const wire::Header& header, Topic topic) const noexcept {
+  if ((writers_of(topic) & bit(header.role)) == 0) return false;
+  const Peer& peer = peers_[static_cast<std::size_t>(header.role)];
+  return peer.is_known && peer.incarnation == header.incarnation;
+}
+
+bool SessionMember::is_of_session(const wire::Header& header, Topic topic) noexcept {
+  if (!is_in_session(header)) {
     ++(has_session_ ? refusals_.other_session : refusals_.early);
     return false;
   }
-  const auto index = static_cast<std::size_t>(header.role);
-  if (index < wire::kRoles && (!peers_[index].is_known || peers_[index].incarnation != header.incarnation)) {
-    ++(peers_[index].is_known ? refusals_.unexpected_writer : refusals_.early);
+  if (!is_writer(header, topic)) {
+    const bool is_early = (writers_of(topic) & bit(header.role)) != 0 && !peer(header.role).is_known;
+    ++(is_early ? refusals_.early : refusals_.unexpected_writer);
     return false;
   }
+  return true;
+}
+
+bool SessionMember::begins_next_epoch(const wire::Header& header) const noexcept {
+  return header.phase == wire::Phase::init && header.epoch == epoch_ + 1 && is_in_session(header) &&
+         is_writer(header, Topic::tick);
+}
+
+bool SessionMember::fits(const wire::Header& header, Topic topic) noexcept {
+  if (!is_of_session(header, topic)) return false;
   if (header.epoch != epoch_) {
     ++refusals_.other_epoch;
     return false;

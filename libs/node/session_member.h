@@ -84,8 +84,13 @@ class SessionMember {
   }
   [[nodiscard]] wire::Header header(wire::Phase phase, StepIndex step, std::uint32_t epoch) const noexcept;
 
-  // True when the message belongs to this session and epoch and comes from the holder of its role; counts it otherwise.
-  [[nodiscard]] bool fits(const wire::Header& header) noexcept;
+  // True when a message on this topic belongs to this session and comes from a process that holds a role which writes
+  // the topic; counts it otherwise.
+  [[nodiscard]] bool is_of_session(const wire::Header& header, wire::Topic topic) noexcept;
+  // The same, and of the present epoch.
+  [[nodiscard]] bool fits(const wire::Header& header, wire::Topic topic) noexcept;
+  // True for the INIT tick with which io begins the next epoch.
+  [[nodiscard]] bool begins_next_epoch(const wire::Header& header) const noexcept;
   [[nodiscard]] Refusals& refusals() noexcept { return refusals_; }
 
   // ---- state and status
@@ -138,6 +143,8 @@ class SessionMember {
 
  private:
   [[nodiscard]] Status take_status(const wire::NodeStatus& status, std::int64_t now_ns);
+  [[nodiscard]] bool is_in_session(const wire::Header& header) const noexcept;
+  [[nodiscard]] bool is_writer(const wire::Header& header, wire::Topic topic) const noexcept;
   [[nodiscard]] std::string found_writers(wire::Topic topic);
   [[nodiscard]] Status on_own_role(const wire::NodeStatus& status);
   void compare_builds(const wire::NodeStatus& status);
@@ -163,6 +170,9 @@ class SessionMember {
   std::int64_t next_probe_ns_ = 0;
   std::vector<std::byte> buffer_;
 };
+
+// Which of the required roles may write a topic that starts with a Header, as a set of bit(Role).
+[[nodiscard]] std::uint32_t writers_of(wire::Topic topic) noexcept;
 
 // Which roles read a step topic, as a set of bit(Role).
 [[nodiscard]] std::uint32_t readers_of(wire::Topic topic) noexcept;

@@ -105,8 +105,8 @@ TEST_F(Member, DoesNotHearASecondProcessOfAnotherRole) {
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 6, NodeState::fault)).is_ok());
   EXPECT_EQ(member.peer(Role::hydraulics).status.state, NodeState::running);
-  EXPECT_TRUE(member.fits(status_of(Role::hydraulics, 5).header));
-  EXPECT_FALSE(member.fits(status_of(Role::hydraulics, 6).header));
+  EXPECT_TRUE(member.fits(status_of(Role::hydraulics, 5).header, Topic::actuators));
+  EXPECT_FALSE(member.fits(status_of(Role::hydraulics, 6).header, Topic::actuators));
   EXPECT_EQ(member.refusals().unexpected_writer, 2u);
 }
 
@@ -121,11 +121,11 @@ TEST_F(Member, CountsMessagesThatDoNotFitPerCause) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
   wire::Header header = status_of(Role::hydraulics, 5).header;
-  EXPECT_TRUE(member.fits(header));
+  EXPECT_TRUE(member.fits(header, Topic::actuators));
   header.epoch = 1;
-  EXPECT_FALSE(member.fits(header));
+  EXPECT_FALSE(member.fits(header, Topic::actuators));
   header.session[0] = 43;
-  EXPECT_FALSE(member.fits(header));
+  EXPECT_FALSE(member.fits(header, Topic::actuators));
   EXPECT_EQ(member.refusals().other_epoch, 1u);
   EXPECT_EQ(member.refusals().other_session, 1u);
   EXPECT_EQ(member.refusals().refused(), 1u) << "what is on its way during a reset is nothing to refuse";
@@ -133,11 +133,11 @@ TEST_F(Member, CountsMessagesThatDoNotFitPerCause) {
 
 TEST_F(Member, DoesNotCallWhatCameBeforeItsWriterWasKnownRefused) {
   const wire::Header header = status_of(Role::hydraulics, 5).header;
-  EXPECT_FALSE(member.fits(header));
+  EXPECT_FALSE(member.fits(header, Topic::actuators));
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
-  EXPECT_FALSE(member.fits(header));
+  EXPECT_FALSE(member.fits(header, Topic::actuators));
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
-  EXPECT_TRUE(member.fits(header));
+  EXPECT_TRUE(member.fits(header, Topic::actuators));
   EXPECT_EQ(member.refusals().early, 2u);
   EXPECT_EQ(member.refusals().refused(), 0u);
 }

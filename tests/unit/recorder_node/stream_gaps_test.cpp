@@ -51,5 +51,38 @@ TEST(StreamGaps, WhatNeverComesIsCountedAsLost) {
   EXPECT_EQ(stream.lost(), 5u);
 }
 
+TEST(StreamGaps, OneOddStepGivesUpNothing) {
+  StreamGaps stream(8);
+  stream.arrived(0);
+  for (const StepIndex odd : {StepIndex{17}, StepIndex{1} << 53, StepIndex{100}}) {
+    EXPECT_EQ(stream.arrived(odd), Arrival::too_far) << odd;
+  }
+  EXPECT_EQ(stream.arrived(1), Arrival::new_step);
+  EXPECT_EQ(stream.next(), 2);
+  EXPECT_EQ(stream.newest(), 1);
+  EXPECT_EQ(stream.lost(), 0u);
+}
+
+TEST(StreamGaps, StreamThatWentOnFarAheadIsFoundAgain) {
+  StreamGaps stream(8);
+  stream.arrived(0);
+  EXPECT_EQ(stream.arrived(1000), Arrival::too_far);
+  EXPECT_EQ(stream.arrived(1001), Arrival::new_step);
+  // what a depth holds can still be asked for
+  EXPECT_EQ(stream.next(), 994);
+  EXPECT_EQ(stream.lost(), 993u);
+  for (StepIndex step = 994; step <= 1000; ++step) EXPECT_EQ(stream.arrived(step), Arrival::new_step);
+  EXPECT_FALSE(stream.has_gap());
+}
+
+TEST(StreamGaps, ClosingFarAheadCountsWithoutCountingOneByOne) {
+  StreamGaps stream(8);
+  stream.arrived(0);
+  stream.arrived(2);
+  stream.close_at(StepIndex{1} << 53);
+  EXPECT_EQ(stream.next(), (StepIndex{1} << 53) + 1);
+  EXPECT_EQ(stream.lost(), (std::uint64_t{1} << 53) - 1);
+}
+
 }  // namespace
 }  // namespace slew::recorder

@@ -1,0 +1,129 @@
+// A session played by a test: one real node on the bus of one process, its partners spoken for by the test, and a clock
+// that is a number.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+#include "coupling/subsystem.h"
+#include "node/node.h"
+#include "transport/codec.h"
+#include "transport/in_process_bus.h"
+#include "transport/wire.h"
+
+namespace slew::testing {
+
+inline constexpr std::int64_t kMs = 1'000'000;
+
+// A subsystem without motion: every step succeeds.
+class StillSubsystem final : public coupling::Subsystem {
+ public:
+  bool first_sample(coupling::OwnSample&) noexcept override { return true; }
+  Status start(const coupling::PartnerSamples&, coupling::OwnSample&) override { return Status::ok(); }
+  StepReport step(StepIndex, const coupling::PartnerSamples&, std::span<const double>,
+                  coupling::OwnSample&) noexcept override {
+    return {};
+  }
+  bool change_parameter(StepIndex, const coupling::ParameterChange&) noexcept override { return false; }
+  void reset() override {}
+  [[nodiscard]] std::uint64_t state_hash() const noexcept override { return 1; }
+  [[nodiscard]] coupling::Level level() const noexcept override { return coupling::Level::two; }
+  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return {}; }
+  void read_variables(std::span<double>) const noexcept override {}
+  [[nodiscard]] std::string_view offender_name(std::int32_t) const noexcept override { return ""; }
+};
+
+class PlayedSession {
+ public:
+  explicit PlayedSession(std::uint32_t required_roles) {
+    session.header.session[0] = 42;
+    session.header.role = wire::Role::io;
+    session.header.incarnation = incarnation(wire::Role::io);
+    session.header.phase = wire::Phase::running;
+    session.name = "s";
+    session.scene_name = "still";
+    session.step_ns = kMs;
+    session.required_roles = required_roles;
+    session.host = "elsewhere#1";
+    session.pid = 77;
+  }
+
+  [[nodiscard]] transport::Transport& carrier() { return node_; }
+  [[nodiscard]] static std::uint32_t incarnation(wire::Role role) { return 10 + static_cast<std::uint32_t>(role); }
+
+  [[nodiscard]] wire::Header header(wire::Role role, StepIndex step, wire::Phase phase = wire::Phase::running,
+                                    std::uint32_t epoch = 0) const {
+    return {session.header.session, role, incarnation(role), epoch, phase, step};
+  }
+
+  template <typename Message>
+  void say(wire::Topic topic, const Message& message) {
+    std::vector<std::byte> bytes;
+    ASSERT_TRUE(transport::encode(message, bytes));
+    ASSERT_TRUE(played_.publish(topic, bytes).is_ok());
+  }
+
+  [[nodiscard]] wire::NodeStatus status(wire::Role role, wire::NodeState state, StepIndex step = kJoinStep) const {
+    wire::NodeStatus status;
+    status.header = header(role, step);
+    status.state = state;
+    status.host = "elsewhere#1";
+    status.pid = 1000 + static_cast<std::uint32_t>(role);
+    status.started_ns = 1;
+    return status;
+  }
+  void say_status(wire::Role role, wire::NodeState state, StepIndex step = kJoinStep) {
+    say(wire::Topic::node_status, status(role, state, step));
+  }
+  // The role has heard the node under test on these topics.
+  void say_heard(wire::Role role, wire::NodeState state, const wire::Header& node,
+                 std::initializer_list<wire::Topic> topics) {
+    wire::NodeStatus message = status(role, state);
+    for (const wire::Topic topic : topics) {
+      message.heard.push_back({node.role, node.incarnation, static_cast<std::uint8_t>(topic)});
+    }
+    say(wire::Topic::node_status, message);
+  }
+  void say_tick(StepIndex step, std::uint32_t flags = 0) {
+    wire::Tick tick;
+    tick.header = header(wire::Role::io, step);
+    tick.flags = flags;
+    say(wire::Topic::tick, tick);
+  }
+  void say_mechanism(StepIndex step, wire::Phase phase = wire::Phase::running, std::uint32_t epoch = 0) {
+    wire::MechanismMessage message;
+    message.header = header(wire::Role::mechanics, step, phase, epoch);
+    say(wire::Topic::mechanism, message);
+  }
+  void say_actuators(StepIndex step, wire::Phase phase = wire::Phase::running, std::uint32_t epoch = 0) {
+    wire::ActuatorMessage message;
+    message.header = header(wire::Role::hydraulics, step, phase, epoch);
+    say(wire::Topic::actuators, message);
+  }
+
+  // What the node under test has said on a topic since the last call.
+  template <typename Message>
+  [[nodiscard]] std::vector<Message> said(wire::Topic topic) {
+    transport::Received received;
+    while (played_.take(received)) said_[received.topic].emplace_back(received.bytes.begin(), received.bytes.end());
+    std::vector<Message> messages;
+    for (const std::vector<std::byte>& bytes : said_[topic]) {
+      messages.emplace_back();
+      EXPECT_TRUE(transport::decode(bytes, messages.back()));
+    }
+    said_[topic].clear();
+    return messages;
+  }
+
+  wire::SessionDescription session;
+
+ private:
+  transport::InProcessBus bus_;
+  transport::InProcessEndpoint node_{bus_, {"node", transport::TopicSet::all(), transport::TopicSet::all()}};
+  transport::InProcessEndpoint played_{bus_, {"played", transport::TopicSet::all(), transport::TopicSet::all()}};
+  std::map<wire::Topic, std::vector<std::vector<std::byte>>> said_;
+};
+
+}  // namespace slew::testing

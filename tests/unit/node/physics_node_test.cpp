@@ -1,0 +1,118 @@
+// The node around a subsystem, with io, the partner and the clock played by the test.
+#include "node/physics_node.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/played_session.h"
+
+namespace slew::node {
+namespace {
+
+using testing::kMs;
+using testing::PlayedSession;
+using testing::StillSubsystem;
+using wire::NodeState;
+using wire::Phase;
+using wire::Role;
+using wire::TickFlag;
+using wire::Topic;
+
+class Physics : public ::testing::Test {
+ protected:
+  static Status build(const wire::SessionDescription&, BuiltSubsystem& built) {
+    built.subsystem = std::make_unique<StillSubsystem>();
+    return Status::ok();
+  }
+  void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }
+
+  // mechanics has joined, has its sample 0 out and waits for tick 0
+  void get_ready() {
+    played.say(Topic::session, played.session);
+    poll();
+    const wire::Header own = node.member().header(Phase::join, kJoinStep);
+    played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism});
+    played.say_heard(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
+    poll(kMs);
+    poll(kMs);
+    played.say_actuators(0);
+    poll(kMs);
+    ASSERT_EQ(node.member().state(), NodeState::ready);
+    played.say_status(Role::hydraulics, NodeState::ready, 0);
+    played.say_status(Role::io, NodeState::running, 0);
+    poll();
+  }
+  // the step that the node's newest sample holds for
+  StepIndex newest_sample() {
+    for (const auto& sample : played.said<wire::MechanismMessage>(Topic::mechanism)) newest_ = sample.header.step;
+    return newest_;
+  }
+
+  PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
+  PhysicsNode node{Role::mechanics, played.carrier(), build, milliseconds(1000)};
+  std::int64_t now_ns = 1000 * kMs;
+  StepIndex newest_ = kJoinStep;
+};
+
+TEST_F(Physics, DoesAStepForATickAndTheSampleOfItsPartner) {
+  get_ready();
+  EXPECT_EQ(newest_sample(), 0);
+  played.say_tick(0);
+  poll(kMs);
+  EXPECT_EQ(newest_sample(), 1);
+  played.say_tick(1);
+  poll(kMs);
+  EXPECT_EQ(newest_sample(), 1);
+  played.say_actuators(1);
+  poll(kMs);
+  EXPECT_EQ(newest_sample(), 2);
+}
+
+// ---- who may say what -----------------------------------------------------------------------------------------
+
+TEST_F(Physics, DoesNotFollowATickOfAnObserverOrAPartner) {
+  get_ready();
+  const std::uint64_t refused = node.member().refusals().unexpected_writer;
+  wire::Tick tick;
+  tick.header = played.header(Role::observer, 0);
+  played.say(Topic::tick, tick);
+  tick.header = played.header(Role::hydraulics, 0);
+  played.say(Topic::tick, tick);
+  poll(kMs);
+  EXPECT_EQ(newest_sample(), 0);
+  EXPECT_EQ(node.member().refusals().unexpected_writer, refused + 2);
+}
+
+TEST_F(Physics, BeginsAnEpochForIoAlone) {
+  get_ready();
+  wire::Tick init;
+  init.header = played.header(Role::observer, kJoinStep, Phase::init, 1);
+  played.say(Topic::tick, init);
+  init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
+  init.header.incarnation += 1;
+  played.say(Topic::tick, init);
+  poll(kMs);
+  EXPECT_EQ(node.member().epoch(), 0u);
+  EXPECT_EQ(node.member().refusals().unexpected_writer, 2u);
+  init.header.incarnation -= 1;
+  played.say(Topic::tick, init);
+  poll(kMs);
+  EXPECT_EQ(node.member().epoch(), 1u);
+}
+
+TEST_F(Physics, RefusesToPublishMoreVariablesThanTheWireNumbers) {
+  const auto build_many = [](const wire::SessionDescription&, BuiltSubsystem& built) {
+    built.subsystem = std::make_unique<StillSubsystem>();
+    built.published_variables.resize(wire::kMaxVariables + 1);
+    return Status::ok();
+  };
+  PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
+  PhysicsNode many{Role::mechanics, other.carrier(), build_many, milliseconds(1000)};
+  other.say(Topic::session, other.session);
+  many.poll(now_ns);
+  EXPECT_TRUE(many.is_finished());
+  EXPECT_EQ(many.member().exit_code(), ExitCode::bad_input);
+  EXPECT_NE(many.member().reason().find("65537 variables"), std::string::npos) << many.member().reason();
+}
+
+}  // namespace
+}  // namespace slew::node
