@@ -65,8 +65,9 @@ bool IoNode::poll(std::int64_t now_ns) {
 std::int64_t IoNode::next_deadline(std::int64_t now_ns) const {
   if (stage_ == Stage::joining) return now_ns + node::kProbeInterval.ns / 2;
   if (stage_ != Stage::ticking) return now_ns + node::kProbeInterval.ns;
-  if (!is_paused_ && partners_allow(n_)) return std::max(now_ns, due_ns(n_));
-  return std::max(now_ns, resend_due_ns_);
+  if (is_withheld()) return now_ns + node::kProbeInterval.ns;
+  if (partners_allow(n_)) return std::max(now_ns, due_ns(n_));
+  return std::max(now_ns, resend_.due_ns());
 }
 
 void IoNode::request_stop(ExitCode code) {
@@ -157,8 +158,7 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
   // samples come in order from one writer; one that was lost and asked for again may close a gap
   if (header.step == at + 1) {
     at = header.step;
-    last_progress_ns_ = now_ns;
-    resend_due_ns_ = now_ns + node::kResendAfter.ns;
+    resend_.restart(std::max(now_ns, due_ns(n_)));
   } else if (header.step > at) {
     // a later sample proves the earlier ones: its writer needed every tick up to it
     at = header.step;
@@ -216,12 +216,13 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
     case wire::ControlAction::pause:
       is_paused_ = true;
       single_steps_ = 0;
-      member_.set_state(NodeState::holding);
+      show_running();
       return answer(request, true, "", n_);
     case wire::ControlAction::resume:
+      // a pause is no slip
+      if (is_paused_) base_ns_ = std::max(base_ns_, now_ns - n_ * config_.step.ns);
       is_paused_ = false;
-      base_ns_ = std::max(base_ns_, now_ns - n_ * config_.step.ns);  // a pause is no slip
-      member_.set_state(NodeState::running);
+      show_running();
       return answer(request, true, "", n_);
     case wire::ControlAction::step:
       if (!is_paused_) return answer(request, false, "pause the session first", n_);
@@ -229,6 +230,7 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
         return answer(request, false, "the number of steps must be 1 to 1e9", n_);
       }
       single_steps_ += static_cast<StepIndex>(request.value);
+      show_running();
       return answer(request, true, "", n_);
     case wire::ControlAction::reset:
       answer(request, true, "", 0);
@@ -347,11 +349,12 @@ bool IoNode::advance_initialising(std::int64_t now_ns) {
     return false;
   }
   publish_directory();
-  member_.set_state(is_paused_ ? NodeState::holding : NodeState::running);
+  member_.set_step(n_);
+  show_running();
   stage_ = Stage::ticking;
   base_ns_ = now_ns;
   last_tick_ns_ = now_ns - config_.step.ns;
-  last_progress_ns_ = now_ns;
+  resend_.restart(now_ns);
   return true;
 }
 
@@ -407,6 +410,17 @@ std::int64_t IoNode::due_ns(StepIndex n) const noexcept {
   return std::max(base_ns_ + n * config_.step.ns, last_tick_ns_ + config_.step.ns / 2);
 }
 
+// What the status says of a session that ticks: it runs, it waits for somebody, or ticks are withheld on request.
+void IoNode::show_running() {
+  if (const std::optional<Role> silent = member_.silent_peer()) {
+    member_.hold(member_.silence_text(*silent));
+  } else if (is_withheld()) {
+    member_.hold("");
+  } else {
+    member_.set_state(NodeState::running);
+  }
+}
+
 // a lag beyond the limit is given up: the time base moves and the slip is counted
 void IoNode::keep_time(std::int64_t now_ns) noexcept {
   const std::int64_t lag = now_ns - (base_ns_ + n_ * config_.step.ns);
@@ -422,7 +436,7 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
       begin_ending(ExitCode::ok, "", now_ns);
       return true;
     }
-    if (is_paused_ && single_steps_ == 0) return any;
+    if (is_withheld()) return any;
     if (!partners_allow(n_)) {
       ask_for_missing(now_ns);
       return any;
@@ -438,9 +452,8 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
 }
 
 void IoNode::ask_for_missing(std::int64_t now_ns) {
-  if (now_ns < resend_due_ns_) return;
-  resend_due_ns_ =
-      now_ns + std::min(std::max(node::kResendAfter.ns, now_ns - last_progress_ns_), node::kResendAtMost.ns);
+  if (!resend_.is_due(now_ns)) return;
+  resend_.asked(now_ns);
   const auto ask = [&](Role role, Topic topic, StepIndex at) {
     if (!member_.requires_role(role) || at >= n_ - config_.window + 1) return;
     wire::ResendRequest request;
@@ -498,10 +511,9 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   ++n_;
   ++health().steps_done;
   member_.set_step(n_);
-  if (is_paused_) --single_steps_;
   last_tick_ns_ = now_ns;
-  last_progress_ns_ = now_ns;
-  resend_due_ns_ = now_ns + node::kResendAfter.ns;
+  resend_.restart(std::max(now_ns, due_ns(n_)));
+  if (is_paused_ && --single_steps_ == 0) show_running();
 }
 
 void IoNode::send_tick(StepIndex step) {
@@ -600,8 +612,7 @@ void IoNode::watch(std::int64_t now_ns) {
       if (stage_ == Stage::ticking) member_.hold(member_.silence_text(about));
       return;
     case node::PeerEvent::back:
-      if (stage_ == Stage::ticking) member_.set_state(is_paused_ ? NodeState::holding : NodeState::running);
-      if (is_paused_) member_.hold("");
+      if (stage_ == Stage::ticking) show_running();
       return;
     case node::PeerEvent::none:
       return;

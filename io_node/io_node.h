@@ -17,6 +17,7 @@
 #include "io_node/input_gate.h"
 #include "io_node/live_parameters.h"
 #include "node/node.h"
+#include "node/resend_clock.h"
 #include "node/sent_cache.h"
 
 namespace slew::io {
@@ -95,11 +96,13 @@ class IoNode final : public node::Node {
   bool advance_initialising(std::int64_t now_ns);
   bool advance_ending(std::int64_t now_ns);
 
+  [[nodiscard]] bool is_withheld() const noexcept { return is_paused_ && single_steps_ == 0; }
   [[nodiscard]] bool partners_allow(StepIndex n) const noexcept;
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept;
   void ask_for_missing(std::int64_t now_ns);
   void issue_tick(std::int64_t now_ns);
   void send_tick(StepIndex step);
+  void show_running();
   void keep_time(std::int64_t now_ns) noexcept;
   void send_end(std::uint32_t flags, ExitCode code);
   void start_epoch(std::int64_t now_ns);
@@ -131,8 +134,7 @@ class IoNode final : public node::Node {
   std::int64_t last_tick_ns_ = 0;
   std::int64_t slip_ns_ = 0;
   std::int64_t deadline_ns_ = 0;  // of the stage
-  std::int64_t resend_due_ns_ = 0;
-  std::int64_t last_progress_ns_ = 0;
+  node::ResendClock resend_;
   std::int64_t fault_seen_ns_ = 0;
   std::vector<double> script_raw_;
   std::vector<wire::Command> script_changes_;

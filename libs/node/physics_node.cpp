@@ -76,7 +76,8 @@ std::int64_t PhysicsNode::next_deadline(std::int64_t now_ns) const {
       return now_ns + kProbeInterval.ns / 2;
     case Stage::initialising:
     case Stage::stepping:
-      return std::max(now_ns, resend_.due_ns());
+      // after a fault's END nothing is asked for: io's status comes by itself
+      return is_ended_by_fault_ ? now_ns + kProbeInterval.ns : std::max(now_ns, resend_.due_ns());
     default:
       return now_ns + kProbeInterval.ns;
   }
@@ -365,7 +366,8 @@ bool PhysicsNode::advance_step(std::int64_t now_ns) {
   h.step_time_sum_ns += spent_ns;
   if (spent_ns > h.step_time_max_ns) h.step_time_max_ns = spent_ns;
   member_.set_step(n_);
-  resend_.restart(now_ns);
+  // in `real` pace the next tick is due a step later
+  resend_.restart(member_.session().pace == wire::Pace::real ? now_ns + member_.session().step_ns : now_ns);
   if (report.has_failed()) {
     leave(ExitCode::diverged,
           "diverged in step " + std::to_string(n_ - 1) + ": " +
@@ -474,6 +476,14 @@ void PhysicsNode::publish_directory() {
 
 // ---- waiting --------------------------------------------------------------------------------------------------
 
+// io has not sent the next tick yet: the session does not tick, or it is paused
+bool PhysicsNode::is_tick_withheld() const noexcept {
+  const wire::NodeStatus& io = member_.peer(Role::io).status;
+  if (io.header.epoch != member_.epoch()) return false;
+  const bool is_paused = io.state == NodeState::holding && io.reason.empty() && io.header.step <= n_;
+  return io.state < NodeState::running || is_paused;
+}
+
 void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
   if (is_ended_by_fault_ || !resend_.is_due(now_ns)) return;
   const auto ask = [&](Role role, Topic topic, StepIndex step) {
@@ -491,7 +501,7 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
     if (member_.role() == Role::mechanics) ask(Role::hydraulics, Topic::actuators, 0);
     return;
   }
-  if (ticks_.find(n_) == nullptr) ask(Role::io, Topic::tick, n_);
+  if (ticks_.find(n_) == nullptr && !is_tick_withheld()) ask(Role::io, Topic::tick, n_);
   const coupling::PartnerSamples partners = partners_at(n_);
   if (has_partner() && partners.mechanism == nullptr && partners.actuators == nullptr) {
     ask(partner(), sample_topic(partner()), n_);
@@ -521,7 +531,12 @@ void PhysicsNode::watch(std::int64_t now_ns) {
       if (stage_ == Stage::stepping) member_.hold(member_.silence_text(about));
       return;
     case PeerEvent::back:
-      if (member_.state() == NodeState::holding) member_.set_state(n_ > 0 ? NodeState::running : NodeState::ready);
+      if (member_.state() != NodeState::holding) return;
+      if (const std::optional<Role> silent = member_.silent_peer()) {
+        member_.hold(member_.silence_text(*silent));
+      } else {
+        member_.set_state(n_ > 0 ? NodeState::running : NodeState::ready);
+      }
       return;
     case PeerEvent::none:
       return;

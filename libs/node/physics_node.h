@@ -61,6 +61,7 @@ class PhysicsNode final : public Node {
   void publish_sample(wire::Phase phase, StepIndex step, const StepReport& report);
   void publish_variables(StepIndex step);
   void publish_directory();
+  [[nodiscard]] bool is_tick_withheld() const noexcept;
   void ask_for_missing(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   void leave(ExitCode code, const std::string& reason, std::int64_t now_ns);

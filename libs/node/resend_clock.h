@@ -1,4 +1,4 @@
-// When to ask again for a step that has not come: after 3 ms, then with doubling pauses up to 100 ms.
+// When to ask for a step that has not come: 3 ms after it was expected, then with doubling pauses up to 100 ms.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@ namespace slew::node {
 
 class ResendClock {
  public:
-  // Progress was made: the next wait starts from now.
-  void restart(std::int64_t now_ns) noexcept {
+  // Progress was made: what comes next is expected at this time, now or later.
+  void restart(std::int64_t expected_ns) noexcept {
     pause_ns_ = kResendAfter.ns;
-    due_ns_ = now_ns + pause_ns_;
+    due_ns_ = expected_ns + pause_ns_;
   }
   [[nodiscard]] bool is_due(std::int64_t now_ns) const noexcept { return now_ns >= due_ns_; }
   void asked(std::int64_t now_ns) noexcept {

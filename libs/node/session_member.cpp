@@ -311,6 +311,14 @@ PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
   return PeerEvent::none;
 }
 
+std::optional<Role> SessionMember::silent_peer() const noexcept {
+  for (const Role role : kAllRoles) {
+    const Peer& peer = this->peer(role);
+    if (requires_role(role) && peer.is_silent && !peer.is_lost && !is_over(peer.status.state)) return role;
+  }
+  return std::nullopt;
+}
+
 std::string SessionMember::describe_peer(Role role) const {
   const Peer& peer = this->peer(role);
   std::string text(to_text(role));

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -117,6 +118,8 @@ class SessionMember {
   [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
   // Looks for silent and lost required peers; at most one event per call, with the role it is about.
   PeerEvent watch_peers(std::int64_t now_ns, wire::Role& about);
+  // A required role that has been named silent and has not come back.
+  [[nodiscard]] std::optional<wire::Role> silent_peer() const noexcept;
   [[nodiscard]] std::string describe_peer(wire::Role role) const;
   // The named role has been silent for 0.3 s, for NodeStatus and logs.
   [[nodiscard]] std::string silence_text(wire::Role role) const;

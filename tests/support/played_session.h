@@ -106,8 +106,7 @@ class PlayedSession {
   // What the node under test has said on a topic since the last call.
   template <typename Message>
   [[nodiscard]] std::vector<Message> said(wire::Topic topic) {
-    transport::Received received;
-    while (played_.take(received)) said_[received.topic].emplace_back(received.bytes.begin(), received.bytes.end());
+    listen();
     std::vector<Message> messages;
     for (const std::vector<std::byte>& bytes : said_[topic]) {
       messages.emplace_back();
@@ -117,9 +116,19 @@ class PlayedSession {
     return messages;
   }
 
+  void forget() {
+    listen();
+    said_.clear();
+  }
+
   wire::SessionDescription session;
 
  private:
+  void listen() {
+    transport::Received received;
+    while (played_.take(received)) said_[received.topic].emplace_back(received.bytes.begin(), received.bytes.end());
+  }
+
   transport::InProcessBus bus_;
   transport::InProcessEndpoint node_{bus_, {"node", transport::TopicSet::all(), transport::TopicSet::all()}};
   transport::InProcessEndpoint played_{bus_, {"played", transport::TopicSet::all(), transport::TopicSet::all()}};

@@ -25,7 +25,16 @@ class Io : public ::testing::Test {
     config.name_check = {};
     return config;
   }
-  void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }
+  void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
+  void restart(IoConfig with) { node = std::make_unique<IoNode>(played.carrier(), std::move(with)); }
+  // so many milliseconds in which the others give signs of life
+  void live(std::int64_t ms) {
+    for (const std::int64_t end_ns = now_ns + ms * kMs; now_ns < end_ns;) {
+      played.say_status(Role::mechanics, NodeState::running, 1);
+      played.say_status(Role::hydraulics, NodeState::running, 1);
+      poll(100 * kMs);
+    }
+  }
 
   // the session runs: tick 0 is out
   void get_running() {
@@ -34,7 +43,7 @@ class Io : public ::testing::Test {
     ASSERT_FALSE(sessions.empty());
     played.session.header = sessions.back().header;
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
-      played.say_heard(role, NodeState::joining, node.member().header(Phase::join, kJoinStep), {Topic::tick});
+      played.say_heard(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
     }
     poll(kMs);
     played.say_status(Role::mechanics, NodeState::ready, 0);
@@ -42,16 +51,16 @@ class Io : public ::testing::Test {
     say_samples(0);
     poll(kMs);
     poll();
-    ASSERT_EQ(node.next_step(), 1);
+    ASSERT_EQ(node->next_step(), 1);
   }
   void say_samples(StepIndex step) {
-    played.say_mechanism(step, Phase::running, node.member().epoch());
-    played.say_actuators(step, Phase::running, node.member().epoch());
+    played.say_mechanism(step, Phase::running, node->member().epoch());
+    played.say_actuators(step, Phase::running, node->member().epoch());
   }
   // steps in time: each tick is answered at once
   void run_to(StepIndex step) {
-    while (node.next_step() < step) {
-      say_samples(node.next_step());
+    while (node->next_step() < step) {
+      say_samples(node->next_step());
       poll(kMs);
     }
   }
@@ -69,20 +78,87 @@ class Io : public ::testing::Test {
   }
 
   PlayedSession played{0};
-  IoNode node{played.carrier(), config()};
+  std::unique_ptr<IoNode> node = std::make_unique<IoNode>(played.carrier(), config());
   std::int64_t now_ns = 1000 * kMs;
   std::uint64_t requests_ = 0;
 };
 
+TEST_F(Io, SleepsWhileItIsPaused) {
+  get_running();
+  run_to(10);
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  for (int i = 0; i < 5; ++i) {
+    poll(50 * kMs);
+    EXPECT_GT(node->next_deadline(now_ns), now_ns) << "poll " << i << " would spin";
+  }
+}
+
+TEST_F(Io, SaysThatItRunsWhileItDoesSingleSteps) {
+  get_running();
+  run_to(10);
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  ASSERT_TRUE(request(wire::ControlAction::step, 3).is_accepted);
+  EXPECT_EQ(node->member().state(), NodeState::running);
+  run_to(13);
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  ASSERT_FALSE(statuses.empty());
+  EXPECT_EQ(statuses.back().header.step, 13);
+}
+
+TEST_F(Io, CountsNoPauseAsSlip) {
+  get_running();
+  run_to(10);
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  live(35'000);
+  ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
+  run_to(50);
+  EXPECT_EQ(node->health().slip_ns.load(), 0);
+  // and what is asked twice moves nothing: a lag beyond the limit is still counted
+  poll(200 * kMs);
+  ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
+  run_to(52);
+  EXPECT_GE(node->health().slip_ns.load(), 150 * kMs);
+}
+
+TEST_F(Io, AsksForSamplesOnlyWhenTheyAreDue) {
+  IoConfig slow = config();
+  slow.step = milliseconds(10);
+  restart(std::move(slow));
+  get_running();
+  const std::int64_t sent_ns = now_ns;
+  while (now_ns < sent_ns + 12 * kMs) poll(kMs);
+  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  while (now_ns < sent_ns + 14 * kMs) poll(kMs);
+  EXPECT_EQ(played.said<wire::ResendRequest>(Topic::resend).size(), 2u);
+}
+
+TEST_F(Io, HoldsUntilTheLastSilentNodeIsBack) {
+  get_running();
+  poll(301 * kMs);
+  poll();
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  played.say_status(Role::mechanics, NodeState::running, 1);
+  poll(kMs);
+  poll(kMs);
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  EXPECT_NE(node->member().reason().find("hydraulics"), std::string::npos) << node->member().reason();
+  played.say_status(Role::hydraulics, NodeState::running, 1);
+  poll(kMs);
+  EXPECT_EQ(node->member().state(), NodeState::running);
+  EXPECT_EQ(node->member().reason(), "");
+}
+
 TEST_F(Io, DoesNotBelieveASampleThatCannotExist) {
   get_running();
   run_to(5);
-  const std::uint64_t refused = node.member().refusals().too_far_ahead;
-  say_samples(node.next_step() + 1);
+  const std::uint64_t refused = node->member().refusals().too_far_ahead;
+  say_samples(node->next_step() + 1);
   say_samples(StepIndex{1} << 52);
   poll(kMs);
-  EXPECT_EQ(node.next_step(), 5) << "a tick went out without the samples it waits for";
-  EXPECT_EQ(node.member().refusals().too_far_ahead, refused + 4);
+  EXPECT_EQ(node->next_step(), 5) << "a tick went out without the samples it waits for";
+  EXPECT_EQ(node->member().refusals().too_far_ahead, refused + 4);
   run_to(7);
 }
 
@@ -96,8 +172,8 @@ TEST_F(Io, DoesNotTakeTheSamplesOfAnotherRole) {
   played.say(Topic::mechanism, sample);
   played.say_actuators(5);
   poll(kMs);
-  EXPECT_EQ(node.next_step(), 5);
-  EXPECT_EQ(node.member().refusals().unexpected_writer, 2u);
+  EXPECT_EQ(node->next_step(), 5);
+  EXPECT_EQ(node->member().refusals().unexpected_writer, 2u);
 }
 
 }  // namespace

@@ -67,6 +67,57 @@ TEST_F(Physics, DoesAStepForATickAndTheSampleOfItsPartner) {
   EXPECT_EQ(newest_sample(), 2);
 }
 
+TEST_F(Physics, AfterAFaultTickSleepsUntilIoSaysWhy) {
+  get_ready();
+  played.say_tick(0, static_cast<std::uint32_t>(TickFlag::end) | static_cast<std::uint32_t>(TickFlag::fault));
+  for (int i = 0; i < 5; ++i) {
+    poll(50 * kMs);
+    EXPECT_GT(node.next_deadline(now_ns), now_ns) << "poll " << i << " would spin";
+  }
+  wire::NodeStatus fault = played.status(Role::io, NodeState::fault, 0);
+  fault.exit_code = static_cast<std::int32_t>(ExitCode::storage);
+  fault.reason = "disk";
+  played.say(Topic::node_status, fault);
+  poll(kMs);
+  EXPECT_EQ(node.member().exit_code(), ExitCode::storage);
+  EXPECT_EQ(node.member().reason(), "io ended the session: disk");
+}
+
+// ---- asking for what is missing -------------------------------------------------------------------------------
+
+TEST_F(Physics, AsksForATickThreeMillisecondsAfterItWasDue) {
+  played.session.step_ns = 10 * kMs;
+  get_ready();
+  played.say_tick(0);
+  poll(kMs);
+  played.say_actuators(1);
+  const std::int64_t done_ns = now_ns;
+  played.forget();
+  while (now_ns < done_ns + 12 * kMs) poll(kMs);
+  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  while (now_ns < done_ns + 14 * kMs) poll(kMs);
+  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].role, Role::io);
+  EXPECT_EQ(asked[0].header.step, 1);
+}
+
+TEST_F(Physics, AsksForNothingWhileTheSessionIsPaused) {
+  get_ready();
+  played.say_tick(0);
+  poll(kMs);
+  played.say_actuators(1);
+  played.say_status(Role::io, NodeState::holding, 1);
+  poll(kMs);
+  played.forget();
+  for (int i = 0; i < 100; ++i) poll(2 * kMs);
+  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  // a tick that io has sent before it held is missing all the same
+  played.say_status(Role::io, NodeState::holding, 2);
+  for (int i = 0; i < 60; ++i) poll(2 * kMs);
+  EXPECT_FALSE(played.said<wire::ResendRequest>(Topic::resend).empty());
+}
+
 // ---- who may say what -----------------------------------------------------------------------------------------
 
 TEST_F(Physics, DoesNotFollowATickOfAnObserverOrAPartner) {
