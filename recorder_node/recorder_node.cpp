@@ -30,6 +30,8 @@ constexpr std::string_view kTypeNames[] = {
     "slewring::ResendRequest"};
 static_assert(std::size(kTypeNames) == wire::kTopics);
 
+constexpr Topic kStepTopics[] = {Topic::tick, Topic::mechanism, Topic::actuators};
+
 std::string manifest_text(const wire::SessionDescription& session) {
   std::string text = "[";
   for (const wire::Asset& asset : session.assets) {
@@ -139,14 +141,16 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
   }
 }
 
-// another process records this session: this one was never part of it and leaves nothing behind
+// another process records this session: this one leaves nothing behind unless it holds a step of it
 void RecorderNode::refuse(const Status& refusal) {
   if (writer_ != nullptr) {
     close();
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-    std::filesystem::remove(path_.parent_path(), ignored);
-    path_.clear();
+    if (!holds_step()) {
+      std::error_code ignored;
+      std::filesystem::remove(path_, ignored);
+      std::filesystem::remove(path_.parent_path(), ignored);
+      path_.clear();
+    }
   }
   member_.step_aside(refusal.code, refusal.text);
   stage_ = Stage::finished;
@@ -178,9 +182,10 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
   }
   begin_streams();
   write(message, session.header.epoch, kJoinStep, 0);
-  // nothing to prove for a node without step topics, nothing to initialise: it is ready when it listens
-  member_.set_state(NodeState::ready);
+  // a session that needs a recorder begins with io's probe; one that has begun has its recorder
+  member_.set_state(member_.requires_role(Role::recorder) ? NodeState::joining : NodeState::ready);
   stage_ = Stage::recording;
+  deadline_ns_ = 0;
   resend_.restart(now_ns);
 }
 
@@ -237,6 +242,7 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
     return;
   }
   if (!member_.fits(header, message.topic)) return;
+  if (member_.state() == NodeState::joining && !has_come_in_time(header, message.topic, now_ns)) return;
   member_.heard(header, message.topic, now_ns);
   if (header.phase == Phase::join || writer_ == nullptr) return;
   if (header.phase == Phase::init)
@@ -257,6 +263,30 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
   }
   if (!stream.has_gap()) resend_.restart(now_ns);
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
+}
+
+// io's probe comes before everything else. A recorder that hears a step first is a second one: it records nothing and
+// waits for the first one's status, which names it.
+bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std::int64_t now_ns) {
+  if (header.phase == Phase::join) {
+    if (topic == Topic::tick) member_.set_state(NodeState::ready);
+    return true;
+  }
+  ++member_.refusals().early;
+  if (late_deadline_ns_ == 0) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+  return false;
+}
+
+void RecorderNode::refuse_late() {
+  refuse(Status::error(ExitCode::bad_input, "session '" + member_.session().name +
+                                                "' had begun before this recorder came, and its own recorder was not "
+                                                "heard; nothing was recorded here; start the recorder with the "
+                                                "session"));
+}
+
+bool RecorderNode::holds_step() const noexcept {
+  return std::any_of(std::begin(kStepTopics), std::end(kStepTopics),
+                     [this](Topic topic) { return counts_[static_cast<std::size_t>(topic)].recorded > 0; });
 }
 
 // what must be complete: the ticks and the samples of every role that takes part
@@ -396,6 +426,8 @@ void RecorderNode::watch(std::int64_t now_ns) {
     lost_node_ = member_.describe_peer(about);
     deadline_ns_ = now_ns + node::kSilentAfter.ns;
   }
+  const bool is_late = late_deadline_ns_ != 0;
+  if (is_late && (is_ending() || now_ns > late_deadline_ns_)) return refuse_late();
   if (!is_ending()) {
     deadline_ns_ = 0;
     return;

@@ -56,7 +56,10 @@ class RecorderNode final : public node::Node {
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(const transport::Received& message, std::int64_t now_ns);
   void refuse(const Status& refusal);
+  void refuse_late();
+  [[nodiscard]] bool holds_step() const noexcept;
   void receive_stepped(const transport::Received& message, std::int64_t now_ns);
+  [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
   void receive_variables(const transport::Received& message, const wire::Header& header);
   void keep_for_next_epoch(const transport::Received& message);
   Status create(const wire::SessionDescription& session);
@@ -87,7 +90,8 @@ class RecorderNode final : public node::Node {
   StepIndex reported_step_ = kJoinStep;
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
-  std::string lost_node_;  // who is gone, while the others are still saying so; empty: nobody
+  std::int64_t late_deadline_ns_ = 0;  // of one that came after the session's begin; 0: it did not
+  std::string lost_node_;              // who is gone, while the others are still saying so; empty: nobody
   struct Early {
     wire::Topic topic = wire::Topic::session;
     std::int64_t source_ns = 0;

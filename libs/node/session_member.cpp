@@ -19,11 +19,14 @@ bool is_over(NodeState state) {
   return state == NodeState::ended || state == NodeState::fault;
 }
 
-// of two claimants of a role: the one that is further on, else the one that started first, else the lower pid
+// of two claimants of a role: the one that is further on, else the one that started first, else the lower pid. The
+// clocks of two machines differ: what was recorded counts before them.
 bool goes_first(const wire::NodeStatus& a, const wire::NodeStatus& b) {
   if (is_over(a.state) != is_over(b.state)) return is_over(b.state);
   const auto runs = [](NodeState state) { return state >= NodeState::ready && state <= NodeState::holding; };
   if (runs(a.state) != runs(b.state)) return runs(a.state);
+  const bool a_records = a.recorded_step >= 0, b_records = b.recorded_step >= 0;
+  if (a_records != b_records) return a_records;
   if (a.started_ns != b.started_ns) return a.started_ns < b.started_ns;
   return std::tie(a.pid, a.host) < std::tie(b.pid, b.host);
 }

@@ -100,6 +100,17 @@ TEST_F(Member, GivesWayToAnEarlierProcessOfItsRoleAndNotToALaterOne) {
   EXPECT_TRUE(hear(status_of(Role::mechanics, 5, NodeState::ended)).is_ok());
 }
 
+TEST_F(Member, GivesWayToNobodyWhoHasRecordedNothingWhileItHas) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  member.set_state(NodeState::running);
+  member.set_recorded_step(0);
+  NodeStatus earlier = status_of(Role::mechanics, 5);
+  earlier.started_ns = 0;
+  EXPECT_TRUE(hear(earlier).is_ok());
+  earlier.recorded_step = 7;
+  EXPECT_EQ(hear(earlier).code, ExitCode::bad_input);
+}
+
 TEST_F(Member, DoesNotHearASecondProcessOfAnotherRole) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());

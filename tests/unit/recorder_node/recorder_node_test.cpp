@@ -1,0 +1,179 @@
+// The recorder of a session, with every other node and the clock played by the test.
+#include "recorder_node/recorder_node.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "recording/reader.h"
+#include "tests/support/played_session.h"
+
+namespace slew::recorder {
+namespace {
+
+using testing::kMs;
+using testing::PlayedSession;
+using wire::NodeState;
+using wire::Phase;
+using wire::Role;
+using wire::Topic;
+
+class Recorder : public ::testing::Test {
+ protected:
+  Recorder() {
+    std::string name = (std::filesystem::temp_directory_path() / "slewring_recorder_XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+    RecorderConfig config;
+    config.runs_directory = folder;
+    node = std::make_unique<RecorderNode>(played.carrier(), std::move(config));
+  }
+  ~Recorder() override { std::filesystem::remove_all(folder); }
+
+  void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
+  void say_probe() {
+    wire::Tick probe;
+    probe.header = played.header(Role::io, kJoinStep, Phase::join);
+    played.say(Topic::tick, probe);
+  }
+  void join() {
+    played.say(Topic::session, played.session);
+    poll();
+    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.say_status(role, NodeState::joining);
+    poll(kMs);
+    say_probe();
+    poll(kMs);
+    ASSERT_EQ(node->member().state(), NodeState::ready);
+  }
+  // ticks and samples of [from, to]
+  void say_steps(StepIndex from, StepIndex to) {
+    for (StepIndex step = from; step <= to; ++step) {
+      played.say_tick(step);
+      played.say_mechanism(step);
+      played.say_actuators(step);
+    }
+    poll(101 * kMs);
+  }
+  void say_end(StepIndex last, NodeState state = NodeState::ended) {
+    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.say_status(role, state, last);
+    poll(kMs);
+  }
+  // another process of the role
+  wire::NodeStatus other_recorder(NodeState state, StepIndex recorded, std::int64_t started_ns) const {
+    wire::NodeStatus status = played.status(Role::recorder, state);
+    status.header.incarnation = 999;
+    status.recorded_step = recorded;
+    status.started_ns = started_ns;
+    return status;
+  }
+
+  // ---- what is in the file
+  // steps of a topic by epoch
+  [[nodiscard]] std::set<StepIndex> recorded(Topic topic, std::uint32_t epoch = 0) const {
+    std::unique_ptr<recording::Reader> reader;
+    EXPECT_TRUE(recording::Reader::open(node->recording(), reader).is_ok());
+    std::set<StepIndex> steps;
+    if (reader == nullptr) return steps;
+    EXPECT_TRUE(reader
+                    ->for_each({},
+                               [&](const recording::RecordedMessage& message) {
+                                 wire::Header header;
+                                 const bool is_wanted = message.channel->topic == node::to_text(topic);
+                                 if (is_wanted && transport::decode_header(message.payload, header) &&
+                                     header.epoch == epoch) {
+                                   steps.insert(header.step);
+                                 }
+                                 return recording::Reader::Visit::go_on;
+                               })
+                    .is_ok());
+    return steps;
+  }
+  [[nodiscard]] std::string summary(const std::string& key) const {
+    std::unique_ptr<recording::Reader> reader;
+    EXPECT_TRUE(recording::Reader::open(node->recording(), reader).is_ok());
+    const recording::TextMap* entries = reader == nullptr ? nullptr : reader->find_metadata("slewring.summary");
+    if (entries == nullptr || entries->count(key) == 0) return "none";
+    return entries->at(key);
+  }
+
+  PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::recorder)};
+  std::filesystem::path folder;
+  std::unique_ptr<RecorderNode> node;
+  std::int64_t now_ns = 1000 * kMs;
+};
+
+TEST_F(Recorder, RecordsEveryStepUpToTheEndThatEachNodeNamed) {
+  join();
+  say_steps(0, 9);
+  say_end(9);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
+  EXPECT_EQ(recorded(Topic::tick).size(), 10u);
+  EXPECT_EQ(recorded(Topic::mechanism).size(), 10u);
+  EXPECT_EQ(summary("tick.lost"), "0");
+}
+
+// ---- a second recorder ----------------------------------------------------------------------------------------
+
+TEST_F(Recorder, IsNotDisturbedByAnEmptyOneWhoseClockIsBehind) {
+  join();
+  say_steps(0, 9);
+  played.say(Topic::node_status, other_recorder(NodeState::ready, kJoinStep, 0));
+  poll(kMs);
+  EXPECT_FALSE(node->is_finished());
+  say_steps(10, 12);
+  say_end(12);
+  EXPECT_EQ(recorded(Topic::tick).size(), 13u);
+}
+
+TEST_F(Recorder, KeepsWhatItHasRecordedWhenItMustGiveWay) {
+  join();
+  say_steps(0, 9);
+  played.say(Topic::node_status, other_recorder(NodeState::running, 100, 0));
+  poll(kMs);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
+  EXPECT_EQ(recorded(Topic::tick).size(), 10u);
+}
+
+TEST_F(Recorder, LeavesNothingBehindWhenItGivesWayBeforeTheFirstStep) {
+  join();
+  played.say(Topic::node_status, other_recorder(NodeState::ready, kJoinStep, 0));
+  poll(kMs);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  EXPECT_TRUE(node->recording().empty());
+}
+
+TEST_F(Recorder, ThatComesToARunningSessionIsNoRivalBeforeItHasHeardTheFirst) {
+  played.say(Topic::session, played.session);
+  poll();
+  played.say_status(Role::io, NodeState::running);
+  played.say_tick(500);
+  poll(kMs);
+  EXPECT_EQ(node->member().state(), NodeState::joining);
+  // on a machine whose clock is behind: the first is younger, and stays all the same
+  played.say(Topic::node_status, other_recorder(NodeState::running, 499, INT64_MAX));
+  poll(kMs);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
+  EXPECT_NE(node->member().reason().find("is held by process"), std::string::npos) << node->member().reason();
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST_F(Recorder, ThatComesLateAndHearsOfNoFirstOneSaysSo) {
+  played.say(Topic::session, played.session);
+  poll();
+  for (int i = 0; i < 110; ++i) {
+    played.say_status(Role::io, NodeState::running);
+    played.say_tick(500 + i);
+    poll(100 * kMs);
+  }
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
+  EXPECT_NE(node->member().reason().find("had begun before this recorder came"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+}  // namespace
+}  // namespace slew::recorder
