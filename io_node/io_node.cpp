@@ -56,6 +56,8 @@ bool IoNode::poll(std::int64_t now_ns) {
     any = true;
   }
   any |= advance(now_ns);
+  if (const Status& failure = member_.send_failure(); !failure.is_ok())
+    begin_ending(failure.code, failure.text, now_ns);
   watch(now_ns);
   if (stage_ != Stage::checking_name) member_.publish_status_if_changed();
   update_health();
@@ -431,7 +433,7 @@ void IoNode::keep_time(std::int64_t now_ns) noexcept {
 
 bool IoNode::advance_ticks(std::int64_t now_ns) {
   bool any = false;
-  while (stage_ == Stage::ticking) {
+  while (stage_ == Stage::ticking && member_.send_failure().is_ok()) {
     if (config_.steps >= 0 && n_ >= config_.steps) {
       begin_ending(ExitCode::ok, "", now_ns);
       return true;
@@ -569,7 +571,7 @@ void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t
   const bool is_orderly = code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated;
   if (was_ticking) send_end(is_orderly ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault), code);
   if (is_orderly && was_ticking) {
-    member_.end(code);
+    member_.end(code, reason);
   } else {
     member_.fail(code, reason.empty() ? "ended before the first step" : reason);
   }

@@ -81,6 +81,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
       if (!status.is_ok()) begin_ending(status.code, status.text);
     }
   }
+  if (const Status& failure = member_.send_failure(); !failure.is_ok()) begin_ending(failure.code, failure.text);
   member_.publish_status_if_changed();
   update_health();
   return any;

@@ -102,7 +102,8 @@ ExitCode run_node(node::Node& node) {
   node::install_signal_handlers();
   const ExitCode code = node::run_alone(node);
   const std::string& reason = node.member().reason();
-  const bool was_asked_to_end = code == ExitCode::interrupted || code == ExitCode::terminated;
+  // whoever sent this process the signal knows why it ended
+  const bool was_asked_to_end = static_cast<int>(code) == node::stop_requested.load();
   if (code != ExitCode::ok && !was_asked_to_end && !reason.empty()) throw Failure(code, reason);
   return code;
 }

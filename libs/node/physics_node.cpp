@@ -64,6 +64,7 @@ bool PhysicsNode::poll(std::int64_t now_ns) {
     any = true;
   }
   any |= advance(now_ns);
+  if (const Status& failure = member_.send_failure(); !failure.is_ok()) leave(failure.code, failure.text, now_ns);
   if (stage_ != Stage::finished && stage_ != Stage::waiting_for_session) watch(now_ns);
   member_.publish_status_if_changed();
   update_health();
@@ -246,7 +247,7 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
       return advance_init(now_ns);
     case Stage::stepping: {
       bool any = false;
-      while (stage_ == Stage::stepping && advance_step(now_ns)) any = true;
+      while (stage_ == Stage::stepping && member_.send_failure().is_ok() && advance_step(now_ns)) any = true;
       if (!any) ask_for_missing(now_ns);
       return any;
     }
@@ -514,7 +515,9 @@ void PhysicsNode::watch(std::int64_t now_ns) {
   if (stage_ == Stage::leaving) return;
   const Peer& io = member_.peer(Role::io);
   if (io.status.state == NodeState::fault) {
-    return leave(static_cast<ExitCode>(io.status.exit_code), "io ended the session: " + io.status.reason, now_ns);
+    const auto code = static_cast<ExitCode>(io.status.exit_code);
+    const bool by_signal = code == ExitCode::interrupted || code == ExitCode::terminated;
+    return leave(code, by_signal ? "" : "io ended the session: " + io.status.reason, now_ns);
   }
   // the END tick normally comes first, and io answers for a while if it was lost
   if (io.status.state == NodeState::ended) {

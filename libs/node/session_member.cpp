@@ -170,7 +170,7 @@ bool SessionMember::fits(const wire::Header& header, Topic topic) noexcept {
 }
 
 void SessionMember::set_state(NodeState state) noexcept {
-  if (status_.state == state) return;
+  if (status_.state == state || status_.state == NodeState::fault) return;
   if (status_.state == NodeState::holding) reason_.clear();
   status_.state = state;
   status_changed_ = true;
@@ -194,10 +194,11 @@ void SessionMember::step_aside(ExitCode code, std::string reason) {
   is_aside_ = true;
 }
 
-void SessionMember::end(ExitCode code) {
+void SessionMember::end(ExitCode code, std::string reason) {
   if (status_.state == NodeState::fault) return;
   status_.exit_code = static_cast<std::int32_t>(code);
   set_state(NodeState::ended);
+  reason_ = std::move(reason);
 }
 
 void SessionMember::publish_status_if_changed() {
@@ -298,7 +299,10 @@ PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
     if (!peer.is_known || peer.is_lost || peer.status.state >= NodeState::ended) continue;
     about = role;
     const std::int64_t silent_ns = now_ns - peer.last_heard_ns;
-    if (peer.process.has_exited() || silent_ns > kLostAfter.ns) {
+    if (peer.exit_seen_ns == 0 && peer.process.has_exited()) peer.exit_seen_ns = now_ns;
+    // what it said last may still be on its way, and says why
+    const bool is_gone = peer.exit_seen_ns != 0 && now_ns - peer.exit_seen_ns >= kLastWords.ns;
+    if (is_gone || silent_ns > kLostAfter.ns) {
       peer.is_lost = true;
       return PeerEvent::lost;
     }
@@ -412,12 +416,8 @@ std::string SessionMember::missing_join_text() {
 }
 
 void SessionMember::send(Topic topic, std::span<const std::byte> bytes) noexcept {
-  const Status status = transport_.publish(topic, bytes);
-  if (!status.is_ok() && status_.state != NodeState::fault) {
-    status_.exit_code = static_cast<std::int32_t>(status.code);
-    set_state(NodeState::fault);
-    reason_ = status.text;
-  }
+  Status status = transport_.publish(topic, bytes);
+  if (!status.is_ok() && send_failure_.is_ok()) send_failure_ = std::move(status);
 }
 
 }  // namespace slew::node

@@ -26,6 +26,7 @@ inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
 inline constexpr SimDuration kSilentAfter = {300'000'000};   // named, everybody holds
 inline constexpr SimDuration kLostAfter = {2'000'000'000};   // given up
+inline constexpr SimDuration kLastWords = {20'000'000};      // on their way when a process is seen to be gone
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
@@ -54,8 +55,9 @@ struct Peer {
   std::uint32_t incarnation = 0;   // of the process that holds the role
   std::int64_t last_heard_ns = 0;  // monotonic
   ProcessWatch process;
-  bool is_silent = false;  // named once
-  bool is_lost = false;    // given up
+  std::int64_t exit_seen_ns = 0;  // when the process was first seen to be gone; 0: it is there
+  bool is_silent = false;         // named once
+  bool is_lost = false;           // given up
 };
 
 enum class PeerEvent : std::uint8_t { none, silent, back, lost };
@@ -100,7 +102,8 @@ class SessionMember {
   void set_step(StepIndex step) noexcept { status_.header.step = step; }
   void set_recorded_step(StepIndex step) noexcept { status_.recorded_step = step; }
   void fail(ExitCode code, std::string reason);
-  void end(ExitCode code);
+  // reason: who asked for it, when that was not this process's owner.
+  void end(ExitCode code, std::string reason = "");
   // Ends without a word to the others: this process never held the role.
   void step_aside(ExitCode code, std::string reason);
   // Waits for somebody, and says for whom in its status; running again when the reason is gone.
@@ -143,6 +146,8 @@ class SessionMember {
     send(topic, buffer_);
   }
   void send(wire::Topic topic, std::span<const std::byte> bytes) noexcept;
+  // The first message that could not be sent; ok: all were. The node ends the session for it.
+  [[nodiscard]] const Status& send_failure() const noexcept { return send_failure_; }
 
  private:
   [[nodiscard]] Status take_status(const wire::NodeStatus& status, std::int64_t now_ns);
@@ -170,6 +175,7 @@ class SessionMember {
   std::vector<std::string> warnings_;
   std::array<Peer, wire::kRoles> peers_;
   Refusals refusals_;
+  Status send_failure_;
   std::int64_t next_probe_ns_ = 0;
   std::vector<std::byte> buffer_;
 };

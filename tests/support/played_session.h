@@ -35,6 +35,27 @@ class StillSubsystem final : public coupling::Subsystem {
   [[nodiscard]] std::string_view offender_name(std::int32_t) const noexcept override { return ""; }
 };
 
+// A carrier that cannot send on one topic any more, once it is told so.
+class BreakableCarrier final : public transport::Transport {
+ public:
+  explicit BreakableCarrier(transport::Transport& carrier) : carrier_(carrier) {}
+  void break_down(wire::Topic topic) { broken_.insert(topic); }
+  Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override {
+    if (!broken_.contains(topic)) return carrier_.publish(topic, bytes);
+    return Status::error(ExitCode::failed, "message not sent");
+  }
+  bool take(transport::Received& message) override { return carrier_.take(message); }
+  void wait_until(std::int64_t monotonic_deadline_ns) override { carrier_.wait_until(monotonic_deadline_ns); }
+  void wake() noexcept override { carrier_.wake(); }
+  [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override {
+    return carrier_.discovered_writers(topic);
+  }
+
+ private:
+  transport::Transport& carrier_;
+  transport::TopicSet broken_;
+};
+
 class PlayedSession {
  public:
   explicit PlayedSession(std::uint32_t required_roles) {

@@ -209,6 +209,14 @@ TEST_P(KilledNode, AskedToEndByASignalEndsTheSessionInOrder) {
   }
   EXPECT_EQ(session.node(GetParam()).wait(), 143);
   EXPECT_EQ(session.node(Role::io).wait(), 143);
+  // io names the node that was asked; a node that was asked itself has nothing to tell its owner
+  for (const Role role : kAllNodes) {
+    const bool must_name = role == Role::io && GetParam() != Role::io;
+    const std::string named =
+        "io_node: " + std::string(node::to_text(GetParam())) + " (" + pid_text(session.node(GetParam())) + " on ";
+    EXPECT_TRUE(session.node(role).err().starts_with(must_name ? named : "")) << session.said();
+    EXPECT_EQ(session.node(role).err().empty(), !must_name) << session.said();
+  }
   EXPECT_EQ(session.recorded().problem, "");
 }
 

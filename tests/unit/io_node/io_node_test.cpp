@@ -150,6 +150,35 @@ TEST_F(Io, HoldsUntilTheLastSilentNodeIsBack) {
   EXPECT_EQ(node->member().reason(), "");
 }
 
+TEST_F(Io, NamesTheNodeThatASignalEnded) {
+  get_running();
+  run_to(10);
+  wire::NodeStatus ended = played.status(Role::mechanics, NodeState::fault, 10);
+  ended.exit_code = static_cast<std::int32_t>(ExitCode::terminated);
+  ended.reason = "ended by a signal";
+  played.say(Topic::node_status, ended);
+  poll(kMs);
+  poll(kFaultGathering.ns);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::terminated);
+  EXPECT_EQ(node->member().state(), NodeState::ended);
+  EXPECT_EQ(node->member().reason(), "mechanics (process 1001 on elsewhere): ended by a signal");
+  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  ASSERT_FALSE(statuses.empty());
+  EXPECT_EQ(statuses.back().reason, node->member().reason());
+}
+
+TEST_F(Io, EndsWhenATickCannotBeSent) {
+  testing::BreakableCarrier carrier(played.carrier());
+  node = std::make_unique<IoNode>(carrier, config());
+  get_running();
+  carrier.break_down(Topic::tick);
+  say_samples(1);
+  poll(kMs);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::failed);
+  EXPECT_EQ(node->member().state(), NodeState::fault);
+  EXPECT_EQ(node->member().reason(), "message not sent");
+}
+
 TEST_F(Io, DoesNotBelieveASampleThatCannotExist) {
   get_running();
   run_to(5);

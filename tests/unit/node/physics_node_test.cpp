@@ -48,7 +48,8 @@ class Physics : public ::testing::Test {
   }
 
   PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
-  PhysicsNode node{Role::mechanics, played.carrier(), build, milliseconds(1000)};
+  testing::BreakableCarrier carrier{played.carrier()};
+  PhysicsNode node{Role::mechanics, carrier, build, milliseconds(1000)};
   std::int64_t now_ns = 1000 * kMs;
   StepIndex newest_ = kJoinStep;
 };
@@ -81,6 +82,24 @@ TEST_F(Physics, AfterAFaultTickSleepsUntilIoSaysWhy) {
   poll(kMs);
   EXPECT_EQ(node.member().exit_code(), ExitCode::storage);
   EXPECT_EQ(node.member().reason(), "io ended the session: disk");
+}
+
+TEST_F(Physics, EndsAtTheFirstSampleThatCannotBeSent) {
+  get_ready();
+  for (StepIndex step = 0; step < 4; ++step) {
+    played.say_tick(step);
+    if (step > 0) played.say_actuators(step);
+  }
+  carrier.break_down(Topic::mechanism);
+  poll(kMs);
+  poll(kMs);
+  EXPECT_EQ(node.member().state(), NodeState::fault);
+  EXPECT_EQ(node.member().exit_code(), ExitCode::failed);
+  EXPECT_EQ(node.member().reason(), "message not sent");
+  EXPECT_EQ(node.health().steps_done.load(), 1u);
+  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  ASSERT_FALSE(statuses.empty());
+  EXPECT_EQ(statuses.back().reason, "message not sent");
 }
 
 // ---- asking for what is missing -------------------------------------------------------------------------------

@@ -1,6 +1,9 @@
 // Who belongs to a session and who does not, over the bus of one process.
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "node/session_member.h"
 #include "transport/in_process_bus.h"
 
@@ -72,6 +75,41 @@ TEST_F(Member, KnowsTheOwnerFromTheDescriptionAlone) {
   EXPECT_EQ(member.describe_peer(Role::io), "io (process 77 on elsewhere)");
   EXPECT_EQ(watch(2'001 * kMs), PeerEvent::lost);
   EXPECT_EQ(about, Role::io);
+}
+
+// a process of this host that has ended
+std::uint32_t ended_process() {
+  const pid_t pid = fork();
+  if (pid == 0) _exit(0);
+  waitpid(pid, nullptr, 0);
+  return static_cast<std::uint32_t>(pid);
+}
+
+TEST_F(Member, HearsTheLastWordsOfAProcessBeforeItIsGone) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  NodeStatus status = status_of(Role::hydraulics, 5);
+  status.host = this_process().host;
+  status.pid = ended_process();
+  ASSERT_TRUE(hear(status, 0).is_ok());
+  EXPECT_EQ(watch(1 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(20 * kMs), PeerEvent::none);
+  // the true reason has come
+  NodeStatus fault = status;
+  fault.state = NodeState::fault;
+  ASSERT_TRUE(hear(fault, 20 * kMs).is_ok());
+  EXPECT_EQ(watch(22 * kMs), PeerEvent::none);
+  EXPECT_FALSE(member.peer(Role::hydraulics).is_lost);
+}
+
+TEST_F(Member, NamesAProcessThatIsGoneWithoutAWord) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  NodeStatus status = status_of(Role::hydraulics, 5);
+  status.host = this_process().host;
+  status.pid = ended_process();
+  ASSERT_TRUE(hear(status, 0).is_ok());
+  EXPECT_EQ(watch(1 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(21 * kMs), PeerEvent::lost);
+  EXPECT_EQ(about, Role::hydraulics);
 }
 
 TEST_F(Member, KeepsStatusesThatComeBeforeTheSession) {
