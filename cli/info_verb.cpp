@@ -37,6 +37,16 @@ std::map<std::string, Counts> counts_of(const recording::Reader& reader) {
   return counts;
 }
 
+// What the recorder wrote of the session's end: 0 and "in order", or the exit code and why.
+std::string end_of(const recording::Reader& reader) {
+  if (!reader.has_all_messages()) return "cut: " + reader.damage_text();
+  const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
+  if (summary == nullptr || summary->count("end") == 0) return "closed in order";
+  const std::string& code = summary->at("exit_code");
+  return code == "0" ? "closed in order"
+                     : fmt::format("closed; the session ended with code {}: {}", code, summary->at("end"));
+}
+
 nlohmann::json to_json(const recording::Reader& reader, double simulated) {
   const recording::SessionIdentity& identity = reader.identity();
   nlohmann::json topics = nlohmann::json::object();
@@ -54,6 +64,7 @@ nlohmann::json to_json(const recording::Reader& reader, double simulated) {
           {"duration", simulated},
           {"complete", reader.has_all_messages()},
           {"damage", reader.damage_text()},
+          {"end", end_of(reader)},
           {"topics", topics}};
 }
 
@@ -70,7 +81,7 @@ void print(const recording::Reader& reader, double simulated) {
       {"length",
        fmt::format("{}, {} in {} of wall time", duration_text(simulated),
                    counted(static_cast<std::uint64_t>(span.steps), "step", "steps"), duration_text(span.wall_time))},
-      {"end", reader.has_all_messages() ? "closed in order" : "cut: " + reader.damage_text()}};
+      {"end", end_of(reader)}};
   for (const auto& [topic, count] : counts_of(reader)) {
     rows.push_back(
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});

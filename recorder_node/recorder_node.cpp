@@ -1,6 +1,8 @@
 #include "recorder_node/recorder_node.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "recorder_node/idl_text.h"
 #include "recording/run_directory.h"
@@ -32,6 +34,20 @@ static_assert(std::size(kTypeNames) == wire::kTopics);
 
 constexpr Topic kStepTopics[] = {Topic::tick, Topic::mechanism, Topic::actuators};
 
+std::string end_text(const SessionEnd& session) {
+  if (!session.reason.empty()) return session.reason;
+  switch (session.code) {
+    case ExitCode::ok:
+      return "in order";
+    case ExitCode::interrupted:
+      return "interrupted by SIGINT";
+    case ExitCode::terminated:
+      return "terminated by SIGTERM";
+    default:
+      return "failed";
+  }
+}
+
 std::string manifest_text(const wire::SessionDescription& session) {
   std::string text = "[";
   for (const wire::Asset& asset : session.assets) {
@@ -54,7 +70,8 @@ RecorderNode::RecorderNode(transport::Transport& transport, RecorderConfig confi
     : member_(Role::recorder, transport, {}), config_(std::move(config)) {}
 
 RecorderNode::~RecorderNode() {
-  close();
+  count_all_losses();
+  close({ExitCode::failed, "the recorder ended before the session"});
 }
 
 bool RecorderNode::poll(std::int64_t now_ns) {
@@ -93,7 +110,8 @@ std::int64_t RecorderNode::next_deadline(std::int64_t now_ns) const {
 
 void RecorderNode::request_stop(ExitCode code) {
   if (stage_ == Stage::finished) return;
-  close();
+  count_all_losses();
+  close({code, "the recorder was ended by a signal"});
   member_.fail(code, "ended by a signal");
   member_.publish_status_if_changed();
   stage_ = Stage::finished;
@@ -102,7 +120,7 @@ void RecorderNode::request_stop(ExitCode code) {
 void RecorderNode::update_health() noexcept {
   node::HealthState& h = health();
   h.state = static_cast<std::uint8_t>(member_.state());
-  h.step = complete_up_to();
+  if (stage_ != Stage::finished) h.step = complete_up_to();
   h.epoch = member_.epoch();
   h.refused = member_.refusals().refused();
   h.has_session.store(member_.has_session(), std::memory_order_release);
@@ -145,7 +163,8 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
 // another process records this session: this one leaves nothing behind unless it holds a step of it
 void RecorderNode::refuse(const Status& refusal) {
   if (writer_ != nullptr) {
-    close();
+    count_all_losses();
+    close({refusal.code, refusal.text});
     if (!holds_step()) {
       std::error_code ignored;
       std::filesystem::remove(path_, ignored);
@@ -242,16 +261,27 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
     if (member_.is_of_session(header, message.topic)) keep_for_next_epoch(message);
     return;
   }
+  // of the epoch that a reset has just ended
+  if (header.epoch + 1 == member_.epoch() && header.phase == Phase::running) {
+    if (member_.is_of_session(header, message.topic)) record_step(message, header, former_, now_ns);
+    return;
+  }
   if (!member_.fits(header, message.topic)) return;
   if (member_.state() == NodeState::joining && !has_come_in_time(header, message.topic, now_ns)) return;
   member_.heard(header, message.topic, now_ns);
   if (header.phase == Phase::join || writer_ == nullptr) return;
-  if (header.phase == Phase::init)
+  if (header.phase == Phase::init) {
     return write(message, header.epoch, kJoinStep, static_cast<std::uint32_t>(header.role));
-  if (message.topic == Topic::variables) return receive_variables(message, header);
+  }
+  record_step(message, header, streams_, now_ns);
+}
 
+void RecorderNode::record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
+                               std::int64_t now_ns) {
+  if (writer_ == nullptr) return;
+  if (message.topic == Topic::variables) return record_variables(message, header, streams);
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
-  StreamGaps& stream = streams_.try_emplace({message.topic, header.role}).first->second;
+  StreamGaps& stream = streams.steps.try_emplace({message.topic, header.role}).first->second;
   switch (stream.arrived(header.step)) {
     case StreamGaps::Arrival::duplicate:
       ++counts.duplicates;
@@ -292,27 +322,28 @@ bool RecorderNode::holds_step() const noexcept {
 
 // what must be complete: the ticks and the samples of every role that takes part
 void RecorderNode::begin_streams() {
-  streams_.clear();
   for (const auto& [topic, role] : {std::pair(Topic::tick, Role::io), std::pair(Topic::mechanism, Role::mechanics),
                                     std::pair(Topic::actuators, Role::hydraulics)}) {
-    if (member_.requires_role(role)) streams_.try_emplace({topic, role});
+    if (member_.requires_role(role)) streams_.steps.try_emplace({topic, role});
   }
 }
 
-// one stream per writer and block; blocks come every k-th step
-void RecorderNode::receive_variables(const transport::Received& message, const wire::Header& header) {
+// Blocks come every k-th step from step 0 on. They are not asked for again: what is missing is counted.
+void RecorderNode::record_variables(const transport::Received& message, const wire::Header& header,
+                                    EpochStreams& streams) {
   wire::VariableBlock block;
   if (!transport::decode(message.bytes, block)) {
     ++member_.refusals().undecodable;
     return;
   }
-  const std::uint64_t key = (static_cast<std::uint64_t>(header.role) << 32) | block.first;
-  const auto [entry, is_new] = last_block_.try_emplace(key, header.step);
-  if (!is_new && header.step <= entry->second) {
+  BlockStream& stream = streams.variables[{header.role, block.first}];
+  if (header.step <= stream.newest) {
     ++counts_[static_cast<std::size_t>(message.topic)].duplicates;
     return;
   }
-  entry->second = header.step;
+  stream.newest = header.step;
+  ++stream.arrived;
+  block_every_ = std::gcd(block_every_, header.step);
   write(message, header.epoch, header.step, (static_cast<std::uint32_t>(header.role) << 16) | block.first);
 }
 
@@ -326,12 +357,9 @@ void RecorderNode::keep_for_next_epoch(const transport::Received& message) {
 }
 
 void RecorderNode::start_epoch(std::uint32_t epoch) {
-  for (auto& [key, stream] : streams_) {
-    stream.close_at(stream.newest());
-    counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
-  }
+  count_losses(former_, false);
+  former_ = std::exchange(streams_, {});
   begin_streams();
-  last_block_.clear();
   member_.set_epoch(epoch);
   reported_step_ = kJoinStep;
   member_.set_recorded_step(kJoinStep);
@@ -358,7 +386,7 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
 StepIndex RecorderNode::complete_up_to() const noexcept {
   StepIndex least = -1;
   bool is_first = true;
-  for (const auto& [key, stream] : streams_) {
+  for (const auto& [key, stream] : streams_.steps) {
     least = is_first ? stream.next() - 1 : std::min(least, stream.next() - 1);
     is_first = false;
   }
@@ -366,11 +394,19 @@ StepIndex RecorderNode::complete_up_to() const noexcept {
 }
 
 // last step of a stream as its writer said when it ended; before that, or when it is gone, the newest that came
-StepIndex RecorderNode::final_step(Role writer, const StreamGaps& stream) const noexcept {
+StepIndex RecorderNode::final_step(Role writer, StepIndex newest) const noexcept {
   const node::Peer& peer = member_.peer(writer);
   const bool has_said = peer.is_known && !peer.is_lost && peer.status.state >= NodeState::ended &&
                         peer.status.header.epoch == member_.epoch();
-  return has_said ? peer.status.header.step : stream.newest();
+  return has_said ? peer.status.header.step : newest;
+}
+
+// step of a writer's last variable block; io's last tick says END and has none
+StepIndex RecorderNode::last_block(Role writer, StepIndex newest) const noexcept {
+  if (block_every_ == 0) return newest;
+  const StepIndex final = final_step(writer, newest);
+  const StepIndex last = writer == Role::io && final > newest ? final - 1 : final;
+  return last < 0 ? newest : last - last % block_every_;
 }
 
 bool RecorderNode::is_ending() const noexcept {
@@ -380,8 +416,14 @@ bool RecorderNode::is_ending() const noexcept {
 // everybody who is still there has ended, and all that they sent has come
 bool RecorderNode::has_everything() const noexcept {
   return member_.all_required(NodeState::ended) &&
-         std::all_of(streams_.begin(), streams_.end(), [&](const auto& entry) {
-           return entry.second.next() > final_step(entry.first.second, entry.second);
+         std::all_of(streams_.steps.begin(), streams_.steps.end(),
+                     [&](const auto& entry) {
+                       const auto& [key, stream] = entry;
+                       return stream.next() > final_step(key.second, stream.newest());
+                     }) &&
+         std::all_of(streams_.variables.begin(), streams_.variables.end(), [&](const auto& entry) {
+           const auto& [key, stream] = entry;
+           return stream.newest >= last_block(key.first, stream.newest);
          });
 }
 
@@ -399,8 +441,8 @@ void RecorderNode::report_progress(std::int64_t now_ns) {
 void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
   if (!resend_.is_due(now_ns)) return;
   bool any = false;
-  for (const auto& [key, stream] : streams_) {
-    const StepIndex last = stream.has_gap() ? stream.gap_end() : final_step(key.second, stream);
+  for (const auto& [key, stream] : streams_.steps) {
+    const StepIndex last = stream.has_gap() ? stream.gap_end() : final_step(key.second, stream.newest());
     if (stream.next() > last) continue;
     wire::ResendRequest request;
     request.header = member_.header(Phase::running, stream.next());
@@ -440,34 +482,59 @@ void RecorderNode::watch(std::int64_t now_ns) {
     return begin_ending(ExitCode::node_lost, lost_node_ + " is gone; the recording was closed after step " +
                                                  std::to_string(complete_up_to()));
   }
+  // asked to end by a signal or not: who saw the END has done all that it had to do
   const wire::NodeStatus& io = member_.peer(Role::io).status;
-  const ExitCode code = io.state == NodeState::fault ? static_cast<ExitCode>(io.exit_code) : ExitCode::ok;
-  begin_ending(code, "io ended the session: " + io.reason);
+  const auto code = static_cast<ExitCode>(io.exit_code);
+  finish({code, io.reason}, io.state == NodeState::fault ? code : ExitCode::ok, "io ended the session: " + io.reason);
 }
 
 void RecorderNode::begin_ending(ExitCode code, const std::string& reason) {
+  finish({code, reason}, code, reason);
+}
+
+void RecorderNode::finish(const SessionEnd& session, ExitCode own_code, const std::string& own_reason) {
   if (stage_ == Stage::finished) return;
-  close();
-  if (code == ExitCode::ok && lost() > 0) {
-    member_.fail(ExitCode::losses, std::to_string(lost()) + " messages are missing in the recording");
-  } else if (code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated) {
-    member_.end(code);
+  count_all_losses();
+  const std::string missing = std::to_string(lost()) + " messages are missing in the recording";
+  const bool has_losses = own_code == ExitCode::ok && lost() > 0;
+  close(has_losses && session.code == ExitCode::ok ? SessionEnd{ExitCode::losses, missing} : session);
+  if (has_losses) {
+    member_.fail(ExitCode::losses, missing);
+  } else if (own_code == ExitCode::ok || own_code == ExitCode::interrupted || own_code == ExitCode::terminated) {
+    member_.end(own_code);
   } else {
-    member_.fail(code, reason);
+    member_.fail(own_code, own_reason);
   }
   member_.publish_status_if_changed();
   stage_ = Stage::finished;
 }
 
-void RecorderNode::close() {
-  if (writer_ == nullptr) return;
-  const StepIndex last_step = complete_up_to();
-  for (auto& [key, stream] : streams_) {
-    stream.close_at(final_step(key.second, stream));
+void RecorderNode::count_all_losses() {
+  count_losses(former_, false);
+  count_losses(streams_, true);
+}
+
+// counts once: the streams are empty afterwards
+void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
+  if (is_present) last_step_ = complete_up_to();
+  for (auto& [key, stream] : streams.steps) {
+    stream.close_at(is_present ? final_step(key.second, stream.newest()) : stream.newest());
     counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
   }
+  for (const auto& [key, stream] : streams.variables) {
+    const StepIndex last = is_present ? last_block(key.first, stream.newest) : stream.newest;
+    const auto expected = block_every_ == 0 ? stream.arrived : static_cast<std::uint64_t>(last / block_every_) + 1;
+    counts_[static_cast<std::size_t>(Topic::variables)].lost += expected - std::min(expected, stream.arrived);
+  }
+  streams = {};
+}
+
+void RecorderNode::close(const SessionEnd& session) {
+  if (writer_ == nullptr) return;
   recording::TextMap summary;
-  summary["last_step"] = std::to_string(last_step);
+  summary["last_step"] = std::to_string(last_step_);
+  summary["exit_code"] = std::to_string(static_cast<int>(session.code));
+  summary["end"] = end_text(session);
   for (std::size_t i = 0; i < wire::kTopics; ++i) {
     if (counts_[i].recorded == 0) continue;
     const std::string name(to_text(static_cast<Topic>(i)));

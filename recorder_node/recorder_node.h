@@ -26,6 +26,24 @@ struct RecorderConfig {
   std::function<Status(const wire::SessionDescription&)> check;
 };
 
+// One writer's variable blocks of one place in its list.
+struct BlockStream {
+  StepIndex newest = kJoinStep;
+  std::uint64_t arrived = 0;
+};
+
+// What has come of one epoch, by writer.
+struct EpochStreams {
+  std::map<std::pair<wire::Topic, wire::Role>, StreamGaps> steps;         // ticks and samples
+  std::map<std::pair<wire::Role, std::uint32_t>, BlockStream> variables;  // by writer and first variable
+};
+
+// How the session ended, for the recording's summary.
+struct SessionEnd {
+  ExitCode code = ExitCode::ok;
+  std::string reason;  // empty: the code says it all
+};
+
 struct TopicCounts {
   std::uint64_t recorded = 0;
   std::uint64_t duplicates = 0;
@@ -60,7 +78,9 @@ class RecorderNode final : public node::Node {
   [[nodiscard]] bool holds_step() const noexcept;
   void receive_stepped(const transport::Received& message, std::int64_t now_ns);
   [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
-  void receive_variables(const transport::Received& message, const wire::Header& header);
+  void record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
+                   std::int64_t now_ns);
+  void record_variables(const transport::Received& message, const wire::Header& header, EpochStreams& streams);
   void keep_for_next_epoch(const transport::Received& message);
   Status create(const wire::SessionDescription& session);
   Status add_attachments(const wire::SessionDescription& session);
@@ -68,14 +88,18 @@ class RecorderNode final : public node::Node {
   void start_epoch(std::uint32_t epoch);
   void begin_streams();
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
-  [[nodiscard]] StepIndex final_step(wire::Role writer, const StreamGaps& stream) const noexcept;
+  [[nodiscard]] StepIndex final_step(wire::Role writer, StepIndex newest) const noexcept;
+  [[nodiscard]] StepIndex last_block(wire::Role writer, StepIndex newest) const noexcept;
   [[nodiscard]] bool is_ending() const noexcept;
   [[nodiscard]] bool has_everything() const noexcept;
   void report_progress(std::int64_t now_ns);
   void ask_for_gaps(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   void begin_ending(ExitCode code, const std::string& reason);
-  void close();
+  void finish(const SessionEnd& session, ExitCode own_code, const std::string& own_reason);
+  void count_losses(EpochStreams& streams, bool is_present);
+  void count_all_losses();
+  void close(const SessionEnd& session);
   void update_health() noexcept;
 
   node::SessionMember member_;
@@ -85,9 +109,11 @@ class RecorderNode final : public node::Node {
   std::unique_ptr<recording::Writer> writer_;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
-  std::map<std::pair<wire::Topic, wire::Role>, StreamGaps> streams_;  // ticks and samples, by writer
-  std::map<std::uint64_t, StepIndex> last_block_;                     // newest variable block, by writer and first
+  EpochStreams streams_;
+  EpochStreams former_;        // of the epoch before: its last messages may come after the tick that ended it
+  StepIndex block_every_ = 0;  // steps between two variable blocks, as the blocks that came say; 0: unknown yet
   StepIndex reported_step_ = kJoinStep;
+  StepIndex last_step_ = kJoinStep;  // up to which every stream was complete at the end
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
   std::int64_t late_deadline_ns_ = 0;  // of one that came after the session's begin; 0: it did not

@@ -114,6 +114,7 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   const std::string recording = work_.recording().string();
 
   const nlohmann::json info = nlohmann::json::parse(slewring({"info", recording, "--verify", "--json"}).out);
+  EXPECT_EQ(info.at("end"), "closed in order");
   EXPECT_EQ(info.at("scene"), "truck_crane");
   EXPECT_EQ(info.at("step_ns"), 1'000'000);
   EXPECT_TRUE(info.at("complete").get<bool>());

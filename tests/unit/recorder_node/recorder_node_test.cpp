@@ -54,6 +54,14 @@ class Recorder : public ::testing::Test {
     }
     poll(101 * kMs);
   }
+  // mechanics' variables at a step
+  void say_block(StepIndex step) {
+    wire::VariableBlock block;
+    block.header = played.header(Role::mechanics, step);
+    block.values.resize(3);
+    played.say(Topic::variables, block);
+    poll();
+  }
   void say_end(StepIndex last, NodeState state = NodeState::ended) {
     for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.say_status(role, state, last);
     poll(kMs);
@@ -111,6 +119,92 @@ TEST_F(Recorder, RecordsEveryStepUpToTheEndThatEachNodeNamed) {
   EXPECT_EQ(recorded(Topic::tick).size(), 10u);
   EXPECT_EQ(recorded(Topic::mechanism).size(), 10u);
   EXPECT_EQ(summary("tick.lost"), "0");
+}
+
+// ---- losses ---------------------------------------------------------------------------------------------------
+
+TEST_F(Recorder, CountsVariableBlocksThatNeverCame) {
+  join();
+  for (const StepIndex step : {0, 10, 40, 50}) say_block(step);
+  say_steps(0, 59);
+  say_end(59);
+  // 20 and 30 are missing, and nothing comes behind the last one
+  poll(2000 * kMs);
+  EXPECT_EQ(summary("variables.recorded"), "4");
+  EXPECT_EQ(summary("variables.lost"), "2");
+  EXPECT_EQ(node->member().exit_code(), ExitCode::losses);
+}
+
+TEST_F(Recorder, WaitsForTheLastVariableBlock) {
+  join();
+  for (const StepIndex step : {0, 10, 20}) say_block(step);
+  say_steps(0, 35);
+  say_end(35);
+  poll(kMs);
+  EXPECT_FALSE(node->is_finished());
+  say_block(30);
+  poll(kMs);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(summary("variables.lost"), "0");
+}
+
+TEST_F(Recorder, RecordsWhatComesAfterTheResetThatEndedItsEpoch) {
+  join();
+  for (StepIndex step = 0; step <= 9; ++step) played.say_tick(step);
+  for (StepIndex step = 0; step <= 5; ++step) {
+    played.say_mechanism(step);
+    played.say_actuators(step);
+  }
+  wire::Tick init;
+  init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
+  played.say(Topic::tick, init);
+  // io's tick overtook these; the samples 7 of both nodes never come
+  for (const StepIndex step : {6, 8}) {
+    played.say_mechanism(step);
+    played.say_actuators(step);
+  }
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
+    wire::NodeStatus ended = played.status(role, NodeState::ended, -1);
+    ended.header.epoch = 1;
+    played.say(Topic::node_status, ended);
+  }
+  poll(kMs);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(recorded(Topic::mechanism), (std::set<StepIndex>{0, 1, 2, 3, 4, 5, 6, 8}));
+  EXPECT_EQ(summary("mechanism.lost"), "1");
+  EXPECT_EQ(summary("actuators.lost"), "1");
+  EXPECT_EQ(summary("tick.lost"), "0");
+}
+
+// ---- how it ended ---------------------------------------------------------------------------------------------
+
+TEST_F(Recorder, WritesHowTheSessionEnded) {
+  join();
+  say_steps(0, 9);
+  wire::NodeStatus io = played.status(Role::io, NodeState::fault, 9);
+  io.exit_code = static_cast<std::int32_t>(ExitCode::diverged);
+  io.reason = "hydraulics (process 1 on here): diverged in step 8";
+  played.say_status(Role::mechanics, NodeState::fault, 9);
+  played.say_status(Role::hydraulics, NodeState::fault, 9);
+  played.say(Topic::node_status, io);
+  poll(kMs);
+  EXPECT_EQ(summary("exit_code"), "5");
+  EXPECT_EQ(summary("end"), io.reason);
+  EXPECT_EQ(summary("last_step"), "9");
+}
+
+TEST_F(Recorder, WritesThatASignalEndedTheSession) {
+  join();
+  say_steps(0, 9);
+  wire::NodeStatus io = played.status(Role::io, NodeState::ended, 9);
+  io.exit_code = static_cast<std::int32_t>(ExitCode::interrupted);
+  played.say_status(Role::mechanics, NodeState::ended, 9);
+  played.say_status(Role::hydraulics, NodeState::ended, 9);
+  played.say(Topic::node_status, io);
+  poll(kMs);
+  EXPECT_EQ(summary("exit_code"), "130");
+  EXPECT_EQ(summary("end"), "interrupted by SIGINT");
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok);
 }
 
 // ---- a second recorder ----------------------------------------------------------------------------------------
