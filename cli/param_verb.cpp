@@ -175,7 +175,7 @@ std::int64_t spread_ns(const std::string& text) {
     throw Failure(ExitCode::bad_input,
                   "--over: '" + text + "' is no time from 0 to 3600 s; nothing was sent; write it like '2 s'");
   }
-  return static_cast<std::int64_t>(*time.value * 1e9);
+  return duration_of_seconds(*time.value).ns;
 }
 
 ExitCode set(const Options& options) {

@@ -65,7 +65,7 @@ ExitCode watch(const Options& options) {
   node::install_signal_handlers();
   const auto observer = find_session(options.session);
   const std::vector<std::string> names = chosen_names(*observer, options.variables);
-  const SimDuration interval{static_cast<std::int64_t>(options.interval * 1e9)};
+  const SimDuration interval = duration_of_seconds(options.interval);
   for (std::int64_t lines = 0; options.count == 0 || lines < options.count; ++lines) {
     observer->wait_for([&] { return observer->view().is_over(); }, interval);
     print_line(observer->view(), names, options.is_json);

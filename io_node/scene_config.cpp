@@ -18,7 +18,7 @@ void ScriptSource::changes(SimTime from, SimTime to, std::vector<wire::Command>&
     wire::Command command;
     command.path = change.set;
     command.value = change.value;
-    command.over_ns = static_cast<std::int64_t>(change.over * 1e9);
+    command.over_ns = duration_of_seconds(change.over).ns;
     due.push_back(std::move(command));
   }
 }
@@ -52,7 +52,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
     channel.rate_limit = input.rate_limit;
     config.channels.push_back(std::move(channel));
   }
-  config.gate.neutral_after = {static_cast<std::int64_t>(scene.session.controller_timeout * 1e9)};
+  config.gate.neutral_after = duration_of_seconds(scene.session.controller_timeout);
   if (wish.operating == Operator::script && !scene.script.is_empty()) {
     config.source = std::make_unique<ScriptSource>(scene);
   }

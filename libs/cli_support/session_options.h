@@ -13,6 +13,7 @@ namespace slew::cli_support {
 inline constexpr std::uint32_t kMaxDomain = 230;
 inline constexpr int kIoPriority = 30;  // the clock goes before the nodes that wait for it
 inline constexpr int kDefaultPriority = 20;
+inline constexpr int kRecorderPriority = 10;  // in `real` pace nothing waits for it: it compresses behind the physics
 
 struct SessionOptions {
   std::string session;             // name
@@ -29,8 +30,8 @@ struct NodeOptions {
   double session_timeout = 30;      // s
   double join_timeout = 10;         // s
 
-  [[nodiscard]] SimDuration join() const noexcept { return {static_cast<std::int64_t>(join_timeout * 1e9)}; }
-  [[nodiscard]] SimDuration timeout() const noexcept { return {static_cast<std::int64_t>(session_timeout * 1e9)}; }
+  [[nodiscard]] SimDuration join() const noexcept { return duration_of_seconds(join_timeout); }
+  [[nodiscard]] SimDuration timeout() const noexcept { return duration_of_seconds(session_timeout); }
 };
 
 // --domain, --interface, --peer.

@@ -1,6 +1,7 @@
 #include "core/time.h"
 
 #include <cerrno>
+#include <cmath>
 #include <ctime>
 
 namespace slew {
@@ -13,6 +14,8 @@ std::int64_t read_clock(clockid_t clock) noexcept {
 }
 
 }  // namespace
+
+SimDuration duration_of_seconds(double seconds) noexcept { return {std::llround(seconds * 1e9)}; }
 
 std::int64_t monotonic_ns() noexcept { return read_clock(CLOCK_MONOTONIC); }
 

@@ -25,17 +25,32 @@ using StepIndex = std::int64_t;
 
 inline constexpr StepIndex kJoinStep = -1;
 
-[[nodiscard]] constexpr SimDuration milliseconds(std::int64_t ms) noexcept { return {ms * 1'000'000}; }
-[[nodiscard]] constexpr SimDuration microseconds(std::int64_t us) noexcept { return {us * 1'000}; }
+[[nodiscard]] constexpr SimDuration milliseconds(std::int64_t ms) noexcept {
+  return {ms * 1'000'000};
+}
+[[nodiscard]] constexpr SimDuration microseconds(std::int64_t us) noexcept {
+  return {us * 1'000};
+}
+
+// Nearest whole nanosecond: 1.001 s is 1,001,000,000 ns, of which truncation makes one less. |seconds| below 9e9.
+[[nodiscard]] SimDuration duration_of_seconds(double seconds) noexcept;
 
 [[nodiscard]] constexpr SimTime start_of(StepIndex step, SimDuration communication_step) noexcept {
   return {step * communication_step.ns};
 }
 
-[[nodiscard]] constexpr SimTime operator+(SimTime t, SimDuration d) noexcept { return {t.ns + d.ns}; }
-[[nodiscard]] constexpr SimDuration operator-(SimTime a, SimTime b) noexcept { return {a.ns - b.ns}; }
-[[nodiscard]] constexpr SimDuration operator+(SimDuration a, SimDuration b) noexcept { return {a.ns + b.ns}; }
-[[nodiscard]] constexpr SimDuration operator-(SimDuration a, SimDuration b) noexcept { return {a.ns - b.ns}; }
+[[nodiscard]] constexpr SimTime operator+(SimTime t, SimDuration d) noexcept {
+  return {t.ns + d.ns};
+}
+[[nodiscard]] constexpr SimDuration operator-(SimTime a, SimTime b) noexcept {
+  return {a.ns - b.ns};
+}
+[[nodiscard]] constexpr SimDuration operator+(SimDuration a, SimDuration b) noexcept {
+  return {a.ns + b.ns};
+}
+[[nodiscard]] constexpr SimDuration operator-(SimDuration a, SimDuration b) noexcept {
+  return {a.ns - b.ns};
+}
 
 // Monotonic wall clock (CLOCK_MONOTONIC) in nanoseconds. Never enters physics.
 [[nodiscard]] std::int64_t monotonic_ns() noexcept;

@@ -112,7 +112,7 @@ constexpr Field kPlotFields[] = {
 }  // namespace
 
 SimDuration SessionDef::step_duration() const noexcept {
-  return {std::llround(step * 1e9)};
+  return duration_of_seconds(step);
 }
 
 StepIndex SessionDef::steps() const noexcept {

@@ -137,7 +137,7 @@ Assignment ParameterDirectory::check(std::string_view path, double value) const 
   Assignment assignment;
   assignment.path = name;
   assignment.value = value;
-  assignment.over = {std::llround(parameter->ramp * 1e9)};
+  assignment.over = duration_of_seconds(parameter->ramp);
   return assignment;
 }
 

@@ -1,28 +1,19 @@
 #include "scene/script.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace slew::scene {
-namespace {
-
-std::int64_t nanoseconds(double seconds) {
-  return std::llround(seconds * 1e9);
-}
-
-}  // namespace
-
 ScriptPlayer::ScriptPlayer(const Scene& scene)
     : interpolation_(scene.script.interpolation), tracks_(scene.inputs.size()), changes_(scene.script.changes) {
   for (const ScriptTrack& track : scene.script.tracks) {
     for (std::size_t i = 0; i < scene.inputs.size(); ++i) {
       if (scene.inputs[i].name != track.input) continue;
-      for (const auto& [time, value] : track.points) tracks_[i].push_back({nanoseconds(time), value});
+      for (const auto& [time, value] : track.points) tracks_[i].push_back({duration_of_seconds(time).ns, value});
       end_.ns = std::max(end_.ns, tracks_[i].back().time_ns);
     }
   }
   for (const ScriptChange& change : changes_) {
-    change_ns_.push_back(nanoseconds(change.at));
+    change_ns_.push_back(duration_of_seconds(change.at).ns);
     end_.ns = std::max(end_.ns, change_ns_.back());
   }
 }

@@ -186,7 +186,7 @@ class ScriptReader {
     std::map<StepIndex, std::size_t> changes_in_step;
     for (const ScriptChange& change : scene_.script.changes) {
       const StepIndex step =
-          std::llround(change.at * 1e9) / std::max<std::int64_t>(1, scene_.session.step_duration().ns);
+          duration_of_seconds(change.at).ns / std::max<std::int64_t>(1, scene_.session.step_duration().ns);
       if (++changes_in_step[step] != kMaxScriptChangesPerStep + 1) continue;
       complain(mark, "script.parameters",
                {fmt::format("more than {} changes in the step at {} s", kMaxScriptChangesPerStep, change.at),

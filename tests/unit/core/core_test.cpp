@@ -27,6 +27,14 @@ std::vector<double> awkward_values(std::size_t n) {
   return values;
 }
 
+TEST(Time, EveryWholeMillisecondIsItsNanoseconds) {
+  for (std::int64_t ms = 0; ms <= 60'000; ++ms) {
+    ASSERT_EQ(duration_of_seconds(static_cast<double>(ms) * 1e-3).ns, ms * 1'000'000);
+    ASSERT_EQ(duration_of_seconds(static_cast<double>(ms) / 1000).ns, ms * 1'000'000);
+  }
+  EXPECT_EQ(duration_of_seconds(-1.001).ns, -1'001'000'000);
+}
+
 TEST(Reductions, DoNotDependOnTheAddress) {
   const std::vector<double> a = awkward_values(61);
   const std::vector<double> b = awkward_values(61);
@@ -77,7 +85,9 @@ TEST(AllocationGuard, SeesEveryHeapCallOfThisThread) {
   EXPECT_EQ(*owned, 3);
 }
 
-TEST(ArithmeticSelfTest, IsRepeatable) { EXPECT_EQ(arithmetic_self_test(), arithmetic_self_test()); }
+TEST(ArithmeticSelfTest, IsRepeatable) {
+  EXPECT_EQ(arithmetic_self_test(), arithmetic_self_test());
+}
 
 TEST(Time, StepsAreExactInNanoseconds) {
   EXPECT_EQ(start_of(3'000'000'000, milliseconds(1)).ns, 3'000'000'000'000'000);
