@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   CLI::App app("Recorder of a Slewring session: one .mcap file in a new folder of --out.", "recorder_node");
   app.footer("Example:\n  recorder_node --session truck_crane --out /data/runs");
   cli_support::NodeOptions options;
+  options.priority = cli_support::kRecorderPriority;
   std::string runs = "runs";
   cli_support::add_node_options(app, options);
   app.add_option("--out", runs, "folder in which the session gets a folder of its own")

@@ -66,6 +66,20 @@ TEST_F(Program, EveryNodeExplainsItselfWithAnExample) {
   }
 }
 
+// with --rt: nothing waits for the recorder, everything for io
+TEST_F(Program, TheClockGoesBeforeThePhysicsAndThePhysicsBeforeTheRecorder) {
+  const auto priority = [this](const std::string& role) {
+    const std::string help = slewring({"node", role, "--help"}).out;
+    const std::string range = "in [1 - 99]=";
+    const std::size_t at = help.find(range, help.find("--priority"));
+    return at == std::string::npos ? 0 : std::stoi(help.substr(at + range.size()));
+  };
+  EXPECT_GT(priority("io"), priority("mechanics"));
+  EXPECT_EQ(priority("mechanics"), priority("hydraulics"));
+  EXPECT_GT(priority("hydraulics"), priority("recorder"));
+  EXPECT_GT(priority("recorder"), 0);
+}
+
 TEST_F(Program, EveryProgramTellsTheSameBuild) {
   const std::string own = slewring({"--version"}).out;
   ASSERT_TRUE(own.starts_with("slewring 0.")) << own;
