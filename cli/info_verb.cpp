@@ -37,14 +37,13 @@ std::map<std::string, Counts> counts_of(const recording::Reader& reader) {
   return counts;
 }
 
-// What the recorder wrote of the session's end: 0 and "in order", or the exit code and why.
+// How the file ends, and how the session did when that was not in order.
 std::string end_of(const recording::Reader& reader) {
   if (!reader.has_all_messages()) return "cut: " + reader.damage_text();
   const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
-  if (summary == nullptr || summary->count("end") == 0) return "closed in order";
-  const std::string& code = summary->at("exit_code");
-  return code == "0" ? "closed in order"
-                     : fmt::format("closed; the session ended with code {}: {}", code, summary->at("end"));
+  if (summary == nullptr || summary->count("end") == 0 || summary->at("exit_code") == "0") return "closed in order";
+  return fmt::format("closed in order; the session ended with code {}: {}", summary->at("exit_code"),
+                     summary->at("end"));
 }
 
 nlohmann::json to_json(const recording::Reader& reader, double simulated) {

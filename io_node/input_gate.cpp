@@ -54,8 +54,9 @@ LeaseAnswer InputGate::acquire(std::size_t index, const std::string& controller,
                 "'; wait until it releases it, or until it has been silent for " +
                 std::to_string(config_.release_after.ns / 1'000'000) + " ms"};
   }
+  // asking again is a sign of life and moves nothing: the answer to the first time may still be on its way
+  if (channel.holder != controller) channel.controller_raw = channel.config.neutral;
   channel.holder = controller;
-  channel.controller_raw = channel.config.neutral;
   channel.written_ns = now_ns;
   channel.is_silent = false;
   return {true, controller, ""};

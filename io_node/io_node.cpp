@@ -634,6 +634,8 @@ void IoNode::publish_directory() {
   }
   directory.entries.push_back({"session.slip", "s"});
   directory.entries.push_back({"session.rejected_inputs", "1"});
+  directory.entries.push_back({"session.clamped_inputs", "1"});
+  directory.entries.push_back({"session.silent_controllers", "1"});
   directory.total = static_cast<std::uint32_t>(directory.entries.size());
   member_.publish(Topic::variable_directory, directory);
 }
@@ -648,6 +650,8 @@ void IoNode::publish_variables() {
   }
   block_.values.push_back(static_cast<double>(slip_ns_) * 1e-9);
   block_.values.push_back(static_cast<double>(gate_.rejected_not_finite() + gate_.rejected_no_lease()));
+  block_.values.push_back(static_cast<double>(gate_.clamped()));
+  block_.values.push_back(static_cast<double>(gate_.went_neutral()));
   member_.publish(Topic::variables, block_);
 }
 

@@ -164,7 +164,8 @@ TEST_F(Distributed, CtrlCEndsInOrderWithAValidRecording) {
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 130) << result.err;
   EXPECT_EQ(offline({"replay", work_.recording().string(), "--verify"}).code, 0);
-  EXPECT_NE(offline({"info", work_.recording().string()}).out.find("closed in order"), std::string::npos);
+  const std::string end = "closed in order; the session ended with code 143: terminated by SIGTERM";
+  EXPECT_NE(offline({"info", work_.recording().string()}).out.find(end), std::string::npos);
 }
 
 TEST_F(Distributed, CtrlCBeforeTheFirstStepIsOrderlyToo) {

@@ -84,6 +84,19 @@ TEST(InputGate, LeaseIsRefusedWithTheHoldersName) {
   EXPECT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
 }
 
+TEST(InputGate, AskingAgainForAHeldChannelMovesNothing) {
+  InputGate gate = crane_gate();
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  gate.write(1, "pid", 0.5, 0, 10 * kMs);
+  EXPECT_TRUE(gate.acquire(1, "pid", 150 * kMs).is_granted);
+  gate.advance(0, std::vector<double>{0, 0}, 151 * kMs);
+  EXPECT_NEAR(gate.control(1), 250, 1e-12);
+  // and is a sign of life
+  gate.advance(1, std::vector<double>{0, 0}, 349 * kMs);
+  EXPECT_NEAR(gate.control(1), 250, 1e-12);
+  EXPECT_EQ(gate.went_neutral(), 0u);
+}
+
 TEST(InputGate, SilentControllerGoesToNeutralAndLaterLosesTheChannel) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);

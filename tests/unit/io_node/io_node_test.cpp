@@ -179,6 +179,33 @@ TEST_F(Io, EndsWhenATickCannotBeSent) {
   EXPECT_EQ(node->member().reason(), "message not sent");
 }
 
+TEST_F(Io, PublishesWhatItHeldAtABoundAndWhoFellSilent) {
+  IoConfig lever = config();
+  lever.channels.push_back({.name = "Lever"});
+  lever.variables_every = 1;
+  restart(std::move(lever));
+  get_running();
+  const auto say = [this](wire::ControllerAction action, double value) {
+    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, kJoinStep});
+  };
+  say(wire::ControllerAction::acquire, 0);
+  say(wire::ControllerAction::write, 7);
+  poll();
+  poll(250 * kMs);
+  run_to(3);
+  std::map<std::string, double> values;
+  const auto directory = played.said<wire::VariableDirectory>(Topic::variable_directory);
+  const auto blocks = played.said<wire::VariableBlock>(Topic::variables);
+  ASSERT_FALSE(directory.empty() || blocks.empty());
+  ASSERT_EQ(directory.back().entries.size(), blocks.back().values.size());
+  for (std::size_t i = 0; i < blocks.back().values.size(); ++i) {
+    values[directory.back().entries[i].name] = blocks.back().values[i];
+  }
+  EXPECT_EQ(values.at("session.clamped_inputs"), 1);
+  EXPECT_EQ(values.at("session.silent_controllers"), 1);
+  EXPECT_EQ(values.at("Lever.raw"), 0);
+}
+
 TEST_F(Io, DoesNotBelieveASampleThatCannotExist) {
   get_running();
   run_to(5);
