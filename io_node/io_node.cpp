@@ -558,10 +558,10 @@ void IoNode::tell_lost_leases() {
 
 // ---- ending ---------------------------------------------------------------------------------------------------
 
-void IoNode::send_end(std::uint32_t flags, ExitCode code) {
+void IoNode::send_end(std::uint32_t flags) {
   tick_.commands.clear();
   tick_.header = member_.header(Phase::running, n_);
-  tick_.flags = static_cast<std::uint32_t>(wire::TickFlag::end) | flags | (static_cast<std::uint32_t>(code) << 8);
+  tick_.flags = static_cast<std::uint32_t>(wire::TickFlag::end) | flags;
   send_tick(n_);
 }
 
@@ -569,7 +569,7 @@ void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t
   if (stage_ == Stage::ending || stage_ == Stage::finished) return;
   const bool was_ticking = stage_ == Stage::ticking;
   const bool is_orderly = code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated;
-  if (was_ticking) send_end(is_orderly ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault), code);
+  if (was_ticking) send_end(is_orderly ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault));
   if (is_orderly && was_ticking) {
     member_.end(code, reason);
   } else {

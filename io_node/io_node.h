@@ -104,7 +104,7 @@ class IoNode final : public node::Node {
   void send_tick(StepIndex step);
   void show_running();
   void keep_time(std::int64_t now_ns) noexcept;
-  void send_end(std::uint32_t flags, ExitCode code);
+  void send_end(std::uint32_t flags);
   void start_epoch(std::int64_t now_ns);
   void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void watch(std::int64_t now_ns);

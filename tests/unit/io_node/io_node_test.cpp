@@ -167,6 +167,25 @@ TEST_F(Io, NamesTheNodeThatASignalEnded) {
   EXPECT_EQ(statuses.back().reason, node->member().reason());
 }
 
+TEST_F(Io, SaysEndInTheLastTickAndWhyInItsStatus) {
+  get_running();
+  run_to(10);
+  played.forget();
+  wire::NodeStatus fault = played.status(Role::mechanics, NodeState::fault, 10);
+  fault.exit_code = static_cast<std::int32_t>(ExitCode::diverged);
+  fault.reason = "diverged";
+  played.say(Topic::node_status, fault);
+  poll(kMs);
+  poll(kFaultGathering.ns);
+  const auto ticks = played.said<wire::Tick>(Topic::tick);
+  ASSERT_EQ(ticks.size(), 1u);
+  EXPECT_EQ(ticks[0].flags,
+            static_cast<std::uint32_t>(wire::TickFlag::end) | static_cast<std::uint32_t>(wire::TickFlag::fault));
+  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  ASSERT_FALSE(statuses.empty());
+  EXPECT_EQ(statuses.back().exit_code, static_cast<std::int32_t>(ExitCode::diverged));
+}
+
 TEST_F(Io, EndsWhenATickCannotBeSent) {
   testing::BreakableCarrier carrier(played.carrier());
   node = std::make_unique<IoNode>(carrier, config());
