@@ -1,10 +1,8 @@
 #include "cli/in_process_run.h"
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "cli/direct_session.h"
 #include "cli/interrupts.h"
@@ -23,54 +21,6 @@ namespace slew::cli {
 namespace {
 
 using wire::Role;
-
-// A node in a process of its own has a thread for its health; here somebody must say for all that they are alive, or a
-// pause would look like their death.
-class HealthReports {
- public:
-  void send_if_due(std::span<node::Node* const> nodes, std::int64_t now_ns) {
-    if (now_ns < next_ns_) return;
-    next_ns_ = now_ns + node::kHealthInterval.ns;
-    for (node::Node* node : nodes) {
-      if (!node->is_finished()) send(*node);
-    }
-  }
-
- private:
-  struct Sent {
-    std::uint64_t steps = 0;
-    std::int64_t sum_ns = 0;
-  };
-
-  void send(node::Node& node) {
-    node::HealthState& h = node.health();
-    if (!h.has_session.load()) return;
-    Sent& last = sent_[static_cast<std::size_t>(node.member().role())];
-    wire::Health message;
-    message.header = node.member().header(wire::Phase::running, h.step.load());
-    message.state = node.member().state();
-    message.is_waiting = h.is_waiting.load();
-    message.waiting_for = static_cast<Role>(h.waiting_for.load());
-    message.waiting_step = h.waiting_step.load();
-    message.steps_done = h.steps_done.load();
-    message.overruns = h.overruns.load();
-    message.resends_asked = h.resends_asked.load();
-    message.resends_answered = h.resends_answered.load();
-    message.refused_messages = h.refused.load();
-    message.slip_ns = h.slip_ns.load();
-    const std::int64_t sum_ns = h.step_time_sum_ns.load();
-    if (message.steps_done > last.steps) {
-      message.step_time_mean =
-          static_cast<double>(sum_ns - last.sum_ns) * 1e-9 / static_cast<double>(message.steps_done - last.steps);
-    }
-    message.step_time_max = static_cast<double>(h.step_time_max_ns.exchange(0)) * 1e-9;
-    last = {message.steps_done, sum_ns};
-    node.member().publish(wire::Topic::health, message);
-  }
-
-  std::array<Sent, wire::kRoles> sent_{};
-  std::int64_t next_ns_ = 0;
-};
 
 class InProcessRun {
  public:
@@ -132,7 +82,6 @@ class InProcessRun {
 
   void each_round() {
     const std::int64_t now_ns = monotonic_ns();
-    health_.send_if_due(nodes_, now_ns);
     observer_->drain();
     has_stepped_ = has_stepped_ || io_->next_step() > 0;
     if (has_stepped_ && io_->member().state() < wire::NodeState::ended) {
@@ -186,7 +135,6 @@ class InProcessRun {
   std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
   std::unique_ptr<Observer> observer_;
   std::optional<Keyboard> keyboard_;
-  HealthReports health_;
   bool has_stepped_ = false;
   RunClock clock_;
 };

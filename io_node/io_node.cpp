@@ -538,7 +538,7 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   tick_.header = member_.header(Phase::init, kJoinStep);
   send_tick(kJoinStep);
   tell_lost_leases();
-  member_.set_step(0);
+  member_.set_step(kJoinStep);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
   stage_ = Stage::initialising;

@@ -105,6 +105,9 @@ bool RecorderNode::poll(std::int64_t now_ns) {
 }
 
 std::int64_t RecorderNode::next_deadline(std::int64_t now_ns) const {
+  const bool has_gap = std::any_of(streams_.steps.begin(), streams_.steps.end(),
+                                   [](const auto& entry) { return entry.second.has_gap(); });
+  if (has_gap) return std::max(now_ns, resend_.due_ns());
   return now_ns + (is_ending() ? node::kResendAfter.ns : node::kProbeInterval.ns);
 }
 
@@ -214,7 +217,7 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   Status status =
       recording::create_run_directory(config_.runs_directory, session.scene_name, session.started_ns, directory);
   if (!status.is_ok()) return status;
-  path_ = directory / recording::kRecordingFileName;
+  const std::filesystem::path path = directory / recording::kRecordingFileName;
   recording::SessionIdentity identity;
   identity.scene = session.scene_name;
   identity.session_name = session.name;
@@ -224,8 +227,13 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   identity.started_ns = session.started_ns;
   identity.more["pace"] = session.pace == wire::Pace::free ? "free" : "real";
   identity.more["protocol"] = std::to_string(session.protocol);
-  status = recording::Writer::create(path_, identity, recording::WriterLimits{}, writer_);
-  if (!status.is_ok()) return status;
+  status = recording::Writer::create(path, identity, recording::WriterLimits{}, writer_);
+  if (!status.is_ok()) {
+    std::error_code ignored;
+    std::filesystem::remove(directory, ignored);
+    return status;
+  }
+  path_ = path;
   status = add_attachments(session);
   for (std::size_t i = 0; status.is_ok() && i < wire::kTopics; ++i) {
     const recording::ChannelDef channel{

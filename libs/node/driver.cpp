@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include "core/arithmetic_self_test.h"
 #include "core/time.h"
+#include "node/health_report.h"
 
 namespace slew::node {
 
@@ -25,7 +27,7 @@ constexpr std::int64_t kLongestWaitNs = 20'000'000;
 
 class HealthThread {
  public:
-  explicit HealthThread(Node& node) : node_(node), thread_([this] { run(); }) {}
+  explicit HealthThread(Node& node) : report_(node), thread_([this] { run(); }) {}
   ~HealthThread() {
     {
       const std::lock_guard lock(mutex_);
@@ -37,44 +39,13 @@ class HealthThread {
 
  private:
   void run() {
-    std::vector<std::byte> buffer;
-    std::uint64_t last_steps = 0;
-    std::int64_t last_sum = 0;
     std::unique_lock lock(mutex_);
     while (!condition_.wait_for(lock, std::chrono::nanoseconds(kHealthInterval.ns), [this] { return is_stopping_; })) {
-      send(buffer, last_steps, last_sum);
+      report_.send();
     }
   }
 
-  void send(std::vector<std::byte>& buffer, std::uint64_t& last_steps, std::int64_t& last_sum) {
-    HealthState& h = node_.health();
-    if (!h.has_session.load(std::memory_order_acquire)) return;
-    wire::Health message;
-    message.header = node_.member().header(wire::Phase::running, h.step.load(), h.epoch.load());
-    message.state = static_cast<wire::NodeState>(h.state.load());
-    message.is_waiting = h.is_waiting.load();
-    message.waiting_for = static_cast<wire::Role>(h.waiting_for.load());
-    message.waiting_step = h.waiting_step.load();
-    message.steps_done = h.steps_done.load();
-    message.overruns = h.overruns.load();
-    message.resends_asked = h.resends_asked.load();
-    message.resends_answered = h.resends_answered.load();
-    message.refused_messages = h.refused.load();
-    message.slip_ns = h.slip_ns.load();
-    const std::int64_t sum = h.step_time_sum_ns.load();
-    if (message.steps_done > last_steps) {
-      message.step_time_mean =
-          static_cast<double>(sum - last_sum) * 1e-9 / static_cast<double>(message.steps_done - last_steps);
-    }
-    message.step_time_max = static_cast<double>(h.step_time_max_ns.exchange(0)) * 1e-9;
-    last_steps = message.steps_done;
-    last_sum = sum;
-    // a lost health message needs no reaction: the next one follows
-    if (!transport::encode(message, buffer)) return;
-    static_cast<void>(node_.member().transport().publish(wire::Topic::health, buffer));
-  }
-
-  Node& node_;
+  HealthReport report_;
   std::mutex mutex_;
   std::condition_variable condition_;
   bool is_stopping_ = false;
@@ -117,6 +88,9 @@ ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>&
   set_floating_point_mode();
   bool stop_passed_on = false;
   std::int64_t next_round_ns = 0;
+  std::int64_t next_health_ns = 0;
+  std::vector<HealthReport> reports;
+  for (Node* node : nodes) reports.emplace_back(*node);
   while (!std::all_of(nodes.begin(), nodes.end(), [](const Node* node) { return node->is_finished(); })) {
     const std::int64_t now = monotonic_ns();
     if (now >= next_round_ns) {
@@ -125,6 +99,12 @@ ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>&
       if (stop != 0 && !stop_passed_on) {
         stop_passed_on = true;
         nodes.front()->request_stop(static_cast<ExitCode>(stop));
+      }
+      if (now >= next_health_ns) {
+        next_health_ns = now + kHealthInterval.ns;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+          if (!nodes[i]->is_finished()) reports[i].send();
+        }
       }
       if (each_round) each_round();
     }

@@ -20,8 +20,8 @@ void install_signal_handlers();
 // Runs until the node has finished; sends its health every 100 ms from a thread of its own.
 ExitCode run_alone(Node& node);
 
-// Runs all nodes in turn on this thread until every one has finished. each_round is called between rounds, at most
-// every 20 ms (status line, keyboard); it may be empty.
+// Runs all nodes in turn on this thread until every one has finished, and sends their health every 100 ms. each_round
+// is called between rounds, at most every 20 ms (status line, keyboard); it may be empty.
 ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>& each_round);
 
 }  // namespace slew::node

@@ -95,7 +95,7 @@ void PhysicsNode::update_health() noexcept {
   h.epoch = member_.epoch();
   h.refused = member_.refusals().refused();
   const bool waits_for_tick = ticks_.find(n_) == nullptr;
-  h.is_waiting = stage_ == Stage::stepping;
+  h.is_waiting = stage_ == Stage::stepping && resend_.is_overdue();
   h.waiting_for = static_cast<std::uint8_t>(waits_for_tick ? Role::io : partner());
   h.waiting_step = n_;
   h.has_session.store(member_.has_session(), std::memory_order_release);
@@ -191,6 +191,7 @@ void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, 
   member_.heard(header, topic, now_ns);
   if (header.phase == Phase::init && topic == Topic::mechanism) {
     has_mechanism_init_ = transport::decode(bytes, mechanism_init_);
+    if (!has_mechanism_init_) ++member_.refusals().undecodable;
   } else if (header.phase == Phase::running && topic == Topic::mechanism) {
     keep(bytes, header.step, mechanisms_);
   } else if (header.phase == Phase::running) {

@@ -20,6 +20,8 @@ class ResendClock {
     pause_ns_ = std::min(2 * pause_ns_, kResendAtMost.ns);
     due_ns_ = now_ns + pause_ns_;
   }
+  // It was due once already and has not come.
+  [[nodiscard]] bool is_overdue() const noexcept { return pause_ns_ > kResendAfter.ns; }
   [[nodiscard]] std::int64_t due_ns() const noexcept { return due_ns_; }
 
  private:

@@ -86,6 +86,10 @@ class PlayedSession {
     ASSERT_TRUE(played_.publish(topic, bytes).is_ok());
   }
 
+  void say_bytes(wire::Topic topic, std::span<const std::byte> bytes) {
+    ASSERT_TRUE(played_.publish(topic, bytes).is_ok());
+  }
+
   [[nodiscard]] wire::NodeStatus status(wire::Role role, wire::NodeState state, StepIndex step = kJoinStep) const {
     wire::NodeStatus status;
     status.header = header(role, step);

@@ -186,6 +186,18 @@ TEST_F(Io, SaysEndInTheLastTickAndWhyInItsStatus) {
   EXPECT_EQ(statuses.back().exit_code, static_cast<std::int32_t>(ExitCode::diverged));
 }
 
+TEST_F(Io, NamesNoTickOfAnEpochThatHadNone) {
+  get_running();
+  run_to(10);
+  ASSERT_TRUE(request(wire::ControlAction::reset).is_accepted);
+  node->request_stop(ExitCode::interrupted);
+  poll(kMs);
+  const auto statuses = played.said<wire::NodeStatus>(Topic::node_status);
+  ASSERT_FALSE(statuses.empty());
+  EXPECT_EQ(statuses.back().header.epoch, 1u);
+  EXPECT_EQ(statuses.back().header.step, kJoinStep);
+}
+
 TEST_F(Io, EndsWhenATickCannotBeSent) {
   testing::BreakableCarrier carrier(played.carrier());
   node = std::make_unique<IoNode>(carrier, config());

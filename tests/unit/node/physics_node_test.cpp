@@ -137,6 +137,35 @@ TEST_F(Physics, AsksForNothingWhileTheSessionIsPaused) {
   EXPECT_FALSE(played.said<wire::ResendRequest>(Topic::resend).empty());
 }
 
+TEST_F(Physics, SaysThatItWaitsWhenSomethingIsOverdue) {
+  get_ready();
+  played.say_tick(0);
+  poll(kMs);
+  EXPECT_FALSE(node.health().is_waiting.load());
+  for (int i = 0; i < 10; ++i) poll(kMs);
+  EXPECT_TRUE(node.health().is_waiting.load());
+  played.say_tick(1);
+  played.say_actuators(1);
+  poll(kMs);
+  EXPECT_FALSE(node.health().is_waiting.load());
+}
+
+TEST_F(Physics, CountsAnInitThatCannotBeDecoded) {
+  PlayedSession other{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
+  PhysicsNode hydraulics{Role::hydraulics, other.carrier(), build, milliseconds(1000)};
+  other.say(Topic::session, other.session);
+  hydraulics.poll(now_ns);
+  other.say_status(Role::mechanics, NodeState::initialising);
+  wire::MechanismMessage init;
+  init.header = other.header(Role::mechanics, kJoinStep, Phase::init);
+  std::vector<std::byte> bytes;
+  ASSERT_TRUE(transport::encode(init, bytes));
+  bytes.resize(bytes.size() / 2);
+  other.say_bytes(Topic::mechanism, bytes);
+  hydraulics.poll(now_ns);
+  EXPECT_EQ(hydraulics.member().refusals().undecodable, 1u);
+}
+
 // ---- who may say what -----------------------------------------------------------------------------------------
 
 TEST_F(Physics, DoesNotFollowATickOfAnObserverOrAPartner) {

@@ -121,6 +121,33 @@ TEST_F(Recorder, RecordsEveryStepUpToTheEndThatEachNodeNamed) {
   EXPECT_EQ(summary("tick.lost"), "0");
 }
 
+TEST_F(Recorder, AsksForAGapAsSoonAsItIsDue) {
+  join();
+  say_steps(0, 5);
+  poll(kMs);
+  played.forget();
+  played.say_tick(7);
+  poll();
+  const std::int64_t due_ns = node->next_deadline(now_ns);
+  EXPECT_LE(due_ns, now_ns + node::kResendAfter.ns);
+  poll(due_ns - now_ns);
+  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].header.step, 6);
+  EXPECT_EQ(asked[0].last_step, 6);
+  EXPECT_GT(node->next_deadline(now_ns), now_ns);
+}
+
+TEST_F(Recorder, NamesNoFileThatItCouldNotCreate) {
+  played.session.step_ns = 0;
+  played.say(Topic::session, played.session);
+  poll();
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
+  EXPECT_TRUE(node->recording().empty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
 // ---- losses ---------------------------------------------------------------------------------------------------
 
 TEST_F(Recorder, CountsVariableBlocksThatNeverCame) {

@@ -1,0 +1,33 @@
+#include "node/health_report.h"
+
+namespace slew::node {
+
+void HealthReport::send() {
+  HealthState& h = node_.health();
+  if (!h.has_session.load(std::memory_order_acquire)) return;
+  wire::Health message;
+  message.header = node_.member().header(wire::Phase::running, h.step.load(), h.epoch.load());
+  message.state = static_cast<wire::NodeState>(h.state.load());
+  message.is_waiting = h.is_waiting.load();
+  message.waiting_for = static_cast<wire::Role>(h.waiting_for.load());
+  message.waiting_step = h.waiting_step.load();
+  message.steps_done = h.steps_done.load();
+  message.overruns = h.overruns.load();
+  message.resends_asked = h.resends_asked.load();
+  message.resends_answered = h.resends_answered.load();
+  message.refused_messages = h.refused.load();
+  message.slip_ns = h.slip_ns.load();
+  const std::int64_t sum_ns = h.step_time_sum_ns.load();
+  if (message.steps_done > last_steps_) {
+    message.step_time_mean =
+        static_cast<double>(sum_ns - last_sum_ns_) * 1e-9 / static_cast<double>(message.steps_done - last_steps_);
+  }
+  message.step_time_max = static_cast<double>(h.step_time_max_ns.exchange(0)) * 1e-9;
+  last_steps_ = message.steps_done;
+  last_sum_ns_ = sum_ns;
+  // a lost health message needs no reaction: the next one follows
+  if (!transport::encode(message, buffer_)) return;
+  static_cast<void>(node_.member().transport().publish(wire::Topic::health, buffer_));
+}
+
+}  // namespace slew::node

@@ -1,0 +1,91 @@
+// The health message, and that nodes on one thread send it as well.
+#include "node/health_report.h"
+
+#include <gtest/gtest.h>
+
+#include "core/time.h"
+#include "node/driver.h"
+#include "tests/support/played_session.h"
+
+namespace slew::node {
+namespace {
+
+using testing::PlayedSession;
+using wire::Role;
+using wire::Topic;
+
+// does nothing until its health was heard
+class IdleNode final : public Node {
+ public:
+  explicit IdleNode(PlayedSession& played) : played_(played), member_(Role::mechanics, played.carrier(), {}) {}
+  void join() {
+    ASSERT_TRUE(member_.adopt(played_.session, 0).is_ok());
+    health().has_session = true;
+  }
+  bool poll(std::int64_t) override {
+    is_finished_ = !played_.said<wire::Health>(Topic::health).empty() || monotonic_ns() > deadline_ns_;
+    return false;
+  }
+  [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override { return now_ns + testing::kMs; }
+  [[nodiscard]] bool is_finished() const override { return is_finished_; }
+  void request_stop(ExitCode) override { is_finished_ = true; }
+  [[nodiscard]] SessionMember& member() override { return member_; }
+  [[nodiscard]] bool is_late() const { return monotonic_ns() > deadline_ns_; }
+
+ private:
+  PlayedSession& played_;
+  SessionMember member_;
+  bool is_finished_ = false;
+  std::int64_t deadline_ns_ = monotonic_ns() + 30'000'000'000;
+};
+
+TEST(HealthReport, SaysNothingBeforeTheSessionIsKnown) {
+  PlayedSession played{0};
+  IdleNode node(played);
+  HealthReport report(node);
+  report.send();
+  EXPECT_TRUE(played.said<wire::Health>(Topic::health).empty());
+}
+
+TEST(HealthReport, GivesTheMeanAndTheLargestStepTimeSinceTheLastOne) {
+  PlayedSession played{0};
+  IdleNode node(played);
+  node.join();
+  HealthReport report(node);
+  HealthState& h = node.health();
+  h.step = 7;
+  h.slip_ns = 5;
+  h.refused = 3;
+  h.steps_done = 10;
+  h.step_time_sum_ns = 10'000'000;
+  h.step_time_max_ns = 3'000'000;
+  report.send();
+  h.steps_done = 14;
+  h.step_time_sum_ns = 18'000'000;
+  h.step_time_max_ns = 2'500'000;
+  report.send();
+  report.send();
+  const auto said = played.said<wire::Health>(Topic::health);
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_EQ(said[0].header.step, 7);
+  EXPECT_EQ(said[0].slip_ns, 5);
+  EXPECT_EQ(said[0].refused_messages, 3u);
+  EXPECT_DOUBLE_EQ(said[0].step_time_mean, 1e-3);
+  EXPECT_DOUBLE_EQ(said[0].step_time_max, 3e-3);
+  EXPECT_DOUBLE_EQ(said[1].step_time_mean, 2e-3);
+  EXPECT_DOUBLE_EQ(said[1].step_time_max, 2.5e-3);
+  EXPECT_EQ(said[2].step_time_mean, 0);
+  EXPECT_EQ(said[2].step_time_max, 0);
+}
+
+TEST(RunTogether, SendsTheHealthOfItsNodes) {
+  PlayedSession played{0};
+  IdleNode node(played);
+  node.join();
+  Node* const nodes[] = {&node};
+  EXPECT_EQ(run_together(nodes, {}), ExitCode::ok);
+  EXPECT_FALSE(node.is_late()) << "nobody heard a health message";
+}
+
+}  // namespace
+}  // namespace slew::node
