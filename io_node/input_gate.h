@@ -68,7 +68,6 @@ class InputGate {
   [[nodiscard]] double control(std::size_t channel) const noexcept { return channels_[channel].control; }
   [[nodiscard]] double raw(std::size_t channel) const noexcept { return channels_[channel].raw; }
   [[nodiscard]] std::uint32_t age(std::size_t channel) const noexcept { return channels_[channel].age; }
-  [[nodiscard]] const std::string& holder(std::size_t channel) const noexcept { return channels_[channel].holder; }
   [[nodiscard]] const ChannelConfig& config(std::size_t channel) const noexcept { return channels_[channel].config; }
 
   // Back to neutral without holders.

@@ -16,9 +16,6 @@ using wire::Role;
 using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
-std::string seconds_text(SimDuration duration) {
-  return std::to_string((duration.ns + 500'000'000) / 1'000'000'000) + " s";
-}
 constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -137,7 +134,7 @@ void IoNode::receive_session(std::span<const std::byte> bytes) {
   if (this_holds == other_holds && description_.header.session < other.header.session) return;
   member_.step_aside(ExitCode::bad_input,
                      "session '" + config_.session_name + "' is held by process " + std::to_string(other.pid) + " on " +
-                         other.host.substr(0, other.host.find('#')) + ", started " + node::time_text(other.started_ns) +
+                         node::machine_of(other.host) + ", started " + node::time_text(other.started_ns) +
                          "; this second one ends; stop the first, or choose another --session name");
   stage_ = Stage::finished;
 }
@@ -344,9 +341,10 @@ bool IoNode::advance_name_check(std::int64_t now_ns) {
 bool IoNode::advance_initialising(std::int64_t now_ns) {
   if (!member_.all_required(NodeState::ready)) {
     if (now_ns > deadline_ns_) {
-      begin_ending(ExitCode::failed,
-                   "not every node became ready within " + seconds_text(config_.join_timeout) + ": " + not_ready_text(),
-                   now_ns);
+      begin_ending(
+          ExitCode::failed,
+          "not every node became ready within " + node::seconds_text(config_.join_timeout) + ": " + not_ready_text(),
+          now_ns);
     }
     return false;
   }
@@ -378,10 +376,10 @@ bool IoNode::advance_join(std::int64_t now_ns) {
     return true;
   }
   if (now_ns > deadline_ns_) {
-    begin_ending(
-        ExitCode::failed,
-        "JOIN did not come about within " + seconds_text(config_.join_timeout) + ": " + member_.missing_join_text(),
-        now_ns);
+    begin_ending(ExitCode::failed,
+                 "JOIN did not come about within " + node::seconds_text(config_.join_timeout) + ": " +
+                     member_.missing_join_text(),
+                 now_ns);
     return true;
   }
   if (member_.probe_is_due(now_ns)) {

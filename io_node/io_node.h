@@ -77,7 +77,6 @@ class IoNode final : public node::Node {
 
   [[nodiscard]] StepIndex next_step() const noexcept { return n_; }
   [[nodiscard]] bool is_paused() const noexcept { return is_paused_; }
-  [[nodiscard]] const InputGate& gate() const noexcept { return gate_; }
 
  private:
   enum class Stage : std::uint8_t { checking_name, joining, initialising, ticking, ending, finished };

@@ -6,6 +6,7 @@
 
 #include "recorder_node/idl_text.h"
 #include "recording/run_directory.h"
+#include "transport/topics.h"
 
 namespace slew::recorder {
 namespace {
@@ -22,17 +23,6 @@ constexpr std::int64_t kReportNs = 100'000'000;
 
 // messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
 constexpr std::size_t kMaxEarly = 256;
-
-// type names as in idl/slewring.idl, by Topic
-constexpr std::string_view kTypeNames[] = {
-    "slewring::SessionDescription", "slewring::NodeStatus",      "slewring::Tick",
-    "slewring::MechanismMessage",   "slewring::ActuatorMessage", "slewring::VariableDirectory",
-    "slewring::VariableBlock",      "slewring::ControllerInput", "slewring::ControllerLease",
-    "slewring::ControlRequest",     "slewring::ControlReply",    "slewring::Health",
-    "slewring::ResendRequest"};
-static_assert(std::size(kTypeNames) == wire::kTopics);
-
-constexpr Topic kStepTopics[] = {Topic::tick, Topic::mechanism, Topic::actuators};
 
 std::string end_text(const SessionEnd& session) {
   if (!session.reason.empty()) return session.reason;
@@ -168,7 +158,8 @@ void RecorderNode::refuse(const Status& refusal) {
   if (writer_ != nullptr) {
     count_all_losses();
     close({refusal.code, refusal.text});
-    if (!holds_step()) {
+    const bool holds_step = counts_[static_cast<std::size_t>(Topic::tick)].recorded > 0;
+    if (!holds_step) {
       std::error_code ignored;
       std::filesystem::remove(path_, ignored);
       std::filesystem::remove(path_.parent_path(), ignored);
@@ -188,13 +179,7 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
   // a description in phase JOIN only claims the name
   if (member_.has_session() || session.header.phase != Phase::running) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
-  Status status = Status::ok();
-  if (session.protocol != wire::kProtocolVersion) {
-    status = Status::error(ExitCode::bad_input, "session '" + session.name + "' speaks protocol version " +
-                                                    std::to_string(session.protocol) + ", this program " +
-                                                    std::to_string(wire::kProtocolVersion) +
-                                                    "; use one version on all machines");
-  }
+  Status status = member_.problem_of_protocol();
   if (status.is_ok() && config_.check) status = config_.check(session);
   if (status.is_ok()) status = create(session);
   if (!status.is_ok()) {
@@ -237,7 +222,7 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
   status = add_attachments(session);
   for (std::size_t i = 0; status.is_ok() && i < wire::kTopics; ++i) {
     const recording::ChannelDef channel{
-        std::string(to_text(static_cast<Topic>(i))), std::string(kTypeNames[i]), kIdlText, {}};
+        std::string(to_text(static_cast<Topic>(i))), transport::traits(static_cast<Topic>(i)).type_name, kIdlText, {}};
     status = writer_->add_channel(channel, channels_[i]);
   }
   return status;
@@ -304,13 +289,14 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
 }
 
-// io's probe comes before everything else. A recorder that hears a step first is a second one: it records nothing and
-// waits for the first one's status, which names it.
+// io's probe comes before the first tick, and the first tick before every sample but INIT and sample 0. A recorder that
+// hears a later message first is a second one: it records nothing and waits for the first one's status, which names it.
 bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std::int64_t now_ns) {
   if (header.phase == Phase::join) {
     if (topic == Topic::tick) member_.set_state(NodeState::ready);
     return true;
   }
+  if (topic != Topic::tick && header.step <= 0) return true;
   ++member_.refusals().early;
   if (late_deadline_ns_ == 0) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
   return false;
@@ -321,11 +307,6 @@ void RecorderNode::refuse_late() {
                                                 "' had begun before this recorder came, and its own recorder was not "
                                                 "heard; nothing was recorded here; start the recorder with the "
                                                 "session"));
-}
-
-bool RecorderNode::holds_step() const noexcept {
-  return std::any_of(std::begin(kStepTopics), std::end(kStepTopics),
-                     [this](Topic topic) { return counts_[static_cast<std::size_t>(topic)].recorded > 0; });
 }
 
 // what must be complete: the ticks and the samples of every role that takes part

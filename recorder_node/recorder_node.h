@@ -63,10 +63,6 @@ class RecorderNode final : public node::Node {
 
   // Empty before the session is known.
   [[nodiscard]] const std::filesystem::path& recording() const noexcept { return path_; }
-  [[nodiscard]] const TopicCounts& counts(wire::Topic topic) const noexcept {
-    return counts_[static_cast<std::size_t>(topic)];
-  }
-  [[nodiscard]] std::uint64_t lost() const noexcept;
 
  private:
   enum class Stage : std::uint8_t { waiting_for_session, recording, finished };
@@ -75,7 +71,6 @@ class RecorderNode final : public node::Node {
   void receive_session(const transport::Received& message, std::int64_t now_ns);
   void refuse(const Status& refusal);
   void refuse_late();
-  [[nodiscard]] bool holds_step() const noexcept;
   void receive_stepped(const transport::Received& message, std::int64_t now_ns);
   [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
   void record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
@@ -90,6 +85,7 @@ class RecorderNode final : public node::Node {
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
   [[nodiscard]] StepIndex final_step(wire::Role writer, StepIndex newest) const noexcept;
   [[nodiscard]] StepIndex last_block(wire::Role writer, StepIndex newest) const noexcept;
+  [[nodiscard]] std::uint64_t lost() const noexcept;
   [[nodiscard]] bool is_ending() const noexcept;
   [[nodiscard]] bool has_everything() const noexcept;
   void report_progress(std::int64_t now_ns);

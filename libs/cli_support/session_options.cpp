@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "transport/cyclone_domain.h"
 #include "transport/wire.h"
 
 namespace slew::cli_support {
@@ -30,7 +31,7 @@ std::string session_name_of(const std::string& scene) {
 
 void add_network_options(CLI::App& app, SessionOptions& options) {
   app.add_option("--domain", options.domain, "DDS domain; sessions of different domains do not see each other")
-      ->check(CLI::Range(0u, kMaxDomain))
+      ->check(CLI::Range(0u, transport::kMaxDomain))
       ->type_name("N")
       ->capture_default_str()
       ->group("Network");

@@ -10,7 +10,6 @@
 
 namespace slew::cli_support {
 
-inline constexpr std::uint32_t kMaxDomain = 230;
 inline constexpr int kIoPriority = 30;  // the clock goes before the nodes that wait for it
 inline constexpr int kDefaultPriority = 20;
 inline constexpr int kRecorderPriority = 10;  // in `real` pace nothing waits for it: it compresses behind the physics

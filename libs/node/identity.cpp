@@ -15,6 +15,7 @@
 #include "core/arithmetic_self_test.h"
 #include "core/time.h"
 #include "node/build_id.h"
+#include "transport/topics.h"
 
 namespace slew::node {
 
@@ -99,14 +100,19 @@ std::string_view to_text(wire::NodeState state) noexcept {
 }
 
 std::string_view to_text(wire::Topic topic) noexcept {
-  constexpr std::string_view kNames[] = {"session",         "node_status",      "tick",
-                                         "mechanism",       "actuators",        "variable_directory",
-                                         "variables",       "controller_input", "controller_lease",
-                                         "control_request", "control_reply",    "health",
-                                         "resend"};
-  static_assert(std::size(kNames) == wire::kTopics);
-  const auto index = static_cast<std::size_t>(topic);
-  return index < wire::kTopics ? kNames[index] : "unknown topic";
+  if (static_cast<std::size_t>(topic) >= wire::kTopics) return "unknown topic";
+  // "slewring/tick" without the prefix that all have
+  std::string_view name = transport::traits(topic).name;
+  name.remove_prefix(name.find('/') + 1);
+  return name;
+}
+
+std::string seconds_text(SimDuration duration) {
+  return std::to_string((duration.ns + 500'000'000) / 1'000'000'000) + " s";
+}
+
+std::string machine_of(const std::string& host) {
+  return host.substr(0, host.find('#'));
 }
 
 std::string time_text(std::int64_t wall_clock_ns) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/time.h"
 #include "transport/wire.h"
 
 namespace slew::node {
@@ -32,6 +33,12 @@ struct Identity {
 // "2026-05-01 10:20:30" in local time.
 [[nodiscard]] std::string time_text(std::int64_t wall_clock_ns);
 
+// "10 s", rounded to whole seconds.
+[[nodiscard]] std::string seconds_text(SimDuration duration);
+
+// The name of the machine in Identity::host.
+[[nodiscard]] std::string machine_of(const std::string& host);
+
 // Watches one process of this host through a pidfd.
 class ProcessWatch {
  public:
@@ -41,8 +48,7 @@ class ProcessWatch {
   ProcessWatch(ProcessWatch&& other) noexcept;
   ProcessWatch& operator=(ProcessWatch&& other) noexcept;
 
-  // False when the process cannot be watched (another name space, no pidfd): silence is then the only sign.
-  [[nodiscard]] bool is_watching() const noexcept { return fd_ >= 0; }
+  // Always false when the process cannot be watched (another name space, no pidfd): silence is then the only sign.
   [[nodiscard]] bool has_exited() const noexcept;
 
  private:

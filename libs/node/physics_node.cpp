@@ -26,10 +26,6 @@ std::span<const Topic> topics_of(Role role) {
 // io knows all roles: it is given the time to say which one is missing
 constexpr SimDuration kOwnerFirst = milliseconds(1000);
 
-std::string seconds_text(SimDuration duration) {
-  return std::to_string((duration.ns + 500'000'000) / 1'000'000'000) + " s";
-}
-
 Topic sample_topic(Role role) {
   return role == Role::mechanics ? Topic::mechanism : Topic::actuators;
 }
@@ -141,10 +137,8 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
   // a description in phase JOIN only claims the name
   if (member_.has_session() || session.header.phase != Phase::running) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
-  if (session.protocol != wire::kProtocolVersion) {
-    member_.fail(ExitCode::bad_input, "session '" + session.name + "' speaks protocol version " +
-                                          std::to_string(session.protocol) + ", this program " +
-                                          std::to_string(wire::kProtocolVersion) + "; use one version on all machines");
+  if (const Status protocol = member_.problem_of_protocol(); !protocol.is_ok()) {
+    member_.fail(protocol.code, protocol.text);
   } else if (!member_.requires_role(member_.role())) {
     const std::string why = "scene '" + session.scene_name + "' needs no " + std::string(to_text(member_.role())) +
                             " node; nothing to do here";

@@ -127,6 +127,14 @@ Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_
   return refusal;
 }
 
+Status SessionMember::problem_of_protocol() const {
+  if (session_.protocol == wire::kProtocolVersion) return Status::ok();
+  return Status::error(ExitCode::bad_input, "session '" + session_.name + "' speaks protocol version " +
+                                                std::to_string(session_.protocol) + ", this program " +
+                                                std::to_string(wire::kProtocolVersion) +
+                                                "; use one version on all machines");
+}
+
 wire::Header SessionMember::header(wire::Phase phase, StepIndex step, std::uint32_t epoch) const noexcept {
   return {session_.header.session, role_, incarnation_, epoch, phase, step};
 }
@@ -259,16 +267,15 @@ Status SessionMember::on_own_role(const wire::NodeStatus& status) {
   if (!goes_first(status, own)) return Status::ok();
   return Status::error(ExitCode::bad_input,
                        "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
-                           "' is held by process " + std::to_string(status.pid) + " on " +
-                           status.host.substr(0, status.host.find('#')) + ", started " + time_text(status.started_ns) +
+                           "' is held by process " + std::to_string(status.pid) + " on " + machine_of(status.host) +
+                           ", started " + time_text(status.started_ns) +
                            "; this second one ends; stop the first, or choose another --session name");
 }
 
 void SessionMember::compare_builds(const wire::NodeStatus& status) {
   // the owner compares, so that each difference is told once
   if (role_ != Role::io) return;
-  const std::string who =
-      std::string(to_text(status.header.role)) + " on " + status.host.substr(0, status.host.find('#'));
+  const std::string who = std::string(to_text(status.header.role)) + " on " + machine_of(status.host);
   if (status.self_test != identity_.self_test) {
     warnings_.push_back(
         who + " computes the arithmetic self-test with another result than io: this session's bits " +
@@ -330,8 +337,7 @@ std::string SessionMember::describe_peer(Role role) const {
   const Peer& peer = this->peer(role);
   std::string text(to_text(role));
   if (!peer.is_known) return text;
-  return text + " (process " + std::to_string(peer.status.pid) + " on " +
-         peer.status.host.substr(0, peer.status.host.find('#')) + ")";
+  return text + " (process " + std::to_string(peer.status.pid) + " on " + machine_of(peer.status.host) + ")";
 }
 
 std::string SessionMember::silence_text(Role role) const {

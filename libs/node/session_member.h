@@ -75,6 +75,8 @@ class SessionMember {
   // Takes part in a session. NodeStatus messages that came before are taken now; returns a refusal when another
   // process holds this role.
   Status adopt(const wire::SessionDescription& session, std::int64_t now_ns);
+  // Ok when the session speaks this program's protocol version.
+  [[nodiscard]] Status problem_of_protocol() const;
   [[nodiscard]] bool has_session() const noexcept { return has_session_; }
   [[nodiscard]] const wire::SessionDescription& session() const noexcept { return session_; }
   [[nodiscard]] bool requires_role(wire::Role role) const noexcept {

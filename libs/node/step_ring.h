@@ -1,9 +1,7 @@
-// Messages by step number, as many as the window needs: a later step overwrites the one `Depth` before it.
+// Messages by step number, as many as the window needs: a later step overwrites the one `depth` before it.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "core/time.h"

@@ -15,7 +15,6 @@
 namespace slew::transport {
 namespace {
 
-constexpr std::uint32_t kWakeBit = 1u << 31;
 static_assert(wire::kTopics < 31);
 
 struct QosDeleter {
@@ -182,8 +181,8 @@ bool CycloneTransport::take(Received& message) {
 // the next messages of a topic that has rung, lowest topic first; false when none has any
 bool CycloneTransport::refill() {
   pending_ |= doorbell_.collect();
-  while ((pending_ & ~kWakeBit) != 0) {
-    const int topic = std::countr_zero(pending_ & ~kWakeBit);
+  while (pending_ != 0) {
+    const int topic = std::countr_zero(pending_);
     std::array<ddsi_serdata*, kBatch> samples{};
     std::array<dds_sample_info_t, kBatch> about{};
     const dds_return_t n =
@@ -210,11 +209,7 @@ bool CycloneTransport::refill() {
 void CycloneTransport::wait_until(std::int64_t monotonic_deadline_ns) {
   if (batch_next_ < batch_count_) return;
   if (pending_ == 0) doorbell_.wait_until(monotonic_deadline_ns);
-  pending_ = (pending_ | doorbell_.collect()) & ~kWakeBit;
-}
-
-void CycloneTransport::wake() noexcept {
-  doorbell_.ring(kWakeBit);
+  pending_ |= doorbell_.collect();
 }
 
 std::size_t CycloneTransport::matched_readers(wire::Topic topic) const {

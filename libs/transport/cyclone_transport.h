@@ -57,7 +57,6 @@ class CycloneTransport final : public Transport {
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
   bool take(Received& message) override;
   void wait_until(std::int64_t monotonic_deadline_ns) override;
-  void wake() noexcept override;
   // "mechanics on host crane2, pid 812, type slewring::Tick"; of all vendors, in this session's partition
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
 
@@ -80,7 +79,7 @@ class CycloneTransport final : public Transport {
   std::array<const ddsi_sertype*, wire::kTopics> types_{};
   Doorbell doorbell_;
   std::array<TopicBell, wire::kTopics> bells_{};
-  std::uint32_t pending_ = 0;  // topics to be read, a bit each, and the wake bit
+  std::uint32_t pending_ = 0;  // topics to be read, a bit each
 
   std::array<ddsi_serdata*, kBatch> batch_{};
   std::array<std::int64_t, kBatch> batch_source_ns_{};

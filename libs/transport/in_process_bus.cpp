@@ -91,14 +91,7 @@ bool InProcessEndpoint::take(Received& message) {
 void InProcessEndpoint::wait_until(std::int64_t monotonic_deadline_ns) {
   const std::chrono::steady_clock::time_point deadline{std::chrono::nanoseconds(monotonic_deadline_ns)};
   std::unique_lock lock(bus_.mutex_);
-  has_message_.wait_until(lock, deadline, [this] { return count_ > 0 || is_woken_; });
-  is_woken_ = false;
-}
-
-void InProcessEndpoint::wake() noexcept {
-  const std::lock_guard lock(bus_.mutex_);
-  is_woken_ = true;
-  has_message_.notify_one();
+  has_message_.wait_until(lock, deadline, [this] { return count_ > 0; });
 }
 
 std::vector<std::string> InProcessEndpoint::discovered_writers(wire::Topic topic) {

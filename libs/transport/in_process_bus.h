@@ -41,7 +41,6 @@ class InProcessEndpoint final : public Transport {
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
   bool take(Received& message) override;
   void wait_until(std::int64_t monotonic_deadline_ns) override;
-  void wake() noexcept override;
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
 
   // Messages lost because they were not taken in time.
@@ -66,7 +65,6 @@ class InProcessEndpoint final : public Transport {
   std::size_t first_ = 0;
   std::size_t count_ = 0;
   std::uint64_t dropped_ = 0;
-  bool is_woken_ = false;
   std::condition_variable has_message_;
   Message taken_;
   std::vector<Message> kept_;  // own messages for late endpoints, oldest first

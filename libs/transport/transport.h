@@ -33,11 +33,8 @@ class Transport {
   // Next received message of any subscribed topic; false when there is none now. One thread only.
   virtual bool take(Received& message) = 0;
 
-  // Blocks until a message may be there, wake() is called, or the monotonic deadline passes.
+  // Blocks until a message may be there or the monotonic deadline passes.
   virtual void wait_until(std::int64_t monotonic_deadline_ns) = 0;
-
-  // Ends a wait_until of another thread. Async-signal-safe is not required.
-  virtual void wake() noexcept = 0;
 
   // For messages about a JOIN that does not come about: who writes a topic as the carrier sees it, e.g.
   // "host:pid type slewring::Tick"; empty when the carrier cannot tell.

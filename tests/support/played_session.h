@@ -46,7 +46,6 @@ class BreakableCarrier final : public transport::Transport {
   }
   bool take(transport::Received& message) override { return carrier_.take(message); }
   void wait_until(std::int64_t monotonic_deadline_ns) override { carrier_.wait_until(monotonic_deadline_ns); }
-  void wake() noexcept override { carrier_.wake(); }
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override {
     return carrier_.discovered_writers(topic);
   }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "tests/integration/transport/child_process.h"
 #include "tests/integration/transport/waiting.h"
 #include "tests/support/test_domain.h"
@@ -121,17 +119,6 @@ TEST_F(CycloneBus, ALateNodeGetsEachWritersLastStatus) {
   }
   EXPECT_EQ(heard, bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics));
   EXPECT_FALSE(next(*late, message, kSilence));
-}
-
-TEST_F(CycloneBus, WakeEndsAWaitOfAnotherThreadAndIsNotLostToTake) {
-  const auto node = connect("a", "mechanics", {}, {Topic::tick});
-  std::thread sleeper([&] { node->wait_until(monotonic_ns() + testing::kPatience); });
-  node->wake();
-  sleeper.join();
-  Received message;
-  node->wake();
-  EXPECT_FALSE(node->take(message));
-  node->wait_until(monotonic_ns() + testing::kPatience);
 }
 
 TEST_F(CycloneBus, UndeclaredTopicsAreRefused) {

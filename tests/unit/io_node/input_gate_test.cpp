@@ -106,10 +106,10 @@ TEST(InputGate, SilentControllerGoesToNeutralAndLaterLosesTheChannel) {
   gate.advance(1, std::vector<double>{0, 0.5}, 201 * kMs);
   EXPECT_EQ(gate.control(1), 0) << "neutral, not the script: the channel is still held";
   EXPECT_EQ(gate.went_neutral(), 1u);
-  EXPECT_EQ(gate.holder(1), "pid");
+  EXPECT_EQ(gate.acquire(1, "joystick", 202 * kMs).holder, "pid");
   gate.advance(2, std::vector<double>{0, 0.5}, 5001 * kMs);
-  EXPECT_EQ(gate.holder(1), "");
   EXPECT_EQ(gate.control(1), 250);
+  EXPECT_TRUE(gate.acquire(1, "joystick", 5002 * kMs).is_granted);
 }
 
 TEST(InputGate, WhoeverLosesAChannelWithoutReleasingItIsNamedOnce) {

@@ -234,6 +234,27 @@ TEST_F(Recorder, WritesThatASignalEndedTheSession) {
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok);
 }
 
+// mechanics may have been heard by all before io was
+TEST_F(Recorder, RecordsAnInitThatComesBeforeIosProbe) {
+  played.say(Topic::session, played.session);
+  poll();
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) played.say_status(role, NodeState::joining);
+  played.say_mechanism(kJoinStep, Phase::join);
+  played.say_mechanism(kJoinStep, Phase::init);
+  played.say_mechanism(0);
+  poll(kMs);
+  EXPECT_EQ(node->member().state(), NodeState::joining);
+  say_probe();
+  poll(kMs);
+  ASSERT_EQ(node->member().state(), NodeState::ready);
+  played.say_tick(0);
+  played.say_actuators(0);
+  say_steps(1, 9);
+  say_end(9);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
+  EXPECT_EQ(recorded(Topic::mechanism).size(), 11u) << "INIT and ten samples";
+}
+
 // ---- a second recorder ----------------------------------------------------------------------------------------
 
 TEST_F(Recorder, IsNotDisturbedByAnEmptyOneWhoseClockIsBehind) {

@@ -133,15 +133,6 @@ TEST(InProcessBus, AllocatesNothingAfterWarmUp) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-TEST(InProcessBus, WakeEndsAWaitOfAnotherThread) {
-  InProcessBus bus;
-  InProcessEndpoint a(bus, {"a", {}, {Topic::tick}});
-  std::thread sleeper([&a] { a.wait_until(monotonic_ns() + kForever); });
-  a.wake();
-  sleeper.join();
-  EXPECT_EQ(take_all(a), Numbers{});
-}
-
 TEST(InProcessBus, ThreadsExchangeWithoutLossOrDisorder) {
   InProcessBus bus;
   constexpr std::uint64_t kRounds = 20'000;
