@@ -56,8 +56,11 @@ class Control : public ::testing::Test {
     session_->start_all();
     ASSERT_TRUE(observer_->wait_for_step(step)) << session_->said();
   }
-  void pass(std::int64_t ns) {
-    static_cast<void>(observer_->wait_until([] { return false; }, ns));
+  // no tick while io sends so many health messages, ten a second
+  void expect_stands_still(std::uint64_t healths) {
+    const std::uint64_t ticks = observer_->ticks();
+    ASSERT_TRUE(observer_->wait_for_healths(Role::io, healths)) << session_->said();
+    EXPECT_EQ(observer_->ticks(), ticks);
   }
   void expect_ends_well() { EXPECT_EQ(session_->wait_all(), all_ok()) << session_->said(); }
 
@@ -74,15 +77,14 @@ TEST_F(Control, PauseStepAndResumeChangeNoBit) {
   EXPECT_EQ(early.reason, "pause the session first");
   const ControlReply paused = observer_->request(ControlAction::pause);
   ASSERT_TRUE(paused.is_accepted);
-  pass(100'000'000);
-  EXPECT_EQ(observer_->step(), paused.header.step - 1);
-  // longer than a lost node's 2 s is not needed: health goes on while nothing steps
-  pass(500'000'000);
+  ASSERT_TRUE(observer_->wait_for_step(paused.header.step - 1));
+  // longer than the 2 s after which a silent node is given up: health goes on while nothing steps
+  expect_stands_still(25);
   EXPECT_EQ(observer_->step(), paused.header.step - 1);
   EXPECT_EQ(observer_->status(Role::io)->state, wire::NodeState::holding);
   ASSERT_TRUE(observer_->request(ControlAction::step, 5).is_accepted);
   ASSERT_TRUE(observer_->wait_for_step(paused.header.step + 4));
-  pass(50'000'000);
+  expect_stands_still(2);
   EXPECT_EQ(observer_->step(), paused.header.step + 4);
   EXPECT_FALSE(observer_->request(ControlAction::step, 0).is_accepted);
   EXPECT_FALSE(observer_->request(ControlAction::step, std::numeric_limits<double>::quiet_NaN()).is_accepted);
@@ -147,7 +149,7 @@ TEST_F(Control, ResetOfAPausedSessionStaysPausedAtStepZero) {
            observer_->status(Role::io)->header.epoch == 1;
   };
   ASSERT_TRUE(observer_->wait_until(is_back)) << session_->said();
-  pass(50'000'000);
+  expect_stands_still(2);
   EXPECT_EQ(observer_->step(), kJoinStep);
   ASSERT_TRUE(observer_->request(ControlAction::resume).is_accepted);
   expect_ends_well();
@@ -367,10 +369,8 @@ TEST_F(Controller, SilentControllerGoesToNeutral) {
 
 TEST_F(Controller, MayNotMoveTheScriptsChannelBeforeItHasTheLease) {
   start({"--pace", "real", "--duration", "1.6s"}, 100);
-  for (int i = 0; i < 20; ++i) {
-    write("a", -1);
-    pass(5'000'000);
-  }
+  // what it writes arrives, and is counted
+  ASSERT_TRUE(write_until("a", -1, [this] { return rejected() >= 3; }));
   expect_ends_well();
   EXPECT_EQ(first_difference(physics_only(session_->recorded().chain()), physics_only(undisturbed())), "");
 }

@@ -117,7 +117,8 @@ TEST_P(StoppedNode, For200MillisecondsChangesNoBit) {
   ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
   session.node(GetParam()).send(SIGSTOP);
   EXPECT_LT(observer.step(), kSteps - 1) << "the stop came too late to be one in mid-run";
-  EXPECT_FALSE(observer.wait_until([] { return false; }, 200'000'000));
+  const Role other = GetParam() == Role::io ? Role::mechanics : Role::io;
+  ASSERT_TRUE(observer.wait_for_healths(other, 2)) << session.said();
   session.node(GetParam()).send(SIGCONT);
   expect_same_as_in_one_process(session);
 }
@@ -135,9 +136,8 @@ TEST_P(StartOrder, ChangesNoBit) {
   Session session(kFree);
   for (const Role role : GetParam()) {
     Program& program = session.start(role);
-    // the next one starts when this one is up: it shows itself by its first breath or by waiting for a session
-    ASSERT_TRUE(program.is_running()) << program.err();
-    static_cast<void>(session.observer().wait_until([] { return false; }, 100'000'000));
+    // the next one starts when the middleware knows this one
+    ASSERT_TRUE(session.observer().wait_for_process(program.pid())) << program.err();
   }
   expect_same_as_in_one_process(session);
 }

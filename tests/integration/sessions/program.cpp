@@ -73,7 +73,6 @@ std::optional<int> Program::wait(std::int64_t longest_ns) {
   if (end_) return end_;
   pollfd request{watch_, POLLIN, 0};
   if (poll(&request, 1, static_cast<int>(longest_ns / 1'000'000)) != 1) return std::nullopt;
-  ended_ns_ = monotonic_ns();
   int status = 0;
   waitpid(pid_, &status, 0);
   end_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);

@@ -31,9 +31,6 @@ class Program {
   [[nodiscard]] std::optional<int> wait(std::int64_t longest_ns = kSoonNs);
   [[nodiscard]] bool is_running() { return !wait(0).has_value(); }
 
-  // Monotonic time at which wait() saw its end.
-  [[nodiscard]] std::int64_t ended_ns() const noexcept { return ended_ns_; }
-
   [[nodiscard]] std::string out() const;
   [[nodiscard]] std::string err() const;
 
@@ -42,7 +39,6 @@ class Program {
   pid_t pid_ = -1;
   int watch_ = -1;  // pidfd
   std::optional<int> end_;
-  std::int64_t ended_ns_ = 0;
 };
 
 // An executable of this build.

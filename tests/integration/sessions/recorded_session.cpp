@@ -24,6 +24,11 @@ HashChain& epoch_of(RecordedSession& session, const wire::Header& header) {
 
 void take(RecordedSession& session, const recording::RecordedMessage& recorded) {
   const std::string& topic = recorded.channel->topic;
+  wire::Header header;
+  const bool has_header = topic != "controller_input" && topic != "control_request";
+  if (has_header && transport::decode_header(recorded.payload, header)) {
+    session.word_ns[header.role].push_back(static_cast<std::int64_t>(recorded.publish_time_ns));
+  }
   if (topic == "tick") {
     const auto tick = decoded<wire::Tick>(recorded);
     // the END tick carries no state of its own
@@ -64,6 +69,16 @@ std::int64_t RecordedSession::losses() const {
     if (key.size() > 5 && key.substr(key.size() - 5) == ".lost") sum += std::stoll(value);
   }
   return sum;
+}
+
+std::int64_t RecordedSession::last_word_before(wire::Role role, std::int64_t time_ns) const {
+  std::int64_t last = 0;
+  const auto words = word_ns.find(role);
+  if (words == word_ns.end()) return last;
+  for (const std::int64_t said : words->second) {
+    if (said < time_ns) last = std::max(last, said);
+  }
+  return last;
 }
 
 StepIndex RecordedSession::last_complete_step() const {

@@ -39,6 +39,10 @@ struct RecordedSession {
   std::string problem;                         // why the file is not valid; empty: every byte is as it was written
   bool has_all_messages = false;               // closed in order
 
+  std::map<wire::Role, std::vector<std::int64_t>> word_ns;  // wall times at which each role said anything
+
+  // When the role said its last word before a wall time; 0: it had said nothing.
+  [[nodiscard]] std::int64_t last_word_before(wire::Role role, std::int64_t time_ns) const;
   [[nodiscard]] const HashChain& chain() const { return epochs.at(0); }
   // Sum of all "<topic>.lost" of the summary; -1 without a summary.
   [[nodiscard]] std::int64_t losses() const;

@@ -48,7 +48,22 @@ bool Observer::wait_for_step(StepIndex step) {
   return wait_until([&] { return step_ >= step; });
 }
 
+bool Observer::wait_for_healths(Role role, std::uint64_t count) {
+  const std::uint64_t target = healths(role) + count;
+  return wait_until([&] { return healths(role) >= target; });
+}
+
+bool Observer::wait_for_process(pid_t pid) {
+  const std::string known = "pid " + std::to_string(pid) + ",";
+  return wait_until([&] {
+    const std::vector<std::string> writers = carrier_->discovered_writers(Topic::node_status);
+    return std::any_of(writers.begin(), writers.end(),
+                       [&](const std::string& writer) { return writer.find(known) != std::string::npos; });
+  });
+}
+
 void Observer::take(const transport::Received& message) {
+  ++messages_;
   switch (message.topic) {
     case Topic::session: {
       wire::SessionDescription description;
@@ -64,9 +79,19 @@ void Observer::take(const transport::Received& message) {
     case Topic::tick: {
       if (!transport::decode(message.bytes, tick_)) return;
       if (tick_.header.phase == wire::Phase::join) return;
+      ++ticks_;
       if (tick_.header.epoch > epoch_) step_ = -1;
       epoch_ = tick_.header.epoch;
       step_ = std::max(step_, tick_.header.step);
+      return;
+    }
+    case Topic::health: {
+      wire::Health health;
+      if (!transport::decode(message.bytes, health)) return;
+      const auto role = static_cast<std::size_t>(health.header.role);
+      if (role >= wire::kRoles) return;
+      ++healths_[role];
+      if (health.state >= wire::NodeState::ended) ++healths_after_end_[role];
       return;
     }
     case Topic::control_reply: {

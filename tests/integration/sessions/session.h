@@ -30,6 +30,11 @@ class Observer {
   // The tick of this step of the present epoch, or a later one, has been seen.
   [[nodiscard]] bool wait_for_step(StepIndex step);
 
+  // So many further health messages of this role have come, ten a second: a pause that the session itself counts.
+  [[nodiscard]] bool wait_for_healths(wire::Role role, std::uint64_t count);
+  // A process of the session is known to the middleware.
+  [[nodiscard]] bool wait_for_process(pid_t pid);
+
   // Sends a request until it is answered.
   [[nodiscard]] wire::ControlReply request(wire::ControlAction action, double value = 0, const std::string& path = "",
                                            std::int64_t over_ns = -1);
@@ -45,6 +50,14 @@ class Observer {
   [[nodiscard]] const std::optional<wire::NodeStatus>& status(wire::Role role) const {
     return status_[static_cast<std::size_t>(role)];
   }
+  // Ticks of steps that have come, and messages of any kind.
+  [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
+  [[nodiscard]] std::uint64_t messages() const noexcept { return messages_; }
+  // Health messages of this role, and those it sent after its own end.
+  [[nodiscard]] std::uint64_t healths(wire::Role role) const { return healths_[static_cast<std::size_t>(role)]; }
+  [[nodiscard]] std::uint64_t healths_after_end(wire::Role role) const {
+    return healths_after_end_[static_cast<std::size_t>(role)];
+  }
   [[nodiscard]] std::uint64_t sessions_seen() const noexcept { return descriptions_.size(); }
   [[nodiscard]] const std::string& name() const noexcept { return session_; }
   // Newest value of a variable; none before it is known.
@@ -57,6 +70,10 @@ class Observer {
   std::unique_ptr<transport::Transport> carrier_;
   StepIndex step_ = -1;
   std::uint32_t epoch_ = 0;
+  std::uint64_t ticks_ = 0;
+  std::uint64_t messages_ = 0;
+  std::array<std::uint64_t, wire::kRoles> healths_{};
+  std::array<std::uint64_t, wire::kRoles> healths_after_end_{};
   wire::Tick tick_;
   std::array<std::optional<wire::NodeStatus>, wire::kRoles> status_;
   std::map<wire::SessionId, wire::SessionDescription> descriptions_;
