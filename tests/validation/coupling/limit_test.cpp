@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "build_paths.h"
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
