@@ -107,11 +107,11 @@ void check_start(const Scene& scene, Problems& problems) {
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const PortDef& port = scene.ports[i];
     const double min = port.line_force.stroke_min, max = port.line_force.stroke_max;
-    if (strokes[i] >= min - kStrokeTolerance && strokes[i] <= max + kStrokeTolerance) continue;
-    problems.push_back(
-        {port.name + (port.ratio == 1 ? ".rod_length" : ".stroke_offset"),
-         fmt::format("the stroke at the start is {:.4g} m, outside of minimum_stroke to maximum_stroke", strokes[i]),
-         fmt::format("a length and poses that give {:.4g} to {:.4g} m", min, max), ""});
+    const bool is_below = strokes[i] < min - kStrokeTolerance;
+    if (!is_below && strokes[i] <= max + kStrokeTolerance) continue;
+    problems.push_back({port.name + (is_below ? ".minimum_stroke" : ".maximum_stroke"),
+                        fmt::format("the stroke at the start is {:.4g} m, outside of its limits", strokes[i]),
+                        fmt::format("lengths and poses that start between {:.4g} and {:.4g} m", min, max), ""});
   }
 }
 

@@ -17,8 +17,8 @@ void make_ports(Scene& scene, Problems& problems);
 // or limits.
 [[nodiscard]] std::vector<std::string> row_names(const Scene& scene);
 
-// Pistons that the poses of the scene put into an end stop: they would throw the machine. Pre-condition: no problem with
-// ports and rows.
+// Pistons that the poses of the scene put into an end stop: they would throw the machine. Pre-condition: no problem
+// with ports and rows.
 void check_start(const Scene& scene, Problems& problems);
 
 }  // namespace slew::scene
