@@ -319,7 +319,8 @@ TEST(CircuitIntegrator, hash_changes_when_any_state_changes_by_one_ulp) {
   EXPECT_NE(digest(), before);
   integrator.set_step_size(h);
   EXPECT_EQ(digest(), before);
-  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.overlap"), std::nextafter(0.32, 1.0)), ParameterResult::ok);
+  EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.overlap"), std::nextafter(0.32, 1.0)),
+            ParameterResult::ok);
   EXPECT_NE(digest(), before);
 }
 
