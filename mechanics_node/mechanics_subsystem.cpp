@@ -6,7 +6,6 @@
 #include "coupling/static_forces.h"
 #include "math/small_solve.h"
 #include "multibody/joint_law.h"
-#include "multibody/observe.h"
 #include "multibody/parameters.h"
 #include "scene/ports.h"
 
@@ -70,7 +69,8 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       joint_slope_(model_.rows.size()),
       ramps_(multibody::parameter_count(model_)),
       heavier_(model_),
-      heavier_workspace_(model_) {
+      reading_workspace_(model_),
+      reactions_(model_.joints.size()) {
   for (const scene::PortDef& port : scene.ports) {
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
   }
@@ -437,6 +437,8 @@ std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
 void MechanicsSubsystem::list_variables() {
   variables_ = multibody::variables(model_);
   model_variables_ = variables_.size();
+  for (ElementVariable& variable : multibody::reaction_variables(model_)) variables_.push_back(std::move(variable));
+  reaction_variables_ = variables_.size() - model_variables_;
   for (const Port& port : ports_) {
     variables_.push_back({port.name + ".line_force", Dimension::force});
     variables_.push_back({port.name + ".friction_force", Dimension::force});
@@ -464,15 +466,15 @@ void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noe
   // the same static problem twice, without joint laws: now and with more payload
   const auto static_forces = [&](double payload, std::span<double> F) {
     multibody::set_body_mass(heavier_, payload_, payload);
-    multibody::evaluate(heavier_, state_, heavier_workspace_);
+    multibody::evaluate(heavier_, state_, reading_workspace_);
     coupling::PortMatrix W;
     coupling::PortArray a_free;
     W.resize(m * m);
     a_free.resize(m);
     for (std::size_t i = 0; i < m; ++i) {
-      a_free[i] = ports_[i].ratio * heavier_workspace_.row_a_free[i];
+      a_free[i] = ports_[i].ratio * reading_workspace_.row_a_free[i];
       for (std::size_t j = 0; j < m; ++j) {
-        W[i * m + j] = ports_[i].ratio * heavier_workspace_.row_W[i * rows + j] * ports_[j].ratio;
+        W[i * m + j] = ports_[i].ratio * reading_workspace_.row_W[i * rows + j] * ports_[j].ratio;
       }
     }
     return coupling::static_forces(W.span(), a_free.span(), F);
@@ -486,7 +488,9 @@ void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noe
 
 void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept {
   multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
-  std::size_t k = model_variables_;
+  multibody::joint_reactions(model_, state_, reading_workspace_, row_force_, reactions_);
+  multibody::read_reactions(reactions_, values.subspan(model_variables_, reaction_variables_));
+  std::size_t k = model_variables_ + reaction_variables_;
   coupling::PortArray slopes;
   slopes.resize(ports_.size());
   find_payload_slopes(slopes.span());

@@ -16,6 +16,7 @@
 #include "coupling/port_dynamics.h"
 #include "coupling/subsystem.h"
 #include "multibody/dynamics.h"
+#include "multibody/observe.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics {
@@ -97,11 +98,12 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::vector<double> matrix_, right_;            // scratch of the condensation
   coupling::ParameterRamps ramps_;
   std::vector<ElementVariable> variables_;
-  std::size_t model_variables_ = 0;
+  std::size_t model_variables_ = 0, reaction_variables_ = 0;
   int payload_ = 0;  // the scene's last moving body: what hangs on the machine
   // the same mechanism with 1 kg more of payload, for the static force that a load asks for
   mutable multibody::Model heavier_;
-  mutable multibody::Workspace heavier_workspace_;
+  mutable multibody::Workspace reading_workspace_;                // scratch of read_variables()
+  mutable std::vector<multibody::JointReaction> reactions_;       // by joint of the scene
   bool has_failed_ = false;
   StepReport failure_;
   coupling::MechanismSample published_;

@@ -6,7 +6,6 @@
 #include "core/check.h"
 #include "coupling/static_forces.h"
 #include "multibody/joint_law.h"
-#include "multibody/observe.h"
 #include "multibody/parameters.h"
 #include "multibody/passes.h"
 #include "scene/ports.h"
@@ -245,6 +244,9 @@ void SceneEquations::observe(double t, const double* y) {
 void SceneEquations::list_variables() {
   variables_ = multibody::variables(model_);
   model_variables_ = variables_.size();
+  reactions_.resize(model_.joints.size());
+  for (ElementVariable& variable : multibody::reaction_variables(model_)) variables_.push_back(std::move(variable));
+  reaction_variables_ = variables_.size() - model_variables_;
   for (const Port& port : ports_) {
     variables_.push_back({port.name + ".line_force", Dimension::force});
     variables_.push_back({port.name + ".friction_force", Dimension::force});
@@ -258,7 +260,9 @@ void SceneEquations::list_variables() {
 void SceneEquations::read_variables(std::span<double> values) {
   SLEW_CHECK(values.size() == variables_.size());
   multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
-  std::size_t k = model_variables_;
+  multibody::joint_reactions(model_, state_, workspace_, row_force_, reactions_);
+  multibody::read_reactions(reactions_, values.subspan(model_variables_, reaction_variables_));
+  std::size_t k = model_variables_ + reaction_variables_;
   for (const PortState& port : port_states_) {
     values[k++] = port.line_force;
     values[k++] = port.friction;

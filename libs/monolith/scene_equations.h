@@ -26,6 +26,7 @@
 #include "coupling/line_force.h"
 #include "hydraulics/circuit.h"
 #include "multibody/dynamics.h"
+#include "multibody/observe.h"
 #include "scene/scene.h"
 
 namespace slew::monolith {
@@ -105,7 +106,8 @@ class SceneEquations {
   std::vector<double> q_rate_, u_rate_;
   std::vector<PortState> port_states_;
   std::vector<ElementVariable> variables_;
-  std::size_t model_variables_ = 0;
+  std::size_t model_variables_ = 0, reaction_variables_ = 0;
+  std::vector<multibody::JointReaction> reactions_;  // by joint of the scene
 };
 
 }  // namespace slew::monolith

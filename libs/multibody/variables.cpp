@@ -122,6 +122,23 @@ std::vector<ElementVariable> variables(const Model& model) {
   return names.take();
 }
 
+std::vector<ElementVariable> reaction_variables(const Model& model) {
+  Names names;
+  for (const Joint& joint : model.joints) {
+    names.add_triple(joint.name + ".reaction_force", Dimension::force);
+    names.add_triple(joint.name + ".reaction_moment", Dimension::torque);
+  }
+  return names.take();
+}
+
+void read_reactions(std::span<const JointReaction> reactions, std::span<double> values) noexcept {
+  Values out(values);
+  for (const JointReaction& reaction : reactions) {
+    out.add(reaction.force);
+    out.add(reaction.moment);
+  }
+}
+
 void read_variables(const Model& model, const State& state, const Workspace& ws, std::span<const double> row_forces,
                     std::span<double> values) noexcept {
   Values out(values);
