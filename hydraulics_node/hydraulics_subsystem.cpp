@@ -90,11 +90,11 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
     const coupling::MechanismSample& mechanism = *partners.mechanism;
     std::copy(mechanism.x.begin(), mechanism.x.end(), x.begin());
     std::copy(mechanism.v.begin(), mechanism.v.end(), v.begin());
-    if (!coupling::static_forces(mechanism.W.span(), mechanism.a_free.span(), {F.data(), m_})) {
+    if (scene_.hydraulics.start == hydraulics::StartState::equilibrium &&
+        !coupling::static_forces(mechanism.W.span(), mechanism.a_free.span(), {F.data(), m_})) {
       return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
     }
   }
-  for (std::size_t i = 0; i < m_; ++i) circuit_->set_line_force(static_cast<int>(i), F[i]);
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
   integrator_->refresh();
   publish(sample.actuators, 0);
@@ -107,7 +107,6 @@ void HydraulicsSubsystem::take_mechanism(const coupling::MechanismSample& mechan
   indicator_.update(mechanism, published_);
   integrator_->align(mechanism.x.span(), mechanism.v.span());
   reduced_.set_sample(mechanism);
-  for (std::size_t i = 0; i < m_; ++i) circuit_->set_line_force(static_cast<int>(i), mechanism.F_line[i]);
 }
 
 StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners,
@@ -153,6 +152,7 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     sample.p_B[i] = a.p_b;
     sample.Q_A[i] = a.Q_a;
     sample.Q_B[i] = a.Q_b;
+    circuit_->set_line_force(static_cast<int>(i), reduced_.law(i).evaluate(a.F, a.x, a.v).force);
   }
   sample.flags = flags;
   published_ = sample;

@@ -9,6 +9,9 @@ namespace {
 // enough for two digits of the largest eigenvalue; the figure is a warning level, not a result
 constexpr int kPowerIterations = 12;
 
+// N: a port that carries less is idle, and the rounding of its energies is no error of the coupling
+constexpr double kLeastForce = 1;
+
 // rounded up, so that buckets of few steps do not shorten the window
 std::int64_t steps_per_bucket(std::int64_t bucket_ns, SimDuration step) {
   return (bucket_ns + step.ns - 1) / step.ns;
@@ -59,7 +62,8 @@ void Indicator::evaluate_window(std::size_t port) noexcept {
     sum.force = std::max(sum.force, bucket.force);
     sum.stiffness = std::max(sum.stiffness, bucket.stiffness);
   }
-  const double spring = sum.stiffness > 0 ? sum.force * sum.force / (2 * sum.stiffness) : 0.0;
+  const double force = std::max(sum.force, kLeastForce);
+  const double spring = sum.stiffness > 0 ? force * force / (2 * sum.stiffness) : 0.0;
   const double scale = std::max(sum.work, spring);
   PortDefects& defects = defects_[port];
   defects.eta = scale > 0 ? sum.residual / scale : 0.0;

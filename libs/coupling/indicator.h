@@ -9,7 +9,8 @@
 //   omega_H = H sqrt(largest eigenvalue of W K)                                                    (6)
 //
 // eta times 10 to 30 is the relative force error (study). Lamps: green below 1e-4, amber below 1e-3, red above;
-// net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window.
+// net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window,
+// at least 1 N.
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 #include "coupling/static_forces.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/check.h"
 #include "coupling/samples.h"
@@ -8,13 +9,93 @@
 
 namespace slew::coupling {
 
+namespace {
+
+// a port's mobility is spent when so little of it is left beside the pivots before
+constexpr double kRankTolerance = 1e-10;
+// the accelerations that are left, relative to the largest free one
+constexpr double kResidualTolerance = 1e-8;
+
+// W = L L^T by Cholesky with complete pivoting; L: m x r, row-major with m columns.
+std::size_t factorise(std::span<const double> W, std::size_t m, PortMatrix& L) noexcept {
+  L.resize(m * m);
+  std::fill(L.begin(), L.end(), 0.0);
+  PortArray left;
+  left.resize(m);
+  for (std::size_t i = 0; i < m; ++i) left[i] = W[i * m + i];
+  for (std::size_t r = 0; r < m; ++r) {
+    std::size_t pivot = m;
+    double largest = kRankTolerance;
+    for (std::size_t i = 0; i < m; ++i) {
+      const double share = W[i * m + i] > 0 ? left[i] / W[i * m + i] : 0;
+      if (share > largest) {
+        largest = share;
+        pivot = i;
+      }
+    }
+    if (pivot == m) return r;
+    const double root = std::sqrt(left[pivot]);
+    for (std::size_t i = 0; i < m; ++i) {
+      double sum = W[i * m + pivot];
+      for (std::size_t k = 0; k < r; ++k) sum -= L[i * m + k] * L[pivot * m + k];
+      L[i * m + r] = sum / root;
+    }
+    for (std::size_t i = 0; i < m; ++i) left[i] -= L[i * m + r] * L[i * m + r];
+    left[pivot] = 0;
+  }
+  return m;
+}
+
+// The shortest F of all with W F = b: F = L (L^T L)^-2 L^T b.
+bool share_between_ports(const PortMatrix& L, std::size_t m, std::size_t rank, std::span<double> F) noexcept {
+  PortArray z;
+  z.resize(rank);
+  for (std::size_t r = 0; r < rank; ++r) {
+    z[r] = 0;
+    for (std::size_t i = 0; i < m; ++i) z[r] += L[i * m + r] * F[i];
+  }
+  for (int times = 0; times < 2; ++times) {
+    PortMatrix gram;
+    gram.resize(rank * rank);
+    for (std::size_t r = 0; r < rank; ++r) {
+      for (std::size_t s = 0; s < rank; ++s) {
+        gram[r * rank + s] = 0;
+        for (std::size_t i = 0; i < m; ++i) gram[r * rank + s] += L[i * m + r] * L[i * m + s];
+      }
+    }
+    if (rank > 0 && !math::solve_in_place(gram.data(), z.data(), rank, 1)) return false;
+  }
+  for (std::size_t i = 0; i < m; ++i) {
+    F[i] = 0;
+    for (std::size_t r = 0; r < rank; ++r) F[i] += L[i * m + r] * z[r];
+  }
+  return true;
+}
+
+bool holds(std::span<const double> W, std::span<const double> a_free, std::span<const double> F) noexcept {
+  const std::size_t m = F.size();
+  double largest = 0;
+  for (const double a : a_free) largest = std::max(largest, std::fabs(a));
+  for (std::size_t i = 0; i < m; ++i) {
+    double a = a_free[i];
+    for (std::size_t j = 0; j < m; ++j) a += W[i * m + j] * F[j];
+    if (!(std::fabs(a) <= kResidualTolerance * largest)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 bool static_forces(std::span<const double> W, std::span<const double> a_free, std::span<double> F) noexcept {
   const std::size_t m = a_free.size();
   SLEW_CHECK(m <= kMaxPorts && F.size() == m && W.size() == m * m);
+  for (std::size_t i = 0; i < m; ++i) F[i] = -a_free[i];
+  PortMatrix L;
+  const std::size_t rank = factorise(W, m, L);
+  if (rank < m) return share_between_ports(L, m, rank, F) && holds(W, a_free, F);
   PortMatrix matrix;
   matrix.resize(m * m);
   std::copy(W.begin(), W.end(), matrix.begin());
-  for (std::size_t i = 0; i < m; ++i) F[i] = -a_free[i];
   return math::solve_in_place(matrix.data(), F.data(), m, 1);
 }
 

@@ -79,6 +79,17 @@ TEST(Indicator, CouplingFrequencySeesEveryPartOfTheMachine) {
   EXPECT_NEAR(coupling_frequency(W, K, 1e-3), 1e-3 * std::sqrt(7e-5 * 1.5e8), 1e-6);
 }
 
+TEST(Indicator, AnIdlePortIsGreen) {
+  // an actuator that carries nothing: forces and energies of rounding
+  Indicator indicator(1, milliseconds(1));
+  Pair pair = one_port();
+  pair.actuators.F[0] = 1e-11;
+  pair.mechanism.F_used[0] = 1.1e-11;
+  pair.actuators.work[0] = 3e-31;
+  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators);
+  EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::green);
+}
+
 TEST(Indicator, ForgetsAnErrorAfterItsWindow) {
   for (const double step : {1e-3, 5e-3, 20e-3}) {
     const SimDuration H = milliseconds(static_cast<std::int64_t>(step * 1e3));
