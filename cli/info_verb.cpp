@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
+#include "cli/flag_report.h"
 #include "cli/recorded.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
@@ -64,6 +65,7 @@ nlohmann::json to_json(const recording::Reader& reader, double simulated) {
           {"complete", reader.has_all_messages()},
           {"damage", reader.damage_text()},
           {"end", end_of(reader)},
+          {"notes", explain_flags(reader)},
           {"topics", topics}};
 }
 
@@ -85,6 +87,7 @@ void print(const recording::Reader& reader, double simulated) {
     rows.push_back(
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
   }
+  for (std::string& flagged : explain_flags(reader)) rows.push_back({"note", std::move(flagged)});
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
     rows.push_back({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});
   }

@@ -122,7 +122,7 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
   wire::VariableBlock block;
   read_all(reader, only({Topic::variables}), [&](const recording::RecordedMessage& message) {
     if (transport::decode(message.payload, block) && block.header.phase == wire::Phase::running) {
-      add_block(block, static_cast<double>(message.log_time_ns) * 1e-9, places, curves);
+      add_block(block, static_cast<double>(message.log_time_ns) / 1e9, places, curves);
     }
     return Visit::go_on;
   });

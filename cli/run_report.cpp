@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
+#include "cli/flag_report.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
 #include "cli/stall_report.h"
@@ -153,6 +154,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
       }
       if (report.steps > 0) {
         report.notes = explain_stalls(*reader, scene);
+        for (std::string& flagged : explain_flags(*reader)) report.notes.push_back(std::move(flagged));
         report.plots = write_plots(scene, outcome.recording);
       }
     } catch (const cli_support::Failure& failure) {

@@ -170,6 +170,24 @@ TEST_F(InProcess, ALoadThatIsLiftedNeedsNoNote) {
   EXPECT_TRUE(nlohmann::json::parse(result.out).at("notes").empty()) << result.out;
 }
 
+TEST_F(InProcess, TheSummarySaysWhichStepsWereFlagged) {
+  const CommandResult result = run_scene("truck_crane.yaml", {"--duration", "1", "--set", "hydraulics.substep_budget=3",
+                                                              "--set", "hydraulics.relative_tolerance=1e-8"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json notes = nlohmann::json::parse(result.out).at("notes");
+  ASSERT_EQ(notes.size(), 1u) << result.out;
+  EXPECT_NE(notes.at(0).get<std::string>().find("hydraulics: the sub-step budget was used up"), std::string::npos);
+  const CommandResult info = slewring({"info", work_.recording().string(), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(info.out).at("notes"), notes);
+}
+
+TEST_F(InProcess, AnUnstableHoldIsFlagged) {
+  const CommandResult result =
+      run_scene("single_cylinder.yaml", {"--set", "session.coupling=hold", "--step", "5ms", "--duration", "2"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("the coupling created energy"), std::string::npos) << result.out;
+}
+
 TEST_F(InProcess, CtrlCEndsTheSessionInOrder) {
   Command command("slewring", {"run", scene_file("truck_crane.yaml"), "--in-process", "--duration", "0"}, work_.path());
   ASSERT_TRUE(wait_until([&] { return command.out().find(" running") != std::string::npos; })) << command.err();

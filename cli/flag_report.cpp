@@ -1,0 +1,78 @@
+#include "cli/flag_report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "cli/display.h"
+#include "cli_support/failure.h"
+#include "core/step_report.h"
+#include "node/identity.h"
+#include "transport/codec.h"
+#include "transport/wire.h"
+
+namespace slew::cli {
+namespace {
+
+struct Meaning {
+  StepFlag flag;
+  const char* what;
+  const char* remedy;
+};
+
+constexpr std::array<Meaning, 5> kMeanings = {{
+    {StepFlag::not_converged, "an iteration reached its limit and its residual was accepted", "choose a smaller step"},
+    {StepFlag::step_budget, "the sub-step budget was used up and the error of the last one accepted",
+     "raise hydraulics.substep_budget or the tolerances"},
+    {StepFlag::clamp_active, "a quantity was held at a bound of its validity", "look at the pressures and the inputs"},
+    {StepFlag::coupling_creates_energy, "the coupling created energy, so the run may be unstable",
+     "choose session.coupling: two or a smaller step"},
+    {StepFlag::cavitating, "a volume cavitated", "look at the pressures near zero"},
+}};
+
+struct Seen {
+  std::uint64_t steps = 0;
+  StepIndex first = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> explain_flags(const recording::Reader& reader) {
+  std::map<std::pair<wire::Role, std::size_t>, Seen> seen;
+  const auto take = [&](const wire::Header& header, std::uint32_t flags) {
+    for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+      if ((flags & static_cast<std::uint32_t>(kMeanings[i].flag)) == 0) continue;
+      Seen& entry = seen[{header.role, i}];
+      if (entry.steps++ == 0) entry.first = header.step;
+    }
+  };
+  recording::MessageFilter filter;
+  for (const wire::Topic topic : {wire::Topic::mechanism, wire::Topic::actuators}) {
+    filter.topics.emplace_back(node::to_text(topic));
+  }
+  const Status status = reader.for_each(filter, [&](const recording::RecordedMessage& message) {
+    if (message.channel->topic == filter.topics.front()) {
+      wire::MechanismMessage sample;
+      if (transport::decode(message.payload, sample)) take(sample.header, sample.state.flags);
+    } else {
+      wire::ActuatorMessage sample;
+      if (transport::decode(message.payload, sample)) take(sample.header, sample.state.flags);
+    }
+    return recording::Reader::Visit::go_on;
+  });
+  if (status.code == ExitCode::storage) throw cli_support::Failure(status.code, status.text);
+  std::vector<std::string> sentences;
+  const double H = reader.identity().communication_step.seconds();
+  for (const auto& [key, entry] : seen) {
+    const Meaning& meaning = kMeanings[key.second];
+    sentences.push_back(fmt::format("{}: {} in {}, first at {}; {}", node::to_text(key.first), meaning.what,
+                                    counted(entry.steps, "step", "steps"),
+                                    duration_text(static_cast<double>(entry.first) * H), meaning.remedy));
+  }
+  return sentences;
+}
+
+}  // namespace slew::cli

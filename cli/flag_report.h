@@ -1,0 +1,17 @@
+// What the steps of a recording said of themselves (core/step_report.h): a sentence for each flag that a user should
+// know of, with the first step that raised it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "recording/reader.h"
+
+namespace slew::cli {
+
+// Flags of the two physics nodes' samples: not converged, sub-step budget, clamp, energy from the coupling, cavitation.
+// What happens in sound runs too, end stops and open relief valves, is left out. Throws Failure when the recording
+// cannot be read.
+[[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);
+
+}  // namespace slew::cli
