@@ -102,8 +102,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   int payload_ = 0;  // the scene's last moving body: what hangs on the machine
   // the same mechanism with 1 kg more of payload, for the static force that a load asks for
   mutable multibody::Model heavier_;
-  mutable multibody::Workspace reading_workspace_;                // scratch of read_variables()
-  mutable std::vector<multibody::JointReaction> reactions_;       // by joint of the scene
+  mutable multibody::Workspace reading_workspace_;           // scratch of read_variables()
+  mutable std::vector<multibody::JointReaction> reactions_;  // by joint of the scene
   bool has_failed_ = false;
   StepReport failure_;
   coupling::MechanismSample published_;

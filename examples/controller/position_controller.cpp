@@ -25,11 +25,11 @@ struct Options {
   std::string variable = "Cyl_Lift.stroke";
   std::string channel = "Input_Lift";
   std::string name = "position_controller";
-  double target = 0.86;        // unit of the variable
-  double tolerance = 1e-3;     // unit of the variable
-  double gain = 20;            // stick per unit of error
-  double overlap = 0.32;       // the valve does nothing below this stick value
-  double seconds = 15;         // gives up after this wall time
+  double target = 0.86;     // unit of the variable
+  double tolerance = 1e-3;  // unit of the variable
+  double gain = 20;         // stick per unit of error
+  double overlap = 0.32;    // the valve does nothing below this stick value
+  double seconds = 15;      // gives up after this wall time
   unsigned domain = 0;
 };
 constexpr double kLastDomain = 230;  // DDS: a port is 7400 + 250 domain + ...
@@ -94,7 +94,8 @@ bool parse(int argc, char** argv, Options& options) {
 
 // loopback only, unicast, with timers that repair a lost packet within milliseconds
 constexpr char kConfiguration[] =
-    "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"false\"/></Interfaces>"
+    "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\" "
+    "multicast=\"false\"/></Interfaces>"
     "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
     "<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex><SPDPInterval>500ms</SPDPInterval>"
     "<LeaseDuration>2s</LeaseDuration><Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery>"
@@ -137,18 +138,19 @@ Endpoints connect(const Options& options) {
   const auto topic = [&](const dds_topic_descriptor_t* type, const char* name) {
     return checked(dds_create_topic(e.participant, type, name, nullptr, nullptr), name);
   };
-  e.directory = checked(
-      dds_create_reader(subscriber, topic(&slewring_VariableDirectory_desc, "slewring/variable_directory"), lasting, nullptr),
-      "the directory's reader");
+  e.directory =
+      checked(dds_create_reader(subscriber, topic(&slewring_VariableDirectory_desc, "slewring/variable_directory"),
+                                lasting, nullptr),
+              "the directory's reader");
   e.variables = checked(
       dds_create_reader(subscriber, topic(&slewring_VariableBlock_desc, "slewring/variables"), streaming, nullptr),
       "the variables' reader");
-  e.lease = checked(
-      dds_create_reader(subscriber, topic(&slewring_ControllerLease_desc, "slewring/controller_lease"), streaming, nullptr),
-      "the leases' reader");
-  e.input = checked(
-      dds_create_writer(publisher, topic(&slewring_ControllerInput_desc, "slewring/controller_input"), streaming, nullptr),
-      "the input's writer");
+  e.lease = checked(dds_create_reader(subscriber, topic(&slewring_ControllerLease_desc, "slewring/controller_lease"),
+                                      streaming, nullptr),
+                    "the leases' reader");
+  e.input = checked(dds_create_writer(publisher, topic(&slewring_ControllerInput_desc, "slewring/controller_input"),
+                                      streaming, nullptr),
+                    "the input's writer");
   dds_delete_qos(lasting);
   dds_delete_qos(streaming);
   return e;

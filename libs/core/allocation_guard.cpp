@@ -58,7 +58,11 @@ namespace slew {
 AllocationGuard::AllocationGuard() noexcept : allocations_at_start_(allocation_count), frees_at_start_(free_count) {}
 AllocationGuard::~AllocationGuard() = default;
 
-std::uint64_t AllocationGuard::allocations() const noexcept { return allocation_count - allocations_at_start_; }
-std::uint64_t AllocationGuard::frees() const noexcept { return free_count - frees_at_start_; }
+std::uint64_t AllocationGuard::allocations() const noexcept {
+  return allocation_count - allocations_at_start_;
+}
+std::uint64_t AllocationGuard::frees() const noexcept {
+  return free_count - frees_at_start_;
+}
 
 }  // namespace slew

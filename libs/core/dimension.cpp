@@ -45,6 +45,8 @@ constexpr std::array<DimensionInfo, static_cast<std::size_t>(Dimension::number_o
 
 }  // namespace
 
-const DimensionInfo& info(Dimension dimension) noexcept { return kTable[static_cast<std::size_t>(dimension)]; }
+const DimensionInfo& info(Dimension dimension) noexcept {
+  return kTable[static_cast<std::size_t>(dimension)];
+}
 
 }  // namespace slew

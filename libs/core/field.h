@@ -5,7 +5,8 @@
 // type does not compile:
 //
 //   constexpr Field kBodyFields[] = {
-//       field<&BodyDef::mass>("mass", {.dimension = Dimension::mass, .range = kPositive, .presence = Presence::required,
+//       field<&BodyDef::mass>("mass", {.dimension = Dimension::mass, .range = kPositive, .presence =
+//       Presence::required,
 //                                      .change = Change::live, .doc = "mass of the body"}),
 //   };
 //
@@ -37,12 +38,12 @@ enum class FieldType : std::uint8_t {
   number,
   integer,
   boolean,
-  text,       // free text, or the name of an element when `reference` is not empty
+  text,  // free text, or the name of an element when `reference` is not empty
   triple,
-  table,      // list of [argument, value]; argument in `dimension`, value in `value_dimension`
-  numbers,    // list of numbers
-  texts,      // list of texts or references
-  choice      // one of `choices`
+  table,    // list of [argument, value]; argument in `dimension`, value in `value_dimension`
+  numbers,  // list of numbers
+  texts,    // list of texts or references
+  choice    // one of `choices`
 };
 
 enum class Presence : std::uint8_t { optional, required };
@@ -71,8 +72,8 @@ struct FieldOptions {
   Range range = kFinite;                        // of the number, of each element, of a table's values
   Presence presence = Presence::optional;
   Change change = Change::restart;
-  double ramp = 0;                              // s: a live change is spread over this time by default
-  std::string_view reference = {};              // kind of element the text must name: "body", "force", "volume", ...
+  double ramp = 0;                  // s: a live change is spread over this time by default
+  std::string_view reference = {};  // kind of element the text must name: "body", "force", "volume", ...
   std::span<const std::string_view> choices = {};
   std::string_view doc = {};
 };
@@ -80,7 +81,7 @@ struct FieldOptions {
 struct Field : FieldOptions {
   std::string_view key;
   FieldType type = FieldType::number;
-  void* (*member)(void* def) = nullptr;         // address of the member (not for choices)
+  void* (*member)(void* def) = nullptr;  // address of the member (not for choices)
   void (*set_choice)(void* def, int index) = nullptr;
   int (*get_choice)(const void* def) = nullptr;
 };

@@ -14,10 +14,8 @@ class StateHash {
  public:
   void add(std::span<const double> values) noexcept { add_bytes(values.data(), values.size_bytes()); }
   template <typename T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void add(T value) noexcept {
-    add_bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void add(T value) noexcept { add_bytes(&value, sizeof value); }
   void add_bytes(const void* bytes, std::size_t size) noexcept;
 
   [[nodiscard]] std::uint64_t digest() const noexcept { return digest_; }

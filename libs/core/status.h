@@ -10,8 +10,8 @@ namespace slew {
 enum class ExitCode : int {
   ok = 0,
   failed = 1,
-  bad_input = 2,      // usage, bad file or refused
-  losses = 3,         // finished with losses or over a stated miss limit
+  bad_input = 2,  // usage, bad file or refused
+  losses = 3,     // finished with losses or over a stated miss limit
   node_lost = 4,
   diverged = 5,
   storage = 6,

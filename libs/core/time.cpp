@@ -15,11 +15,17 @@ std::int64_t read_clock(clockid_t clock) noexcept {
 
 }  // namespace
 
-SimDuration duration_of_seconds(double seconds) noexcept { return {std::llround(seconds * 1e9)}; }
+SimDuration duration_of_seconds(double seconds) noexcept {
+  return {std::llround(seconds * 1e9)};
+}
 
-std::int64_t monotonic_ns() noexcept { return read_clock(CLOCK_MONOTONIC); }
+std::int64_t monotonic_ns() noexcept {
+  return read_clock(CLOCK_MONOTONIC);
+}
 
-std::int64_t wall_clock_ns() noexcept { return read_clock(CLOCK_REALTIME); }
+std::int64_t wall_clock_ns() noexcept {
+  return read_clock(CLOCK_REALTIME);
+}
 
 void sleep_until_monotonic(std::int64_t deadline_ns) noexcept {
   const timespec deadline{deadline_ns / 1'000'000'000, deadline_ns % 1'000'000'000};

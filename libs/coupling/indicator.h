@@ -32,13 +32,13 @@ inline constexpr SimDuration kIndicatorWindow = {1'000'000'000};
 inline constexpr SimDuration kNetAlarmAfter = {200'000'000};
 
 struct PortDefects {
-  double e_x = 0;         // [m]
-  double e_v = 0;         // [m/s]
-  double e_F = 0;         // [N]
-  double dE = 0;          // [J]
-  double dE_star = 0;     // [J]
-  double eta = 0;         // [-]
-  double net = 0;         // [-]
+  double e_x = 0;      // [m]
+  double e_v = 0;      // [m/s]
+  double e_F = 0;      // [N]
+  double dE = 0;       // [J]
+  double dE_star = 0;  // [J]
+  double eta = 0;      // [-]
+  double net = 0;      // [-]
   bool creates_energy = false;
 };
 

@@ -21,22 +21,22 @@
 namespace slew::coupling {
 
 struct LineForceDef {
-  Table friction_curve;         // speed [m/s >= 0], coefficient [-], from [0, 0] on; empty: no curve
-  double efficiency = 1;        // eta, 0 < eta <= 1
-  double seal_friction = 0;     // F_seal [N], >= 0
-  double seal_speed = 1e-4;     // v_seal [m/s], > 0: speed at which the seal friction is fully there
-  double stroke_min = 0;        // [m]
-  double stroke_max = 0;        // [m]
-  double stop_stiffness = 0;    // k [N/m], >= 0
-  double stop_damping = 0;      // c [N s/m], >= 0
+  Table friction_curve;       // speed [m/s >= 0], coefficient [-], from [0, 0] on; empty: no curve
+  double efficiency = 1;      // eta, 0 < eta <= 1
+  double seal_friction = 0;   // F_seal [N], >= 0
+  double seal_speed = 1e-4;   // v_seal [m/s], > 0: speed at which the seal friction is fully there
+  double stroke_min = 0;      // [m]
+  double stroke_max = 0;      // [m]
+  double stop_stiffness = 0;  // k [N/m], >= 0
+  double stop_damping = 0;    // c [N s/m], >= 0
 };
 
 // A force law's value and slopes at one point.
 struct LineForce {
-  double force = 0;         // F_line [N]
-  double d_pressure = 1;    // dF_line/dF [-]
-  double d_position = 0;    // dF_line/dx [N/m]
-  double d_speed = 0;       // dF_line/dv [N s/m]
+  double force = 0;       // F_line [N]
+  double d_pressure = 1;  // dF_line/dF [-]
+  double d_position = 0;  // dF_line/dx [N/m]
+  double d_speed = 0;     // dF_line/dv [N s/m]
 };
 
 class LineForceLaw {
@@ -44,7 +44,7 @@ class LineForceLaw {
   explicit LineForceLaw(const LineForceDef& def);
 
   [[nodiscard]] LineForce evaluate(double F, double x, double v) const noexcept;
-  [[nodiscard]] double friction(double F, double v) const noexcept;   // F_mu of (2) [N]
+  [[nodiscard]] double friction(double F, double v) const noexcept;    // F_mu of (2) [N]
   [[nodiscard]] double stop_force(double x, double v) const noexcept;  // F_stop of (3) [N]
   [[nodiscard]] double friction_scale(double F) const noexcept;        // |F| (1 - eta) [N]
   [[nodiscard]] bool touches_stop(double x) const noexcept { return x < def_.stroke_min || x > def_.stroke_max; }

@@ -45,8 +45,8 @@ class RowLaws {
 };
 
 struct PortStep {
-  double residual = 0;      // largest of all stages when they ended [m/s or rad/s]; NaN once a number was lost
-  int iterations = 0;       // Newton iterations of all stages
+  double residual = 0;  // largest of all stages when they ended [m/s or rad/s]; NaN once a number was lost
+  int iterations = 0;   // Newton iterations of all stages
   bool has_converged = true;
 };
 
@@ -60,9 +60,9 @@ class PortDynamics {
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
 
   // inputs of a sub-step, set by the owner; all arrays have one entry per row
-  std::span<double> x() noexcept { return {x_.data(), rows_}; }        // start positions, advanced by solve()
-  std::span<double> v() noexcept { return {v_.data(), rows_}; }        // start speeds, advanced by solve()
-  std::span<double> z() noexcept { return {z_.data(), rows_}; }        // pressure forces, advanced by solve()
+  std::span<double> x() noexcept { return {x_.data(), rows_}; }  // start positions, advanced by solve()
+  std::span<double> v() noexcept { return {v_.data(), rows_}; }  // start speeds, advanced by solve()
+  std::span<double> z() noexcept { return {z_.data(), rows_}; }  // pressure forces, advanced by solve()
   std::span<double> a_free() noexcept { return {a_free_.data(), rows_}; }
   std::span<double> W() noexcept { return {W_.data(), rows_ * rows_}; }  // row-major
   std::span<RowPartner> partner() noexcept { return {partner_.data(), rows_}; }

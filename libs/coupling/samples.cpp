@@ -20,9 +20,9 @@ void resize(MechanismSample& sample, std::size_t ports) {
 }
 
 void resize(ActuatorSample& sample, std::size_t ports) {
-  for (PortArray* values : {&sample.F, &sample.F_dot, &sample.K, &sample.lambda, &sample.D, &sample.x_ref,
-                            &sample.v_ref, &sample.friction_scale, &sample.work, &sample.impulse, &sample.p_A,
-                            &sample.p_B, &sample.Q_A, &sample.Q_B}) {
+  for (PortArray* values :
+       {&sample.F, &sample.F_dot, &sample.K, &sample.lambda, &sample.D, &sample.x_ref, &sample.v_ref,
+        &sample.friction_scale, &sample.work, &sample.impulse, &sample.p_A, &sample.p_B, &sample.Q_A, &sample.Q_B}) {
     zero(*values, ports);
   }
 }

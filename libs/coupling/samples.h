@@ -24,17 +24,17 @@ enum class MobilityKind : std::uint8_t {
 
 // Mechanics to hydraulics.
 struct MechanismSample {
-  PortArray x;         // stroke [m]
-  PortArray v;         // speed [m/s]
-  PortArray a;         // acceleration with the line forces [m/s2]
-  PortArray a_free;    // acceleration without the line forces, J M^-1 h + Jdot u [m/s2]
-  PortMatrix W;        // interface mobility [1/kg]
+  PortArray x;       // stroke [m]
+  PortArray v;       // speed [m/s]
+  PortArray a;       // acceleration with the line forces [m/s2]
+  PortArray a_free;  // acceleration without the line forces, J M^-1 h + Jdot u [m/s2]
+  PortMatrix W;      // interface mobility [1/kg]
   MobilityKind W_kind = MobilityKind::instant;
-  PortArray F_used;    // mechanics' copy of the pressure force at t_n [N]
-  PortArray F_line;    // pressure force less friction plus end stop at t_n [N]
-  PortArray work;      // integral of F v dt over the finished step [J]
-  PortArray impulse;   // integral of F dt over the finished step [N s]
-  PortArray v_mean;    // mean speed of the finished step [m/s]
+  PortArray F_used;   // mechanics' copy of the pressure force at t_n [N]
+  PortArray F_line;   // pressure force less friction plus end stop at t_n [N]
+  PortArray work;     // integral of F v dt over the finished step [J]
+  PortArray impulse;  // integral of F dt over the finished step [N s]
+  PortArray v_mean;   // mean speed of the finished step [m/s]
   bool operator==(const MechanismSample&) const = default;
 };
 

@@ -8,13 +8,14 @@
 namespace slew::coupling {
 
 // W: m x m, row-major, symmetric; a_free, F: m <= kMaxPorts. Where several actuators move the same coordinate the
-// shortest of all F is taken: equal cylinders side by side carry equal shares. False, and F is of no use, when no forces
-// hold the ports. Does not allocate.
+// shortest of all F is taken: equal cylinders side by side carry equal shares. False, and F is of no use, when no
+// forces hold the ports. Does not allocate.
 [[nodiscard]] bool static_forces(std::span<const double> W, std::span<const double> a_free,
                                  std::span<double> F) noexcept;
 
 inline constexpr std::string_view kNoStaticForces =
-    "no static forces hold the actuators at the start: one of them moves nothing; look at their force elements, or begin "
+    "no static forces hold the actuators at the start: one of them moves nothing; look at their force elements, or "
+    "begin "
     "with hydraulics.start: table13";
 
 }  // namespace slew::coupling

@@ -38,7 +38,6 @@ class PatternLu {
   // Replaces b by the solution.
   void solve(double* b) noexcept;
 
-
  private:
   using Slot = std::uint16_t;
   struct Gather {

@@ -58,8 +58,8 @@ void joint_reactions(const Model& model, const State& state, Workspace& ws, std:
 void read_variables(const Model& model, const State& state, const Workspace& ws, std::span<const double> row_forces,
                     std::span<double> values) noexcept;
 
-// What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the scene, in
-// the order and form of JointReaction; allocates.
+// What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
+// scene, in the order and form of JointReaction; allocates.
 [[nodiscard]] std::vector<ElementVariable> reaction_variables(const Model& model);
 
 // Values in the order of reaction_variables(). Does not allocate.

@@ -21,10 +21,10 @@ inline constexpr std::uint32_t kProtocolVersion = 2;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
-inline constexpr std::size_t kMaxVariables = 65'536;  // of one node
+inline constexpr std::size_t kMaxVariables = 65'536;       // of one node
 inline constexpr StepIndex kMaxStep = StepIndex{1} << 53;  // 285,000 years at 1 ms
-inline constexpr std::size_t kMaxNameLength = 63;     // characters: names, paths of parameters, units
-inline constexpr std::size_t kMaxReasonLength = 255;  // characters: sentences, hosts, builds, file names
+inline constexpr std::size_t kMaxNameLength = 63;          // characters: names, paths of parameters, units
+inline constexpr std::size_t kMaxReasonLength = 255;       // characters: sentences, hosts, builds, file names
 inline constexpr std::size_t kMaxAssets = 256;
 inline constexpr std::size_t kMaxHeard = 256;
 inline constexpr std::size_t kMaxSceneBytes = 4 * 1024 * 1024;
@@ -34,15 +34,17 @@ using SessionId = std::array<std::uint8_t, 16>;
 enum class Role : std::uint8_t { io, mechanics, hydraulics, flex, recorder, observer, controller };
 inline constexpr std::size_t kRoles = 5;  // roles that can be required: io .. recorder
 
-[[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept { return 1u << static_cast<unsigned>(role); }
+[[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept {
+  return 1u << static_cast<unsigned>(role);
+}
 
 enum class Phase : std::uint8_t { join, init, running, ended };
 
 struct Header {
   SessionId session{};
-  Role role = Role::observer;      // of the writer
-  std::uint32_t incarnation = 0;   // tells processes of one role apart; not 0
-  std::uint32_t epoch = 0;         // grows by one with every reset
+  Role role = Role::observer;     // of the writer
+  std::uint32_t incarnation = 0;  // tells processes of one role apart; not 0
+  std::uint32_t epoch = 0;        // grows by one with every reset
   Phase phase = Phase::join;
   StepIndex step = kJoinStep;
   bool operator==(const Header&) const = default;
@@ -52,10 +54,10 @@ struct Header {
 struct SampleState {
   coupling::Level level = coupling::Level::two;
   coupling::Quality quality = coupling::Quality::ok;
-  StepIndex used_step = 0;         // partner step this sample was computed from
-  std::uint32_t lost = 0;          // partner samples that never came
-  std::uint64_t state_hash = 0;    // of the writer's whole state at t_step
-  std::uint32_t flags = 0;         // StepFlag bits of the finished step
+  StepIndex used_step = 0;       // partner step this sample was computed from
+  std::uint32_t lost = 0;        // partner samples that never came
+  std::uint64_t state_hash = 0;  // of the writer's whole state at t_step
+  std::uint32_t flags = 0;       // StepFlag bits of the finished step
   std::int32_t offender = -1;
   std::uint32_t substeps = 0;
   bool operator==(const SampleState&) const = default;
@@ -79,20 +81,20 @@ enum class TickFlag : std::uint32_t { end = 1u << 0, fault = 1u << 1 };
 
 // A parameter change that every node applies at the start of this step.
 struct Command {
-  std::uint64_t request = 0;      // id of the ControlRequest it came from; 0: from the script
-  std::string path;               // "Bag.mass"
-  double value = 0;               // SI
-  std::int64_t over_ns = 0;       // spread over this time
+  std::uint64_t request = 0;  // id of the ControlRequest it came from; 0: from the script
+  std::string path;           // "Bag.mass"
+  double value = 0;           // SI
+  std::int64_t over_ns = 0;   // spread over this time
   bool operator==(const Command&) const = default;
 };
 
 struct Tick {
   Header header;
-  std::uint32_t flags = 0;                             // TickFlag bits
-  std::uint64_t state_hash = 0;                        // io_node's own state (gate, ramps, script position)
-  StaticVector<double, kMaxChannels> controls;         // value per channel after scale, dead zone and ramp
-  StaticVector<std::uint32_t, kMaxChannels> age;       // age in steps of the source's value per channel
-  std::vector<Command> commands;                       // at most kMaxCommandsPerTick
+  std::uint32_t flags = 0;                        // TickFlag bits
+  std::uint64_t state_hash = 0;                   // io_node's own state (gate, ramps, script position)
+  StaticVector<double, kMaxChannels> controls;    // value per channel after scale, dead zone and ramp
+  StaticVector<std::uint32_t, kMaxChannels> age;  // age in steps of the source's value per channel
+  std::vector<Command> commands;                  // at most kMaxCommandsPerTick
   bool operator==(const Tick&) const = default;
 };
 
@@ -105,24 +107,24 @@ struct Asset {
 
 enum class Pace : std::uint8_t { real, free };
 
-// Published by io_node, transient-local: all that another node needs to take part. In phase JOIN it only claims the name
-// and is for other io nodes; in phase RUNNING the session is to be joined.
+// Published by io_node, transient-local: all that another node needs to take part. In phase JOIN it only claims the
+// name and is for other io nodes; in phase RUNNING the session is to be joined.
 struct SessionDescription {
   Header header;
   std::uint32_t protocol = kProtocolVersion;
   std::string name;
   std::string scene_name;
-  std::string scene_text;          // after includes and --set
-  std::vector<Asset> assets;       // at most kMaxAssets
+  std::string scene_text;     // after includes and --set
+  std::vector<Asset> assets;  // at most kMaxAssets
   std::string build;
-  std::uint64_t self_test = 0;     // arithmetic fingerprint
-  std::int64_t step_ns = 0;        // H
+  std::uint64_t self_test = 0;  // arithmetic fingerprint
+  std::int64_t step_ns = 0;     // H
   Pace pace = Pace::real;
   std::uint32_t window = 1;
   std::uint32_t required_roles = 0;  // bit(Role)
   std::string host;
   std::uint32_t pid = 0;
-  std::int64_t started_ns = 0;     // wall clock
+  std::int64_t started_ns = 0;  // wall clock
   bool operator==(const SessionDescription&) const = default;
 };
 
@@ -153,7 +155,7 @@ struct NodeStatus {
 };
 
 struct Health {
-  Header header;                   // step: last finished one
+  Header header;  // step: last finished one
   NodeState state = NodeState::checking;
   bool is_waiting = false;
   Role waiting_for = Role::io;
@@ -163,9 +165,9 @@ struct Health {
   std::uint64_t resends_asked = 0;
   std::uint64_t resends_answered = 0;
   std::uint64_t refused_messages = 0;  // that nothing can be done with: damaged, another session's, a second writer's
-  double step_time_mean = 0;       // s, of Subsystem::step over the last second
-  double step_time_max = 0;        // s
-  std::int64_t slip_ns = 0;        // io_node: wall time given up so far
+  double step_time_mean = 0;           // s, of Subsystem::step over the last second
+  double step_time_max = 0;            // s
+  std::int64_t slip_ns = 0;            // io_node: wall time given up so far
   bool operator==(const Health&) const = default;
 };
 
@@ -196,22 +198,22 @@ enum class ControllerAction : std::uint8_t { acquire, write, release };
 
 // From a controller to one input channel. Only the lease holder's values are used.
 struct ControllerInput {
-  std::string session;             // session name: a controller need not know the id
-  std::string controller;          // its name, unique in the session
-  std::string channel;             // input name, "Input_Lift"
+  std::string session;     // session name: a controller need not know the id
+  std::string controller;  // its name, unique in the session
+  std::string channel;     // input name, "Input_Lift"
   ControllerAction action = ControllerAction::write;
-  double value = 0;                // -1 .. 1 for analog, 0 or 1 for digital
-  std::uint64_t sequence = 0;      // `sequence_number` in the IDL, where the short word is reserved
+  double value = 0;                     // -1 .. 1 for analog, 0 or 1 for digital
+  std::uint64_t sequence = 0;           // `sequence_number` in the IDL, where the short word is reserved
   StepIndex based_on_step = kJoinStep;  // step of the variables it was computed from; -1: unknown
   bool operator==(const ControllerInput&) const = default;
 };
 
 struct ControllerLease {
   Header header;
-  std::string controller;          // whom this answers
+  std::string controller;  // whom this answers
   std::string channel;
   bool is_granted = false;
-  std::string holder;              // who holds the channel now; empty: nobody
+  std::string holder;  // who holds the channel now; empty: nobody
   std::string reason;
   bool operator==(const ControllerLease&) const = default;
 };
@@ -220,29 +222,29 @@ enum class ControlAction : std::uint8_t { set_parameter, pause, resume, step, re
 
 struct ControlRequest {
   std::string session;
-  std::uint64_t request = 0;       // drawn at random by the sender
+  std::uint64_t request = 0;  // drawn at random by the sender
   ControlAction action = ControlAction::set_parameter;
-  std::string path;                // of the parameter
-  double value = 0;                // SI; `step`: number of steps
-  std::int64_t over_ns = -1;       // -1: the parameter's default ramp
+  std::string path;           // of the parameter
+  double value = 0;           // SI; `step`: number of steps
+  std::int64_t over_ns = -1;  // -1: the parameter's default ramp
   bool operator==(const ControlRequest&) const = default;
 };
 
 struct ControlReply {
-  Header header;                   // step: from which it holds
+  Header header;  // step: from which it holds
   std::uint64_t request = 0;
   bool is_accepted = false;
-  double value = 0;                // get_parameter: SI, at present
+  double value = 0;  // get_parameter: SI, at present
   std::string reason;
   bool operator==(const ControlReply&) const = default;
 };
 
 // "I miss this step of your topic": answered by publishing the cached message again.
 struct ResendRequest {
-  Header header;                   // step: first one missing
-  Role role = Role::io;            // whose message is missing
+  Header header;         // step: first one missing
+  Role role = Role::io;  // whose message is missing
   std::uint8_t topic = 0;
-  StepIndex last_step = 0;         // last one missing
+  StepIndex last_step = 0;  // last one missing
   bool operator==(const ResendRequest&) const = default;
 };
 

@@ -356,7 +356,8 @@ TEST(Assets, ThatAreMissingAreNamed) {
   session.start(Role::io);
   session.start(Role::mechanics, {"--assets", session.folder().string()});
   EXPECT_EQ(session.node(Role::mechanics).wait(), 2);
-  EXPECT_NE(session.node(Role::mechanics).err().find("asset 'table.csv' cannot be read: No such file or directory"), std::string::npos)
+  EXPECT_NE(session.node(Role::mechanics).err().find("asset 'table.csv' cannot be read: No such file or directory"),
+            std::string::npos)
       << session.said();
 }
 
