@@ -19,7 +19,7 @@ namespace {
 
 using cli_support::Failure;
 
-constexpr int kNotExecuted = 127;
+constexpr int kNotExecuted = static_cast<int>(ExitCode::resources);
 
 // between fork and exec: only calls that are safe there
 [[noreturn]] void become(const char* program, char* const* arguments, int output, pid_t parent) noexcept {

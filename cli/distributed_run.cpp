@@ -56,6 +56,7 @@ class Supervisor {
       enforce_deadlines();
       show();
     }
+    look_after_children();  // last words of the one that ended last
     status_.clear();
     return outcome();
   }

@@ -40,7 +40,7 @@ Command::Command(const std::string& program, const std::vector<std::string>& arg
   out_ = working_folder / (name + ".out");
   err_ = working_folder / (name + ".err");
   std::vector<std::string> owned = arguments;
-  owned.insert(owned.begin(), std::string(SLEWRING_BINARY_DIR) + "/bin/" + program);
+  owned.insert(owned.begin(), program_file(program).string());
   std::vector<char*> pointers;
   for (std::string& argument : owned) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
@@ -125,6 +125,10 @@ std::filesystem::path WorkFolder::recording() const {
   }
   if (found.empty()) throw std::runtime_error("no recording in " + path_.string());
   return found;
+}
+
+std::filesystem::path program_file(const std::string& name) {
+  return std::filesystem::path(SLEWRING_BINARY_DIR) / "bin" / name;
 }
 
 std::string scene_file(const std::string& name) {

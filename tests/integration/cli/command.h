@@ -61,6 +61,9 @@ class WorkFolder {
   std::filesystem::path path_;
 };
 
+// A program of this build; a path that is absolute stays.
+[[nodiscard]] std::filesystem::path program_file(const std::string& name);
+
 [[nodiscard]] std::string scene_file(const std::string& name);
 
 // Process ids of the programs that a supervisor has started, by program name ("mechanics_node").

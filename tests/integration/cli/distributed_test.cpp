@@ -55,6 +55,23 @@ TEST_F(Distributed, CraneHasTheSameHashesAsInOneProcess) {
   EXPECT_EQ(report.at("nodes").size(), 4u);
 }
 
+TEST_F(Distributed, OfTwoRunsOfOneNameStartedTogetherOneStays) {
+  const auto first = start("first_steps.yaml", {"--session", "twin", "--pace", "free", "--out", "first"});
+  const auto second = start("first_steps.yaml", {"--session", "twin", "--pace", "free", "--out", "second"});
+  const CommandResult a = first->wait(), b = second->wait();
+  EXPECT_EQ(std::minmax(a.code, b.code), std::minmax(0, 2)) << a.err << b.err;
+  const std::string& refused = a.code == 2 ? a.err : b.err;
+  EXPECT_NE(refused.find("session 'twin' is held by process"), std::string::npos) << refused;
+}
+
+TEST_F(Distributed, ARunWithoutTheNodesProgramsSaysSoWithCode7) {
+  const std::filesystem::path alone = work_.path() / "slewring";
+  std::filesystem::copy_file(program_file("slewring"), alone);
+  const CommandResult result = run(alone.string(), with_domain({"run", scene_file("first_steps.yaml")}), work_.path());
+  EXPECT_EQ(result.code, 7) << result.err;
+  EXPECT_NE(result.err.find("build it, or install all programs together"), std::string::npos) << result.err;
+}
+
 TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
   const auto session = start("truck_crane.yaml", {"--duration", "0", "--session", "seen"});
   ASSERT_TRUE(wait_until_running(*session)) << session->err();
