@@ -1,5 +1,5 @@
-// Random and repeated tests do more of the same when SLEWRING_NIGHTLY is set, as `launch_scripts/test --nightly` does. Seeds
-// count up, so that a nightly run begins with the usual ones.
+// Random and repeated tests do more of the same when SLEWRING_NIGHTLY is set, as `launch_scripts/test --nightly` does.
+// Seeds count up, so that a nightly run begins with the usual ones.
 #pragma once
 
 #include <cstdlib>

@@ -18,6 +18,7 @@
 #include "node/session_member.h"
 #include "recording/reader.h"
 #include "session.h"
+#include "tests/support/nightly.h"
 
 namespace slew::testing {
 namespace {
@@ -90,7 +91,7 @@ void expect_named_and_ended(Session& session, Role victim, StepIndex killed_at, 
 
 TEST_P(KilledNode, IsNamedAndEndsTheSessionWithCode4) {
   std::mt19937_64 random(20'260'500 + static_cast<std::uint64_t>(GetParam()));
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < testing::rounds(3, 20); ++round) {
     Session session({"--pace", "real", "--duration", "20s"});
     Observer& observer = session.observer();
     session.start_all();
@@ -181,7 +182,7 @@ TEST(Interrupted, InMidRunEndsInOrderWithinASecond) {
 
 TEST(Interrupted, AtAnyMomentOfTheStartEndsInOrder) {
   std::mt19937_64 random(11);
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < testing::rounds(8, 40); ++round) {
     Session session({"--pace", "free", "--duration", "100s"});
     session.start_all();
     // after so many messages of anybody: name check, JOIN, INIT, first steps

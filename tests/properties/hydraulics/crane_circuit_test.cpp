@@ -9,6 +9,7 @@
 #include "hydraulics/circuit_integrator.h"
 #include "tests/properties/hydraulics/bench_circuit.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
+#include "tests/support/nightly.h"
 
 namespace slew::hydraulics::test {
 namespace {
@@ -201,7 +202,7 @@ TEST(CraneCircuit, passive_parts_never_create_power) {
     std::uniform_real_distribution<double> unit(0, 1);
     const auto n = static_cast<std::size_t>(circuit.state_count());
     std::vector<double> y(n), f(n), C(n);
-    for (int trial = 0; trial < 20000; ++trial) {
+    for (int trial = 0; trial < testing::rounds(20'000, 1'000'000); ++trial) {
       for (int i = 0; i < circuit.volume_count(); ++i) {
         y[static_cast<std::size_t>(i)] = circuit.is_fixed(i) ? 1e5 : std::pow(10, 3.5 + 4.1 * unit(random));
       }

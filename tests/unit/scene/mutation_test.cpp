@@ -9,11 +9,12 @@
 
 #include "build_paths.h"
 #include "scene/scene.h"
+#include "tests/support/nightly.h"
 
 namespace slew::scene {
 namespace {
 
-constexpr int kScenes = 150;
+const int kScenes = testing::rounds(150, 5000);
 
 std::string read_file(const std::string& path) {
   std::ifstream in(path);
@@ -51,7 +52,7 @@ std::string damaged(std::string text, std::mt19937& random) {
   return text;
 }
 
-class DamagedScene : public testing::TestWithParam<std::string> {};
+class DamagedScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(DamagedScene, IsRefusedOrReadAndNothingElse) {
   const std::string sound = read_file(SLEWRING_SOURCE_DIR "/scenes/" + GetParam() + ".yaml");
@@ -67,7 +68,7 @@ TEST_P(DamagedScene, IsRefusedOrReadAndNothingElse) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DamagedScene, testing::Values("truck_crane", "first_steps"),
+INSTANTIATE_TEST_SUITE_P(All, DamagedScene, ::testing::Values("truck_crane", "first_steps"),
                          [](const auto& test) { return test.param; });
 
 }  // namespace
