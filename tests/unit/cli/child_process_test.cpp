@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/status.h"
 #include "core/time.h"
 
 namespace slew::cli {
@@ -59,7 +60,7 @@ TEST(ChildProcess, ReadsNothingFromTheTerminal) {
 
 TEST(ChildProcess, SaysWhyAProgramCannotBeStarted) {
   ChildProcess child("nothing", "/nowhere/at_all", {});
-  EXPECT_EQ(end_of(child).exit_code, 127);
+  EXPECT_EQ(end_of(child).exit_code, static_cast<int>(ExitCode::resources));
   const std::vector<std::string> lines = child.take_lines();
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0],
