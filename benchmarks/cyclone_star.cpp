@@ -96,15 +96,18 @@ class TransportLink final : public Link {
  private:
   template <typename M>
   void publish(M& message, StepIndex step) {
-    message.header.step = step;
+    message.header.step = step + kFirstOnWire;
     if (!encode(message, buffer_)) fail("encoding failed");
     if (const Status status = transport_->publish(own_, buffer_); !status.is_ok()) fail(status.text);
   }
   template <typename M>
   static StepIndex read(Bytes bytes, M& message) {
     if (!decode(bytes, message)) fail("decoding failed");
-    return message.header.step;
+    return message.header.step - kFirstOnWire;
   }
+
+  // the encoder takes steps from -1 on, "I am here" comes before
+  static constexpr StepIndex kFirstOnWire = kJoinStep - kHello;
 
   Topic own_;
   std::unique_ptr<CycloneTransport> transport_;
