@@ -21,7 +21,11 @@ crane() {
 star() { "$bin/cyclone_star" 20000 1; }
 
 for round in $(seq "$rounds"); do
-  echo "round $round: star: $(star | tr '\n' ' ')"
-  echo "round $round: crane with recorder: $(crane) steps/s, without: $(crane --no-record) steps/s"
+  # by assignment, so that a program that fails ends the script
+  bare=$(star | tr '\n' ' ')
+  recorded=$(crane)
+  unrecorded=$(crane --no-record)
+  echo "round $round: star: $bare"
+  echo "round $round: crane with recorder: $recorded steps/s, without: $unrecorded steps/s"
 done
 echo "load: $(cat /proc/loadavg)"
