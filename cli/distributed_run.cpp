@@ -89,7 +89,14 @@ class Supervisor {
   void start(Role role) {
     std::vector<std::string> arguments;
     if (role == Role::io) arguments = cli_support::scene_arguments(options_.scene);
-    arguments.insert(arguments.end(), {"--session", options_.session.session, "--assets", options_.assets()});
+    arguments.insert(arguments.end(), {"--session", options_.session.session});
+    if (role == Role::mechanics || role == Role::hydraulics) {
+      arguments.insert(arguments.end(), {"--assets", options_.assets()});
+    }
+    // nodes of this run follow its own io and no other of its name
+    if (role != Role::io && is_ours(Role::io)) {
+      arguments.insert(arguments.end(), {"--session-id", node::to_text(observer_->view().session().header.session)});
+    }
     const std::vector<std::string> network = cli_support::network_arguments(options_.session);
     arguments.insert(arguments.end(), network.begin(), network.end());
     if (role == Role::recorder) arguments.insert(arguments.end(), {"--out", options_.runs});

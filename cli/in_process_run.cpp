@@ -67,8 +67,7 @@ class InProcessRun {
     auto node = std::make_unique<node::PhysicsNode>(
         role, endpoint(role),
         cli_support::subsystem_factory([role](const scene::Scene& scene) { return make_subsystem(role, scene); },
-                                       options_.assets()),
-        milliseconds(10'000));
+                                       options_.assets()));
     nodes_.push_back(node.get());
     physics_.push_back(std::move(node));
   }

@@ -64,14 +64,29 @@ void SessionView::take_lease(std::span<const std::byte> bytes) {
   leases_[{lease.controller, lease.channel}] = lease;
 }
 
-// A session that starts under the same name after this one takes its place; one that only claims the name does not.
+// A session that starts under the same name after this one takes its place; one that only claims the name does not,
+// and one that is withdrawn gives the place back.
 void SessionView::take_session(std::span<const std::byte> bytes) {
   wire::SessionDescription session;
   if (!transport::decode(bytes, session) || (!name_.empty() && session.name != name_)) return;
-  if (session.header.phase != wire::Phase::running) return;
-  if (session_ && session.header.session == session_->header.session) return;
-  if (session_ && session.started_ns < session_->started_ns) return;
-  name_ = session.name;
+  const auto is_it = [&](const std::optional<wire::SessionDescription>& other) {
+    return other && other->header.session == session.header.session;
+  };
+  if (session.header.phase == wire::Phase::ended) {
+    if (is_it(rival_)) rival_.reset();
+    if (is_it(session_)) look_at(std::exchange(rival_, std::nullopt));
+    return;
+  }
+  if (session.header.phase != wire::Phase::running || is_it(session_)) return;
+  if (session_ && session.started_ns < session_->started_ns) {
+    rival_ = std::move(session);
+    return;
+  }
+  rival_ = std::exchange(session_, std::nullopt);
+  look_at(std::move(session));
+}
+
+void SessionView::look_at(std::optional<wire::SessionDescription> session) {
   session_ = std::move(session);
   nodes_ = {};
   variables_ = {};
@@ -79,6 +94,8 @@ void SessionView::take_session(std::span<const std::byte> bytes) {
   index_.clear();
   leases_.clear();
   step_ = kJoinStep;
+  if (!session_) return;
+  name_ = session_->name;
   for (const Early& early : std::exchange(early_, {})) take(early.topic, early.bytes);
 }
 

@@ -75,6 +75,7 @@ class SessionView {
 
  private:
   void take_session(std::span<const std::byte> bytes);
+  void look_at(std::optional<wire::SessionDescription> session);
   void take_lease(std::span<const std::byte> bytes);
   void take_status(std::span<const std::byte> bytes);
   void take_health(std::span<const std::byte> bytes);
@@ -89,7 +90,8 @@ class SessionView {
 
   std::string name_;
   std::optional<wire::SessionDescription> session_;
-  std::vector<Early> early_;  // kept messages that came before the session was known
+  std::optional<wire::SessionDescription> rival_;  // of the same name; the one to look at when session_ is withdrawn
+  std::vector<Early> early_;                       // kept messages that came before the session was known
   std::array<NodeView, wire::kRoles> nodes_;
   std::array<std::vector<VariableView>, wire::kRoles> variables_;
   std::array<std::uint32_t, wire::kRoles> named_{};  // variables whose name has come

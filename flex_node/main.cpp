@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
   CLI::App app("Flexible bodies of a Slewring session. This version has none: the program refuses.", "flex_node");
   app.footer("Example:\n  flex_node --session truck_crane");
   cli_support::NodeOptions options;
-  cli_support::add_node_options(app, options);
+  cli_support::add_physics_node_options(app, options);
   cli_support::add_version(app);
   int exit_code = 0;
   if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;

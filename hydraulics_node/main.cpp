@@ -10,14 +10,14 @@ namespace {
 
 using namespace slew;
 
-ExitCode run(const cli_support::NodeOptions& options) {
+std::optional<ExitCode> run(const cli_support::NodeOptions& options) {
   cli_support::apply_real_time(options, "hydraulics_node");
   const auto carrier = cli_support::open_carrier(wire::Role::hydraulics, options.session);
   node::PhysicsNode node(
       wire::Role::hydraulics, *carrier,
       cli_support::subsystem_factory(
           [](const scene::Scene& scene) { return hydraulic_node::make_hydraulics_subsystem(scene); }, options.assets),
-      options.timeout(), options.join());
+      options.join());
   return cli_support::run_node(node);
 }
 
@@ -30,9 +30,10 @@ int main(int argc, char** argv) {
       "Example, on the machine that computes the hydraulics:\n"
       "  hydraulics_node --session truck_crane --interface eth0 --peer 192.168.1.20");
   cli_support::NodeOptions options;
-  cli_support::add_node_options(app, options);
+  cli_support::add_physics_node_options(app, options);
   cli_support::add_version(app);
   int exit_code = 0;
   if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("hydraulics_node", [&] { return run(options); });
+  return cli_support::guarded("hydraulics_node",
+                              [&] { return cli_support::run_until_in_session([&] { return run(options); }); });
 }

@@ -132,11 +132,20 @@ void IoNode::receive_session(std::span<const std::byte> bytes) {
   const bool this_holds = stage_ == Stage::joining;
   if (this_holds && !other_holds) return;
   if (this_holds == other_holds && description_.header.session < other.header.session) return;
+  // nodes that have followed this description look for another one
+  if (this_holds) withdraw_session();
   member_.step_aside(ExitCode::bad_input,
                      "session '" + config_.session_name + "' is held by process " + std::to_string(other.pid) + " on " +
                          node::machine_of(other.host) + ", started " + node::time_text(other.started_ns) +
                          "; this second one ends; stop the first, or choose another --session name");
   stage_ = Stage::finished;
+}
+
+void IoNode::withdraw_session() {
+  description_.header.phase = Phase::ended;
+  description_.scene_text.clear();
+  description_.assets.clear();
+  member_.publish(Topic::session, description_);
 }
 
 void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::int64_t now_ns) {

@@ -83,6 +83,7 @@ class IoNode final : public node::Node {
 
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(std::span<const std::byte> bytes);
+  void withdraw_session();
   void receive_sample(std::span<const std::byte> bytes, wire::Topic topic, std::int64_t now_ns);
   void receive_controller(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_control(std::span<const std::byte> bytes, std::int64_t now_ns);

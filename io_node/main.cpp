@@ -23,9 +23,9 @@ ExitCode run(const IoOptions& options) {
   wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
   wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
   io::IoConfig config = io::make_config(scene, wish);
-  config.join_timeout = options.node.join();
+  config.join_timeout = options.node.join().join_timeout;
   io::IoNode node(*carrier, std::move(config));
-  return cli_support::run_node(node);
+  return cli_support::run_node(node).value();  // its own session is nothing that it follows
 }
 
 }  // namespace
@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
   options.node.priority = cli_support::kIoPriority;
   cli_support::add_scene_options(app, options.scene);
   cli_support::add_node_options(app, options.node);
+  cli_support::add_join_timeout(app, options.node);
   cli_support::add_version(app);
   int exit_code = 0;
   if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;

@@ -10,12 +10,12 @@ namespace {
 
 using namespace slew;
 
-ExitCode run(const cli_support::NodeOptions& options, const std::string& runs) {
+std::optional<ExitCode> run(const cli_support::NodeOptions& options, const std::string& runs) {
   cli_support::apply_real_time(options, "recorder_node");
   const auto carrier = cli_support::open_carrier(wire::Role::recorder, options.session);
   recorder::RecorderConfig config;
   config.runs_directory = runs;
-  config.session_timeout = options.timeout();
+  config.join = options.join();
   recorder::RecorderNode node(*carrier, std::move(config));
   // the path is said last, whatever the end was
   struct SayPath {
@@ -36,11 +36,13 @@ int main(int argc, char** argv) {
   options.priority = cli_support::kRecorderPriority;
   std::string runs = "runs";
   cli_support::add_node_options(app, options);
+  cli_support::add_finding_options(app, options);
   app.add_option("--out", runs, "folder in which the session gets a folder of its own")
       ->type_name("DIR")
       ->capture_default_str();
   cli_support::add_version(app);
   int exit_code = 0;
   if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("recorder_node", [&] { return run(options, runs); });
+  return cli_support::guarded("recorder_node",
+                              [&] { return cli_support::run_until_in_session([&] { return run(options, runs); }); });
 }

@@ -57,7 +57,7 @@ recording::ByteSpan bytes_of(const std::string& text) {
 }  // namespace
 
 RecorderNode::RecorderNode(transport::Transport& transport, RecorderConfig config)
-    : member_(Role::recorder, transport, {}), config_(std::move(config)) {}
+    : member_(Role::recorder, transport, {}, config.join.session), config_(std::move(config)) {}
 
 RecorderNode::~RecorderNode() {
   count_all_losses();
@@ -72,7 +72,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
     any = true;
   }
   if (stage_ == Stage::waiting_for_session) {
-    if (deadline_ns_ == 0) deadline_ns_ = now_ns + config_.session_timeout.ns;
+    if (deadline_ns_ == 0) deadline_ns_ = now_ns + config_.join.session_timeout.ns;
     if (now_ns > deadline_ns_) {
       member_.fail(ExitCode::failed,
                    "no session was found; start the io node first, and compare --session, --domain, "
@@ -153,20 +153,29 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
   }
 }
 
-// another process records this session: this one leaves nothing behind unless it holds a step of it
+// this one leaves nothing behind unless it holds a step of the session
+void RecorderNode::discard(const Status& why) {
+  if (writer_ == nullptr) return;
+  count_all_losses();
+  close({why.code, why.text});
+  const bool holds_step = counts_[static_cast<std::size_t>(Topic::tick)].recorded > 0;
+  if (holds_step) return;
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+  std::filesystem::remove(path_.parent_path(), ignored);
+  path_.clear();
+}
+
+// another process records this session
 void RecorderNode::refuse(const Status& refusal) {
-  if (writer_ != nullptr) {
-    count_all_losses();
-    close({refusal.code, refusal.text});
-    const bool holds_step = counts_[static_cast<std::size_t>(Topic::tick)].recorded > 0;
-    if (!holds_step) {
-      std::error_code ignored;
-      std::filesystem::remove(path_, ignored);
-      std::filesystem::remove(path_.parent_path(), ignored);
-      path_.clear();
-    }
-  }
+  discard(refusal);
   member_.step_aside(refusal.code, refusal.text);
+  stage_ = Stage::finished;
+}
+
+void RecorderNode::withdraw() {
+  discard(Status::error(ExitCode::bad_input, "the session was withdrawn: another one holds its name"));
+  member_.withdraw();
   stage_ = Stage::finished;
 }
 
@@ -176,11 +185,11 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
     ++member_.refusals().undecodable;
     return;
   }
-  // a description in phase JOIN only claims the name
-  if (member_.has_session() || session.header.phase != Phase::running) return;
+  const node::SessionNews news = member_.news(session);
+  if (news == node::SessionNews::withdrawn) return withdraw();
+  if (news != node::SessionNews::begins) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   Status status = member_.problem_of_protocol();
-  if (status.is_ok() && config_.check) status = config_.check(session);
   if (status.is_ok()) status = create(session);
   if (!status.is_ok()) {
     member_.fail(status.code, status.text);

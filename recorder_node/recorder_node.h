@@ -21,9 +21,7 @@ namespace slew::recorder {
 
 struct RecorderConfig {
   std::filesystem::path runs_directory = "runs";
-  SimDuration session_timeout = milliseconds(30'000);
-  // Checks of the session before the recording is created (assets); may be empty.
-  std::function<Status(const wire::SessionDescription&)> check;
+  node::JoinOptions join;
 };
 
 // One writer's variable blocks of one place in its list.
@@ -69,7 +67,9 @@ class RecorderNode final : public node::Node {
 
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(const transport::Received& message, std::int64_t now_ns);
+  void discard(const Status& why);
   void refuse(const Status& refusal);
+  void withdraw();
   void refuse_late();
   void receive_stepped(const transport::Received& message, std::int64_t now_ns);
   [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);

@@ -98,14 +98,21 @@ void apply_real_time(const NodeOptions& options, const std::string& program) {
   if (!status.is_ok()) std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), status.text.c_str());
 }
 
-ExitCode run_node(node::Node& node) {
+std::optional<ExitCode> run_node(node::Node& node) {
   node::install_signal_handlers();
   const ExitCode code = node::run_alone(node);
+  if (node.member().is_withdrawn()) return std::nullopt;
   const std::string& reason = node.member().reason();
   // whoever sent this process the signal knows why it ended
   const bool was_asked_to_end = static_cast<int>(code) == node::stop_requested.load();
   if (code != ExitCode::ok && !was_asked_to_end && !reason.empty()) throw Failure(code, reason);
   return code;
+}
+
+ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& run) {
+  while (true) {
+    if (const std::optional<ExitCode> code = run()) return *code;
+  }
 }
 
 }  // namespace slew::cli_support

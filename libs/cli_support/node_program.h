@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "cli_support/session_options.h"
@@ -25,7 +26,11 @@ void add_version(CLI::App& app);
 // Real-time scheduling as asked for; refused permission is a warning with the remedy on standard error.
 void apply_real_time(const NodeOptions& options, const std::string& program);
 
-// Runs a node to its end and says on standard error why it failed, if it did.
-[[nodiscard]] ExitCode run_node(node::Node& node);
+// Runs a node to its end; throws Failure with its reason if it failed. Nothing when its session was withdrawn: the
+// process has then no session yet.
+[[nodiscard]] std::optional<ExitCode> run_node(node::Node& node);
+
+// Makes and runs nodes with `run` until one had a session that was not withdrawn.
+[[nodiscard]] ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& run);
 
 }  // namespace slew::cli_support

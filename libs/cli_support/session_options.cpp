@@ -12,6 +12,10 @@ bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
 }
 
+std::string problem_of_session_id(const std::string& id) {
+  return node::session_id_of(id) ? "" : "a session's id has 32 hexadecimal digits";
+}
+
 }  // namespace
 
 std::string problem_of_session_name(const std::string& name) {
@@ -58,25 +62,45 @@ void add_session_options(CLI::App& app, SessionOptions& options, bool is_require
 
 void add_node_options(CLI::App& app, NodeOptions& options) {
   add_session_options(app, options.session, true);
-  app.add_option("--assets", options.assets, "folder with the scene's files (meshes, tables)")
-      ->type_name("DIR")
-      ->capture_default_str();
-  app.add_option("--session-timeout", options.session_timeout, "seconds to wait for the session")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->type_name("S")
-      ->capture_default_str()
-      ->group("Session");
-  app.add_option("--join-timeout", options.join_timeout, "seconds to wait for the other nodes of the session")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->type_name("S")
-      ->capture_default_str()
-      ->group("Session");
   app.add_flag("--rt", options.is_real_time, "real-time scheduling (SCHED_FIFO) and locked memory")->group("Real time");
   app.add_option("--priority", options.priority, "its priority")
       ->check(CLI::Range(1, 99))
       ->type_name("N")
       ->capture_default_str()
       ->group("Real time");
+}
+
+void add_join_timeout(CLI::App& app, NodeOptions& options) {
+  app.add_option("--join-timeout", options.join_timeout, "seconds to wait for the other nodes of the session")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group("Session");
+}
+
+void add_finding_options(CLI::App& app, NodeOptions& options) {
+  app.add_option("--session-timeout", options.session_timeout, "seconds to wait for the session")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group("Session");
+  app.add_option("--session-id", options.session_id, "take part in the session of this id only, whatever has its name")
+      ->check(CLI::Validator(problem_of_session_id, "", "session id"))
+      ->type_name("HEX")
+      ->group("Session");
+}
+
+void add_physics_node_options(CLI::App& app, NodeOptions& options) {
+  add_node_options(app, options);
+  add_finding_options(app, options);
+  add_join_timeout(app, options);
+  app.add_option("--assets", options.assets, "folder with the scene's files (meshes, tables)")
+      ->type_name("DIR")
+      ->capture_default_str();
+}
+
+node::JoinOptions NodeOptions::join() const {
+  return {duration_of_seconds(session_timeout), duration_of_seconds(join_timeout), node::session_id_of(session_id)};
 }
 
 std::vector<std::string> network_arguments(const SessionOptions& options) {

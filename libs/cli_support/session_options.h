@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/time.h"
+#include "node/session_member.h"
 
 namespace slew::cli_support {
 
@@ -23,22 +23,29 @@ struct SessionOptions {
 
 struct NodeOptions {
   SessionOptions session;
-  std::string assets = ".";  // folder of the scene's assets
   bool is_real_time = false;
   int priority = kDefaultPriority;  // SCHED_FIFO, 1..99
-  double session_timeout = 30;      // s
   double join_timeout = 10;         // s
+  // of nodes that look for their session
+  double session_timeout = 30;  // s
+  std::string session_id;       // 32 hexadecimal digits; empty: the first session of the name
+  std::string assets = ".";     // folder of the scene's assets
 
-  [[nodiscard]] SimDuration join() const noexcept { return duration_of_seconds(join_timeout); }
-  [[nodiscard]] SimDuration timeout() const noexcept { return duration_of_seconds(session_timeout); }
+  [[nodiscard]] node::JoinOptions join() const;
 };
 
 // --domain, --interface, --peer.
 void add_network_options(CLI::App& app, SessionOptions& options);
 // --session and the network; a session is named or the verb takes its scene's name.
 void add_session_options(CLI::App& app, SessionOptions& options, bool is_required);
-// The above and --assets, --rt, --priority.
+// The above and --rt, --priority: every node.
 void add_node_options(CLI::App& app, NodeOptions& options);
+// --join-timeout: a node that waits for others.
+void add_join_timeout(CLI::App& app, NodeOptions& options);
+// --session-timeout, --session-id: a node that looks for its session.
+void add_finding_options(CLI::App& app, NodeOptions& options);
+// All of these and --assets.
+void add_physics_node_options(CLI::App& app, NodeOptions& options);
 
 // The same as command-line arguments, for a child process.
 [[nodiscard]] std::vector<std::string> network_arguments(const SessionOptions& options);

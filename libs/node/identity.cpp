@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -55,6 +56,17 @@ std::string to_text(const wire::SessionId& id) {
     text += kDigits[byte & 15];
   }
   return text;
+}
+
+std::optional<wire::SessionId> session_id_of(std::string_view text) {
+  wire::SessionId id{};
+  if (text.size() != 2 * id.size()) return std::nullopt;
+  for (std::size_t i = 0; i < id.size(); ++i) {
+    const char* const end = text.data() + 2 * i + 2;
+    const auto [stopped, error] = std::from_chars(end - 2, end, id[i], 16);
+    if (error != std::errc{} || stopped != end) return std::nullopt;
+  }
+  return id;
 }
 
 std::string_view to_text(wire::Role role) noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/time.h"
@@ -25,7 +26,10 @@ struct Identity {
 // 128 random bits from the operating system.
 [[nodiscard]] wire::SessionId random_session_id();
 
+// 32 hexadecimal digits.
 [[nodiscard]] std::string to_text(const wire::SessionId& id);
+// The id of such a text; nothing when it is none.
+[[nodiscard]] std::optional<wire::SessionId> session_id_of(std::string_view text);
 [[nodiscard]] std::string_view to_text(wire::Role role) noexcept;
 [[nodiscard]] std::string_view to_text(wire::NodeState state) noexcept;
 [[nodiscard]] std::string_view to_text(wire::Topic topic) noexcept;

@@ -32,12 +32,11 @@ Topic sample_topic(Role role) {
 
 }  // namespace
 
-PhysicsNode::PhysicsNode(Role role, transport::Transport& transport, SubsystemFactory factory,
-                         SimDuration session_timeout, SimDuration join_timeout)
-    : member_(role, transport, topics_of(role)),
+PhysicsNode::PhysicsNode(Role role, transport::Transport& transport, SubsystemFactory factory, const JoinOptions& join)
+    : member_(role, transport, topics_of(role), join.session),
       factory_(std::move(factory)),
-      session_timeout_(session_timeout),
-      join_timeout_(join_timeout),
+      session_timeout_(join.session_timeout),
+      join_timeout_(join.join_timeout),
       ticks_(kRingDepth),
       mechanisms_(kRingDepth),
       actuators_(kRingDepth) {
@@ -134,8 +133,12 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     ++member_.refusals().undecodable;
     return;
   }
-  // a description in phase JOIN only claims the name
-  if (member_.has_session() || session.header.phase != Phase::running) return;
+  const SessionNews news = member_.news(session);
+  if (news == SessionNews::withdrawn) {
+    member_.withdraw();
+    stage_ = Stage::finished;
+  }
+  if (news != SessionNews::begins) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   if (const Status protocol = member_.problem_of_protocol(); !protocol.is_ok()) {
     member_.fail(protocol.code, protocol.text);

@@ -29,9 +29,8 @@ using SubsystemFactory = std::function<Status(const wire::SessionDescription&, B
 
 class PhysicsNode final : public Node {
  public:
-  // session_timeout: longest wait for a session; join_timeout: for the others of the session.
-  PhysicsNode(wire::Role role, transport::Transport& transport, SubsystemFactory factory, SimDuration session_timeout,
-              SimDuration join_timeout = kJoinTimeout);
+  PhysicsNode(wire::Role role, transport::Transport& transport, SubsystemFactory factory,
+              const JoinOptions& join = JoinOptions{});
 
   bool poll(std::int64_t now_ns) override;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override;

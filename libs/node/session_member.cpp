@@ -10,6 +10,7 @@ namespace slew::node {
 namespace {
 
 using wire::NodeState;
+using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
@@ -89,10 +90,12 @@ std::uint32_t readers_of(Topic topic) noexcept {
   }
 }
 
-SessionMember::SessionMember(Role role, transport::Transport& transport, std::span<const Topic> step_topics)
+SessionMember::SessionMember(Role role, transport::Transport& transport, std::span<const Topic> step_topics,
+                             std::optional<wire::SessionId> only)
     : role_(role),
       transport_(transport),
       step_topics_(step_topics.begin(), step_topics.end()),
+      only_(only),
       identity_(this_process()),
       incarnation_(incarnation_of(identity_)) {
   status_.host = identity_.host;
@@ -100,6 +103,17 @@ SessionMember::SessionMember(Role role, transport::Transport& transport, std::sp
   status_.started_ns = identity_.started_ns;
   status_.build = identity_.build;
   status_.self_test = identity_.self_test;
+}
+
+SessionNews SessionMember::news(const wire::SessionDescription& session) const noexcept {
+  const Phase phase = session.header.phase;
+  if (has_session_) {
+    const bool is_owner = is_in_session(session.header) && is_writer(session.header, Topic::session);
+    return phase == Phase::ended && is_owner ? SessionNews::withdrawn : SessionNews::none;
+  }
+  // a description in phase JOIN only claims the name
+  const bool is_wanted = !only_ || session.header.session == *only_;
+  return phase == Phase::running && is_wanted ? SessionNews::begins : SessionNews::none;
 }
 
 Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_t now_ns) {
@@ -200,6 +214,12 @@ void SessionMember::fail(ExitCode code, std::string reason) {
 void SessionMember::step_aside(ExitCode code, std::string reason) {
   fail(code, std::move(reason));
   is_aside_ = true;
+}
+
+void SessionMember::withdraw() {
+  if (only_) return step_aside(ExitCode::bad_input, "io ended the session: another one holds its name");
+  step_aside(ExitCode::ok, "");
+  is_withdrawn_ = true;
 }
 
 void SessionMember::end(ExitCode code, std::string reason) {

@@ -62,16 +62,33 @@ struct Peer {
 
 enum class PeerEvent : std::uint8_t { none, silent, back, lost };
 
+// What a session's description means to a node that does not own it.
+enum class SessionNews : std::uint8_t {
+  none,
+  begins,     // the session to take part in
+  withdrawn,  // its owner takes it back: another session holds the name
+};
+
+// How a node finds its session.
+struct JoinOptions {
+  SimDuration session_timeout = milliseconds(30'000);  // longest wait for a session of the name
+  SimDuration join_timeout = kJoinTimeout;             // longest wait for the other nodes of the session
+  std::optional<wire::SessionId> session;              // takes part in this one only; none: in the first of the name
+};
+
 class SessionMember {
  public:
   // step_topics: the topics this role writes step by step, which JOIN must prove.
-  SessionMember(wire::Role role, transport::Transport& transport, std::span<const wire::Topic> step_topics);
+  // only: the one session this node may take part in; none: any of its name.
+  SessionMember(wire::Role role, transport::Transport& transport, std::span<const wire::Topic> step_topics,
+                std::optional<wire::SessionId> only = std::nullopt);
 
   [[nodiscard]] wire::Role role() const noexcept { return role_; }
   [[nodiscard]] const Identity& identity() const noexcept { return identity_; }
   [[nodiscard]] transport::Transport& transport() noexcept { return transport_; }
 
   // ---- session
+  [[nodiscard]] SessionNews news(const wire::SessionDescription& session) const noexcept;
   // Takes part in a session. NodeStatus messages that came before are taken now; returns a refusal when another
   // process holds this role.
   Status adopt(const wire::SessionDescription& session, std::int64_t now_ns);
@@ -108,6 +125,10 @@ class SessionMember {
   void end(ExitCode code, std::string reason = "");
   // Ends without a word to the others: this process never held the role.
   void step_aside(ExitCode code, std::string reason);
+  // Steps aside because the session was withdrawn: is_withdrawn(), or failed when there is no other session for it.
+  void withdraw();
+  // This process may take part in the next session of the name, as a new node on a new carrier.
+  [[nodiscard]] bool is_withdrawn() const noexcept { return is_withdrawn_; }
   // Waits for somebody, and says for whom in its status; running again when the reason is gone.
   void hold(std::string reason);
   [[nodiscard]] ExitCode exit_code() const noexcept { return static_cast<ExitCode>(status_.exit_code); }
@@ -164,6 +185,7 @@ class SessionMember {
   wire::Role role_;
   transport::Transport& transport_;
   std::vector<wire::Topic> step_topics_;
+  std::optional<wire::SessionId> only_;
   Identity identity_;
   wire::SessionDescription session_;
   bool has_session_ = false;
@@ -173,6 +195,7 @@ class SessionMember {
   bool status_changed_ = false;
   std::string reason_;  // whole; the message carries its beginning
   bool is_aside_ = false;
+  bool is_withdrawn_ = false;
   std::vector<wire::NodeStatus> early_statuses_;  // came before the session's description
   std::vector<std::string> warnings_;
   std::array<Peer, wire::kRoles> peers_;

@@ -37,8 +37,7 @@ class LockStep {
     io_.emplace(*ends_[0], std::move(config));
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
       const auto factory = cli_support::subsystem_factory([role](const scene::Scene& s) { return make(role, s); }, ".");
-      physics_.push_back(
-          std::make_unique<node::PhysicsNode>(role, *ends_[physics_.size() + 1], factory, milliseconds(10'000)));
+      physics_.push_back(std::make_unique<node::PhysicsNode>(role, *ends_[physics_.size() + 1], factory));
     }
   }
 

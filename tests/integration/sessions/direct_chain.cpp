@@ -106,8 +106,8 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
   const auto physics = [](Role role) {
     return cli_support::subsystem_factory([role](const scene::Scene& s) { return make_subsystem(role, s); }, ".");
   };
-  node::PhysicsNode mechanics(Role::mechanics, *ends[1], physics(Role::mechanics), milliseconds(10'000));
-  node::PhysicsNode hydraulics(Role::hydraulics, *ends[2], physics(Role::hydraulics), milliseconds(10'000));
+  node::PhysicsNode mechanics(Role::mechanics, *ends[1], physics(Role::mechanics));
+  node::PhysicsNode hydraulics(Role::hydraulics, *ends[2], physics(Role::hydraulics));
   recorder::RecorderConfig recording;
   recording.runs_directory = runs;
   recorder::RecorderNode recorder(*ends[3], std::move(recording));

@@ -281,6 +281,56 @@ TEST_P(StartedTogether, ExactlyOneOfTwoStays) {
 
 INSTANTIATE_TEST_SUITE_P(Roles, StartedTogether, ::testing::ValuesIn(kAllNodes), role_name);
 
+// An io that holds the same name and goes first, for its id is the lowest there is; the observer speaks for it.
+class Rival {
+ public:
+  Rival(Observer& observer, const wire::SessionDescription& first) : observer_(observer), description_(first) {
+    description_.header.session = {};
+    description_.header.phase = wire::Phase::running;
+    description_.pid = static_cast<std::uint32_t>(::getpid());
+    observer_.say(wire::Topic::session, description_);
+  }
+  [[nodiscard]] const wire::SessionId& id() const noexcept { return description_.header.session; }
+  void end_its_session() {
+    wire::NodeStatus status;
+    status.header = description_.header;
+    status.state = NodeState::fault;
+    status.exit_code = static_cast<std::int32_t>(ExitCode::interrupted);
+    status.host = description_.host;
+    status.pid = description_.pid;
+    observer_.say(wire::Topic::node_status, status);
+  }
+
+ private:
+  Observer& observer_;
+  wire::SessionDescription description_;
+};
+
+TEST(WithdrawnSession, LosesItsNodesToTheOneThatHoldsTheName) {
+  Session session({"--pace", "real", "--duration", "1s"});
+  Observer& observer = session.observer();
+  for (const Role role : {Role::io, Role::mechanics, Role::recorder}) session.start(role);
+  const auto takes_part = [&](Role role, const wire::SessionId& id) {
+    const std::optional<wire::NodeStatus>& status = observer.status(role);
+    return status && status->header.session == id && status->state < NodeState::ended;
+  };
+  ASSERT_TRUE(observer.wait_until([&] { return !observer.descriptions().empty(); })) << session.said();
+  const wire::SessionDescription first = observer.descriptions().begin()->second;
+  for (const Role role : {Role::mechanics, Role::recorder}) {
+    ASSERT_TRUE(observer.wait_until([&] { return takes_part(role, first.header.session); })) << session.said();
+  }
+  Rival rival(observer, first);
+  EXPECT_EQ(session.node(Role::io).wait(), 2) << session.said();
+  for (const Role role : {Role::mechanics, Role::recorder}) {
+    EXPECT_TRUE(observer.wait_until([&] { return takes_part(role, rival.id()); })) << session.said();
+  }
+  rival.end_its_session();
+  const std::map<Role, int> codes = session.wait_all();
+  EXPECT_EQ(codes.at(Role::mechanics), 130) << session.said();
+  EXPECT_EQ(codes.at(Role::recorder), 130) << session.said();
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(session.runs()), {}), 1) << "the first left nothing";
+}
+
 // ---- refusals and missing nodes -------------------------------------------------------------------------------
 
 TEST(MissingNode, IsNamedWhenJoinDoesNotComeAbout) {

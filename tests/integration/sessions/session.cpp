@@ -23,8 +23,9 @@ constexpr std::int64_t kAskAgainNs = 500'000'000;
 
 Observer::Observer(std::uint32_t domain, const std::string& session) : session_(session) {
   const transport::CycloneNetwork network{domain, "lo", {}};
-  const transport::CycloneOptions endpoint{
-      session, "observer", {Topic::controller_input, Topic::control_request}, transport::TopicSet::all()};
+  const transport::TopicSet writes = {Topic::controller_input, Topic::control_request, Topic::session,
+                                      Topic::node_status};
+  const transport::CycloneOptions endpoint{session, "observer", writes, transport::TopicSet::all()};
   std::unique_ptr<transport::CycloneTransport> carrier;
   if (const Status status = transport::CycloneTransport::open(network, endpoint, carrier); !status.is_ok()) {
     throw std::runtime_error(status.text);
@@ -142,10 +143,9 @@ wire::ControlReply Observer::request(wire::ControlAction action, double value, c
   request.value = value;
   request.path = path;
   request.over_ns = over_ns;
-  if (!transport::encode(request, buffer_)) throw std::runtime_error("the request cannot be encoded");
   // the writer may not be known to io yet; an unanswered question is asked again
   for (int attempt = 0; attempt < 20; ++attempt) {
-    static_cast<void>(carrier_->publish(Topic::control_request, buffer_));
+    say(Topic::control_request, request);
     if (wait_until([&] { return replies_.count(request.request) != 0; }, kAskAgainNs)) {
       return replies_.at(request.request);
     }
@@ -154,8 +154,7 @@ wire::ControlReply Observer::request(wire::ControlAction action, double value, c
 }
 
 void Observer::send(const wire::ControllerInput& input) {
-  if (!transport::encode(input, buffer_)) throw std::runtime_error("the input cannot be encoded");
-  static_cast<void>(carrier_->publish(Topic::controller_input, buffer_));
+  say(Topic::controller_input, input);
 }
 
 wire::ControllerLease Observer::acquire(const std::string& controller, const std::string& channel) {

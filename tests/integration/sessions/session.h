@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "program.h"
 #include "recorded_session.h"
 #include "support/test_domain.h"
+#include "transport/codec.h"
 #include "transport/transport.h"
 #include "transport/wire.h"
 
@@ -39,6 +41,12 @@ class Observer {
   [[nodiscard]] wire::ControlReply request(wire::ControlAction action, double value = 0, const std::string& path = "",
                                            std::int64_t over_ns = -1);
   void send(const wire::ControllerInput& input);
+  // Speaks for somebody else.
+  template <typename Message>
+  void say(wire::Topic topic, const Message& message) {
+    if (!transport::encode(message, buffer_)) throw std::runtime_error("a message cannot be encoded");
+    static_cast<void>(carrier_->publish(topic, buffer_));
+  }
   // Asks for a channel until it is answered.
   // What io has said to controllers since the last acquire().
   [[nodiscard]] const std::vector<wire::ControllerLease>& leases() const noexcept { return leases_; }
@@ -58,7 +66,10 @@ class Observer {
   [[nodiscard]] std::uint64_t healths_after_end(wire::Role role) const {
     return healths_after_end_[static_cast<std::size_t>(role)];
   }
-  [[nodiscard]] std::uint64_t sessions_seen() const noexcept { return descriptions_.size(); }
+  // The newest description of every session of the name.
+  [[nodiscard]] const std::map<wire::SessionId, wire::SessionDescription>& descriptions() const noexcept {
+    return descriptions_;
+  }
   [[nodiscard]] const std::string& name() const noexcept { return session_; }
   // Newest value of a variable; none before it is known.
   [[nodiscard]] std::optional<double> variable(const std::string& name) const;

@@ -133,6 +133,35 @@ TEST_F(SessionViewTest, ALaterSessionOfTheNameTakesThePlaceOfTheFirst) {
   EXPECT_EQ(view.find("A.force"), nullptr);
 }
 
+TEST_F(SessionViewTest, ASessionThatIsWithdrawnGivesThePlaceBackToItsRival) {
+  wire::SessionDescription later = session_;
+  later.header.session = {7};
+  later.started_ns = session_.started_ns + 1;
+  wire::SessionDescription withdrawn = later;
+  withdrawn.header.phase = wire::Phase::ended;
+  // whichever came first
+  for (const bool is_later_first : {false, true}) {
+    SessionView view("crane");
+    tell(view, is_later_first ? later : session_);
+    tell(view, is_later_first ? session_ : later);
+    EXPECT_EQ(view.session().header.session, later.header.session);
+    tell(view, withdrawn);
+    ASSERT_TRUE(view.has_session());
+    EXPECT_EQ(view.session().header.session, session_.header.session);
+  }
+}
+
+TEST_F(SessionViewTest, NothingIsLeftOfAWithdrawnSessionWithoutARival) {
+  SessionView view("crane");
+  tell(view, session_);
+  tell(view, directory(Role::mechanics, 1, 0, {"A.force"}));
+  wire::SessionDescription withdrawn = session_;
+  withdrawn.header.phase = wire::Phase::ended;
+  tell(view, withdrawn);
+  EXPECT_FALSE(view.has_session());
+  EXPECT_EQ(view.find("A.force"), nullptr);
+}
+
 TEST_F(SessionViewTest, OneThatOnlyClaimsTheNameTakesNoPlace) {
   SessionView view("crane");
   wire::SessionDescription claim = session_;

@@ -83,6 +83,55 @@ class Io : public ::testing::Test {
   std::uint64_t requests_ = 0;
 };
 
+// ---- two sessions of one name ---------------------------------------------------------------------------------
+
+class TwoOfOneName : public Io {
+ protected:
+  // another io of the name, whose id is lower or higher than any that was drawn
+  void say_rival(Phase phase, std::uint8_t id_byte) {
+    wire::SessionDescription rival = played.session;
+    rival.header.session.fill(id_byte);
+    rival.header.phase = phase;
+    played.say(Topic::session, rival);
+    poll(kMs);
+  }
+  Phase last_said() {
+    const auto sessions = played.said<wire::SessionDescription>(Topic::session);
+    return sessions.empty() ? Phase::init : sessions.back().header.phase;
+  }
+};
+
+TEST_F(TwoOfOneName, WhoHoldsTheNameStaysBeforeOneThatClaimsIt) {
+  poll();
+  ASSERT_EQ(last_said(), Phase::running);
+  say_rival(Phase::join, 0);
+  EXPECT_FALSE(node->is_finished());
+}
+
+TEST_F(TwoOfOneName, OfTwoThatHoldTheNameTheHigherIdTakesItsSessionBack) {
+  poll();
+  ASSERT_EQ(last_said(), Phase::running);
+  say_rival(Phase::running, 0xff);
+  EXPECT_FALSE(node->is_finished());
+  say_rival(Phase::running, 0);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
+  EXPECT_EQ(last_said(), Phase::ended);
+}
+
+TEST_F(TwoOfOneName, OneThatOnlyClaimsItHasNothingToTakeBack) {
+  IoConfig slow = config();
+  slow.name_check = milliseconds(300);
+  restart(std::move(slow));
+  poll();
+  ASSERT_EQ(last_said(), Phase::join);
+  say_rival(Phase::join, 0);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_EQ(last_said(), Phase::init) << "nothing more";
+}
+
+// ---- pause and time -------------------------------------------------------------------------------------------
+
 TEST_F(Io, SleepsWhileItIsPaused) {
   get_running();
   run_to(10);

@@ -49,7 +49,7 @@ class Physics : public ::testing::Test {
 
   PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
   testing::BreakableCarrier carrier{played.carrier()};
-  PhysicsNode node{Role::mechanics, carrier, build, milliseconds(1000)};
+  PhysicsNode node{Role::mechanics, carrier, build};
   std::int64_t now_ns = 1000 * kMs;
   StepIndex newest_ = kJoinStep;
 };
@@ -102,6 +102,19 @@ TEST_F(Physics, EndsAtTheFirstSampleThatCannotBeSent) {
   EXPECT_EQ(statuses.back().reason, "message not sent");
 }
 
+TEST_F(Physics, SaysNothingMoreInASessionThatIsWithdrawn) {
+  played.say(Topic::session, played.session);
+  poll();
+  ASSERT_EQ(node.member().state(), NodeState::joining);
+  played.forget();
+  played.session.header.phase = Phase::ended;
+  played.say(Topic::session, played.session);
+  poll(kMs);
+  EXPECT_TRUE(node.is_finished());
+  EXPECT_TRUE(node.member().is_withdrawn());
+  EXPECT_TRUE(played.said<wire::NodeStatus>(Topic::node_status).empty());
+}
+
 // ---- asking for what is missing -------------------------------------------------------------------------------
 
 TEST_F(Physics, AsksForATickThreeMillisecondsAfterItWasDue) {
@@ -152,7 +165,7 @@ TEST_F(Physics, SaysThatItWaitsWhenSomethingIsOverdue) {
 
 TEST_F(Physics, CountsAnInitThatCannotBeDecoded) {
   PlayedSession other{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
-  PhysicsNode hydraulics{Role::hydraulics, other.carrier(), build, milliseconds(1000)};
+  PhysicsNode hydraulics{Role::hydraulics, other.carrier(), build};
   other.say(Topic::session, other.session);
   hydraulics.poll(now_ns);
   other.say_status(Role::mechanics, NodeState::initialising);
@@ -205,7 +218,7 @@ TEST_F(Physics, RefusesToPublishMoreVariablesThanTheWireNumbers) {
     return Status::ok();
   };
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
-  PhysicsNode many{Role::mechanics, other.carrier(), build_many, milliseconds(1000)};
+  PhysicsNode many{Role::mechanics, other.carrier(), build_many};
   other.say(Topic::session, other.session);
   many.poll(now_ns);
   EXPECT_TRUE(many.is_finished());

@@ -263,6 +263,53 @@ TEST_F(Member, ThatStepsAsideSaysNothing) {
   EXPECT_EQ(member.reason(), "held");
 }
 
+TEST_F(Member, FollowsARunningSessionUntilItsOwnerWithdrawsIt) {
+  wire::SessionDescription session = description();
+  session.header.phase = Phase::join;
+  EXPECT_EQ(member.news(session), SessionNews::none) << "a claim";
+  session.header.phase = Phase::running;
+  EXPECT_EQ(member.news(session), SessionNews::begins);
+  ASSERT_TRUE(member.adopt(session, 0).is_ok());
+  EXPECT_EQ(member.news(session), SessionNews::none) << "said again";
+  session.header.phase = Phase::ended;
+  EXPECT_EQ(member.news(session), SessionNews::withdrawn);
+  session.header.incarnation = 10;
+  EXPECT_EQ(member.news(session), SessionNews::none) << "not its owner";
+  session = description();
+  session.header.session[0] = 43;
+  session.header.phase = Phase::ended;
+  EXPECT_EQ(member.news(session), SessionNews::none) << "another session";
+}
+
+TEST_F(Member, IsFreeAgainWhenItsSessionIsWithdrawn) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  member.withdraw();
+  EXPECT_TRUE(member.is_withdrawn());
+  EXPECT_EQ(member.exit_code(), ExitCode::ok);
+}
+
+TEST_F(Member, OfOneSessionOnlyFollowsNoOtherAndEndsWithIt) {
+  SessionMember bound(Role::mechanics, end, kTopics, description().header.session);
+  wire::SessionDescription other = description();
+  other.header.session[0] = 43;
+  EXPECT_EQ(bound.news(other), SessionNews::none);
+  EXPECT_EQ(bound.news(description()), SessionNews::begins);
+  ASSERT_TRUE(bound.adopt(description(), 0).is_ok());
+  bound.withdraw();
+  EXPECT_FALSE(bound.is_withdrawn());
+  EXPECT_EQ(bound.exit_code(), ExitCode::bad_input);
+  EXPECT_EQ(bound.reason(), "io ended the session: another one holds its name");
+}
+
+TEST(SessionIdText, IsReadAsItIsWritten) {
+  const wire::SessionId id = random_session_id();
+  EXPECT_EQ(session_id_of(to_text(id)), id);
+  for (const std::string wrong : {"", "0", "0123456789abcdef0123456789abcde", "0123456789abcdef0123456789abcdef0",
+                                  "0123456789abcdef 123456789abcdef", "-123456789abcdef0123456789abcdef"}) {
+    EXPECT_FALSE(session_id_of(wrong)) << wrong;
+  }
+}
+
 TEST_F(Member, KeepsALongReasonWholeForItsOwnMessage) {
   InProcessEndpoint other(bus, {"io", {}, {Topic::node_status}});
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());

@@ -287,6 +287,18 @@ TEST_F(Recorder, LeavesNothingBehindWhenItGivesWayBeforeTheFirstStep) {
   EXPECT_TRUE(node->recording().empty());
 }
 
+TEST_F(Recorder, LeavesNothingBehindOfASessionThatIsWithdrawn) {
+  join();
+  EXPECT_FALSE(std::filesystem::is_empty(folder));
+  played.session.header.phase = Phase::ended;
+  played.say(Topic::session, played.session);
+  poll(kMs);
+  EXPECT_TRUE(node->is_finished());
+  EXPECT_TRUE(node->member().is_withdrawn());
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  EXPECT_TRUE(node->recording().empty());
+}
+
 TEST_F(Recorder, ThatComesToARunningSessionIsNoRivalBeforeItHasHeardTheFirst) {
   played.say(Topic::session, played.session);
   poll();
