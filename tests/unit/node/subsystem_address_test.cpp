@@ -15,11 +15,17 @@ constexpr std::size_t kLine = 32;
 thread_local std::size_t shift = 0;  // 0 or 16
 
 // block: from malloc, aligned to 32, with the way back in front of what is handed out
-void* shifted(std::size_t size) {
+void* shifted_or_null(std::size_t size) noexcept {
   char* block = static_cast<char*>(std::aligned_alloc(kLine, (size + 3 * kLine) / kLine * kLine + kLine));
-  if (block == nullptr) throw std::bad_alloc();
+  if (block == nullptr) return nullptr;
   char* given = block + kLine + shift;
   reinterpret_cast<void**>(given)[-1] = block;
+  return given;
+}
+
+void* shifted(std::size_t size) {
+  void* given = shifted_or_null(size);
+  if (given == nullptr) throw std::bad_alloc();
   return given;
 }
 
@@ -34,6 +40,13 @@ void* operator new(std::size_t size) {
 }
 void* operator new[](std::size_t size) {
   return shifted(size);
+}
+// left alone these call the ones above, but a sanitizer brings its own
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return shifted_or_null(size);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return shifted_or_null(size);
 }
 void operator delete(void* given) noexcept {
   give_back(given);
