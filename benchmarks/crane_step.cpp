@@ -140,20 +140,16 @@ void BM_Session(benchmark::State& state) {
     config.name_check = {0};
     config.steps = kSteps;
     io::IoNode io(*io_end, std::move(config));
-    node::PhysicsNode mechanics(
-        wire::Role::mechanics, *mechanics_end,
-        [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
-          built.subsystem = mechanics::make_mechanics_subsystem(crane());
-          return Status::ok();
-        },
-        milliseconds(1000));
-    node::PhysicsNode hydraulics(
-        wire::Role::hydraulics, *hydraulics_end,
-        [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
-          built.subsystem = hydraulic_node::make_hydraulics_subsystem(crane());
-          return Status::ok();
-        },
-        milliseconds(1000));
+    node::PhysicsNode mechanics(wire::Role::mechanics, *mechanics_end,
+                                [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
+                                  built.subsystem = mechanics::make_mechanics_subsystem(crane());
+                                  return Status::ok();
+                                });
+    node::PhysicsNode hydraulics(wire::Role::hydraulics, *hydraulics_end,
+                                 [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
+                                   built.subsystem = hydraulic_node::make_hydraulics_subsystem(crane());
+                                   return Status::ok();
+                                 });
     node::Node* nodes[] = {&io, &mechanics, &hydraulics};
     if (node::run_together(nodes, {}) != ExitCode::ok) state.SkipWithError("the session failed");
   }
