@@ -1,0 +1,117 @@
+// Contacts of the declared pairs at given poses of their frames.
+//
+//   ContactModel   immutable: shapes, pairs, laws
+//   ContactSet     the contacts found, and memory of the search; sized once
+//   find_contacts  poses of the frames -> contacts, in the order of the pairs
+//
+// A pair is first tested by bounding spheres, then by a kernel in closed form (kernels.h) or, for the other convex
+// shapes, by FCL's GJK and EPA for the direction and the depth and by clipping of the facing faces for the points.
+// Pairs are few and declared, so there is no broad phase over all shapes.
+//
+// Own kernels neither allocate nor lock, and their cost is bounded. FCL allocates inside a query (up to 25 blocks,
+// given back before it returns): pairs with it are not yet fit for a step under the allocation guard. Not covered:
+// motion between two calls (a body that passes through within one sub-step is not seen).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "contact/contact_def.h"
+#include "contact/manifold.h"
+#include "contact/solid.h"
+
+namespace slew::contact {
+
+// Pose of a frame in the world.
+struct Pose {
+  math::Vec3 p_WF;                           // m
+  math::Mat3 R_WF = math::Mat3::identity();  // columns are the frame's axes
+};
+
+struct ContactPoint {
+  std::size_t pair = 0;  // index of ContactDef::pairs
+  math::Vec3 p_W;        // m, half way between both surfaces
+  math::Vec3 n_W;        // unit, from shape B to shape A: a normal force F pushes A along it
+  double depth = 0;      // m, > 0
+  double share = 0;      // of the pair's stiffness; those of a pair sum to 1
+};
+
+struct ContactPair {
+  std::size_t shape_a = 0, shape_b = 0;
+  NormalLaw normal;
+  FrictionLaw friction;
+  bool has_friction = false;
+};
+
+class ContactSet;
+
+class ContactModel {
+ public:
+  ~ContactModel();
+  ContactModel(ContactModel&&) noexcept;
+  ContactModel& operator=(ContactModel&&) noexcept;
+
+  [[nodiscard]] std::span<const ContactPair> pairs() const noexcept { return pairs_; }
+  [[nodiscard]] std::size_t frame_of(std::size_t shape) const noexcept { return shapes_[shape].frame; }
+  [[nodiscard]] std::size_t frame_count() const noexcept { return frame_count_; }
+  // True when a pair needs FCL.
+  [[nodiscard]] bool asks_fcl() const noexcept { return asks_fcl_; }
+
+ private:
+  friend ContactModel build(const ContactDef& def);
+  friend class ContactSet;
+  friend void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
+  ContactModel();
+
+  struct Shape {
+    Geometry geometry;
+    std::size_t frame = 0;
+    math::Vec3 p_FS;
+    math::Mat3 R_FS;
+    std::size_t fcl_index = 0;
+  };
+  struct Fcl;
+
+  void add_to_fcl(const ContactDef& def);
+  [[nodiscard]] Solid place(const Shape& shape, const Pose& pose) const noexcept;
+  void find_pair(std::size_t pair, std::span<const Pose> poses, ContactSet& set) const noexcept;
+
+  std::vector<Shape> shapes_;
+  std::vector<ContactPair> pairs_;
+  std::size_t frame_count_ = 0;
+  bool asks_fcl_ = false;
+  std::unique_ptr<Fcl> fcl_;
+};
+
+// Pre-condition: validate() found nothing.
+[[nodiscard]] ContactModel build(const ContactDef& def);
+
+class ContactSet {
+ public:
+  explicit ContactSet(const ContactModel& model);
+  ~ContactSet();
+  ContactSet(ContactSet&&) noexcept;
+  ContactSet& operator=(ContactSet&&) noexcept;
+
+  // Contacts in the order of the pairs.
+  [[nodiscard]] std::span<const ContactPoint> points() const noexcept { return {points_.data(), count_}; }
+  // Pairs for which FCL gave up in the last search: their contacts are missing.
+  [[nodiscard]] std::size_t unresolved() const noexcept { return unresolved_; }
+
+ private:
+  friend class ContactModel;
+  friend void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
+  struct Fcl;
+
+  std::vector<ContactPoint> points_;
+  std::size_t count_ = 0;
+  std::size_t unresolved_ = 0;
+  Manifold manifold_;
+  std::unique_ptr<Fcl> fcl_;
+};
+
+// poses: one per frame, in the order of ContactDef::frames.
+void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
+
+}  // namespace slew::contact

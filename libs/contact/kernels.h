@@ -1,0 +1,34 @@
+// Contacts of two shapes in closed form. Every kernel appends the points of A against B with the normal from B to A,
+// and nothing when the shapes do not overlap. Real-time safe; cost bounded by the vertices of the shapes.
+//
+// Where the centre of a sphere is at the very centre line of the other, the normal is along an axis of that shape.
+#pragma once
+
+#include "contact/manifold.h"
+#include "contact/solid.h"
+
+namespace slew::contact {
+
+using Kernel = void (*)(const Solid& a, const Solid& b, Manifold& out) noexcept;
+
+// The kernel of a pair of types in this order, null when there is none.
+[[nodiscard]] Kernel find_kernel(ShapeType a, ShapeType b) noexcept;
+
+void sphere_sphere(const Solid& a, const Solid& b, Manifold& out) noexcept;
+void sphere_capsule(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// one point; two at the ends of the overlap when the lines are parallel
+void capsule_capsule(const Solid& a, const Solid& b, Manifold& out) noexcept;
+void sphere_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
+void sphere_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// two points when both ends are below
+void capsule_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// every corner below, eight at most
+void box_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// of each end the lowest rim point; of the lower end also its opposite and the two between
+void cylinder_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
+void convex_mesh_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// 15 separating axes; face against face gives up to eight points, edge against edge one (Gottschalk, Lin and Manocha
+// 1996 for the axes)
+void box_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
+
+}  // namespace slew::contact

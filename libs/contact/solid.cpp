@@ -1,0 +1,204 @@
+#include "contact/solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slew::contact {
+namespace {
+
+using math::Vec3;
+
+// triangles of one flat face: their normals agree to this; meshes carry six digits and more
+constexpr double kCoplanar = 1e-5;
+
+Vec3 normal_of(const Geometry& g, const std::array<std::uint32_t, 3>& t) {
+  const Vec3 n = cross(g.vertices[t[1]] - g.vertices[t[0]], g.vertices[t[2]] - g.vertices[t[0]]);
+  return n * (1 / norm(n));
+}
+
+void bound_vertices(Geometry& g) {
+  Vec3 low = g.vertices[0], high = g.vertices[0];
+  for (const Vec3& v : g.vertices) {
+    for (int k = 0; k < 3; ++k) {
+      low.lanes[k] = std::min(low[k], v[k]);
+      high.lanes[k] = std::max(high[k], v[k]);
+    }
+  }
+  g.centre = (low + high) * 0.5;
+  for (const Vec3& v : g.vertices) g.bounding_radius = std::max(g.bounding_radius, norm(v - g.centre));
+}
+
+// All vertices in the plane of a triangle are corners of its face, since the mesh is convex; in order of their angle.
+void merge_faces(Geometry& g) {
+  double size = g.bounding_radius;
+  for (const auto& triangle : g.triangles) {
+    const Vec3 n = normal_of(g, triangle), on = g.vertices[triangle[0]];
+    const bool is_known = std::any_of(g.faces.begin(), g.faces.end(), [&](const Geometry::FlatFace& face) {
+      return norm(face.normal - n) < kCoplanar;
+    });
+    if (is_known) continue;
+    std::vector<std::uint32_t> corners;
+    Vec3 middle;
+    for (std::uint32_t i = 0; i < g.vertices.size(); ++i) {
+      if (std::fabs(dot(g.vertices[i] - on, n)) > kCoplanar * size) continue;
+      corners.push_back(i);
+      middle += g.vertices[i];
+    }
+    middle = middle * (1 / static_cast<double>(corners.size()));
+    const Vec3 x = (on - middle) * (1 / norm(on - middle)), y = cross(n, x);
+    const auto angle = [&](std::uint32_t i) {
+      const Vec3 r = g.vertices[i] - middle;
+      return std::atan2(dot(r, y), dot(r, x));
+    };
+    std::stable_sort(corners.begin(), corners.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return angle(i) < angle(j); });
+    // a rounded face with very many corners is represented by evenly chosen ones
+    const std::size_t stride = (corners.size() + kMaxFaceVertices - 1) / kMaxFaceVertices;
+    Geometry::FlatFace face{n, g.face_vertices.size(), 0};
+    for (std::size_t i = 0; i < corners.size(); i += stride) g.face_vertices.push_back(corners[i]);
+    face.count = g.face_vertices.size() - face.first;
+    g.faces.push_back(face);
+  }
+}
+
+// two triangles per cell, upward
+void triangulate(const HeightFieldDef& field, Geometry& g) {
+  for (std::size_t row = 0; row < field.rows; ++row) {
+    for (std::size_t column = 0; column < field.columns; ++column) {
+      g.vertices.emplace_back(static_cast<double>(column) * field.spacing_x, static_cast<double>(row) * field.spacing_y,
+                              field.heights[row * field.columns + column]);
+    }
+  }
+  const auto index = [&](std::size_t row, std::size_t column) {
+    return static_cast<std::uint32_t>(row * field.columns + column);
+  };
+  for (std::size_t row = 0; row + 1 < field.rows; ++row) {
+    for (std::size_t column = 0; column + 1 < field.columns; ++column) {
+      g.triangles.push_back({index(row, column), index(row, column + 1), index(row + 1, column + 1)});
+      g.triangles.push_back({index(row, column), index(row + 1, column + 1), index(row + 1, column)});
+    }
+  }
+}
+
+Face box_face(const Solid& s, Vec3 d) noexcept {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::fabs(d[k]) > std::fabs(d[axis])) axis = k;
+  }
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const double side = d[axis] < 0 ? -1.0 : 1.0;
+  const Vec3 h = s.geometry->half_size;
+  Face face;
+  // counter-clockwise seen from outside; the lower side turns the other way
+  for (const auto& corner : {std::array{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
+    Vec3 p;
+    p.lanes[axis] = side * h[axis];
+    p.lanes[u] = side * corner[0] * h[u];
+    p.lanes[v] = corner[1] * h[v];
+    face.vertices.push_back(s.to_world(p));
+  }
+  face.normal = s.R_WS.c[axis] * side;
+  return face;
+}
+
+// a cap as an octagon when it is looked at squarely, else the line of the side
+Face cylinder_face(const Solid& s, Vec3 d) noexcept {
+  constexpr int kCorners = 8;
+  const Geometry& g = *s.geometry;
+  Face face;
+  const double across = std::hypot(d.x(), d.y());
+  const double side = d.z() < 0 ? -1.0 : 1.0;
+  if (std::fabs(d.z()) > across) {
+    for (int i = 0; i < kCorners; ++i) {
+      const double angle = side * i * 2 * M_PI / kCorners;
+      face.vertices.push_back(
+          s.to_world({g.radius * std::cos(angle), g.radius * std::sin(angle), side * g.half_length}));
+    }
+    face.normal = s.R_WS.c[2] * side;
+    return face;
+  }
+  const double x = g.radius * d.x() / across, y = g.radius * d.y() / across;
+  face.vertices.push_back(s.to_world({x, y, -g.half_length}));
+  face.vertices.push_back(s.to_world({x, y, g.half_length}));
+  return face;
+}
+
+Face mesh_face(const Solid& s, Vec3 d) noexcept {
+  const Geometry& g = *s.geometry;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < g.faces.size(); ++i) {
+    if (dot(g.faces[i].normal, d) > dot(g.faces[best].normal, d)) best = i;
+  }
+  Face face;
+  for (std::size_t i = 0; i < g.faces[best].count; ++i) {
+    face.vertices.push_back(s.to_world(g.vertices[g.face_vertices[g.faces[best].first + i]]));
+  }
+  face.normal = s.R_WS * g.faces[best].normal;
+  return face;
+}
+
+}  // namespace
+
+Geometry make_geometry(const ShapeDef& def) {
+  Geometry g;
+  g.type = def.type;
+  g.radius = def.radius;
+  g.half_length = def.length / 2;
+  g.half_size = Vec3(def.size) * 0.5;
+  switch (def.type) {
+    case ShapeType::sphere:
+      g.bounding_radius = g.radius;
+      break;
+    case ShapeType::box:
+      g.bounding_radius = norm(g.half_size);
+      break;
+    case ShapeType::cylinder:
+      g.bounding_radius = std::hypot(g.radius, g.half_length);
+      break;
+    case ShapeType::capsule:
+      g.bounding_radius = g.radius + g.half_length;
+      break;
+    case ShapeType::plane:
+      g.bounding_radius = std::numeric_limits<double>::infinity();
+      break;
+    case ShapeType::height_field:
+      triangulate(def.height_field, g);
+      break;
+    case ShapeType::convex_mesh:
+    case ShapeType::triangle_mesh:
+      for (const Triple& v : def.mesh.vertices) g.vertices.emplace_back(v);
+      g.triangles = def.mesh.triangles;
+      break;
+  }
+  if (!g.vertices.empty()) bound_vertices(g);
+  if (def.type == ShapeType::convex_mesh) merge_faces(g);
+  return g;
+}
+
+Face supporting_face(const Solid& solid, Vec3 d_W) noexcept {
+  const Geometry& g = *solid.geometry;
+  const Vec3 d = transpose_multiply(solid.R_WS, d_W);
+  switch (g.type) {
+    case ShapeType::box:
+      return box_face(solid, d);
+    case ShapeType::cylinder:
+      return cylinder_face(solid, d);
+    case ShapeType::convex_mesh:
+      return mesh_face(solid, d);
+    case ShapeType::capsule: {
+      Face face;
+      for (const double end : {-g.half_length, g.half_length}) {
+        face.vertices.push_back(solid.to_world({0, 0, end}) + d_W * g.radius);
+      }
+      return face;
+    }
+    default: {
+      Face face;
+      face.vertices.push_back(solid.p_WS + d_W * g.radius);
+      return face;
+    }
+  }
+}
+
+}  // namespace slew::contact

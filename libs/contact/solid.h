@@ -1,0 +1,49 @@
+// A shape placed in the world, and what the kernels ask of it.
+#pragma once
+
+#include <vector>
+
+#include "contact/contact_def.h"
+#include "contact/manifold.h"
+#include "math/vector3.h"
+
+namespace slew::contact {
+
+// Immutable geometry of one shape, in its own axes.
+struct Geometry {
+  ShapeType type = ShapeType::sphere;
+  double radius = 0;                 // m: sphere, cylinder, capsule
+  double half_length = 0;            // m: cylinder, capsule (to the centre of an end)
+  math::Vec3 half_size;              // m: box
+  double bounding_radius = 0;        // m about `centre`; infinite for a plane
+  math::Vec3 centre;                 // m
+  std::vector<math::Vec3> vertices;  // m: convex mesh, triangle mesh, height field
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  // faces of a convex mesh, coplanar triangles as one: loops of vertices one after the other
+  struct FlatFace {
+    math::Vec3 normal;
+    std::size_t first = 0, count = 0;  // in face_vertices
+  };
+  std::vector<FlatFace> faces;
+  std::vector<std::uint32_t> face_vertices;
+};
+
+// Pre-condition: validate() found nothing.
+[[nodiscard]] Geometry make_geometry(const ShapeDef& def);
+
+// A shape in the world.
+struct Solid {
+  const Geometry* geometry = nullptr;
+  math::Vec3 p_WS;  // m
+  math::Mat3 R_WS;
+
+  [[nodiscard]] math::Vec3 to_world(math::Vec3 p_S) const noexcept { return p_WS + R_WS * p_S; }
+  [[nodiscard]] math::Vec3 to_shape(math::Vec3 p_W) const noexcept { return transpose_multiply(R_WS, p_W - p_WS); }
+};
+
+// The face, edge or vertex of a convex shape that looks most squarely along d_W (unit). Triangle meshes and planes have
+// none here.
+[[nodiscard]] Face supporting_face(const Solid& solid, math::Vec3 d_W) noexcept;
+
+}  // namespace slew::contact
