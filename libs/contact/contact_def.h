@@ -68,8 +68,9 @@ struct ContactDef {
 };
 
 // Appends everything that is wrong: names, sizes, laws, meshes (empty, not finite, index out of range; a convex mesh
-// that is not closed, not convex or inside out), shapes that must not move in frames that do, pairs of which nothing
-// can move or that cannot be tested. Nothing is appended for a sound Def. Paths are "Element.key".
+// that is not closed, not convex or inside out; a triangle mesh that turns differently in parts), shapes that must not
+// move in frames that do, pairs of which nothing can move or that cannot be tested. Nothing is appended for a sound
+// Def. Paths are "Element.key".
 void validate(const ContactDef& def, Problems& problems);
 
 }  // namespace slew::contact

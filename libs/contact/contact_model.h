@@ -4,7 +4,7 @@
 //   ContactSet     the contacts found, and memory of the search; sized once
 //   find_contacts  poses of the frames -> contacts, in the order of the pairs
 //
-// A pair is first tested by bounding spheres, then by a kernel in closed form (kernels.h) or, for the other convex
+// A pair is first tested by bounding spheres, then by a kernel of our own (kernels.h) or, for the other convex
 // shapes, by FCL's GJK and EPA for the direction and the depth and by clipping of the facing faces for the points.
 // Pairs are few and declared, so there is no broad phase over all shapes.
 //

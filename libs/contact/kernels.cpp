@@ -148,6 +148,10 @@ Kernel find_kernel(ShapeType a, ShapeType b) noexcept {
       Row{sphere, plane, sphere_plane},      Row{capsule, plane, capsule_plane},         Row{box, plane, box_plane},
       Row{cylinder, plane, cylinder_plane},  Row{convex_mesh, plane, convex_mesh_plane}, Row{box, box, box_box},
       Row{capsule, capsule, capsule_capsule}};
+  if (b == triangle_mesh || b == height_field) {
+    const bool is_ground = a == plane || a == triangle_mesh || a == height_field;
+    return is_ground ? nullptr : a == sphere ? sphere_on_triangles : convex_on_triangles;
+  }
   for (const Row& row : kRows) {
     if (row.a == a && row.b == b) return row.kernel;
   }

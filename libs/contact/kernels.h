@@ -1,4 +1,4 @@
-// Contacts of two shapes in closed form. Every kernel appends the points of A against B with the normal from B to A,
+// Contacts of two shapes without iteration. Every kernel appends the points of A against B with the normal from B to A,
 // and nothing when the shapes do not overlap. Real-time safe; cost bounded by the vertices of the shapes.
 //
 // Where the centre of a sphere is at the very centre line of the other, the normal is along an axis of that shape.
@@ -30,5 +30,12 @@ void convex_mesh_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
 // 15 separating axes; face against face gives up to eight points, edge against edge one (Gottschalk, Lin and Manocha
 // 1996 for the axes)
 void box_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
+
+// B is a triangle mesh or a height field. Sphere: the points of the ground that are
+// nearer than all around them.
+void sphere_on_triangles(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// Other convex shapes: the face that looks at a triangle, clipped by it. An edge of the shape that lies on an edge of
+// the mesh touches through the faces beside it only.
+void convex_on_triangles(const Solid& a, const Solid& b, Manifold& out) noexcept;
 
 }  // namespace slew::contact

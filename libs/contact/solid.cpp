@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace slew::contact {
 namespace {
@@ -12,7 +14,7 @@ using math::Vec3;
 // triangles of one flat face: their normals agree to this; meshes carry six digits and more
 constexpr double kCoplanar = 1e-5;
 
-Vec3 normal_of(const Geometry& g, const std::array<std::uint32_t, 3>& t) {
+Vec3 normal_of(const Geometry& g, const Triangle& t) {
   const Vec3 n = cross(g.vertices[t[1]] - g.vertices[t[0]], g.vertices[t[2]] - g.vertices[t[0]]);
   return n * (1 / norm(n));
 }
@@ -81,6 +83,31 @@ void triangulate(const HeightFieldDef& field, Geometry& g) {
   }
 }
 
+// An edge is a way out when there is nothing across it, or when the neighbour falls away by more than 30 degrees.
+void find_ways_out(Geometry& g) {
+  constexpr double kSharp = 0.866;  // cosine
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> owner;
+  for (std::size_t i = 0; i < g.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) owner[{g.triangles[i][k], g.triangles[i][(k + 1) % 3]}] = i;
+  }
+  for (std::size_t i = 0; i < g.triangles.size(); ++i) {
+    const Triangle& t = g.triangles[i];
+    std::uint8_t ways = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto neighbour = owner.find({t[(k + 1) % 3], t[k]});
+      bool falls_away = true;
+      if (neighbour != owner.end()) {
+        const Vec3 across = g.triangle_normals[neighbour->second];
+        const Vec3 inward = cross(g.triangle_normals[i], g.vertices[t[(k + 1) % 3]] - g.vertices[t[k]]);
+        // convex: the neighbour looks away from this triangle
+        falls_away = dot(across, g.triangle_normals[i]) < kSharp && dot(across, inward) < 0;
+      }
+      if (falls_away) ways = static_cast<std::uint8_t>(ways | (1U << k));
+    }
+    g.ways_out.push_back(ways);
+  }
+}
+
 Face box_face(const Solid& s, Vec3 d) noexcept {
   int axis = 0;
   for (int k = 1; k < 3; ++k) {
@@ -110,8 +137,10 @@ Face cylinder_face(const Solid& s, Vec3 d) noexcept {
   const double across = std::hypot(d.x(), d.y());
   const double side = d.z() < 0 ? -1.0 : 1.0;
   if (std::fabs(d.z()) > across) {
+    // a corner where the rim reaches farthest
+    const double first = std::atan2(d.y(), d.x());
     for (int i = 0; i < kCorners; ++i) {
-      const double angle = side * i * 2 * M_PI / kCorners;
+      const double angle = first + side * i * 2 * M_PI / kCorners;
       face.vertices.push_back(
           s.to_world({g.radius * std::cos(angle), g.radius * std::sin(angle), side * g.half_length}));
     }
@@ -173,7 +202,34 @@ Geometry make_geometry(const ShapeDef& def) {
   }
   if (!g.vertices.empty()) bound_vertices(g);
   if (def.type == ShapeType::convex_mesh) merge_faces(g);
+  if (def.type == ShapeType::triangle_mesh || def.type == ShapeType::height_field) {
+    for (const Triangle& triangle : g.triangles) g.triangle_normals.push_back(normal_of(g, triangle));
+    find_ways_out(g);
+    g.tree = TriangleTree(g.vertices, g.triangles);
+  }
   return g;
+}
+
+double reach(const Solid& solid, Vec3 d_W) noexcept {
+  const Geometry& g = *solid.geometry;
+  const Vec3 d = transpose_multiply(solid.R_WS, d_W);
+  const double origin = dot(solid.p_WS, d_W);
+  switch (g.type) {
+    case ShapeType::box:
+      return origin + g.half_size[0] * std::fabs(d[0]) + g.half_size[1] * std::fabs(d[1]) +
+             g.half_size[2] * std::fabs(d[2]);
+    case ShapeType::cylinder:
+      return origin + g.radius * std::hypot(d.x(), d.y()) + g.half_length * std::fabs(d.z());
+    case ShapeType::capsule:
+      return origin + g.radius + g.half_length * std::fabs(d.z());
+    case ShapeType::convex_mesh: {
+      double farthest = dot(g.vertices[0], d);
+      for (const Vec3& vertex : g.vertices) farthest = std::max(farthest, dot(vertex, d));
+      return origin + farthest;
+    }
+    default:
+      return origin + g.radius;
+  }
 }
 
 Face supporting_face(const Solid& solid, Vec3 d_W) noexcept {

@@ -5,6 +5,7 @@
 
 #include "contact/contact_def.h"
 #include "contact/manifold.h"
+#include "contact/triangle_tree.h"
 #include "math/vector3.h"
 
 namespace slew::contact {
@@ -18,7 +19,7 @@ struct Geometry {
   double bounding_radius = 0;        // m about `centre`; infinite for a plane
   math::Vec3 centre;                 // m
   std::vector<math::Vec3> vertices;  // m: convex mesh, triangle mesh, height field
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Triangle> triangles;
 
   // faces of a convex mesh, coplanar triangles as one: loops of vertices one after the other
   struct FlatFace {
@@ -27,6 +28,12 @@ struct Geometry {
   };
   std::vector<FlatFace> faces;
   std::vector<std::uint32_t> face_vertices;
+
+  // triangle mesh, height field
+  std::vector<math::Vec3> triangle_normals;
+  std::vector<std::uint8_t> ways_out;  // by triangle, bit k: over the edge from corner k to the next the ground ends
+                                       // or falls away sharply
+  TriangleTree tree;
 };
 
 // Pre-condition: validate() found nothing.
@@ -41,6 +48,9 @@ struct Solid {
   [[nodiscard]] math::Vec3 to_world(math::Vec3 p_S) const noexcept { return p_WS + R_WS * p_S; }
   [[nodiscard]] math::Vec3 to_shape(math::Vec3 p_W) const noexcept { return transpose_multiply(R_WS, p_W - p_WS); }
 };
+
+// The largest p_W . d_W of all points of a convex shape [m]; d_W is a unit vector.
+[[nodiscard]] double reach(const Solid& solid, math::Vec3 d_W) noexcept;
 
 // The face, edge or vertex of a convex shape that looks most squarely along d_W (unit). Triangle meshes and planes have
 // none here.

@@ -2,24 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <string>
-#include <utility>
 
 #include "contact/contact_def.h"
-#include "contact/kernels.h"
+#include "contact/mesh_check.h"
 
 namespace slew::contact {
 namespace {
 
-using math::Vec3;
-
 constexpr const char* kTypeNames[] = {"sphere", "box",          "cylinder",    "capsule",
                                       "plane",  "height_field", "convex_mesh", "triangle_mesh"};
-
-// vertices of flat faces are printed with six digits and more: distance outside a face as a share of the mesh's size
-constexpr double kConvexTolerance = 1e-6;
 
 const char* name_of(ShapeType type) {
   return kTypeNames[static_cast<int>(type)];
@@ -95,90 +88,21 @@ class Validator {
         for (const double edge : shape.size) check_positive(shape, "size", edge);
         break;
       case ShapeType::convex_mesh:
-        check_convex_mesh(shape);
+        check_surface(shape, "mesh", find_convex_fault(shape.mesh));
+        break;
+      case ShapeType::triangle_mesh:
+        check_surface(shape, "mesh", find_surface_fault(shape.mesh));
         break;
       case ShapeType::height_field:
-      case ShapeType::triangle_mesh:
-        add(shape.name, "type", fmt::format("a {} is not in this version", name_of(shape.type)),
-            "sphere, box, cylinder, capsule, plane or convex_mesh");
+        check_surface(shape, "height_field", find_field_fault(shape.height_field));
         break;
       case ShapeType::plane:
         break;
     }
   }
 
-  bool check_mesh_numbers(const ShapeDef& shape) {
-    const MeshDef& mesh = shape.mesh;
-    if (mesh.vertices.size() < 4 || mesh.triangles.size() < 4) {
-      add(shape.name, "mesh",
-          fmt::format("{} vertices and {} triangles enclose nothing", mesh.vertices.size(), mesh.triangles.size()),
-          "at least 4 of each");
-      return false;
-    }
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      if (is_finite(mesh.vertices[i])) continue;
-      add(shape.name, "mesh", fmt::format("vertex {} is not finite", i), "finite vertices");
-      return false;
-    }
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const auto& t = mesh.triangles[i];
-      if (*std::max_element(t.begin(), t.end()) < mesh.vertices.size()) continue;
-      add(shape.name, "mesh", fmt::format("triangle {} has a vertex that does not exist", i),
-          fmt::format("indices below {}", mesh.vertices.size()));
-      return false;
-    }
-    return true;
-  }
-
-  // every edge is there twice, once in each direction
-  bool check_closed(const ShapeDef& shape) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-    for (const auto& t : shape.mesh.triangles) {
-      for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
-    }
-    for (const auto& [edge, count] : edges) {
-      const auto back = edges.find({edge.second, edge.first});
-      if (count == 1 && back != edges.end()) continue;
-      const bool is_doubled = count > 1;
-      add(shape.name, "mesh",
-          fmt::format("it is not closed: the edge of vertices {} and {} {}", edge.first, edge.second,
-                      is_doubled ? "is used twice in one direction (triangles that turn differently)"
-                                 : "has a triangle on one side only"),
-          "a closed mesh whose triangles all turn counter-clockwise seen from outside");
-      return false;
-    }
-    return true;
-  }
-
-  void check_convex_mesh(const ShapeDef& shape) {
-    if (!check_mesh_numbers(shape) || !check_closed(shape)) return;
-    const MeshDef& mesh = shape.mesh;
-    Vec3 low(mesh.vertices[0]), high(mesh.vertices[0]);
-    for (const Triple& v : mesh.vertices) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int lane = static_cast<int>(k);
-        low.lanes[lane] = std::min(low[lane], v[k]);
-        high.lanes[lane] = std::max(high[lane], v[k]);
-      }
-    }
-    const double size = norm(high - low);
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const auto& t = mesh.triangles[i];
-      const Vec3 on(mesh.vertices[t[0]]);
-      const Vec3 n = cross(Vec3(mesh.vertices[t[1]]) - on, Vec3(mesh.vertices[t[2]]) - on);
-      if (!(norm(n) > kConvexTolerance * kConvexTolerance * size * size)) {
-        add(shape.name, "mesh", fmt::format("triangle {} has no area", i), "triangles with three corners");
-        return;
-      }
-      for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
-        const double outside = dot(Vec3(mesh.vertices[k]) - on, n * (1 / norm(n)));
-        if (outside <= kConvexTolerance * size) continue;
-        add(shape.name, "mesh",
-            fmt::format("it is not convex, or inside out: vertex {} is {:.3g} m outside of triangle {}", k, outside, i),
-            "a convex mesh whose triangles turn counter-clockwise seen from outside; split others into convex parts");
-        return;
-      }
-    }
+  void check_surface(const ShapeDef& shape, std::string_view key, const std::optional<MeshFault>& fault) {
+    if (fault) add(shape.name, key, fault->what, fault->expected);
   }
 
   void check_pair(const PairDef& pair) {

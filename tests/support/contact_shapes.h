@@ -48,6 +48,14 @@ inline ShapeDef box_mesh(double x, double y, double z) {
   return def;
 }
 
+// columns x rows heights of 0 with the spacing [m]
+inline ShapeDef flat_field(std::size_t columns, std::size_t rows, double spacing) {
+  ShapeDef def;
+  def.type = ShapeType::height_field;
+  def.height_field = {columns, rows, spacing, spacing, std::vector<double>(columns * rows)};
+  return def;
+}
+
 // shape a in a body that moves, shape b in Ground, one pair
 inline ContactDef two_shapes(ShapeDef a, ShapeDef b) {
   ContactDef def;

@@ -79,12 +79,30 @@ TEST(ContactDefValidation, NamesPairsThatCannotBe) {
   expect_problem(def, "Pair.surface_stiffness", "out of range");
 }
 
-TEST(ContactDefValidation, RefusesWhatIsNotInThisVersion) {
-  ShapeDef ground;
-  ground.type = ShapeType::triangle_mesh;
-  expect_problem(two_shapes(sphere(1), ground), "B.type", "a triangle_mesh is not in this version");
-  ground.type = ShapeType::height_field;
-  expect_problem(two_shapes(sphere(1), ground), "B.type", "a height_field is not in this version");
+TEST(ContactDefValidation, NamesWhatIsWrongWithAGround) {
+  ShapeDef mesh = box_mesh(1, 2, 3);
+  mesh.type = ShapeType::triangle_mesh;
+  EXPECT_TRUE(problems_of(two_shapes(sphere(1), mesh)).empty());
+  mesh.mesh.triangles.pop_back();  // open ones are surfaces as well
+  EXPECT_TRUE(problems_of(two_shapes(sphere(1), mesh)).empty());
+  std::swap(mesh.mesh.triangles[0][0], mesh.mesh.triangles[0][1]);
+  expect_problem(two_shapes(sphere(1), mesh), "B.mesh", "turn differently");
+  mesh.mesh = {};
+  expect_problem(two_shapes(sphere(1), mesh), "B.mesh", "no surface");
+  expect_problem(two_shapes(mesh, sphere(1)), "A.frame", "cannot move");
+
+  ShapeDef field = flat_field(3, 4, 1);
+  EXPECT_TRUE(problems_of(two_shapes(sphere(1), field)).empty());
+  const auto refused = [&](auto change, const std::string& part) {
+    ShapeDef wrong = field;
+    change(wrong.height_field);
+    expect_problem(two_shapes(sphere(1), wrong), "B.height_field", part);
+  };
+  refused([](HeightFieldDef& f) { f.columns = 1; }, "no surface");
+  refused([](HeightFieldDef& f) { f.heights.pop_back(); }, "it has 11 heights");
+  refused([](HeightFieldDef& f) { f.spacing_x = 0; }, "spacing of 0 m");
+  refused([](HeightFieldDef& f) { f.spacing_y = -1; }, "spacing of -1 m");
+  refused([](HeightFieldDef& f) { f.heights[5] = std::numeric_limits<double>::quiet_NaN(); }, "height 5 is not finite");
 }
 
 TEST(ContactDefValidation, NamesWhatIsWrongWithAConvexMesh) {
@@ -94,7 +112,7 @@ TEST(ContactDefValidation, NamesWhatIsWrongWithAConvexMesh) {
   };
   ShapeDef mesh = sound;
   mesh.mesh.triangles.clear();
-  refused(mesh, "enclose nothing");
+  refused(mesh, "no surface");
   mesh = sound;
   mesh.mesh.vertices[3][1] = std::numeric_limits<double>::infinity();
   refused(mesh, "vertex 3 is not finite");
@@ -103,7 +121,7 @@ TEST(ContactDefValidation, NamesWhatIsWrongWithAConvexMesh) {
   refused(mesh, "triangle 5 has a vertex that does not exist");
   mesh = sound;
   mesh.mesh.triangles.pop_back();
-  refused(mesh, "triangle on one side only");
+  refused(mesh, "not closed: triangle");
   mesh = sound;
   std::swap(mesh.mesh.triangles[4][0], mesh.mesh.triangles[4][1]);
   refused(mesh, "turn differently");

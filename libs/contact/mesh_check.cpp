@@ -1,0 +1,152 @@
+#include "contact/mesh_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "math/vector3.h"
+
+namespace slew::contact {
+namespace {
+
+using math::Vec3;
+
+// vertices of flat faces are printed with six digits and more: distance outside of a face as a share of the mesh's size
+constexpr double kConvexTolerance = 1e-6;
+// triangles whose area is below this share of the size squared are lines
+constexpr double kAreaTolerance = 1e-12;
+
+constexpr const char* kTurning = "triangles that all turn counter-clockwise seen from outside";
+
+double size_of(const MeshDef& mesh) {
+  Vec3 low(mesh.vertices[0]), high(mesh.vertices[0]);
+  for (const Triple& v : mesh.vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int lane = static_cast<int>(k);
+      low.lanes[lane] = std::min(low[lane], v[k]);
+      high.lanes[lane] = std::max(high[lane], v[k]);
+    }
+  }
+  return norm(high - low);
+}
+
+// twice the area along the normal
+Vec3 area_of(const MeshDef& mesh, std::size_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  const Vec3 on(mesh.vertices[t[0]]);
+  return cross(Vec3(mesh.vertices[t[1]]) - on, Vec3(mesh.vertices[t[2]]) - on);
+}
+
+std::optional<MeshFault> find_number_fault(const MeshDef& mesh) {
+  if (mesh.vertices.size() < 3 || mesh.triangles.empty()) {
+    return MeshFault{
+        fmt::format("{} vertices and {} triangles are no surface", mesh.vertices.size(), mesh.triangles.size()),
+        "at least one triangle"};
+  }
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Triple& v = mesh.vertices[i];
+    if (std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2])) continue;
+    return MeshFault{fmt::format("vertex {} is not finite", i), "finite vertices"};
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    if (*std::max_element(t.begin(), t.end()) < mesh.vertices.size()) continue;
+    return MeshFault{fmt::format("triangle {} has a vertex that does not exist", i),
+                     fmt::format("indices below {}", mesh.vertices.size())};
+  }
+  return std::nullopt;
+}
+
+// directed edges and a triangle that has each
+using Edges = std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t>;
+
+std::optional<MeshFault> collect_edges(const MeshDef& mesh, Edges& edges) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [at, is_new] = edges.insert({{t[k], t[(k + 1) % 3]}, i});
+      if (is_new) continue;
+      return MeshFault{fmt::format("triangles {} and {} turn differently, or more than two meet, at the edge of "
+                                   "vertices {} and {}",
+                                   at->second, i, t[k], t[(k + 1) % 3]),
+                       kTurning};
+    }
+  }
+  return std::nullopt;
+}
+
+// six times the volume enclosed, about a vertex so that a mesh far from the origin is judged as well
+double volume_of(const MeshDef& mesh) {
+  const Vec3 origin(mesh.vertices[0]);
+  double volume = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    volume += dot(Vec3(mesh.vertices[mesh.triangles[i][0]]) - origin, area_of(mesh, i));
+  }
+  return volume;
+}
+
+}  // namespace
+
+std::optional<MeshFault> find_surface_fault(const MeshDef& mesh) {
+  if (auto fault = find_number_fault(mesh)) return fault;
+  const double size = size_of(mesh);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (norm(area_of(mesh, i)) > kAreaTolerance * size * size) continue;
+    return MeshFault{fmt::format("triangle {} has no area", i), "triangles with three corners"};
+  }
+  Edges edges;
+  return collect_edges(mesh, edges);
+}
+
+std::optional<MeshFault> find_closed_fault(const MeshDef& mesh) {
+  if (auto fault = find_surface_fault(mesh)) return fault;
+  Edges edges;
+  if (auto fault = collect_edges(mesh, edges)) return fault;
+  for (const auto& [edge, triangle] : edges) {
+    if (edges.contains({edge.second, edge.first})) continue;
+    return MeshFault{fmt::format("it is not closed: triangle {} has no neighbour at the edge of vertices {} and {}",
+                                 triangle, edge.first, edge.second),
+                     "a closed mesh"};
+  }
+  if (!(volume_of(mesh) > 0)) return MeshFault{"it is inside out", kTurning};
+  return std::nullopt;
+}
+
+std::optional<MeshFault> find_convex_fault(const MeshDef& mesh) {
+  if (auto fault = find_closed_fault(mesh)) return fault;
+  const double size = size_of(mesh);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Vec3 on(mesh.vertices[mesh.triangles[i][0]]), area = area_of(mesh, i);
+    for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+      const double outside = dot(Vec3(mesh.vertices[k]) - on, area) / norm(area);
+      if (outside <= kConvexTolerance * size) continue;
+      return MeshFault{fmt::format("it is not convex: vertex {} is {:.3g} m outside of triangle {}", k, outside, i),
+                       "a convex mesh; split others into convex parts"};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<MeshFault> find_field_fault(const HeightFieldDef& field) {
+  if (field.columns < 2 || field.rows < 2) {
+    return MeshFault{fmt::format("{} columns and {} rows are no surface", field.columns, field.rows),
+                     "at least 2 of each"};
+  }
+  if (field.heights.size() != field.columns * field.rows) {
+    return MeshFault{fmt::format("it has {} heights", field.heights.size()),
+                     fmt::format("columns times rows, {}", field.columns * field.rows)};
+  }
+  for (const double spacing : {field.spacing_x, field.spacing_y}) {
+    if (std::isfinite(spacing) && spacing > 0) continue;
+    return MeshFault{fmt::format("a spacing of {} m is out of range", spacing), "a number > 0 m"};
+  }
+  for (std::size_t i = 0; i < field.heights.size(); ++i) {
+    if (!std::isfinite(field.heights[i])) return MeshFault{fmt::format("height {} is not finite", i), "finite heights"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace slew::contact
