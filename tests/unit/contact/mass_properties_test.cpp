@@ -1,0 +1,168 @@
+// Mass properties of meshes against the formulas of the solids.
+#include "contact/mass_properties.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contact/mesh_check.h"
+#include "math/rotation.h"
+#include "support/contact_shapes.h"
+
+namespace slew::contact {
+namespace {
+
+using math::Mat3;
+using math::Vec3;
+using namespace testing;
+
+constexpr double kDensity = 7850;  // kg/m3, steel
+
+MeshDef moved(MeshDef mesh, const Mat3& R, Vec3 p) {
+  for (Triple& v : mesh.vertices) v = (p + R * Vec3(v)).array();
+  return mesh;
+}
+
+void append(MeshDef& mesh, const MeshDef& other) {
+  const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+}
+
+void expect_inertia(const Mat3& I, const Mat3& expected, double tolerance) {
+  const double scale = expected(0, 0) + expected(1, 1) + expected(2, 2);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(I(i, j), expected(i, j), tolerance * scale) << i << j;
+  }
+}
+
+Mat3 box_inertia(double m, double x, double y, double z) {
+  return Mat3::diagonal(m / 12 * (y * y + z * z), m / 12 * (x * x + z * z), m / 12 * (x * x + y * y));
+}
+
+TEST(MassProperties, OfABoxAreItsFormulasWhereverItIs) {
+  const MeshDef box = box_mesh(1, 2, 3).mesh;
+  const double m = 6 * kDensity;
+  for (const double far : {0.0, 10.0, 1e5}) {
+    const Mat3 R = math::rotation_zxz({0.3, 0.7, -1.1});
+    const Vec3 p = Vec3(1, -2, 0.5) * far;
+    const MassProperties of_box = mass_properties(moved(box, R, p), kDensity);
+    // positions of 1e5 m have 1e-11 m left
+    const double tolerance = far > 1e4 ? 1e-10 : 1e-13;
+    EXPECT_NEAR(of_box.volume, 6, 6 * tolerance);
+    EXPECT_NEAR(of_box.mass, m, m * tolerance);
+    EXPECT_LT(norm(of_box.centre - p), tolerance * 10 + 1e-15 * norm(p));
+    expect_inertia(of_box.inertia, R * box_inertia(m, 1, 2, 3) * transpose(R), tolerance);
+  }
+}
+
+// corner at the origin, legs along the axes: volume abc/6, centre at a quarter, textbook inertia
+TEST(MassProperties, OfATetrahedronAreItsFormulas) {
+  const double a = 1, b = 2, c = 3;
+  MeshDef mesh;
+  mesh.vertices = {{0, 0, 0}, {a, 0, 0}, {0, b, 0}, {0, 0, c}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  ASSERT_FALSE(find_closed_fault(mesh).has_value());
+  const MassProperties p = mass_properties(mesh, kDensity);
+  const double m = kDensity * a * b * c / 6;
+  EXPECT_NEAR(p.mass, m, m * 1e-14);
+  EXPECT_LT(norm(p.centre - Vec3(a, b, c) * 0.25), 1e-15 * 10);
+  // integrals of x^2 and x y over it: m a^2/10, m a b/20, about the corner; then Steiner
+  const double xx = m * a * a * (0.1 - 1.0 / 16), yy = m * b * b * (0.1 - 1.0 / 16), zz = m * c * c * (0.1 - 1.0 / 16);
+  const double xy = m * a * b * (0.05 - 1.0 / 16), xz = m * a * c * (0.05 - 1.0 / 16),
+               yz = m * b * c * (0.05 - 1.0 / 16);
+  expect_inertia(p.inertia, {Vec3(yy + zz, -xy, -xz), Vec3(-xy, xx + zz, -yz), Vec3(-xz, -yz, xx + yy)}, 1e-14);
+}
+
+// two boxes that overlap nowhere count as one body; a box turned inside out is a hole
+TEST(MassProperties, AddUpAndSubtract) {
+  MeshDef bars = box_mesh(2, 1, 1).mesh;
+  append(bars, moved(box_mesh(2, 1, 1).mesh, Mat3::identity(), {4, 0, 0}));
+  const MassProperties two = mass_properties(bars, kDensity);
+  const double m = 2 * kDensity;
+  EXPECT_NEAR(two.mass, 2 * m, 1e-13 * m);
+  EXPECT_LT(norm(two.centre - Vec3(2, 0, 0)), 1e-13);
+  expect_inertia(two.inertia, box_inertia(m, 2, 1, 1) * 2 + Mat3::diagonal(0, 2 * m * 4, 2 * m * 4), 1e-13);
+
+  MeshDef hollow = box_mesh(2, 2, 2).mesh, hole = box_mesh(1, 1, 1).mesh;
+  for (auto& t : hole.triangles) std::swap(t[0], t[1]);
+  append(hollow, hole);
+  ASSERT_FALSE(find_closed_fault(hollow).has_value());
+  const MassProperties shell = mass_properties(hollow, kDensity);
+  EXPECT_NEAR(shell.volume, 7, 1e-13);
+  expect_inertia(shell.inertia, box_inertia(8 * kDensity, 2, 2, 2) - box_inertia(kDensity, 1, 1, 1), 1e-13);
+}
+
+// regular prism of n sides: J/A = r^2 (2 + cos(2 pi/n))/6; a cylinder in the limit, with an error of 1/n^2
+MeshDef prism(std::uint32_t n, double r, double h) {
+  MeshDef mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * M_PI * i / n;
+    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), -h / 2});
+    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), h / 2});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t low = 2 * i, next = 2 * ((i + 1) % n);
+    mesh.triangles.push_back({low, next, low + 1});
+    mesh.triangles.push_back({next, next + 1, low + 1});
+    if (i == 0 || i + 1 == n) continue;
+    mesh.triangles.push_back({0, next, low});
+    mesh.triangles.push_back({1, low + 1, next + 1});
+  }
+  return mesh;
+}
+
+TEST(MassProperties, OfAPrismAreExactAndThoseOfACylinderInTheLimit) {
+  const double r = 0.4, h = 1.5;
+  double before = 0;
+  for (const std::uint32_t n : {6U, 12U, 24U, 48U}) {
+    const MeshDef mesh = prism(n, r, h);
+    ASSERT_FALSE(find_convex_fault(mesh).has_value()) << find_convex_fault(mesh)->what;
+    const MassProperties p = mass_properties(mesh, kDensity);
+    const double m = kDensity * h * n / 2 * r * r * std::sin(2 * M_PI / n);
+    const double J = m * r * r / 6 * (2 + std::cos(2 * M_PI / n));
+    EXPECT_NEAR(p.mass, m, 1e-13 * m);
+    expect_inertia(p.inertia, Mat3::diagonal(J / 2 + m * h * h / 12, J / 2 + m * h * h / 12, J), 1e-13);
+    const double of_cylinder = kDensity * M_PI * r * r * h;
+    const double gap = (of_cylinder - p.mass) / of_cylinder;
+    if (before > 0) {
+      EXPECT_NEAR(before / gap, 4, 0.2);
+    }
+    before = gap;
+  }
+}
+
+// an octahedron refined on the unit sphere: mass and inertia of a ball with an error of 1/4 a refinement
+TEST(MassProperties, OfARefinedOctahedronBecomeThoseOfABall) {
+  MeshDef mesh;
+  mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  double before = 0;
+  for (int level = 0; level < 5; ++level) {
+    MeshDef finer;
+    for (const auto& t : mesh.triangles) {
+      const auto first = static_cast<std::uint32_t>(finer.vertices.size());
+      for (std::size_t k = 0; k < 3; ++k) finer.vertices.push_back(mesh.vertices[t[k]]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 half = Vec3(mesh.vertices[t[k]]) + Vec3(mesh.vertices[t[(k + 1) % 3]]);
+        finer.vertices.push_back((half * (1 / norm(half))).array());
+      }
+      for (const auto& part : {std::array{0U, 3U, 5U}, {3U, 1U, 4U}, {5U, 4U, 2U}, {3U, 4U, 5U}}) {
+        finer.triangles.push_back({first + part[0], first + part[1], first + part[2]});
+      }
+    }
+    mesh = finer;
+    const MassProperties p = mass_properties(mesh, 1);
+    const double ball = 4 * M_PI / 3;
+    const double gap = 1 - p.inertia(0, 0) / (0.4 * ball);
+    if (level > 1) {
+      EXPECT_NEAR(before / gap, 4, 0.3);
+    }
+    before = gap;
+    EXPECT_LT(norm(p.centre), 1e-13);
+  }
+  EXPECT_LT(before, 0.01);
+}
+
+}  // namespace
+}  // namespace slew::contact
