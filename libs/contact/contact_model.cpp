@@ -126,6 +126,9 @@ ContactModel build(const ContactDef& def) {
     built.normal = build(pair.normal);
     built.has_friction = pair.friction.has_value();
     if (pair.friction) built.friction = build(*pair.friction);
+    constexpr double kMatch = 0.1;
+    built.match_distance = kMatch * std::min(model.shapes_[built.shape_a].geometry.bounding_radius,
+                                             model.shapes_[built.shape_b].geometry.bounding_radius);
     const ShapeType a = def.shapes[built.shape_a].type, b = def.shapes[built.shape_b].type;
     if (find_kernel(a, b) == nullptr && find_kernel(b, a) == nullptr) model.asks_fcl_ = true;
     model.pairs_.push_back(built);

@@ -42,6 +42,7 @@ struct ContactPair {
   NormalLaw normal;
   FrictionLaw friction;
   bool has_friction = false;
+  double match_distance = 0;  // m: contacts of two searches nearer than this may be the same
 };
 
 class ContactSet;

@@ -1,0 +1,71 @@
+#include "contact/contact_memory.h"
+
+#include <utility>
+
+#include "core/check.h"
+
+namespace slew::contact {
+
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+// part of a small turn from `before` to `after` about n; sine instead of angle, a sub-step turns little
+double turn_about(Vec3 n, const Mat3& before, const Mat3& after) noexcept {
+  const Mat3 turn = after * transpose(before);
+  return dot(n, Vec3(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1))) / 2;
+}
+
+}  // namespace
+
+ContactMemory::ContactMemory(const ContactModel& model)
+    : states_(model.pairs().size() * kMaxPointsPerPair),
+      old_states_(states_.size()),
+      places_(states_.size()),
+      old_places_(states_.size()),
+      old_R_WF_(model.frame_count(), Mat3::identity()) {}
+
+double ContactMemory::spin(const ContactModel& model, std::span<const Pose> poses, const Place& place) const noexcept {
+  const ContactPair& pair = model.pairs()[place.pair];
+  const std::size_t a = model.frame_of(pair.shape_a), b = model.frame_of(pair.shape_b);
+  return (turn_about(place.n_W, old_R_WF_[a], poses[a].R_WF) + turn_about(place.n_W, old_R_WF_[b], poses[b].R_WF)) / 2;
+}
+
+RememberedContact ContactMemory::taken_over(const ContactModel& model, std::span<const Pose> poses,
+                                            const Place& place) noexcept {
+  const double largest = model.pairs()[place.pair].match_distance;
+  double least = largest * largest;
+  std::size_t nearest = old_count_;
+  for (std::size_t i = 0; i < old_count_; ++i) {
+    const Place& old = old_places_[i];
+    if (old.pair != place.pair || old.is_taken) continue;
+    const Vec3 away = old.p_A - place.p_A;
+    const double distance2 = dot(away, away);
+    if (distance2 >= least) continue;
+    least = distance2;
+    nearest = i;
+  }
+  if (nearest == old_count_) return {};
+  old_places_[nearest].is_taken = true;
+  RememberedContact state = old_states_[nearest];
+  turn_bristle(old_places_[nearest].n_W, place.n_W, spin(model, poses, place), state.friction);
+  return state;
+}
+
+void ContactMemory::follow(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept {
+  SLEW_ASSERT(poses.size() == old_R_WF_.size() && set.points().size() <= states_.size());
+  std::swap(states_, old_states_);
+  std::swap(places_, old_places_);
+  old_count_ = count_;
+  count_ = set.points().size();
+  for (std::size_t i = 0; i < count_; ++i) {
+    const ContactPoint& point = set.points()[i];
+    const Pose& frame = poses[model.frame_of(model.pairs()[point.pair].shape_a)];
+    places_[i] = {point.pair, transpose_multiply(frame.R_WF, point.p_W - frame.p_WF), point.n_W, false};
+    states_[i] = taken_over(model, poses, places_[i]);
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) old_R_WF_[i] = poses[i].R_WF;
+}
+
+}  // namespace slew::contact
