@@ -70,15 +70,15 @@ void capsule_capsule(const Solid& a, const Solid& b, Manifold& out) noexcept {
   add_at(s, t, sine2 < kParallelSine2 ? b.R_WS.c[0] : across * (1 / norm(across)));
 }
 
-void sphere_box(const Solid& a, const Solid& b, Manifold& out) noexcept {
-  const Vec3 c = b.to_shape(a.p_WS);
+void ball_box(Vec3 centre_W, double radius, const Solid& b, Manifold& out) noexcept {
+  const Vec3 c = b.to_shape(centre_W);
   const Vec3 h = b.geometry->half_size;
   Vec3 nearest;
   for (int k = 0; k < 3; ++k) nearest.lanes[k] = std::clamp(c[k], -h[k], h[k]);
   const Vec3 apart = c - nearest;
   const double distance = norm(apart);
   if (distance > 0) {
-    const double depth = a.geometry->radius - distance;
+    const double depth = radius - distance;
     if (!(depth > 0)) return;
     const Vec3 n = apart * (1 / distance);
     out.push_back({b.to_world(nearest - n * (depth / 2)), b.R_WS * n, depth});
@@ -90,9 +90,13 @@ void sphere_box(const Solid& a, const Solid& b, Manifold& out) noexcept {
     if (h[k] - std::fabs(c[k]) < h[axis] - std::fabs(c[axis])) axis = k;
   }
   const double side = c[axis] < 0 ? -1.0 : 1.0;
-  const double depth = h[axis] - std::fabs(c[axis]) + a.geometry->radius;
+  const double depth = h[axis] - std::fabs(c[axis]) + radius;
   const Vec3 n = b.R_WS.c[axis] * side;
-  out.push_back({a.p_WS + n * (depth / 2 - a.geometry->radius), n, depth});
+  out.push_back({centre_W + n * (depth / 2 - radius), n, depth});
+}
+
+void sphere_box(const Solid& a, const Solid& b, Manifold& out) noexcept {
+  ball_box(a.p_WS, a.geometry->radius, b, out);
 }
 
 void sphere_plane(const Solid& a, const Solid& b, Manifold& out) noexcept {
@@ -143,11 +147,17 @@ Kernel find_kernel(ShapeType a, ShapeType b) noexcept {
     ShapeType a, b;
     Kernel kernel;
   };
-  static constexpr std::array kRows = {
-      Row{sphere, sphere, sphere_sphere},    Row{sphere, capsule, sphere_capsule},       Row{sphere, box, sphere_box},
-      Row{sphere, plane, sphere_plane},      Row{capsule, plane, capsule_plane},         Row{box, plane, box_plane},
-      Row{cylinder, plane, cylinder_plane},  Row{convex_mesh, plane, convex_mesh_plane}, Row{box, box, box_box},
-      Row{capsule, capsule, capsule_capsule}};
+  static constexpr std::array kRows = {Row{sphere, sphere, sphere_sphere},
+                                       Row{sphere, capsule, sphere_capsule},
+                                       Row{sphere, box, sphere_box},
+                                       Row{sphere, plane, sphere_plane},
+                                       Row{capsule, plane, capsule_plane},
+                                       Row{box, plane, box_plane},
+                                       Row{cylinder, plane, cylinder_plane},
+                                       Row{convex_mesh, plane, convex_mesh_plane},
+                                       Row{box, box, box_box},
+                                       Row{capsule, capsule, capsule_capsule},
+                                       Row{capsule, box, capsule_box}};
   if (b == triangle_mesh || b == height_field) {
     const bool is_ground = a == plane || a == triangle_mesh || a == height_field;
     return is_ground ? nullptr : a == sphere ? sphere_on_triangles : convex_on_triangles;

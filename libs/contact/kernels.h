@@ -1,5 +1,5 @@
-// Contacts of two shapes without iteration. Every kernel appends the points of A against B with the normal from B to A,
-// and nothing when the shapes do not overlap. Real-time safe; cost bounded by the vertices of the shapes.
+// Contacts of two shapes without open-ended iteration. Every kernel appends the points of A against B with the normal
+// from B to A, and nothing when the shapes do not overlap. Real-time safe; cost bounded by the vertices of the shapes.
 //
 // Where the centre of a sphere is at the very centre line of the other, the normal is along an axis of that shape.
 #pragma once
@@ -18,6 +18,10 @@ void sphere_sphere(const Solid& a, const Solid& b, Manifold& out) noexcept;
 void sphere_capsule(const Solid& a, const Solid& b, Manifold& out) noexcept;
 // one point; two at the ends of the overlap when the lines are parallel
 void capsule_capsule(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// one point; two along a face; deep inside, from the middle of the part within the box
+void capsule_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// a ball about centre_W [m] with the radius [m], wherever it comes from
+void ball_box(math::Vec3 centre_W, double radius, const Solid& b, Manifold& out) noexcept;
 void sphere_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
 void sphere_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
 // two points when both ends are below

@@ -109,6 +109,27 @@ TEST(CapsuleCapsule, TouchesCrossedInOnePointAndAlongsideInTwo) {
   expect_point(end_to_end.points()[0], {0, 0, 1.2 - kDeep / 2}, {0, 0, 1}, kDeep);
 }
 
+TEST(CapsuleBox, LiesOnTwoPointsStandsOnOneAndHangsOverAnEdge) {
+  const ShapeDef capsule = rounded(ShapeType::capsule, 0.2, 1), table = box(2, 2, 2);
+  const Mat3 lying = math::rotation_y(M_PI / 2);  // axis along x
+  const Touch flat(capsule, table, {{0, 0.3, 1.2 - kDeep}, lying});
+  EXPECT_FALSE(flat.asks_fcl());
+  ASSERT_EQ(flat.points().size(), 2u);
+  expect_point(flat.points()[0], {-0.5, 0.3, 1 - kDeep / 2}, {0, 0, 1}, kDeep);
+  expect_point(flat.points()[1], {0.5, 0.3, 1 - kDeep / 2}, {0, 0, 1}, kDeep);
+  const Touch over_the_edge(capsule, table, {{0.8, 0.3, 1.2 - kDeep}, lying});
+  ASSERT_EQ(over_the_edge.points().size(), 2u);
+  expect_point(over_the_edge.points()[1], {1, 0.3, 1 - kDeep / 2}, {0, 0, 1}, kDeep);
+  const Touch upright(capsule, table, {.p_WF = {0, 0, 1.7 - kDeep}});
+  ASSERT_EQ(upright.points().size(), 1u);
+  expect_point(upright.points()[0], {0, 0, 1 - kDeep / 2}, {0, 0, 1}, kDeep);
+  // pushed in until its axis is 0.1 below the face
+  const Touch deep(capsule, table, {{0, 0, 0.9}, lying});
+  ASSERT_EQ(deep.points().size(), 1u);
+  EXPECT_NEAR(deep.points()[0].depth, 0.3, 1e-12);
+  EXPECT_NEAR(deep.points()[0].n_W.z(), 1, 1e-12);
+}
+
 TEST(BoxPlane, StandsOnFourCornersAndTipsOntoTwoAndOne) {
   const ShapeDef b = box(1, 2, 3);
   const Touch flat(b, plane(), {.p_WF = {0, 0, 1.5 - kDeep}});
