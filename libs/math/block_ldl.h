@@ -1,0 +1,104 @@
+// Factorisation of a symmetric saddle-point matrix of small blocks, with a plan that is made once.
+//
+//   K = [ M  G^T ]     M positive definite on the null space of G, block-sparse
+//       [ G   0  ]     G the rows of constraints                                                    (1)
+//
+// A `regular` node holds unknowns whose own block is regular: a body, or a body with the rows of the joint that hangs
+// it on another one. A `closing` node holds rows that close a loop. Nodes are eliminated one after the other,
+// K = L D L^T with D block-diagonal: of those that may go the one with the fewest neighbours, a closing node after
+// everything that it closes. So the cost of a tree grows linearly with its size, and a loop adds the fill along itself.
+// (A body and its joint go together, not one after the other as in Baraff 1996: -G M^-1 G^T alone would square the
+// condition of M.)
+//
+// Rows of a closing node that depend on rows eliminated before are found by the pivots of its block and left out: their
+// unknowns become zero, the others solve the rest exactly when the right-hand side is consistent. is_redundant() names
+// them. The plan depends on the pattern alone, the order of all sums on the plan: the same bits wherever it runs.
+// Nothing here allocates after the constructor.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace slew::math {
+
+inline constexpr int kMaxBlock = 12;
+
+enum class BlockKind : std::uint8_t { regular, closing };
+
+struct BlockNode {
+  int size = 0;  // 1 .. kMaxBlock
+  BlockKind kind = BlockKind::regular;
+};
+
+struct BlockPattern {
+  std::vector<BlockNode> nodes;
+  std::vector<std::pair<int, int>> couplings;  // of two different nodes, each once
+};
+
+class BlockLdl {
+ public:
+  explicit BlockLdl(const BlockPattern& pattern);
+
+  [[nodiscard]] int rows() const noexcept { return first_row_.back(); }
+  // First row of a node in the vectors of solve().
+  [[nodiscard]] int first_row(int node) const noexcept { return first_row_[at(node)]; }
+
+  // ---- filling in, before factorize(); clear() first
+  void clear() noexcept;
+  // Adds to the block of the matrix at (node, node): symmetric, row-major, size x size.
+  void add_diagonal(int node, std::span<const double> block) noexcept;
+  // Adds to the block at (row node, column node) of a coupling: row-major, size of row x size of column.
+  void add_coupling(int row, int column, std::span<const double> block) noexcept;
+
+  // A closing row whose pivot is below `tolerance` times what was summed up to it is redundant. False when a regular
+  // node is singular to working precision.
+  [[nodiscard]] bool factorize(double tolerance) noexcept;
+  [[nodiscard]] bool is_redundant(int node, int row) const noexcept {
+    return is_redundant_[at(first_row_[at(node)] + row)] != 0;
+  }
+  [[nodiscard]] int redundant_rows() const noexcept { return redundant_rows_; }
+
+  // K x = b in place; b by first_row().
+  void solve(std::span<double> b) const noexcept;
+
+  // Blocks below the diagonal of L, fill included: what a solution costs.
+  [[nodiscard]] int coupling_count() const noexcept { return static_cast<int>(below_.size()); }
+
+ private:
+  static std::size_t at(int index) noexcept { return static_cast<std::size_t>(index); }
+  struct Below {     // L_row,column
+    int row = 0;     // node, eliminated later
+    int column = 0;  // node
+    int value = 0;   // first entry in values_: size of row x size of column
+  };
+  struct Update {  // A_target -= L_a A_b^T
+    int target = 0;
+    int a = 0, b = 0;  // entries of below_
+    bool is_diagonal = false;
+  };
+  void plan(const BlockPattern& pattern);
+  void list_updates();
+  [[nodiscard]] int find(int row, int column) const noexcept;
+  [[nodiscard]] bool invert_regular(int node) noexcept;
+  void invert_closing(int node, double tolerance) noexcept;
+
+  std::vector<BlockNode> nodes_;
+  std::vector<int> first_row_;
+  std::vector<int> order_;        // nodes as they are eliminated
+  std::vector<int> rank_;         // place in that order, by node
+  std::vector<Below> below_;      // by column in the order of elimination, then by row in it
+  std::vector<int> first_below_;  // by place in the order
+  std::vector<Update> updates_;   // by column
+  std::vector<int> first_update_;
+  std::vector<int> first_value_;  // of diagonal blocks, by node
+  std::vector<double> values_;    // A, then L below the diagonal
+  std::vector<double> inverse_;   // of the diagonal blocks, by first_value_
+  std::vector<double> scaled_;    // L of the column under way
+  std::vector<double> scale_;     // of each closing row's pivot
+  std::vector<std::uint8_t> is_redundant_;
+  int redundant_rows_ = 0;
+};
+
+}  // namespace slew::math

@@ -1,0 +1,219 @@
+// Saddle-point systems of blocks against a dense solution by another library.
+#include "math/block_ldl.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+namespace slew::math {
+namespace {
+
+// The same system twice: as blocks, and dense.
+class System {
+ public:
+  explicit System(BlockPattern pattern) : pattern_(std::move(pattern)), ldl_(pattern_) {
+    dense_ = Eigen::MatrixXd::Zero(ldl_.rows(), ldl_.rows());
+    ldl_.clear();
+  }
+  void add(int row, int column, const Eigen::MatrixXd& block) {
+    std::vector<double> values;
+    for (int r = 0; r < block.rows(); ++r) {
+      for (int c = 0; c < block.cols(); ++c) values.push_back(block(r, c));
+    }
+    dense_.block(ldl_.first_row(row), ldl_.first_row(column), block.rows(), block.cols()) += block;
+    if (row == column) return ldl_.add_diagonal(row, values);
+    dense_.block(ldl_.first_row(column), ldl_.first_row(row), block.cols(), block.rows()) += block.transpose();
+    ldl_.add_coupling(row, column, values);
+  }
+  Eigen::MatrixXd random(int rows, int columns) {
+    Eigen::MatrixXd block(rows, columns);
+    for (int r = 0; r < rows; ++r) {
+      for (int c = 0; c < columns; ++c) block(r, c) = uniform_(random_);
+    }
+    return block;
+  }
+  Eigen::MatrixXd random_inertia(int size) {
+    const Eigen::MatrixXd a = random(size, size);
+    return a * a.transpose() + 0.1 * Eigen::MatrixXd::Identity(size, size);
+  }
+  // Adds a body with the rows of the joint that hangs it on another one; none: on the ground.
+  void hang(int node, int joint_rows, int parent, double mass = 1) {
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(6 + joint_rows, 6 + joint_rows);
+    own.topLeftCorner(6, 6) = mass * random_inertia(6);
+    own.bottomLeftCorner(joint_rows, 6) = random(joint_rows, 6);
+    own.topRightCorner(6, joint_rows) = own.bottomLeftCorner(joint_rows, 6).transpose();
+    add(node, node, own);
+    if (parent >= 0) close(node, 6, joint_rows, parent);
+  }
+  // Adds rows of a node that act on another node's body.
+  void close(int node, int first, int rows, int body) {
+    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(size(node), size(body));
+    block.block(first, 0, rows, 6) = random(rows, 6);
+    add(node, body, block);
+  }
+  [[nodiscard]] int size(int node) const { return pattern_.nodes[index(node)].size; }
+  // The same values once more.
+  void refill() {
+    const Eigen::MatrixXd values = dense_;
+    dense_.setZero();
+    ldl_.clear();
+    const auto again = [&](int row, int column) {
+      add(row, column,
+          values.block(ldl_.first_row(row), ldl_.first_row(column), pattern_.nodes[index(row)].size,
+                       pattern_.nodes[index(column)].size));
+    };
+    for (std::size_t i = 0; i < pattern_.nodes.size(); ++i) again(static_cast<int>(i), static_cast<int>(i));
+    for (const auto& [a, b] : pattern_.couplings) again(a, b);
+  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const {
+    Eigen::VectorXd x = b;
+    ldl_.solve({x.data(), static_cast<std::size_t>(x.size())});
+    return x;
+  }
+  [[nodiscard]] BlockLdl& ldl() { return ldl_; }
+  [[nodiscard]] const Eigen::MatrixXd& dense() const { return dense_; }
+
+ private:
+  static std::size_t index(int node) { return static_cast<std::size_t>(node); }
+
+  BlockPattern pattern_;
+  BlockLdl ldl_;
+  Eigen::MatrixXd dense_;
+  std::mt19937 random_{7};
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+};
+
+constexpr double kTolerance = 1e-10;
+
+// bodies 0 .. n-1, each with its joint
+BlockPattern chain(int bodies, int rows) {
+  BlockPattern pattern;
+  for (int i = 0; i < bodies; ++i) pattern.nodes.push_back({6 + rows, BlockKind::regular});
+  for (int i = 1; i < bodies; ++i) pattern.couplings.emplace_back(i, i - 1);
+  return pattern;
+}
+
+void expect_solved(System& system, double tolerance) {
+  ASSERT_TRUE(system.ldl().factorize(kTolerance));
+  EXPECT_EQ(system.ldl().redundant_rows(), 0);
+  const Eigen::VectorXd b = system.random(system.ldl().rows(), 1);
+  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const Wide solution = system.dense().cast<long double>().partialPivLu().solve(b.cast<long double>());
+  const Eigen::VectorXd expected = solution.cast<double>();
+  EXPECT_LT((system.solve(b) - expected).norm(), tolerance * expected.norm());
+}
+
+TEST(BlockLdl, SolvesAChainOfBodiesAndJoints) {
+  System system(chain(7, 5));
+  for (int i = 0; i < 7; ++i) system.hang(i, 5, i - 1);
+  expect_solved(system, 1e-10);
+}
+
+TEST(BlockLdl, SolvesLoopsBranchesAndCoupledMasses) {
+  // 0 - 1 - 2 - 3 with 4 and 5 on 1; a loop from 3 to 5, one from 2 to the ground, a mass between 4 and 1
+  BlockPattern pattern;
+  const int rows[] = {5, 3, 0, 4, 6, 2};
+  const int parents[] = {-1, 0, 1, 2, 1, 1};
+  for (const int r : rows) pattern.nodes.push_back({6 + r, BlockKind::regular});
+  for (int i = 1; i < 6; ++i) {
+    if (rows[i] > 0) pattern.couplings.emplace_back(i, parents[i]);
+  }
+  pattern.nodes.push_back({3, BlockKind::closing});
+  pattern.nodes.push_back({1, BlockKind::closing});
+  pattern.couplings.insert(pattern.couplings.end(), {{6, 3}, {6, 5}, {7, 2}});
+  System system(pattern);
+  for (int i = 0; i < 6; ++i) system.hang(i, rows[i], rows[i] > 0 ? parents[i] : -1);
+  for (const int body : {3, 5}) system.close(6, 0, 3, body);
+  system.close(7, 0, 1, 2);
+  // coupled masses make the inertia of two bodies one block
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(system.size(4), system.size(1));
+  mass.topLeftCorner(6, 6) = 0.05 * system.random(6, 6);
+  system.add(4, 1, mass);
+  expect_solved(system, 1e-10);
+}
+
+TEST(BlockLdl, OfAChainHasABlockALink) {
+  for (const int bodies : {10, 100}) EXPECT_EQ(BlockLdl(chain(bodies, 5)).coupling_count(), bodies - 1);
+}
+
+// two rows of closing node 3 repeat rows of node 2 on the same two bodies
+TEST(BlockLdl, LeavesRedundantRowsOutAndMeetsThemAllTheSame) {
+  BlockPattern pattern;
+  pattern.nodes = {{6, BlockKind::regular}, {6, BlockKind::regular}, {4, BlockKind::closing}, {3, BlockKind::closing}};
+  pattern.couplings = {{2, 0}, {2, 1}, {3, 0}, {3, 1}};
+  System system(pattern);
+  for (const int body : {0, 1}) system.add(body, body, system.random_inertia(6));
+  for (const int body : {0, 1}) {
+    const Eigen::MatrixXd G = system.random(4, 6);
+    Eigen::MatrixXd again = system.random(3, 6);
+    again.row(0) = G.row(1) - 2 * G.row(3);
+    again.row(2) = G.row(0);
+    system.add(2, body, G);
+    system.add(3, body, again);
+  }
+  ASSERT_TRUE(system.ldl().factorize(kTolerance));
+  EXPECT_EQ(system.ldl().redundant_rows(), 2);
+  // which of the dependent ones goes is the plan's: two of these five
+  int among = 0;
+  for (int row = 0; row < 4; ++row) among += system.ldl().is_redundant(2, row) ? 1 : 0;
+  for (const int row : {0, 2}) among += system.ldl().is_redundant(3, row) ? 1 : 0;
+  EXPECT_EQ(among, 2);
+  EXPECT_FALSE(system.ldl().is_redundant(3, 1));
+  // a consistent right-hand side is met in every row
+  const Eigen::VectorXd b = system.dense() * system.random(system.ldl().rows(), 1);
+  EXPECT_LT((system.dense() * system.solve(b) - b).norm(), 1e-11 * b.norm());
+}
+
+TEST(BlockLdl, FindsARowThatRepeatsItselfWithinItsNode) {
+  BlockPattern pattern;
+  pattern.nodes = {{6, BlockKind::regular}, {2, BlockKind::closing}};
+  pattern.couplings = {{1, 0}};
+  System system(pattern);
+  system.add(0, 0, system.random_inertia(6));
+  Eigen::MatrixXd G = system.random(2, 6);
+  G.row(1) = 3 * G.row(0);
+  system.add(1, 0, G);
+  ASSERT_TRUE(system.ldl().factorize(kTolerance));
+  EXPECT_EQ(system.ldl().redundant_rows(), 1);
+}
+
+TEST(BlockLdl, KeepsItsAccuracyWithMassesFarApart) {
+  System system(chain(6, 5));
+  for (int i = 0; i < 6; ++i) system.hang(i, 5, i - 1, i % 2 == 0 ? 1e6 : 1.0);
+  expect_solved(system, 1e-7);
+}
+
+TEST(BlockLdl, TakesABodyWithoutInertiaThatItsJointHolds) {
+  System system(chain(2, 5));
+  system.hang(0, 5, -1);
+  // a point mass: no moments of inertia
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(11, 11);
+  own.diagonal().head(3).setConstant(2);
+  own.bottomLeftCorner(5, 6) = system.random(5, 6);
+  own.topRightCorner(6, 5) = own.bottomLeftCorner(5, 6).transpose();
+  system.add(1, 1, own);
+  system.close(1, 6, 5, 0);
+  expect_solved(system, 1e-10);
+}
+
+TEST(BlockLdl, SaysThatANodeIsSingular) {
+  System system(chain(2, 5));
+  system.hang(0, 5, -1);
+  system.hang(1, 5, 0, 0.0);
+  EXPECT_FALSE(system.ldl().factorize(kTolerance));
+}
+
+TEST(BlockLdl, GivesTheSameBitsWhenItIsFilledAgain) {
+  System system(chain(4, 5));
+  for (int i = 0; i < 4; ++i) system.hang(i, 5, i - 1);
+  ASSERT_TRUE(system.ldl().factorize(kTolerance));
+  const Eigen::VectorXd b = system.random(system.ldl().rows(), 1);
+  const Eigen::VectorXd first = system.solve(b);
+  system.refill();
+  ASSERT_TRUE(system.ldl().factorize(kTolerance));
+  EXPECT_EQ(first, system.solve(b));
+}
+
+}  // namespace
+}  // namespace slew::math
