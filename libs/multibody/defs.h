@@ -35,7 +35,22 @@ struct BodyDef {
   InertiaPoint inertia_about = InertiaPoint::center_of_mass;
 };
 
-enum class JointType : int { revolute, prismatic, spherical, fixed, floating };
+// Those after floating have no kernels of their own in the tree: see constraint.h.
+enum class JointType : int {
+  revolute,
+  prismatic,
+  spherical,
+  fixed,
+  floating,
+  universal,            // turns about z of frame 1, then about z of frame 2, which stands at a right angle to it
+  cylindrical,          // turns about z and slides along it
+  in_plane,             // point 2 in the plane of frame 1 with the normal z
+  in_line,              // point 2 on the line of frame 1 along z
+  perpendicular,        // z of frame 2 at a right angle to z of frame 1
+  spherical_spherical,  // massless link with a ball at either end
+  revolute_spherical,   // massless link: hinge about z of frame 1, ball at point 2
+  revolute_revolute,    // massless link: hinge about z of either frame
+};
 
 // One struct for every joint type; each type's field table lists the members that it has, in its own dimensions.
 struct JointDef {
