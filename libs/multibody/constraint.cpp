@@ -78,6 +78,21 @@ RowValue distance(const Side& one, const Side& two, double length) noexcept {
   return row;
 }
 
+RowValue evaluate(const ConstraintRow& row, const Side& one, const Side& two) noexcept {
+  const Vec3 a = one.axes[static_cast<std::size_t>(row.axis1)], b = two.axes[static_cast<std::size_t>(row.axis2)];
+  switch (row.form) {
+    case RowForm::in_plane:
+      return in_plane(one, two, a, row.offset);
+    case RowForm::in_plane_of_2:
+      return exchanged(in_plane(two, one, b, row.offset));
+    case RowForm::perpendicular:
+      return perpendicular(one, two, a, b, row.offset);
+    case RowForm::distance:
+      return distance(one, two, row.offset);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<ConstraintRow> rows_of(JointType type, const Mat3& R_12, Vec3 p_12) {
@@ -144,24 +159,13 @@ void evaluate(const Constraint& constraint, const LinkMotion& link1, const LinkM
               std::span<RowValue> values) noexcept {
   const Side one = side_of(link1, constraint.R_L1, constraint.p_L1);
   const Side two = side_of(link2, constraint.R_L2, constraint.p_L2);
-  for (std::size_t i = 0; i < constraint.rows.size(); ++i) {
-    const ConstraintRow& row = constraint.rows[i];
-    const Vec3 a = one.axes[static_cast<std::size_t>(row.axis1)], b = two.axes[static_cast<std::size_t>(row.axis2)];
-    switch (row.form) {
-      case RowForm::in_plane:
-        values[i] = in_plane(one, two, a, row.offset);
-        break;
-      case RowForm::in_plane_of_2:
-        values[i] = exchanged(in_plane(two, one, b, row.offset));
-        break;
-      case RowForm::perpendicular:
-        values[i] = perpendicular(one, two, a, b, row.offset);
-        break;
-      case RowForm::distance:
-        values[i] = distance(one, two, row.offset);
-        break;
-    }
-  }
+  for (std::size_t i = 0; i < constraint.rows.size(); ++i) values[i] = evaluate(constraint.rows[i], one, two);
+}
+
+RowValue evaluate(const ConstraintRow& row, const Constraint& constraint, const LinkMotion& link1,
+                  const LinkMotion& link2) noexcept {
+  return evaluate(row, side_of(link1, constraint.R_L1, constraint.p_L1),
+                  side_of(link2, constraint.R_L2, constraint.p_L2));
 }
 
 }  // namespace slew::multibody

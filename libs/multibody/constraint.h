@@ -73,4 +73,8 @@ inline constexpr double kShortestLink = 1e-9;  // m
 void evaluate(const Constraint& constraint, const LinkMotion& link1, const LinkMotion& link2,
               std::span<RowValue> values) noexcept;
 
+// A single row that the constraint need not have, between the constraint's frames.
+[[nodiscard]] RowValue evaluate(const ConstraintRow& row, const Constraint& constraint, const LinkMotion& link1,
+                                const LinkMotion& link2) noexcept;
+
 }  // namespace slew::multibody

@@ -65,29 +65,6 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
   }
 }
 
-// x'' with u' = 0
-double bias_of_length(const LineElement& element, const LineMotion& line, const Workspace& ws) noexcept {
-  const Vec3 a =
-      acceleration_at(ws.motion[at(element.link1)], line.P1) - acceleration_at(ws.motion[at(element.link2)], line.P2);
-  return dot(line.e, a) + (dot(line.w, line.w) - line.rate * line.rate) / line.length;
-}
-
-double bias_of_angle(const AngleElement& element, const AngleMotion& angle, const Workspace& ws) noexcept {
-  const LinkMotion& link1 = ws.motion[at(element.link1)];
-  const LinkMotion& link2 = ws.motion[at(element.link2)];
-  // as seen from body 1
-  const Vec3 w = link2.w - link1.w;
-  const Vec3 alpha = link2.alpha - link1.alpha - cross(link1.w, w);
-  if (element.is_coaxial) return dot(angle.n, alpha);
-  const Vec3 f1 = link1.R * element.f1, g1 = link1.R * element.g1, f2 = link2.R * element.f2;
-  const Vec3 rate = cross(w, f2);
-  const Vec3 second = cross(alpha, f2) + cross(w, rate);
-  const double c = dot(f2, f1), s = dot(f2, g1);
-  const double c1 = dot(rate, f1), s1 = dot(rate, g1), c2 = dot(second, f1), s2 = dot(second, g1);
-  const double rho = c * c + s * s;
-  return (c * s2 - s * c2) / rho - 2 * (c * s1 - s * c1) * (c * c1 + s * s1) / (rho * rho);
-}
-
 void evaluate_row(const Model& model, const State& state, std::size_t k, Workspace& ws) noexcept {
   const Row& row = model.rows[k];
   const std::size_t dof = ws.udot.size();
@@ -127,6 +104,28 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
 }
 
 }  // namespace
+
+double bias_of_length(const LineElement& element, const LineMotion& line, const Workspace& ws) noexcept {
+  const Vec3 a =
+      acceleration_at(ws.motion[at(element.link1)], line.P1) - acceleration_at(ws.motion[at(element.link2)], line.P2);
+  return dot(line.e, a) + (dot(line.w, line.w) - line.rate * line.rate) / line.length;
+}
+
+double bias_of_angle(const AngleElement& element, const AngleMotion& angle, const Workspace& ws) noexcept {
+  const LinkMotion& link1 = ws.motion[at(element.link1)];
+  const LinkMotion& link2 = ws.motion[at(element.link2)];
+  // as seen from body 1
+  const Vec3 w = link2.w - link1.w;
+  const Vec3 alpha = link2.alpha - link1.alpha - cross(link1.w, w);
+  if (element.is_coaxial) return dot(angle.n, alpha);
+  const Vec3 f1 = link1.R * element.f1, g1 = link1.R * element.g1, f2 = link2.R * element.f2;
+  const Vec3 rate = cross(w, f2);
+  const Vec3 second = cross(alpha, f2) + cross(w, rate);
+  const double c = dot(f2, f1), s = dot(f2, g1);
+  const double c1 = dot(rate, f1), s1 = dot(rate, g1), c2 = dot(second, f1), s2 = dot(second, g1);
+  const double rho = c * c + s * s;
+  return (c * s2 - s * c2) / rho - 2 * (c * s1 - s * c1) * (c * c1 + s * s1) / (rho * rho);
+}
 
 void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexcept {
   const std::size_t rows = model.rows.size(), dof = ws.udot.size();

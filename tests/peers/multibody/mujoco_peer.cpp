@@ -118,9 +118,10 @@ struct MujocoPeer::Simulation {
       case JointType::floating:
         return fmt::format(R"(<freejoint name="{}"/>)", joint.name);
       case JointType::fixed:
-        break;
+        return {};
+      default:
+        throw std::logic_error("the tree has no such joint");
     }
-    return {};
   }
 
   [[nodiscard]] std::string static_dummies_of(const std::string& body) const {

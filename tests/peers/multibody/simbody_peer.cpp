@@ -1,5 +1,6 @@
 #include "tests/peers/multibody/simbody_peer.h"
 
+#include <stdexcept>
 #include <vector>
 
 #include "multibody/topology.h"
@@ -107,6 +108,8 @@ struct SimbodyPeer::System {
         return add(SimTK::MobilizedBody::Weld(parent, F, rigid, M));
       case JointType::floating:
         return add(SimTK::MobilizedBody::Free(parent, F, rigid, M));
+      default:
+        throw std::logic_error("the tree has no such joint");
     }
   }
 

@@ -1,6 +1,7 @@
 #include "tests/properties/multibody/assembled.h"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace slew::multibody::testing {
 namespace {
@@ -109,6 +110,8 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
           child.Jp.middleCols(link.u, 3) = Matrix3::Identity();
           child.Jw.middleCols(link.u + 3, 3) = Matrix3::Identity();
           break;
+        default:
+          throw std::logic_error("the tree has no such joint");
       }
       // from the joint's point to the child's origin
       const Vector3 arm = -(child.R * p_C);

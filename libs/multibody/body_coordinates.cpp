@@ -1,0 +1,166 @@
+#include "multibody/body_coordinates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "multibody/body_passes.h"
+#include "multibody/passes.h"
+
+namespace slew::multibody {
+
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+Vec3 vector_at(std::span<const double> x, std::size_t i) noexcept {
+  return {x[i], x[i + 1], x[i + 2]};
+}
+
+void put(Vec3 a, double* x) noexcept {
+  for (int k = 0; k < 3; ++k) x[k] = a[k];
+}
+
+}  // namespace
+
+// ---- building -------------------------------------------------------------------------------------------------
+
+BodyModel build_body_model(const Model& model) {
+  constexpr JointType kTypes[] = {JointType::revolute, JointType::prismatic, JointType::spherical, JointType::floating};
+  BodyModel body;
+  body.joints.resize(model.links.size());
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    Constraint& joint = body.joints[i];
+    joint.link1 = link.parent;
+    joint.link2 = static_cast<int>(i);
+    joint.R_L1 = link.R_PJ;
+    joint.p_L1 = link.p_PJ;
+    joint.R_L2 = Mat3::identity();
+    joint.rows = rows_of(kTypes[static_cast<std::size_t>(link.joint)], Mat3::identity(), Vec3());
+    body.pattern.nodes.push_back({kBody + static_cast<int>(joint.rows.size()), math::BlockKind::regular});
+    if (link.parent > 0 && !joint.rows.empty()) {
+      body.pattern.couplings.emplace_back(static_cast<int>(i) - 1, link.parent - 1);
+    }
+  }
+  return body;
+}
+
+BodyWorkspace::BodyWorkspace(const Model& model, const BodyModel& body) : ldl(body.pattern) {
+  int row = 0;
+  for (const Constraint& joint : body.joints) {
+    first_row.push_back(row);
+    row += static_cast<int>(joint.rows.size());
+  }
+  rows.resize(at(row));
+  solution.resize(at(ldl.rows()));
+  free.resize(at(ldl.rows()));
+  responses.resize(model.rows.size() * at(ldl.rows()));
+  const std::size_t links = model.links.size() - 1;
+  for (BodyState* copy : {&stage, &sum}) {
+    copy->q.resize(7 * links);
+    copy->u.resize(6 * links);
+  }
+  stage_joints = {model.start_q, model.start_u};
+  qdot.resize(7 * links);
+  udot.resize(6 * links);
+  row_force.resize(model.rows.size());
+}
+
+BodyState body_state(const Model& model, const State& state) {
+  Workspace ws(model);
+  update_motion(model, state.q, state.u, ws);
+  BodyState body;
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const LinkMotion& m = ws.motion[i];
+    const math::Quaternion attitude = math::quaternion_of(m.R);
+    for (const double x : m.p.array()) body.q.push_back(x);
+    body.q.insert(body.q.end(), {attitude.w, attitude.x, attitude.y, attitude.z});
+    for (const Vec3& part : {m.v, m.w}) {
+      for (const double x : part.array()) body.u.push_back(x);
+    }
+  }
+  return body;
+}
+
+// ---- coordinates ----------------------------------------------------------------------------------------------
+
+void update_body_motion(const Model& model, const BodyState& state, Workspace& ws) noexcept {
+  ws.motion[0].a = -model.gravity;
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    LinkMotion& m = ws.motion[i];
+    const std::size_t q = 7 * (i - 1), u = 6 * (i - 1);
+    m.p = vector_at(state.q, q);
+    m.R = math::rotation_of({state.q[q + 3], state.q[q + 4], state.q[q + 5], state.q[q + 6]});
+    m.v = vector_at(state.u, u);
+    m.w = vector_at(state.u, u + 3);
+    m.r = m.p - ws.motion[at(model.links[i].parent)].p;
+    m.axis = m.R.c[2];
+    m.alpha = Vec3();
+    m.a = ws.motion[0].a;
+  }
+}
+
+namespace {
+
+// the angle that differs by whole turns and is nearest to the one before
+double continued(double angle, double before) noexcept {
+  constexpr double kTurn = 2 * 3.14159265358979323846;
+  return angle + kTurn * std::round((before - angle) / kTurn);
+}
+
+}  // namespace
+
+void find_joint_coordinates(const Model& model, const Workspace& ws, State& state) noexcept {
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    const LinkMotion& parent = ws.motion[at(link.parent)];
+    const LinkMotion& child = ws.motion[i];
+    double* q = state.q.data() + link.q;
+    double* u = state.u.data() + link.u;
+    switch (link.joint) {
+      case LinkJoint::revolute: {
+        const Mat3 R = parent.R * link.R_PJ;
+        *q = continued(std::atan2(dot(R.c[1], child.R.c[0]), dot(R.c[0], child.R.c[0])), *q);
+        *u = dot(child.axis, child.w - parent.w);
+        break;
+      }
+      case LinkJoint::prismatic: {
+        const Vec3 r = child.p - parent.p;
+        *q = dot(child.axis, r - parent.R * link.p_PJ);
+        *u = dot(child.axis, child.v - parent.v - cross(parent.w, r));
+        break;
+      }
+      case LinkJoint::floating:
+        put(child.p, q);
+        put(child.v, u);
+        q += 3;
+        u += 3;
+        [[fallthrough]];
+      case LinkJoint::spherical: {
+        const math::Quaternion attitude = math::quaternion_of(child.R);
+        q[0] = attitude.w;
+        q[1] = attitude.x;
+        q[2] = attitude.y;
+        q[3] = attitude.z;
+        put(child.w - (link.joint == LinkJoint::spherical ? parent.w : Vec3()), u);
+        break;
+      }
+    }
+  }
+}
+
+Drift drift(const BodyWorkspace& bws) noexcept {
+  Drift largest;
+  for (const RowValue& row : bws.rows) {
+    largest.position = std::max(largest.position, std::fabs(row.g));
+    largest.rate = std::max(largest.rate, std::fabs(row.rate));
+  }
+  return largest;
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,125 @@
+#include <algorithm>
+
+#include "multibody/body_passes.h"
+#include "multibody/coupled_mass.h"
+#include "multibody/passes.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+constexpr double kRedundant = 1e-9;  // of what was summed up to a pivot
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+void put(Vec3 a, double* x) noexcept {
+  for (int k = 0; k < 3; ++k) x[k] = a[k];
+}
+
+void subtract(Vec3 a, double* x) noexcept {
+  for (int k = 0; k < 3; ++k) x[k] -= a[k];
+}
+
+double* body_at(const math::BlockLdl& ldl, std::vector<double>& x, int link) noexcept {
+  return x.data() + ldl.first_row(link - 1);
+}
+
+// minus the forces that a wrench on a link's origin needs
+void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept {
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    double* x = body_at(bws.ldl, bws.solution, static_cast<int>(i));
+    put(-ws.inertia[i].f, x);
+    put(-ws.inertia[i].n, x + 3);
+    const std::size_t first = at(bws.first_row[i]);
+    for (std::size_t k = 0; k < body.joints[i].rows.size(); ++k) x[at(kBody) + k] = -bws.rows[first + k].bias;
+  }
+  for (std::size_t i = 0; i < model.coupled.size(); ++i) {
+    const LineElement& line = model.lines[at(model.coupled[i].line)];
+    const LineMotion& motion = ws.lines[at(model.coupled[i].line)];
+    const auto need = [&](int link, Vec3 point, Vec3 force) {
+      if (link == 0) return;
+      double* x = body_at(bws.ldl, bws.solution, link);
+      subtract(force, x);
+      subtract(cross(point - ws.motion[at(link)].p, force), x + 3);
+    };
+    need(line.link1, motion.P1, ws.coupled[i].F1);
+    need(line.link2, motion.P2, ws.coupled[i].F2);
+  }
+}
+
+}  // namespace
+
+void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept {
+  for (std::size_t i = 1; i < body.joints.size(); ++i) {
+    const Constraint& joint = body.joints[i];
+    const std::span<RowValue> rows(bws.rows.data() + bws.first_row[i], joint.rows.size());
+    evaluate(joint, ws.motion[at(joint.link1)], ws.motion[i], rows);
+  }
+}
+
+bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
+             BodyWorkspace& bws) noexcept {
+  update_body_motion(model, state, ws);
+  find_joint_coordinates(model, ws, joints);
+  update_elements(model, joints.q, Elements::used, ws);
+  update_inertia(model, ws);
+  update_coupled(model, ws);
+  apply_elements(model, ws);
+  evaluate_joints(body, ws, bws);
+  fill_matrix(model, body, ws, bws);
+  const bool is_regular = bws.ldl.factorize(kRedundant);
+  put_bias(model, body, ws, bws);
+  return is_regular;
+}
+
+bool evaluate(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
+              BodyWorkspace& bws) noexcept {
+  const bool is_regular = prepare(model, body, state, joints, ws, bws);
+  bws.ldl.solve(bws.solution);
+  bws.free = bws.solution;
+  const std::size_t rows = model.rows.size(), size = bws.solution.size();
+  for (std::size_t k = 0; k < rows; ++k) {
+    const BodyRow row = body_row(model, body, joints, model.rows[k], ws);
+    ws.row_x[k] = row.x;
+    ws.row_v[k] = row.v;
+    const bool is_active = ws.row_is_active[k] != 0;
+    ws.row_a_free[k] = is_active ? row.bias + along(row, bws.ldl, bws.free) : 0.0;
+    const std::span<double> response(bws.responses.data() + k * size, size);
+    std::fill(response.begin(), response.end(), 0.0);
+    if (!is_active) continue;
+    add_row(row, 1, bws.ldl, response);
+    bws.ldl.solve(response);
+  }
+  for (std::size_t k = 0; k < rows; ++k) {
+    const BodyRow row = body_row(model, body, joints, model.rows[k], ws);
+    for (std::size_t l = 0; l <= k; ++l) {
+      const bool is_active = ws.row_is_active[k] != 0 && ws.row_is_active[l] != 0;
+      const double w = is_active ? along(row, bws.ldl, {bws.responses.data() + l * size, size}) : 0.0;
+      ws.row_W[k * rows + l] = ws.row_W[l * rows + k] = w;
+    }
+  }
+  return is_regular;
+}
+
+void read_bodies(const math::BlockLdl& ldl, std::span<const double> solution, std::span<double> u) noexcept {
+  for (std::size_t i = 0; i < u.size() / 6; ++i) {
+    std::copy_n(solution.data() + ldl.first_row(static_cast<int>(i)), 6, u.data() + 6 * i);
+  }
+}
+
+void accelerations(const Model& model, BodyWorkspace& bws, std::span<const double> row_forces,
+                   std::span<double> udot) noexcept {
+  bws.solution = bws.free;
+  const std::size_t size = bws.solution.size();
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const double* response = bws.responses.data() + k * size;
+    for (std::size_t i = 0; i < size; ++i) bws.solution[i] += response[i] * row_forces[k];
+  }
+  read_bodies(bws.ldl, bws.solution, udot);
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,130 @@
+// The saddle-point matrix of body coordinates, block by block.
+#include <array>
+
+#include "multibody/body_passes.h"
+
+namespace slew::multibody {
+
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+// Six by six, row-major; rows and columns: velocity of the origin, angular velocity.
+using SpatialBlock = std::array<double, static_cast<std::size_t>(kBody) * kBody>;
+
+void put(const Mat3& a, int row, int column, SpatialBlock& block) noexcept {
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) block[at((row + r) * kBody + column + c)] += a.c[c][r];
+  }
+}
+
+// mass A between a point at s_row from one link's origin and one at s_column from another's: X_row^T A X_column
+void put_point_mass(const Mat3& A, Vec3 s_row, Vec3 s_column, SpatialBlock& block) noexcept {
+  const Mat3 S_row = math::skew(s_row), S_column = math::skew(s_column);
+  const Mat3 right = A * S_column;
+  put(A, 0, 0, block);
+  put(right * -1.0, 0, 3, block);
+  put(S_row * A, 3, 0, block);
+  put(S_row * right * -1.0, 3, 3, block);
+}
+
+class Filling {
+ public:
+  Filling(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept
+      : model_(model), body_(body), ws_(ws), bws_(bws) {}
+
+  void fill() noexcept {
+    bws_.ldl.clear();
+    for (std::size_t link = 1; link < model_.links.size(); ++link) {
+      add_mass(static_cast<int>(link));
+      add_joint(static_cast<int>(link));
+    }
+    for (std::size_t i = 0; i < model_.coupled.size(); ++i) add_coupled(model_.coupled[i], ws_.coupled[i]);
+  }
+
+ private:
+  [[nodiscard]] int rows(int link) const noexcept { return static_cast<int>(body_.joints[at(link)].rows.size()); }
+  [[nodiscard]] int node_size(int link) const noexcept { return kBody + rows(link); }
+
+  // a block of two links' bodies inside the blocks of their nodes
+  void add(int row_link, int column_link, const SpatialBlock& block) noexcept {
+    const int columns = node_size(column_link);
+    std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> wide{};
+    for (int r = 0; r < kBody; ++r) {
+      for (int c = 0; c < kBody; ++c) wide[at(r * columns + c)] = block[at(r * kBody + c)];
+    }
+    const std::span<const double> used(wide.data(), at(node_size(row_link) * columns));
+    if (row_link == column_link) {
+      bws_.ldl.add_diagonal(row_link - 1, used);
+    } else {
+      bws_.ldl.add_coupling(row_link - 1, column_link - 1, used);
+    }
+  }
+
+  void add_mass(int link) noexcept {
+    const ArticulatedInertia& I = ws_.inertia[at(link)];
+    SpatialBlock block{};
+    put(I.M, 0, 0, block);
+    put(I.K, 0, 3, block);
+    put(transpose(I.K), 3, 0, block);
+    put(I.J, 3, 3, block);
+    add(link, link, block);
+  }
+
+  void add_joint(int link) noexcept {
+    const Constraint& joint = body_.joints[at(link)];
+    const int size = node_size(link), parent = joint.link1;
+    std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> own{}, outer{};
+    const int columns = parent > 0 ? node_size(parent) : 0;
+    for (int k = 0; k < rows(link); ++k) {
+      const RowGradient& G = bws_.rows[at(bws_.first_row[at(link)] + k)].G;
+      for (int c = 0; c < 3; ++c) {
+        const int row = kBody + k;
+        own[at(row * size + c)] = own[at(c * size + row)] = G.v2[c];
+        own[at(row * size + 3 + c)] = own[at((3 + c) * size + row)] = G.w2[c];
+        if (parent == 0) continue;
+        outer[at(row * columns + c)] = G.v1[c];
+        outer[at(row * columns + 3 + c)] = G.w1[c];
+      }
+    }
+    bws_.ldl.add_diagonal(link - 1, {own.data(), at(size * size)});
+    if (parent > 0 && rows(link) > 0) bws_.ldl.add_coupling(link - 1, parent - 1, {outer.data(), at(size * columns)});
+  }
+
+  void add_coupled(const CoupledMass& mass, const CoupledMotion& m) noexcept {
+    const LineElement& line = model_.lines[at(mass.line)];
+    const LineMotion& motion = ws_.lines[at(mass.line)];
+    const Mat3 along = outer(m.e, m.e), across = Mat3::identity() - along;
+    const std::array<int, 2> links = {line.link1, line.link2};
+    const std::array<Vec3, 2> points = {motion.P1, motion.P2};
+    const Mat3 A[2][2] = {{across * m.a11 + along * mass.m1, across * m.a12},
+                          {across * m.a12, across * m.a22 + along * mass.m2}};
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t j = 0; j < 2; ++j) {
+        // of the two couplings one is the other's transposed
+        if (links[i] == 0 || links[j] == 0 || (i != j && links[i] < links[j])) continue;
+        SpatialBlock block{};
+        put_point_mass(A[i][j], points[i] - ws_.motion[at(links[i])].p, points[j] - ws_.motion[at(links[j])].p, block);
+        add(links[i], links[j], block);
+      }
+    }
+  }
+
+  const Model& model_;
+  const BodyModel& body_;
+  const Workspace& ws_;
+  BodyWorkspace& bws_;
+};
+
+}  // namespace
+
+void fill_matrix(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept {
+  Filling(model, body, ws, bws).fill();
+}
+
+}  // namespace slew::multibody

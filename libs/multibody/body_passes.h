@@ -1,0 +1,42 @@
+// The passes of the body-coordinate formulation. Internal to the library.
+#pragma once
+
+#include <span>
+
+#include "multibody/body_coordinates.h"
+
+namespace slew::multibody {
+
+inline constexpr int kBody = 6;  // speeds of a link
+
+// Poses and velocities of all links; accelerations with u' = 0, as LinkMotion says.
+void update_body_motion(const Model& model, const BodyState& state, Workspace& ws) noexcept;
+
+// Rows of all joints, from the motion.
+void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
+
+// Motion, elements and the factors of the matrix; the right-hand side without row forces in bws.solution. False when
+// the matrix is singular to working precision.
+[[nodiscard]] bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints,
+                           Workspace& ws, BodyWorkspace& bws) noexcept;
+
+// The matrix of equation (1) into bws.ldl, from inertias, joints and coupled masses.
+void fill_matrix(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
+
+// A row in body coordinates: what its unit force does to two links, and x'' with u' = 0.
+struct BodyRow {
+  int link1 = 0, link2 = 0;
+  RowGradient J;
+  double x = 0, v = 0, bias = 0;
+};
+[[nodiscard]] BodyRow body_row(const Model& model, const BodyModel& body, const State& joints, const Row& row,
+                               const Workspace& ws) noexcept;
+
+// Adds the row's force to a right-hand side; the row's acceleration in a solution, without its bias.
+void add_row(const BodyRow& row, double force, const math::BlockLdl& ldl, std::span<double> x) noexcept;
+[[nodiscard]] double along(const BodyRow& row, const math::BlockLdl& ldl, std::span<const double> x) noexcept;
+
+// Velocities or accelerations of the links in a solution, laid out as BodyState::u.
+void read_bodies(const math::BlockLdl& ldl, std::span<const double> solution, std::span<double> u) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <cmath>
+
+#include "multibody/body_passes.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+Vec3 vector_at(std::span<const double> x, std::size_t i) noexcept {
+  return {x[i], x[i + 1], x[i + 2]};
+}
+
+constexpr int kMostCorrections = 20;  // Newton with one matrix: an error of 1e-2 is gone after five
+
+void combine(std::span<const double> x, double scale, std::span<const double> rate, std::span<double> y) noexcept {
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = x[i] + scale * rate[i];
+}
+
+math::Quaternion attitude_at(std::span<const double> q, std::size_t link) noexcept {
+  const std::size_t k = 7 * (link - 1) + 3;
+  return {q[k], q[k + 1], q[k + 2], q[k + 3]};
+}
+
+void put_attitude(const math::Quaternion& attitude, std::span<double> q, std::size_t link) noexcept {
+  const std::size_t k = 7 * (link - 1) + 3;
+  q[k] = attitude.w;
+  q[k + 1] = attitude.x;
+  q[k + 2] = attitude.y;
+  q[k + 3] = attitude.z;
+}
+
+void find_rates(const BodyState& state, std::span<double> qdot) noexcept {
+  for (std::size_t link = 1; link <= state.u.size() / 6; ++link) {
+    const std::size_t u = 6 * (link - 1);
+    std::copy_n(state.u.data() + u, 3, qdot.data() + 7 * (link - 1));
+    put_attitude(math::derivative(attitude_at(state.q, link), vector_at(state.u, u + 3)), qdot, link);
+  }
+}
+
+// accelerations of a stage
+bool find_accelerations(const Model& model, const BodyModel& body, const BodyState& state,
+                        std::span<const double> forces, Workspace& ws, BodyWorkspace& bws) noexcept {
+  const bool is_regular = prepare(model, body, state, bws.stage_joints, ws, bws);
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    if (ws.row_is_active[k] == 0) continue;
+    add_row(body_row(model, body, bws.stage_joints, model.rows[k], ws), forces[k], bws.ldl, bws.solution);
+  }
+  bws.ldl.solve(bws.solution);
+  read_bodies(bws.ldl, bws.solution, bws.udot);
+  return is_regular;
+}
+
+// moves every link by the small displacement in bws.solution
+void displace(BodyState& state, const BodyWorkspace& bws) noexcept {
+  for (std::size_t link = 1; link <= state.u.size() / 6; ++link) {
+    const double* delta = bws.solution.data() + bws.ldl.first_row(static_cast<int>(link) - 1);
+    for (std::size_t k = 0; k < 3; ++k) state.q[7 * (link - 1) + k] += delta[k];
+    const math::Quaternion half{1, 0.5 * delta[3], 0.5 * delta[4], 0.5 * delta[5]};
+    put_attitude(math::normalized(half * attitude_at(state.q, link)), state.q, link);
+  }
+}
+
+// the displacement or change of speed that takes away what the joints' rows show
+template <typename Value>
+void solve_violation(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
+  std::fill(bws.solution.begin(), bws.solution.end(), 0.0);
+  for (std::size_t i = 1; i < body.joints.size(); ++i) {
+    double* x = bws.solution.data() + bws.ldl.first_row(static_cast<int>(i) - 1) + kBody;
+    const std::size_t first = at(bws.first_row[i]);
+    for (std::size_t k = 0; k < body.joints[i].rows.size(); ++k) x[k] = -value(bws.rows[first + k]);
+  }
+  bws.ldl.solve(bws.solution);
+}
+
+}  // namespace
+
+bool project(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
+             BodyWorkspace& bws) noexcept {
+  // (3), both with the matrix of where the projection begins
+  const bool is_regular = prepare(model, body, state, joints, ws, bws);
+  Drift left = drift(bws);
+  for (int i = 0; i < kMostCorrections && left.position > kClosed; ++i) {
+    solve_violation(body, bws, [](const RowValue& row) { return row.g; });
+    displace(state, bws);
+    update_body_motion(model, state, ws);
+    evaluate_joints(body, ws, bws);
+    left = drift(bws);
+  }
+  for (int i = 0; i < kMostCorrections && left.rate > kClosed; ++i) {
+    solve_violation(body, bws, [](const RowValue& row) { return row.rate; });
+    for (std::size_t link = 1; link < model.links.size(); ++link) {
+      const double* delta = bws.solution.data() + bws.ldl.first_row(static_cast<int>(link) - 1);
+      for (std::size_t k = 0; k < 6; ++k) state.u[6 * (link - 1) + k] += delta[k];
+    }
+    update_body_motion(model, state, ws);
+    evaluate_joints(body, ws, bws);
+    left = drift(bws);
+  }
+  find_joint_coordinates(model, ws, joints);
+  return is_regular && left.position <= kClosed && left.rate <= kClosed;
+}
+
+bool advance(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
+             BodyWorkspace& bws, double h, std::span<const double> mean, std::span<const double> slope) noexcept {
+  constexpr double kStageTime[4] = {0, 0.5, 0.5, 1.0};
+  constexpr double kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  const auto forces_at = [&](double t) {
+    for (std::size_t k = 0; k < mean.size(); ++k) bws.row_force[k] = mean[k] + (t - 0.5 * h) * slope[k];
+  };
+  forces_at(0);
+  accelerations(model, bws, bws.row_force, bws.udot);
+  find_rates(state, bws.qdot);
+  bws.sum.q = state.q;
+  bws.sum.u = state.u;
+  bws.stage_joints.q = joints.q;
+  bool is_regular = true;
+  for (int stage = 0; stage < 4; ++stage) {
+    if (stage > 0) {
+      combine(state.q, kStageTime[stage] * h, bws.qdot, bws.stage.q);
+      combine(state.u, kStageTime[stage] * h, bws.udot, bws.stage.u);
+      forces_at(kStageTime[stage] * h);
+      is_regular = find_accelerations(model, body, bws.stage, bws.row_force, ws, bws) && is_regular;
+      find_rates(bws.stage, bws.qdot);
+    }
+    combine(bws.sum.q, h * kWeight[stage], bws.qdot, bws.sum.q);
+    combine(bws.sum.u, h * kWeight[stage], bws.udot, bws.sum.u);
+  }
+  state.q.swap(bws.sum.q);
+  state.u.swap(bws.sum.u);
+  for (std::size_t link = 1; link < model.links.size(); ++link) {
+    put_attitude(math::normalized(attitude_at(state.q, link)), state.q, link);
+  }
+  return project(model, body, state, joints, ws, bws) && is_regular;
+}
+
+}  // namespace slew::multibody
