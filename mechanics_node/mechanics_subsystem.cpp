@@ -55,6 +55,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       row_names_(scene::row_names(scene)),
       model_(multibody::build_model(def_, row_names_)),
       state_(multibody::start_state(model_)),
+      mechanism_(def_.formulation, model_, state_),
       last_good_(state_),
       workspace_(model_),
       level_(scene.session.coupling),
@@ -94,6 +95,7 @@ void MechanicsSubsystem::reset() {
   model_ = multibody::build_model(def_, row_names_);
   heavier_ = model_;
   state_ = multibody::start_state(model_);
+  mechanism_ = multibody::Dynamics(def_.formulation, model_, state_);
   last_good_ = state_;
   workspace_ = multibody::Workspace(model_);
   is_evaluated_ = false;
@@ -107,7 +109,7 @@ void MechanicsSubsystem::reset() {
 
 void MechanicsSubsystem::evaluate() noexcept {
   if (is_evaluated_) return;
-  multibody::evaluate(model_, state_, workspace_);
+  mechanism_.evaluate(model_, state_, workspace_);
   is_evaluated_ = true;
 }
 
@@ -208,7 +210,7 @@ coupling::PortStep MechanicsSubsystem::advance(double h, const coupling::Actuato
     }
   }
   load_partner(partner, is_first_substep);
-  const coupling::PortStep solved = dynamics_.solve(h, micro_steps_, *laws_);
+  coupling::PortStep solved = dynamics_.solve(h, micro_steps_, *laws_);
   // the mechanism under these forces
   std::fill(force_mean_.begin(), force_mean_.end(), 0.0);
   std::fill(force_slope_.begin(), force_slope_.end(), 0.0);
@@ -218,7 +220,8 @@ coupling::PortStep MechanicsSubsystem::advance(double h, const coupling::Actuato
     force_slope_[row] = ratio_of(row) * dynamics_.f_slope()[k];
     if (row < ports_.size()) ports_[row].F = dynamics_.z()[k];
   }
-  multibody::advance(model_, state_, workspace_, h, force_mean_, force_slope_);
+  const bool is_closed = mechanism_.advance(model_, state_, workspace_, h, force_mean_, force_slope_);
+  solved.has_converged = solved.has_converged && is_closed;
   is_evaluated_ = false;
   return solved;
 }
@@ -427,6 +430,7 @@ bool MechanicsSubsystem::change_parameter(StepIndex n, const coupling::Parameter
 std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
   StateHash hash;
   multibody::add_to_hash(model_, state_, hash);
+  mechanism_.add_to_hash(hash);
   ramps_.add_to(hash);
   for (const Port& port : ports_) hash.add(port.F);
   for (const char is_active : row_is_active_) hash.add(is_active);

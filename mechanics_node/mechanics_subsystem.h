@@ -16,6 +16,7 @@
 #include "coupling/port_dynamics.h"
 #include "coupling/subsystem.h"
 #include "multibody/dynamics.h"
+#include "multibody/formulation.h"
 #include "multibody/observe.h"
 #include "scene/scene.h"
 
@@ -79,6 +80,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::vector<std::string> row_names_;
   multibody::Model model_;
   multibody::State state_;
+  multibody::Dynamics mechanism_;
   multibody::State last_good_;
   multibody::Workspace workspace_;
   bool is_evaluated_ = false;  // workspace_ belongs to state_ and model_

@@ -133,7 +133,7 @@ enum class Formulation : int { recursive, lagrange, augmented, penalty };
 
 struct MechanicsDef {
   Triple gravity{0, -9.81, 0};                       // m/s2
-  Formulation formulation = Formulation::recursive;  // the only one in this version
+  Formulation formulation = Formulation::recursive;  // or lagrange in this version
   double max_substep = 1e-3;                         // s, longest sub-step of the integrator
 
   std::vector<BodyDef> bodies;

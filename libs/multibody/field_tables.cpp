@@ -17,7 +17,8 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::gravity>(
         "gravity", {.dimension = acceleration, .change = Change::live, .doc = "acceleration of gravity, global axes"}),
     field<&MechanicsDef::formulation>(
-        "formulation", {.choices = kFormulations, .doc = "equations of motion; this version has recursive only"}),
+        "formulation",
+        {.choices = kFormulations, .doc = "equations of motion; this version has recursive and lagrange"}),
     field<&MechanicsDef::max_substep>(
         "max_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step of the integrator inside a step"}),

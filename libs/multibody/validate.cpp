@@ -64,11 +64,11 @@ class Validator {
   }
 
   void check_section() {
-    if (m_.formulation == Formulation::recursive) return;
+    if (m_.formulation == Formulation::recursive || m_.formulation == Formulation::lagrange) return;
     constexpr const char* kNames[] = {"recursive", "lagrange", "augmented", "penalty"};
     add("mechanics.formulation",
         fmt::format("the formulation '{}' is not in this version", kNames[static_cast<int>(m_.formulation)]),
-        "recursive");
+        "recursive or lagrange");
   }
 
   // ranges of the field tables, for Defs that no scene reader has seen

@@ -45,6 +45,15 @@ TEST_F(SubsystemStep, DoesNotAllocateInAThousandSteps) {
   EXPECT_GT(std::abs(crane.mechanics_now.mechanism.v[1]) + std::abs(crane.mechanics_now.mechanism.v[2]), 1e-4);
 }
 
+TEST_F(SubsystemStep, DoesNotAllocateInBodyCoordinates) {
+  const scene::Scene with_multipliers = CranePair::load({"mechanics.formulation=lagrange"});
+  CranePair bodies(with_multipliers);
+  bodies.start();
+  const HeapUse use = heap_use(bodies, [](StepIndex) {});
+  EXPECT_EQ(use.allocations, 0u);
+  EXPECT_EQ(use.frees, 0u);
+}
+
 TEST_F(SubsystemStep, DoesNotAllocateWhileParametersChange) {
   std::uint64_t taken = 0;
   const HeapUse use = heap_use(crane, [this, &taken](StepIndex i) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
@@ -45,7 +46,10 @@ class CranePair {
     return {wave(310), wave(450), wave(270)};
   }
 
-  static scene::Scene load() { return scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml"); }
+  // overrides: "mechanics.formulation=lagrange", ...
+  static scene::Scene load(const std::vector<std::string>& overrides = {}) {
+    return scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml", overrides);
+  }
 
   std::unique_ptr<mechanics::MechanicsSubsystem> mechanics;
   std::unique_ptr<hydraulic_node::HydraulicsSubsystem> hydraulics;

@@ -1,0 +1,48 @@
+#include "multibody/formulation.h"
+
+#include "core/check.h"
+#include "multibody/body_coordinates.h"
+#include "multibody/dynamics.h"
+
+namespace slew::multibody {
+
+struct Dynamics::Bodies {
+  Bodies(const Model& mechanism, const State& start)
+      : model(build_body_model(mechanism)), state(body_state(mechanism, start)), ws(mechanism, model) {}
+
+  BodyModel model;
+  BodyState state;
+  BodyWorkspace ws;
+};
+
+Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start) {
+  SLEW_CHECK(formulation == Formulation::recursive || formulation == Formulation::lagrange);
+  if (formulation == Formulation::lagrange) bodies_ = std::make_unique<Bodies>(model, start);
+}
+
+Dynamics::~Dynamics() = default;
+Dynamics::Dynamics(Dynamics&&) noexcept = default;
+Dynamics& Dynamics::operator=(Dynamics&&) noexcept = default;
+
+void Dynamics::evaluate(const Model& model, State& state, Workspace& ws) noexcept {
+  if (bodies_ == nullptr) return multibody::evaluate(model, state, ws);
+  is_regular_ = multibody::evaluate(model, bodies_->model, bodies_->state, state, ws, bodies_->ws);
+}
+
+bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                       std::span<const double> slope) noexcept {
+  if (bodies_ != nullptr) {
+    return multibody::advance(model, bodies_->model, bodies_->state, state, ws, bodies_->ws, h, mean, slope) &&
+           is_regular_;
+  }
+  multibody::advance(model, state, ws, h, mean, slope);
+  return true;
+}
+
+void Dynamics::add_to_hash(StateHash& hash) const noexcept {
+  if (bodies_ == nullptr) return;
+  hash.add(std::span<const double>(bodies_->state.q));
+  hash.add(std::span<const double>(bodies_->state.u));
+}
+
+}  // namespace slew::multibody

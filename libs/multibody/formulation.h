@@ -1,0 +1,39 @@
+// A mechanism under the formulation that its scene chose, behind the calls of dynamics.h: the recursion in joint
+// coordinates (`recursive`), or body coordinates with multipliers (`lagrange`, body_coordinates.h).
+//
+// Joint coordinates are what all formulations have in common: the State that goes with the calls follows whatever the
+// formulation integrates, so that positions, energies, reactions and variables are read off it in one way (observe.h).
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/state_hash.h"
+#include "multibody/defs.h"
+#include "multibody/state.h"
+
+namespace slew::multibody {
+
+class Dynamics {
+ public:
+  // Starts from a state in joint coordinates. Pre-condition: validate() found nothing. Allocates.
+  Dynamics(Formulation formulation, const Model& model, const State& start);
+  ~Dynamics();
+  Dynamics(Dynamics&&) noexcept;
+  Dynamics& operator=(Dynamics&&) noexcept;
+
+  // evaluate() and advance() of dynamics.h. False: a matrix was singular, or the joints could not be closed.
+  void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
+  [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                             std::span<const double> slope) noexcept;
+
+  // Raw bits of what is integrated beside the State.
+  void add_to_hash(StateHash& hash) const noexcept;
+
+ private:
+  struct Bodies;
+  std::unique_ptr<Bodies> bodies_;  // none: recursive
+  bool is_regular_ = true;          // of the last evaluation
+};
+
+}  // namespace slew::multibody
