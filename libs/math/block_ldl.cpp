@@ -154,6 +154,7 @@ BlockLdl::BlockLdl(const BlockPattern& pattern) : nodes_(pattern.nodes), rank_(p
   values_.resize(at(value));
   list_updates();
   scale_.resize(at(row));
+  reference_.resize(at(row));
   is_redundant_.resize(at(row));
 }
 
@@ -274,14 +275,16 @@ void BlockLdl::invert_closing(int node, double tolerance) noexcept {
   std::array<bool, kMaxBlock> is_swept{};
   for (int step = 0; step < size; ++step) {
     int pivot = -1;
-    double largest = tolerance;
+    double largest = tolerance, largest_left = 0;
     for (int r = 0; r < size; ++r) {
       const double value = -a[at(r * size + r)] / scale_[at(row + r)];
+      if (!is_swept[at(r)]) largest_left = std::max(largest_left, value);
       if (!is_swept[at(r)] && value > largest) {
         largest = value;
         pivot = r;
       }
     }
+    smallest_pivot_ = std::min(smallest_pivot_, largest_left);
     if (pivot < 0) break;
     sweep(a.data(), size, pivot);
     is_swept[at(pivot)] = true;
@@ -296,7 +299,8 @@ void BlockLdl::invert_closing(int node, double tolerance) noexcept {
 }
 
 bool BlockLdl::factorize(double tolerance) noexcept {
-  std::fill(scale_.begin(), scale_.end(), 0.0);
+  scale_ = reference_;
+  smallest_pivot_ = 1;
   bool is_regular = true;
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const int node = order_[k], size = nodes_[at(node)].size;

@@ -52,12 +52,19 @@ class BlockLdl {
   // Adds to the block at (row node, column node) of a coupling: row-major, size of row x size of column.
   void add_coupling(int row, int column, std::span<const double> block) noexcept;
 
-  // A closing row whose pivot is below `tolerance` times what was summed up to it is redundant. False when a regular
+  // What a pivot of a closing row is compared with at least, beside what was summed up to it: of a row that may vanish.
+  void set_reference(int node, int row, double reference) noexcept {
+    reference_[at(first_row_[at(node)] + row)] = reference;
+  }
+
+  // A closing row whose pivot is below `tolerance` times what it is compared with is redundant. False when a regular
   // node is singular to working precision.
   [[nodiscard]] bool factorize(double tolerance) noexcept;
   [[nodiscard]] bool is_redundant(int node, int row) const noexcept {
     return is_redundant_[at(first_row_[at(node)] + row)] != 0;
   }
+  // Of all closing rows: pivot over what it is compared with, at most 1. Small near a singular matrix.
+  [[nodiscard]] double smallest_pivot() const noexcept { return smallest_pivot_; }
   [[nodiscard]] int redundant_rows() const noexcept { return redundant_rows_; }
 
   // K x = b in place; b by first_row().
@@ -92,11 +99,13 @@ class BlockLdl {
   std::vector<int> first_below_;  // by place in the order
   std::vector<Update> updates_;   // by column
   std::vector<int> first_update_;
-  std::vector<int> first_value_;  // of diagonal blocks, by node
-  std::vector<double> values_;    // A, then L below the diagonal
-  std::vector<double> inverse_;   // of the diagonal blocks, by first_value_
-  std::vector<double> scaled_;    // L of the column under way
-  std::vector<double> scale_;     // of each closing row's pivot
+  std::vector<int> first_value_;   // of diagonal blocks, by node
+  std::vector<double> values_;     // A, then L below the diagonal
+  std::vector<double> inverse_;    // of the diagonal blocks, by first_value_
+  std::vector<double> scaled_;     // L of the column under way
+  std::vector<double> reference_;  // of each closing row's pivot
+  std::vector<double> scale_;      // of each closing row's pivot, reference included
+  double smallest_pivot_ = 1;
   std::vector<std::uint8_t> is_redundant_;
   int redundant_rows_ = 0;
 };
