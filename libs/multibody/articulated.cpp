@@ -7,6 +7,7 @@
 // sides of (2): E_Vq and E_qq for motion of the joint alone, E_VV for motion of both links as one rigid body.
 #include <cstddef>
 
+#include "multibody/joint_directions.h"
 #include "multibody/passes.h"
 
 namespace slew::multibody {
@@ -124,14 +125,19 @@ void factorize_prismatic(const Model& model, Workspace& ws, std::size_t i) noexc
   factorize_axis(model, ws, i, U, dot(axis, U.f), ws.tau[at(model.links[i].u)] - dot(axis, I.f));
 }
 
-void store(std::span<double> to, int first, Vec3 value) noexcept {
-  to[at(first)] = value[0];
-  to[at(first) + 1] = value[1];
-  to[at(first) + 2] = value[2];
-}
-
-Vec3 load(std::span<const double> from, int first) noexcept {
-  return {from[at(first)], from[at(first) + 1], from[at(first) + 2]};
+// (2) for up to three directions, of which the factor holds U and D^-1
+void pass_on(const Model& model, Workspace& ws, std::size_t i, ArticulatedInertia& I, Vec3 residual) noexcept {
+  const Link& link = model.links[i];
+  const JointFactor& factor = ws.factor[i];
+  for (int k = link.first_coupled; k < link.coupled_end; ++k) add_locked(model.coupled[at(k)], ws.coupled[at(k)], I);
+  const Mat3 n_D = factor.U_ang * factor.D_inv, f_D = factor.U_lin * factor.D_inv;
+  const Mat3 U_ang_T = transpose(factor.U_ang);
+  I.J -= n_D * U_ang_T;
+  I.K -= f_D * U_ang_T;
+  I.M -= f_D * transpose(factor.U_lin);
+  I.n += n_D * residual;
+  I.f += f_D * residual;
+  add_to_parent(I, ws.motion[i].r, ws.inertia[at(link.parent)]);
 }
 
 // spherical: three directions, the axes of Ground; U = (J; K) and D = J but for coupled masses
@@ -158,17 +164,46 @@ void factorize_spherical(const Model& model, Workspace& ws, std::size_t i) noexc
   }
   factor.D_inv = inverse_symmetric(D);
   store(ws.residual, link.u, residual);
-  if (link.parent == 0) return;
+  if (link.parent != 0) pass_on(model, ws, i, I, residual);
+}
 
-  for (int k = link.first_coupled; k < link.coupled_end; ++k) add_locked(model.coupled[at(k)], ws.coupled[at(k)], I);
-  const Mat3 n_D = factor.U_ang * factor.D_inv, f_D = factor.U_lin * factor.D_inv;
-  const Mat3 U_ang_T = transpose(factor.U_ang);
-  I.J -= n_D * U_ang_T;
-  I.K -= f_D * U_ang_T;
-  I.M -= f_D * transpose(factor.U_lin);
-  I.n += n_D * residual;
-  I.f += f_D * residual;
-  add_to_parent(I, ws.motion[i].r, ws.inertia[at(link.parent)]);
+// inverse of the leading two by two block, the rest zero
+Mat3 inverse_pair(double a, double b, double d) noexcept {
+  const double scale = 1 / (a * d - b * b);
+  return {Vec3(d * scale, -b * scale, 0), Vec3(-b * scale, a * scale, 0), Vec3()};
+}
+
+// universal and cylindrical: two directions
+void factorize_pair(const Model& model, Workspace& ws, std::size_t i) noexcept {
+  const Link& link = model.links[i];
+  ArticulatedInertia I = ws.inertia[i];
+  JointFactor& factor = ws.factor[i];
+  const Pair S = directions(link.joint, ws.motion[i]);
+  factor.U_ang = factor.U_lin = Mat3();
+  double D[2][2], residual[2];
+  for (int k = 0; k < 2; ++k) {
+    factor.U_ang.c[k] = I.J * S.turn[k] + transpose_multiply(I.K, S.slide[k]);
+    factor.U_lin.c[k] = I.K * S.turn[k] + I.M * S.slide[k];
+    residual[k] = ws.tau[at(link.u + k)] - dot(S.turn[k], I.n) - dot(S.slide[k], I.f);
+    for (int l = 0; l < 2; ++l) D[l][k] = dot(S.turn[l], factor.U_ang.c[k]) + dot(S.slide[l], factor.U_lin.c[k]);
+  }
+  for (int j = link.first_coupled; j < link.coupled_end; ++j) {
+    const CoupledMass& mass = model.coupled[at(j)];
+    const CoupledMotion& m = ws.coupled[at(j)];
+    const Vec3 s = child_point(mass, m);
+    const Vec3 u[2] = {cross(S.turn[0], s) + S.slide[0], cross(S.turn[1], s) + S.slide[1]};
+    for (int k = 0; k < 2; ++k) {
+      const PointResponse response = respond(mass, m, u[k]);
+      factor.U_ang.c[k] += response.both.n;
+      factor.U_lin.c[k] += response.both.f;
+      residual[k] -= dot(u[k], child_bias(mass, m));
+      for (int l = 0; l < 2; ++l) D[l][k] += dot(u[l], response.F_child);
+    }
+  }
+  factor.D_inv = inverse_pair(D[0][0], D[0][1], D[1][1]);
+  const Vec3 rest(residual[0], residual[1], 0);
+  store_pair(ws.residual, link.u, rest);
+  if (link.parent != 0) pass_on(model, ws, i, I, rest);
 }
 
 // floating: all six directions, solved by blocks. With D = [M K; K^T J] for (a, alpha):
@@ -217,88 +252,11 @@ void factorize(const Model& model, Workspace& ws) noexcept {
       case LinkJoint::floating:
         factorize_floating(model, ws, i);
         break;
+      case LinkJoint::universal:
+      case LinkJoint::cylindrical:
+        factorize_pair(model, ws, i);
+        break;
     }
-  }
-}
-
-void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
-                   std::span<double> udot) noexcept {
-  for (std::size_t i = 1; i < model.links.size(); ++i) {
-    const Link& link = model.links[i];
-    const JointFactor& factor = ws.factor[i];
-    const auto parent = at(link.parent);
-    Vec3 alpha = ws.delta_alpha[parent];
-    Vec3 a = ws.delta_a[parent] + cross(alpha, ws.motion[i].r);
-    const Vec3 axis = ws.motion[i].axis;
-    switch (link.joint) {
-      case LinkJoint::revolute:
-      case LinkJoint::prismatic: {
-        const double carried = dot(factor.U_ang.c[0], alpha) + dot(factor.U_lin.c[0], a);
-        const double rate = factor.d_inv * (residual[at(link.u)] - carried);
-        udot[at(link.u)] = rate;
-        (link.joint == LinkJoint::revolute ? alpha : a) += axis * rate;
-        break;
-      }
-      case LinkJoint::spherical: {
-        const Vec3 carried = transpose_multiply(factor.U_ang, alpha) + transpose_multiply(factor.U_lin, a);
-        const Vec3 rate = factor.D_inv * (load(residual, link.u) - carried);
-        store(udot, link.u, rate);
-        alpha += rate;
-        break;
-      }
-      case LinkJoint::floating: {
-        alpha = factor.D_inv * load(residual, link.u + 3);
-        a = factor.U_lin * load(residual, link.u) - transpose_multiply(factor.U_ang, alpha);
-        store(udot, link.u, a);
-        store(udot, link.u + 3, alpha);
-        break;
-      }
-    }
-    ws.delta_alpha[i] = alpha;
-    ws.delta_a[i] = a;
-  }
-}
-
-void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
-                    std::span<double> residual, std::span<double> rate) noexcept {
-  for (const int i : supports) ws.pass_n[at(i)] = ws.pass_f[at(i)] = Vec3();
-  for (const int i : supports) {
-    const Link& link = model.links[at(i)];
-    const JointFactor& factor = ws.factor[at(i)];
-    Vec3 n = ws.pass_n[at(i)], f = ws.pass_f[at(i)];
-    switch (link.joint) {
-      case LinkJoint::revolute:
-      case LinkJoint::prismatic: {
-        const Vec3 carried = link.joint == LinkJoint::revolute ? n : f;
-        const double rest = tau[at(link.u)] - dot(ws.motion[at(i)].axis, carried);
-        residual[at(link.u)] = rest;
-        rate[at(link.u)] = factor.d_inv * rest;
-        n += factor.U_ang.c[0] * rate[at(link.u)];
-        f += factor.U_lin.c[0] * rate[at(link.u)];
-        break;
-      }
-      case LinkJoint::spherical: {
-        const Vec3 rest = load(tau, link.u) - n;
-        const Vec3 turn = factor.D_inv * rest;
-        store(residual, link.u, rest);
-        store(rate, link.u, turn);
-        n += factor.U_ang * turn;
-        f += factor.U_lin * turn;
-        break;
-      }
-      case LinkJoint::floating: {
-        const Vec3 push = load(tau, link.u) - f;
-        const Vec3 turn = load(tau, link.u + 3) - n - factor.U_ang * push;
-        store(residual, link.u, push);
-        store(residual, link.u + 3, turn);
-        store(rate, link.u, factor.U_lin * push);
-        store(rate, link.u + 3, factor.D_inv * turn);
-        continue;
-      }
-    }
-    if (link.parent == 0) continue;
-    ws.pass_n[at(link.parent)] += n + cross(ws.motion[at(i)].r, f);
-    ws.pass_f[at(link.parent)] += f;
   }
 }
 

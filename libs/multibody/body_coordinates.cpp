@@ -30,8 +30,10 @@ void put(Vec3 a, double* x) noexcept {
 // ---- building -------------------------------------------------------------------------------------------------
 
 BodyModel build_body_model(const Model& model) {
-  constexpr JointType kTypes[] = {JointType::revolute, JointType::prismatic, JointType::spherical, JointType::floating};
+  constexpr JointType kTypes[] = {JointType::revolute, JointType::prismatic, JointType::spherical,
+                                  JointType::floating, JointType::universal, JointType::cylindrical};
   BodyModel body;
+  body.links = static_cast<int>(model.links.size());
   body.joints.resize(model.links.size());
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
@@ -47,6 +49,15 @@ BodyModel build_body_model(const Model& model) {
       body.pattern.couplings.emplace_back(static_cast<int>(i) - 1, link.parent - 1);
     }
   }
+  for (const Cut& cut : model.cuts) {
+    if (cut.rows.empty()) continue;
+    const int node = static_cast<int>(body.pattern.nodes.size());
+    body.joints.push_back(cut);
+    body.pattern.nodes.push_back({static_cast<int>(cut.rows.size()), math::BlockKind::closing});
+    for (const int link : {cut.link1, cut.link2}) {
+      if (link > 0) body.pattern.couplings.emplace_back(node, link - 1);
+    }
+  }
   return body;
 }
 
@@ -57,6 +68,12 @@ BodyWorkspace::BodyWorkspace(const Model& model, const BodyModel& body) : ldl(bo
     row += static_cast<int>(joint.rows.size());
   }
   rows.resize(at(row));
+  int cut_row = 0;
+  for (std::size_t i = model.links.size(); i < body.joints.size(); ++i) {
+    for (int k = 0; k < static_cast<int>(body.joints[i].rows.size()); ++k) {
+      ldl.set_reference(static_cast<int>(i) - 1, k, model.cut_reference[at(cut_row++)]);
+    }
+  }
   solution.resize(at(ldl.rows()));
   free.resize(at(ldl.rows()));
   responses.resize(model.rows.size() * at(ldl.rows()));
@@ -133,6 +150,24 @@ void find_joint_coordinates(const Model& model, const Workspace& ws, State& stat
         const Vec3 r = child.p - parent.p;
         *q = dot(child.axis, r - parent.R * link.p_PJ);
         *u = dot(child.axis, child.v - parent.v - cross(parent.w, r));
+        break;
+      }
+      case LinkJoint::universal: {
+        const Mat3 R = parent.R * link.R_PJ;
+        const Vec3 z1 = R.c[2], z2 = child.axis, w = child.w - parent.w;
+        q[0] = continued(std::atan2(dot(z2, R.c[1]), dot(z2, R.c[0])), q[0]);
+        q[1] = continued(std::atan2(dot(child.R.c[0], z1), dot(child.R.c[0], cross(z1, z2))), q[1]);
+        u[0] = dot(z1, w);
+        u[1] = dot(z2, w);
+        break;
+      }
+      case LinkJoint::cylindrical: {
+        const Mat3 R = parent.R * link.R_PJ;
+        const Vec3 r = child.p - parent.p;
+        q[0] = continued(std::atan2(dot(R.c[1], child.R.c[0]), dot(R.c[0], child.R.c[0])), q[0]);
+        q[1] = dot(child.axis, r - parent.R * link.p_PJ);
+        u[0] = dot(child.axis, child.w - parent.w);
+        u[1] = dot(child.axis, child.v - parent.v - cross(parent.w, r));
         break;
       }
       case LinkJoint::floating:

@@ -13,7 +13,8 @@
 //
 // Layout of the state: link i has q at 7 (i - 1): position and quaternion w x y z of the link in Ground; u at 6 (i -
 // 1): velocity of the link's origin, angular velocity, both in Ground axes. One node of math::BlockLdl holds a link and
-// its joint towards Ground: the cost is linear in the number of links. Nothing here allocates but the builders.
+// its joint towards Ground, a closing node the rows of a joint that is cut: the cost is linear in the number of links,
+// but for the fill along loops. Nothing here allocates but the builders.
 #pragma once
 
 #include <span>
@@ -26,8 +27,12 @@
 namespace slew::multibody {
 
 struct BodyModel {
-  std::vector<Constraint> joints;  // by link; [0] is empty. link1 is the parent
-  math::BlockPattern pattern;      // node i - 1: link i and the rows of its joint
+  int links = 0;                   // Ground included
+  std::vector<Constraint> joints;  // by link, [0] is empty and link1 the parent; then those that are cut
+  math::BlockPattern pattern;      // node i - 1: of joints[i]; of the tree: link i and the rows of its joint
+
+  // First row of a joint among those of its node.
+  [[nodiscard]] int row_offset(std::size_t joint) const noexcept { return static_cast<int>(joint) < links ? 6 : 0; }
 };
 
 struct BodyState {
@@ -39,7 +44,7 @@ struct BodyWorkspace {
 
   math::BlockLdl ldl;
   std::vector<RowValue> rows;     // of all joints, by first_row
-  std::vector<int> first_row;     // by link
+  std::vector<int> first_row;     // by joint
   std::vector<double> solution;   // u' and the multipliers, by ldl.first_row()
   std::vector<double> free;       // the same without row forces
   std::vector<double> responses;  // by row of the model: the same for its unit force alone
@@ -75,7 +80,6 @@ void accelerations(const Model& model, BodyWorkspace& bws, std::span<const doubl
                            std::span<const double> slope) noexcept;
 
 // (3) alone: puts a state onto the joints. Needs nothing evaluated.
-inline constexpr double kClosed = 1e-11;  // m, 1; and per second
 [[nodiscard]] bool project(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
                            BodyWorkspace& bws) noexcept;
 

@@ -2,6 +2,7 @@
 
 #include "multibody/body_passes.h"
 #include "multibody/coupled_mass.h"
+#include "multibody/loops.h"
 #include "multibody/passes.h"
 
 namespace slew::multibody {
@@ -9,8 +10,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-constexpr double kRedundant = 1e-9;  // of what was summed up to a pivot
 
 std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
@@ -34,9 +33,8 @@ void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, Bo
     double* x = body_at(bws.ldl, bws.solution, static_cast<int>(i));
     put(-ws.inertia[i].f, x);
     put(-ws.inertia[i].n, x + 3);
-    const std::size_t first = at(bws.first_row[i]);
-    for (std::size_t k = 0; k < body.joints[i].rows.size(); ++k) x[at(kBody) + k] = -bws.rows[first + k].bias;
   }
+  put_rows(body, bws, [](const RowValue& row) { return row.bias; });
   for (std::size_t i = 0; i < model.coupled.size(); ++i) {
     const LineElement& line = model.lines[at(model.coupled[i].line)];
     const LineMotion& motion = ws.lines[at(model.coupled[i].line)];
@@ -57,7 +55,7 @@ void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& 
   for (std::size_t i = 1; i < body.joints.size(); ++i) {
     const Constraint& joint = body.joints[i];
     const std::span<RowValue> rows(bws.rows.data() + bws.first_row[i], joint.rows.size());
-    evaluate(joint, ws.motion[at(joint.link1)], ws.motion[i], rows);
+    evaluate(joint, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)], rows);
   }
 }
 
@@ -71,7 +69,7 @@ bool prepare(const Model& model, const BodyModel& body, const BodyState& state, 
   apply_elements(model, ws);
   evaluate_joints(body, ws, bws);
   fill_matrix(model, body, ws, bws);
-  const bool is_regular = bws.ldl.factorize(kRedundant);
+  const bool is_regular = bws.ldl.factorize(kDependent);
   put_bias(model, body, ws, bws);
   return is_regular;
 }

@@ -45,6 +45,7 @@ class Filling {
       add_joint(static_cast<int>(link));
     }
     for (std::size_t i = 0; i < model_.coupled.size(); ++i) add_coupled(model_.coupled[i], ws_.coupled[i]);
+    for (std::size_t i = model_.links.size(); i < body_.joints.size(); ++i) add_cut(i);
   }
 
  private:
@@ -94,6 +95,25 @@ class Filling {
     }
     bws_.ldl.add_diagonal(link - 1, {own.data(), at(size * size)});
     if (parent > 0 && rows(link) > 0) bws_.ldl.add_coupling(link - 1, parent - 1, {outer.data(), at(size * columns)});
+  }
+
+  void add_cut(std::size_t index) noexcept {
+    const Constraint& joint = body_.joints[index];
+    const int rows = static_cast<int>(joint.rows.size());
+    for (const int link : {joint.link1, joint.link2}) {
+      if (link == 0) continue;
+      const int columns = node_size(link);
+      std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> block{};
+      for (int k = 0; k < rows; ++k) {
+        const RowGradient& G = bws_.rows[at(bws_.first_row[index] + k)].G;
+        const Vec3 v = link == joint.link1 ? G.v1 : G.v2, w = link == joint.link1 ? G.w1 : G.w2;
+        for (int c = 0; c < 3; ++c) {
+          block[at(k * columns + c)] = v[c];
+          block[at(k * columns + 3 + c)] = w[c];
+        }
+      }
+      bws_.ldl.add_coupling(static_cast<int>(index) - 1, link - 1, {block.data(), at(rows * columns)});
+    }
   }
 
   void add_coupled(const CoupledMass& mass, const CoupledMotion& m) noexcept {

@@ -15,6 +15,16 @@ void update_body_motion(const Model& model, const BodyState& state, Workspace& w
 // Rows of all joints, from the motion.
 void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
 
+// Minus what the joints' rows show, into the right-hand side bws.solution.
+template <typename Value>
+void put_rows(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
+  for (std::size_t i = 1; i < body.joints.size(); ++i) {
+    double* x = bws.solution.data() + bws.ldl.first_row(static_cast<int>(i) - 1) + body.row_offset(i);
+    const auto first = static_cast<std::size_t>(bws.first_row[i]);
+    for (std::size_t k = 0; k < body.joints[i].rows.size(); ++k) x[k] = -value(bws.rows[first + k]);
+  }
+}
+
 // Motion, elements and the factors of the matrix; the right-hand side without row forces in bws.solution. False when
 // the matrix is singular to working precision.
 [[nodiscard]] bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints,

@@ -17,8 +17,13 @@ void add(Vec3 a, double* x) noexcept {
 
 BodyRow joint_row(const Model& model, const BodyModel& body, const State& joints, const Row& row,
                   const Workspace& ws) noexcept {
-  const Link& link = model.links[at(row.link)];
   BodyRow result;
+  if (row.link == 0) {
+    const Constraint& cut = model.cuts[at(model.joints[at(row.element)].cut)];
+    const RowValue value = coordinate_of_cut(model, row, ws);
+    return {cut.link1, cut.link2, value.G, value.g, value.rate, value.bias};
+  }
+  const Link& link = model.links[at(row.link)];
   result.link1 = link.parent;
   result.link2 = row.link;
   result.x = joints.q[at(link.q)];

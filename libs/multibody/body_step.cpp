@@ -2,16 +2,13 @@
 #include <cmath>
 
 #include "multibody/body_passes.h"
+#include "multibody/loops.h"
 
 namespace slew::multibody {
 
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 Vec3 vector_at(std::span<const double> x, std::size_t i) noexcept {
   return {x[i], x[i + 1], x[i + 2]};
@@ -71,11 +68,7 @@ void displace(BodyState& state, const BodyWorkspace& bws) noexcept {
 template <typename Value>
 void solve_violation(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
   std::fill(bws.solution.begin(), bws.solution.end(), 0.0);
-  for (std::size_t i = 1; i < body.joints.size(); ++i) {
-    double* x = bws.solution.data() + bws.ldl.first_row(static_cast<int>(i) - 1) + kBody;
-    const std::size_t first = at(bws.first_row[i]);
-    for (std::size_t k = 0; k < body.joints[i].rows.size(); ++k) x[k] = -value(bws.rows[first + k]);
-  }
+  put_rows(body, bws, value);
   bws.ldl.solve(bws.solution);
 }
 
@@ -85,15 +78,17 @@ bool project(const Model& model, const BodyModel& body, BodyState& state, State&
              BodyWorkspace& bws) noexcept {
   // (3), both with the matrix of where the projection begins
   const bool is_regular = prepare(model, body, state, joints, ws, bws);
+  const Extent extent = extent_of(ws);
+  const double closed = kClosed * extent.length, steady = kClosed * extent.speed;
   Drift left = drift(bws);
-  for (int i = 0; i < kMostCorrections && left.position > kClosed; ++i) {
+  for (int i = 0; i < kMostCorrections && left.position > closed; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.g; });
     displace(state, bws);
     update_body_motion(model, state, ws);
     evaluate_joints(body, ws, bws);
     left = drift(bws);
   }
-  for (int i = 0; i < kMostCorrections && left.rate > kClosed; ++i) {
+  for (int i = 0; i < kMostCorrections && left.rate > steady; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.rate; });
     for (std::size_t link = 1; link < model.links.size(); ++link) {
       const double* delta = bws.solution.data() + bws.ldl.first_row(static_cast<int>(link) - 1);
@@ -104,7 +99,7 @@ bool project(const Model& model, const BodyModel& body, BodyState& state, State&
     left = drift(bws);
   }
   find_joint_coordinates(model, ws, joints);
-  return is_regular && left.position <= kClosed && left.rate <= kClosed;
+  return is_regular && left.position <= closed && left.rate <= steady;
 }
 
 bool advance(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
@@ -125,6 +120,9 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
     if (stage > 0) {
       combine(state.q, kStageTime[stage] * h, bws.qdot, bws.stage.q);
       combine(state.u, kStageTime[stage] * h, bws.udot, bws.stage.u);
+      if (bws.ldl.smallest_pivot() < kNearSingular) {
+        is_regular = project(model, body, bws.stage, bws.stage_joints, ws, bws) && is_regular;
+      }
       forces_at(kStageTime[stage] * h);
       is_regular = find_accelerations(model, body, bws.stage, bws.row_force, ws, bws) && is_regular;
       find_rates(bws.stage, bws.qdot);

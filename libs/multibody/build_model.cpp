@@ -3,9 +3,12 @@
 #include <cstddef>
 
 #include "core/check.h"
+#include "multibody/assembly.h"
 #include "multibody/body_inertia.h"
 #include "multibody/build_rows.h"
+#include "multibody/constraint.h"
 #include "multibody/model.h"
+#include "multibody/start_pose.h"
 #include "multibody/topology.h"
 
 namespace slew::multibody {
@@ -20,6 +23,8 @@ std::size_t at(int index) {
 
 // half a turn about x: reverses a joint's axis, so that q keeps its sign when the tree walks the joint backwards
 const Mat3 kReverse = Mat3::diagonal(1, -1, -1);
+// the same for a universal joint, which then has its coordinates in the other order
+const Mat3 kReverseCross = {Vec3(0, -1, 0), Vec3(-1, 0, 0), Vec3(0, 0, -1)};
 
 Mat3 rotated(const Mat3& R, const Mat3& I) {
   return R * I * math::transpose(R);
@@ -29,7 +34,7 @@ class Builder {
  public:
   explicit Builder(const MechanicsDef& def) : def_(def) {}
 
-  Model run(std::span<const std::string> rows) {
+  Model run(std::span<const std::string> rows, AssemblyReport& report) {
     Problems problems;
     poses_ = start_poses(def_, problems);
     tree_ = find_tree(def_, problems);
@@ -38,6 +43,7 @@ class Builder {
     model_.max_substep = def_.max_substep;
     add_bodies();
     add_joints();
+    for (const int joint : cut_joints(def_, tree_)) add_cut(joint);
     for (const TranslationalForceDef& force : def_.translational_forces) add_line(force);
     for (const RotationalForceDef& force : def_.rotational_forces) add_angle(force);
     add_static_dummies();
@@ -45,6 +51,8 @@ class Builder {
     for (const std::string& row : rows) add_row(def_, row, model_);
     mark_used_elements(model_);
     for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
+    for (Cut& cut : model_.cuts) add_supports(model_, cut);
+    report = assemble(model_);
     return std::move(model_);
   }
 
@@ -68,26 +76,30 @@ class Builder {
 
   void add_joints() {
     model_.joints.resize(def_.joints.size());
-    for (const TreeEdge& edge : tree_) {
-      const JointDef& def = def_.joints[at(edge.joint)];
-      Joint& joint = model_.joints[at(edge.joint)];
-      joint = {.name = def.name,
-               .type = def.type,
-               .body1 = body_index(def.body1),
-               .body2 = body_index(def.body2),
-               .R_B1 = math::rotation_xyz(def.orientation1),
-               .R_B2 = math::rotation_xyz(def.orientation2),
-               .p_B1 = Vec3(def.point1),
-               .p_B2 = Vec3(def.point2),
-               .is_reversed = edge.is_reversed};
+    for (std::size_t j = 0; j < def_.joints.size(); ++j) {
+      const JointDef& def = def_.joints[j];
+      model_.joints[j] = {.name = def.name,
+                          .type = def.type,
+                          .body1 = body_index(def.body1),
+                          .body2 = body_index(def.body2),
+                          .R_B1 = math::rotation_xyz(def.orientation1),
+                          .R_B2 = math::rotation_xyz(def.orientation2),
+                          .p_B1 = Vec3(def.point1),
+                          .p_B2 = Vec3(def.point2)};
+    }
+    const JointDef free{.type = JointType::floating};
+    for (TreeEdge edge : tree_) {
+      const JointDef& def = edge.joint == kNoJoint ? free : def_.joints[at(edge.joint)];
+      settle(def, edge);
       Body& child = model_.bodies[at(edge.child)];
       child.parent = edge.parent;
       child.joint = edge.joint;
+      if (edge.joint != kNoJoint) model_.joints[at(edge.joint)].is_reversed = edge.is_reversed;
       if (def.type == JointType::fixed) {
         child.link = model_.bodies[at(edge.parent)].link;
       } else {
-        joint.link = add_link(def, edge);
-        child.link = joint.link;
+        child.link = add_link(def, edge);
+        if (edge.joint != kNoJoint) model_.joints[at(edge.joint)].link = child.link;
       }
       place(child, poses_[at(edge.child)]);
       add_mass(edge.child);
@@ -114,15 +126,55 @@ class Builder {
                              .owner = body});
   }
 
-  int add_link(const JointDef& def, const TreeEdge& edge) {
-    JointFrames frames = joint_frames(def, poses_[at(body_index(def.body1))], poses_[at(body_index(def.body2))]);
-    if (edge.is_reversed) {
-      std::swap(frames.frame1, frames.frame2);
-      if (def.type != JointType::spherical) {
-        frames.frame1.R = frames.frame1.R * kReverse;
-        frames.frame2.R = frames.frame2.R * kReverse;
-      }
+  [[nodiscard]] JointFrames frames_of(const JointDef& def, const TreeEdge& edge) const {
+    const Pose &parent = poses_[at(edge.parent)], &child = poses_[at(edge.child)];
+    if (edge.joint == kNoJoint) return {Pose{}, child};
+    if (!edge.is_reversed) return joint_frames(def, parent, child);
+    JointFrames frames = joint_frames(def, child, parent);
+    std::swap(frames.frame1, frames.frame2);
+    if (def.type == JointType::spherical) return frames;
+    const Mat3& reverse = def.type == JointType::universal ? kReverseCross : kReverse;
+    frames.frame1.R = frames.frame1.R * reverse;
+    frames.frame2.R = frames.frame2.R * reverse;
+    return frames;
+  }
+
+  // moves a body that the joint does not hold to where it does; as the scene has it within its tolerance
+  void settle(const JointDef& def, const TreeEdge& edge) {
+    const auto [frame1, frame2] = frames_of(def, edge);
+    const Pose held = nearest_frame(def.type, {frame1, frame2});
+    const Mat3 turn = held.R * math::transpose(frame2.R);
+    if (math::norm(held.p - frame2.p) <= kFrameTolerance && math::rotation_angle(turn) <= kFrameTolerance) return;
+    Pose& child = poses_[at(edge.child)];
+    child = {turn * child.R, held.p + turn * (child.p - frame2.p)};
+  }
+
+  void add_cut(int index) {
+    const JointDef& def = def_.joints[at(index)];
+    Joint& joint = model_.joints[at(index)];
+    const Body &body1 = model_.bodies[at(joint.body1)], &body2 = model_.bodies[at(joint.body2)];
+    joint.cut = static_cast<int>(model_.cuts.size());
+    Cut cut;
+    cut.joint = index;
+    cut.link1 = body1.link;
+    cut.link2 = body2.link;
+    cut.R_L1 = body1.R_LB * joint.R_B1;
+    cut.p_L1 = body1.p_LB + body1.R_LB * joint.p_B1;
+    cut.R_L2 = body2.R_LB * joint.R_B2;
+    cut.p_L2 = body2.p_LB + body2.R_LB * joint.p_B2;
+    const auto [frame1, frame2] = joint_frames(def, poses_[at(joint.body1)], poses_[at(joint.body2)]);
+    const Mat3 R_1W = math::transpose(frame1.R);
+    cut.rows = rows_of(def.type, R_1W * frame2.R, R_1W * (frame2.p - frame1.p));
+    for (ConstraintRow& row : cut.rows) {
+      if (row.form == RowForm::distance && def.length > 0) row.offset = def.length;
     }
+    cut.first_row = model_.cut_row_count();
+    for (std::size_t k = 0; k < cut.rows.size(); ++k) cut.kept.push_back(static_cast<int>(k));
+    model_.cuts.push_back(cut);
+  }
+
+  int add_link(const JointDef& def, const TreeEdge& edge) {
+    const JointFrames frames = frames_of(def, edge);
     const int parent = model_.bodies[at(edge.parent)].link;
     const Pose& parent_pose = link_pose_[at(parent)];
     Link link;
@@ -130,7 +182,7 @@ class Builder {
     link.R_PJ = math::transpose(parent_pose.R) * frames.frame1.R;
     link.p_PJ = math::transpose(parent_pose.R) * (frames.frame1.p - parent_pose.p);
     link.q = model_.coordinate_count();
-    link.u = model_.degrees_of_freedom();
+    link.u = model_.speed_count();
     add_coordinates(def, edge, frames, link);
     model_.links.push_back(link);
     return static_cast<int>(model_.links.size()) - 1;
@@ -152,9 +204,23 @@ class Builder {
       q.push_back(start_coordinate(def.type, frames));
       u.push_back(def.initial_velocity);
       child = {frame1.R, frame1.p + frame1.R.c[2] * q.back()};
+    } else if (def.type == JointType::cylindrical) {
+      link.joint = LinkJoint::cylindrical;
+      const Vec3 z = frame1.R.c[2];
+      q.push_back(start_coordinate(JointType::revolute, frames));
+      q.push_back(start_coordinate(JointType::prismatic, frames));
+      u.insert(u.end(), {def.initial_velocity, def.initial_velocity_2});
+      child = {frame1.R * math::rotation_z(q[q.size() - 2]), frame1.p + z * q.back()};
+    } else if (def.type == JointType::universal) {
+      link.joint = LinkJoint::universal;
+      const auto [q1, q2, R] = universal_start(frames);
+      q.insert(q.end(), {q1, q2});
+      u.insert(u.end(), {def.initial_velocity, def.initial_velocity_2});
+      if (edge.is_reversed) std::swap(u[u.size() - 2], u.back());
+      child.R = R;
     } else {
       link.joint = def.type == JointType::spherical ? LinkJoint::spherical : LinkJoint::floating;
-      const Mat3& R_body1 = poses_[at(body_index(def.body1))].R;
+      const Mat3& R_body1 = poses_[at(edge.joint == kNoJoint ? kGround : body_index(def.body1))].R;
       if (link.joint == LinkJoint::floating) {
         child.p = frame2.p;
         for (const double x : frame2.p.array()) q.push_back(x);
@@ -324,7 +390,12 @@ class Builder {
 }  // namespace
 
 Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows) {
-  return Builder(mechanics).run(rows);
+  AssemblyReport ignored;
+  return build_model(mechanics, rows, ignored);
+}
+
+Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows, AssemblyReport& report) {
+  return Builder(mechanics).run(rows, report);
 }
 
 }  // namespace slew::multibody

@@ -1,7 +1,10 @@
 #include "multibody/build_rows.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <tuple>
+#include <utility>
 
 #include "core/check.h"
 #include "multibody/topology.h"
@@ -17,17 +20,17 @@ bool has_one_coordinate(const JointDef& joint) {
   return joint.type == JointType::revolute || joint.type == JointType::prismatic;
 }
 
-// links that the row's force reaches on its way to Ground
-void add_support(Model& model, Row& row) {
+// appends all links between those given and Ground, outermost first; returns where they begin and end
+std::pair<int, int> add_support(Model& model, std::span<const int> links) {
   std::vector<bool> is_reached(model.links.size(), false);
-  for (int i = row.first_path; i < row.path_end; ++i) {
-    for (int link = model.paths[at(i)].link; link > 0; link = model.links[at(link)].parent) is_reached[at(link)] = true;
+  for (int link : links) {
+    for (; link > 0; link = model.links[at(link)].parent) is_reached[at(link)] = true;
   }
-  row.first_support = static_cast<int>(model.supports.size());
+  const int first = static_cast<int>(model.supports.size());
   for (std::size_t link = is_reached.size(); link-- > 1;) {
     if (is_reached[link]) model.supports.push_back(static_cast<int>(link));
   }
-  row.support_end = static_cast<int>(model.supports.size());
+  return {first, static_cast<int>(model.supports.size())};
 }
 
 Row length_row(Model& model, std::size_t line) {
@@ -48,8 +51,13 @@ Row angle_row(const Model& model, std::size_t angle) {
 Row joint_row(const JointDef& def, std::size_t joint, Model& model) {
   Row row{.kind = RowKind::joint, .element = static_cast<int>(joint), .link = model.joints[joint].link};
   row.first_path = static_cast<int>(model.paths.size());
-  row.path_end = row.first_path + 1;
-  model.paths.push_back({.link = row.link, .sign = 1});
+  if (row.link > 0) {
+    model.paths.push_back({.link = row.link, .sign = 1});
+  } else {
+    const Cut& cut = model.cuts[at(model.joints[joint].cut)];
+    add_path(model, cut.link1, cut.link2);
+  }
+  row.path_end = static_cast<int>(model.paths.size());
   row.law = {.coulomb = def.coulomb_friction,
              .viscous = def.viscous_friction,
              .friction_speed = def.friction_speed,
@@ -72,6 +80,10 @@ void add_path(Model& model, int link1, int link2) {
   }
 }
 
+void add_supports(Model& model, Cut& cut) {
+  std::tie(cut.first_support, cut.support_end) = add_support(model, std::array{cut.link1, cut.link2});
+}
+
 void add_row(const MechanicsDef& mechanics, const std::string& name, Model& model) {
   Row row;
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
@@ -84,7 +96,9 @@ void add_row(const MechanicsDef& mechanics, const std::string& name, Model& mode
     if (mechanics.joints[i].name == name) row = joint_row(mechanics.joints[i], i, model);
   }
   SLEW_CHECK(row.path_end > row.first_path);
-  add_support(model, row);
+  std::vector<int> moved;
+  for (int i = row.first_path; i < row.path_end; ++i) moved.push_back(model.paths[at(i)].link);
+  std::tie(row.first_support, row.support_end) = add_support(model, moved);
   model.rows.push_back(row);
 }
 

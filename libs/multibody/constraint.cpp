@@ -168,4 +168,46 @@ RowValue evaluate(const ConstraintRow& row, const Constraint& constraint, const 
                   side_of(link2, constraint.R_L2, constraint.p_L2));
 }
 
+int coordinate_count(JointType type) noexcept {
+  switch (type) {
+    case JointType::revolute:
+    case JointType::prismatic:
+      return 1;
+    case JointType::universal:
+    case JointType::cylindrical:
+      return 2;
+    default:
+      return 0;
+  }
+}
+
+namespace {
+
+// angle of a direction of side 2 in the plane of p and q, both at a right angle to `axis`, which belongs to `holder`
+RowValue angle_about(Vec3 axis, Vec3 p, Vec3 q, Vec3 direction, const Side& holder, const Side& one, const Side& two) {
+  const Vec3 w = two.w - one.w;
+  RowValue row;
+  row.g = std::atan2(dot(direction, q), dot(direction, p));
+  row.rate = dot(axis, w);
+  row.bias = dot(cross(holder.w, axis), w);
+  row.G = {Vec3(), -axis, Vec3(), axis};
+  return row;
+}
+
+}  // namespace
+
+RowValue coordinate(JointType type, int number, const Constraint& constraint, const LinkMotion& link1,
+                    const LinkMotion& link2) noexcept {
+  const Side one = side_of(link1, constraint.R_L1, constraint.p_L1);
+  const Side two = side_of(link2, constraint.R_L2, constraint.p_L2);
+  const auto& [x1, y1, z1] = one.axes;
+  const auto& [x2, y2, z2] = two.axes;
+  if (type == JointType::universal) {
+    return number == 0 ? angle_about(z1, x1, y1, z2, one, one, two)
+                       : angle_about(z2, cross(z1, z2), z1, x2, two, one, two);
+  }
+  if (type == JointType::prismatic || number == 1) return in_plane(one, two, z1, 0);
+  return angle_about(z1, x1, y1, x2, one, one, two);
+}
+
 }  // namespace slew::multibody

@@ -17,7 +17,6 @@
 // joints are those of table 1 of the flexible-body tutorial thesis (2017), the universal's axes as in the errata.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,36 +26,6 @@
 namespace slew::multibody {
 
 inline constexpr int kMaxJointRows = 6;
-
-enum class RowForm : std::uint8_t { in_plane, in_plane_of_2, perpendicular, distance };
-
-struct ConstraintRow {
-  RowForm form = RowForm::in_plane;
-  int axis1 = 0;      // 0 x, 1 y, 2 z: a, of frame 1
-  int axis2 = 0;      // b, of frame 2
-  double offset = 0;  // c [m or 1]
-};
-
-// The rows of one joint between two links.
-struct Constraint {
-  int joint = 0;  // Model::joints
-  int link1 = 0, link2 = 0;
-  math::Mat3 R_L1, R_L2;  // frames in their links
-  math::Vec3 p_L1, p_L2;  // m
-  std::vector<ConstraintRow> rows;
-};
-
-// Gradient of a row with respect to the velocities of both links' origins and their angular velocities.
-struct RowGradient {
-  math::Vec3 v1, w1, v2, w2;
-};
-
-struct RowValue {
-  double g = 0;     // m or 1
-  double rate = 0;  // g' [m/s or 1/s]
-  double bias = 0;  // b [m/s2 or 1/s2]
-  RowGradient G;
-};
 
 // A distance that was given as zero has no direction: massless links need a length.
 inline constexpr double kShortestLink = 1e-9;  // m
@@ -72,6 +41,19 @@ inline constexpr double kShortestLink = 1e-9;  // m
 // One value per row of the constraint. Pre-condition: for a distance, P_1 and P_2 are apart.
 void evaluate(const Constraint& constraint, const LinkMotion& link1, const LinkMotion& link2,
               std::span<RowValue> values) noexcept;
+
+// g'' of a row with u' = 0, from the links' motion.
+[[nodiscard]] inline double acceleration_of(const RowValue& row, const LinkMotion& link1,
+                                            const LinkMotion& link2) noexcept {
+  return row.bias + dot(row.G.v1, link1.a) + dot(row.G.w1, link1.alpha) + dot(row.G.v2, link2.a) +
+         dot(row.G.w2, link2.alpha);
+}
+
+// A coordinate of a joint that is cut, measured between its frames: number 0 or 1 of a universal or cylindrical joint,
+// 0 of a revolute or prismatic one. g is its value, an angle in (-pi, pi]. Pre-condition: the joint has it.
+[[nodiscard]] int coordinate_count(JointType type) noexcept;
+[[nodiscard]] RowValue coordinate(JointType type, int number, const Constraint& constraint, const LinkMotion& link1,
+                                  const LinkMotion& link2) noexcept;
 
 // A single row that the constraint need not have, between the constraint's frames.
 [[nodiscard]] RowValue evaluate(const ConstraintRow& row, const Constraint& constraint, const LinkMotion& link1,

@@ -35,14 +35,15 @@ struct BodyDef {
   InertiaPoint inertia_about = InertiaPoint::center_of_mass;
 };
 
-// Those after floating have no kernels of their own in the tree: see constraint.h.
+// Those after cylindrical have no coordinates of their own (topology.h): their rows are in constraint.h.
 enum class JointType : int {
   revolute,
   prismatic,
   spherical,
   fixed,
   floating,
-  universal,            // turns about z of frame 1, then about z of frame 2, which stands at a right angle to it
+  universal,            // turns about z of frame 1, then about z of frame 2, which stands at a right angle to it:
+                        // R_12 = Rz(q1) [y z x] Rz(q2)
   cylindrical,          // turns about z and slides along it
   in_plane,             // point 2 in the plane of frame 1 with the normal z
   in_line,              // point 2 on the line of frame 1 along z
@@ -60,9 +61,11 @@ struct JointDef {
   Triple point1{};        // m, body 1 frame
   Triple orientation1{};  // rad, successive x, y', z''
   std::string body2{};
-  Triple point2{};                 // m, body 2 frame
-  Triple orientation2{};           // rad
-  double initial_velocity = 0;     // rad/s or m/s (revolute, prismatic)
+  Triple point2{};              // m, body 2 frame
+  Triple orientation2{};        // rad
+  double initial_velocity = 0;  // rad/s or m/s (revolute, prismatic); rad/s about z of frame 1 (universal, cylindrical)
+  double initial_velocity_2 = 0;   // rad/s about z of frame 2 (universal); m/s along z (cylindrical)
+  double length = 0;               // m, of a massless link; 0: as its points stand at the start
   Triple initial_translation{};    // m/s, of point 2 seen from body 1, in body 1 axes (floating)
   Triple initial_rotation{};       // rad/s, of body 2 seen from body 1, in body 1 axes (spherical, floating)
   double limit_min = -kUnlimited;  // rad or m
@@ -134,6 +137,7 @@ enum class Formulation : int { recursive, lagrange, augmented, penalty };
 struct MechanicsDef {
   Triple gravity{0, -9.81, 0};                       // m/s2
   Formulation formulation = Formulation::recursive;  // or lagrange in this version
+  double assembly_tolerance = 1e-3;                  // m and rad, how far a joint may be open at the start
   double max_substep = 1e-3;                         // s, longest sub-step of the integrator
 
   std::vector<BodyDef> bodies;

@@ -1,12 +1,19 @@
 #include <cstddef>
 
+#include "multibody/constraint.h"
+#include "multibody/field_tables.h"
 #include "multibody/observe.h"
 
 namespace slew::multibody {
+namespace {
+
+std::string name_of(JointType type) {
+  return std::string(sections()[1].types[static_cast<std::size_t>(type)].name);
+}
+
+}  // namespace
 
 Description describe(const Model& model) {
-  constexpr const char* kTypes[] = {"revolute", "prismatic", "spherical", "fixed", "floating"};
-  constexpr int kFreedoms[] = {1, 1, 3, 0, 6};  // by JointType
   Description text;
   text.bodies = static_cast<int>(model.bodies.size()) - 1;
   text.joints = static_cast<int>(model.joints.size());
@@ -17,8 +24,21 @@ Description describe(const Model& model) {
     if (joint.link == 0) continue;
     LinkDescription& link = text.links[static_cast<std::size_t>(joint.link) - 1];
     link.joint = joint.name;
-    link.joint_type = kTypes[static_cast<std::size_t>(joint.type)];
-    link.degrees_of_freedom = kFreedoms[static_cast<std::size_t>(joint.type)];
+    link.joint_type = name_of(joint.type);
+  }
+  for (std::size_t i = 0; i < text.links.size(); ++i) {
+    text.links[i].degrees_of_freedom = speed_count(model.links[i + 1].joint);
+    if (text.links[i].joint.empty()) text.links[i].joint_type = "free";
+  }
+  for (const Cut& cut : model.cuts) {
+    const Joint& joint = model.joints[static_cast<std::size_t>(cut.joint)];
+    CutDescription& entry = text.cuts.emplace_back();
+    entry.joint = joint.name;
+    entry.joint_type = name_of(joint.type);
+    entry.rows = static_cast<int>(cut.rows.size());
+    for (std::size_t k = 0; k < cut.redundant.size(); ++k) {
+      entry.redundant.push_back("row " + std::to_string(cut.left_out[k] + 1) + " (" + describe(cut.redundant[k]) + ")");
+    }
   }
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     const Body& body = model.bodies[i];

@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/reductions.h"
+#include "multibody/loops.h"
 #include "multibody/passes.h"
 #include "multibody/rows.h"
 
@@ -32,6 +33,11 @@ void forward_dynamics(const Model& model, std::span<const double> q, std::span<c
     apply_row_forces(model, ws);
   }
   factorize(model, ws);
+  if (!model.cuts.empty()) {
+    evaluate_cuts(model, ws);
+    factorize_cuts(model, ws);
+    close_loops(model, ws);
+  }
   solve_forward(model, ws, ws.residual, ws.udot);
 }
 
@@ -86,7 +92,7 @@ void row_forces_at(double t, double h, std::span<const double> mean, std::span<c
 }
 
 // stages 2 to 4 and the sum; the first stage's u' is in ws.udot and its motion in ws
-void finish_step(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+bool finish_step(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                  std::span<const double> slope) noexcept {
   constexpr double kStageTime[3] = {0.5, 0.5, 1.0};
   constexpr double kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
@@ -94,10 +100,12 @@ void finish_step(const Model& model, State& state, Workspace& ws, double h, std:
   combine(state.q, h * kWeight[0], ws.qdot, ws.q_sum);
   combine(state.u, h * kWeight[0], ws.udot, ws.u_sum);
   const std::span<double> forces(ws.row_force.data(), mean.size());
+  bool is_closed = true;
   for (int stage = 1; stage < 4; ++stage) {
     const double time = kStageTime[stage - 1] * h;
     combine(state.q, time, ws.qdot, ws.q_stage);
     combine(state.u, time, ws.udot, ws.u_stage);
+    if (is_near_singular(ws)) is_closed = project(model, ws.q_stage, ws.u_stage, ws) && is_closed;
     row_forces_at(time, h, mean, slope, forces);
     forward_dynamics(model, ws.q_stage, ws.u_stage, forces, ws);
     coordinate_rates(model, ws, ws.q_stage, ws.u_stage, ws.qdot);
@@ -107,21 +115,23 @@ void finish_step(const Model& model, State& state, Workspace& ws, double h, std:
   state.q.swap(ws.q_sum);
   state.u.swap(ws.u_sum);
   normalize_quaternions(model, state.q);
+  if (!model.cuts.empty()) is_closed = project(model, state.q, state.u, ws) && is_closed;
+  return is_closed;
 }
 
 }  // namespace
 
-void advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
              std::span<const double> slope) noexcept {
   SLEW_ASSERT(mean.size() == model.rows.size() && slope.size() == model.rows.size());
   row_forces_at(0, h, mean, slope, ws.row_force);
   accelerations(model, ws, ws.row_force, ws.udot);
-  finish_step(model, state, ws, h, mean, slope);
+  return finish_step(model, state, ws, h, mean, slope);
 }
 
-void advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept {
+bool advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept {
   forward_dynamics(model, state.q, state.u, {}, ws);
-  finish_step(model, state, ws, h, {}, {});
+  return finish_step(model, state, ws, h, {}, {});
 }
 
 int substep_count(const Model& model, double step) noexcept {

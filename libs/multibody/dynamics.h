@@ -11,6 +11,7 @@
 //   evaluate(model, state, ws);                       // rows at the start: x, v, a_free, W
 //   ... solve for the rows' mean force and slope over h ...
 //   advance(model, state, ws, h, mean, slope);        // fourth-order Runge-Kutta, quaternions normalised once
+// Joints that are cut (loops.h) are part of u'_free, M^-1 and W above, and closed after every sub-step.
 //
 // Cost: O(links), one backward and one forward pass an evaluation, one back-solve a row. Nothing here allocates,
 // locks or throws. Source: Featherstone 2008, chapter 7; W as M^-1 = (I - U..)^T D^-1 (I - U..) of Rodriguez 1991.
@@ -57,12 +58,12 @@ void accelerations(const Model& model, Workspace& ws, std::span<const double> ro
 void response_column(const Model& model, Workspace& ws, int row, std::span<double> column) noexcept;
 
 // One Runge-Kutta sub-step of h [s]; force of a row: mean + (t - h/2) slope, 0 <= t <= h. Pre-condition: evaluate() was
-// called for this state since it last changed.
-void advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+// called for this state since it last changed. False: the loops could not be closed.
+bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
              std::span<const double> slope) noexcept;
 
 // The same without row forces; needs no evaluate().
-void advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept;
+bool advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept;
 
 // Number of equal sub-steps for a step of the given length [s].
 [[nodiscard]] int substep_count(const Model& model, double step) noexcept;

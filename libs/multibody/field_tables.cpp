@@ -2,11 +2,14 @@
 
 #include <array>
 
+#include "multibody/joint_fields.h"
+
 namespace slew::multibody {
 namespace {
 
 using enum Dimension;
 
+constexpr Range kAssemblyRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kSubstepRange{.min = 1e-6, .max = 20e-3, .min_is_open = false, .max_is_open = false};
 constexpr double kMassRamp = 1.0;  // s
 
@@ -19,6 +22,12 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::formulation>(
         "formulation",
         {.choices = kFormulations, .doc = "equations of motion; this version has recursive and lagrange"}),
+    field<&MechanicsDef::assembly_tolerance>(
+        "assembly_tolerance",
+        {.dimension = length,
+         .range = kAssemblyRange,
+         .doc = "how far poses may miss a joint at the start (a radian counts as a metre): bodies "
+                "are then moved onto it and named"}),
     field<&MechanicsDef::max_substep>(
         "max_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step of the integrator inside a step"}),
@@ -46,108 +55,6 @@ constexpr Field kBodyFields[] = {
     field<&BodyDef::inertia_about>("inertia_about",
                                    {.choices = kInertiaPoints, .doc = "point that inertia and products refer to"}),
 };
-
-constexpr Field kBody1 = field<&JointDef::body1>("body1", {.reference = "body", .doc = "first body"});
-constexpr Field kPoint1 = field<&JointDef::point1>("point1", {.dimension = length, .doc = "joint's point in body 1"});
-constexpr Field kOrientation1 = field<&JointDef::orientation1>(
-    "orientation1", {.dimension = angle, .doc = "joint frame in body 1: successive rotations about x, y', z''"});
-constexpr Field kBody2 =
-    field<&JointDef::body2>("body2", {.presence = Presence::required, .reference = "body", .doc = "second body"});
-constexpr Field kPoint2 = field<&JointDef::point2>("point2", {.dimension = length, .doc = "joint's point in body 2"});
-constexpr Field kOrientation2 = field<&JointDef::orientation2>(
-    "orientation2", {.dimension = angle, .doc = "joint frame in body 2: successive rotations about x, y', z''"});
-
-// limits and friction of a joint with one coordinate, in the dimensions of that coordinate
-struct AxisDimensions {
-  Dimension coordinate, speed, stiffness, damping, force;
-};
-
-constexpr Field initial_velocity_row(const AxisDimensions& d) {
-  return field<&JointDef::initial_velocity>("initial_velocity",
-                                            {.dimension = d.speed, .doc = "rate of the joint coordinate at the start"});
-}
-constexpr Field limit_min_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_min>("limit_min",
-                                     {.dimension = d.coordinate, .doc = "lower limit of the joint coordinate"});
-}
-constexpr Field limit_max_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_max>("limit_max",
-                                     {.dimension = d.coordinate, .doc = "upper limit of the joint coordinate"});
-}
-constexpr Field limit_stiffness_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_stiffness>("limit_stiffness", {.dimension = d.stiffness,
-                                                               .range = kNotNegative,
-                                                               .change = Change::live,
-                                                               .doc = "spring of the limits; they push only"});
-}
-constexpr Field limit_damping_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_damping>(
-      "limit_damping",
-      {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the limits"});
-}
-constexpr Field coulomb_row(const AxisDimensions& d) {
-  return field<&JointDef::coulomb_friction>(
-      "coulomb_friction",
-      {.dimension = d.force, .range = kNotNegative, .change = Change::live, .doc = "dry friction of the joint"});
-}
-constexpr Field viscous_row(const AxisDimensions& d) {
-  return field<&JointDef::viscous_friction>(
-      "viscous_friction",
-      {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "viscous friction of the joint"});
-}
-constexpr Field friction_speed_row(const AxisDimensions& d) {
-  return field<&JointDef::friction_speed>(
-      "friction_speed", {.dimension = d.speed,
-                         .range = kPositive,
-                         .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed)"});
-}
-
-constexpr AxisDimensions kRotation{angle, angular_velocity, rotational_stiffness, rotational_damping, torque};
-constexpr AxisDimensions kTranslation{length, velocity, stiffness, damping, force};
-
-constexpr Field kRevoluteFields[] = {kBody1,
-                                     kPoint1,
-                                     kOrientation1,
-                                     kBody2,
-                                     kPoint2,
-                                     kOrientation2,
-                                     initial_velocity_row(kRotation),
-                                     limit_min_row(kRotation),
-                                     limit_max_row(kRotation),
-                                     limit_stiffness_row(kRotation),
-                                     limit_damping_row(kRotation),
-                                     coulomb_row(kRotation),
-                                     viscous_row(kRotation),
-                                     friction_speed_row(kRotation)};
-
-constexpr Field kPrismaticFields[] = {kBody1,
-                                      kPoint1,
-                                      kOrientation1,
-                                      kBody2,
-                                      kPoint2,
-                                      kOrientation2,
-                                      initial_velocity_row(kTranslation),
-                                      limit_min_row(kTranslation),
-                                      limit_max_row(kTranslation),
-                                      limit_stiffness_row(kTranslation),
-                                      limit_damping_row(kTranslation),
-                                      coulomb_row(kTranslation),
-                                      viscous_row(kTranslation),
-                                      friction_speed_row(kTranslation)};
-
-constexpr Field kInitialRotation = field<&JointDef::initial_rotation>(
-    "initial_angular_velocity",
-    {.dimension = angular_velocity, .doc = "angular velocity of body 2 seen from body 1 at the start, body 1 axes"});
-constexpr Field kInitialTranslation = field<&JointDef::initial_translation>(
-    "initial_velocity",
-    {.dimension = velocity, .doc = "velocity of point 2 seen from body 1 at the start, body 1 axes"});
-
-constexpr Field kSphericalFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2, kInitialRotation};
-
-constexpr Field kFixedFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2};
-
-constexpr Field kFloatingFields[] = {kBody1,  kPoint1,       kOrientation1,       kBody2,
-                                     kPoint2, kOrientation2, kInitialTranslation, kInitialRotation};
 
 constexpr Field kTranslationalForceFields[] = {
     field<&TranslationalForceDef::body1>("body1",
@@ -254,24 +161,7 @@ void* append_to(MechanicsDef& mechanics, std::string_view element) {
   return &def;
 }
 
-template <JointType Type>
-void* append_joint(MechanicsDef& mechanics, std::string_view element) {
-  JointDef& def = mechanics.joints.emplace_back();
-  def.name = element;
-  def.type = Type;
-  return &def;
-}
-
 constexpr ElementType kBodyTypes[] = {{"", "body", "rigid body", kBodyFields, append_to<&MechanicsDef::bodies>}};
-
-// in the order of JointType
-constexpr ElementType kJointTypes[] = {
-    {"revolute", "joint", "turns about z", kRevoluteFields, append_joint<JointType::revolute>},
-    {"prismatic", "joint", "slides along z", kPrismaticFields, append_joint<JointType::prismatic>},
-    {"spherical", "joint", "turns about a point", kSphericalFields, append_joint<JointType::spherical>},
-    {"fixed", "joint", "merges the two bodies", kFixedFields, append_joint<JointType::fixed>},
-    {"floating", "joint", "leaves body 2 free", kFloatingFields, append_joint<JointType::floating>},
-};
 
 constexpr ElementType kForceTypes[] = {
     {"translational", "force", "spring-damper between two points, or a cylinder's line of force",
@@ -286,12 +176,11 @@ constexpr ElementType kDummyTypes[] = {
     {"static", "dummy", "mass fixed to a body", kStaticDummyFields, append_to<&MechanicsDef::static_dummies>},
 };
 
-constexpr Section kSections[] = {
-    {"bodies", kBodyTypes}, {"joints", kJointTypes}, {"forces", kForceTypes}, {"dummies", kDummyTypes}};
-
 }  // namespace
 
 std::span<const Section> sections() noexcept {
+  static const Section kSections[] = {
+      {"bodies", kBodyTypes}, {"joints", joint_types()}, {"forces", kForceTypes}, {"dummies", kDummyTypes}};
   return kSections;
 }
 

@@ -35,8 +35,7 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
     return multibody::advance(model, bodies_->model, bodies_->state, state, ws, bodies_->ws, h, mean, slope) &&
            is_regular_;
   }
-  multibody::advance(model, state, ws, h, mean, slope);
-  return true;
+  return multibody::advance(model, state, ws, h, mean, slope);
 }
 
 void Dynamics::add_to_hash(StateHash& hash) const noexcept {

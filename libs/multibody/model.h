@@ -7,6 +7,8 @@
 //   prismatic  q: displacement                           u: rate
 //   spherical  q: quaternion w x y z of the link in Ground   u: angular velocity seen from the parent, Ground axes
 //   floating   q: position, quaternion of the link in Ground u: velocity of the link's origin, angular velocity
+//   universal  q: angles about z of frame 1 and of frame 2   u: their rates
+//   cylindrical q: angle, displacement                       u: their rates
 // The joint's type is an enum, its kernels are picked by a switch in each pass: no virtual call per joint.
 //
 // A Model does not change while a step runs; parameters that a scene declares live change between steps through
@@ -28,7 +30,23 @@ namespace slew::multibody {
 
 inline constexpr int kMaxRows = 32;
 
-enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating };
+enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating, universal, cylindrical };
+
+[[nodiscard]] constexpr int speed_count(LinkJoint joint) noexcept {
+  switch (joint) {
+    case LinkJoint::revolute:
+    case LinkJoint::prismatic:
+      return 1;
+    case LinkJoint::universal:
+    case LinkJoint::cylindrical:
+      return 2;
+    case LinkJoint::spherical:
+      return 3;
+    case LinkJoint::floating:
+      break;
+  }
+  return 6;
+}
 
 struct Link {
   math::Mat3 R_PJ;  // joint frame in the parent link, at q = 0
@@ -72,7 +90,8 @@ struct Joint {
   int body1 = 0, body2 = 0;
   math::Mat3 R_B1, R_B2;     // joint frames in their bodies
   math::Vec3 p_B1, p_B2;     // m
-  int link = 0;              // link that it moves; 0 for a fixed joint
+  int link = 0;              // link that it moves; 0 for a fixed joint and for one that is cut
+  int cut = -1;              // Model::cuts
   bool is_reversed = false;  // the tree walks it from body 2 to body 1
 };
 
@@ -124,13 +143,42 @@ struct PathEntry {
   double turn = 0;  // of a coaxial AngleElement: d(angle)/dq, +1 or -1
 };
 
+// The laws that a constraint row is made of: constraint.h.
+enum class RowForm : std::uint8_t { in_plane, in_plane_of_2, perpendicular, distance };
+
+struct ConstraintRow {
+  RowForm form = RowForm::in_plane;
+  int axis1 = 0;      // 0 x, 1 y, 2 z: a, of frame 1
+  int axis2 = 0;      // b, of frame 2
+  double offset = 0;  // c [m or 1]
+};
+
+// The rows of one joint between two links.
+struct Constraint {
+  int joint = 0;  // Model::joints
+  int link1 = 0, link2 = 0;
+  math::Mat3 R_L1, R_L2;  // frames in their links
+  math::Vec3 p_L1, p_L2;  // m
+  std::vector<ConstraintRow> rows;
+};
+
+// A joint outside of the tree: of its rows those that are independent of the tree and of the cuts before it.
+struct Cut : Constraint {
+  int first_row = 0;      // among the rows of all cuts
+  int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
+  int support_end = 0;
+  std::vector<int> kept;                 // of the joint's rows in the order of rows_of(), by entry of `rows`
+  std::vector<ConstraintRow> redundant;  // rows that the others imply wherever the mechanism goes
+  std::vector<int> left_out;             // their places in the order of rows_of()
+};
+
 enum class RowKind : std::uint8_t { length, angle, joint };
 
 // A scalar generalised coordinate through which a partner or a joint's law acts.
 struct Row {
   RowKind kind = RowKind::joint;
   int element = 0;     // LineElement, AngleElement or Joint
-  int link = 0;        // of a joint row
+  int link = 0;        // of a joint row; 0: the joint is cut
   int first_path = 0;  // entries of Model::paths
   int path_end = 0;
   int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
@@ -152,11 +200,18 @@ struct Model {
   std::vector<Row> rows;
   std::vector<Body> bodies;  // [0] is Ground
   std::vector<Joint> joints;
-  std::vector<int> body_order;  // bodies from Ground outwards, parents first; without Ground
+  std::vector<Cut> cuts;
+  std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by row of the cuts: a mobility that is not near zero
+  std::vector<int> body_order;        // bodies from Ground outwards, parents first; without Ground
   std::vector<double> start_q, start_u;
 
   [[nodiscard]] int coordinate_count() const noexcept { return static_cast<int>(start_q.size()); }
-  [[nodiscard]] int degrees_of_freedom() const noexcept { return static_cast<int>(start_u.size()); }
+  [[nodiscard]] int speed_count() const noexcept { return static_cast<int>(start_u.size()); }
+  [[nodiscard]] int cut_row_count() const noexcept {
+    return cuts.empty() ? 0 : cuts.back().first_row + static_cast<int>(cuts.back().rows.size());
+  }
+  // Where the mechanism is not in a singular position.
+  [[nodiscard]] int degrees_of_freedom() const noexcept { return speed_count() - cut_row_count(); }
   [[nodiscard]] int row_count() const noexcept { return static_cast<int>(rows.size()); }
 };
 

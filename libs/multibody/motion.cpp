@@ -51,6 +51,37 @@ void move_prismatic(const Link& link, const LinkMotion& parent, double q, double
   m.a = parent.a + cross(parent.alpha, m.r) + cross(parent.w, v_rel) + cross(parent.w, slide) * 2;
 }
 
+void move_universal(const Link& link, const LinkMotion& parent, std::span<const double> q, std::span<const double> u,
+                    LinkMotion& m) noexcept {
+  const Mat3 turned = turned_about_z(parent.R * link.R_PJ, q[0]);
+  m.axis1 = turned.c[2];
+  m.R = turned_about_z({turned.c[1], turned.c[2], turned.c[0]}, q[1]);
+  m.axis = m.R.c[2];
+  m.r = parent.R * link.p_PJ;
+  const Vec3 v_rel = cross(parent.w, m.r);
+  const Vec3 spin1 = m.axis1 * u[0], spin2 = m.axis * u[1];
+  const Vec3 w_between = parent.w + spin1;
+  m.p = parent.p + m.r;
+  m.w = w_between + spin2;
+  m.v = parent.v + v_rel;
+  m.alpha = parent.alpha + cross(parent.w, spin1) + cross(w_between, spin2);
+  m.a = parent.a + cross(parent.alpha, m.r) + cross(parent.w, v_rel);
+}
+
+void move_cylindrical(const Link& link, const LinkMotion& parent, std::span<const double> q, std::span<const double> u,
+                      LinkMotion& m) noexcept {
+  m.R = turned_about_z(parent.R * link.R_PJ, q[0]);
+  m.axis = m.R.c[2];
+  m.r = parent.R * link.p_PJ + m.axis * q[1];
+  const Vec3 spin = m.axis * u[0], slide = m.axis * u[1];
+  const Vec3 v_rel = cross(parent.w, m.r);
+  m.p = parent.p + m.r;
+  m.w = parent.w + spin;
+  m.v = parent.v + v_rel + slide;
+  m.alpha = parent.alpha + cross(parent.w, spin);
+  m.a = parent.a + cross(parent.alpha, m.r) + cross(parent.w, v_rel) + cross(parent.w, slide) * 2;
+}
+
 // u is the relative angular velocity in Ground axes: u' = 0 leaves the parent's angular acceleration unchanged
 void move_spherical(const Link& link, const LinkMotion& parent, const math::Quaternion& q, Vec3 u,
                     LinkMotion& m) noexcept {
@@ -97,6 +128,12 @@ void update_motion(const Model& model, std::span<const double> q, std::span<cons
       case LinkJoint::floating:
         move_floating(parent, q.subspan(qi, 7), u.subspan(ui, 6), m);
         break;
+      case LinkJoint::universal:
+        move_universal(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
+        break;
+      case LinkJoint::cylindrical:
+        move_cylindrical(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
+        break;
     }
   }
 }
@@ -107,8 +144,9 @@ void coordinate_rates(const Model& model, const Workspace& ws, std::span<const d
     const Link& link = model.links[i];
     auto qi = static_cast<std::size_t>(link.q);
     const auto ui = static_cast<std::size_t>(link.u);
-    if (link.joint == LinkJoint::revolute || link.joint == LinkJoint::prismatic) {
+    if (link.joint != LinkJoint::spherical && link.joint != LinkJoint::floating) {
       qdot[qi] = u[ui];
+      if (speed_count(link.joint) == 2) qdot[qi + 1] = u[ui + 1];
       continue;
     }
     if (link.joint == LinkJoint::floating) {
@@ -120,6 +158,43 @@ void coordinate_rates(const Model& model, const Workspace& ws, std::span<const d
     qdot[qi + 1] = rate.x;
     qdot[qi + 2] = rate.y;
     qdot[qi + 3] = rate.z;
+  }
+}
+
+namespace {
+
+void turn(std::span<double> q, std::size_t i, Vec3 delta) noexcept {
+  const math::Quaternion half{1, 0.5 * delta[0], 0.5 * delta[1], 0.5 * delta[2]};
+  const math::Quaternion turned = math::normalized(half * quaternion_at(q, i));
+  q[i] = turned.w;
+  q[i + 1] = turned.x;
+  q[i + 2] = turned.y;
+  q[i + 3] = turned.z;
+}
+
+}  // namespace
+
+void displace(const Model& model, const Workspace& ws, std::span<const double> step, std::span<double> q) noexcept {
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    const auto qi = static_cast<std::size_t>(link.q), ui = static_cast<std::size_t>(link.u);
+    switch (link.joint) {
+      case LinkJoint::spherical:
+        turn(q, qi, ws.delta_alpha[i]);
+        break;
+      case LinkJoint::floating:
+        for (std::size_t k = 0; k < 3; ++k) q[qi + k] += step[ui + k];
+        turn(q, qi + 3, ws.delta_alpha[i]);
+        break;
+      case LinkJoint::universal:
+      case LinkJoint::cylindrical:
+        q[qi + 1] += step[ui + 1];
+        [[fallthrough]];
+      case LinkJoint::revolute:
+      case LinkJoint::prismatic:
+        q[qi] += step[ui];
+        break;
+    }
   }
 }
 

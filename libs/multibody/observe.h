@@ -38,12 +38,9 @@ struct BodyPose {
 };
 [[nodiscard]] BodyPose body_pose(const Model& model, const Workspace& ws, int body) noexcept;
 
-// What a joint transmits to its body 1: force and moment about the joint's point of body 2, Ground axes [N, N m].
-// It includes the forces of the joint's own row. Fixed joints are included.
-struct JointReaction {
-  Triple force{}, moment{};
-};
-
+// Where redundant rows leave the reactions open: those with the smallest sum of squares of all joints' forces [N] and
+// moments [N m].
+//
 // Newton and Euler over the bodies of the scene with the accelerations that the given row forces cause. reactions: one
 // per joint of the scene. Runs a forward dynamics; does not allocate.
 void joint_reactions(const Model& model, const State& state, Workspace& ws, std::span<const double> row_forces,
@@ -75,12 +72,20 @@ struct LinkDescription {
   int degrees_of_freedom = 0;
   std::vector<std::string> bodies;  // merged into it
 };
+// A joint that closes a loop, or has no coordinates.
+struct CutDescription {
+  std::string joint;
+  std::string joint_type;
+  int rows = 0;                        // that it adds
+  std::vector<std::string> redundant;  // "row 3 (angle between x and z of body 2)": held by others already
+};
 struct Description {
   int bodies = 0;  // of the scene, without Ground
   int joints = 0;
   int degrees_of_freedom = 0;
   int rows = 0;
   std::vector<LinkDescription> links;
+  std::vector<CutDescription> cuts;
   std::vector<std::string> fixed_to_ground;  // bodies that do not move
 };
 [[nodiscard]] Description describe(const Model& model);

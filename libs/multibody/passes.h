@@ -34,12 +34,20 @@ void factorize(const Model& model, Workspace& ws) noexcept;
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
                    std::span<double> udot) noexcept;
 
+// Moves the coordinates by a small displacement in the space of the speeds, which solve_forward() has just found; the
+// links' turns are taken from ws.delta_alpha. Quaternions stay normalised.
+void displace(const Model& model, const Workspace& ws, std::span<const double> step, std::span<double> q) noexcept;
+
 // Backward pass of generalised forces tau alone (no bias, no velocities) with the factors of factorize(), over the
 // links of `supports` (outermost first), outside of which tau is zero. Gives the residual r and the rate D^-1 r: the
 // product of two right-hand sides through M^-1 is the sum of one's residual times the other's rate. Entries of other
 // links are left alone.
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
                     std::span<double> residual, std::span<double> rate) noexcept;
+
+// The same for a row between two links, whose unit force is its gradient.
+void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, int link1, int link2,
+                    const RowGradient& G, std::span<double> residual, std::span<double> rate) noexcept;
 
 // q' of the coordinates for speeds u; needs the motion of the same q and u.
 void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,

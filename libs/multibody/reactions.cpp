@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "multibody/constraint.h"
 #include "multibody/coupled_mass.h"
 #include "multibody/dynamics.h"
 #include "multibody/element_law.h"
+#include "multibody/loops.h"
 #include "multibody/observe.h"
 #include "multibody/passes.h"
+#include "multibody/rows.h"
 
 namespace slew::multibody {
 
@@ -80,13 +83,50 @@ class ReactionSum {
   }
 
   // actuators; a joint row's force is part of what its joint transmits
-  void subtract_rows(std::span<const double> row_forces) noexcept {
+  void subtract_rows(std::span<const double> row_forces, std::span<JointReaction> reactions) noexcept {
     for (std::size_t k = 0; k < row_forces.size(); ++k) {
       const Row& row = model_.rows[k];
+      if (row.kind == RowKind::joint && row.link == 0) {
+        RowGradient wrench;
+        add(coordinate_of_cut(model_, row, ws_).G, row_forces[k], wrench);
+        transmit(model_.cuts[at(model_.joints[at(row.element)].cut)], wrench, reactions);
+        continue;
+      }
       const std::size_t element = at(row.element);
       if (row.kind == RowKind::length) subtract_line(element, row_forces[k]);
       if (row.kind == RowKind::angle) subtract_angle(model_.angles[element], ws_.angles[element].n * row_forces[k]);
     }
+  }
+
+  // what the rows of cut joints do to their bodies, which is what these joints transmit
+  void subtract_cuts(std::span<const double> forces, std::span<JointReaction> reactions) noexcept {
+    for (const Cut& cut : model_.cuts) {
+      RowGradient sum;
+      for (std::size_t k = 0; k < cut.rows.size(); ++k) {
+        add(ws_.loops.rows[at(cut.first_row) + k].G, forces[at(cut.first_row) + k], sum);
+      }
+      transmit(cut, sum, reactions);
+    }
+  }
+
+  void transmit(const Cut& cut, const RowGradient& wrench, std::span<JointReaction> reactions) noexcept {
+    const Joint& joint = model_.joints[at(cut.joint)];
+    ws_.body_f[at(joint.body1)] -= wrench.v1;
+    ws_.body_n[at(joint.body1)] -= wrench.w1;
+    ws_.body_f[at(joint.body2)] -= wrench.v2;
+    ws_.body_n[at(joint.body2)] -= wrench.w2;
+    const Vec3 point = ws_.motion[at(cut.link2)].p + ws_.motion[at(cut.link2)].R * cut.p_L2;
+    const Vec3 moment = wrench.w1 - cross(point - ws_.motion[at(cut.link1)].p, wrench.v1);
+    JointReaction& reaction = reactions[at(cut.joint)];
+    reaction.force = (Vec3(reaction.force) + wrench.v1).array();
+    reaction.moment = (Vec3(reaction.moment) + moment).array();
+  }
+
+  static void add(const RowGradient& G, double force, RowGradient& sum) noexcept {
+    sum.v1 += G.v1 * force;
+    sum.w1 += G.w1 * force;
+    sum.v2 += G.v2 * force;
+    sum.w2 += G.w2 * force;
   }
 
   // from the tips towards Ground: a body's joint supplies what the body and its children need
@@ -94,6 +134,7 @@ class ReactionSum {
     for (std::size_t k = model_.body_order.size(); k-- > 0;) {
       const auto child = at(model_.body_order[k]);
       const Body& body = model_.bodies[child];
+      if (body.joint < 0) continue;  // free in the tree
       const Joint& joint = model_.joints[at(body.joint)];
       const Vec3 origin = ws_.motion[at(body.link)].p;
       const Vec3 f = ws_.body_f[child], n = ws_.body_n[child];
@@ -112,6 +153,72 @@ class ReactionSum {
   Workspace& ws_;
 };
 
+// Reactions of a unit force in a redundant row, which the independent rows and the tree balance without any motion:
+// W_kk f_k = -W_kd.
+void find_unit_reactions(const Model& model, const Cut& cut, const ConstraintRow& row, Workspace& ws,
+                         std::span<JointReaction> reactions) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  const std::size_t speeds = ws.udot.size();
+  const RowGradient G = evaluate(row, cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]).G;
+  const std::span<const int> supports(model.supports.data() + cut.first_support,
+                                      model.supports.data() + cut.support_end);
+  std::fill(ws.unit_rate.begin(), ws.unit_rate.end(), 0.0);
+  solve_backward(model, ws, supports, cut.link1, cut.link2, G, ws.unit_residual, ws.unit_rate);
+  for (std::size_t k = 0; k < loops.rows.size(); ++k) {
+    double w = 0;
+    for (std::size_t j = 0; j < speeds; ++j) w += loops.residual[k * speeds + j] * ws.unit_rate[j];
+    loops.multipliers[k] = -w;
+  }
+  loops.factor.solve(loops.multipliers);
+  ReactionSum sum(model, ws);
+  std::fill(reactions.begin(), reactions.end(), JointReaction{});
+  sum.transmit(cut, G, reactions);
+  sum.subtract_cuts(loops.multipliers, reactions);
+  sum.pass_on(reactions);
+}
+
+// Of all reactions that cause this motion those with the smallest sum of squares of forces [N] and moments [N m].
+void take_smallest(const Model& model, Workspace& ws, std::span<JointReaction> reactions) noexcept {
+  const std::size_t joints = model.joints.size(), units = ws.unit_shares.size();
+  std::copy(reactions.begin(), reactions.end(), ws.found_reactions.begin());
+  std::size_t unit = 0;
+  for (const Cut& cut : model.cuts) {
+    for (const ConstraintRow& row : cut.redundant) {
+      find_unit_reactions(model, cut, row, ws, reactions);
+      for (std::size_t j = 0; j < joints; ++j) {
+        ws.unit_force[unit * joints + j] = Vec3(reactions[j].force);
+        ws.unit_moment[unit * joints + j] = Vec3(reactions[j].moment);
+      }
+      ++unit;
+    }
+  }
+  for (std::size_t k = 0; k < units; ++k) {
+    for (std::size_t l = 0; l <= k; ++l) {
+      double sum = 0;
+      for (std::size_t j = 0; j < joints; ++j) {
+        sum += dot(ws.unit_force[k * joints + j], ws.unit_force[l * joints + j]) +
+               dot(ws.unit_moment[k * joints + j], ws.unit_moment[l * joints + j]);
+      }
+      ws.unit_products[k * units + l] = sum;
+    }
+    ws.unit_shares[k] = 0;
+    for (std::size_t j = 0; j < joints; ++j) {
+      ws.unit_shares[k] += dot(ws.unit_force[k * joints + j], Vec3(ws.found_reactions[j].force)) +
+                           dot(ws.unit_moment[k * joints + j], Vec3(ws.found_reactions[j].moment));
+    }
+  }
+  ws.unit_factor.factorize(ws.unit_products, {}, kDependent);
+  ws.unit_factor.solve(ws.unit_shares);
+  for (std::size_t j = 0; j < joints; ++j) {
+    Vec3 force(ws.found_reactions[j].force), moment(ws.found_reactions[j].moment);
+    for (std::size_t k = 0; k < units; ++k) {
+      force -= ws.unit_force[k * joints + j] * ws.unit_shares[k];
+      moment -= ws.unit_moment[k * joints + j] * ws.unit_shares[k];
+    }
+    reactions[j] = {force.array(), moment.array()};
+  }
+}
+
 }  // namespace
 
 void joint_reactions(const Model& model, const State& state, Workspace& ws, std::span<const double> row_forces,
@@ -127,8 +234,10 @@ void joint_reactions(const Model& model, const State& state, Workspace& ws, std:
   for (const CoupledMass& mass : model.coupled) sum.add_coupled(mass);
   for (const CoupledMass& mass : model.welded) sum.add_coupled(mass);
   sum.subtract_elements();
-  sum.subtract_rows(row_forces);
+  sum.subtract_rows(row_forces, reactions);
+  sum.subtract_cuts(ws.loops.multipliers, reactions);
   sum.pass_on(reactions);
+  if (!ws.unit_shares.empty()) take_smallest(model, ws, reactions);
 }
 
 }  // namespace slew::multibody

@@ -4,8 +4,11 @@
 #include <cstddef>
 
 #include "core/reductions.h"
+#include "multibody/constraint.h"
 #include "multibody/coupled_mass.h"
 #include "multibody/dynamics.h"
+#include "multibody/joint_directions.h"
+#include "multibody/loops.h"
 #include "multibody/passes.h"
 
 namespace slew::multibody {
@@ -41,14 +44,27 @@ void write_entries(const Link& link, const LinkMotion& m, const UnitWrench& wren
         J[u + 3 + k] = wrench.torque[static_cast<int>(k)];
       }
       break;
+    case LinkJoint::universal:
+    case LinkJoint::cylindrical: {
+      const Pair S = directions(link.joint, m);
+      for (int k = 0; k < 2; ++k) {
+        J[u + at(k)] = dot(S.turn[k], wrench.torque) + dot(S.slide[k], wrench.force);
+      }
+      break;
+    }
   }
 }
 
+const Constraint& cut_of(const Model& model, const Row& row) noexcept {
+  return model.cuts[at(model.joints[at(row.element)].cut)];
+}
+
 void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std::span<double> J) noexcept {
-  if (row.kind == RowKind::joint) {
+  if (row.kind == RowKind::joint && row.link > 0) {
     J[at(model.links[at(row.link)].u)] = 1;
     return;
   }
+  const RowValue cut = row.kind == RowKind::joint ? coordinate_of_cut(model, row, ws) : RowValue{};
   for (int i = row.first_path; i < row.path_end; ++i) {
     const PathEntry& entry = model.paths[at(i)];
     const LinkMotion& m = ws.motion[at(entry.link)];
@@ -58,6 +74,11 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
       const LineMotion& line = ws.lines[at(row.element)];
       wrench.force = line.e * -entry.sign;
       wrench.torque = cross((entry.sign < 0 ? line.P1 : line.P2) - m.p, wrench.force);
+    } else if (row.kind == RowKind::joint) {
+      const Constraint& joint = cut_of(model, row);
+      const Vec3 arm = ws.motion[at(entry.sign < 0 ? joint.link1 : joint.link2)].p - m.p;
+      wrench.force = entry.sign < 0 ? cut.G.v1 : cut.G.v2;
+      wrench.torque = (entry.sign < 0 ? cut.G.w1 : cut.G.w2) + cross(arm, wrench.force);
     } else {
       wrench.torque = ws.angles[at(row.element)].n * entry.sign;
     }
@@ -85,6 +106,14 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
       break;
     }
     case RowKind::joint: {
+      if (row.link == 0) {
+        const RowValue cut = coordinate_of_cut(model, row, ws);
+        const Constraint& joint = cut_of(model, row);
+        ws.row_x[k] = cut.g;
+        ws.row_v[k] = cut.rate;
+        bias = acceleration_of(cut, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)]);
+        break;
+      }
       const Link& link = model.links[at(row.link)];
       ws.row_x[k] = state.q[at(link.q)];
       ws.row_v[k] = state.u[at(link.u)];
@@ -100,10 +129,22 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
   ws.row_a_free[k] = bias + fixed_dot(J, ws.udot_free);
   const std::span<const int> supports(model.supports.data() + row.first_support,
                                       model.supports.data() + row.support_end);
-  solve_backward(model, ws, supports, J, {ws.row_residual.data() + k * dof, dof}, {ws.row_rate.data() + k * dof, dof});
+  const std::span<double> residual(ws.row_residual.data() + k * dof, dof), rate(ws.row_rate.data() + k * dof, dof);
+  if (model.cuts.empty()) return solve_backward(model, ws, supports, J, residual, rate);
+  // loops reach links outside of the row's supports
+  std::fill(residual.begin(), residual.end(), 0.0);
+  std::fill(rate.begin(), rate.end(), 0.0);
+  solve_backward(model, ws, supports, J, residual, rate);
+  reduce_row(model, ws, residual, rate);
 }
 
 }  // namespace
+
+RowValue coordinate_of_cut(const Model& model, const Row& row, const Workspace& ws) noexcept {
+  const Constraint& joint = cut_of(model, row);
+  return coordinate(model.joints[at(row.element)].type, 0, joint, ws.motion[at(joint.link1)],
+                    ws.motion[at(joint.link2)]);
+}
 
 double bias_of_length(const LineElement& element, const LineMotion& line, const Workspace& ws) noexcept {
   const Vec3 a =

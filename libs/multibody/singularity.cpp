@@ -24,6 +24,8 @@ bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
       return !(1 / factor.d_inv > 0);
     case LinkJoint::spherical:
     case LinkJoint::floating:
+    case LinkJoint::universal:
+    case LinkJoint::cylindrical:
       break;
   }
   // the largest element of the inverse against the size of the inertia

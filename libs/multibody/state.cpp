@@ -26,6 +26,22 @@ Workspace::Workspace(const Model& model)
   row_rate.assign(rows * nu, 0.0);
   row_W.assign(rows * rows, 0.0);
   row_is_active.assign(rows, 1);
+  const auto cut_rows = static_cast<std::size_t>(model.cut_row_count());
+  loops.rows.resize(cut_rows);
+  for (auto* by_row : {&loops.residual, &loops.rate}) by_row->assign(cut_rows * nu, 0.0);
+  loops.W.assign(cut_rows * cut_rows, 0.0);
+  loops.multipliers.assign(cut_rows, 0.0);
+  for (auto* by_u : {&loops.no_tau, &loops.step}) by_u->assign(nu, 0.0);
+  loops.factor = math::Semidefinite(static_cast<int>(cut_rows));
+  std::size_t redundant = 0;
+  for (const Cut& cut : model.cuts) redundant += cut.redundant.size();
+  unit_force.resize(redundant * model.joints.size());
+  unit_moment.resize(redundant * model.joints.size());
+  for (auto* by_u : {&unit_residual, &unit_rate}) by_u->assign(redundant > 0 ? nu : 0, 0.0);
+  found_reactions.resize(model.joints.size());
+  unit_products.assign(redundant * redundant, 0.0);
+  unit_shares.assign(redundant, 0.0);
+  unit_factor = math::Semidefinite(static_cast<int>(redundant));
   motion[0].R = math::Mat3::identity();
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/state_hash.h"
+#include "math/semidefinite.h"
 #include "multibody/model.h"
 
 namespace slew::multibody {
@@ -24,7 +25,8 @@ struct LinkMotion {
   math::Vec3 r;      // m, from the parent's origin
   math::Vec3 w;      // rad/s
   math::Vec3 v;      // m/s, of the origin
-  math::Vec3 axis;   // of a revolute or prismatic joint
+  math::Vec3 axis;   // z of the link: of a joint with one or two coordinates
+  math::Vec3 axis1;  // of a universal joint: z of the parent's frame
   math::Vec3 alpha;  // rad/s2
   math::Vec3 a;      // m/s2, of the origin
 };
@@ -66,6 +68,36 @@ struct CoupledMotion {
   double a11 = 0, a12 = 0, a22 = 0;  // kg, across the line
 };
 
+// Gradient of a row with respect to the velocities of both links' origins and their angular velocities.
+struct RowGradient {
+  math::Vec3 v1, w1, v2, w2;
+};
+
+// A row between two links at one instant: what it must keep at zero, or a coordinate.
+struct RowValue {
+  double g = 0;     // m or 1
+  double rate = 0;  // g' [m/s or 1/s]
+  double bias = 0;  // b [m/s2 or 1/s2]: g'' = G a + b
+  RowGradient G;
+};
+
+// What a joint transmits to its body 1: force and moment about the joint's point of body 2, Ground axes [N, N m].
+// It includes the forces of the joint's own row. Fixed joints are included.
+struct JointReaction {
+  Triple force{}, moment{};
+};
+
+// Rows of all cut joints, filled by close_loops().
+struct LoopWorkspace {
+  std::vector<RowValue> rows;
+  std::vector<double> residual, rate;  // rows x speeds, of solve_backward()
+  std::vector<double> W;               // rows x rows
+  std::vector<double> multipliers;     // by row: the force that closes it, -lambda [N or N m]
+  std::vector<double> no_tau;          // zeros, by u
+  std::vector<double> step;            // by u
+  math::Semidefinite factor;
+};
+
 struct Workspace {
   explicit Workspace(const Model& model);
 
@@ -91,8 +123,16 @@ struct Workspace {
   std::vector<double> row_force;             // of the stage under way
   std::vector<unsigned char> row_is_active;  // 0 or 1
 
+  // smallest reactions: those of one unit force in each redundant row, by row and joint of the scene; scratch of them
+  std::vector<math::Vec3> unit_force, unit_moment;
+  std::vector<double> unit_residual, unit_rate, unit_products, unit_shares;
+  math::Semidefinite unit_factor;
+  std::vector<JointReaction> found_reactions;
+
   // by body of the scene: what joint_reactions() gathers, about the origin of the body's link
   std::vector<math::Vec3> body_n, body_f;
+
+  LoopWorkspace loops;
 
   // Runge-Kutta
   std::vector<double> q_stage, u_stage, qdot, q_sum, u_sum, udot_free, residual_free;

@@ -1,24 +1,85 @@
 #include "multibody/topology.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <string>
+#include <utility>
 
 namespace slew::multibody {
 namespace {
 
-// bodies from `from` towards Ground along the edges found so far
-std::string way_to_ground(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree, int from) {
-  std::string names(body_name(mechanics, from));
-  while (from != kGround) {
-    for (const TreeEdge& edge : tree) {
-      if (edge.child != from) continue;
-      from = edge.parent;
-      names += " - " + std::string(body_name(mechanics, from));
-      break;
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+std::pair<int, int> bodies_of(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
+  return {find_body(mechanics, joint.body1), find_body(mechanics, joint.body2)};
+}
+
+// Bodies that joints connect, by union of their sets.
+class Groups {
+ public:
+  explicit Groups(std::size_t bodies) : parent_(bodies) { std::iota(parent_.begin(), parent_.end(), 0); }
+  // False when they were connected before.
+  bool connect(int a, int b) {
+    a = root_of(a);
+    b = root_of(b);
+    parent_[at(a)] = b;
+    return a != b;
+  }
+  [[nodiscard]] int root_of(int body) const {
+    while (parent_[at(body)] != body) body = parent_[at(body)];
+    return body;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+bool is_any(const Triple& values) noexcept {
+  return std::any_of(values.begin(), values.end(), [](double x) { return x != 0; });
+}
+
+bool needs_coordinates(const JointDef& joint) noexcept {
+  return std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max) || joint.coulomb_friction > 0 ||
+         joint.viscous_friction > 0 || joint.initial_velocity != 0 || joint.initial_velocity_2 != 0 ||
+         is_any(joint.initial_rotation);
+}
+
+// joints are taken into the tree by classes, within a class in the order of the file
+int class_of(const JointDef& joint) noexcept {
+  if (joint.type == JointType::fixed) return 0;
+  if (joint.type == JointType::floating) return 3;
+  return needs_coordinates(joint) ? 1 : 2;
+}
+
+std::vector<bool> choose_tree(const MechanicsDef& mechanics) {
+  std::vector<bool> is_in_tree(mechanics.joints.size(), false);
+  Groups groups(mechanics.bodies.size() + 1);
+  for (int choice = 0; choice < 4; ++choice) {
+    for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
+      const JointDef& joint = mechanics.joints[j];
+      const auto [body1, body2] = bodies_of(mechanics, joint);
+      if (body1 == kNoBody || body2 == kNoBody || !has_coordinates(joint.type) || class_of(joint) != choice) continue;
+      is_in_tree[j] = groups.connect(body1, body2);
     }
   }
-  return names;
+  return is_in_tree;
+}
+
+std::vector<bool> connected_to_ground(const MechanicsDef& mechanics) {
+  Groups groups(mechanics.bodies.size() + 1);
+  for (const JointDef& joint : mechanics.joints) {
+    const auto [body1, body2] = bodies_of(mechanics, joint);
+    if (body1 != kNoBody && body2 != kNoBody) groups.connect(body1, body2);
+  }
+  std::vector<bool> is_connected(mechanics.bodies.size() + 1);
+  for (std::size_t b = 0; b < is_connected.size(); ++b) {
+    is_connected[b] = groups.root_of(static_cast<int>(b)) == groups.root_of(kGround);
+  }
+  return is_connected;
 }
 
 void report_unreached(const MechanicsDef& mechanics, const std::vector<bool>& is_reached, Problems& problems) {
@@ -58,38 +119,55 @@ std::string_view body_name(const MechanicsDef& mechanics, int body) noexcept {
   return body == kGround ? kGroundName : std::string_view(mechanics.bodies[static_cast<std::size_t>(body) - 1].name);
 }
 
+bool has_coordinates(JointType type) noexcept {
+  return type <= JointType::cylindrical;
+}
+
 std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems) {
+  check_floating(mechanics, problems);
+  const std::vector<bool> is_in_tree = choose_tree(mechanics);
   std::vector<TreeEdge> tree;
   std::vector<bool> is_reached(mechanics.bodies.size() + 1, false);
-  std::vector<bool> is_used(mechanics.joints.size(), false);
   is_reached[kGround] = true;
-  check_floating(mechanics, problems);
   // breadth first from Ground, joints in the order of the file
   std::vector<int> frontier = {kGround};
-  for (std::size_t next = 0; next < frontier.size(); ++next) {
-    const int body = frontier[next];
-    for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
-      if (is_used[j]) continue;
-      const int body1 = find_body(mechanics, mechanics.joints[j].body1);
-      const int body2 = find_body(mechanics, mechanics.joints[j].body2);
-      if (body1 == kNoBody || body2 == kNoBody || (body1 != body && body2 != body)) continue;
-      is_used[j] = true;
-      const int other = body1 == body ? body2 : body1;
-      if (is_reached[static_cast<std::size_t>(other)]) {
-        problems.push_back({mechanics.joints[j].name,
-                            "this joint closes a loop: " + way_to_ground(mechanics, tree, other) + " and " +
-                                way_to_ground(mechanics, tree, body),
-                            "joints that form a tree; loops are not in this version",
-                            {}});
-        continue;
+  std::size_t next = 0;
+  const auto walk = [&] {
+    for (; next < frontier.size(); ++next) {
+      const int body = frontier[next];
+      for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
+        if (!is_in_tree[j]) continue;
+        const auto [body1, body2] = bodies_of(mechanics, mechanics.joints[j]);
+        if (body1 != body && body2 != body) continue;
+        const int other = body1 == body ? body2 : body1;
+        if (is_reached[at(other)]) continue;
+        is_reached[at(other)] = true;
+        tree.push_back({static_cast<int>(j), body, other, body1 == other});
+        frontier.push_back(other);
       }
-      is_reached[static_cast<std::size_t>(other)] = true;
-      tree.push_back({static_cast<int>(j), body, other, body1 == other});
-      frontier.push_back(other);
     }
+  };
+  walk();
+  const std::vector<bool> is_connected = connected_to_ground(mechanics);
+  for (std::size_t body = 1; body < is_reached.size(); ++body) {
+    if (is_reached[body] || !is_connected[body]) continue;
+    is_reached[body] = true;
+    tree.push_back({kNoJoint, kGround, static_cast<int>(body), false});
+    frontier.push_back(static_cast<int>(body));
+    walk();
   }
   report_unreached(mechanics, is_reached, problems);
   return tree;
+}
+
+std::vector<int> cut_joints(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree) {
+  std::vector<int> cuts;
+  for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
+    const auto is_this = [j](const TreeEdge& edge) { return edge.joint == static_cast<int>(j); };
+    if (mechanics.joints[j].type == JointType::floating || std::any_of(tree.begin(), tree.end(), is_this)) continue;
+    cuts.push_back(static_cast<int>(j));
+  }
+  return cuts;
 }
 
 std::vector<Pose> start_poses(const MechanicsDef& mechanics, Problems& problems) {
@@ -136,7 +214,7 @@ std::vector<int> merged_into(const MechanicsDef& mechanics, const std::vector<Tr
   std::vector<int> merged(mechanics.bodies.size() + 1);
   for (std::size_t b = 0; b < merged.size(); ++b) merged[b] = static_cast<int>(b);
   for (const TreeEdge& edge : tree) {
-    if (mechanics.joints[static_cast<std::size_t>(edge.joint)].type != JointType::fixed) continue;
+    if (edge.joint == kNoJoint || mechanics.joints[at(edge.joint)].type != JointType::fixed) continue;
     merged[static_cast<std::size_t>(edge.child)] = merged[static_cast<std::size_t>(edge.parent)];
   }
   return merged;

@@ -1,4 +1,10 @@
-// How the bodies hang together: the tree of joints rooted in Ground, and the bodies' poses at the start.
+// How the bodies hang together: a tree of joints rooted in Ground, the joints that are cut, and the poses at the start.
+//
+// Joints with coordinates (fixed, revolute, prismatic, spherical, universal, cylindrical, floating) span the tree. Of a
+// loop the joint that the scene lists last is cut and closed by constraints, with two exceptions: a fixed joint is
+// never cut while another one is there to cut, and a joint with limits, friction, prescribed motion or an initial
+// velocity before one without. The other joints have no coordinates and are always cut. A body that only cut joints
+// connect to the rest is free in the tree.
 //
 // Bodies are numbered 0 for Ground, i + 1 for MechanicsDef::bodies[i].
 #pragma once
@@ -14,6 +20,7 @@ namespace slew::multibody {
 
 inline constexpr int kGround = 0;
 inline constexpr int kNoBody = -1;
+inline constexpr int kNoJoint = -1;
 
 struct Pose {
   math::Mat3 R = math::Mat3::identity();  // R_WB: columns are the body's axes in Ground
@@ -22,7 +29,7 @@ struct Pose {
 
 // A joint as the tree walks it, from Ground outwards.
 struct TreeEdge {
-  int joint = 0;             // index in MechanicsDef::joints
+  int joint = 0;             // index in MechanicsDef::joints; kNoJoint: the child is free
   int parent = 0;            // body
   int child = 0;             // body
   bool is_reversed = false;  // the child is the joint's body 1
@@ -32,9 +39,16 @@ struct TreeEdge {
 [[nodiscard]] int find_body(const MechanicsDef& mechanics, std::string_view name) noexcept;
 [[nodiscard]] std::string_view body_name(const MechanicsDef& mechanics, int body) noexcept;
 
-// Joints in an order in which every parent comes before its children. Appends a problem for every loop, every body
-// without a way to Ground and every floating joint that does not start from Ground.
+// Joints in an order in which every parent comes before its children. Appends a problem for every body without a way to
+// Ground and every floating joint that does not start from Ground.
 [[nodiscard]] std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems);
+
+// Joints outside of the tree, in the order of the scene: indices in MechanicsDef::joints. Floating joints of bodies
+// that others hold are not among them: they leave everything free.
+[[nodiscard]] std::vector<int> cut_joints(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree);
+
+// Whether a joint's motion can be described by coordinates of its own.
+[[nodiscard]] bool has_coordinates(JointType type) noexcept;
 
 // Poses in Ground of all bodies by number. Appends a problem for a cycle of `relative_to`; names must be known.
 [[nodiscard]] std::vector<Pose> start_poses(const MechanicsDef& mechanics, Problems& problems);

@@ -7,9 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "multibody/assembly.h"
 #include "multibody/body_inertia.h"
+#include "multibody/constraint.h"
+#include "multibody/dynamics.h"
 #include "multibody/field_tables.h"
+#include "multibody/observe.h"
 #include "multibody/singularity.h"
+#include "multibody/start_pose.h"
 #include "multibody/topology.h"
 
 namespace slew::multibody {
@@ -18,8 +23,6 @@ namespace {
 using math::Mat3;
 using math::Vec3;
 
-// how far joint frames may be apart at the start: the scene's numbers have six digits and more
-constexpr double kFrameTolerance = 1e-6;  // m, rad
 // printed inertias are rounded: share of the largest moment by which a rule may fail
 constexpr double kInertiaTolerance = 1e-6;
 // directions f1 and g1 are exact in practice; more than this is a wrong number
@@ -28,9 +31,6 @@ constexpr double kRightAngleTolerance = 1e-3;
 constexpr double kTransverseTolerance = 1e-2;
 // a start on a limit, by numbers with six digits and more
 constexpr double kLimitTolerance = 1e-6;  // m, rad
-
-// a body's mass may lie outside of its points, but hardly by more than this
-constexpr double kLargestGyration = 3;
 
 class Validator {
  public:
@@ -56,6 +56,7 @@ class Validator {
       check_neighbours(tree);
     }
     if (problems_.empty()) find_singular_joints(m_, problems_);
+    if (problems_.empty()) check_loops();
   }
 
  private:
@@ -259,29 +260,59 @@ class Validator {
     return poses[static_cast<std::size_t>(multibody::find_body(m_, body))];
   }
 
-  // what the joint holds must agree at the start
+  // what the joint holds must agree at the start, or nearly
   void check_frames(const JointDef& joint, const std::vector<Pose>& poses) {
     if (joint.type == JointType::floating) return;
-    const auto [frame1, frame2] = joint_frames(joint, pose_of(poses, joint.body1), pose_of(poses, joint.body2));
-    Vec3 gap = frame2.p - frame1.p;
-    const Vec3 z = frame1.R.c[2];
-    if (joint.type == JointType::prismatic) gap -= z * math::dot(gap, z);
-    if (math::norm(gap) > kFrameTolerance) {
+    const JointFrames frames = joint_frames(joint, pose_of(poses, joint.body1), pose_of(poses, joint.body2));
+    check_link(joint, math::norm(frames.frame2.p - frames.frame1.p));
+    check_start(joint, frames);
+    const Pose held = nearest_frame(joint.type, frames);
+    const double gap = math::norm(held.p - frames.frame2.p);
+    const double tilt = math::rotation_angle(held.R * math::transpose(frames.frame2.R));
+    const double tolerance = std::max(m_.assembly_tolerance, kFrameTolerance);
+    if (gap > tolerance) {
+      const bool has_axis = joint.type == JointType::prismatic || joint.type == JointType::cylindrical;
       add(joint.name + ".point2",
-          fmt::format("the joint's points are {:.6g} m apart at the start{}", math::norm(gap),
-                      joint.type == JointType::prismatic ? " across the axis" : ""),
-          fmt::format("points that agree within {} m", kFrameTolerance));
+          fmt::format("the joint's points are {:.6g} m apart at the start{}", gap, has_axis ? " across the axis" : ""),
+          fmt::format("points that agree within {} m (mechanics.assembly_tolerance)", tolerance));
     }
-    check_start(joint, {frame1, frame2});
-    if (joint.type == JointType::spherical) return;
-    const double tilt = joint.type == JointType::revolute
-                            ? std::atan2(math::norm(math::cross(z, frame2.R.c[2])), math::dot(z, frame2.R.c[2]))
-                            : math::rotation_angle(math::transpose(frame1.R) * frame2.R);
-    if (tilt > kFrameTolerance) {
+    if (tilt > tolerance) {
+      const bool has_one_axis = joint.type == JointType::revolute || joint.type == JointType::cylindrical;
       add(joint.name + ".orientation2",
-          fmt::format("the joint's {} {:.6g} rad apart at the start",
-                      joint.type == JointType::revolute ? "axes are" : "frames are turned", tilt),
-          fmt::format("joint frames that agree within {} rad", kFrameTolerance));
+          fmt::format("the joint's {} {:.6g} rad apart at the start", has_one_axis ? "axes are" : "frames are turned",
+                      tilt),
+          fmt::format("joint frames that agree within {} rad (mechanics.assembly_tolerance)", tolerance));
+    }
+  }
+
+  void check_link(const JointDef& joint, double distance) {
+    if (joint.type < JointType::spherical_spherical) return;
+    if (joint.length == 0 && distance < kShortestLink) {
+      add(joint.name + ".point2", "the link's points coincide at the start", "two points apart, or a length");
+    } else if (joint.length > 0 && std::abs(distance - joint.length) > m_.assembly_tolerance) {
+      add(joint.name + ".length",
+          fmt::format("the link's points are {:.6g} m apart at the start, its length is {:.6g} m", distance,
+                      joint.length),
+          fmt::format("points that fit the length within {} m (mechanics.assembly_tolerance)", m_.assembly_tolerance));
+    }
+  }
+
+  // loops that cannot be closed, and speeds that they do not allow
+  void check_loops() {
+    AssemblyReport report;
+    const Model model = build_model(m_, {}, report);
+    for (const AssemblyReport::Row& row : report.open) {
+      add(model.joints[static_cast<std::size_t>(row.joint)].name,
+          fmt::format("the joint cannot be closed: {} is off by {:.3g} after all bodies were moved", row.what,
+                      row.violation),
+          "poses, points and lengths that let all joints of the loop close");
+    }
+    for (const AssemblyReport::Speed& speed : report.speeds) {
+      add(fmt::format("{}.initial_velocity",
+                      joint_of(model, model.coordinate_count() + model.links[static_cast<std::size_t>(speed.link)].u)),
+          fmt::format("the loops do not allow {:.6g}; with the other speeds given it is {:.6g}", speed.wanted,
+                      speed.found),
+          "speeds that fit each other: those that are not given follow from the others");
     }
   }
 
@@ -339,28 +370,6 @@ void validate(const MechanicsDef& mechanics, Problems& problems) {
   Problems own;
   Validator(mechanics, own).run();
   problems.insert(problems.end(), own.begin(), own.end());
-}
-
-void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
-  for (const BodyDef& body : mechanics.bodies) {
-    double extent = 0;
-    const auto see = [&](const std::string& owner, const Triple& point) {
-      if (owner == body.name) extent = std::max(extent, math::norm(Vec3(point) - Vec3(body.center_of_mass)));
-    };
-    for (const JointDef& joint : mechanics.joints) see(joint.body1, joint.point1), see(joint.body2, joint.point2);
-    for (const TranslationalForceDef& force : mechanics.translational_forces) {
-      see(force.body1, force.point1), see(force.body2, force.point2);
-    }
-    const double largest = math::symmetric_eigenvalues(inertia_about_center(body))[2];
-    const double gyration = std::sqrt(std::max(0.0, largest) / body.mass);
-    // a body whose points all lie in its centre says nothing about its size
-    if (extent == 0 || gyration <= kLargestGyration * extent) continue;
-    warnings.push_back({body.name + ".inertia",
-                        fmt::format("the radius of gyration is {:.3g} m, all points on the body are within {:.3g} m of "
-                                    "its centre of mass",
-                                    gyration, extent),
-                        "the inertia about inertia_about, in kg m2", ""});
-  }
 }
 
 }  // namespace slew::multibody

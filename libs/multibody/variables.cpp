@@ -1,6 +1,7 @@
 #include <array>
 #include <cstddef>
 
+#include "multibody/constraint.h"
 #include "multibody/element_law.h"
 #include "multibody/observe.h"
 #include "multibody/passes.h"
@@ -18,8 +19,43 @@ std::size_t at(int index) noexcept {
 
 constexpr std::array<const char*, 3> kAxes = {".x", ".y", ".z"};
 
-bool has_one_coordinate(const Joint& joint) noexcept {
-  return joint.type == JointType::revolute || joint.type == JointType::prismatic;
+struct CoordinateName {
+  const char* suffix;  // of position and velocity
+  bool is_angle;
+};
+
+// names of a joint's coordinates, in their order
+std::span<const CoordinateName> coordinates_of(JointType type) noexcept {
+  static constexpr CoordinateName kTurn[] = {{"", true}}, kSlide[] = {{"", false}};
+  static constexpr CoordinateName kUniversal[] = {{"_1", true}, {"_2", true}};
+  static constexpr CoordinateName kCylindrical[] = {{"_angle", true}, {"", false}};
+  switch (type) {
+    case JointType::revolute:
+      return kTurn;
+    case JointType::prismatic:
+      return kSlide;
+    case JointType::universal:
+      return kUniversal;
+    case JointType::cylindrical:
+      return kCylindrical;
+    default:
+      return {};
+  }
+}
+
+// value and rate of a joint's coordinate
+RowValue read_coordinate(const Model& model, const State& state, const Workspace& ws, const Joint& joint, int number) {
+  RowValue value;
+  if (joint.cut >= 0) {
+    const Cut& cut = model.cuts[at(joint.cut)];
+    return coordinate(joint.type, number, cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]);
+  }
+  const Link& link = model.links[at(joint.link)];
+  // a universal joint that the tree walks backwards has its coordinates in the other order
+  const int place = joint.type == JointType::universal && joint.is_reversed ? 1 - number : number;
+  value.g = state.q[at(link.q + place)];
+  value.rate = state.u[at(link.u + place)];
+  return value;
 }
 
 // force of the row that acts on an element or joint; 0 without one
@@ -86,6 +122,9 @@ std::string_view joint_of(const Model& model, int state_index) noexcept {
   for (const Joint& joint : model.joints) {
     if (joint.link == moved && moved > 0) return joint.name;
   }
+  for (const Body& body : model.bodies) {
+    if (body.link == moved && moved > 0) return body.name;
+  }
   return "a joint";
 }
 
@@ -101,11 +140,12 @@ std::vector<ElementVariable> variables(const Model& model) {
     names.add_triple(body + ".angular_velocity", angular_velocity);
   }
   for (const Joint& joint : model.joints) {
-    if (!has_one_coordinate(joint)) continue;
-    const bool is_revolute = joint.type == JointType::revolute;
-    names.add(joint.name + ".position", is_revolute ? angle : length);
-    names.add(joint.name + ".velocity", is_revolute ? angular_velocity : velocity);
-    names.add(joint.name + (is_revolute ? ".torque" : ".force"), is_revolute ? torque : force);
+    for (const auto& [suffix, is_angle] : coordinates_of(joint.type)) {
+      names.add(joint.name + ".position" + suffix, is_angle ? angle : length);
+      names.add(joint.name + ".velocity" + suffix, is_angle ? angular_velocity : velocity);
+    }
+    if (joint.type == JointType::revolute) names.add(joint.name + ".torque", torque);
+    if (joint.type == JointType::prismatic) names.add(joint.name + ".force", force);
   }
   for (const LineElement& line : model.lines) {
     names.add(line.name + ".length", length);
@@ -152,11 +192,13 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    if (!has_one_coordinate(joint)) continue;
-    const Link& link = model.links[at(joint.link)];
-    out.add(state.q[at(link.q)]);
-    out.add(state.u[at(link.u)]);
-    out.add(row_force_on(model, RowKind::joint, i, row_forces));
+    const int count = static_cast<int>(coordinates_of(joint.type).size());
+    for (int number = 0; number < count; ++number) {
+      const RowValue value = read_coordinate(model, state, ws, joint, number);
+      out.add(value.g);
+      out.add(value.rate);
+    }
+    if (count == 1) out.add(row_force_on(model, RowKind::joint, i, row_forces));
   }
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
     const LineMotion& line = ws.lines[i];

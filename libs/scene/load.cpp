@@ -201,7 +201,10 @@ class SceneReader {
     if (report_.size() > problems || !has_sound_names_) return false;
     check_problems([&](Problems& errors, Problems& warnings) {
       multibody::validate(scene_.mechanics, errors);
-      if (errors.empty()) multibody::find_unlikely_inertia(scene_.mechanics, warnings);
+      if (errors.empty()) {
+        multibody::find_unlikely_inertia(scene_.mechanics, warnings);
+        multibody::find_start_changes(scene_.mechanics, warnings);
+      }
     });
     return report_.size() == problems;
   }

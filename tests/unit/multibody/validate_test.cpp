@@ -79,12 +79,28 @@ TEST(Validate, NamesNamesThatAreTaken) {
   expect_problem([](auto& d) { d.bodies[0].name = "Ground"; }, "Ground", "is taken");
 }
 
-TEST(Validate, NamesALoopOfJointsWithItsBodies) {
-  expect_problem(
-      [](auto& d) {
-        d.joints.push_back({.name = "Third", .type = JointType::spherical, .point1 = {1, 0, 0}, .body2 = "Load"});
-      },
-      "Ball", "closes a loop: Load - Ground and Arm - Ground");
+TEST(Validate, NamesALoopThatCannotClose) {
+  const auto doubled = [](double point2) {
+    return [point2](auto& d) {
+      d.joints.push_back({.name = "Second", .point1 = {0, 0, 1}, .body2 = "Arm", .point2 = {0, 0, point2}});
+    };
+  };
+  EXPECT_EQ(testing::text_of(problems_of(doubled(1))), "");
+  expect_problem(doubled(1.0005), "Second", "cannot be closed: position along z is off by 0.0005");
+  expect_problem(doubled(1.1), "Second.point2", "0.1 m apart");
+}
+
+TEST(Validate, NamesSpeedsThatALoopDoesNotAllow) {
+  const auto doubled = [](double first, double second) {
+    return [=](auto& d) {
+      d.joints[0].initial_velocity = first;
+      d.joints.push_back({.name = "Slide", .type = JointType::prismatic, .body2 = "Load", .initial_velocity = second});
+      d.joints[2].point1 = {1, 0, 0};
+    };
+  };
+  EXPECT_EQ(testing::text_of(problems_of(doubled(0, 0))), "");
+  expect_problem(doubled(1, 1), "Slide.initial_velocity",
+                 "the loops do not allow 1; with the other speeds given it is 0");
 }
 
 TEST(Validate, NamesBodiesWithoutAWayToGround) {
@@ -155,7 +171,7 @@ TEST(Validate, NamesPartsThatNothingKeepsFromSpinning) {
 }
 
 TEST(Validate, WantsJointFramesToAgreeAtTheStart) {
-  expect_problem([](auto& d) { d.joints[1].point1[1] = 2e-6; }, "Ball.point2", "2e-06 m apart");
+  expect_problem([](auto& d) { d.joints[1].point1[1] = 2e-3; }, "Ball.point2", "0.002 m apart");
   expect_problem([](auto& d) { d.joints[0].orientation2[0] = 0.01; }, "Hinge.orientation2", "axes are 0.01 rad apart");
   const auto slider = [](auto& d) { d.joints[0].type = JointType::prismatic; };
   EXPECT_EQ(testing::text_of(problems_of(slider)), "");
@@ -271,7 +287,7 @@ TEST(FieldTables, AppendGivesANamedDefOfTheSection) {
     for (const ElementType& type : section.types) EXPECT_NE(type.append(def, std::string(type.name)), nullptr);
   }
   EXPECT_EQ(def.bodies.size(), 1u);
-  ASSERT_EQ(def.joints.size(), 5u);
+  ASSERT_EQ(def.joints.size(), 13u);
   EXPECT_EQ(def.joints[1].name, "prismatic");
   EXPECT_EQ(def.joints[1].type, JointType::prismatic);
   EXPECT_EQ(def.translational_forces.at(0).name, "translational");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "multibody/dynamics.h"
+#include "multibody/formulation.h"
 #include "multibody/observe.h"
 #include "multibody/validate.h"
 
@@ -62,5 +63,28 @@ struct Mechanism {
   State state;
   Workspace ws;
 };
+
+// The same under the formulation that its Def names.
+struct Formulated : Mechanism {
+  explicit Formulated(const MechanicsDef& def) : Mechanism(def), dynamics(def.formulation, model, state) {}
+
+  void run(double time, double h) {
+    const int steps = static_cast<int>(std::lround(time / h));
+    bool is_closed = true;
+    for (int i = 0; i < steps; ++i) {
+      dynamics.evaluate(model, state, ws);
+      is_closed = dynamics.advance(model, state, ws, h, {}, {}) && is_closed;
+    }
+    EXPECT_TRUE(is_closed);
+    see();
+  }
+
+  Dynamics dynamics;
+};
+
+inline std::string name_of(Formulation formulation) {
+  constexpr const char* kNames[] = {"recursive", "lagrange", "augmented", "penalty"};
+  return kNames[static_cast<int>(formulation)];
+}
 
 }  // namespace slew::multibody::testing

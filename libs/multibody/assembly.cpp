@@ -1,0 +1,284 @@
+#include "multibody/assembly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "multibody/constraint.h"
+#include "multibody/loops.h"
+#include "multibody/passes.h"
+
+namespace slew::multibody {
+namespace {
+
+using math::Vec3;
+
+// pivot below which a row is taken as dependent: axes that should be parallel may be off by its root
+constexpr double kDependentAtStart = 1e-8;
+constexpr int kMostIterations = 100;
+constexpr int kMostHalvings = 20;
+constexpr double kTurn = 0.05;   // rad, of the positions nearby
+constexpr double kSlide = 0.02;  // of the mechanism's size
+// speeds that do not fit their loop by more than this are reported
+constexpr double kSpeedTolerance = 1e-6;
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+// Works on the model's rows as they are; made anew when they change.
+class Assembler {
+ public:
+  explicit Assembler(const Model& model) : model_(model), ws_(model), state_(start_state(model)) {}
+
+  [[nodiscard]] State& state() { return state_; }
+
+  // Newton's method for the independent rows, with damping
+  void close() {
+    for (int i = 0; i < kMostIterations; ++i) {
+      renew(state_);
+      const double before = independent_violation();
+      if (before <= kClosed * extent_of(ws_).length || !std::isfinite(before)) return;
+      find_step([](const RowValue& row) { return row.g; });
+      const State from = state_;
+      for (int halving = 0; halving < kMostHalvings; ++halving) {
+        state_.q = from.q;
+        solve_forward(model_, ws_, ws_.residual, ws_.loops.step);
+        displace(model_, ws_, ws_.loops.step, state_.q);
+        update_motion(model_, state_.q, state_.u, ws_);
+        evaluate_cuts(model_, ws_);
+        if (independent_violation() < before) break;
+        for (double& r : ws_.residual) r *= 0.5;
+        update_motion(model_, from.q, from.u, ws_);
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<bool> dependent_rows() {
+    renew(state_);
+    std::vector<bool> is_dependent;
+    for (int k = 0; k < model_.cut_row_count(); ++k) is_dependent.push_back(ws_.loops.factor.is_redundant(k));
+    return is_dependent;
+  }
+
+  // a position nearby; seed: which one
+  void move_away(std::uint64_t seed) {
+    renew(state_);
+    double size = 0;
+    for (const LinkMotion& m : ws_.motion) size = std::max(size, norm(m.r));
+    std::uint64_t random = seed;
+    const auto uniform = [&random] {
+      random = random * 6364136223846793005U + 1442695040888963407U;
+      return static_cast<double>(random >> 11) * 0x1p-52 - 1;
+    };
+    std::vector<double> step(state_.u.size());
+    for (double& x : step) x = kTurn * uniform();
+    for (std::size_t i = 1; i < model_.links.size(); ++i) {
+      const Link& link = model_.links[i];
+      const double slide = kSlide / kTurn * (size > 0 ? size : 1);
+      if (link.joint == LinkJoint::prismatic) step[at(link.u)] *= slide;
+      if (link.joint == LinkJoint::cylindrical) step[at(link.u) + 1] *= slide;
+      if (link.joint == LinkJoint::floating) std::for_each_n(&step[at(link.u)], 3, [&](double& x) { x *= slide; });
+      const auto u = at(link.u);
+      if (link.joint == LinkJoint::spherical) ws_.delta_alpha[i] = {step[u], step[u + 1], step[u + 2]};
+      if (link.joint == LinkJoint::floating) ws_.delta_alpha[i] = {step[u + 3], step[u + 4], step[u + 5]};
+    }
+    displace(model_, ws_, step, state_.q);
+  }
+
+  // the largest mobility among the rows of a cut that have the same unit, by row
+  [[nodiscard]] std::vector<double> mobilities() {
+    renew(state_);
+    const std::size_t rows = ws_.loops.rows.size();
+    std::vector<double> result(rows);
+    for (const Cut& cut : model_.cuts) {
+      for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+        for (std::size_t k = 0; k < cut.rows.size(); ++k) {
+          const bool is_alike =
+              (cut.rows[i].form == RowForm::perpendicular) == (cut.rows[k].form == RowForm::perpendicular);
+          const std::size_t other = at(cut.first_row) + k;
+          double& largest = result[at(cut.first_row) + i];
+          if (is_alike) largest = std::max(largest, ws_.loops.W[other * rows + other]);
+        }
+      }
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<AssemblyReport::Row> open_rows() {
+    update_motion(model_, state_.q, state_.u, ws_);
+    std::vector<AssemblyReport::Row> open;
+    for (const Cut& cut : model_.cuts) {
+      const auto see = [&](const ConstraintRow& row) {
+        const double g = evaluate(row, cut, ws_.motion[at(cut.link1)], ws_.motion[at(cut.link2)]).g;
+        if (!(std::fabs(g) <= kFrameTolerance)) open.push_back({cut.joint, describe(row), std::fabs(g)});
+      };
+      for (const ConstraintRow& row : cut.rows) see(row);
+      for (const ConstraintRow& row : cut.redundant) see(row);
+    }
+    return open;
+  }
+
+  // Speeds that are not zero stay, the others follow: a projection in which the given ones are rows of their own.
+  [[nodiscard]] std::vector<AssemblyReport::Speed> settle_speeds() {
+    std::vector<std::size_t> given;
+    for (std::size_t j = 0; j < state_.u.size(); ++j) {
+      if (state_.u[j] != 0) given.push_back(j);
+    }
+    if (given.empty()) return {};
+    const std::vector<double> wanted = state_.u;
+    renew(state_);
+    const std::size_t cuts = ws_.loops.rows.size(), rows = cuts + given.size(), speeds = state_.u.size();
+    std::vector<double> residual(rows * speeds), rate(rows * speeds), W(rows * rows), right(rows);
+    std::copy(ws_.loops.residual.begin(), ws_.loops.residual.end(), residual.begin());
+    std::copy(ws_.loops.rate.begin(), ws_.loops.rate.end(), rate.begin());
+    std::vector<int> all_links;
+    for (int link = static_cast<int>(model_.links.size()) - 1; link > 0; --link) all_links.push_back(link);
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      std::vector<double> tau(speeds);
+      tau[given[k]] = 1;
+      const std::size_t first = (cuts + k) * speeds;
+      solve_backward(model_, ws_, all_links, tau, {&residual[first], speeds}, {&rate[first], speeds});
+    }
+    for (std::size_t k = 0; k < rows; ++k) {
+      for (std::size_t l = 0; l <= k; ++l) {
+        for (std::size_t j = 0; j < speeds; ++j) W[k * rows + l] += residual[k * speeds + j] * rate[l * speeds + j];
+      }
+    }
+    math::Semidefinite factor(static_cast<int>(rows));
+    factor.factorize(W, {}, kDependentAtStart);
+    for (std::size_t k = 0; k < cuts; ++k) right[k] = -ws_.loops.rows[k].rate;
+    factor.solve(right);
+    std::fill(ws_.residual.begin(), ws_.residual.end(), 0.0);
+    for (std::size_t k = 0; k < rows; ++k) {
+      for (std::size_t j = 0; j < speeds; ++j) ws_.residual[j] += residual[k * speeds + j] * right[k];
+    }
+    solve_forward(model_, ws_, ws_.residual, ws_.loops.step);
+    for (std::size_t j = 0; j < speeds; ++j) state_.u[j] += ws_.loops.step[j];
+    for (const std::size_t j : given)
+      state_.u[j] = std::fabs(state_.u[j] - wanted[j]) < 1e-12 ? wanted[j] : state_.u[j];
+    return lost_speeds(wanted, given);
+  }
+
+ private:
+  void renew(const State& state) {
+    update_motion(model_, state.q, state.u, ws_);
+    update_elements(model_, state.q, Elements::used, ws_);
+    update_inertia(model_, ws_);
+    update_coupled(model_, ws_);
+    std::fill(ws_.tau.begin(), ws_.tau.end(), 0.0);
+    factorize(model_, ws_);
+    evaluate_cuts(model_, ws_);
+    factorize_cuts(model_, ws_, kDependentAtStart);
+  }
+
+  [[nodiscard]] double independent_violation() const {
+    double largest = 0;
+    for (std::size_t k = 0; k < ws_.loops.rows.size(); ++k) {
+      if (ws_.loops.factor.is_redundant(static_cast<int>(k))) continue;
+      const double size = std::fabs(ws_.loops.rows[k].g);
+      if (!(size <= largest)) largest = size;
+    }
+    return largest;
+  }
+
+  template <typename Value>
+  void find_step(Value value) {
+    LoopWorkspace& loops = ws_.loops;
+    const std::size_t speeds = state_.u.size();
+    for (std::size_t k = 0; k < loops.rows.size(); ++k) loops.multipliers[k] = -value(loops.rows[k]);
+    loops.factor.solve(loops.multipliers);
+    std::fill(ws_.residual.begin(), ws_.residual.end(), 0.0);
+    for (std::size_t k = 0; k < loops.rows.size(); ++k) {
+      for (std::size_t j = 0; j < speeds; ++j) {
+        ws_.residual[j] += loops.residual[k * speeds + j] * loops.multipliers[k];
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<AssemblyReport::Speed> lost_speeds(const std::vector<double>& wanted,
+                                                               const std::vector<std::size_t>& given) const {
+    std::vector<AssemblyReport::Speed> lost;
+    for (std::size_t i = 1; i < model_.links.size(); ++i) {
+      const Link& link = model_.links[i];
+      for (const std::size_t j : given) {
+        if (j < at(link.u) || j >= at(link.u + speed_count(link.joint))) continue;
+        if (std::fabs(state_.u[j] - wanted[j]) <= kSpeedTolerance * std::max(1.0, std::fabs(wanted[j]))) continue;
+        lost.push_back({static_cast<int>(i), wanted[j], state_.u[j]});
+      }
+    }
+    return lost;
+  }
+
+  const Model& model_;
+  Workspace ws_;
+  State state_;
+};
+
+// of the rows in positions near the start
+struct Nearby {
+  std::vector<bool> is_dependent;  // in all of them
+  std::vector<double> mobility;    // the largest
+};
+
+Nearby look_nearby(const Model& model) {
+  Assembler start(model);
+  start.close();
+  Nearby result;
+  for (const std::uint64_t seed : {1U, 2U}) {
+    Assembler nearby(model);
+    nearby.state() = start.state();
+    nearby.move_away(seed);
+    nearby.close();
+    const std::vector<bool> here = nearby.dependent_rows();
+    const std::vector<double> mobility = nearby.mobilities();
+    if (result.mobility.empty()) result = {here, mobility};
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      result.is_dependent[k] = result.is_dependent[k] && here[k];
+      result.mobility[k] = std::max(result.mobility[k], mobility[k]);
+    }
+  }
+  return result;
+}
+
+void leave_out(Model& model, const Nearby& nearby) {
+  std::size_t row = 0;
+  for (Cut& cut : model.cuts) {
+    std::vector<ConstraintRow> rows;
+    cut.kept.clear();
+    for (std::size_t i = 0; i < cut.rows.size(); ++i, ++row) {
+      if (nearby.is_dependent[row]) {
+        cut.redundant.push_back(cut.rows[i]);
+        cut.left_out.push_back(static_cast<int>(i));
+      } else {
+        rows.push_back(cut.rows[i]);
+        model.cut_reference.push_back(nearby.mobility[row]);
+        cut.kept.push_back(static_cast<int>(i));
+      }
+    }
+    cut.rows = rows;
+  }
+  int first = 0;
+  for (Cut& cut : model.cuts) {
+    cut.first_row = first;
+    first += static_cast<int>(cut.rows.size());
+  }
+}
+
+}  // namespace
+
+AssemblyReport assemble(Model& model) {
+  AssemblyReport report;
+  if (model.cuts.empty()) return report;
+  leave_out(model, look_nearby(model));
+  Assembler assembler(model);
+  assembler.close();
+  report.speeds = assembler.settle_speeds();
+  report.open = assembler.open_rows();
+  model.start_q = assembler.state().q;
+  model.start_u = assembler.state().u;
+  return report;
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,177 @@
+#include "multibody/loops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "multibody/constraint.h"
+#include "multibody/passes.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+constexpr int kMostCorrections = 40;  // Newton with one matrix: an error of 1e-2 is gone after five
+constexpr int kPolish = 2;            // more of them near a singular position, where (1) divides by little
+constexpr int kRenewal = 8;           // corrections after which the matrix is made again
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+double product(const double* a, const double* b, std::size_t size) noexcept {
+  double sum = 0;
+  for (std::size_t j = 0; j < size; ++j) sum += a[j] * b[j];
+  return sum;
+}
+
+// residual += sum of the rows' residuals times their forces
+void add_rows(const LoopWorkspace& loops, std::span<double> residual) noexcept {
+  const std::size_t speeds = residual.size();
+  for (std::size_t k = 0; k < loops.multipliers.size(); ++k) {
+    const double* row = loops.residual.data() + k * speeds;
+    const double force = loops.multipliers[k];
+    for (std::size_t j = 0; j < speeds; ++j) residual[j] += row[j] * force;
+  }
+}
+
+// change in the space of the speeds that takes away what the rows show
+template <typename Value>
+void find_step(const Model& model, Workspace& ws, Value value) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  for (std::size_t k = 0; k < loops.rows.size(); ++k) loops.multipliers[k] = -value(loops.rows[k]);
+  loops.factor.solve(loops.multipliers);
+  std::fill(ws.residual.begin(), ws.residual.end(), 0.0);
+  add_rows(loops, ws.residual);
+  solve_forward(model, ws, ws.residual, loops.step);
+}
+
+void renew_matrix(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+  update_motion(model, q, u, ws);
+  update_elements(model, q, Elements::used, ws);
+  update_inertia(model, ws);
+  update_coupled(model, ws);
+  std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
+  factorize(model, ws);
+  evaluate_cuts(model, ws);
+  factorize_cuts(model, ws);
+}
+
+void show_rows(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+  update_motion(model, q, u, ws);
+  evaluate_cuts(model, ws);
+}
+
+template <typename Value>
+double largest(const LoopWorkspace& loops, Value value) noexcept {
+  double result = 0;
+  for (const RowValue& row : loops.rows) {
+    const double size = std::fabs(value(row));
+    if (!(size <= result)) result = size;  // NaN stays
+  }
+  return result;
+}
+
+// Newton's method until value(row) is below the tolerance; move() applies loops.step to q or u
+template <typename Value, typename Move>
+bool correct(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws, double tolerance,
+             Value value, Move move) noexcept {
+  int polish = is_near_singular(ws) ? kPolish : 0;
+  for (int i = 0; i < kMostCorrections; ++i) {
+    if (largest(ws.loops, value) <= tolerance && polish-- == 0) return true;
+    if (i > 0 && i % kRenewal == 0) renew_matrix(model, q, u, ws);
+    find_step(model, ws, value);
+    move();
+    show_rows(model, q, u, ws);
+  }
+  return largest(ws.loops, value) <= tolerance;
+}
+
+}  // namespace
+
+void evaluate_cuts(const Model& model, Workspace& ws) noexcept {
+  for (const Cut& cut : model.cuts) {
+    evaluate(cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)],
+             {ws.loops.rows.data() + cut.first_row, cut.rows.size()});
+  }
+}
+
+void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  const std::size_t rows = loops.rows.size(), speeds = ws.udot.size();
+  for (const Cut& cut : model.cuts) {
+    const std::span<const int> supports(model.supports.data() + cut.first_support,
+                                        model.supports.data() + cut.support_end);
+    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+      const std::size_t k = at(cut.first_row) + i;
+      solve_backward(model, ws, supports, cut.link1, cut.link2, loops.rows[k].G,
+                     {loops.residual.data() + k * speeds, speeds}, {loops.rate.data() + k * speeds, speeds});
+    }
+  }
+  for (std::size_t k = 0; k < rows; ++k) {
+    for (std::size_t l = 0; l <= k; ++l) {
+      loops.W[k * rows + l] = product(loops.residual.data() + k * speeds, loops.rate.data() + l * speeds, speeds);
+    }
+  }
+  loops.factor.factorize(loops.W, model.cut_reference, tolerance);
+}
+
+void close_loops(const Model& model, Workspace& ws) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  const std::size_t speeds = ws.udot.size();
+  for (const Cut& cut : model.cuts) {
+    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+      const std::size_t k = at(cut.first_row) + i;
+      const double known = acceleration_of(loops.rows[k], ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]);
+      loops.multipliers[k] = -(known + product(loops.rate.data() + k * speeds, ws.residual.data(), speeds));
+    }
+  }
+  loops.factor.solve(loops.multipliers);
+  add_rows(loops, ws.residual);
+}
+
+void reduce_row(const Model&, Workspace& ws, std::span<double> residual, std::span<double> rate) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  const std::size_t speeds = residual.size();
+  for (std::size_t k = 0; k < loops.rows.size(); ++k) {
+    loops.multipliers[k] = -product(loops.residual.data() + k * speeds, rate.data(), speeds);
+  }
+  loops.factor.solve(loops.multipliers);
+  add_rows(loops, residual);
+  for (std::size_t k = 0; k < loops.rows.size(); ++k) {
+    const double* row = loops.rate.data() + k * speeds;
+    for (std::size_t j = 0; j < speeds; ++j) rate[j] += row[j] * loops.multipliers[k];
+  }
+}
+
+bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
+  // near a singular position the matrix of the stage before leads astray
+  if (is_near_singular(ws)) {
+    renew_matrix(model, q, u, ws);
+  } else {
+    show_rows(model, q, u, ws);
+  }
+  const Extent extent = extent_of(ws);
+  const bool is_closed = correct(
+      model, q, u, ws, kClosed * extent.length, [](const RowValue& row) { return row.g; },
+      [&] { displace(model, ws, ws.loops.step, q); });
+  const bool is_moving_along = correct(
+      model, q, u, ws, kClosed * extent.speed, [](const RowValue& row) { return row.rate; },
+      [&] {
+        for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j];
+      });
+  return is_closed && is_moving_along;
+}
+
+Extent extent_of(const Workspace& ws) noexcept {
+  Extent extent;
+  for (const LinkMotion& m : ws.motion) {
+    extent.length = std::max(extent.length, norm(m.p));
+    extent.speed = std::max({extent.speed, norm(m.v), norm(m.w)});
+  }
+  return extent;
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,44 @@
+// Joints that are cut: their forces in the recursion, and the way back onto them. Internal to the library.
+//
+//   u' = u'_0 + M^-1 J^T f,   J u' + b = 0   ->   W f = -(b + J u'_0),   W = J M^-1 J^T                (1)
+// M and u'_0 are the tree's, so that W comes from one back-solve a row, as those of ports do (rows.h). (1) keeps g'' at
+// zero only; after a step the coordinates and speeds go to the nearest ones with g = 0 and J u = 0 in the metric of M,
+//   delta = -M^-1 J^T W^-1 g,   and the same with J u                                                   (2)
+// Rows that become dependent in a singular position, or vanish there, are left out while they are (math::Semidefinite
+// with the rows' mobilities elsewhere for reference). Near it (1) divides what a stage of the integrator violates by
+// little, so there every stage is put back with (2) before it is evaluated.
+// Source: Featherstone 2008, section 8.6, with W by back-solves; (2) as body_coordinates.h.
+#pragma once
+
+#include "multibody/state.h"
+
+namespace slew::multibody {
+
+// Values of the rows of all cuts, from the motion.
+void evaluate_cuts(const Model& model, Workspace& ws) noexcept;
+
+// W and its factors; needs the rows' values and factorize().
+inline constexpr double kDependent = 1e-12;  // pivot, of the row's mobility
+inline constexpr double kNearSingular = 1e-2;
+[[nodiscard]] inline bool is_near_singular(const Workspace& ws) noexcept {
+  return ws.loops.factor.smallest_pivot() < kNearSingular;
+}
+void factorize_cuts(const Model& model, Workspace& ws, double tolerance = kDependent) noexcept;
+
+// Between factorize() and solve_forward(): adds to ws.residual what (1) asks for.
+void close_loops(const Model& model, Workspace& ws) noexcept;
+
+// Takes what the cuts carry out of a port's row: its residual and rate.
+void reduce_row(const Model& model, Workspace& ws, std::span<double> residual, std::span<double> rate) noexcept;
+
+// (2), beginning with the factors that ws holds. False when the rows did not come to kClosed.
+inline constexpr double kClosed = 1e-11;  // m, 1; per second; of the mechanism's size and speed where these exceed 1
+[[nodiscard]] bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept;
+
+// Largest distance of a link from Ground's origin and largest speed, at least 1: what kClosed is multiplied by.
+struct Extent {
+  double length = 1, speed = 1;
+};
+[[nodiscard]] Extent extent_of(const Workspace& ws) noexcept;
+
+}  // namespace slew::multibody

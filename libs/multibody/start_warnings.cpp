@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "multibody/assembly.h"
+#include "multibody/body_inertia.h"
+#include "multibody/observe.h"
+#include "multibody/topology.h"
+#include "multibody/validate.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+// a body's mass may lie outside of its points, but hardly by more than this
+constexpr double kLargestGyration = 3;
+
+}  // namespace
+
+void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
+  const Model model = build_model(mechanics);
+  Workspace ws(model);
+  observe(model, start_state(model), ws);
+  Problems ignored;
+  const std::vector<Pose> wanted = start_poses(mechanics, ignored);
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const BodyPose found = body_pose(model, ws, static_cast<int>(b));
+    const double shift = math::norm(Vec3(found.position) - wanted[b].p);
+    const auto [w, x, y, z] = found.orientation;
+    const double turn = math::rotation_angle(math::rotation_of({w, x, y, z}) * math::transpose(wanted[b].R));
+    if (shift <= kFrameTolerance && turn <= kFrameTolerance) continue;
+    warnings.push_back(
+        {model.bodies[b].name + ".position",
+         fmt::format("the joints were open at the start: this body was moved by {:.3g} m and turned by {:.3g} rad",
+                     shift, turn),
+         "poses that fit the joints", ""});
+  }
+  for (const CutDescription& cut : describe(model).cuts) {
+    for (const std::string& row : cut.redundant) {
+      warnings.push_back({cut.joint, row + " is redundant: other joints hold it already",
+                          "nothing to do: the motion is right, reactions are the smallest that fit; a joint with fewer "
+                          "rows, such as spherical or cylindrical, makes them unique",
+                          ""});
+    }
+  }
+}
+
+void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
+  for (const BodyDef& body : mechanics.bodies) {
+    double extent = 0;
+    const auto see = [&](const std::string& owner, const Triple& point) {
+      if (owner == body.name) extent = std::max(extent, math::norm(Vec3(point) - Vec3(body.center_of_mass)));
+    };
+    for (const JointDef& joint : mechanics.joints) see(joint.body1, joint.point1), see(joint.body2, joint.point2);
+    for (const TranslationalForceDef& force : mechanics.translational_forces) {
+      see(force.body1, force.point1), see(force.body2, force.point2);
+    }
+    const double largest = math::symmetric_eigenvalues(inertia_about_center(body))[2];
+    const double gyration = std::sqrt(std::max(0.0, largest) / body.mass);
+    // a body whose points all lie in its centre says nothing about its size
+    if (extent == 0 || gyration <= kLargestGyration * extent) continue;
+    warnings.push_back({body.name + ".inertia",
+                        fmt::format("the radius of gyration is {:.3g} m, all points on the body are within {:.3g} m of "
+                                    "its centre of mass",
+                                    gyration, extent),
+                        "the inertia about inertia_about, in kg m2", ""});
+  }
+}
+
+}  // namespace slew::multibody

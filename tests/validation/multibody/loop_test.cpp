@@ -1,0 +1,280 @@
+// Cases A02 (N four-bars through singular positions), A03 (Andrews' squeezer), A08 (spatial slider-crank).
+//
+// A02: IFToMM; the parallelogram branch is an ODE of one coordinate. Tolerances: position 1e-3 m at 10 s, energy 1e-4.
+// A03: Bari IVP test set; angles within 1e-4 at a fixed step of 1e-5 s, loops within 1e-9 m.
+// A08: Haug, IFToMM; slider within 2e-4 m, crank within 1e-2 rad at 5 s.
+#include "tests/validation/multibody/csv_table.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace {
+
+using testing::Formulated;
+
+class Loops : public ::testing::TestWithParam<Formulation> {
+ protected:
+  [[nodiscard]] Formulated start(MechanicsDef def) const {
+    def.formulation = GetParam();
+    return Formulated(def);
+  }
+};
+
+class FourBars : public Loops {};
+class Squeezer : public Loops {};
+class SliderCrank : public Loops {};
+
+// n + 1 vertical rods on pins at x = 0 .. n, and n horizontal couplers; all upright, the first with 1 m/s at its tip.
+MechanicsDef four_bars(int n) {
+  MechanicsDef def;
+  const double inertia = 1.0 / 12;
+  const auto name = [](const char* kind, int i) { return kind + std::to_string(i); };
+  for (int i = 0; i <= n; ++i) {
+    def.bodies.push_back({.name = name("Rod", i),
+                          .position = {static_cast<double>(i), 0, 0},
+                          .mass = 1,
+                          .center_of_mass = {0, 0.5, 0},
+                          .inertia = {inertia, 0, inertia}});
+    def.joints.push_back({.name = name("Pin", i),
+                          .body1 = "Ground",
+                          .point1 = {static_cast<double>(i), 0, 0},
+                          .body2 = name("Rod", i),
+                          .initial_velocity = i == 0 ? -1.0 : 0.0});
+  }
+  for (int i = 0; i < n; ++i) {
+    def.bodies.push_back({.name = name("Coupler", i),
+                          .position = {static_cast<double>(i), 1, 0},
+                          .mass = 1,
+                          .center_of_mass = {0.5, 0, 0},
+                          .inertia = {0, inertia, inertia}});
+    def.joints.push_back(
+        {.name = name("Left", i), .body1 = name("Rod", i), .point1 = {0, 1, 0}, .body2 = name("Coupler", i)});
+    def.joints.push_back({.name = name("Right", i),
+                          .body1 = name("Coupler", i),
+                          .point1 = {1, 0, 0},
+                          .body2 = name("Rod", i + 1),
+                          .point2 = {0, 1, 0}});
+  }
+  return def;
+}
+
+TEST(RedundantRows, OfAPlanarFourBarInSpaceAreThree) {
+  const Model model = build_model(four_bars(1));
+  const Description text = describe(model);
+  ASSERT_EQ(text.cuts.size(), 1U);
+  EXPECT_EQ(text.cuts[0].joint, "Right0");
+  EXPECT_EQ(text.cuts[0].rows, 2);
+  EXPECT_EQ(text.cuts[0].redundant,
+            (std::vector<std::string>{"row 3 (position along z)", "row 4 (angle between x and z of body 2)",
+                                      "row 5 (angle between y and z of body 2)"}));
+  EXPECT_EQ(model.degrees_of_freedom(), 1);
+}
+
+void follow_table(Formulated& bars, const std::string& table, double step) {
+  const double start = bars.total_energy();
+  double error = 0, drift = 0, time = 0;
+  for (const auto& row : testing::read_table(table)) {
+    bars.run(row[0] - time, step);
+    time = row[0];
+    const BodyPose pose = bars.pose("Coupler0");
+    error = std::max({error, std::abs(pose.position[0] - row[1]), std::abs(pose.position[1] - row[2])});
+    drift = std::max(drift, std::abs(bars.total_energy() - start) / start);
+  }
+  EXPECT_NEAR(time, 10, 1e-9);
+  EXPECT_LT(error, 1e-3);
+  EXPECT_LT(drift, 1e-4);
+  ::testing::Test::RecordProperty("position_error_um", std::to_string(error * 1e6));
+}
+
+TEST_P(FourBars, OneFollowsItsBranchThroughTheFlatPositions) {
+  Formulated bars = start(four_bars(1));
+  follow_table(bars, "A02_N1_spatial_redundant.csv", 1e-3);
+}
+
+TEST_P(FourBars, TwoFollowTheirBranchThroughTheFlatPositions) {
+  Formulated bars = start(four_bars(2));
+  follow_table(bars, "A02_N2.csv", 1e-3);
+}
+
+// Seven bodies, ten hinges: the reference's numbering of bodies, points and angles.
+MechanicsDef squeezer() {
+  constexpr double kBeta = -0.0617138900142764496, kTheta = 0, kGamma = 0.455279819163070380,
+                   kPhi = 0.222668390165885885, kDelta = 0.487364979543842550, kOmega = -0.222668390165885885,
+                   kEps = 1.23054744454982119;
+  constexpr double d = .028, da = .0115, e = .02, ea = .01421, rr = .007, ra = .00092, ss = .035, sa = .01874,
+                   sb = .01043, sc = .018, sd = .02, ta = .02308, tb = .00916, u = .04, ua = .01228, ub = .00449,
+                   zf = .02, zt = .04, fa = .01421;
+  const Triple A{-.06934, -.00227, 0}, B{-.03635, .03273, 0}, C{.014, .072, 0};
+  const double m[] = {.04325, .00365, .02373, .00706, .07050, .00706, .05498};
+  const double I[] = {2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5};
+  const auto turned = [](double angle, double x, double y) {
+    return Triple{std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y, 0};
+  };
+  const auto plus = [](const Triple& a, const Triple& b) { return Triple{a[0] + b[0], a[1] + b[1], 0}; };
+  MechanicsDef def;
+  def.gravity = {0, 0, 0};
+  const auto add = [&](std::size_t i, const Triple& origin, double angle, double cx, double cy) {
+    def.bodies.push_back({.name = "K" + std::to_string(i + 1),
+                          .position = origin,
+                          .orientation = {angle, 0, 0},
+                          .mass = m[i],
+                          .center_of_mass = {cx, cy, 0},
+                          .inertia = {0.5 * I[i], 0.5 * I[i], I[i]}});
+  };
+  // body axes: K1 x along the crank; K2 and the others as the angle of each turns them
+  const Triple F = turned(kBeta, rr, 0), G = plus(A, turned(kDelta, zt, 0));
+  const Triple H = plus(A, turned(kEps, 0, -u));
+  add(0, {0, 0, 0}, kBeta, ra, 0);
+  add(1, F, kBeta + kTheta, -da, 0);
+  add(2, B, kGamma, sb, -sa);
+  // of the thesis of the reference: sa(sin, -cos) + sb(cos, sin)
+  def.bodies.back().center_of_mass = {sb, -sa, 0};
+  add(3, G, kPhi + kDelta, 0, -(e - ea));
+  add(4, A, kDelta, ta, tb);
+  add(5, H, kOmega + kEps, zf - fa, 0);
+  add(6, A, kEps, -ub, -ua);
+  const auto hinge = [&](const char* name, const std::string& body1, Triple p1, const std::string& body2, Triple p2) {
+    def.joints.push_back({.name = name, .body1 = body1, .point1 = p1, .body2 = body2, .point2 = p2});
+  };
+  hinge("Crank", "Ground", {}, "K1", {});
+  hinge("Pin", "K1", {rr, 0, 0}, "K2", {});
+  hinge("Pivot_B", "Ground", B, "K3", {});
+  hinge("Pivot_A5", "Ground", A, "K5", {});
+  hinge("Pivot_A7", "Ground", A, "K7", {});
+  hinge("Hinge_G", "K5", {zt, 0, 0}, "K4", {});
+  hinge("Hinge_H", "K7", {0, -u, 0}, "K6", {});
+  hinge("Hinge_E3", "K2", {-d, 0, 0}, "K3", {0, -ss, 0});
+  hinge("Hinge_E4", "K2", {-d, 0, 0}, "K4", {0, -e, 0});
+  hinge("Hinge_E6", "K2", {-d, 0, 0}, "K6", {zf, 0, 0});
+  def.translational_forces.push_back({.name = "Spring",
+                                      .body1 = "Ground",
+                                      .point1 = C,
+                                      .body2 = "K3",
+                                      .point2 = {sd, -sc, 0},
+                                      .spring_constant = 4530,
+                                      .free_length = 0.07785});
+  return def;
+}
+
+// The crank's torque acts through a row.
+TEST_P(Squeezer, FollowsTheReferenceTo30ms) {
+  MechanicsDef def = squeezer();
+  def.formulation = GetParam();
+  const std::vector<std::string> rows = {"Crank"};
+  const Model model = build_model(def, rows);
+  EXPECT_EQ(model.degrees_of_freedom(), 1);
+  State state = start_state(model);
+  Workspace ws(model);
+  Dynamics dynamics(GetParam(), model, state);
+  const double torque[] = {0.033}, slope[] = {0};
+  dynamics.evaluate(model, state, ws);
+  EXPECT_NEAR(row_free_accelerations(ws)[0] + row_mobility(ws)[0] * 0.033, 14222.4439199541, 1e-5);
+  bool is_closed = true;
+  for (int i = 0; i < 3000; ++i) {
+    dynamics.evaluate(model, state, ws);
+    is_closed = dynamics.advance(model, state, ws, 1e-5, torque, slope) && is_closed;
+  }
+  EXPECT_TRUE(is_closed);
+  observe(model, state, ws);
+  const std::vector<ElementVariable> names = variables(model);
+  std::vector<double> values(names.size());
+  read_variables(model, state, ws, {}, values);
+  const auto value = [&](const std::string& name) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].name == name) return values[i];
+    }
+    ADD_FAILURE() << name;
+    return 0.0;
+  };
+  EXPECT_NEAR(value("Crank.position"), 15.81077119629904, 1e-4);
+  EXPECT_NEAR(value("Pin.position"), -15.75637105984298, 1e-4);
+  EXPECT_NEAR(value("Pivot_B.position"), 0.0408222401307310, 1e-4);
+  EXPECT_NEAR(value("Hinge_G.position"), -0.5347301163226948, 1e-4);
+  EXPECT_NEAR(value("Pivot_A5.position"), 0.5244099658805304, 1e-4);
+  EXPECT_NEAR(value("Hinge_H.position"), 0.5347301163226948, 1e-4);
+  EXPECT_NEAR(value("Pivot_A7.position"), 1.048080741042263, 1e-4);
+}
+
+MechanicsDef slider_crank() {
+  MechanicsDef def;
+  def.gravity = {0, 0, -9.81};
+  const double root5 = std::sqrt(5.0);
+  // crank with its frame at A; conrod from B to C: x along it, y along (0, 2, -1) turned to a right angle
+  const math::Vec3 B(0, 0.1, 0.2), C(0.2, 0, 0), x = (C - B) * (1 / 0.3);
+  const math::Vec3 y = cross(math::Vec3(0, 0, 1), x) * (1 / norm(cross(math::Vec3(0, 0, 1), x)));
+  const math::Vec3 z = cross(x, y);
+  def.bodies = {{.name = "Crank",
+                 .position = {0, 0.1, 0.12},
+                 .mass = 0.12,
+                 .center_of_mass = {0, 0, 0.04},
+                 .inertia = {1e-4, 1e-4, 1e-5}},
+                {.name = "Slider", .position = C.array(), .mass = 2, .inertia = {1e-4, 1e-4, 1e-4}}};
+  // z-x'-z'' angles of the conrod's axes
+  const double theta = std::acos(z[2]), phi = std::atan2(z[0], -z[1]), psi = std::atan2(x[2], y[2]);
+  def.bodies.push_back({.name = "Conrod",
+                        .position = B.array(),
+                        .orientation = {phi, theta, psi},
+                        .mass = 0.5,
+                        .center_of_mass = {0.15, 0, 0},
+                        .inertia = {4e-4, 4e-3, 4e-3}});
+  const double quarter = M_PI / 2;
+  def.joints = {
+      {.name = "Pivot",
+       .point1 = {0, 0.1, 0.12},
+       .orientation1 = {0, quarter, 0},
+       .body2 = "Crank",
+       .orientation2 = {0, quarter, 0},
+       .initial_velocity = 6},
+      {.name = "Ball", .type = JointType::spherical, .body1 = "Crank", .point1 = {0, 0, 0.08}, .body2 = "Conrod"},
+      {.name = "Slot",
+       .type = JointType::prismatic,
+       .orientation1 = {0, quarter, 0},
+       .body2 = "Slider",
+       .orientation2 = {0, quarter, 0}}};
+  // cross with x of the slider and (0, -2, 1) / sqrt 5 in Ground at the start, fixed to the conrod
+  const math::Vec3 cross2 = math::Vec3(0, -2, 1) * (1 / root5);
+  const math::Vec3 cross2_body(dot(x, cross2), dot(y, cross2), dot(z, cross2));
+  // successive x, y' that turn z onto it
+  const double beta = std::asin(cross2_body[0]), alpha = std::atan2(-cross2_body[1], cross2_body[2]);
+  def.joints.push_back({.name = "Cross",
+                        .type = JointType::universal,
+                        .body1 = "Slider",
+                        .orientation1 = {0, quarter, 0},
+                        .body2 = "Conrod",
+                        .point2 = {0.3, 0, 0},
+                        .orientation2 = {alpha, beta, 0}});
+  return def;
+}
+
+TEST_P(SliderCrank, InSpaceFollowsTheReference) {
+  Formulated crank = start(slider_crank());
+  EXPECT_EQ(crank.model.degrees_of_freedom(), 1);
+  EXPECT_NEAR(crank.pose("Slider").velocity[0], 0.24, 1e-9);
+  const Triple w = crank.pose("Conrod").angular_velocity;
+  EXPECT_NEAR(w[0], 1.92, 1e-9);
+  EXPECT_NEAR(w[1], -0.96, 1e-9);
+  EXPECT_NEAR(w[2], 0.48, 1e-9);
+  EXPECT_NEAR(crank.total_energy(), 0.76643568, 1e-8);
+  constexpr double kTable[][5] = {{0.2, 0.2630389726, 1.2872423269, 0.426024565, 9.782890466},
+                                  {0.5, 0.1849526298, 5.5837625533, -0.004560291, 14.408160810},
+                                  {1, 0.2117216614, 10.9135907299, -0.503491865, 10.427593000},
+                                  {2, 0.2890851971, 21.0727445230, 0.216539423, 22.584240030},
+                                  {5, 0.2407195737, 54.3333321688, -0.595984412, 11.494996263}};
+  double time = 0;
+  for (const auto& [t, x, angle, v, omega] : kTable) {
+    crank.run(t - time, 1e-3);
+    time = t;
+    EXPECT_NEAR(crank.pose("Slider").position[0], x, 2e-4) << t;
+    EXPECT_NEAR(crank.value("Pivot.position"), angle, 1e-2) << t;
+    EXPECT_NEAR(crank.pose("Slider").velocity[0], v, 1e-2) << t;
+    EXPECT_NEAR(crank.value("Pivot.velocity"), omega, 1e-1) << t;
+  }
+}
+
+const auto kFormulations = ::testing::Values(Formulation::recursive, Formulation::lagrange);
+const auto kName = [](const ::testing::TestParamInfo<Formulation>& tested) { return testing::name_of(tested.param); };
+INSTANTIATE_TEST_SUITE_P(In, FourBars, kFormulations, kName);
+INSTANTIATE_TEST_SUITE_P(In, Squeezer, kFormulations, kName);
+INSTANTIATE_TEST_SUITE_P(In, SliderCrank, kFormulations, kName);
+
+}  // namespace
+}  // namespace slew::multibody
