@@ -14,6 +14,10 @@ std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
+void put(Vec3 a, double* x) noexcept {
+  for (int k = 0; k < 3; ++k) x[k] = a[k];
+}
+
 }  // namespace
 
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
@@ -66,58 +70,85 @@ void solve_forward(const Model& model, Workspace& ws, std::span<const double> re
 
 namespace {
 
+// Rows that are passed back together: row k of the wrenches at k * links, of the results at k * speeds.
+struct Rows {
+  std::size_t count = 0;
+  const double* tau = nullptr;  // of one row; none: zeros
+  double* residual = nullptr;
+  double* rate = nullptr;
+};
+
+// one row through one link: in n, f the sum of minus the wrenches further out, out what goes on to the parent
+inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& factor, const double* tau,
+                      double* residual, double* rate, Vec3& n, Vec3& f) noexcept {
+  const auto given = [tau](int k) { return tau == nullptr ? 0.0 : tau[k]; };
+  switch (link.joint) {
+    case LinkJoint::revolute:
+    case LinkJoint::prismatic: {
+      const double rest = given(0) - dot(m.axis, link.joint == LinkJoint::revolute ? n : f);
+      residual[0] = rest;
+      rate[0] = factor.d_inv * rest;
+      n += factor.U_ang.c[0] * rate[0];
+      f += factor.U_lin.c[0] * rate[0];
+      break;
+    }
+    case LinkJoint::spherical: {
+      const Vec3 rest = Vec3(given(0), given(1), given(2)) - n;
+      const Vec3 turn = factor.D_inv * rest;
+      put(rest, residual);
+      put(turn, rate);
+      n += factor.U_ang * turn;
+      f += factor.U_lin * turn;
+      break;
+    }
+    case LinkJoint::floating: {
+      const Vec3 push = Vec3(given(0), given(1), given(2)) - f;
+      const Vec3 turn = Vec3(given(3), given(4), given(5)) - n - factor.U_ang * push;
+      put(push, residual);
+      put(turn, residual + 3);
+      put(factor.U_lin * push, rate);
+      put(factor.D_inv * turn, rate + 3);
+      break;
+    }
+    case LinkJoint::universal:
+    case LinkJoint::cylindrical: {
+      const Pair S = directions(link.joint, m);
+      const Vec3 rest(given(0) - dot(S.turn[0], n) - dot(S.slide[0], f),
+                      given(1) - dot(S.turn[1], n) - dot(S.slide[1], f), 0);
+      const Vec3 turn = factor.D_inv * rest;
+      for (int k = 0; k < 2; ++k) {
+        residual[k] = rest[k];
+        rate[k] = turn[k];
+      }
+      n += factor.U_ang * turn;
+      f += factor.U_lin * turn;
+      break;
+    }
+  }
+}
+
 // ws.pass_n, ws.pass_f hold minus the wrenches on the links
-void pass_back(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
-               std::span<double> residual, std::span<double> rate) noexcept {
+void pass_back(const Model& model, Workspace& ws, std::span<const int> supports, const Rows& rows) noexcept {
+  const std::size_t links = model.links.size(), speeds = ws.udot.size();
   for (const int i : supports) {
     const Link& link = model.links[at(i)];
+    const LinkMotion& m = ws.motion[at(i)];
     const JointFactor& factor = ws.factor[at(i)];
-    Vec3 n = ws.pass_n[at(i)], f = ws.pass_f[at(i)];
-    switch (link.joint) {
-      case LinkJoint::revolute:
-      case LinkJoint::prismatic: {
-        const Vec3 carried = link.joint == LinkJoint::revolute ? n : f;
-        const double rest = tau[at(link.u)] - dot(ws.motion[at(i)].axis, carried);
-        residual[at(link.u)] = rest;
-        rate[at(link.u)] = factor.d_inv * rest;
-        n += factor.U_ang.c[0] * rate[at(link.u)];
-        f += factor.U_lin.c[0] * rate[at(link.u)];
-        break;
-      }
-      case LinkJoint::spherical: {
-        const Vec3 rest = load(tau, link.u) - n;
-        const Vec3 turn = factor.D_inv * rest;
-        store(residual, link.u, rest);
-        store(rate, link.u, turn);
-        n += factor.U_ang * turn;
-        f += factor.U_lin * turn;
-        break;
-      }
-      case LinkJoint::floating: {
-        const Vec3 push = load(tau, link.u) - f;
-        const Vec3 turn = load(tau, link.u + 3) - n - factor.U_ang * push;
-        store(residual, link.u, push);
-        store(residual, link.u + 3, turn);
-        store(rate, link.u, factor.U_lin * push);
-        store(rate, link.u + 3, factor.D_inv * turn);
-        continue;
-      }
-      case LinkJoint::universal:
-      case LinkJoint::cylindrical: {
-        const Pair S = directions(link.joint, ws.motion[at(i)]);
-        const Vec3 carried(dot(S.turn[0], n) + dot(S.slide[0], f), dot(S.turn[1], n) + dot(S.slide[1], f), 0);
-        const Vec3 rest = load_pair(tau, link.u) - carried;
-        const Vec3 turn = factor.D_inv * rest;
-        store_pair(residual, link.u, rest);
-        store_pair(rate, link.u, turn);
-        n += factor.U_ang * turn;
-        f += factor.U_lin * turn;
-        break;
-      }
+    const std::size_t u = at(link.u);
+    for (std::size_t k = 0; k < rows.count; ++k) {
+      Vec3 n = ws.pass_n[k * links + at(i)], f = ws.pass_f[k * links + at(i)];
+      pass_link(link, m, factor, rows.tau == nullptr ? nullptr : rows.tau + u, rows.residual + k * speeds + u,
+                rows.rate + k * speeds + u, n, f);
+      if (link.parent == 0) continue;
+      ws.pass_n[k * links + at(link.parent)] += n + cross(m.r, f);
+      ws.pass_f[k * links + at(link.parent)] += f;
     }
-    if (link.parent == 0) continue;
-    ws.pass_n[at(link.parent)] += n + cross(ws.motion[at(i)].r, f);
-    ws.pass_f[at(link.parent)] += f;
+  }
+}
+
+void clear_passes(Workspace& ws, std::span<const int> supports, std::size_t rows, std::size_t links) noexcept {
+  for (std::size_t k = 0; k < rows; ++k) {
+    for (const int i : supports) ws.pass_n[k * links + at(i)] = ws.pass_f[k * links + at(i)] = Vec3();
   }
 }
 
@@ -125,18 +156,22 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
 
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
                     std::span<double> residual, std::span<double> rate) noexcept {
-  for (const int i : supports) ws.pass_n[at(i)] = ws.pass_f[at(i)] = Vec3();
-  pass_back(model, ws, supports, tau, residual, rate);
+  clear_passes(ws, supports, 1, model.links.size());
+  pass_back(model, ws, supports, {1, tau.data(), residual.data(), rate.data()});
 }
 
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, int link1, int link2,
-                    const RowGradient& G, std::span<double> residual, std::span<double> rate) noexcept {
-  for (const int i : supports) ws.pass_n[at(i)] = ws.pass_f[at(i)] = Vec3();
-  ws.pass_n[at(link1)] -= G.w1;
-  ws.pass_f[at(link1)] -= G.v1;
-  ws.pass_n[at(link2)] -= G.w2;
-  ws.pass_f[at(link2)] -= G.v2;
-  pass_back(model, ws, supports, ws.loops.no_tau, residual, rate);
+                    std::span<const RowValue> rows, std::span<double> residual, std::span<double> rate) noexcept {
+  const std::size_t links = model.links.size();
+  clear_passes(ws, supports, rows.size(), links);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const RowGradient& G = rows[k].G;
+    ws.pass_n[k * links + at(link1)] -= G.w1;
+    ws.pass_f[k * links + at(link1)] -= G.v1;
+    ws.pass_n[k * links + at(link2)] -= G.w2;
+    ws.pass_f[k * links + at(link2)] -= G.v2;
+  }
+  pass_back(model, ws, supports, {rows.size(), nullptr, residual.data(), rate.data()});
 }
 
 }  // namespace slew::multibody

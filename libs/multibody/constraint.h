@@ -25,8 +25,6 @@
 
 namespace slew::multibody {
 
-inline constexpr int kMaxJointRows = 6;
-
 // A distance that was given as zero has no direction: massless links need a length.
 inline constexpr double kShortestLink = 1e-9;  // m
 

@@ -104,11 +104,10 @@ void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcep
   for (const Cut& cut : model.cuts) {
     const std::span<const int> supports(model.supports.data() + cut.first_support,
                                         model.supports.data() + cut.support_end);
-    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
-      const std::size_t k = at(cut.first_row) + i;
-      solve_backward(model, ws, supports, cut.link1, cut.link2, loops.rows[k].G,
-                     {loops.residual.data() + k * speeds, speeds}, {loops.rate.data() + k * speeds, speeds});
-    }
+    const std::size_t first = at(cut.first_row), count = cut.rows.size();
+    solve_backward(model, ws, supports, cut.link1, cut.link2, {loops.rows.data() + first, count},
+                   {loops.residual.data() + first * speeds, count * speeds},
+                   {loops.rate.data() + first * speeds, count * speeds});
   }
   for (std::size_t k = 0; k < rows; ++k) {
     for (std::size_t l = 0; l <= k; ++l) {

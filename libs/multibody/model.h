@@ -29,6 +29,7 @@
 namespace slew::multibody {
 
 inline constexpr int kMaxRows = 32;
+inline constexpr int kMaxJointRows = 6;
 
 enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating, universal, cylindrical };
 

@@ -45,9 +45,10 @@ void displace(const Model& model, const Workspace& ws, std::span<const double> s
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
                     std::span<double> residual, std::span<double> rate) noexcept;
 
-// The same for a row between two links, whose unit force is its gradient.
+// The same for up to kMaxJointRows rows between two links, whose unit forces are their gradients: residual and rate are
+// rows x speeds.
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, int link1, int link2,
-                    const RowGradient& G, std::span<double> residual, std::span<double> rate) noexcept;
+                    std::span<const RowValue> rows, std::span<double> residual, std::span<double> rate) noexcept;
 
 // q' of the coordinates for speeds u; needs the motion of the same q and u.
 void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,

@@ -159,11 +159,11 @@ void find_unit_reactions(const Model& model, const Cut& cut, const ConstraintRow
                          std::span<JointReaction> reactions) noexcept {
   LoopWorkspace& loops = ws.loops;
   const std::size_t speeds = ws.udot.size();
-  const RowGradient G = evaluate(row, cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]).G;
+  const RowValue value = evaluate(row, cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]);
   const std::span<const int> supports(model.supports.data() + cut.first_support,
                                       model.supports.data() + cut.support_end);
   std::fill(ws.unit_rate.begin(), ws.unit_rate.end(), 0.0);
-  solve_backward(model, ws, supports, cut.link1, cut.link2, G, ws.unit_residual, ws.unit_rate);
+  solve_backward(model, ws, supports, cut.link1, cut.link2, {&value, 1}, ws.unit_residual, ws.unit_rate);
   for (std::size_t k = 0; k < loops.rows.size(); ++k) {
     double w = 0;
     for (std::size_t j = 0; j < speeds; ++j) w += loops.residual[k * speeds + j] * ws.unit_rate[j];
@@ -172,7 +172,7 @@ void find_unit_reactions(const Model& model, const Cut& cut, const ConstraintRow
   loops.factor.solve(loops.multipliers);
   ReactionSum sum(model, ws);
   std::fill(reactions.begin(), reactions.end(), JointReaction{});
-  sum.transmit(cut, G, reactions);
+  sum.transmit(cut, value.G, reactions);
   sum.subtract_cuts(loops.multipliers, reactions);
   sum.pass_on(reactions);
 }

@@ -13,8 +13,8 @@ Workspace::Workspace(const Model& model)
       angles(model.angles.size()),
       delta_alpha(model.links.size()),
       delta_a(model.links.size()),
-      pass_n(model.links.size()),
-      pass_f(model.links.size()),
+      pass_n(model.links.size() * kMaxJointRows),
+      pass_f(model.links.size() * kMaxJointRows),
       body_n(model.bodies.size()),
       body_f(model.bodies.size()) {
   const auto nq = model.start_q.size(), nu = model.start_u.size(), rows = model.rows.size();
@@ -31,7 +31,7 @@ Workspace::Workspace(const Model& model)
   for (auto* by_row : {&loops.residual, &loops.rate}) by_row->assign(cut_rows * nu, 0.0);
   loops.W.assign(cut_rows * cut_rows, 0.0);
   loops.multipliers.assign(cut_rows, 0.0);
-  for (auto* by_u : {&loops.no_tau, &loops.step}) by_u->assign(nu, 0.0);
+  loops.step.assign(nu, 0.0);
   loops.factor = math::Semidefinite(static_cast<int>(cut_rows));
   std::size_t redundant = 0;
   for (const Cut& cut : model.cuts) redundant += cut.redundant.size();

@@ -93,7 +93,6 @@ struct LoopWorkspace {
   std::vector<double> residual, rate;  // rows x speeds, of solve_backward()
   std::vector<double> W;               // rows x rows
   std::vector<double> multipliers;     // by row: the force that closes it, -lambda [N or N m]
-  std::vector<double> no_tau;          // zeros, by u
   std::vector<double> step;            // by u
   math::Semidefinite factor;
 };
@@ -108,7 +107,7 @@ struct Workspace {
   std::vector<LineMotion> lines;
   std::vector<AngleMotion> angles;
   std::vector<math::Vec3> delta_alpha, delta_a;  // accelerations caused by u'
-  std::vector<math::Vec3> pass_n, pass_f;        // wrenches on their way to Ground in a back-solve
+  std::vector<math::Vec3> pass_n, pass_f;        // wrenches on their way to Ground in a back-solve, by row and link
 
   std::vector<double> tau;       // generalised forces of joint rows, by u
   std::vector<double> residual;  // of the backward pass, by u
