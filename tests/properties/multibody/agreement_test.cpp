@@ -27,7 +27,7 @@ Real difference(const Vector& a, const Vector& b) {
 class RandomTrees : public ::testing::TestWithParam<unsigned> {
  protected:
   RandomTree tree(const TreeOptions& options) const { return random_tree(GetParam(), options); }
-  TreeOptions options() const { return {.bodies = 1 + static_cast<int>(GetParam()) % 9}; }
+  TreeOptions options() const { return {.bodies = 1 + static_cast<int>(GetParam()) % 9, .two_coordinates = true}; }
 };
 
 TEST_P(RandomTrees, AccelerateAsTheAssembledEquationsSay) {

@@ -54,7 +54,7 @@ const BodyMotion& Assembled::body(const std::vector<BodyMotion>& bodies, const s
 }
 
 std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
-  const int n = model_.degrees_of_freedom();
+  const int n = model_.speed_count();
   std::vector<BodyMotion> bodies(def_.bodies.size() + 1);
   std::vector<bool> is_placed(bodies.size(), false);
   is_placed[0] = true;
@@ -63,6 +63,7 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
   for (std::size_t placed = 0; placed < def_.bodies.size();) {
     for (std::size_t j = 0; j < def_.joints.size(); ++j) {
       const JointDef& joint = def_.joints[j];
+      if (model_.joints[j].link == 0 && joint.type != JointType::fixed) continue;  // not in the tree
       const auto b1 = static_cast<std::size_t>(index(joint.body1)), b2 = static_cast<std::size_t>(index(joint.body2));
       if (is_placed[b1] == is_placed[b2]) continue;
       const bool is_forward = is_placed[b1];
@@ -102,6 +103,27 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
           child.R = quaternion_matrix(q, link.q) * R_C.transpose();
           child.Jw.middleCols(link.u, 3) += Matrix3::Identity();
           break;
+        case JointType::cylindrical: {
+          child.R = frame * about(2, sign * q[link.q]) * R_C.transpose();
+          const Vector3 slide = axis * (sign * q[link.q + 1]);
+          child.Jw.col(link.u) += sign * axis;
+          child.Jp -= cross_matrix(slide) * parent.Jw;
+          child.Jp.col(link.u + 1) += sign * axis;
+          point += slide;
+          break;
+        }
+        case JointType::universal: {
+          // R_12 = Rz(a1) [y z x] Rz(a2); from body 2 to body 1 its coordinates are a2, a1
+          Matrix3 cross;
+          cross << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+          const Matrix3 R_12 = is_forward ? Matrix3(about(2, q[link.q]) * cross * about(2, q[link.q + 1]))
+                                          : Matrix3(about(2, q[link.q + 1]) * cross * about(2, q[link.q]));
+          const Matrix3 moved = frame * (is_forward ? R_12 : Matrix3(R_12.transpose()));
+          child.R = moved * R_C.transpose();
+          child.Jw.col(link.u) += sign * axis;
+          child.Jw.col(link.u + 1) += sign * moved.col(2);
+          break;
+        }
         case JointType::floating:
           child.R = quaternion_matrix(q, link.q + 3) * R_C.transpose();
           point = q.segment(link.q, 3);
@@ -130,8 +152,11 @@ Vector Assembled::coordinate_rates(const Vector& q, const Vector& u) const {
   for (std::size_t j = 0; j < def_.joints.size(); ++j) {
     const Joint& joint = model_.joints[j];
     const Link& link = model_.links[static_cast<std::size_t>(joint.link)];
+    if (joint.link == 0) continue;  // not in the tree, or nothing moves
     if (joint.type == JointType::revolute || joint.type == JointType::prismatic) {
       rates[link.q] = u[link.u];
+    } else if (joint.type == JointType::universal || joint.type == JointType::cylindrical) {
+      rates.segment(link.q, 2) = u.segment(link.u, 2);
     } else if (joint.type == JointType::spherical || joint.type == JointType::floating) {
       const std::string& name = joint.is_reversed ? def_.joints[j].body1 : def_.joints[j].body2;
       const Vector3 w = body(bodies, name).Jw * u;
@@ -196,7 +221,7 @@ void Assembled::add_force_dummies(const std::vector<BodyMotion>& bodies, std::ve
 }
 
 Matrix Assembled::mass_matrix(const Vector& q) const {
-  const int n = model_.degrees_of_freedom();
+  const int n = model_.speed_count();
   Matrix M = Matrix::Zero(n, n);
   for (const Mass& m : masses(motion(q))) {
     M += m.mass * m.Jv.transpose() * m.Jv + m.Jw.transpose() * m.inertia * m.Jw;
@@ -288,7 +313,7 @@ Real Assembled::row_value(const std::string& row, const Vector& q) const {
 
 // d(row)/dt for each unit speed, numerically
 Vector Assembled::row_jacobian(const std::string& row, const Vector& q) const {
-  Vector J(model_.degrees_of_freedom());
+  Vector J(model_.speed_count());
   const Real here = row_value(row, q);
   for (Eigen::Index k = 0; k < J.size(); ++k) {
     const Vector rates = coordinate_rates(q, Vector::Unit(J.size(), k));
@@ -304,6 +329,75 @@ Vector Assembled::row_jacobian(const std::string& row, const Vector& q) const {
 Real Assembled::row_bias(const std::string& row, const Vector& q, const Vector& u) const {
   const Vector rates = coordinate_rates(q, u);
   return derivative_at_zero([&](Real t) { return row_jacobian(row, q + t * rates).dot(u); });
+}
+
+Vector Assembled::cut_values(std::size_t j, const Vector& q) const {
+  const JointDef& joint = def_.joints[j];
+  const std::vector<BodyMotion> bodies = motion(q);
+  const BodyMotion &b1 = body(bodies, joint.body1), &b2 = body(bodies, joint.body2);
+  const Matrix3 R1 = b1.R * euler_xyz(joint.orientation1), R2 = b2.R * euler_xyz(joint.orientation2);
+  const Vector3 d = b2.p + b2.R * vec(joint.point2) - b1.p - b1.R * vec(joint.point1);
+  const Vector3 z1 = R1.col(2), z2 = R2.col(2);
+  std::vector<Real> g;
+  const auto add = [&g](const auto& values) { g.insert(g.end(), values.begin(), values.end()); };
+  // the definitions themselves, with more rows than needed where that is simpler
+  const Vector3 across = d - z1 * z1.dot(d);
+  switch (joint.type) {
+    case JointType::spherical:
+      add(d);
+      break;
+    case JointType::revolute:
+      add(d), add(Vector3(z1.cross(z2)));
+      break;
+    case JointType::fixed:
+      add(d), add(Vector3(R1.col(0) - R2.col(0))), add(Vector3(R1.col(1) - R2.col(1)));
+      break;
+    case JointType::prismatic:
+      add(across), add(Vector3(R1.col(0) - R2.col(0))), add(Vector3(R1.col(1) - R2.col(1)));
+      break;
+    case JointType::cylindrical:
+      add(across), add(Vector3(z1.cross(z2)));
+      break;
+    case JointType::universal:
+      add(d), g.push_back(z1.dot(z2));
+      break;
+    case JointType::in_plane:
+      g.push_back(z1.dot(d));
+      break;
+    case JointType::in_line:
+      add(across);
+      break;
+    case JointType::perpendicular:
+      g.push_back(z1.dot(z2));
+      break;
+    case JointType::spherical_spherical:
+      g.push_back(d.norm());
+      break;
+    case JointType::revolute_spherical:
+      add(Vector3(d.norm(), z1.dot(d), 0));
+      break;
+    case JointType::revolute_revolute:
+      g.insert(g.end(), {d.norm(), z1.dot(d), z2.dot(d), z1.dot(z2)});
+      break;
+    default:
+      throw std::logic_error("a floating joint holds nothing");
+  }
+  return Eigen::Map<Vector>(g.data(), static_cast<Eigen::Index>(g.size()));
+}
+
+Matrix Assembled::cut_jacobian(std::size_t j, const Vector& q) const {
+  const Eigen::Index n = model_.speed_count();
+  Matrix J(cut_values(j, q).size(), n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Vector rates = coordinate_rates(q, Vector::Unit(n, k));
+    J.col(k) = derivative_at_zero([&](Real t) { return cut_values(j, q + t * rates); });
+  }
+  return J;
+}
+
+Vector Assembled::cut_bias(std::size_t j, const Vector& q, const Vector& u) const {
+  const Vector rates = coordinate_rates(q, u);
+  return derivative_at_zero([&](Real t) { return Vector(cut_jacobian(j, q + t * rates) * u); });
 }
 
 }  // namespace slew::multibody::testing

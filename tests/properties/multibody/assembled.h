@@ -43,6 +43,11 @@ class Assembled {
   [[nodiscard]] Vector row_jacobian(const std::string& row, const Vector& q) const;
   [[nodiscard]] Real row_bias(const std::string& row, const Vector& q, const Vector& u) const;
 
+  // what joint j of the Def, one that is cut, must keep; its Jacobian; J' u
+  [[nodiscard]] Vector cut_values(std::size_t j, const Vector& q) const;
+  [[nodiscard]] Matrix cut_jacobian(std::size_t j, const Vector& q) const;
+  [[nodiscard]] Vector cut_bias(std::size_t j, const Vector& q, const Vector& u) const;
+
   [[nodiscard]] Real potential(const Vector& q) const;  // gravity only
 
  private:

@@ -64,7 +64,8 @@ class Both {
 
 class BodyCoordinates : public ::testing::TestWithParam<unsigned> {
  protected:
-  BodyCoordinates() : both(random_tree(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9})) {}
+  BodyCoordinates()
+      : both(random_tree(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9, .two_coordinates = true})) {}
   void SetUp() override {
     if (both.recursive.model.degrees_of_freedom() == 0) GTEST_SKIP() << "all joints are fixed";
     state = random_state(GetParam(), both.recursive.model);

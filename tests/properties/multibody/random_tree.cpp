@@ -40,6 +40,7 @@ class Generator {
     constexpr JointType kAll[] = {JointType::revolute,  JointType::revolute, JointType::prismatic,
                                   JointType::spherical, JointType::fixed,    JointType::floating};
     if (options_.only_one_coordinate) return kAll[pick(3)];
+    if (options_.two_coordinates && pick(3) == 0) return pick(2) == 0 ? JointType::universal : JointType::cylindrical;
     return kAll[pick(options_.floating_root ? 5 : 6)];
   }
 
@@ -58,7 +59,12 @@ class Generator {
     Pose frame = {base.R * math::rotation_xyz(turn_P), base.p + base.R * Vec3(p_P)};
     const bool is_reversed = joint.type != JointType::floating && pick(3) == 0;
     if (joint.type == JointType::revolute) frame.R = frame.R * math::rotation_z(q);
-    if (joint.type == JointType::prismatic) frame.p += frame.R.c[2] * q;
+    if (joint.type == JointType::prismatic || joint.type == JointType::cylindrical) frame.p += frame.R.c[2] * q;
+    if (joint.type == JointType::cylindrical) frame.R = frame.R * math::rotation_z(number(-3, 3));
+    if (joint.type == JointType::universal) {
+      const Mat3 between = frame.R * math::rotation_z(q);
+      frame.R = Mat3{between.c[1], between.c[2], between.c[0]} * math::rotation_z(number(-3, 3));
+    }
     if (joint.type == JointType::spherical || joint.type == JointType::floating) {
       frame.R = frame.R * math::rotation_xyz(triple(3));
     }
@@ -172,8 +178,8 @@ State random_state(unsigned seed, const Model& model) {
   for (const Link& link : model.links) {
     if (&link == &model.links[0]) continue;
     const auto i = static_cast<std::size_t>(link.q);
-    if (link.joint == LinkJoint::revolute || link.joint == LinkJoint::prismatic) {
-      state.q[i] += number(random);
+    if (link.joint != LinkJoint::spherical && link.joint != LinkJoint::floating) {
+      for (int k = 0; k < speed_count(link.joint); ++k) state.q[i + static_cast<std::size_t>(k)] += number(random);
     } else {
       const math::Quaternion q = math::normalized({number(random), number(random), number(random), number(random)});
       const std::size_t k = i + (link.joint == LinkJoint::floating ? 3 : 0);

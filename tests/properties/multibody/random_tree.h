@@ -16,8 +16,9 @@ struct TreeOptions {
   bool with_forces = true;           // spring-dampers
   bool with_dummies = true;
   bool with_gravity = true;
-  bool lines_to_ground = true;  // forces between bodies and Ground as well
-  bool floating_root = false;   // the first body floats, no other joint reaches Ground
+  bool lines_to_ground = true;   // forces between bodies and Ground as well
+  bool two_coordinates = false;  // universal and cylindrical joints as well
+  bool floating_root = false;    // the first body floats, no other joint reaches Ground
 };
 
 struct RandomTree {
