@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "multibody/field_tables.h"
+#include "multibody/joint_fields.h"
 
 namespace slew::scene {
 namespace {
@@ -126,11 +127,11 @@ void collect(std::vector<ElementRef>& refs, const ElementTable& table, Defs& def
 }
 
 void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& mechanics) {
-  // values of `type:` in the order of JointType
-  constexpr std::string_view kJointTypes[] = {"revolute", "prismatic", "spherical", "fixed", "floating"};
+  // in the order of JointType
+  const std::span<const multibody::ElementType> joint_types = multibody::joint_types();
   collect(refs, table_of("bodies", ""), mechanics.bodies);
   for (multibody::JointDef& joint : mechanics.joints) {
-    refs.push_back(ref(table_of("joints", kJointTypes[static_cast<int>(joint.type)]), joint.name, &joint));
+    refs.push_back(ref(table_of("joints", joint_types[static_cast<std::size_t>(joint.type)].name), joint.name, &joint));
   }
   collect(refs, table_of("forces", "translational"), mechanics.translational_forces);
   collect(refs, table_of("forces", "rotational"), mechanics.rotational_forces);

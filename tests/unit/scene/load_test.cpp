@@ -5,6 +5,7 @@
 #include "build_paths.h"
 #include "scene/canonical.h"
 #include "scene/scene.h"
+#include "scene/sections.h"
 #include "scene_text.h"
 #include "temporary_folder.h"
 
@@ -158,6 +159,26 @@ TEST(Assets, AreMeasuredAndComparedByContents) {
   there.write("mesh.stl", "abcd");
   EXPECT_NE(check_assets(scene.assets, there.path()).text.find("differs from the session's (4 bytes here, 3 there)"),
             std::string::npos);
+}
+
+// what a session publishes must hold every joint
+TEST(Scene, EveryJointTypeIsWrittenAndReadBack) {
+  for (const ElementTable& table : element_tables()) {
+    if (table.section != "joints") continue;
+    const std::string type(table.type);
+    const bool crosses_axes = type == "universal" || type == "perpendicular";
+    const bool is_link = type.find('_') != std::string::npos && !type.starts_with("in_");
+    const std::string text =
+        "bodies:\n  Rod: {position: [0, 0, 0], mass: 2 kg, inertia: [1, 1, 1]}\njoints:\n  Joint: {type: " + type +
+        ", body2: Rod" + (crosses_axes ? ", orientation1: [90 deg, 0, 0]" : "") +
+        (is_link ? ", point1: [1 m, 0, 0]" : "") + "}\n";
+    ASSERT_EQ(problems_of(text), "") << type;
+    const Scene scene = load_text(text, "test");
+    EXPECT_NE(scene.expanded_text.find("    type: " + type + "\n"), std::string::npos) << scene.expanded_text;
+    const Scene again = load_text(scene.expanded_text, "test");
+    EXPECT_EQ(again.expanded_text, scene.expanded_text) << type;
+    EXPECT_EQ(again.mechanics.joints.at(0).type, scene.mechanics.joints.at(0).type) << type;
+  }
 }
 
 TEST(Assets, KeepTheirNamesInTheCanonicalText) {
