@@ -1,7 +1,9 @@
 // `slewring describe SCENE`: what a scene is made of, what it costs in states, and which nodes it needs and why.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/display.h"
 #include "cli/verbs.h"
@@ -20,6 +22,12 @@ struct Options {
   bool is_json = false;
 };
 
+// A body by its numbers, and the mesh that they came from.
+struct BodyNumbers {
+  multibody::BodyDef def;
+  std::optional<scene::MeshInertia> mesh;
+};
+
 struct NodeNeed {
   std::string role;
   bool is_needed = false;
@@ -30,6 +38,7 @@ struct Description {
   std::string name, text;
   double step = 0, duration = 0;
   std::string pace;
+  std::vector<BodyNumbers> body_numbers;
   std::size_t bodies = 0, joints = 0, links = 0, rows = 0;
   int degrees_of_freedom = 0;
   std::vector<std::string> motions;  // "Body_Pillar (revolute, 1)"
@@ -55,6 +64,15 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   for (const multibody::LinkDescription& link : m.links) {
     d.motions.push_back(fmt::format("{} ({}, {})", link.joint, link.joint_type, link.degrees_of_freedom));
     for (std::size_t i = 1; i < link.bodies.size(); ++i) d.merged.push_back(link.bodies[i] + " with " + link.bodies[0]);
+  }
+}
+
+void describe_bodies(const scene::Scene& scene, Description& d) {
+  for (const multibody::BodyDef& body : scene.mechanics.bodies) {
+    const auto& meshes = scene.mesh_inertias;
+    const auto mesh = std::find_if(meshes.begin(), meshes.end(),
+                                   [&](const scene::MeshInertia& one) { return one.body == body.name; });
+    d.body_numbers.push_back({body, mesh == meshes.end() ? std::nullopt : std::optional(*mesh)});
   }
 }
 
@@ -90,6 +108,7 @@ Description describe(const scene::Scene& scene) {
   d.step = scene.session.step;
   d.duration = scene.session.duration;
   d.pace = scene.session.pace == scene::Pace::free ? "free" : "real";
+  describe_bodies(scene, d);
   describe_mechanics(scene, d);
   describe_hydraulics(scene, d);
   for (const scene::PortDef& port : scene.ports) d.ports.push_back(port.name + " drives " + port.force);
@@ -98,7 +117,36 @@ Description describe(const scene::Scene& scene) {
   return d;
 }
 
+nlohmann::json to_json(const BodyNumbers& body) {
+  const bool is_about_center = body.def.inertia_about == multibody::InertiaPoint::center_of_mass;
+  nlohmann::json json = {{"name", body.def.name},
+                         {"mass", body.def.mass},
+                         {"center_of_mass", body.def.center_of_mass},
+                         {"inertia", body.def.inertia},
+                         {"products", body.def.products},
+                         {"inertia_about", is_about_center ? "center_of_mass" : "body_origin"}};
+  if (body.mesh) {
+    json["mesh"] = {{"file", body.mesh->mesh}, {"volume", body.mesh->volume}, {"density", body.mesh->density}};
+  }
+  return json;
+}
+
+std::string triple_text(const Triple& v) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v[0], v[1], v[2]);
+}
+
+// "Bag from bag.stl: 0.64 m3 of 781.25 kg/m3, 500 kg; centre of mass [0, -0.6, 0] m; about it ..."
+std::string mesh_text(const BodyNumbers& body) {
+  return fmt::format(
+      "{} from {}: {:.6g} m3 of {:.6g} kg/m3, {:.6g} kg; centre of mass {} m; about it Ixx, Iyy, Izz {} and Ixy, Ixz, "
+      "Iyz {} kg m2",
+      body.def.name, body.mesh->mesh, body.mesh->volume, body.mesh->density, body.def.mass,
+      triple_text(body.def.center_of_mass), triple_text(body.def.inertia), triple_text(body.def.products));
+}
+
 nlohmann::json to_json(const Description& d) {
+  nlohmann::json bodies = nlohmann::json::array();
+  for (const BodyNumbers& body : d.body_numbers) bodies.push_back(to_json(body));
   nlohmann::json nodes = nlohmann::json::array();
   for (const NodeNeed& node : d.nodes) {
     nodes.push_back({{"role", node.role}, {"needed", node.is_needed}, {"reason", node.reason}});
@@ -113,7 +161,8 @@ nlohmann::json to_json(const Description& d) {
             {"motions", d.motions},
             {"merged", d.merged},
             {"degrees_of_freedom", d.degrees_of_freedom},
-            {"rows", d.rows}}},
+            {"rows", d.rows},
+            {"mass_properties", bodies}}},
           {"hydraulics",
            {{"components", d.components},
             {"pressure_states", d.free_volumes},
@@ -149,6 +198,9 @@ void print(const Description& d) {
                              counted(static_cast<std::uint64_t>(d.hydraulic_states), "state", "states") + " in all"})},
       {"ports", joined(d.ports)},
       {"inputs", joined(d.inputs)}};
+  for (const BodyNumbers& body : d.body_numbers) {
+    if (body.mesh) rows.push_back({"inertia", mesh_text(body)});
+  }
   for (const NodeNeed& node : d.nodes) {
     rows.push_back({node.role + " node", (node.is_needed ? "needed: " : "not needed: ") + node.reason});
   }

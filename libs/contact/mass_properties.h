@@ -6,7 +6,8 @@
 //   120 C = sum det ((a+b+c)(a+b+c)^T + a a^T + b b^T + c c^T),   C = integral of x x^T      (3)
 //   I = density (tr(C_c) 1 - C_c),   C_c = C - V r r^T                                       (4)
 // exact for a polyhedron. o is the middle of the bounding box, so that a mesh far from its origin loses no digits.
-// Source: Mirtich 1996 (the integrals), Tonon 2004 (tetrahedra). Not covered: hollow bodies, more than one density.
+// Source: Mirtich 1996 (the integrals), Tonon 2004 (tetrahedra). A hole is a surface turned inside out
+// within another. Not covered: more than one density.
 #pragma once
 
 #include "contact/contact_def.h"

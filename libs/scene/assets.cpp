@@ -49,7 +49,8 @@ Measured measure(const std::string& name, const std::string& path) {
   return {std::move(asset), ""};
 }
 
-// Names stay inside the scene's folder, so that they mean the same on every machine.
+}  // namespace
+
 bool is_inside_folder(const std::string& name) {
   const std::filesystem::path path(name);
   if (path.is_absolute()) return false;
@@ -58,8 +59,6 @@ bool is_inside_folder(const std::string& name) {
   }
   return true;
 }
-
-}  // namespace
 
 void read_assets(const Node& section, const Surroundings& surroundings, Scene& scene, Report& report) {
   if (section.kind != Node::Kind::sequence || section.items.size() > kMaxAssets) {

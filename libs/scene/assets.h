@@ -12,6 +12,9 @@ namespace slew::scene {
 
 inline constexpr std::size_t kMaxAssets = 256;
 
+// Names stay inside the scene's folder, so that they mean the same on every machine.
+[[nodiscard]] bool is_inside_folder(const std::string& name);
+
 // Reads the section `assets: [file, ...]`; with surroundings every file is measured.
 void read_assets(const Node& section, const Surroundings& surroundings, Scene& scene, Report& report);
 

@@ -6,6 +6,7 @@
 
 #include "scene/canonical.h"
 #include "scene/field_reader.h"
+#include "scene/mesh_inertia.h"
 #include "scene/schema.h"
 #include "scene/sections.h"
 
@@ -86,6 +87,10 @@ std::string field_reference() {
       const std::string heading =
           table.type.empty() ? std::string(table.doc) : fmt::format("`type: {}`: {}", table.type, table.doc);
       text += fmt::format("\n{}.\n\n{}", heading, table_of(table.fields, def));
+      if (section != "bodies") continue;
+      MeshInertiaDef from_mesh;
+      text += fmt::format("\n`inertia: {}`: mass, centre of mass and inertia of the solid in a closed mesh.\n\n{}",
+                          kFromMesh, table_of(mesh_inertia_fields(), &from_mesh));
     }
   }
   ScriptDef script;

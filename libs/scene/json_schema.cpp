@@ -6,6 +6,7 @@
 
 #include "scene/defs.h"
 #include "scene/field_reader.h"
+#include "scene/mesh_inertia.h"
 #include "scene/schema.h"
 #include "scene/sections.h"
 #include "scene/units.h"
@@ -97,10 +98,23 @@ Json object_of(std::span<const Field> fields, std::string_view doc, std::string_
   return schema;
 }
 
+// A body whose inertia comes from a mesh: the fields of any body that the mesh leaves open, and the mesh's.
+Json mesh_body(const ElementTable& table) {
+  std::vector<Field> fields = fields_beside_mesh(table.fields);
+  fields.insert(fields.end(), mesh_inertia_fields().begin(), mesh_inertia_fields().end());
+  Json schema = object_of(fields, "rigid body, inertia from a closed mesh", "");
+  schema["properties"]["inertia"] = {{"const", std::string(kFromMesh)}};
+  schema["required"].push_back("inertia");
+  schema["oneOf"] = {{{"required", {"density"}}}, {{"required", {"mass"}}}};
+  return schema;
+}
+
 Json elements_of(std::string_view section) {
   Json types = Json::array();
   for (const ElementTable& table : element_tables()) {
-    if (table.section == section) types.push_back(object_of(table.fields, table.doc, table.type));
+    if (table.section != section) continue;
+    types.push_back(object_of(table.fields, table.doc, table.type));
+    if (section == "bodies") types.push_back(mesh_body(table));
   }
   Json element = types.size() == 1 ? types[0] : Json{{"oneOf", types}};
   return {{"type", "object"},

@@ -12,6 +12,7 @@
 #include "scene/canonical.h"
 #include "scene/expand.h"
 #include "scene/field_reader.h"
+#include "scene/mesh_inertia.h"
 #include "scene/names.h"
 #include "scene/place_map.h"
 #include "scene/ports.h"
@@ -160,6 +161,10 @@ class SceneReader {
     const ElementTable* table = table_of(section, element);
     if (table == nullptr) return;
     void* def = table->append(scene_, element.key);
+    if (section == "bodies" && takes_from_mesh(element.value)) {
+      read_mesh_body(element, table->fields, surroundings_, *static_cast<multibody::BodyDef*>(def), scene_, context_);
+      return;
+    }
     const bool has_type = !table->type.empty();
     read_fields(element.value, table->fields, def, element.key, element.mark,
                 has_type ? std::span<const std::string_view>(kTypeKey) : std::span<const std::string_view>(), context_);

@@ -39,6 +39,14 @@ struct Asset {
   bool operator==(const Asset&) const = default;
 };
 
+// A body whose mass properties came from a mesh, for those who show a scene; the numbers are in its BodyDef.
+struct MeshInertia {
+  std::string body;
+  std::string mesh;    // file
+  double volume = 0;   // m3
+  double density = 0;  // kg/m3
+};
+
 struct Scene {
   std::string name;
   std::string description;
@@ -52,6 +60,7 @@ struct Scene {
   std::vector<PortDef> ports;  // one per actuator, in component order
   std::vector<std::string> warnings;
   std::vector<Asset> assets;
+  std::vector<MeshInertia> mesh_inertias;  // of the files that were read; none in a scene from its expanded text
 
   // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
   std::string expanded_text;

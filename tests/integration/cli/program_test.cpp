@@ -163,6 +163,26 @@ TEST_F(Program, DescribeCountsTheCrane) {
   EXPECT_TRUE(contains(pendulum, "not needed: no volumes")) << pendulum;
 }
 
+// a cube of 2 m at 500 kg/m3, written as an .obj file
+TEST_F(Program, DescribeShowsWhatAMeshGave) {
+  std::ofstream(work_.path() / "cube.obj")
+      << "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
+         "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  const std::string scene = work_.path() / "cube.yaml";
+  std::ofstream(scene) << "bodies:\n  Cube: {inertia: from_mesh, mesh: cube.obj, mesh_unit: 1 m, mesh_up: y,"
+                          " density: 500 kg/m3}\njoints:\n  Free: {type: floating, body2: Cube}\n";
+  const CommandResult text = slewring({"describe", scene});
+  EXPECT_TRUE(contains(text.out,
+                       "Cube from cube.obj: 8 m3 of 500 kg/m3, 4000 kg; centre of mass [0, 0, 0] m; about it "
+                       "Ixx, Iyy, Izz [2666.67, 2666.67, 2666.67]"))
+      << text.out << text.err;
+  const nlohmann::json json = nlohmann::json::parse(slewring({"describe", scene, "--json"}).out);
+  const nlohmann::json& cube = json.at("mechanics").at("mass_properties").at(0);
+  EXPECT_EQ(cube.at("mass"), 4000);
+  EXPECT_EQ(cube.at("mesh").at("file"), "cube.obj");
+  EXPECT_NEAR(cube.at("inertia").at(2).get<double>(), 4000.0 / 12 * 8, 1e-6);
+}
+
 TEST_F(Program, VariablesOfASceneHaveUnits) {
   const CommandResult result =
       slewring({"variables", scene_file("truck_crane.yaml"), "--only", "Cyl_Lift.*", "--json"});

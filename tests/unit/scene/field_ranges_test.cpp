@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/field_reader.h"
+#include "scene/mesh_inertia.h"
 #include "scene/scene.h"
 #include "scene/sections.h"
 #include "scene/units.h"
@@ -99,6 +100,7 @@ std::vector<Case> cases() {
         table.type.empty() ? std::string(table.section) : fmt::format("{}_{}", table.section, table.type);
     all.push_back({label, "Thing", fmt::format("{}:\n  Thing: {{{}", table.section, type), table.fields});
   }
+  all.push_back({"bodies_from_mesh", "Thing", "bodies:\n  Thing: {inertia: from_mesh, ", mesh_inertia_fields()});
   return all;
 }
 

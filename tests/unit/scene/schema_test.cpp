@@ -8,6 +8,7 @@
 #include <string>
 
 #include "build_paths.h"
+#include "scene/mesh_inertia.h"
 #include "scene/sections.h"
 
 namespace slew::scene {
@@ -28,6 +29,8 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
     bool is_found = false;
     for (const auto& alternative : alternatives) {
       if (!table.type.empty() && alternative["properties"]["type"]["const"] != std::string(table.type)) continue;
+      // the other form of a body: below
+      if (alternative["properties"].contains("mesh_unit")) continue;
       is_found = true;
       for (const Field& field : table.fields) {
         EXPECT_TRUE(alternative["properties"].contains(std::string(field.key))) << table.section << " " << field.key;
@@ -39,7 +42,21 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
 
 TEST(Schema, SaysWhichFieldsAreLive) {
   const auto schema = nlohmann::json::parse(json_schema());
-  EXPECT_TRUE(schema["properties"]["bodies"]["additionalProperties"]["properties"]["mass"]["x-live"].get<bool>());
+  const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
+  ASSERT_EQ(bodies.size(), 2u);
+  for (const auto& body : bodies) EXPECT_TRUE(body["properties"]["mass"]["x-live"].get<bool>());
+}
+
+TEST(Schema, HasTheFieldsOfABodyFromAMesh) {
+  const auto schema = nlohmann::json::parse(json_schema());
+  const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
+  EXPECT_EQ(bodies[1]["properties"]["inertia"]["const"], "from_mesh");
+  for (const Field& field : mesh_inertia_fields()) {
+    EXPECT_TRUE(bodies[1]["properties"].contains(std::string(field.key))) << field.key;
+    EXPECT_FALSE(field.doc.empty()) << field.key;
+  }
+  EXPECT_TRUE(bodies[1]["properties"].contains("position"));
+  EXPECT_FALSE(bodies[1]["properties"].contains("center_of_mass"));
 }
 
 TEST(Schema, EveryFieldHasADocLine) {

@@ -1,0 +1,190 @@
+#include "scene/mesh_inertia.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "contact/mass_properties.h"
+#include "contact/mesh_check.h"
+#include "math/rotation.h"
+#include "scene/assets.h"
+
+namespace slew::scene {
+namespace {
+
+using enum Dimension;
+using math::Mat3;
+using math::Vec3;
+
+constexpr std::string_view kUpAxes[] = {"y", "z"};
+// keys of a body that the mesh answers
+constexpr std::string_view kDerivedKeys[] = {"center_of_mass", "products", "inertia_about"};
+constexpr std::string_view kInertiaKey = "inertia";
+constexpr std::string_view kMassKey = "mass";
+
+constexpr Field kFields[] = {
+    field<&MeshInertiaDef::mesh>(
+        "mesh", {.presence = Presence::required,
+                 .doc = "closed mesh in the scene's folder, .stl, .obj, .dae or .3ds; it may hold several solids"}),
+    field<&MeshInertiaDef::mesh_unit>("mesh_unit", {.dimension = length,
+                                                    .range = kPositive,
+                                                    .presence = Presence::required,
+                                                    .doc = "length of a unit of the file, such as 1 mm"}),
+    field<&MeshInertiaDef::mesh_up>("mesh_up", {.presence = Presence::required,
+                                                .choices = kUpAxes,
+                                                .doc = "axis of the file that is up; it becomes the axis body_up"}),
+    field<&MeshInertiaDef::body_up>(
+        "body_up",
+        {.choices = kUpAxes, .doc = "up in the body's frame; if not mesh_up, the mesh is turned about x by 90 deg"}),
+    field<&MeshInertiaDef::mesh_position>("mesh_position",
+                                          {.dimension = length, .doc = "the mesh's origin, body frame"}),
+    field<&MeshInertiaDef::mesh_orientation>(
+        "mesh_orientation", {.dimension = angle, .doc = "the mesh's axes: successive Euler rotations z, x', z''"}),
+    field<&MeshInertiaDef::density>(
+        "density", {.dimension = density, .range = kPositive, .doc = "density of the solid; either this or mass"}),
+    field<&MeshInertiaDef::mass>("mass", {.dimension = mass,
+                                          .range = kPositive,
+                                          .change = Change::live,
+                                          .doc = "mass of the solid, spread evenly; either this or density"}),
+};
+
+bool is_one_of(std::string_view key, std::span<const std::string_view> keys) {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+bool is_mesh_key(std::string_view key) {
+  return std::any_of(std::begin(kFields), std::end(kFields), [&](const Field& row) { return row.key == key; });
+}
+
+class MeshBodyReader {
+ public:
+  MeshBodyReader(const Node::Entry& element, const Surroundings& surroundings, const ReadContext& context)
+      : element_(element), surroundings_(surroundings), context_(context) {}
+
+  void read(std::span<const Field> body_fields, multibody::BodyDef& body, Scene& scene) {
+    const std::size_t problems = context_.report.size();
+    read_keys(body_fields, body);
+    check_keys();
+    if (context_.report.size() > problems) return;
+    const std::optional<contact::MeshDef> mesh = read_solid();
+    if (!mesh) return;
+    contact::MassProperties solid = contact::mass_properties(*mesh, 1);
+    const double density_of_solid = std::isfinite(def_.density) ? def_.density : def_.mass / solid.volume;
+    put(solid, density_of_solid, body);
+    scene.mesh_inertias.push_back({element_.key, def_.mesh, solid.volume, density_of_solid});
+  }
+
+ private:
+  // the element's keys in two maps: those of the mesh and those of any body
+  void read_keys(std::span<const Field> body_fields, multibody::BodyDef& body) {
+    Node of_mesh, of_body = element_.value;
+    of_mesh.kind = Node::Kind::map;
+    of_mesh.mark = element_.value.mark;
+    for (const Node::Entry& entry : element_.value.entries) {
+      if (is_mesh_key(entry.key)) of_mesh.entries.push_back(entry);
+    }
+    std::vector<std::string_view> other_keys = {kInertiaKey};
+    other_keys.insert(other_keys.end(), std::begin(kDerivedKeys), std::end(kDerivedKeys));
+    for (const Field& row : kFields) other_keys.push_back(row.key);
+    read_fields(of_body, fields_beside_mesh(body_fields), &body, element_.key, element_.mark, other_keys, context_);
+    read_fields(of_mesh, kFields, &def_, element_.key, element_.mark, {}, context_);
+  }
+
+  void check_keys() {
+    for (const std::string_view key : kDerivedKeys) {
+      if (const Node::Entry* entry = element_.value.find(key)) {
+        complain(entry->mark, key, {"follows from the mesh", "no such key beside inertia: from_mesh", ""});
+      }
+    }
+    const Node::Entry* density_entry = element_.value.find("density");
+    const Node::Entry* mass_entry = element_.value.find(kMassKey);
+    if (density_entry != nullptr && mass_entry != nullptr) {
+      complain(mass_entry->mark, kMassKey, {"density and mass are both given", "one of them", ""});
+    } else if (density_entry == nullptr && mass_entry == nullptr) {
+      context_.report.add(element_.mark, element_.key,
+                          {"neither density nor mass is given", "one of them, for the solid in the mesh", ""});
+    }
+  }
+
+  // The mesh in the body's unit and up axis; nothing after a complaint.
+  std::optional<contact::MeshDef> read_solid() {
+    const Mark mark = element_.value.find("mesh")->value.mark;
+    if (!surroundings_.has_folder) {
+      complain(mark, "mesh", {"a scene without a folder cannot name a file", "mass, center_of_mass and inertia", ""});
+      return std::nullopt;
+    }
+    if (!is_inside_folder(def_.mesh)) {
+      complain(mark, "mesh", {"is '" + def_.mesh + "'", "a file in the scene's folder", ""});
+      return std::nullopt;
+    }
+    const std::filesystem::path path = surroundings_.path_of(def_.mesh);
+    std::error_code error;
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+      complain(mark, "mesh", {"'" + path.string() + "' is not a regular file", "a mesh file", ""});
+      return std::nullopt;
+    }
+    Problems problems;
+    contact::MeshDef mesh = contact::read_mesh(
+        element_.key, {.path = path, .unit = def_.mesh_unit, .up_in_file = def_.mesh_up, .up = def_.body_up}, problems);
+    for (const Problem& problem : problems) complain(mark, "mesh", {problem.what, problem.expected, ""});
+    if (!problems.empty()) return std::nullopt;
+    if (const auto fault = contact::find_closed_fault(mesh)) {
+      complain(mark, "mesh", {fmt::format("'{}' encloses no solid: {}", def_.mesh, fault->what), fault->expected, ""});
+      return std::nullopt;
+    }
+    return mesh;
+  }
+
+  // (1)
+  void put(const contact::MassProperties& solid, double density_of_solid, multibody::BodyDef& body) const {
+    const Mat3 R_BM = math::rotation_zxz(def_.mesh_orientation);
+    const Mat3 I_B = R_BM * (solid.inertia * density_of_solid) * transpose(R_BM);
+    body.mass = std::isfinite(def_.mass) ? def_.mass : solid.volume * density_of_solid;
+    body.center_of_mass = (Vec3(def_.mesh_position) + R_BM * solid.centre).array();
+    body.inertia = {I_B(0, 0), I_B(1, 1), I_B(2, 2)};
+    body.products = {I_B(0, 1), I_B(0, 2), I_B(1, 2)};
+    body.inertia_about = multibody::InertiaPoint::center_of_mass;
+  }
+
+  void complain(const Mark& mark, std::string_view key, Complaint complaint) {
+    context_.report.add(mark, fmt::format("{}.{}", element_.key, key), std::move(complaint));
+  }
+
+  const Node::Entry& element_;
+  const Surroundings& surroundings_;
+  const ReadContext& context_;
+  MeshInertiaDef def_;
+};
+
+}  // namespace
+
+std::span<const Field> mesh_inertia_fields() noexcept {
+  return kFields;
+}
+
+bool takes_from_mesh(const Node& body) {
+  const Node::Entry* inertia_entry = body.find(kInertiaKey);
+  return inertia_entry != nullptr && inertia_entry->value.kind == Node::Kind::scalar &&
+         inertia_entry->value.text == kFromMesh;
+}
+
+std::vector<Field> fields_beside_mesh(std::span<const Field> body_fields) {
+  std::vector<Field> rows;
+  for (const Field& row : body_fields) {
+    if (row.key != kInertiaKey && row.key != kMassKey && !is_one_of(row.key, kDerivedKeys)) rows.push_back(row);
+  }
+  return rows;
+}
+
+void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const Surroundings& surroundings,
+                    multibody::BodyDef& body, Scene& scene, const ReadContext& context) {
+  MeshBodyReader(element, surroundings, context).read(body_fields, body, scene);
+}
+
+}  // namespace slew::scene

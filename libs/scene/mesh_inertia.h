@@ -1,0 +1,54 @@
+// Mass, centre of mass and inertia of a body from a closed mesh: `inertia: from_mesh`.
+//
+//   Bag: {inertia: from_mesh, mesh: bag.stl, mesh_unit: 1 mm, mesh_up: z, density: 1600 kg/m3}
+//
+// The solid inside of the mesh has one density: the given one, or the given mass over the mesh's volume. With the
+// mesh's axes at mesh_position p_BM in the body's frame, turned by mesh_orientation R_BM, and the mesh's own centre c_M
+// and inertia I_M about it (contact/mass_properties.h):
+//   c_B = p_BM + R_BM c_M        I_B = R_BM I_M R_BM^T                                             (1)
+// The scene keeps the numbers, not the mesh: the session's text and a recording hold them, nodes need no file.
+// Not covered: more than one density; a mesh that cuts through itself is not found (docs/models/contact_meshes.md).
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "contact/mesh_file/mesh_file.h"
+#include "core/field.h"
+#include "multibody/defs.h"
+#include "scene/expand.h"
+#include "scene/field_reader.h"
+#include "scene/scene.h"
+#include "scene/yaml_tree.h"
+
+namespace slew::scene {
+
+inline constexpr std::string_view kFromMesh = "from_mesh";
+
+// What stands in the place of inertia, products, inertia_about and center_of_mass.
+struct MeshInertiaDef {
+  std::string mesh{};                            // file in the scene's folder: .stl, .obj, .dae, .3ds
+  double mesh_unit = 1;                          // m per unit of the file, > 0
+  contact::UpAxis mesh_up = contact::UpAxis::y;  // that axis of the file ...
+  contact::UpAxis body_up = contact::UpAxis::y;  // ... becomes this axis, by a quarter turn about x
+  Triple mesh_position{};                        // m, the mesh's origin, body frame
+  Triple mesh_orientation{};                     // rad, successive rotations z, x', z''
+  double density = multibody::kUnlimited;        // kg/m3, > 0; infinite: from the mass
+  double mass = multibody::kUnlimited;           // kg, > 0; infinite: from the density
+};
+
+[[nodiscard]] std::span<const Field> mesh_inertia_fields() noexcept;
+
+// True when an element of the section `bodies` asks for its inertia from a mesh.
+[[nodiscard]] bool takes_from_mesh(const Node& body);
+
+// Fields of a body that stay the user's when its inertia comes from a mesh.
+[[nodiscard]] std::vector<Field> fields_beside_mesh(std::span<const Field> body_fields);
+
+// Reads such an element into the body, and what the mesh gave into scene.mesh_inertias. Problems go to the report: also
+// a mesh that cannot be read, is open, not finite or inside out. Reads the mesh's file: allocates, not real-time safe.
+void read_mesh_body(const Node::Entry& element, std::span<const Field> body_fields, const Surroundings& surroundings,
+                    multibody::BodyDef& body, Scene& scene, const ReadContext& context);
+
+}  // namespace slew::scene
