@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   cli::add_run(app, action);
   cli::add_check(app, action);
   cli::add_describe(app, action);
+  cli::add_import(app, action);
   cli::add_variables(app, action);
   cli::add_schema(app, action);
   cli::add_sessions(app, action);

@@ -20,7 +20,8 @@ std::string join(const std::vector<Diagnostic>& diagnostics, std::size_t omitted
 
 std::string Diagnostic::text() const {
   std::string text = file;
-  if (line > 0) text += ':' + std::to_string(line) + ':' + std::to_string(column);
+  if (line > 0) text += ':' + std::to_string(line);
+  if (line > 0 && column > 0) text += ':' + std::to_string(column);
   text += ": ";
   if (!path.empty()) text += path + ": ";
   text += what;

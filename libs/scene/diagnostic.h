@@ -1,7 +1,8 @@
 // What is wrong with a scene and where: one Diagnostic for each problem, all of them in one LoadError.
 //
 // Text of a diagnostic:  file:line:col: path: what is wrong; expected ...; did you mean 'x'?
-// A problem of a whole file has no line and column; one of an override reads "--set Bag.mass=5: ...".
+// A problem of a whole file has no line and column, one from a reader that knows lines only has no column; one of an
+// override reads "--set Bag.mass=5: ...".
 #pragma once
 
 #include <compare>

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "build_paths.h"
 #include "command.h"
 
 namespace slew::testing {
@@ -24,6 +25,8 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
                                                        {"run"},
                                                        {"check"},
                                                        {"describe"},
+                                                       {"import"},
+                                                       {"import", "urdf"},
                                                        {"variables"},
                                                        {"schema"},
                                                        {"sessions"},
@@ -181,6 +184,39 @@ TEST_F(Program, DescribeShowsWhatAMeshGave) {
   EXPECT_EQ(cube.at("mass"), 4000);
   EXPECT_EQ(cube.at("mesh").at("file"), "cube.obj");
   EXPECT_NEAR(cube.at("inertia").at(2).get<double>(), 4000.0 / 12 * 8, 1e-6);
+}
+
+TEST_F(Program, ImportMakesASceneThatIsCheckedAndRuns) {
+  const std::string urdf = std::string(SLEWRING_SOURCE_DIR) + "/examples/urdf/two_link_arm.urdf";
+  const std::string scene = work_.path() / "arm.yaml";
+  const CommandResult made = slewring({"import", "urdf", urdf, "-o", scene});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_TRUE(contains(made.out, "2 bodies, 2 joints, 6 notes on what was not taken over")) << made.out;
+  EXPECT_EQ(slewring({"check", scene}).code, 0);
+  const CommandResult ran = slewring({"run", scene, "--in-process", "--pace", "free", "--duration", "1 s"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+
+  const CommandResult again = slewring({"import", "urdf", urdf, "-o", scene});
+  EXPECT_EQ(again.code, 2);
+  EXPECT_TRUE(contains(again.err, "is there already; nothing was written")) << again.err;
+  EXPECT_EQ(slewring({"import", "urdf", urdf, "-o", scene, "--force"}).code, 0);
+  EXPECT_EQ(slewring({"import", "urdf", urdf, "-o", "/no/such/folder/arm.yaml"}).code, 6);
+
+  const nlohmann::json json = nlohmann::json::parse(slewring({"import", "urdf", urdf, "--json"}).out);
+  EXPECT_EQ(json.at("bodies"), 2);
+  EXPECT_EQ(json.at("notes").size(), 6u);
+  std::ifstream in(scene);
+  EXPECT_EQ(json.at("scene"), std::string(std::istreambuf_iterator<char>(in), {}));
+}
+
+TEST_F(Program, ImportTellsTheLineOfWhatItCannotTake) {
+  const std::string urdf = work_.path() / "planar.urdf";
+  std::ofstream(urdf)
+      << "<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n"
+         "<joint name=\"j\" type=\"planar\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>\n";
+  const CommandResult result = slewring({"import", "urdf", urdf});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_TRUE(contains(result.err, "planar.urdf:4: joint 'j': a planar joint has no counterpart")) << result.err;
 }
 
 TEST_F(Program, VariablesOfASceneHaveUnits) {

@@ -1,0 +1,286 @@
+#include "urdf/convert.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/euler_angles.h"
+#include "math/rotation.h"
+#include "urdf/names.h"
+
+namespace slew::urdf {
+
+using math::Mat3;
+using math::Vec3;
+using multibody::BodyDef;
+using multibody::JointDef;
+using multibody::JointType;
+
+namespace {
+
+// what rounding leaves of a zero when frames are turned
+constexpr double kRounding = 1e-15;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+double without_rounding(double value, double scale) {
+  return std::abs(value) <= kRounding * scale ? 0 : value;
+}
+
+Triple without_rounding(const Triple& triple, double scale) {
+  return {without_rounding(triple[0], scale), without_rounding(triple[1], scale), without_rounding(triple[2], scale)};
+}
+
+Triple point(Vec3 p) {
+  return without_rounding(p.array(), norm(p));
+}
+
+// the turn about x, then y', that takes z to the axis
+Triple axis_angles(const Triple& a) {
+  const double across = std::hypot(a[1], a[2]);
+  return without_rounding({across == 0 ? 0 : std::atan2(-a[1], a[2]), std::atan2(a[0], across), 0}, 1);
+}
+
+JointType type_of(JointKind kind) {
+  switch (kind) {
+    case JointKind::revolute:
+    case JointKind::continuous:
+      return JointType::revolute;
+    case JointKind::prismatic:
+      return JointType::prismatic;
+    case JointKind::floating:
+      return JointType::floating;
+    case JointKind::fixed:
+      break;
+  }
+  return JointType::fixed;
+}
+
+std::string triple_text(const Triple& t) {
+  return fmt::format("[{}, {}, {}]", t[0], t[1], t[2]);
+}
+
+std::string shape_text(const Geometry& shape) {
+  switch (shape.kind) {
+    case Geometry::Kind::box:
+      return fmt::format("box {} m", triple_text(shape.size));
+    case Geometry::Kind::sphere:
+      return fmt::format("sphere of radius {} m", shape.radius);
+    case Geometry::Kind::cylinder:
+    case Geometry::Kind::capsule:
+      return fmt::format("{} along z, radius {} m, length {} m",
+                         shape.kind == Geometry::Kind::cylinder ? "cylinder" : "capsule", shape.radius, shape.length);
+    case Geometry::Kind::mesh:
+      break;
+  }
+  const auto [x, y, z] = shape.scale;
+  const std::string unit = x == y && y == z
+                               ? fmt::format("unit {} m", x)
+                               : fmt::format("scale {}, which no unit can express", triple_text(shape.scale));
+  return fmt::format("mesh {}, {}", shape.file, unit);
+}
+
+class Converter {
+ public:
+  Converter(const Robot& robot, RootMount mount, const Complain& complain)
+      : robot_(robot), mount_(mount), complain_(complain) {}
+
+  Conversion convert() {
+    out_.notes = robot_.notes;
+    out_.mechanics.gravity = {0, 0, -9.81};
+    bool is_sound = true;
+    places_ = find_places(robot_, mount_, [&](int line, std::string what, std::string expected) {
+      is_sound = false;
+      complain_(line, std::move(what), std::move(expected));
+    });
+    if (!is_sound) return std::move(out_);
+    name_all();
+    resistance_ = resistance_of_joints(robot_);
+    for (const int link : robot_.order) add_link(link);
+    for (const int link : robot_.order) add_joint_of(link);
+    std::stable_sort(out_.notes.begin(), out_.notes.end(),
+                     [](const Note& a, const Note& b) { return a.line < b.line; });
+    return std::move(out_);
+  }
+
+ private:
+  void name_all() {
+    body_names_.resize(robot_.links.size());
+    joint_names_.resize(robot_.joints.size());
+    for (const int link : robot_.order) {
+      if (places_[at(link)].body != link) continue;
+      body_names_[at(link)] = given(robot_.links[at(link)].name, "_link", "link", robot_.links[at(link)].line);
+    }
+    for (const int link : robot_.order) {
+      const int joint = robot_.parent_joint[at(link)];
+      if (joint < 0 || !is_made(robot_.joints[at(joint)])) continue;
+      joint_names_[at(joint)] = given(robot_.joints[at(joint)].name, "_joint", "joint", robot_.joints[at(joint)].line);
+    }
+  }
+
+  std::string given(const std::string& name, const std::string& suffix, const char* kind, int line) {
+    std::string taken = names_.take(name, suffix);
+    if (taken != name) out_.notes.push_back({line, fmt::format("{} '{}' is {} in the scene", kind, name, taken)});
+    out_.lines.emplace(taken, line);
+    return taken;
+  }
+
+  // a fixed joint to a link that rides on the same body is in the places already
+  [[nodiscard]] bool is_made(const Joint& joint) const {
+    return places_[at(joint.parent)].body != places_[at(joint.child)].body;
+  }
+
+  [[nodiscard]] std::string body_name(int body) const {
+    return body == kOnGround ? std::string(multibody::kGroundName) : body_names_[at(body)];
+  }
+
+  void add_link(int index) {
+    const Link& link = robot_.links[at(index)];
+    if (places_[at(index)].body != index) {
+      note_rider(link, places_[at(index)]);
+      return;
+    }
+    BodyDef body;
+    body.name = body_names_[at(index)];
+    const Place start = place_at_start(index);
+    body.relative_to = body_name(start.body);
+    body.position = point(start.pose.p);
+    body.orientation = without_rounding(math::angles_zxz(start.pose.R), 1);
+    put_inertial(*link.inertial, body);
+    out_.mechanics.bodies.push_back(body);
+    add_shapes(link, body.name, {});
+    if (index == robot_.root) mount_root(body.name);
+  }
+
+  // (1)
+  static void put_inertial(const Inertial& inertial, BodyDef& body) {
+    body.mass = inertial.mass;
+    body.center_of_mass = inertial.origin.xyz;
+    body.inertia = inertial.moments;
+    body.products = inertial.products;
+    const Mat3 R = pose_of(inertial.origin).R;
+    if (inertial.origin.rpy == Triple{}) return;
+    const auto [xx, yy, zz] = inertial.moments;
+    const auto [xy, xz, yz] = inertial.products;
+    const Mat3 I = R * Mat3{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)} * transpose(R);
+    const double scale = xx + yy + zz;
+    body.inertia = without_rounding({I(0, 0), I(1, 1), I(2, 2)}, scale);
+    body.products = without_rounding({I(0, 1), I(0, 2), I(1, 2)}, scale);
+  }
+
+  // The body or Ground that a body's pose refers to, and the pose, at the start.
+  [[nodiscard]] Place place_at_start(int index) const {
+    Pose pose;
+    int link = index;
+    while (robot_.parent_joint[at(link)] >= 0) {
+      const Joint& joint = robot_.joints[at(robot_.parent_joint[at(link)])];
+      pose = start_pose(joint) * pose;
+      link = joint.parent;
+      const Place& place = places_[at(link)];
+      if (place.body != index) return {place.body, place.pose * pose};
+    }
+    return {kOnGround, pose};
+  }
+
+  void mount_root(const std::string& body) {
+    JointDef joint;
+    joint.name = names_.take(body + "_mount", "_joint");
+    joint.type = mount_ == RootMount::fixed ? JointType::fixed : JointType::floating;
+    joint.body2 = body;
+    out_.lines.emplace(joint.name, robot_.links[at(robot_.root)].line);
+    out_.mechanics.joints.push_back(joint);
+  }
+
+  // a link without mass: its frame, for those who hang a force on it later
+  void note_rider(const Link& link, const Place& place) {
+    const std::string where =
+        fmt::format("on {} at {} m, orientation (x, y', z'') {} rad", body_name(place.body),
+                    triple_text(point(place.pose.p)), triple_text(without_rounding(math::angles_xyz(place.pose.R), 1)));
+    out_.notes.push_back({link.line, fmt::format("link '{}' has no mass: a frame {}", link.name, where)});
+    add_shapes(link, body_name(place.body), place.pose);
+  }
+
+  void add_shapes(const Link& link, const std::string& body, const Pose& place) {
+    for (const Geometry& shape : link.geometries) {
+      const Pose pose = place * pose_of(shape.origin);
+      const char* use = shape.use == Geometry::Use::visual ? "visual" : "collision";
+      const Triple angles = without_rounding(math::angles_zxz(pose.R), 1);
+      std::string text = fmt::format("{}: {}, position {} m", use, shape_text(shape), triple_text(point(pose.p)));
+      if (angles != Triple{}) text += fmt::format(", orientation {} rad", triple_text(angles));
+      out_.comments[body].push_back(text);
+    }
+  }
+
+  void add_joint_of(int link) {
+    const int index = robot_.parent_joint[at(link)];
+    if (index < 0 || joint_names_[at(index)].empty()) return;
+    const Joint& joint = robot_.joints[at(index)];
+    JointDef def;
+    def.name = joint_names_[at(index)];
+    def.type = type_of(joint.kind);
+    const Place &parent = places_[at(joint.parent)], &child = places_[at(joint.child)];
+    def.body1 = body_name(parent.body);
+    def.body2 = body_name(child.body);
+    if (joint.kind == JointKind::floating) {
+      def.body1 = multibody::kGroundName;
+      def.point2 = point(child.pose.p);
+    } else {
+      put_frames(joint, parent.pose, child.pose, def);
+      put_laws(joint, resistance_[at(index)], def);
+    }
+    out_.mechanics.joints.push_back(def);
+  }
+
+  static void put_frames(const Joint& joint, const Pose& parent, const Pose& child, JointDef& def) {
+    const bool is_fixed = joint.kind == JointKind::fixed;
+    const Triple axis = is_fixed ? Triple{} : axis_angles(joint.axis);
+    const Mat3 R_CA = math::rotation_xyz(axis);
+    const Pose origin = pose_of(joint.origin);
+    const Pose frame1 = parent * Pose{origin.R * R_CA, origin.p};
+    def.point1 = point(frame1.p);
+    def.orientation1 = without_rounding(math::angles_xyz(frame1.R), 1);
+    def.point2 = point(child.p);
+    def.orientation2 = without_rounding(math::angles_xyz(child.R * R_CA), 1);
+  }
+
+  void put_laws(const Joint& joint, double resistance, JointDef& def) {
+    if (joint.kind == JointKind::fixed) return;
+    def.viscous_friction = joint.damping;
+    def.coulomb_friction = joint.friction;
+    if (joint.kind == JointKind::continuous) return;
+    def.limit_min = joint.lower - whole_turns(joint);
+    def.limit_max = joint.upper - whole_turns(joint);
+    if (resistance <= 0) {
+      complain_(joint.line, fmt::format("joint '{}': what hangs on it has no inertia about its axis", joint.name),
+                "an inertia that the limits can stop");
+    }
+    // (2)
+    def.limit_stiffness = kStopFrequency * kStopFrequency * resistance;
+    def.limit_damping = 2 * kStopFrequency * resistance;
+    const double start = start_coordinate(joint);
+    if (start == 0) return;
+    const char* unit = joint.kind == JointKind::prismatic ? "m" : "rad";
+    out_.notes.push_back(
+        {joint.line, fmt::format("joint '{}' starts at {} {}: its limits exclude 0", joint.name, start, unit)});
+  }
+
+  const Robot& robot_;
+  RootMount mount_;
+  const Complain& complain_;
+  Conversion out_;
+  SceneNames names_;
+  std::vector<Place> places_;
+  std::vector<double> resistance_;
+  std::vector<std::string> body_names_, joint_names_;
+};
+
+}  // namespace
+
+Conversion convert(const Robot& robot, RootMount mount, const Complain& complain) {
+  return Converter(robot, mount, complain).convert();
+}
+
+}  // namespace slew::urdf

@@ -1,0 +1,35 @@
+// A robot as definitions of a mechanism.
+//
+// Links with mass become bodies of the same frames; a link without rides on another (placement.h). With the axis a of a
+// joint, R_CA the turn about x, y' that takes z to a, and X_PC its origin at the start, the joint's frame 2 in the
+// child is R_CA and its frame 1 in the parent X_PC R_CA, so that the joint's coordinate is URDF's:
+//   I_C = R_CI I R_CI^T   inertia about the centre, in the link's axes; R_CI from the inertial's rpy               (1)
+//   k = omega^2 I_q,  c = 2 omega I_q   stiffness and damping of a joint's limits, omega = kStopFrequency           (2)
+// I_q is what hangs on the joint: its inertia about the axis, or its mass along it. URDF's limits have no stiffness:
+// (2) stops the load critically damped, within about v/omega of the limit. damping and friction become viscous and
+// Coulomb friction.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "multibody/defs.h"
+#include "urdf/placement.h"
+#include "urdf/robot.h"
+
+namespace slew::urdf {
+
+inline constexpr double kStopFrequency = 100;  // rad/s, slow against sub-steps of 1 ms, fast against machines
+
+struct Conversion {
+  multibody::MechanicsDef mechanics;
+  std::map<std::string, std::vector<std::string>> comments;  // by element
+  std::map<std::string, int> lines;                          // of the URDF, by element
+  std::vector<Note> notes;                                   // the robot's and those of the conversion, by line
+};
+
+// Complains about what has no counterpart.
+[[nodiscard]] Conversion convert(const Robot& robot, RootMount mount, const Complain& complain);
+
+}  // namespace slew::urdf

@@ -1,0 +1,129 @@
+#include "urdf/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "scene/canonical.h"
+#include "scene/diagnostic.h"
+#include "scene/scene.h"
+#include "scene/sections.h"
+#include "scene/source.h"
+#include "urdf/convert.h"
+#include "urdf/reader.h"
+
+namespace slew::urdf {
+namespace {
+
+using scene::ElementRef;
+using scene::ElementTable;
+
+// one line, whatever the file had in its names
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r' || c == '\t') c = ' ';
+  }
+  return text;
+}
+
+// Texts of all fields of an element with its defaults, by key.
+std::map<std::string_view, std::string> defaults_of(const ElementRef& element) {
+  std::map<std::string_view, std::string> texts;
+  for (const ElementTable& table : scene::element_tables()) {
+    if (table.section != element.section || table.type != element.type) continue;
+    scene::Scene scratch;
+    void* def = table.append(scratch, std::string(element.name));
+    for (const Field& field : table.fields) texts[field.key] = scene::value_text(field, def);
+  }
+  return texts;
+}
+
+void write_element(std::string& text, const ElementRef& element, const Conversion& conversion) {
+  text += fmt::format("  {}:\n", element.name);
+  if (const auto comments = conversion.comments.find(std::string(element.name));
+      comments != conversion.comments.end()) {
+    for (const std::string& comment : comments->second) text += fmt::format("    # {}\n", one_line(comment));
+  }
+  if (!element.type.empty()) text += fmt::format("    type: {}\n", element.type);
+  const auto defaults = defaults_of(element);
+  for (const Field& field : element.fields) {
+    const std::string value = scene::value_text(field, element.def);
+    const bool is_said = field.presence == Presence::required || value != defaults.at(field.key);
+    if (!value.empty() && is_said) text += fmt::format("    {}: {}\n", field.key, value);
+  }
+}
+
+std::string header(const std::string& file, const Conversion& conversion) {
+  std::string text = fmt::format("# From {} by `slewring import urdf`: a starting point.\n", one_line(file));
+  if (conversion.notes.empty()) return text;
+  text += "#\n# What the file says otherwise or besides, by its lines:\n";
+  for (const Note& note : conversion.notes) text += fmt::format("# {:>5}  {}\n", note.line, one_line(note.text));
+  return text;
+}
+
+std::string scene_text(const std::string& file, const std::string& name, Conversion& conversion) {
+  std::string text = header(file, conversion);
+  text += fmt::format("\nscene: {}\n", scene::yaml_text(name.substr(0, scene::kMaxSceneNameLength)));
+  text += "\nmechanics:\n  gravity: [0, 0, -9.81]\n";
+  if (const auto comments = conversion.comments.find(std::string(multibody::kGroundName));
+      comments != conversion.comments.end()) {
+    text += "\n# on Ground:\n";
+    for (const std::string& comment : comments->second) text += fmt::format("#   {}\n", one_line(comment));
+  }
+  scene::Scene scene;
+  scene.mechanics = conversion.mechanics;
+  std::string_view section;
+  for (const ElementRef& element : scene::elements(scene)) {
+    if (element.section != section) text += fmt::format("\n{}:\n", element.section);
+    section = element.section;
+    write_element(text, element, conversion);
+  }
+  return text;
+}
+
+// The scene is read as a run would; what is wrong with it is told at the line of the URDF.
+void check(const std::string& text, const Conversion& conversion, int source, scene::Report& report) {
+  try {
+    (void)scene::load_text(text, "scene");
+  } catch (const scene::LoadError& error) {
+    for (const scene::Diagnostic& diagnostic : error.diagnostics()) {
+      const std::string element = diagnostic.path.substr(0, diagnostic.path.find('.'));
+      const auto line = conversion.lines.find(element);
+      report.add({source, line == conversion.lines.end() ? 0 : line->second, 0}, diagnostic.path,
+                 {diagnostic.what, diagnostic.expected, diagnostic.suggestion});
+    }
+  }
+}
+
+}  // namespace
+
+Import import_file(const std::string& path, RootMount mount) {
+  scene::Report report;
+  const int source = report.add_source(path);
+  const auto stop_at_problems = [&] {
+    if (!report.is_clean()) report.fail(scene::kMaxReportedProblems);
+  };
+  const std::optional<scene::SourceText> text = scene::read_source(path, source, report);
+  const std::optional<Robot> robot = text ? read_robot(*text, report) : std::nullopt;
+  stop_at_problems();
+  Conversion conversion = convert(*robot, mount, [&](int line, std::string what, std::string expected) {
+    report.add({source, line, 0}, "", {std::move(what), std::move(expected), ""});
+  });
+  stop_at_problems();
+  Import result;
+  result.text = scene_text(std::filesystem::path(path).filename().string(), robot->name, conversion);
+  check(result.text, conversion, source, report);
+  stop_at_problems();
+  result.notes = std::move(conversion.notes);
+  result.bodies = conversion.mechanics.bodies.size();
+  result.joints = conversion.mechanics.joints.size();
+  return result;
+}
+
+}  // namespace slew::urdf

@@ -1,0 +1,44 @@
+#include "urdf/names.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "multibody/defs.h"
+#include "scene/defs.h"
+#include "scene/sections.h"
+
+namespace slew::urdf {
+namespace {
+
+// a name of letters, digits and _ that begins with a letter or _
+std::string word_of(const std::string& name) {
+  std::string word = name;
+  for (char& c : word) {
+    const bool is_kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!is_kept) c = '_';
+  }
+  if (word.empty() || (word[0] >= '0' && word[0] <= '9')) word.insert(0, "_");
+  return word;
+}
+
+std::string joined(const std::string& word, const std::string& end) {
+  return word.substr(0, scene::kMaxNameLength - std::min(end.size(), scene::kMaxNameLength)) + end;
+}
+
+}  // namespace
+
+SceneNames::SceneNames() {
+  taken_.emplace(multibody::kGroundName);
+  for (const std::string_view key : scene::top_level_keys()) taken_.emplace(key);
+}
+
+std::string SceneNames::take(const std::string& name, const std::string& suffix) {
+  const std::string word = word_of(name);
+  std::string given = joined(word, "");
+  if (taken_.contains(given)) given = joined(word, suffix);
+  for (int number = 2; taken_.contains(given); ++number) given = joined(word, suffix + "_" + std::to_string(number));
+  taken_.insert(given);
+  return given;
+}
+
+}  // namespace slew::urdf

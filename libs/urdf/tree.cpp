@@ -1,0 +1,70 @@
+#include "urdf/tree.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace slew::urdf {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+void find_parents(Robot& robot, const Complain& complain) {
+  robot.parent_joint.assign(robot.links.size(), -1);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const Joint& joint = robot.joints[j];
+    int& parent = robot.parent_joint[at(joint.child)];
+    if (parent >= 0) {
+      complain(joint.line,
+               fmt::format("link '{}' is the child of joint '{}' already", robot.links[at(joint.child)].name,
+                           robot.joints[at(parent)].name),
+               "a tree: loops are closed in the scene afterwards");
+    }
+    parent = static_cast<int>(j);
+  }
+}
+
+// breadth first; children in the order of the file
+void find_order(Robot& robot) {
+  robot.order = {robot.root};
+  for (std::size_t next = 0; next < robot.order.size(); ++next) {
+    for (const Joint& joint : robot.joints) {
+      if (joint.parent == robot.order[next]) robot.order.push_back(joint.child);
+    }
+  }
+}
+
+}  // namespace
+
+void find_tree(Robot& robot, const Complain& complain) {
+  int complaints = 0;
+  const Complain counted = [&](int line, std::string what, std::string expected) {
+    ++complaints;
+    complain(line, std::move(what), std::move(expected));
+  };
+  find_parents(robot, counted);
+  robot.root = -1;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    if (robot.parent_joint[i] >= 0) continue;
+    if (robot.root < 0) {
+      robot.root = static_cast<int>(i);
+    } else {
+      counted(robot.links[i].line,
+              fmt::format("link '{}' has no parent, and '{}' has none either", robot.links[i].name,
+                          robot.links[at(robot.root)].name),
+              "one root");
+    }
+  }
+  if (robot.root < 0) counted(robot.links[0].line, "every link has a parent", "one link that is nobody's child");
+  if (complaints > 0) return;
+  find_order(robot);
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    if (std::find(robot.order.begin(), robot.order.end(), static_cast<int>(i)) != robot.order.end()) continue;
+    counted(robot.links[i].line, fmt::format("link '{}' is its own ancestor", robot.links[i].name), "a tree");
+    return;
+  }
+}
+
+}  // namespace slew::urdf

@@ -1,0 +1,18 @@
+// The links of a robot as a tree.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "urdf/robot.h"
+
+namespace slew::urdf {
+
+// Takes a line, what is wrong, and what is expected.
+using Complain = std::function<void(int line, std::string what, std::string expected)>;
+
+// Fills root, parent_joint and order. Complains about a link with two parents, about none or several roots, and about
+// links in a circle.
+void find_tree(Robot& robot, const Complain& complain);
+
+}  // namespace slew::urdf

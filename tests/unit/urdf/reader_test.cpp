@@ -1,0 +1,205 @@
+// What a URDF file cannot be is refused with its line; what is left out is noted with its line.
+#include "urdf/reader.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/unit/scene/temporary_folder.h"
+#include "urdf/import.h"
+
+namespace slew::urdf {
+namespace {
+
+const std::string kLink =
+    "<link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial></link>\n";
+
+// links base and a, line 2 and 3, then the lines of the case from 4 on
+std::string robot(const std::string& lines) {
+  return "<robot name=\"test\">\n<link name=\"base\"/>\n" + kLink + lines + "</robot>\n";
+}
+
+std::string joint(const std::string& attributes, const std::string& children) {
+  return "<joint name=\"j\" " + attributes + "><parent link=\"base\"/><child link=\"a\"/>" + children + "</joint>\n";
+}
+
+std::string problems_of(const std::string& text) {
+  scene::Report report;
+  const int source = report.add_source("r.urdf");
+  const auto checked = scene::check_source(text, source, report);
+  if (checked && read_robot(*checked, report)) return "";
+  try {
+    report.fail(20);
+  } catch (const scene::LoadError& error) {
+    return error.what();
+  }
+}
+
+std::vector<Note> notes_of(const std::string& text) {
+  scene::Report report;
+  const auto checked = scene::check_source(text, report.add_source("r.urdf"), report);
+  const auto robot = read_robot(*checked, report);
+  EXPECT_TRUE(robot.has_value()) << problems_of(text);
+  return robot ? robot->notes : std::vector<Note>();
+}
+
+TEST(UrdfReader, RefusesWhatIsNoRobot) {
+  EXPECT_EQ(problems_of(""), "r.urdf: is not well-formed XML: empty document; expected a URDF file");
+  EXPECT_EQ(problems_of("<robot name=\"x\">\n<link name=\"a\">\n</robot>"),
+            "r.urdf:2: is not well-formed XML: mismatched element; expected a URDF file");
+  EXPECT_EQ(problems_of("<mujoco/>"),
+            "r.urdf:1: the root element is <mujoco>; expected <robot>, the root of a URDF file");
+  EXPECT_EQ(problems_of("<robot name=\"x\"/>"), "r.urdf:1: the robot has no links; expected at least one <link>");
+  EXPECT_EQ(problems_of("<robot><link name=\"a\"/></robot>"), "r.urdf:1: <robot name> has no value; expected a name");
+  // thousands of levels end in a message, not in the stack
+  std::string deep = "<robot name=\"x\">";
+  for (int i = 0; i < 100000; ++i) deep += "<a>";
+  EXPECT_EQ(problems_of(deep), "r.urdf:1: is not well-formed XML: xml element depth exceeded; expected a URDF file");
+}
+
+TEST(UrdfReader, RefusesMacros) {
+  EXPECT_EQ(problems_of(robot("<xacro:arm/>\n")),
+            "r.urdf:4: <xacro:arm> is a macro; expected a file without macros: xacro robot.urdf.xacro > robot.urdf")
+      << "the tree is not looked at when a part could not be read";
+}
+
+TEST(UrdfReader, RefusesNumbersThatAreNone) {
+  const auto with_mass = [](const std::string& value) {
+    return problems_of("<robot name=\"x\">\n<link name=\"a\"><inertial>\n<mass value=\"" + value +
+                       "\"/>\n<inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial></link></robot>");
+  };
+  EXPECT_EQ(with_mass("2.5"), "");
+  EXPECT_EQ(with_mass(" +2.5e-1 "), "");
+  for (const char* bad : {"", "x", "1,5", "0x10", "nan", "inf", "1e999", "1 2", "${m}", "+-1", "--1"}) {
+    EXPECT_EQ(with_mass(bad),
+              std::string("r.urdf:3: link 'a': <mass value> is '") + bad + "'; expected a finite number");
+  }
+  EXPECT_EQ(with_mass("-1"), "r.urdf:3: link 'a': <mass value> is -1; expected at least 0");
+  EXPECT_EQ(with_mass("0"), "r.urdf:2: link 'a': the mass is 0 and the inertia is not; expected a mass, or no inertia");
+}
+
+TEST(UrdfReader, RefusesIncompleteParts) {
+  const auto with_inertial = [](const std::string& content) {
+    return problems_of("<robot name=\"x\">\n<link name=\"a\">\n<inertial>" + content + "</inertial></link></robot>");
+  };
+  EXPECT_EQ(
+      with_inertial("<mass value=\"1\"/>"),
+      "r.urdf:3: link 'a': <inertial> has no <inertia>; expected <inertia ixx=... ixy=... .../>; 0 for a point mass");
+  EXPECT_EQ(with_inertial("<inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>"),
+            "r.urdf:3: link 'a': <inertial> has no <mass>; expected <mass value=\"...\"/>");
+  EXPECT_EQ(with_inertial("<mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\"/>"),
+            "r.urdf:3: link 'a': <inertia izz> is missing; expected a number");
+  EXPECT_EQ(with_inertial("<origin xyz=\"1 2\"/><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>"),
+            "r.urdf:3: link 'a': <origin xyz> is '1 2'; expected three finite numbers");
+}
+
+TEST(UrdfReader, RefusesJointsWithoutACounterpart) {
+  const std::string limit = "<limit lower=\"-1\" upper=\"1\"/>";
+  EXPECT_EQ(problems_of(robot(joint("type=\"revolute\"", limit))), "");
+  EXPECT_EQ(problems_of(robot(joint("type=\"planar\"", ""))),
+            "r.urdf:4: joint 'j': a planar joint has no counterpart in a scene; expected two prismatic joints and a "
+            "revolute one with light links between");
+  EXPECT_EQ(
+      problems_of(robot(joint("type=\"hinge\"", ""))),
+      "r.urdf:4: joint 'j': the type 'hinge' is unknown; expected revolute, continuous, prismatic, fixed or floating");
+  EXPECT_EQ(problems_of(robot(joint("type=\"revolute\"", ""))),
+            "r.urdf:4: joint 'j': has no <limit>; expected <limit lower=... upper=.../>; type continuous turns without "
+            "limits");
+  EXPECT_EQ(
+      problems_of(robot(joint("type=\"prismatic\"", "<limit effort=\"1\"/>"))),
+      "r.urdf:4: joint 'j': the limits 0 and 0 leave no motion; expected lower < upper; type fixed for a joint that "
+      "does not move");
+  EXPECT_EQ(problems_of(robot(joint("type=\"continuous\"", "<axis xyz=\"0 0 0\"/>"))),
+            "r.urdf:4: joint 'j': the axis is zero; expected a direction");
+  EXPECT_EQ(problems_of(robot(joint("type=\"continuous\"", "<dynamics damping=\"-1\"/>"))),
+            "r.urdf:4: joint 'j': <dynamics damping> is -1; expected at least 0");
+}
+
+TEST(UrdfReader, RefusesWhatIsNoTree) {
+  const auto fixed = [](const std::string& name, const std::string& parent, const std::string& child) {
+    return "<joint name=\"" + name + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+           "\"/></joint>\n";
+  };
+  EXPECT_EQ(problems_of(robot("")), "r.urdf:3: link 'a' has no parent, and 'base' has none either; expected one root");
+  EXPECT_EQ(problems_of(robot(fixed("j", "base", "b"))),
+            "r.urdf:4: joint 'j': there is no link 'b'; expected the name of a link");
+  EXPECT_EQ(problems_of(robot(fixed("j", "a", "a"))),
+            "r.urdf:4: joint 'j': parent and child are the same link; expected two links");
+  EXPECT_EQ(problems_of(robot(fixed("j", "base", "a") + fixed("k", "base", "a"))),
+            "r.urdf:5: link 'a' is the child of joint 'j' already; expected a tree: loops are closed in the scene "
+            "afterwards");
+  EXPECT_EQ(problems_of(robot(fixed("j", "base", "a") + fixed("k", "a", "base"))),
+            "r.urdf:2: every link has a parent; expected one link that is nobody's child");
+  const std::string doubled = problems_of(robot(fixed("j", "base", "a") + fixed("j", "a", "base")));
+  EXPECT_TRUE(doubled.starts_with("r.urdf:5: joint 'j': is there twice (first in line 4)")) << doubled;
+  const std::string circle = "<link name=\"c\"/>\n<link name=\"d\"/>\n" + fixed("j", "base", "a") +
+                             fixed("k", "c", "d") + fixed("l", "d", "c");
+  EXPECT_EQ(problems_of(robot(circle)), "r.urdf:4: link 'c' is its own ancestor; expected a tree");
+}
+
+TEST(UrdfReader, TellsEverythingAtOnce) {
+  const std::string text = problems_of(robot(joint("type=\"revolut\"", "") + "<link name=\"a\"/>\n<link/>\n"));
+  EXPECT_NE(text.find("r.urdf:4: "), std::string::npos) << text;
+  EXPECT_NE(text.find("r.urdf:5: link 'a': is there twice (first in line 3)"), std::string::npos) << text;
+  EXPECT_NE(text.find("r.urdf:6: <link name> has no value"), std::string::npos) << text;
+}
+
+TEST(UrdfReader, NotesWhatItLeavesOut) {
+  const auto notes =
+      notes_of(robot(joint("type=\"continuous\"",
+                           "<mimic joint=\"other\"/>\n<safety_controller k_velocity=\"1\"/>\n<limit effort=\"3\"/>") +
+                     "<transmission name=\"t\"/>\n<gazebo reference=\"a\"/>\n<material name=\"red\"/>\n"));
+  std::vector<std::string> texts;
+  for (const Note& note : notes) texts.push_back(std::to_string(note.line) + " " + note.text);
+  const std::vector<std::string> expected = {
+      "4 joint 'j': <mimic joint=\"other\"> is not taken over: the joint moves by itself",
+      "5 joint 'j': <safety_controller> is not taken over",
+      "7 <transmission name=\"t\"> is not taken over",
+      "8 <gazebo> is not taken over",
+      "9 materials and colours are not taken over",
+      "6 bounds of effort and velocity are not taken over: j"};
+  EXPECT_EQ(texts, expected);
+}
+
+TEST(UrdfImport, TellsProblemsOfTheSceneAtTheLineOfTheUrdf) {
+  const scene::TemporaryFolder folder;
+  // moments that no body has
+  const std::string path =
+      folder.write("r.urdf",
+                   "<robot name=\"x\">\n<link name=\"world\"/>\n<link name=\"a\"><inertial><mass value=\"1\"/>\n"
+                   "<inertia ixx=\"1\" iyy=\"1\" izz=\"5\"/></inertial></link>\n"
+                   "<joint name=\"j\" type=\"floating\"><parent link=\"world\"/><child link=\"a\"/></joint></robot>");
+  try {
+    (void)import_file(path);
+    ADD_FAILURE() << "accepted";
+  } catch (const scene::LoadError& error) {
+    EXPECT_EQ(std::string(error.what()).substr(path.size()),
+              ":3: a.inertia: principal moments 1, 1, 5 kg m2 break the triangle rule; expected no moment larger than "
+              "the sum of the other two");
+  }
+}
+
+TEST(UrdfImport, RefusesAMovingLinkWithoutMass) {
+  const scene::TemporaryFolder folder;
+  const std::string path = folder.write("r.urdf", robot("<link name=\"b\"/>\n" + joint("type=\"fixed\"", "") +
+                                                        "<joint name=\"k\" type=\"continuous\"><parent link=\"a\"/>"
+                                                        "<child link=\"b\"/></joint>\n"));
+  try {
+    (void)import_file(path);
+    ADD_FAILURE() << "accepted";
+  } catch (const scene::LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find(":4: link 'b' moves and has no mass; expected an <inertial>"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(UrdfImport, RefusesAFileThatIsNotThere) {
+  EXPECT_THROW((void)import_file("no/such.urdf"), scene::LoadError);
+  EXPECT_THROW((void)import_file("/dev/zero"), scene::LoadError);
+}
+
+}  // namespace
+}  // namespace slew::urdf
