@@ -32,6 +32,13 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// The start of a name, cut between two characters.
+std::string cut(const std::string& name) {
+  std::size_t end = std::min(name.size(), scene::kMaxSceneNameLength);
+  while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;
+  return name.substr(0, end);
+}
+
 // Texts of all fields of an element with its defaults, by key.
 std::map<std::string_view, std::string> defaults_of(const ElementRef& element) {
   std::map<std::string_view, std::string> texts;
@@ -69,7 +76,7 @@ std::string header(const std::string& file, const Conversion& conversion) {
 
 std::string scene_text(const std::string& file, const std::string& name, Conversion& conversion) {
   std::string text = header(file, conversion);
-  text += fmt::format("\nscene: {}\n", scene::yaml_text(name.substr(0, scene::kMaxSceneNameLength)));
+  text += fmt::format("\nscene: {}\n", scene::yaml_text(cut(name)));
   text += "\nmechanics:\n  gravity: [0, 0, -9.81]\n";
   if (const auto comments = conversion.comments.find(std::string(multibody::kGroundName));
       comments != conversion.comments.end()) {

@@ -13,6 +13,9 @@ using math::Vec3;
 
 namespace {
 
+// rad, how near to half a turn rounding may take a start to the other side
+constexpr double kHalfTurn = 1e-9;
+
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
@@ -127,7 +130,10 @@ double whole_turns(const Joint& joint) noexcept {
 double start_coordinate(const Joint& joint) noexcept {
   if (joint.kind != JointKind::revolute && joint.kind != JointKind::prismatic) return 0;
   if (joint.lower <= 0 && joint.upper >= 0) return 0;
-  return (joint.lower + joint.upper) / 2 - whole_turns(joint);
+  const double middle = (joint.lower + joint.upper) / 2 - whole_turns(joint);
+  // half a turn is one way round as much as the other
+  const bool is_half_turn = joint.kind == JointKind::revolute && std::abs(middle) > M_PI - kHalfTurn;
+  return is_half_turn ? middle - std::copysign((joint.upper - joint.lower) / 4, middle) : middle;
 }
 
 Pose start_pose(const Joint& joint) noexcept {

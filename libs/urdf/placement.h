@@ -31,7 +31,8 @@ struct Place {
 // By link. Complains about moving groups without mass.
 [[nodiscard]] std::vector<Place> find_places(const Robot& robot, RootMount mount, const Complain& complain);
 
-// Coordinate of a joint at the start [rad or m]: 0 where the limits allow it, else the middle between them.
+// Coordinate of a joint at the start [rad or m]: 0 where the limits allow it, else the middle between them (a
+// quarter of their distance off where that is half a turn).
 [[nodiscard]] double start_coordinate(const Joint& joint) noexcept;
 
 // Child's frame in the parent's at the start, limits moved by whole turns so that the start lies within half a turn.

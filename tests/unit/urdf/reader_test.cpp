@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
+#include <random>
 #include <string>
 #include <vector>
 
+#include "build_paths.h"
 #include "tests/unit/scene/temporary_folder.h"
 #include "urdf/import.h"
 
@@ -194,6 +197,43 @@ TEST(UrdfImport, RefusesAMovingLinkWithoutMass) {
               std::string::npos)
         << error.what();
   }
+}
+
+// whatever is cut out of a file or put into it: a scene that is read again, or problems with their places
+TEST(UrdfImport, EndsWellWithDamagedFiles) {
+  std::ifstream in(SLEWRING_SOURCE_DIR "/examples/urdf/two_link_arm.urdf");
+  const std::string sound(std::istreambuf_iterator<char>(in), {});
+  const scene::TemporaryFolder folder;
+  const std::string pieces[] = {"",  "<",    ">",   "/", "\"", "0", "-", "nan", "1e308", "<link name=\"x\"/>",
+                                " ", "\xff", "&#0;"};
+  std::mt19937 generator(11);
+  int accepted = 0, refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string text = sound;
+    const std::size_t start = generator() % text.size();
+    text.replace(start, generator() % 12, pieces[generator() % std::size(pieces)]);
+    const std::string path = folder.write("r.urdf", text);
+    try {
+      EXPECT_FALSE(import_file(path).text.empty());
+      ++accepted;
+    } catch (const scene::LoadError& error) {
+      EXPECT_FALSE(error.diagnostics().empty());
+      for (const scene::Diagnostic& diagnostic : error.diagnostics()) EXPECT_EQ(diagnostic.file, path);
+      ++refused;
+    }
+  }
+  EXPECT_GT(accepted, 20);
+  EXPECT_GT(refused, 100);
+}
+
+TEST(UrdfImport, CutsALongNameBetweenCharacters) {
+  const scene::TemporaryFolder folder;
+  std::string name(62, 'a');
+  name += "\xC3\xBC\xC3\xBC";
+  const std::string path = folder.write(
+      "r.urdf", "<robot name=\"" + name + "\"><link name=\"world\"/>" + kLink +
+                    "<joint name=\"j\" type=\"floating\"><parent link=\"world\"/><child link=\"a\"/></joint></robot>");
+  EXPECT_NE(import_file(path).text.find("scene: " + name.substr(0, 62) + "\n"), std::string::npos);
 }
 
 TEST(UrdfImport, RefusesAFileThatIsNotThere) {

@@ -146,6 +146,13 @@ TEST(JointTypes, LimitsFarFromZeroAreTakenBackByWholeTurns) {
   EXPECT_NEAR(far.mechanism.value("turn.position"), 1, kRounding);
   EXPECT_NEAR(far.joint("turn").limit_min, 0.5, kRounding);
   EXPECT_NEAR(far.joint("turn").limit_max, 1.5, kRounding);
+  // about half a turn, from either side
+  for (const double sign : {-1.0, 1.0}) {
+    const Imported half(limited(sign * M_PI - 0.2, sign * M_PI + 0.2));
+    const double start = half.mechanism.value("turn.position");
+    EXPECT_GT(start, half.joint("turn").limit_min);
+    EXPECT_LT(start, half.joint("turn").limit_max);
+  }
 }
 
 TEST(JointTypes, ShapesAreToldAsComments) {
