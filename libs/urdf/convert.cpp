@@ -53,6 +53,8 @@ JointType type_of(JointKind kind) {
       return JointType::prismatic;
     case JointKind::floating:
       return JointType::floating;
+    case JointKind::planar:
+      return JointType::in_plane;
     case JointKind::fixed:
       break;
   }
@@ -232,6 +234,23 @@ class Converter {
       put_laws(joint, resistance_[at(index)], def);
     }
     out_.mechanics.joints.push_back(def);
+    if (joint.kind == JointKind::planar) add_parallel(joint, def);
+  }
+
+  // (3): the normal of the body at a right angle to two directions of the plane
+  void add_parallel(const Joint& joint, const JointDef& in_plane) {
+    const Mat3 R_1A = math::rotation_xyz(in_plane.orientation1);
+    const Mat3 to_x = R_1A * math::rotation_y(M_PI / 2), to_y = R_1A * math::rotation_x(-M_PI / 2);
+    for (const auto& [R, end] : {std::pair(to_x, "_tilt_1"), {to_y, "_tilt_2"}}) {
+      JointDef def;
+      def.name = given(in_plane.name + end, "_joint", "a part of joint", joint.line);
+      def.type = JointType::perpendicular;
+      def.body1 = in_plane.body1;
+      def.orientation1 = without_rounding(math::angles_xyz(R), 1);
+      def.body2 = in_plane.body2;
+      def.orientation2 = in_plane.orientation2;
+      out_.mechanics.joints.push_back(def);
+    }
   }
 
   static void put_frames(const Joint& joint, const Pose& parent, const Pose& child, JointDef& def) {
@@ -247,7 +266,7 @@ class Converter {
   }
 
   void put_laws(const Joint& joint, double resistance, JointDef& def) {
-    if (joint.kind == JointKind::fixed) return;
+    if (joint.kind == JointKind::fixed || joint.kind == JointKind::planar) return;
     def.viscous_friction = joint.damping;
     def.coulomb_friction = joint.friction;
     if (joint.kind == JointKind::continuous) return;

@@ -7,7 +7,8 @@
 //   k = omega^2 I_q,  c = 2 omega I_q   stiffness and damping of a joint's limits, omega = kStopFrequency           (2)
 // I_q is what hangs on the joint: its inertia about the axis, or its mass along it. URDF's limits have no stiffness:
 // (2) stops the load critically damped, within about v/omega of the limit. damping and friction become viscous and
-// Coulomb friction.
+// Coulomb friction. A planar joint with the normal n becomes three joints:
+//   point of the child in the parent's plane, and n_C at a right angle to two directions of that plane           (3)
 #pragma once
 
 #include <map>

@@ -1,9 +1,9 @@
 // A scene from a URDF file: a starting point, to which loops, cylinders and a circuit are added.
 //
-// Taken over: links with their inertia, joints (revolute, continuous, prismatic, fixed, floating) with axes, limits,
-// damping and friction. Told in comments of the scene: visual and collision shapes, frames of links without mass, and
-// everything that is not taken over, with its line. Gravity is 9.81 m/s2 along -z, as URDF's world has z up.
-// Source: the XML specification at wiki.ros.org/urdf/XML. Not covered: planar joints, mimic joints, transmissions,
+// Taken over: links with their inertia, joints (revolute, continuous, prismatic, fixed, floating, planar) with axes,
+// limits, damping and friction. Told in comments of the scene: visual and collision shapes, frames of links without
+// mass, and everything that is not taken over, with its line. Gravity is 9.81 m/s2 along -z, as URDF's world has z up.
+// Source: the XML specification at wiki.ros.org/urdf/XML. Not covered: mimic joints, transmissions,
 // sensors, bounds of effort and velocity, xacro.
 #pragma once
 

@@ -15,15 +15,17 @@ namespace {
 
 using scene::Report;
 
-constexpr std::pair<std::string_view, JointKind> kJointKinds[] = {{"revolute", JointKind::revolute},
-                                                                  {"continuous", JointKind::continuous},
-                                                                  {"prismatic", JointKind::prismatic},
-                                                                  {"fixed", JointKind::fixed},
-                                                                  {"floating", JointKind::floating}};
-constexpr const char* kKindList = "revolute, continuous, prismatic, fixed or floating";
+constexpr std::pair<std::string_view, JointKind> kJointKinds[] = {
+    {"revolute", JointKind::revolute}, {"continuous", JointKind::continuous}, {"prismatic", JointKind::prismatic},
+    {"fixed", JointKind::fixed},       {"floating", JointKind::floating},     {"planar", JointKind::planar}};
+constexpr const char* kKindList = "revolute, continuous, prismatic, fixed, floating or planar";
+
+bool has_coordinate(JointKind kind) {
+  return kind == JointKind::revolute || kind == JointKind::continuous || kind == JointKind::prismatic;
+}
 
 bool has_axis(JointKind kind) {
-  return kind == JointKind::revolute || kind == JointKind::continuous || kind == JointKind::prismatic;
+  return has_coordinate(kind) || kind == JointKind::planar;
 }
 
 bool has_limits(JointKind kind) {
@@ -239,11 +241,7 @@ class Reader {
     for (const auto& [word, kind] : kJointKinds) {
       if (*type == word) return kind;
     }
-    values_.complain(
-        element,
-        *type == "planar" ? "a planar joint has no counterpart in a scene"
-                          : fmt::format("the type '{}' is unknown", *type),
-        *type == "planar" ? "two prismatic joints and a revolute one with light links between" : kKindList);
+    values_.complain(element, fmt::format("the type '{}' is unknown", *type), kKindList);
     return std::nullopt;
   }
 
@@ -304,8 +302,8 @@ class Reader {
     values_.note_other_attributes(*dynamics, kKnown);
     joint.damping = values_.number_not_negative(*dynamics, "damping", 0);
     joint.friction = values_.number_not_negative(*dynamics, "friction", 0);
-    if (!has_axis(joint.kind) && (joint.damping > 0 || joint.friction > 0)) {
-      values_.note(*dynamics, "<dynamics> of a joint without an axis is not taken over");
+    if (!has_coordinate(joint.kind) && (joint.damping > 0 || joint.friction > 0)) {
+      values_.note(*dynamics, "<dynamics> of a joint without a coordinate is not taken over");
     }
   }
 

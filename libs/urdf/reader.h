@@ -11,7 +11,7 @@
 namespace slew::urdf {
 
 // Problems go to the report with their line: XML that is not well formed, what xacro has not expanded, names that are
-// missing, doubled or unknown, numbers that are none, joint types without a counterpart (planar), what is no tree.
+// missing, doubled or unknown, numbers that are none, unknown joint types, what is no tree.
 // Nothing is returned then.
 [[nodiscard]] std::optional<Robot> read_robot(const scene::SourceText& source, scene::Report& report);
 

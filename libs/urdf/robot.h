@@ -48,14 +48,14 @@ struct Link {
   int line = 0;
 };
 
-enum class JointKind { revolute, continuous, prismatic, fixed, floating };
+enum class JointKind { revolute, continuous, prismatic, fixed, floating, planar };
 
 struct Joint {
   std::string name;
   JointKind kind = JointKind::fixed;
   int parent = 0, child = 0;  // links
   Origin origin;
-  Triple axis{1, 0, 0};  // unit, child's frame
+  Triple axis{1, 0, 0};  // unit, child's frame; of a planar joint the normal
   double lower = 0;      // rad or m; revolute and prismatic
   double upper = 0;
   double damping = 0;   // N m s/rad or N s/m

@@ -210,13 +210,12 @@ TEST_F(Program, ImportMakesASceneThatIsCheckedAndRuns) {
 }
 
 TEST_F(Program, ImportTellsTheLineOfWhatItCannotTake) {
-  const std::string urdf = work_.path() / "planar.urdf";
-  std::ofstream(urdf)
-      << "<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n"
-         "<joint name=\"j\" type=\"planar\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>\n";
+  const std::string urdf = work_.path() / "bad.urdf";
+  std::ofstream(urdf) << "<robot name=\"r\">\n<link name=\"a\"/>\n<link name=\"b\"/>\n"
+                         "<joint name=\"j\" type=\"gear\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>\n";
   const CommandResult result = slewring({"import", "urdf", urdf});
   EXPECT_EQ(result.code, 2);
-  EXPECT_TRUE(contains(result.err, "planar.urdf:4: joint 'j': a planar joint has no counterpart")) << result.err;
+  EXPECT_TRUE(contains(result.err, "bad.urdf:4: joint 'j': the type 'gear' is unknown")) << result.err;
 }
 
 TEST_F(Program, VariablesOfASceneHaveUnits) {

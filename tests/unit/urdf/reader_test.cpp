@@ -98,15 +98,13 @@ TEST(UrdfReader, RefusesIncompleteParts) {
             "r.urdf:3: link 'a': <origin xyz> is '1 2'; expected three finite numbers");
 }
 
-TEST(UrdfReader, RefusesJointsWithoutACounterpart) {
+TEST(UrdfReader, RefusesJointsThatAreNone) {
   const std::string limit = "<limit lower=\"-1\" upper=\"1\"/>";
   EXPECT_EQ(problems_of(robot(joint("type=\"revolute\"", limit))), "");
-  EXPECT_EQ(problems_of(robot(joint("type=\"planar\"", ""))),
-            "r.urdf:4: joint 'j': a planar joint has no counterpart in a scene; expected two prismatic joints and a "
-            "revolute one with light links between");
   EXPECT_EQ(
       problems_of(robot(joint("type=\"hinge\"", ""))),
-      "r.urdf:4: joint 'j': the type 'hinge' is unknown; expected revolute, continuous, prismatic, fixed or floating");
+      "r.urdf:4: joint 'j': the type 'hinge' is unknown; expected revolute, continuous, prismatic, fixed, floating or "
+      "planar");
   EXPECT_EQ(problems_of(robot(joint("type=\"revolute\"", ""))),
             "r.urdf:4: joint 'j': has no <limit>; expected <limit lower=... upper=.../>; type continuous turns without "
             "limits");

@@ -109,6 +109,21 @@ TEST(JointTypes, AFixedJointHoldsAndAFloatingOneDoesNot) {
   expect_pose(one.mechanism.pose("part"), rpy(0.1, 0.2, 0.3), {0, 1, 1});
 }
 
+// on an inclined plane: the centre accelerates with what of gravity lies in the plane, whatever the body's shape
+TEST(JointTypes, APlanarJointSlidesInItsPlane) {
+  const Vec3 normal = Vec3(0.3, -0.2, 0.9) * (1 / std::sqrt(0.94));
+  const scene::Scene scene = testing::imported_scene(robot(
+      link("puck") + joint("table", "planar", "world", "puck", "<origin xyz=\"1 2 3\"/><axis xyz=\"0.3 -0.2 0.9\"/>")));
+  multibody::testing::Formulated puck(scene.mechanics);
+  EXPECT_EQ(puck.model.degrees_of_freedom(), 3);
+  const Vec3 start(puck.pose("puck").center_of_mass);
+  puck.run(0.5, 1e-3);
+  const Vec3 g(0, 0, -9.81), expected = start + (g - normal * dot(g, normal)) * 0.125;
+  EXPECT_LT(norm(Vec3(puck.pose("puck").center_of_mass) - expected), 1e-9);
+  const multibody::BodyPose pose = puck.pose("puck");
+  expect_pose(pose, Mat3::identity(), Vec3(pose.position));
+}
+
 TEST(JointTypes, ARootWithMassIsFixedOrFree) {
   const std::string text = "<robot name=\"r\">" + link("hull") + link("arm") +
                            joint("turn", "continuous", "hull", "arm", "<axis xyz=\"0 0 1\"/>") + "</robot>";
