@@ -239,6 +239,10 @@ Nearby look_nearby(const Model& model) {
       result.mobility[k] = std::max(result.mobility[k], mobility[k]);
     }
   }
+  for (const Cut& cut : model.cuts) {
+    // within one link the rows move by rounding alone
+    if (cut.link1 == cut.link2) std::fill_n(result.is_dependent.begin() + cut.first_row, cut.rows.size(), true);
+  }
   return result;
 }
 

@@ -157,6 +157,7 @@ class RandomLoops : public ::testing::TestWithParam<unsigned> {
     for (std::size_t j = 0; j < closing.tree.def.joints.size(); ++j) {
       if (mechanism.model.joints[j].cut < 0) continue;
       const Matrix here = reference.cut_jacobian(j, q);
+      if (here.cwiseAbs().maxCoeff() < 1e-10L) continue;  // between bodies that fixed joints merge
       const Vector b = reference.cut_bias(j, q, u);
       J.conservativeResize(J.rows() + here.rows(), n);
       J.bottomRows(here.rows()) = here;
