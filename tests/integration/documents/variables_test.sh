@@ -27,7 +27,7 @@ for scene in "${scenes[@]}"; do "$slewring" variables "$scene" 2> /dev/null; don
 # quantities and the text that holds the units: the second column of a row, or the third
 grep '^| .*`' "$page" | awk -F'|' '{
   text = $2 $3
-  while (match(text, /`[A-Za-z_]+\.[A-Za-z_.]+`/)) {
+  while (match(text, /`[A-Za-z_]+\.[A-Za-z0-9_.]+`/)) {
     name = substr(text, RSTART + 1, RLENGTH - 2); text = substr(text, RSTART + RLENGTH)
     sub(/\.[wxyz]$/, "", name)
     units = " ; " $3 " ; " $4 " ; "; gsub(/[;,()]/, " ; ", units); gsub(/ +/, " ", units)
