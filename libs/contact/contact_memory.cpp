@@ -1,5 +1,6 @@
 #include "contact/contact_memory.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/check.h"
@@ -39,7 +40,7 @@ RememberedContact ContactMemory::taken_over(const ContactModel& model, std::span
   std::size_t nearest = old_count_;
   for (std::size_t i = 0; i < old_count_; ++i) {
     const Place& old = old_places_[i];
-    if (old.pair != place.pair || old.is_taken) continue;
+    if (old.pair != place.pair) continue;
     const Vec3 away = old.p_A - place.p_A;
     const double distance2 = dot(away, away);
     if (distance2 >= least) continue;
@@ -47,25 +48,68 @@ RememberedContact ContactMemory::taken_over(const ContactModel& model, std::span
     nearest = i;
   }
   if (nearest == old_count_) return {};
-  old_places_[nearest].is_taken = true;
   RememberedContact state = old_states_[nearest];
   turn_bristle(old_places_[nearest].n_W, place.n_W, spin(model, poses, place), state.friction);
   return state;
 }
 
-void ContactMemory::follow(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept {
+void ContactMemory::match(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept {
   SLEW_ASSERT(poses.size() == old_R_WF_.size() && set.points().size() <= states_.size());
-  std::swap(states_, old_states_);
-  std::swap(places_, old_places_);
-  old_count_ = count_;
   count_ = set.points().size();
   for (std::size_t i = 0; i < count_; ++i) {
     const ContactPoint& point = set.points()[i];
     const Pose& frame = poses[model.frame_of(model.pairs()[point.pair].shape_a)];
-    places_[i] = {point.pair, transpose_multiply(frame.R_WF, point.p_W - frame.p_WF), point.n_W, false};
+    places_[i] = {point.pair, transpose_multiply(frame.R_WF, point.p_W - frame.p_WF), point.n_W};
     states_[i] = taken_over(model, poses, places_[i]);
   }
+  if (count_ == 0) return;
   for (std::size_t i = 0; i < poses.size(); ++i) old_R_WF_[i] = poses[i].R_WF;
+}
+
+void ContactMemory::follow(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept {
+  std::swap(states_, old_states_);
+  std::swap(places_, old_places_);
+  old_count_ = count_;
+  match(model, poses, set);
+}
+
+void ContactMemory::follow(const ContactMemory& before, const ContactModel& model, std::span<const Pose> poses,
+                           const ContactSet& set) noexcept {
+  SLEW_ASSERT(&before != this && before.states_.size() == states_.size());
+  old_count_ = before.count_;
+  std::copy_n(before.states_.begin(), old_count_, old_states_.begin());
+  std::copy_n(before.places_.begin(), old_count_, old_places_.begin());
+  if (old_count_ > 0) std::copy(before.old_R_WF_.begin(), before.old_R_WF_.end(), old_R_WF_.begin());
+  match(model, poses, set);
+}
+
+void ContactMemory::assign(const ContactMemory& other) {
+  if (states_.size() != other.states_.size()) {
+    *this = other;
+    return;
+  }
+  count_ = other.count_;
+  std::copy_n(other.states_.begin(), count_, states_.begin());
+  std::copy_n(other.places_.begin(), count_, places_.begin());
+  if (count_ > 0) std::copy(other.old_R_WF_.begin(), other.old_R_WF_.end(), old_R_WF_.begin());
+}
+
+void ContactMemory::add_to_hash(StateHash& hash) const noexcept {
+  if (count_ == 0) return;
+  const auto add = [&hash](const Vec3& v) {
+    for (const double x : v.array()) hash.add(x);
+  };
+  hash.add(count_);
+  for (std::size_t i = 0; i < count_; ++i) {
+    hash.add(places_[i].pair);
+    add(places_[i].p_A);
+    add(places_[i].n_W);
+    hash.add(states_[i].normal.impact_speed);
+    add(states_[i].friction.z_W);
+  }
+  for (const Mat3& R : old_R_WF_) {
+    for (const Vec3& column : R.c) add(column);
+  }
 }
 
 }  // namespace slew::contact

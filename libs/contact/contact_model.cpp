@@ -129,6 +129,8 @@ ContactModel build(const ContactDef& def) {
     constexpr double kMatch = 0.1;
     built.match_distance = kMatch * std::min(model.shapes_[built.shape_a].geometry.bounding_radius,
                                              model.shapes_[built.shape_b].geometry.bounding_radius);
+    built.half_thickness =
+        inner_radius(model.shapes_[built.shape_a].geometry) + inner_radius(model.shapes_[built.shape_b].geometry);
     const ShapeType a = def.shapes[built.shape_a].type, b = def.shapes[built.shape_b].type;
     if (find_kernel(a, b) == nullptr && find_kernel(b, a) == nullptr) model.asks_fcl_ = true;
     model.pairs_.push_back(built);
@@ -141,9 +143,10 @@ Solid ContactModel::place(const Shape& shape, const Pose& pose) const noexcept {
   return {&shape.geometry, pose.p_WF + pose.R_WF * shape.p_FS, pose.R_WF * shape.R_FS};
 }
 
-void ContactModel::find_pair(std::size_t pair, std::span<const Pose> poses, ContactSet& set) const noexcept {
+void ContactModel::find_pair(std::size_t pair, const Pose& frame_a, const Pose& frame_b,
+                             ContactSet& set) const noexcept {
   const Shape &shape_a = shapes_[pairs_[pair].shape_a], &shape_b = shapes_[pairs_[pair].shape_b];
-  const Solid a = place(shape_a, poses[shape_a.frame]), b = place(shape_b, poses[shape_b.frame]);
+  const Solid a = place(shape_a, frame_a), b = place(shape_b, frame_b);
   Manifold& found = set.manifold_;
   found.clear();
   if (!are_near(a, b)) return;
@@ -178,7 +181,8 @@ void find_contacts(const ContactModel& model, std::span<const Pose> poses, Conta
   set.count_ = 0;
   set.unresolved_ = 0;
   for (std::size_t pair = 0; pair < model.pairs_.size(); ++pair) {
-    model.find_pair(pair, poses, set);
+    const ContactPair& shapes = model.pairs_[pair];
+    model.find_pair(pair, poses[model.frame_of(shapes.shape_a)], poses[model.frame_of(shapes.shape_b)], set);
     reduce(set.manifold_);
     std::array<double, kMaxPointsPerPair> depths{}, shares{};
     const std::size_t n = set.manifold_.size();

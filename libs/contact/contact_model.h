@@ -9,8 +9,8 @@
 // Pairs are few and declared, so there is no broad phase over all shapes.
 //
 // Own kernels neither allocate nor lock, and their cost is bounded. FCL allocates inside a query (up to 25 blocks,
-// given back before it returns): pairs with it are not yet fit for a step under the allocation guard. Not covered:
-// motion between two calls (a body that passes through within one sub-step is not seen).
+// given back before it returns): pairs with it are not yet fit for a step under the allocation guard. A search sees one
+// instant; what passed through something between two of them is found by sweep.h.
 #pragma once
 
 #include <memory>
@@ -43,6 +43,7 @@ struct ContactPair {
   FrictionLaw friction;
   bool has_friction = false;
   double match_distance = 0;  // m: contacts of two searches nearer than this may be the same
+  double half_thickness = 0;  // m: a way shorter than this ends on the side where it began (sweep.h)
 };
 
 class ContactSet;
@@ -63,6 +64,7 @@ class ContactModel {
   friend ContactModel build(const ContactDef& def);
   friend class ContactSet;
   friend void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
+  friend class Sweeper;
   ContactModel();
 
   struct Shape {
@@ -76,7 +78,7 @@ class ContactModel {
 
   void add_to_fcl(const ContactDef& def);
   [[nodiscard]] Solid place(const Shape& shape, const Pose& pose) const noexcept;
-  void find_pair(std::size_t pair, std::span<const Pose> poses, ContactSet& set) const noexcept;
+  void find_pair(std::size_t pair, const Pose& frame_a, const Pose& frame_b, ContactSet& set) const noexcept;
 
   std::vector<Shape> shapes_;
   std::vector<ContactPair> pairs_;
@@ -102,6 +104,7 @@ class ContactSet {
 
  private:
   friend class ContactModel;
+  friend class Sweeper;
   friend void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
   struct Fcl;
 

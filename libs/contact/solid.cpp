@@ -210,6 +210,31 @@ Geometry make_geometry(const ShapeDef& def) {
   return g;
 }
 
+double inner_radius(const Geometry& g) noexcept {
+  switch (g.type) {
+    case ShapeType::sphere:
+    case ShapeType::capsule:
+      return g.radius;
+    case ShapeType::cylinder:
+      return std::min(g.radius, g.half_length);
+    case ShapeType::box:
+      return std::min({g.half_size[0], g.half_size[1], g.half_size[2]});
+    case ShapeType::plane:
+      return std::numeric_limits<double>::infinity();
+    case ShapeType::convex_mesh: {
+      double least = g.bounding_radius;
+      for (const Geometry::FlatFace& face : g.faces) {
+        least = std::min(least, dot(g.vertices[g.face_vertices[face.first]] - g.centre, face.normal));
+      }
+      return std::max(least, 0.0);
+    }
+    case ShapeType::height_field:
+    case ShapeType::triangle_mesh:
+      break;
+  }
+  return 0;
+}
+
 double reach(const Solid& solid, Vec3 d_W) noexcept {
   const Geometry& g = *solid.geometry;
   const Vec3 d = transpose_multiply(solid.R_WS, d_W);

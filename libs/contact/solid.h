@@ -39,6 +39,9 @@ struct Geometry {
 // Pre-condition: validate() found nothing.
 [[nodiscard]] Geometry make_geometry(const ShapeDef& def);
 
+// Radius of a ball about the middle that the shape holds [m]; infinite for a plane, 0 for surfaces of triangles.
+[[nodiscard]] double inner_radius(const Geometry& geometry) noexcept;
+
 // A shape in the world.
 struct Solid {
   const Geometry* geometry = nullptr;
