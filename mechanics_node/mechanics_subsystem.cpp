@@ -275,13 +275,12 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     report.raise(StepFlag::non_finite);
     report.offender = first_not_finite();
     failure_ = report;
-    state_ = last_good_;
+    multibody::copy_state(last_good_, state_);
     is_evaluated_ = false;
     out = published_;
     return report;
   }
-  last_good_.q = state_.q;
-  last_good_.u = state_.u;
+  multibody::copy_state(state_, last_good_);
   evaluate();
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     const double x = ports_[i].offset + ports_[i].ratio * workspace_.row_x[i];

@@ -69,6 +69,10 @@ Status Monolith::advance_to(SimTime t, std::span<const double> controls_begin, s
   const std::span<const double> y = solver_.y();
   time_ = t;
   equations_.observe(solver_.time(), y.data());
+  if (const std::string pair = equations_.touching_pair(); !pair.empty()) {
+    return Status::error(ExitCode::failed, "the shapes of " + pair + " touch at " + std::to_string(solver_.time()) +
+                                               " s: the reference does not follow contacts");
+  }
   if (failure.empty()) return Status::ok();
   return Status::error(ExitCode::diverged, "the reference integration ended at " + std::to_string(solver_.time()) +
                                                " s (" + failure + "); it could not follow " +

@@ -89,6 +89,11 @@ std::string SceneEquations::state_name(std::size_t index) const {
          std::string(multibody::joint_of(model_, static_cast<int>(index)));
 }
 
+std::string SceneEquations::touching_pair() const {
+  if (workspace_.contact == nullptr || workspace_.contact->force_count == 0) return {};
+  return model_.contact->pairs[static_cast<std::size_t>(workspace_.contact->forces[0].pair)].name;
+}
+
 // ---- start and changes ----------------------------------------------------------------------------------------
 
 // line forces that would hold the ports where they are, joint laws included: W F = -(a_free + W_ar f_r)

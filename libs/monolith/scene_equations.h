@@ -74,6 +74,8 @@ class SceneEquations {
   [[nodiscard]] std::span<const PortState> ports() const noexcept { return port_states_; }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }
   void read_variables(std::span<double> values);
+  // The pair whose shapes touch; empty when none does. What contacts remember is not integrated here.
+  [[nodiscard]] std::string touching_pair() const;
   [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
   [[nodiscard]] const multibody::State& mechanism_state() const noexcept { return state_; }
 

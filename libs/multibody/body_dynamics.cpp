@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "multibody/body_passes.h"
+#include "multibody/contact_passes.h"
 #include "multibody/coupled_mass.h"
 #include "multibody/loops.h"
 #include "multibody/passes.h"
@@ -64,9 +65,11 @@ bool prepare(const Model& model, const BodyModel& body, const BodyState& state, 
   update_body_motion(model, state, ws);
   find_joint_coordinates(model, ws, joints);
   update_elements(model, joints.q, Elements::used, ws);
+  update_contacts(model, ws);
   update_inertia(model, ws);
   update_coupled(model, ws);
   apply_elements(model, ws);
+  apply_contacts(model, ws);
   evaluate_joints(body, ws, bws);
   fill_matrix(model, body, ws, bws);
   const bool is_regular = bws.ldl.factorize(kDependent);
@@ -76,6 +79,7 @@ bool prepare(const Model& model, const BodyModel& body, const BodyState& state, 
 
 bool evaluate(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
               BodyWorkspace& bws) noexcept {
+  begin_contacts(model, joints, ws);
   const bool is_regular = prepare(model, body, state, joints, ws, bws);
   bws.ldl.solve(bws.solution);
   bws.free = bws.solution;

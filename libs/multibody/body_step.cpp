@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "multibody/body_passes.h"
+#include "multibody/contact_passes.h"
 #include "multibody/loops.h"
 
 namespace slew::multibody {
@@ -124,6 +125,7 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
         is_regular = project(model, body, bws.stage, bws.stage_joints, ws, bws) && is_regular;
       }
       forces_at(kStageTime[stage] * h);
+      if (ws.contact != nullptr) ws.contact->time = kStageTime[stage] * h;
       is_regular = find_accelerations(model, body, bws.stage, bws.row_force, ws, bws) && is_regular;
       find_rates(bws.stage, bws.qdot);
     }
@@ -135,7 +137,9 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
   for (std::size_t link = 1; link < model.links.size(); ++link) {
     put_attitude(math::normalized(attitude_at(state.q, link)), state.q, link);
   }
-  return project(model, body, state, joints, ws, bws) && is_regular;
+  const bool is_closed = project(model, body, state, joints, ws, bws);
+  accept_contacts(model, h, joints, ws);
+  return is_closed && is_regular;
 }
 
 }  // namespace slew::multibody

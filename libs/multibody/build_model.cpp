@@ -50,6 +50,7 @@ class Builder {
     add_force_dummies();
     for (const std::string& row : rows) add_row(def_, row, model_);
     mark_used_elements(model_);
+    model_.contact = build_contacts(def_, model_);
     for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
     for (Cut& cut : model_.cuts) add_supports(model_, cut);
     report = assemble(model_);

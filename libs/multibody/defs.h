@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/field.h"
+#include "multibody/contact_defs.h"
 
 namespace slew::multibody {
 
@@ -146,6 +147,11 @@ struct MechanicsDef {
   std::vector<RotationalForceDef> rotational_forces;
   std::vector<ForceDummyDef> force_dummies;
   std::vector<StaticDummyDef> static_dummies;
+
+  double contact_substep = 1e-4;  // s, longest sub-step while something touches or is about to
+  std::vector<ShapeDef> shapes;
+  std::vector<ContactPairDef> contacts;
+  std::vector<FrictionDef> frictions;
 };
 
 }  // namespace slew::multibody

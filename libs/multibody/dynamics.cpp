@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/reductions.h"
+#include "multibody/contact_passes.h"
 #include "multibody/loops.h"
 #include "multibody/passes.h"
 #include "multibody/rows.h"
@@ -17,10 +18,12 @@ namespace {
 void prepare(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   update_motion(model, q, u, ws);
   update_elements(model, q, Elements::used, ws);
+  update_contacts(model, ws);
   update_inertia(model, ws);
   update_coupled(model, ws);
   std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
   apply_elements(model, ws);
+  apply_contacts(model, ws);
 }
 
 }  // namespace
@@ -42,6 +45,7 @@ void forward_dynamics(const Model& model, std::span<const double> q, std::span<c
 }
 
 void evaluate(const Model& model, const State& state, Workspace& ws) noexcept {
+  begin_contacts(model, state, ws);
   forward_dynamics(model, state.q, state.u, {}, ws);
   ws.udot_free = ws.udot;
   ws.residual_free = ws.residual;
@@ -107,6 +111,7 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
     combine(state.u, time, ws.udot, ws.u_stage);
     if (is_near_singular(ws)) is_closed = project(model, ws.q_stage, ws.u_stage, ws) && is_closed;
     row_forces_at(time, h, mean, slope, forces);
+    if (ws.contact != nullptr) ws.contact->time = time;
     forward_dynamics(model, ws.q_stage, ws.u_stage, forces, ws);
     coordinate_rates(model, ws, ws.q_stage, ws.u_stage, ws.qdot);
     combine(ws.q_sum, h * kWeight[stage], ws.qdot, ws.q_sum);
@@ -116,6 +121,10 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
   state.u.swap(ws.u_sum);
   normalize_quaternions(model, state.q);
   if (!model.cuts.empty()) is_closed = project(model, state.q, state.u, ws) && is_closed;
+  if (ws.contact != nullptr && ws.contact->is_near) {
+    update_motion(model, state.q, state.u, ws);
+    accept_contacts(model, h, state, ws);
+  }
   return is_closed;
 }
 
@@ -130,6 +139,7 @@ bool advance(const Model& model, State& state, Workspace& ws, double h, std::spa
 }
 
 bool advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept {
+  begin_contacts(model, state, ws);
   forward_dynamics(model, state.q, state.u, {}, ws);
   return finish_step(model, state, ws, h, {}, {});
 }

@@ -1,5 +1,6 @@
 #include <cstddef>
 
+#include "multibody/contact_passes.h"
 #include "multibody/coupled_mass.h"
 #include "multibody/element_law.h"
 #include "multibody/observe.h"
@@ -39,6 +40,8 @@ CoupledPoints coupled_points(const Model& model, const Workspace& ws, const Coup
 void observe(const Model& model, const State& state, Workspace& ws) noexcept {
   update_motion(model, state.q, state.u, ws);
   update_elements(model, state.q, Elements::all, ws);
+  begin_contacts(model, state, ws);
+  update_contacts(model, ws);
 }
 
 Energy energy(const Model& model, const Workspace& ws) noexcept {
@@ -61,6 +64,9 @@ Energy energy(const Model& model, const Workspace& ws) noexcept {
   }
   for (std::size_t i = 0; i < model.angles.size(); ++i) {
     sum.potential += stored_energy(model.angles[i].law, ws.angles[i].angle);
+  }
+  if (ws.contact != nullptr) {
+    for (std::size_t i = 0; i < ws.contact->force_count; ++i) sum.potential += ws.contact->forces[i].energy;
   }
   return sum;
 }

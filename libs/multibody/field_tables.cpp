@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "multibody/contact_fields.h"
 #include "multibody/joint_fields.h"
 
 namespace slew::multibody {
@@ -31,6 +32,9 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::max_substep>(
         "max_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step of the integrator inside a step"}),
+    field<&MechanicsDef::contact_substep>(
+        "contact_substep",
+        {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step while shapes touch or are about to"}),
 };
 
 constexpr Field kBodyFields[] = {
@@ -180,8 +184,10 @@ constexpr ElementType kDummyTypes[] = {
 }  // namespace
 
 std::span<const Section> sections() noexcept {
-  static const Section kSections[] = {
-      {"bodies", kBodyTypes}, {"joints", joint_types()}, {"forces", kForceTypes}, {"dummies", kDummyTypes}};
+  static const Section kSections[] = {{"bodies", kBodyTypes},         {"joints", joint_types()},
+                                      {"forces", kForceTypes},        {"dummies", kDummyTypes},
+                                      {"shapes", shape_types()},      {"contacts", contact_types()},
+                                      {"frictions", friction_types()}};
   return kSections;
 }
 

@@ -22,7 +22,7 @@ struct ElementType {
 };
 
 struct Section {
-  std::string_view name;  // "bodies", "joints", "forces", "dummies"
+  std::string_view name;  // "bodies", "joints", "forces", "dummies", "shapes", "contacts", "frictions"
   std::span<const ElementType> types;
 };
 

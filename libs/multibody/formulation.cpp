@@ -1,7 +1,10 @@
 #include "multibody/formulation.h"
 
+#include <utility>
+
 #include "core/check.h"
 #include "multibody/body_coordinates.h"
+#include "multibody/contact_passes.h"
 #include "multibody/dynamics.h"
 
 namespace slew::multibody {
@@ -14,6 +17,14 @@ struct Dynamics::Bodies {
   BodyState state;
   BodyWorkspace ws;
 };
+
+namespace {
+
+bool take_passed(Workspace& ws) noexcept {
+  return ws.contact != nullptr && std::exchange(ws.contact->has_passed, false);
+}
+
+}  // namespace
 
 Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start) {
   SLEW_CHECK(formulation == Formulation::recursive || formulation == Formulation::lagrange);
@@ -31,6 +42,22 @@ void Dynamics::evaluate(const Model& model, State& state, Workspace& ws) noexcep
 
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                        std::span<const double> slope) noexcept {
+  const int parts = contact_parts(model, h, ws);
+  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && !take_passed(ws);
+  // the rows' forces go on along their lines
+  const double part = h / parts;
+  bool is_sound = true;
+  for (int i = 0; i < parts; ++i) {
+    if (i > 0) evaluate(model, state, ws);
+    const double later = (i + 0.5) * part - 0.5 * h;
+    for (std::size_t k = 0; k < mean.size(); ++k) ws.row_part[k] = mean[k] + later * slope[k];
+    is_sound = advance_part(model, state, ws, part, ws.row_part, slope) && is_sound;
+  }
+  return !take_passed(ws) && is_sound;
+}
+
+bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                            std::span<const double> slope) noexcept {
   if (bodies_ != nullptr) {
     return multibody::advance(model, bodies_->model, bodies_->state, state, ws, bodies_->ws, h, mean, slope) &&
            is_regular_;

@@ -22,7 +22,9 @@ class Dynamics {
   Dynamics(Dynamics&&) noexcept;
   Dynamics& operator=(Dynamics&&) noexcept;
 
-  // evaluate() and advance() of dynamics.h. False: a matrix was singular, or the joints could not be closed.
+  // evaluate() and advance() of dynamics.h. While shapes touch, or are about to, advance() goes in parts of
+  // MechanicsDef::contact_substep at most. False: a matrix was singular, the joints could not be closed, or shapes went
+  // through each other between two instants.
   void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;
@@ -31,6 +33,9 @@ class Dynamics {
   void add_to_hash(StateHash& hash) const noexcept;
 
  private:
+  [[nodiscard]] bool advance_part(const Model& model, State& state, Workspace& ws, double h,
+                                  std::span<const double> mean, std::span<const double> slope) noexcept;
+
   struct Bodies;
   std::unique_ptr<Bodies> bodies_;  // none: recursive
   bool is_regular_ = true;          // of the last evaluation

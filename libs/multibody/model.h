@@ -23,6 +23,7 @@
 
 #include "core/problem.h"
 #include "math/rotation.h"
+#include "multibody/contact_elements.h"
 #include "multibody/defs.h"
 #include "multibody/joint_law.h"
 
@@ -205,6 +206,7 @@ struct Model {
   std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by row of the cuts: a mobility that is not near zero
   std::vector<int> body_order;        // bodies from Ground outwards, parents first; without Ground
   std::vector<double> start_q, start_u;
+  std::shared_ptr<const ContactElements> contact;  // none: no pairs; immutable, the same for all copies
 
   [[nodiscard]] int coordinate_count() const noexcept { return static_cast<int>(start_q.size()); }
   [[nodiscard]] int speed_count() const noexcept { return static_cast<int>(start_u.size()); }

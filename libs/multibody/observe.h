@@ -16,7 +16,8 @@ namespace slew::multibody {
 void observe(const Model& model, const State& state, Workspace& ws) noexcept;
 
 // Kinetic energy of all masses; potential energy of gravity (zero at Ground's origin) and of the elements' springs,
-// end dampers included. Joint limits act through rows and are their owner's. [J]
+// end dampers included, of the springs of contacts and of their bristles. Joint limits act through rows and are their
+// owner's. [J]
 struct Energy {
   double kinetic = 0, potential = 0;
 };
@@ -54,6 +55,12 @@ void joint_reactions(const Model& model, const State& state, Workspace& ws, std:
 // `force` of their element or joint together with its own law; empty: zero.
 void read_variables(const Model& model, const State& state, const Workspace& ws, std::span<const double> row_forces,
                     std::span<double> values) noexcept;
+
+// Variables of the pairs of shapes ("Bag_Truck.normal_force.y"), part of variables() and read_variables(): number of
+// points, largest depth, sums of the normal and the friction forces on shape A, centre of pressure. Returns how many
+// values were written.
+void append_contact_variables(const Model& model, std::vector<ElementVariable>& variables);
+std::size_t read_contact_variables(const Model& model, const Workspace& ws, std::span<double> values) noexcept;
 
 // What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
 // scene, in the order and form of JointReaction; allocates.

@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include "multibody/constraint.h"
+#include "multibody/contact_passes.h"
 #include "multibody/coupled_mass.h"
 #include "multibody/dynamics.h"
 #include "multibody/element_law.h"
@@ -79,6 +80,16 @@ class ReactionSum {
     for (std::size_t i = 0; i < model_.angles.size(); ++i) {
       const AngleElement& element = model_.angles[i];
       if (element.law.is_active) subtract_angle(element, torque_of(element, ws_.angles[i], ws_));
+    }
+  }
+
+  void subtract_contacts() noexcept {
+    if (ws_.contact == nullptr) return;
+    for (std::size_t i = 0; i < ws_.contact->force_count; ++i) {
+      const ContactForce& force = ws_.contact->forces[i];
+      const Vec3 F = force.normal_W + force.friction_W;
+      add(model_.contact->frames[at(force.frame_a)].body, force.p_W, -F);
+      add(model_.contact->frames[at(force.frame_b)].body, force.p_W, F);
     }
   }
 
@@ -223,6 +234,7 @@ void take_smallest(const Model& model, Workspace& ws, std::span<JointReaction> r
 
 void joint_reactions(const Model& model, const State& state, Workspace& ws, std::span<const double> row_forces,
                      std::span<JointReaction> reactions) noexcept {
+  begin_contacts(model, state, ws);
   forward_dynamics(model, state.q, state.u, row_forces, ws);
   if (!model.welded.empty())
     update_elements(model, state.q, Elements::all, ws);  // their lines need no motion in a step
@@ -234,6 +246,7 @@ void joint_reactions(const Model& model, const State& state, Workspace& ws, std:
   for (const CoupledMass& mass : model.coupled) sum.add_coupled(mass);
   for (const CoupledMass& mass : model.welded) sum.add_coupled(mass);
   sum.subtract_elements();
+  sum.subtract_contacts();
   sum.subtract_rows(row_forces, reactions);
   sum.subtract_cuts(ws.loops.multipliers, reactions);
   sum.pass_on(reactions);

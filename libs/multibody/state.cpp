@@ -20,7 +20,7 @@ Workspace::Workspace(const Model& model)
   const auto nq = model.start_q.size(), nu = model.start_u.size(), rows = model.rows.size();
   for (auto* by_u : {&tau, &residual, &udot, &u_stage, &u_sum, &udot_free, &residual_free}) by_u->assign(nu, 0.0);
   for (auto* by_q : {&q_stage, &qdot, &q_sum}) by_q->assign(nq, 0.0);
-  for (auto* by_row : {&row_x, &row_v, &row_a_free, &row_force}) by_row->assign(rows, 0.0);
+  for (auto* by_row : {&row_x, &row_v, &row_a_free, &row_force, &row_part}) by_row->assign(rows, 0.0);
   row_J.assign(rows * nu, 0.0);
   row_residual.assign(rows * nu, 0.0);
   row_rate.assign(rows * nu, 0.0);
@@ -42,16 +42,26 @@ Workspace::Workspace(const Model& model)
   unit_products.assign(redundant * redundant, 0.0);
   unit_shares.assign(redundant, 0.0);
   unit_factor = math::Semidefinite(static_cast<int>(redundant));
+  if (model.contact != nullptr) contact = std::make_unique<ContactWorkspace>(*model.contact);
   motion[0].R = math::Mat3::identity();
 }
 
 State start_state(const Model& model) {
-  return {model.start_q, model.start_u};
+  State state{model.start_q, model.start_u};
+  if (model.contact != nullptr) state.contacts = contact::ContactMemory(model.contact->model);
+  return state;
+}
+
+void copy_state(const State& from, State& to) noexcept {
+  to.q = from.q;
+  to.u = from.u;
+  to.contacts.assign(from.contacts);
 }
 
 void add_to_hash(const Model& model, const State& state, StateHash& hash) noexcept {
   hash.add(std::span<const double>(state.q));
   hash.add(std::span<const double>(state.u));
+  state.contacts.add_to_hash(hash);
   for (const double g : model.gravity.array()) hash.add(g);
   for (const LumpedMass& part : model.lumped) hash.add(part.mass);
   const auto add_law = [&hash](const ElementLaw& law) {

@@ -2,19 +2,22 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/state_hash.h"
 #include "math/semidefinite.h"
+#include "multibody/contact_workspace.h"
 #include "multibody/model.h"
 
 namespace slew::multibody {
 
-// Coordinates and speeds, laid out as model.h says; nothing else is integrated.
+// Coordinates and speeds, laid out as model.h says, and what contacts remember; nothing else is integrated.
 struct State {
-  std::vector<double> q;  // rad, m, quaternions
-  std::vector<double> u;  // rad/s, m/s
+  std::vector<double> q;              // rad, m, quaternions
+  std::vector<double> u;              // rad/s, m/s
+  contact::ContactMemory contacts{};  // impact speeds and bristles at the end of the last sub-step
 };
 
 // Pose and motion of a link in Ground axes. alpha and a are the accelerations that the link would have with u' = 0 in
@@ -120,6 +123,7 @@ struct Workspace {
   std::vector<double> row_rate;              // rows x dof, D^-1 r
   std::vector<double> row_W;                 // rows x rows
   std::vector<double> row_force;             // of the stage under way
+  std::vector<double> row_part;              // mean over a part of a sub-step
   std::vector<unsigned char> row_is_active;  // 0 or 1
 
   // smallest reactions: those of one unit force in each redundant row, by row and joint of the scene; scratch of them
@@ -132,6 +136,7 @@ struct Workspace {
   std::vector<math::Vec3> body_n, body_f;
 
   LoopWorkspace loops;
+  std::unique_ptr<ContactWorkspace> contact;  // none: no pairs
 
   // Runge-Kutta
   std::vector<double> q_stage, u_stage, qdot, q_sum, u_sum, udot_free, residual_free;
@@ -140,7 +145,10 @@ struct Workspace {
 // Start of the scene.
 [[nodiscard]] State start_state(const Model& model);
 
-// Raw bits of coordinates, speeds and live parameters in id order.
+// Takes over another state of the same mechanism. Does not allocate.
+void copy_state(const State& from, State& to) noexcept;
+
+// Raw bits of coordinates, speeds, contacts and live parameters in id order.
 void add_to_hash(const Model& model, const State& state, StateHash& hash) noexcept;
 
 }  // namespace slew::multibody

@@ -10,6 +10,7 @@
 #include "multibody/assembly.h"
 #include "multibody/body_inertia.h"
 #include "multibody/constraint.h"
+#include "multibody/contact_elements.h"
 #include "multibody/dynamics.h"
 #include "multibody/field_tables.h"
 #include "multibody/observe.h"
@@ -55,6 +56,7 @@ class Validator {
       for (const TranslationalForceDef& force : m_.translational_forces) check_start_length(force, poses);
       check_neighbours(tree);
     }
+    if (problems_.empty()) validate_contacts(m_, problems_);
     if (problems_.empty()) find_singular_joints(m_, problems_);
     if (problems_.empty()) check_loops();
   }
@@ -89,6 +91,9 @@ class Validator {
     check_all(m_.rotational_forces, 2, second);
     check_all(m_.force_dummies, 3, first);
     check_all(m_.static_dummies, 3, second);
+    check_all(m_.shapes, 4, [](const ShapeDef& shape) { return static_cast<std::size_t>(shape.type); });
+    check_all(m_.contacts, 5, first);
+    check_all(m_.frictions, 6, first);
   }
 
   void check_fields(const std::string& owner, std::span<const Field> fields, void* def) {
@@ -111,7 +116,8 @@ class Validator {
   }
 
   static bool is_open_ended(std::string_view key) {
-    return key == "limit_min" || key == "limit_max" || key == "max_length" || key == "min_angle" || key == "max_angle";
+    return key == "limit_min" || key == "limit_max" || key == "max_length" || key == "min_angle" ||
+           key == "max_angle" || key == "unit";
   }
 
   void report_range(const std::string& owner, const Field& row, double value) {

@@ -91,6 +91,8 @@ class Values {
     for (const double value : values) add(value);
   }
 
+  [[nodiscard]] std::span<double> rest() const noexcept { return values_.subspan(next_); }
+
  private:
   std::span<double> values_;
   std::size_t next_ = 0;
@@ -159,7 +161,9 @@ std::vector<ElementVariable> variables(const Model& model) {
   }
   names.add("mechanics.kinetic_energy", Dimension::energy);
   names.add("mechanics.potential_energy", Dimension::energy);
-  return names.take();
+  std::vector<ElementVariable> all = names.take();
+  append_contact_variables(model, all);
+  return all;
 }
 
 std::vector<ElementVariable> reaction_variables(const Model& model) {
@@ -217,6 +221,7 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
   const Energy sum = energy(model, ws);
   out.add(sum.kinetic);
   out.add(sum.potential);
+  static_cast<void>(read_contact_variables(model, ws, out.rest()));
 }
 
 }  // namespace slew::multibody

@@ -1,0 +1,33 @@
+// Contact within a sub-step. Internal to the library.
+//
+// Impact speeds and bristles (contact/contact_memory.h) are state: they change when a sub-step is accepted. An
+// evaluation t after the start of the sub-step sees them carried along from there:
+//   z(t) = exact solution of the bristles' law with the mean sliding velocity since the start,      (1)
+//          the way of the material points that touch now, over t
+//   v0   = the largest of the remembered one, the speed of approach now and, for a contact that was open at the
+//          start, the speed of approach there                                                          (2)
+// so that an impact without other forces has its exact v0, and sticking follows the way of the integrator to the bit.
+#pragma once
+
+#include "multibody/state.h"
+
+namespace slew::multibody {
+
+// At the start of a sub-step, before the first update: the evaluations to come belong to this state.
+void begin_contacts(const Model& model, const State& state, Workspace& ws) noexcept;
+
+// Contacts and their forces at the motion in ws, ws.contact->time after the start.
+void update_contacts(const Model& model, Workspace& ws) noexcept;
+
+// Subtracts the forces from the bias wrenches.
+void apply_contacts(const Model& model, Workspace& ws) noexcept;
+
+// After a sub-step of h [s], with the motion of the new state in ws: the memory of the state becomes that of the end.
+// Shapes that went through each other unseen set ws.contact->has_passed.
+void accept_contacts(const Model& model, double h, State& state, Workspace& ws) noexcept;
+
+// In how many equal parts a sub-step of h [s] from here should go, after an evaluation at its start: one when nothing
+// touches and the present speeds lead into nothing within h; there is then no search until the next start.
+[[nodiscard]] int contact_parts(const Model& model, double h, Workspace& ws) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,174 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "contact/kernels.h"
+#include "contact/mesh_check.h"
+#include "multibody/contact_conversion.h"
+#include "multibody/contact_elements.h"
+#include "multibody/model.h"
+#include "multibody/topology.h"
+#include "multibody/validate.h"
+
+namespace slew::multibody {
+namespace {
+
+// deeper than any load presses shapes that a scene puts onto each other
+constexpr double kDeepStart = 1e-2;  // m
+
+bool is_mesh(const ShapeDef& shape) {
+  return shape.type == contact::ShapeType::convex_mesh || shape.type == contact::ShapeType::triangle_mesh;
+}
+
+template <typename Def>
+const Def* find_named(const std::vector<Def>& defs, const std::string& name) {
+  const auto found = std::find_if(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
+  return found == defs.end() ? nullptr : &*found;
+}
+
+class ContactValidator {
+ public:
+  ContactValidator(const MechanicsDef& mechanics, Problems& problems) : m_(mechanics), problems_(problems) {
+    Problems known;  // the tree's problems are told by others
+    carrier_ = merged_into(m_, find_tree(m_, known));
+  }
+
+  void run() {
+    const std::size_t before = problems_.size();
+    for (const ShapeDef& shape : m_.shapes) check_lists(shape);
+    for (const FrictionDef& friction : m_.frictions) contact::check(friction.name, friction.law, problems_);
+    for (const ContactPairDef& pair : m_.contacts) check_names(pair);
+    if (problems_.size() > before) return;
+    Problems found;
+    contact::validate(definition(), found);
+    for (Problem& problem : found) add_translated(std::move(problem));
+  }
+
+ private:
+  void add(const std::string& owner, std::string_view key, std::string what, std::string expected) {
+    problems_.push_back({fmt::format("{}.{}", owner, key), std::move(what), std::move(expected), {}});
+  }
+
+  void check_lists(const ShapeDef& shape) {
+    if (find_body(m_, shape.body) == kNoBody) {
+      add(shape.name, "body", fmt::format("there is no body '{}'", shape.body), "the name of a body, or Ground");
+    }
+    if (!is_mesh(shape)) return;
+    if (shape.vertices.size() % 3 != 0) {
+      add(shape.name, "vertices", fmt::format("there are {} numbers", shape.vertices.size()),
+          "three numbers for each vertex");
+    }
+    if (shape.triangles.size() % 3 != 0) {
+      add(shape.name, "triangles", fmt::format("there are {} numbers", shape.triangles.size()),
+          "three numbers of vertices for each triangle");
+    }
+  }
+
+  void check_names(const ContactPairDef& pair) {
+    for (const auto& [key, name] : {std::pair("shape_a", &pair.shape_a), std::pair("shape_b", &pair.shape_b)}) {
+      if (find_named(m_.shapes, *name) == nullptr) {
+        add(pair.name, key, fmt::format("there is no shape '{}'", *name), "the name of a shape");
+      }
+    }
+    if (pair.shape_a == pair.shape_b) {
+      add(pair.name, "shape_b", fmt::format("both shapes are '{}'", pair.shape_a), "two different shapes");
+    }
+    if (!pair.friction.empty() && find_named(m_.frictions, pair.friction) == nullptr) {
+      add(pair.name, "friction", fmt::format("there is no friction '{}'", pair.friction), "the name of a friction");
+    }
+  }
+
+  [[nodiscard]] int carrier_of(const ShapeDef& shape) const {
+    return carrier_[static_cast<std::size_t>(find_body(m_, shape.body))];
+  }
+
+  // everything, but pairs that cannot move against each other only with their law
+  contact::ContactDef definition() {
+    contact::ContactDef def;
+    for (const ShapeDef& shape : m_.shapes) {
+      def.shapes.push_back(contact_shape(shape));
+      if (find_named(def.frames, shape.body) != nullptr) continue;
+      def.frames.push_back({shape.body, carrier_of(shape) == kGround});
+    }
+    for (const ContactPairDef& pair : m_.contacts) {
+      const bool is_tested =
+          carrier_of(*find_named(m_.shapes, pair.shape_a)) != carrier_of(*find_named(m_.shapes, pair.shape_b));
+      if (is_tested) {
+        def.pairs.push_back(contact_pair(m_, pair));
+        def.pairs.back().friction.reset();  // checked under its own name
+      } else {
+        contact::check(pair.name, pair.normal, problems_);
+      }
+    }
+    return def;
+  }
+
+  // keys of libs/contact to those of a scene
+  void add_translated(Problem problem) {
+    const std::size_t dot = problem.path.rfind('.');
+    const std::string owner = problem.path.substr(0, dot), key = problem.path.substr(dot + 1);
+    const ShapeDef* shape = find_named(m_.shapes, owner);
+    if (shape != nullptr && key == "frame") problem.path = owner + ".body";
+    if (shape != nullptr && key == "mesh") problem.path = owner + (shape->file.empty() ? ".triangles" : ".file");
+    if (shape != nullptr && key == "height_field") problem.path = owner + ".heights";
+    problems_.push_back(std::move(problem));
+  }
+
+  const MechanicsDef& m_;
+  Problems& problems_;
+  std::vector<int> carrier_;
+};
+
+void find_fcl_pairs(const MechanicsDef& m, Problems& warnings) {
+  for (const ContactPairDef& pair : m.contacts) {
+    const ShapeDef* a = find_named(m.shapes, pair.shape_a);
+    const ShapeDef* b = find_named(m.shapes, pair.shape_b);
+    if (contact::find_kernel(a->type, b->type) != nullptr || contact::find_kernel(b->type, a->type) != nullptr)
+      continue;
+    warnings.push_back({pair.name,
+                        "FCL searches this pair, and allocates memory in every sub-step in which they are near",
+                        "shapes with a search of their own when the run has to keep real time "
+                        "(docs/howto/contact.md)",
+                        ""});
+  }
+}
+
+void find_deep_starts(const MechanicsDef& m, Problems& warnings) {
+  const Model model = build_model(m);
+  Problems known;
+  const std::vector<Pose> bodies = start_poses(m, known);
+  std::vector<contact::Pose> poses;
+  for (const ContactFrame& frame : model.contact->frames) {
+    const Pose& body = bodies[static_cast<std::size_t>(frame.body)];
+    poses.push_back({body.p, body.R});
+  }
+  contact::ContactSet set(model.contact->model);
+  contact::find_contacts(model.contact->model, poses, set);
+  std::vector<double> deepest(model.contact->pairs.size(), 0.0);
+  for (const contact::ContactPoint& point : set.points()) {
+    double& depth = deepest[static_cast<std::size_t>(model.contact->pair_of_tested[point.pair])];
+    depth = std::max(depth, point.depth);
+  }
+  for (std::size_t i = 0; i < deepest.size(); ++i) {
+    if (deepest[i] <= kDeepStart) continue;
+    warnings.push_back(
+        {model.contact->pairs[i].name,
+         fmt::format("the shapes start {:.3g} m deep in each other, and push each other out", deepest[i]),
+         "shapes that touch by less than 1 cm at the start", ""});
+  }
+}
+
+}  // namespace
+
+void validate_contacts(const MechanicsDef& mechanics, Problems& problems) {
+  ContactValidator(mechanics, problems).run();
+}
+
+void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings) {
+  if (mechanics.contacts.empty()) return;
+  find_fcl_pairs(mechanics, warnings);
+  find_deep_starts(mechanics, warnings);
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,124 @@
+// Contact at its limits: each ends finite and bounded, or is named.
+#include <gtest/gtest.h>
+
+#include "contact_scene.h"
+#include "multibody/dynamics.h"
+
+namespace slew::multibody {
+namespace {
+
+using namespace testing;
+
+constexpr double kGravity = 9.81;
+
+MechanicsDef stack(const std::vector<double>& masses, const contact::NormalLawDef& normal) {
+  MechanicsDef def;
+  def.shapes = {ground_shape("Floor")};
+  def.frictions = {dry_friction("Dry", 0.5)};
+  std::string below = "Floor";
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const std::string body = "Box" + std::to_string(i), shape = "Sides" + std::to_string(i);
+    const double height = 0.2 * static_cast<double>(i) + 0.1;
+    add_free(def, box_body(body, masses[i], {0.2, 0.2, 0.2}, {0, height, 0}));
+    def.shapes.push_back(box_shape(shape, body, {0.2, 0.2, 0.2}));
+    def.contacts.push_back(pair_of(shape, below, normal, "Dry"));
+    below = shape;
+  }
+  return def;
+}
+
+TEST(Stack, OfTenBoxesStandsAtTheDepthOfItsWeight) {
+  // damping at rest a N / v_min / m = 3.1 x 10 g / 0.1 = 3e3 1/s, four times that between two boxes that swing
+  MechanicsDef def =
+      stack(std::vector<double>(10, 1.0), {.stiffness = 1e6, .restitution = 0.3, .smallest_impact_speed = 0.1});
+  def.contact_substep = 5e-5;
+  Motion motion(def);
+  motion.run(1.5, 1e-3);
+  for (int i = 0; i < 10; ++i) {
+    const std::string pair = i == 0 ? "Sides0_Floor" : "Sides" + std::to_string(i) + "_Sides" + std::to_string(i - 1);
+    const double load = (10 - i) * kGravity;
+    EXPECT_NEAR(motion.value(pair + ".normal_force.y"), load, 1e-3 * load) << pair;
+    EXPECT_NEAR(motion.value(pair + ".depth"), load / 1e6, 2e-3 * load / 1e6) << pair;
+    const BodyPose pose = motion.pose("Box" + std::to_string(i));
+    EXPECT_LT(std::fabs(pose.velocity[1]), 1e-6);
+    EXPECT_LT(std::hypot(pose.position[0], pose.position[2]), 1e-6);
+  }
+}
+
+TEST(Stack, OfAHeavyBoxOnALightOneStands) {
+  // the light box: damping a N / v_min / m = 1.6e5 1/s
+  MechanicsDef def = stack({1.0, 1e4}, {.stiffness = 1e8, .restitution = 0.9, .smallest_impact_speed = 0.1});
+  def.contact_substep = 2e-6;
+  // from the depths of their weights: it would take seconds to swing into them
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double sunk = (i == 0 ? 10001 : 10001 + 10000) * kGravity / 1e8;
+    def.bodies[i].position[1] -= sunk;
+    def.joints[i].point1[1] -= sunk;
+  }
+  Motion motion(def);
+  motion.run(0.2, 1e-3);
+  EXPECT_NEAR(motion.value("Sides0_Floor.normal_force.y"), 10001 * kGravity, 1e-2 * 1e5);
+  EXPECT_LT(std::fabs(motion.pose("Box0").velocity[1]), 1e-3);
+}
+
+TEST(Penetration, OfATenthOfAMetreEndsBoundedAndIsWarnedAbout) {
+  MechanicsDef def;
+  add_free(def, box_body("Bag", 500, {0.8, 1, 0.8}, {0, 0.4, 0}));
+  def.shapes = {box_shape("Sides", "Bag", {0.8, 1, 0.8}), ground_shape("Floor")};
+  def.contacts = {pair_of("Sides", "Floor", {.stiffness = 5e7, .restitution = 0.1, .smallest_impact_speed = 0.1})};
+  Problems warnings;
+  find_unlikely_contacts(def, warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].what.find("0.1 m deep"), std::string::npos) << warnings[0].what;
+  Motion motion(def);
+  double fastest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    motion.step(1e-3);
+    motion.see();
+    fastest = std::max(fastest, std::fabs(motion.pose("Bag").velocity[1]));
+  }
+  ASSERT_TRUE(is_finite(motion.state));
+  // the spring holds 250 kJ, that is 32 m/s; the law lets v_min / a = 1 cm/s come out, and parts of 0.1 ms add some
+  EXPECT_LT(fastest, 1);
+  RecordProperty("fastest", std::to_string(fastest));
+}
+
+MechanicsDef bullet(double speed, double thickness) {
+  MechanicsDef def;
+  def.gravity = {};
+  add_free(def, free_body("Ball", 0.01, {1e-6, 1e-6, 1e-6}, {-5.0005, 0, 0}), {speed, 0, 0});
+  def.shapes = {ball_shape("Skin", "Ball", 0.01), box_shape("Wall", "Ground", {thickness, 2, 2})};
+  def.contacts = {pair_of("Skin", "Wall", {.stiffness = 1e9, .restitution = 0.5})};
+  return def;
+}
+
+TEST(Bullet, OfAKilometreASecondBouncesOffAThinWall) {
+  MechanicsDef def = bullet(1e3, 0.02);
+  def.contact_substep = 1e-6;
+  Motion motion(def);
+  motion.run(0.01, 1e-3);
+  EXPECT_TRUE(motion.is_sound);
+  EXPECT_LT(motion.pose("Ball").velocity[0], 0);
+  EXPECT_LT(motion.pose("Ball").position[0], 0);
+}
+
+// so thin that the parts of a sub-step do not resolve it: it goes through, and the step says so
+TEST(Bullet, ThatPassesUnseenIsFlagged) {
+  MechanicsDef def = bullet(1e3, 1e-5);
+  def.shapes[0].radius = 1e-4;
+  Motion motion(def);
+  motion.run(0.01, 1e-3);
+  EXPECT_FALSE(motion.is_sound);
+}
+
+TEST(Bullet, ThatMissesTheWallIsNot) {
+  MechanicsDef def = bullet(1e3, 0.02);
+  def.bodies[0].position[1] = def.joints[0].point1[1] = 1.5;
+  Motion motion(def);
+  motion.run(0.01, 1e-3);
+  EXPECT_TRUE(motion.is_sound);
+  EXPECT_NEAR(motion.pose("Ball").velocity[0], 1e3, 1e-9);
+}
+
+}  // namespace
+}  // namespace slew::multibody

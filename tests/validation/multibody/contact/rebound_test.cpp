@@ -1,0 +1,91 @@
+// Case D02 through the whole path: a ball of a scene is thrown at the ground and comes back with the scene's
+// restitution.
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "contact_scene.h"
+
+namespace slew::multibody {
+namespace {
+
+using namespace testing;
+
+MechanicsDef ball(double restitution, double stiffness, double height, double speed, double gravity) {
+  MechanicsDef def;
+  def.gravity = {0, -gravity, 0};
+  add_free(def, free_body("Ball", 1, {4e-3, 4e-3, 4e-3}, {0, 0.1 + height, 0}), {0, -speed, 0});
+  def.shapes = {ball_shape("Skin", "Ball", 0.1), ground_shape("Floor")};
+  def.contacts = {pair_of("Skin", "Floor", {.stiffness = stiffness, .restitution = restitution})};
+  return def;
+}
+
+class Rebound : public ::testing::TestWithParam<std::tuple<Formulation, double>> {};
+
+// no gravity, 3 m/s, k = 1e5 N/m: contact of about 10 ms; 0.02 ms resolve the damping of e = 0.1 at the onset
+TEST_P(Rebound, SpeedIsTheRestitutionOfTheScene) {
+  const auto [formulation, e] = GetParam();
+  MechanicsDef def = ball(e, 1e5, 0.0123, 3, 0);
+  def.contact_substep = 2e-5;
+  Motion motion(def, formulation);
+  motion.run(0.1, 1e-3);
+  EXPECT_NEAR(motion.pose("Ball").velocity[1] / 3, e, 1e-3);
+  EXPECT_TRUE(motion.is_sound);
+}
+
+// the error falls with the sub-step, at least in proportion
+TEST_P(Rebound, ErrorFallsWithTheSubstep) {
+  const auto [formulation, e] = GetParam();
+  double errors[2];
+  for (int i = 0; i < 2; ++i) {
+    MechanicsDef def = ball(e, 1e5, 0.0123, 3, 0);
+    def.contact_substep = i == 0 ? 1e-4 : 2.5e-5;
+    Motion motion(def, formulation);
+    motion.run(0.1, 1e-3);
+    errors[i] = std::fabs(motion.pose("Ball").velocity[1] / 3 - e);
+  }
+  RecordProperty("error_100us", std::to_string(errors[0]));
+  RecordProperty("error_25us", std::to_string(errors[1]));
+  EXPECT_LT(errors[1], errors[0] / 4 + 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Rebound,
+                         ::testing::Combine(::testing::Values(Formulation::recursive, Formulation::lagrange),
+                                            ::testing::Values(0.1, 0.5, 0.9)));
+
+// gravity on, k = 1e8 N/m: 1 % at e > 0.2, apex of the first bounces
+TEST(Rebound, ApexesFollowTheIdealBall) {
+  MechanicsDef def = ball(0.5, 1e8, 1, 0, 9.81);
+  def.contact_substep = 1e-6;
+  Motion motion(def);
+  double apex[2] = {0, 0};
+  const double times[2] = {0.4515236 + 0.2257618, 0.9030473 + 0.1128809};
+  double t = 0;
+  for (int i = 0; i < 2; ++i) {
+    motion.run(times[i] - t, 1e-4);
+    t = times[i];
+    apex[i] = motion.pose("Ball").position[1] - 0.1;
+  }
+  EXPECT_NEAR(apex[0], 0.25, 0.02 * 0.25);
+  EXPECT_NEAR(apex[1], 0.0625, 0.04 * 0.0625);
+}
+
+// e = 1: the springs give back what they take; deepest point of the drop from 1 m
+TEST(Rebound, ElasticBallKeepsItsEnergy) {
+  MechanicsDef def = ball(1, 1e5, 1, 0, 9.81);
+  def.contact_substep = 2e-5;
+  Motion motion(def);
+  const double energy = motion.total_energy();
+  double deepest = 0, largest = 0;
+  for (int i = 0; i < 10000; ++i) {
+    motion.step(1e-4);
+    motion.see();
+    deepest = std::max(deepest, motion.value("Skin_Floor.depth"));
+    largest = std::max(largest, std::fabs(motion.total_energy() - energy));
+  }
+  EXPECT_LT(largest, 1e-4 * energy);
+  EXPECT_NEAR(deepest, 1.4105584557e-2, 1e-3 * 1.41e-2);
+}
+
+}  // namespace
+}  // namespace slew::multibody
