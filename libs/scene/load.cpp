@@ -12,6 +12,7 @@
 #include "scene/canonical.h"
 #include "scene/expand.h"
 #include "scene/field_reader.h"
+#include "scene/mesh_assets.h"
 #include "scene/mesh_inertia.h"
 #include "scene/names.h"
 #include "scene/place_map.h"
@@ -27,7 +28,8 @@
 namespace slew::scene {
 namespace {
 
-constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies", "joints", "forces", "dummies"};
+constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies", "joints",   "forces",
+                                                   "dummies",   "shapes", "contacts", "frictions"};
 constexpr std::string_view kHydraulicsSections[] = {"hydraulics", "volumes", "components", "curves"};
 constexpr std::string_view kTypeKey[] = {"type"};
 
@@ -205,10 +207,12 @@ class SceneReader {
     resolve_references();
     if (report_.size() > problems || !has_sound_names_) return false;
     check_problems([&](Problems& errors, Problems& warnings) {
-      multibody::validate(scene_.mechanics, errors);
+      read_meshes(surroundings_, scene_.mechanics, errors);
+      if (errors.empty()) multibody::validate(scene_.mechanics, errors);
       if (errors.empty()) {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);
         multibody::find_start_changes(scene_.mechanics, warnings);
+        multibody::find_unlikely_contacts(scene_.mechanics, warnings);
       }
     });
     return report_.size() == problems;

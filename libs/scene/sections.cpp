@@ -137,6 +137,14 @@ void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& m
   collect(refs, table_of("forces", "rotational"), mechanics.rotational_forces);
   collect(refs, table_of("dummies", "body_to_body_force"), mechanics.force_dummies);
   collect(refs, table_of("dummies", "static"), mechanics.static_dummies);
+  // values of `type:` in the order of contact::ShapeType
+  constexpr std::string_view kShapeTypes[] = {"sphere", "box",          "cylinder",    "capsule",
+                                              "plane",  "height_field", "convex_mesh", "triangle_mesh"};
+  for (multibody::ShapeDef& shape : mechanics.shapes) {
+    refs.push_back(ref(table_of("shapes", kShapeTypes[static_cast<int>(shape.type)]), shape.name, &shape));
+  }
+  collect(refs, table_of("contacts", ""), mechanics.contacts);
+  collect(refs, table_of("frictions", ""), mechanics.frictions);
 }
 
 }  // namespace
@@ -153,15 +161,17 @@ const std::vector<SingleTable>& single_tables() {
 }
 
 const std::vector<std::string_view>& element_sections() {
-  static const std::vector<std::string_view> names = {"bodies",     "joints", "forces", "dummies", "volumes",
-                                                      "components", "curves", "inputs", "plots"};
+  static const std::vector<std::string_view> names = {"bodies",     "joints",   "forces",    "dummies",
+                                                      "shapes",     "contacts", "frictions", "volumes",
+                                                      "components", "curves",   "inputs",    "plots"};
   return names;
 }
 
 const std::vector<std::string_view>& top_level_keys() {
   static const std::vector<std::string_view> keys = {
-      "scene",   "description", "include", "assets",     "session", "mechanics", "bodies", "joints",    "forces",
-      "dummies", "hydraulics",  "volumes", "components", "curves",  "inputs",    "script", "recording", "plots"};
+      "scene",   "description", "include", "assets", "session",  "mechanics", "bodies",
+      "joints",  "forces",      "dummies", "shapes", "contacts", "frictions", "hydraulics",
+      "volumes", "components",  "curves",  "inputs", "script",   "recording", "plots"};
   return keys;
 }
 

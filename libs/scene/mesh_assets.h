@@ -1,0 +1,17 @@
+// Mesh files of shapes, read once when the scene is loaded.
+//
+// The triangles become part of the scene (`vertices`, `triangles`), and so of its expanded text: nodes on other
+// machines and replays have them without the file.
+#pragma once
+
+#include "core/problem.h"
+#include "multibody/defs.h"
+#include "scene/expand.h"
+
+namespace slew::scene {
+
+// Reads the file of every shape that names one, in metres and with its upward axis along y; the shape then has vertices
+// and triangles and no file. Appends a problem for every file that cannot be read, and for a missing unit or axis.
+void read_meshes(const Surroundings& surroundings, multibody::MechanicsDef& mechanics, Problems& problems);
+
+}  // namespace slew::scene
