@@ -1,6 +1,8 @@
 // No heap in a step: 1,000 steps of each subsystem of the crane after a warm-up, under the allocation guard.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "core/allocation_guard.h"
 #include "support/crane_pair.h"
 
@@ -52,6 +54,21 @@ TEST_F(SubsystemStep, DoesNotAllocateInBodyCoordinates) {
   const HeapUse use = heap_use(bodies, [](StepIndex) {});
   EXPECT_EQ(use.allocations, 0u);
   EXPECT_EQ(use.frees, 0u);
+}
+
+TEST_F(SubsystemStep, DoesNotAllocateWhileTheBagKnocksOnTheFloor) {
+  for (const char* formulation : {"recursive", "lagrange"}) {
+    const scene::Scene on_floor =
+        CranePair::load({"Ground_Plane.position=[0, 0.936 m, 0]", std::string("mechanics.formulation=") + formulation});
+    CranePair standing(on_floor);
+    standing.start();
+    std::size_t points = 0;
+    const HeapUse use =
+        heap_use(standing, [&](StepIndex) { points += standing.mechanics->state().contacts.states().size(); });
+    EXPECT_EQ(use.allocations, 0u);
+    EXPECT_EQ(use.frees, 0u);
+    EXPECT_GT(points, 100u);
+  }
 }
 
 TEST_F(SubsystemStep, DoesNotAllocateWhileParametersChange) {
