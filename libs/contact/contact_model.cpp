@@ -76,7 +76,8 @@ ContactSet::~ContactSet() = default;
 ContactSet::ContactSet(ContactSet&&) noexcept = default;
 ContactSet& ContactSet::operator=(ContactSet&&) noexcept = default;
 
-ContactSet::ContactSet(const ContactModel& model) : points_(model.pairs().size() * kMaxPointsPerPair) {
+ContactSet::ContactSet(const ContactModel& model)
+    : points_(model.pairs().size() * kMaxPointsPerPair), clearances_(model.pairs().size()) {
   if (model.asks_fcl()) fcl_ = std::make_unique<Fcl>();
 }
 
@@ -117,7 +118,10 @@ ContactModel build(const ContactDef& def) {
                              .frame = index_of(def.frames, shape.frame),
                              .p_FS = Vec3(shape.position),
                              .R_FS = math::rotation_zxz(shape.orientation),
+                             .extent = 0,
                              .fcl_index = 0});
+    ContactModel::Shape& built = model.shapes_.back();
+    built.extent = norm(built.p_FS + built.R_FS * built.geometry.centre) + built.geometry.bounding_radius;
   }
   for (const PairDef& pair : def.pairs) {
     ContactPair built;
@@ -182,7 +186,10 @@ void find_contacts(const ContactModel& model, std::span<const Pose> poses, Conta
   set.unresolved_ = 0;
   for (std::size_t pair = 0; pair < model.pairs_.size(); ++pair) {
     const ContactPair& shapes = model.pairs_[pair];
-    model.find_pair(pair, poses[model.frame_of(shapes.shape_a)], poses[model.frame_of(shapes.shape_b)], set);
+    const Pose &frame_a = poses[model.frame_of(shapes.shape_a)], &frame_b = poses[model.frame_of(shapes.shape_b)];
+    if (model.is_clear(pair, frame_a, frame_b, set)) continue;
+    model.find_pair(pair, frame_a, frame_b, set);
+    if (set.manifold_.empty()) model.note_clearance(pair, frame_a, frame_b, set);
     reduce(set.manifold_);
     std::array<double, kMaxPointsPerPair> depths{}, shares{};
     const std::size_t n = set.manifold_.size();

@@ -24,6 +24,7 @@ class Sweeper {
         b_(model.shapes_[model.pairs_[pair].shape_b]) {}
 
   [[nodiscard]] Meeting run(std::span<const Pose> from, std::span<const Pose> to, ContactSet& set) const noexcept {
+    if (is_clear(from, set) && is_clear(to, set)) return {};
     const Vec3 start = apart(from), way = apart(to) - start;
     Meeting meeting{.travel = norm(way)};
     if (!may_meet(start, way)) return meeting;
@@ -45,6 +46,10 @@ class Sweeper {
   }
 
  private:
+  [[nodiscard]] bool is_clear(std::span<const Pose> poses, const ContactSet& set) const noexcept {
+    return model_.is_clear(pair_, poses[a_.frame], poses[b_.frame], set);
+  }
+
   // A's middle seen from B's
   [[nodiscard]] Vec3 apart(std::span<const Pose> poses) const noexcept {
     const auto middle = [&](const ContactModel::Shape& shape) {
