@@ -8,6 +8,7 @@
 #include "multibody/contact_conversion.h"
 #include "multibody/contact_elements.h"
 #include "multibody/model.h"
+#include "multibody/observe.h"
 #include "multibody/topology.h"
 #include "multibody/validate.h"
 
@@ -136,19 +137,13 @@ void find_fcl_pairs(const MechanicsDef& m, Problems& warnings) {
 
 void find_deep_starts(const MechanicsDef& m, Problems& warnings) {
   const Model model = build_model(m);
-  Problems known;
-  const std::vector<Pose> bodies = start_poses(m, known);
-  std::vector<contact::Pose> poses;
-  for (const ContactFrame& frame : model.contact->frames) {
-    const Pose& body = bodies[static_cast<std::size_t>(frame.body)];
-    poses.push_back({body.p, body.R});
-  }
-  contact::ContactSet set(model.contact->model);
-  contact::find_contacts(model.contact->model, poses, set);
+  Workspace ws(model);
+  observe(model, start_state(model), ws);
   std::vector<double> deepest(model.contact->pairs.size(), 0.0);
-  for (const contact::ContactPoint& point : set.points()) {
-    double& depth = deepest[static_cast<std::size_t>(model.contact->pair_of_tested[point.pair])];
-    depth = std::max(depth, point.depth);
+  for (std::size_t i = 0; i < ws.contact->force_count; ++i) {
+    const ContactForce& force = ws.contact->forces[i];
+    double& depth = deepest[static_cast<std::size_t>(force.pair)];
+    depth = std::max(depth, force.depth);
   }
   for (std::size_t i = 0; i < deepest.size(); ++i) {
     if (deepest[i] <= kDeepStart) continue;
