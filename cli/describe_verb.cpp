@@ -41,8 +41,9 @@ struct Description {
   std::vector<BodyNumbers> body_numbers;
   std::size_t bodies = 0, joints = 0, links = 0, rows = 0;
   int degrees_of_freedom = 0;
-  std::vector<std::string> motions;  // "Body_Pillar (revolute, 1)"
-  std::vector<std::string> merged;   // "Pole with Pillar"
+  std::vector<std::string> motions;   // "Body_Pillar (revolute, 1)"
+  std::vector<std::string> merged;    // "Pole with Pillar"
+  std::vector<std::string> contacts;  // pairs that are tested
   std::size_t components = 0, free_volumes = 0, fixed_volumes = 0;
   int hydraulic_states = 0;
   std::vector<std::string> ports;   // "Cyl_Lift drives ForceT_Lift"
@@ -60,6 +61,10 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.links = m.links.size();
   d.rows = static_cast<std::size_t>(m.rows);
   d.degrees_of_freedom = m.degrees_of_freedom;
+  d.contacts = m.pairs;
+  for (const std::string& pair : m.pairs_at_rest) {
+    d.left_out.push_back("contact " + pair + ": its shapes cannot move against each other, it is not tested");
+  }
   for (const std::string& body : m.fixed_to_ground) d.merged.push_back(body + " with Ground");
   for (const multibody::LinkDescription& link : m.links) {
     d.motions.push_back(fmt::format("{} ({}, {})", link.joint, link.joint_type, link.degrees_of_freedom));
@@ -97,7 +102,7 @@ void describe_nodes(const scene::Scene& scene, Description& d) {
   if (!scene.has_mechanics()) d.left_out.emplace_back("mechanics: no bodies, no process, no states");
   if (!scene.has_hydraulics()) d.left_out.emplace_back("hydraulics: no volumes, no process, no states");
   d.left_out.emplace_back("flexible bodies: none, no flex_node, no modal states");
-  d.left_out.emplace_back("contact: no collision pairs, no collision detection");
+  if (d.contacts.empty()) d.left_out.emplace_back("contact: no collision pairs, no collision detection");
   if (scene.ports.empty()) d.left_out.emplace_back("coupling: no actuator drives a force, no ports");
 }
 
@@ -160,6 +165,7 @@ nlohmann::json to_json(const Description& d) {
             {"links", d.links},
             {"motions", d.motions},
             {"merged", d.merged},
+            {"contacts", d.contacts},
             {"degrees_of_freedom", d.degrees_of_freedom},
             {"rows", d.rows},
             {"mass_properties", bodies}}},
@@ -192,6 +198,7 @@ void print(const Description& d) {
                counted(static_cast<std::uint64_t>(d.degrees_of_freedom), "degree of freedom", "degrees of freedom")})},
       {"motions", joined(d.motions)},
       {"merged", joined(d.merged)},
+      {"contacts", joined(d.contacts)},
       {"hydraulics", joined({counted(d.components, "component", "components"),
                              counted(d.free_volumes, "pressure state", "pressure states"),
                              counted(d.fixed_volumes, "fixed pressure", "fixed pressures"),

@@ -19,6 +19,11 @@ Description describe(const Model& model) {
   text.joints = static_cast<int>(model.joints.size());
   text.degrees_of_freedom = model.degrees_of_freedom();
   text.rows = model.row_count();
+  if (model.contact != nullptr) {
+    for (const ContactPairElement& pair : model.contact->pairs) {
+      (pair.tested < 0 ? text.pairs_at_rest : text.pairs).push_back(pair.name);
+    }
+  }
   text.links.resize(model.links.size() - 1);
   for (const Joint& joint : model.joints) {
     if (joint.link == 0) continue;

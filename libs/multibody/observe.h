@@ -94,6 +94,8 @@ struct Description {
   std::vector<LinkDescription> links;
   std::vector<CutDescription> cuts;
   std::vector<std::string> fixed_to_ground;  // bodies that do not move
+  std::vector<std::string> pairs;            // of shapes, that are tested
+  std::vector<std::string> pairs_at_rest;    // whose shapes cannot move against each other
 };
 [[nodiscard]] Description describe(const Model& model);
 
