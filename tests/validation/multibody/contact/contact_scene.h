@@ -88,7 +88,6 @@ inline void add_free(MechanicsDef& def, const BodyDef& body, const Triple& veloc
   joint.type = JointType::floating;
   joint.body2 = body.name;
   joint.point1 = body.position;
-  joint.orientation1 = body.orientation;
   joint.initial_translation = velocity;
   def.joints.push_back(joint);
 }
