@@ -1,26 +1,17 @@
 #include "scene/mesh_assets.h"
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
 #include "contact/mesh_check.h"
 #include "contact/mesh_file/mesh_file.h"
+#include "scene/assets.h"
 
 namespace slew::scene {
 namespace {
 
 using multibody::ShapeDef;
-
-bool is_inside_folder(const std::string& name) {
-  const std::filesystem::path path(name);
-  if (path.is_absolute()) return false;
-  for (const std::filesystem::path& part : path) {
-    if (part == "..") return false;
-  }
-  return true;
-}
 
 // what is wrong with the shape's words, before anything is read
 bool is_complete(const Surroundings& surroundings, const ShapeDef& shape, Problems& problems) {
