@@ -40,6 +40,7 @@ constexpr std::array<DimensionInfo, static_cast<std::size_t>(Dimension::number_o
     {"pressure rate", "Pa/s", "1 bar/s", {1, -1, -3, 0, 0}},
     {"force rate", "N/s", "1 kN/s", {1, 1, -3, 0, 0}},
     {"mobility", "1/kg", "1e-4 1/kg", {-1, 0, 0, 0, 0}},
+    {"second moment of area", "m4", "450 cm4", {0, 4, 0, 0, 0}},
     {"control signal", "1", "500", {0, 0, 0, 0, 0}},
 }};
 

@@ -35,17 +35,18 @@ enum class Dimension : std::uint8_t {
   energy,
   power,
   frequency,
-  stiffness,             // N/m
-  damping,               // N s/m
-  rotational_stiffness,  // N m/rad
-  rotational_damping,    // N m s/rad
-  displacement_volume,   // m3/rad
-  flow_coefficient,      // m3/s/sqrt(Pa)
-  leakage,               // m3/s/Pa
-  pressure_rate,         // Pa/s
-  force_rate,            // N/s
-  mobility,              // 1/kg
-  electric_signal,       // the valve's control signal, V or mA as the maker states it: a plain number
+  stiffness,              // N/m
+  damping,                // N s/m
+  rotational_stiffness,   // N m/rad
+  rotational_damping,     // N m s/rad
+  displacement_volume,    // m3/rad
+  flow_coefficient,       // m3/s/sqrt(Pa)
+  leakage,                // m3/s/Pa
+  pressure_rate,          // Pa/s
+  force_rate,             // N/s
+  mobility,               // 1/kg
+  second_moment_of_area,  // m4
+  electric_signal,        // the valve's control signal, V or mA as the maker states it: a plain number
   number_of_dimensions
 };
 

@@ -14,7 +14,8 @@
 //     field<&SlewCylinderDef::common, &CylinderParameters::leak_flow>("leak_flow", {...})
 //
 // Member types: double, std::int64_t, bool, std::string (text or reference), Triple, Table, std::vector<double>,
-// std::vector<std::string>, and any enum with underlying type int (with `choices`, whose order is the enum's).
+// std::vector<std::string>, std::vector<Triple>, and any enum with underlying type int (with `choices`, whose order is
+// the enum's).
 #pragma once
 
 #include <array>
@@ -40,6 +41,7 @@ enum class FieldType : std::uint8_t {
   boolean,
   text,  // free text, or the name of an element when `reference` is not empty
   triple,
+  triples,  // list of [x, y, z]
   table,    // list of [argument, value]; argument in `dimension`, value in `value_dimension`
   numbers,  // list of numbers
   texts,    // list of texts or references
@@ -107,6 +109,8 @@ constexpr FieldType field_type_of() {
     return FieldType::text;
   } else if constexpr (std::is_same_v<Value, Triple>) {
     return FieldType::triple;
+  } else if constexpr (std::is_same_v<Value, std::vector<Triple>>) {
+    return FieldType::triples;
   } else if constexpr (std::is_same_v<Value, Table>) {
     return FieldType::table;
   } else if constexpr (std::is_same_v<Value, std::vector<double>>) {

@@ -104,6 +104,9 @@ std::string value_text(const Field& field, void* def) {
     }
     case FieldType::triple:
       return list_text(member<Triple>(field, def), number_text);
+    case FieldType::triples:
+      return list_text(member<std::vector<Triple>>(field, def),
+                       [](const Triple& triple) { return list_text(triple, number_text); });
     case FieldType::table: {
       const auto& table = member<Table>(field, def);
       return table.empty() ? "" : list_text(table, point_text);

@@ -56,6 +56,9 @@ class ValueReader {
       case FieldType::triple:
         read_triple(node);
         break;
+      case FieldType::triples:
+        read_triples(node);
+        break;
       case FieldType::table:
         read_table(node);
         break;
@@ -141,17 +144,32 @@ class ValueReader {
     return node.text;
   }
 
-  void read_triple(const Node& node) {
+  void read_triple(const Node& node) { fill_triple(node, expected(), member<Triple>()); }
+
+  // False after a complaint about the list; a number that is none leaves its component as it is.
+  bool fill_triple(const Node& node, const std::string& wanted, Triple& triple) {
     if (node.kind != Node::Kind::sequence || node.items.size() != 3) {
       const bool is_list = node.kind == Node::Kind::sequence;
       complain(node.mark,
-               {"is " + (is_list ? fmt::format("a list of {}", node.items.size()) : describe(node)), expected(), ""});
-      return;
+               {"is " + (is_list ? fmt::format("a list of {}", node.items.size()) : describe(node)), wanted, ""});
+      return false;
     }
-    auto& triple = member<Triple>();
     for (std::size_t i = 0; i < 3; ++i) {
       if (const auto value = number(node.items[i], field_.dimension, true)) triple[i] = *value;
     }
+    return true;
+  }
+
+  void read_triples(const Node& node) {
+    if (node.kind != Node::Kind::sequence) {
+      complain_kind(node);
+      return;
+    }
+    std::vector<Triple> triples;
+    for (const Node& item : node.items) {
+      if (!fill_triple(item, "[x, y, z]", triples.emplace_back())) return;
+    }
+    member<std::vector<Triple>>() = std::move(triples);
   }
 
   void read_table(const Node& node) {
@@ -247,12 +265,15 @@ std::string expected_value(const Field& field) {
       return field.reference.empty() ? "a text" : "the name of a " + std::string(field.reference);
     case FieldType::triple:
       return "a list of three, [x, y, z]";
+    case FieldType::triples:
+      return "a list of [x, y, z]";
     case FieldType::table:
       return "a list of points [argument, value]";
     case FieldType::numbers:
       return "a list of numbers";
     case FieldType::texts:
-      return field.reference.empty() ? "a list of texts" : "a list of names of " + std::string(field.reference) + "s";
+      if (field.reference.empty()) return "a list of texts";
+      return "a list of names of " + (field.reference == "body" ? "bodies" : std::string(field.reference) + "s");
     case FieldType::choice:
       return choice_list(field.choices);
   }

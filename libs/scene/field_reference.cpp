@@ -26,6 +26,8 @@ std::string type_text(const Field& field) {
     case FieldType::triple:
       return field.dimension == Dimension::none ? "three numbers"
                                                 : fmt::format("three, {}", info(field.dimension).name);
+    case FieldType::triples:
+      return fmt::format("list of three, {}", info(field.dimension).name);
     case FieldType::table:
       return "points";
     case FieldType::numbers:
@@ -39,8 +41,8 @@ std::string type_text(const Field& field) {
 }
 
 std::string unit_text(const Field& field) {
-  const bool is_numeric =
-      field.type == FieldType::number || field.type == FieldType::triple || field.type == FieldType::numbers;
+  const bool is_numeric = field.type == FieldType::number || field.type == FieldType::triple ||
+                          field.type == FieldType::triples || field.type == FieldType::numbers;
   if (!is_numeric || info(field.dimension).si_unit == "1") return "";
   return std::string(info(field.dimension).si_unit);
 }
@@ -62,8 +64,8 @@ std::string table_of(std::span<const Field> fields, void* defaults) {
   std::string text = "| key | takes | SI unit | range | default | live | meaning |\n|---|---|---|---|---|---|---|\n";
   for (const Field& field : fields) {
     const bool has_range = field.type == FieldType::number || field.type == FieldType::integer ||
-                           field.type == FieldType::triple || field.type == FieldType::numbers ||
-                           field.type == FieldType::table;
+                           field.type == FieldType::triple || field.type == FieldType::triples ||
+                           field.type == FieldType::numbers || field.type == FieldType::table;
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.key, cell(type_text(field)), unit_text(field),
                         has_range ? range_text(field.range, Dimension::none) : "", cell(default_text(field, defaults)),
                         field.change == Change::live ? "live" : "", cell(std::string(field.doc)));

@@ -55,6 +55,8 @@ Json type_of(const Field& field) {
       return {{"type", "string"}};
     case FieldType::triple:
       return list_of(quantity(field.range), 3);
+    case FieldType::triples:
+      return list_of(list_of(quantity(field.range), 3), 0);
     case FieldType::table: {
       Json table = list_of(point(field), 0);
       table["minItems"] = 1;
@@ -73,8 +75,8 @@ Json type_of(const Field& field) {
 Json property(const Field& field) {
   Json schema = type_of(field);
   std::string description(field.doc);
-  const bool has_unit =
-      field.type == FieldType::number || field.type == FieldType::triple || field.type == FieldType::numbers;
+  const bool has_unit = field.type == FieldType::number || field.type == FieldType::triple ||
+                        field.type == FieldType::triples || field.type == FieldType::numbers;
   if (has_unit && field.dimension != Dimension::none) description += "; " + expected_quantity(field.dimension);
   if (!field.reference.empty()) description += "; name of a " + std::string(field.reference);
   schema["description"] = description;

@@ -31,6 +31,8 @@ std::string in_list(const Field& field, const std::string& value) {
   switch (field.type) {
     case FieldType::triple:
       return fmt::format("[{0}, {0}, {0}]", value);
+    case FieldType::triples:
+      return fmt::format("[[{0}, {0}, {0}]]", value);
     case FieldType::table:
       return fmt::format("[[0, {}]]", value);
     case FieldType::numbers:
@@ -72,6 +74,7 @@ std::vector<BadValue> bad_values(const Field& field) {
     case FieldType::number:
     case FieldType::integer:
     case FieldType::triple:
+    case FieldType::triples:
     case FieldType::table:
     case FieldType::numbers:
       return bad_numbers(field);
