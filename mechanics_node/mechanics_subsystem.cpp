@@ -264,6 +264,8 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   const PortPositions begin = port_positions();
   for (int i = 0; i < substeps_; ++i) {
     const coupling::PortStep solved = advance(h, partners.actuators, i == 0);
+    // by the count of steps, not by adding them up
+    state_.time = static_cast<double>(n) * H_.seconds() + (i + 1) * h;
     if (!solved.has_converged) report.raise(StepFlag::not_converged);
     report.iterations += static_cast<std::uint32_t>(solved.iterations);
     if (!(solved.residual <= report.residual)) report.residual = solved.residual;  // NaN stays

@@ -178,6 +178,7 @@ void SceneEquations::take_state(double t, const double* y) noexcept {
   std::copy_n(y, state_.q.size(), state_.q.begin());
   normalize(state_.q);
   std::copy_n(y + u_, state_.u.size(), state_.u.begin());
+  state_.time = t;
   multibody::evaluate(model_, state_, workspace_);
   if (circuit_ == nullptr) return;
   take_controls(t);

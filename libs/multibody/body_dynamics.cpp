@@ -80,6 +80,7 @@ bool prepare(const Model& model, const BodyModel& body, const BodyState& state, 
 bool evaluate(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
               BodyWorkspace& bws) noexcept {
   begin_contacts(model, joints, ws);
+  ws.time = joints.time;
   const bool is_regular = prepare(model, body, state, joints, ws, bws);
   bws.ldl.solve(bws.solution);
   bws.free = bws.solution;

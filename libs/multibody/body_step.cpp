@@ -126,6 +126,7 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
         is_regular = project(model, body, bws.stage, bws.stage_joints, ws, bws) && is_regular;
       }
       forces_at(kStageTime[stage] * h);
+      ws.time = joints.time + kStageTime[stage] * h;
       is_regular = find_accelerations(model, body, bws.stage, bws.row_force, ws, bws) && is_regular;
       find_rates(bws.stage, bws.qdot);
     }
@@ -134,6 +135,7 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
   }
   state.q.swap(bws.sum.q);
   state.u.swap(bws.sum.u);
+  joints.time += h;
   for (std::size_t link = 1; link < model.links.size(); ++link) {
     put_attitude(math::normalized(attitude_at(state.q, link)), state.q, link);
   }

@@ -7,6 +7,7 @@
 #include "multibody/body_inertia.h"
 #include "multibody/build_rows.h"
 #include "multibody/constraint.h"
+#include "multibody/elements/build_elements.h"
 #include "multibody/model.h"
 #include "multibody/start_pose.h"
 #include "multibody/topology.h"
@@ -48,6 +49,7 @@ class Builder {
     for (const RotationalForceDef& force : def_.rotational_forces) add_angle(force);
     add_static_dummies();
     add_force_dummies();
+    add_elements(def_, poses_, model_);
     for (const std::string& row : rows) add_row(def_, row, model_);
     mark_used_elements(model_);
     model_.contact = build_contacts(def_, model_);
@@ -252,7 +254,10 @@ class Builder {
                                     .min = def.min_length,
                                     .max = def.max_length,
                                     .end_spring = def.end_spring_constant,
-                                    .end_damping = def.end_damping_constant}});
+                                    .end_damping = def.end_damping_constant,
+                                    .is_active = false,
+                                    .spring_curve = math::monotone_cubic(def.spring_table, math::Ends::continued),
+                                    .damper_curve = math::monotone_cubic(def.damper_table, math::Ends::not_falling)}});
   }
 
   void add_angle(const RotationalForceDef& def) {
@@ -277,7 +282,10 @@ class Builder {
                                  .min = def.min_angle,
                                  .max = def.max_angle,
                                  .end_spring = def.end_spring_constant,
-                                 .end_damping = def.end_damping_constant}};
+                                 .end_damping = def.end_damping_constant,
+                                 .is_active = false,
+                                 .spring_curve = math::monotone_cubic(def.spring_table, math::Ends::continued),
+                                 .damper_curve = math::monotone_cubic(def.damper_table, math::Ends::not_falling)}};
     element.first_path = static_cast<int>(model_.paths.size());
     add_path(model_, element.link1, element.link2);
     element.path_end = static_cast<int>(model_.paths.size());

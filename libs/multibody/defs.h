@@ -16,6 +16,7 @@
 
 #include "core/field.h"
 #include "multibody/contact_defs.h"
+#include "multibody/elements/element_defs.h"
 
 namespace slew::multibody {
 
@@ -92,6 +93,8 @@ struct TranslationalForceDef {
   double max_length = kUnlimited;   // m, above it the end damper pulls back
   double end_spring_constant = 0;   // N/m, 0: no end dampers
   double end_damping_constant = 0;  // N s/m
+  Table spring_table{};             // m beyond the free length, N that holds it; instead of spring_constant
+  Table damper_table{};             // m/s, N; instead of damping_constant
 };
 
 // Torque about the axis f1 x g1 of body 1; the angle is that of f2 in the plane of f1 and g1, counted from f1 to g1.
@@ -109,6 +112,8 @@ struct RotationalForceDef {
   double max_angle = kUnlimited;    // rad
   double end_spring_constant = 0;   // N m/rad, 0: no end dampers
   double end_damping_constant = 0;  // N m s/rad
+  Table spring_table{};             // rad beyond the free angle, N m that holds it; instead of spring_constant
+  Table damper_table{};             // rad/s, N m; instead of damping_constant
 };
 
 // Mass of a cylinder (index 1) or of a piston with its rod (index 2), carried by a translational force without
@@ -152,6 +157,14 @@ struct MechanicsDef {
   std::vector<ShapeDef> shapes;
   std::vector<ContactPairDef> contacts;
   std::vector<FrictionDef> frictions;
+  std::vector<PointForceDef> point_forces;
+  std::vector<PointTorqueDef> point_torques;
+  std::vector<BushingDef> bushings;
+  std::vector<BeamDef> beams;
+  std::vector<RopeDef> ropes;
+  std::vector<TyreDummyDef> tyre_dummies;
+  std::vector<PartDummyDef> part_dummies;
+  std::vector<ConstraintDummyDef> constraint_dummies;
 };
 
 }  // namespace slew::multibody

@@ -46,6 +46,7 @@ void forward_dynamics(const Model& model, std::span<const double> q, std::span<c
 
 void evaluate(const Model& model, const State& state, Workspace& ws) noexcept {
   begin_contacts(model, state, ws);
+  ws.time = state.time;
   forward_dynamics(model, state.q, state.u, {}, ws);
   ws.udot_free = ws.udot;
   ws.residual_free = ws.residual;
@@ -112,6 +113,7 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
     if (is_near_singular(ws)) is_closed = project(model, ws.q_stage, ws.u_stage, ws) && is_closed;
     row_forces_at(time, h, mean, slope, forces);
     if (ws.contact != nullptr) ws.contact->time = time;
+    ws.time = state.time + time;
     forward_dynamics(model, ws.q_stage, ws.u_stage, forces, ws);
     coordinate_rates(model, ws, ws.q_stage, ws.u_stage, ws.qdot);
     combine(ws.q_sum, h * kWeight[stage], ws.qdot, ws.q_sum);
@@ -119,6 +121,7 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
   }
   state.q.swap(ws.q_sum);
   state.u.swap(ws.u_sum);
+  state.time += h;
   normalize_quaternions(model, state.q);
   if (!model.cuts.empty()) is_closed = project(model, state.q, state.u, ws) && is_closed;
   if (ws.contact != nullptr && ws.contact->is_near) {
@@ -140,6 +143,7 @@ bool advance(const Model& model, State& state, Workspace& ws, double h, std::spa
 
 bool advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept {
   begin_contacts(model, state, ws);
+  ws.time = state.time;
   forward_dynamics(model, state.q, state.u, {}, ws);
   return finish_step(model, state, ws, h, {}, {});
 }

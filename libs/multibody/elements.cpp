@@ -15,7 +15,7 @@ std::size_t at(int index) noexcept {
 }
 
 bool has_spring(const ElementLaw& law) noexcept {
-  return law.spring != 0 || law.end_spring != 0;
+  return law.spring != 0 || law.end_spring != 0 || !law.spring_curve.empty();
 }
 
 // a damper alone needs the axis only
@@ -84,7 +84,7 @@ double damper_speed(const AngleElement& element, const Workspace& ws) noexcept {
 Vec3 torque_of(const AngleElement& element, const AngleMotion& m, const Workspace& ws) noexcept {
   // the damper acts about the axis itself, so that three of them at right angles damp any rotation alike
   const Vec3 axis = ws.motion[at(element.link1)].R * element.axis;
-  Vec3 torque = axis * (-element.law.damping * damper_speed(element, ws));
+  Vec3 torque = axis * damper_force(element.law, damper_speed(element, ws));
   if (has_spring(element.law)) torque += m.n * force_of(element.law, m.angle, m.rate, 0);
   return torque;
 }
@@ -111,6 +111,10 @@ void apply_elements(const Model& model, Workspace& ws) noexcept {
     if (!element.law.is_active) continue;
     turn(element, torque_of(element, ws.angles[i], ws), ws);
   }
+  for_each_wrench(model.elements, ws.motion, ws.time, [&ws](int link, int, const Wrench& wrench) {
+    ws.inertia[at(link)].f -= wrench.f;
+    ws.inertia[at(link)].n -= wrench.n;
+  });
 }
 
 void apply_row_forces(const Model& model, Workspace& ws) noexcept {

@@ -38,6 +38,7 @@ CoupledPoints coupled_points(const Model& model, const Workspace& ws, const Coup
 }  // namespace
 
 void observe(const Model& model, const State& state, Workspace& ws) noexcept {
+  ws.time = state.time;
   update_motion(model, state.q, state.u, ws);
   update_elements(model, state.q, Elements::all, ws);
   begin_contacts(model, state, ws);
@@ -68,6 +69,7 @@ Energy energy(const Model& model, const Workspace& ws) noexcept {
   if (ws.contact != nullptr) {
     for (std::size_t i = 0; i < ws.contact->force_count; ++i) sum.potential += ws.contact->forces[i].energy;
   }
+  sum.potential += stored_energy(model.elements, ws.motion);
   return sum;
 }
 

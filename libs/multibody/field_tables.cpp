@@ -3,6 +3,7 @@
 #include <array>
 
 #include "multibody/contact_fields.h"
+#include "multibody/elements/element_fields.h"
 #include "multibody/joint_fields.h"
 
 namespace slew::multibody {
@@ -61,6 +62,15 @@ constexpr Field kBodyFields[] = {
                                    {.choices = kInertiaPoints, .doc = "point that inertia and products refer to"}),
 };
 
+template <typename Def>
+constexpr Field spring_table_row(Dimension argument, Dimension value, std::string_view doc) {
+  return field<&Def::spring_table>("spring_table", {.dimension = argument, .value_dimension = value, .doc = doc});
+}
+template <typename Def>
+constexpr Field damper_table_row(Dimension argument, Dimension value, std::string_view doc) {
+  return field<&Def::damper_table>("damper_table", {.dimension = argument, .value_dimension = value, .doc = doc});
+}
+
 constexpr Field kTranslationalForceFields[] = {
     field<&TranslationalForceDef::body1>("body1",
                                          {.presence = Presence::required, .reference = "body", .doc = "first body"}),
@@ -91,6 +101,8 @@ constexpr Field kTranslationalForceFields[] = {
     field<&TranslationalForceDef::end_damping_constant>(
         "end_damping_constant",
         {.dimension = damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the end dampers"}),
+    spring_table_row<TranslationalForceDef>(length, force, "tension over length - free_length"),
+    damper_table_row<TranslationalForceDef>(velocity, force, "tension over the rate of length"),
 };
 
 constexpr Field kRotationalForceFields[] = {
@@ -124,6 +136,8 @@ constexpr Field kRotationalForceFields[] = {
                                                                               .range = kNotNegative,
                                                                               .change = Change::live,
                                                                               .doc = "damper of the end dampers"}),
+    spring_table_row<RotationalForceDef>(angle, torque, "torque that holds angle - free_angle"),
+    damper_table_row<RotationalForceDef>(angular_velocity, torque, "torque that holds the rate"),
 };
 
 constexpr Range kDummyIndex{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
@@ -173,12 +187,26 @@ constexpr ElementType kForceTypes[] = {
      kTranslationalForceFields, append_to<&MechanicsDef::translational_forces>},
     {"rotational", "force", "spring-damper about an axis, or a slewing drive's torque", kRotationalForceFields,
      append_to<&MechanicsDef::rotational_forces>},
+    {"point_force", "force", "force of given size at a point of a body", kPointForceFields,
+     append_to<&MechanicsDef::point_forces>},
+    {"point_torque", "force", "torque of given size on a body", kPointTorqueFields,
+     append_to<&MechanicsDef::point_torques>},
+    {"bushing", "force", "elastic bearing: six springs and dampers between two frames", kBushingFields,
+     append_to<&MechanicsDef::bushings>},
+    {"beam", "force", "massless elastic beam between two frames", kBeamFields, append_to<&MechanicsDef::beams>},
+    {"rope", "force", "wire rope over points of bodies", kRopeFields, append_to<&MechanicsDef::ropes>},
 };
 
 constexpr ElementType kDummyTypes[] = {
     {"body_to_body_force", "dummy", "mass of a cylinder or piston, carried by a translational force", kForceDummyFields,
      append_to<&MechanicsDef::force_dummies>},
     {"static", "dummy", "mass fixed to a body", kStaticDummyFields, append_to<&MechanicsDef::static_dummies>},
+    {"tyre", "dummy", "wheel with mass and the forces of a plane ground on it", kTyreDummyFields,
+     append_to<&MechanicsDef::tyre_dummies>},
+    {"part", "dummy", "mass on one body, placed in the frame of another", kPartDummyFields,
+     append_to<&MechanicsDef::part_dummies>},
+    {"constraint", "dummy", "mass of a joint's own part", kConstraintDummyFields,
+     append_to<&MechanicsDef::constraint_dummies>},
 };
 
 }  // namespace

@@ -49,7 +49,8 @@ std::string_view row_name(const Model& model, int row) noexcept {
 }
 
 bool has_effect(const ElementLaw& law) noexcept {
-  return law.spring != 0 || law.damping != 0 || law.end_spring != 0;
+  return law.spring != 0 || law.damping != 0 || law.end_spring != 0 || !law.spring_curve.empty() ||
+         !law.damper_curve.empty();
 }
 
 void mark_used_elements(Model& model) noexcept {

@@ -25,6 +25,7 @@
 #include "math/rotation.h"
 #include "multibody/contact_elements.h"
 #include "multibody/defs.h"
+#include "multibody/elements/element_set.h"
 #include "multibody/joint_law.h"
 
 namespace slew::multibody {
@@ -101,7 +102,8 @@ struct Joint {
 struct ElementLaw {
   double spring = 0, damping = 0, free = 0;
   double min = 0, max = 0, end_spring = 0, end_damping = 0;
-  bool is_active = false;  // false: nothing to evaluate
+  bool is_active = false;                              // false: nothing to evaluate
+  math::MonotoneCubic spring_curve{}, damper_curve{};  // instead of spring and damping
 };
 
 struct LineElement {
@@ -197,6 +199,7 @@ struct Model {
   std::vector<CoupledMass> welded;   // within one link: lumped into it, but carried by both bodies of their line
   std::vector<LineElement> lines;
   std::vector<AngleElement> angles;
+  ElementSet elements;  // all other kinds
   std::vector<PathEntry> paths;
   std::vector<int> supports;
   std::vector<Row> rows;

@@ -53,7 +53,14 @@ std::optional<Parameter> member_of(ParameterKind kind, std::size_t element, int 
   return Parameter{kind, static_cast<int>(element), member};
 }
 
+// the kinds of elements/element_set.h follow the others
+ElementValue element_value(Parameter p) noexcept {
+  const int kind = static_cast<int>(p.kind) - static_cast<int>(ParameterKind::load);
+  return {static_cast<ElementKind>(kind), p.element, p.member};
+}
+
 double& law_value(Model& model, Parameter p) noexcept {
+  if (p.kind >= ParameterKind::load) return value_of(model.elements, element_value(p));
   switch (p.kind) {
     case ParameterKind::line_law:
       return model.lines[at(p.element)].law.*kLineMembers[at(p.member)].value;
@@ -86,7 +93,9 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
     if (model.rows[i].kind != RowKind::joint || row_name(model, static_cast<int>(i)) != element) continue;
     return member_of(ParameterKind::joint_law, i, member_index(kJointMembers, key));
   }
-  return std::nullopt;
+  const ElementValue value = find_value(model.elements, element, key);
+  const int kind = static_cast<int>(ParameterKind::load) + static_cast<int>(value.kind);
+  return member_of(static_cast<ParameterKind>(kind), static_cast<std::size_t>(value.element), value.member);
 }
 
 std::size_t parameter_count(const Model& model) noexcept {
@@ -94,7 +103,7 @@ std::size_t parameter_count(const Model& model) noexcept {
       std::count_if(model.rows.begin(), model.rows.end(), [](const Row& row) { return row.kind == RowKind::joint; }));
   const std::size_t moving_bodies = model.bodies.size() - 1;  // [0] is Ground
   return kGravityKeys.size() + moving_bodies + model.lines.size() * kLineMembers.size() +
-         model.angles.size() * kAngleMembers.size() + joint_rows * kJointMembers.size();
+         model.angles.size() * kAngleMembers.size() + joint_rows * kJointMembers.size() + value_count(model.elements);
 }
 
 double get_parameter(const Model& model, Parameter parameter) noexcept {

@@ -4,6 +4,7 @@
 //   "ForceT_Lift.damping_constant" the live fields of force elements
 //   "Body_Pillar.viscous_friction" friction and limit constants of joints that have a row
 //   "mechanics.gravity.x" (y, z)   gravity
+//   "Mount.stiffness.x"            the live fields of the other elements (elements/element_set.h)
 #pragma once
 
 #include <cstddef>
@@ -15,7 +16,18 @@
 
 namespace slew::multibody {
 
-enum class ParameterKind : std::uint8_t { body_mass, line_law, angle_law, joint_law, gravity };
+enum class ParameterKind : std::uint8_t {
+  body_mass,
+  line_law,
+  angle_law,
+  joint_law,
+  gravity,
+  load,
+  bushing,
+  beam,
+  rope,
+  tyre
+};
 
 struct Parameter {
   ParameterKind kind = ParameterKind::body_mass;

@@ -81,6 +81,10 @@ class ReactionSum {
       const AngleElement& element = model_.angles[i];
       if (element.law.is_active) subtract_angle(element, torque_of(element, ws_.angles[i], ws_));
     }
+    for_each_wrench(model_.elements, ws_.motion, ws_.time, [this](int, int body, const Wrench& wrench) {
+      ws_.body_f[at(body)] -= wrench.f;
+      ws_.body_n[at(body)] -= wrench.n;
+    });
   }
 
   void subtract_contacts() noexcept {
@@ -235,6 +239,7 @@ void take_smallest(const Model& model, Workspace& ws, std::span<JointReaction> r
 void joint_reactions(const Model& model, const State& state, Workspace& ws, std::span<const double> row_forces,
                      std::span<JointReaction> reactions) noexcept {
   begin_contacts(model, state, ws);
+  ws.time = state.time;
   forward_dynamics(model, state.q, state.u, row_forces, ws);
   if (!model.welded.empty())
     update_elements(model, state.q, Elements::all, ws);  // their lines need no motion in a step

@@ -47,7 +47,7 @@ Workspace::Workspace(const Model& model)
 }
 
 State start_state(const Model& model) {
-  State state{model.start_q, model.start_u};
+  State state{.q = model.start_q, .u = model.start_u};
   if (model.contact != nullptr) state.contacts = contact::ContactMemory(model.contact->model);
   return state;
 }
@@ -55,6 +55,7 @@ State start_state(const Model& model) {
 void copy_state(const State& from, State& to) noexcept {
   to.q = from.q;
   to.u = from.u;
+  to.time = from.time;
   to.contacts.assign(from.contacts);
 }
 
@@ -62,6 +63,7 @@ void add_to_hash(const Model& model, const State& state, StateHash& hash) noexce
   hash.add(std::span<const double>(state.q));
   hash.add(std::span<const double>(state.u));
   state.contacts.add_to_hash(hash);
+  if (depends_on_time(model.elements)) hash.add(state.time);
   for (const double g : model.gravity.array()) hash.add(g);
   for (const LumpedMass& part : model.lumped) hash.add(part.mass);
   const auto add_law = [&hash](const ElementLaw& law) {
@@ -69,6 +71,7 @@ void add_to_hash(const Model& model, const State& state, StateHash& hash) noexce
   };
   for (const LineElement& line : model.lines) add_law(line.law);
   for (const AngleElement& angle : model.angles) add_law(angle.law);
+  add_to_hash(model.elements, hash);
   for (const Row& row : model.rows) {
     const JointLaw& law = row.law;
     for (const double x : {law.coulomb, law.viscous, law.limit_stiffness, law.limit_damping}) hash.add(x);

@@ -9,29 +9,18 @@
 #include "core/state_hash.h"
 #include "math/semidefinite.h"
 #include "multibody/contact_workspace.h"
+#include "multibody/link_motion.h"
 #include "multibody/model.h"
 
 namespace slew::multibody {
 
-// Coordinates and speeds, laid out as model.h says, and what contacts remember; nothing else is integrated.
+// Coordinates and speeds, laid out as model.h says, and what contacts remember; nothing else is integrated. The steps add
+// their length to the time, which an owner with a clock of its own may set between them.
 struct State {
   std::vector<double> q;              // rad, m, quaternions
   std::vector<double> u;              // rad/s, m/s
+  double time = 0;                    // s, for loads that follow a table
   contact::ContactMemory contacts{};  // impact speeds and bristles at the end of the last sub-step
-};
-
-// Pose and motion of a link in Ground axes. alpha and a are the accelerations that the link would have with u' = 0 in
-// a frame that accelerates with gravity (Ground has a = -g), so that gravity needs no forces of its own.
-struct LinkMotion {
-  math::Mat3 R;      // R_WL
-  math::Vec3 p;      // m, origin
-  math::Vec3 r;      // m, from the parent's origin
-  math::Vec3 w;      // rad/s
-  math::Vec3 v;      // m/s, of the origin
-  math::Vec3 axis;   // z of the link: of a joint with one or two coordinates
-  math::Vec3 axis1;  // of a universal joint: z of the parent's frame
-  math::Vec3 alpha;  // rad/s2
-  math::Vec3 a;      // m/s2, of the origin
 };
 
 // Articulated inertia about the link's origin, Ground axes, and the bias wrench:
@@ -103,6 +92,7 @@ struct LoopWorkspace {
 struct Workspace {
   explicit Workspace(const Model& model);
 
+  double time = 0;  // s, of the motion
   std::vector<LinkMotion> motion;
   std::vector<ArticulatedInertia> inertia;
   std::vector<JointFactor> factor;

@@ -12,6 +12,7 @@
 #include "multibody/constraint.h"
 #include "multibody/contact_elements.h"
 #include "multibody/dynamics.h"
+#include "multibody/elements/validate_elements.h"
 #include "multibody/field_tables.h"
 #include "multibody/observe.h"
 #include "multibody/singularity.h"
@@ -43,10 +44,11 @@ class Validator {
     check_names();
     for (const BodyDef& body : m_.bodies) check_inertia(body);
     for (const JointDef& joint : m_.joints) check_limits(joint);
-    for (const TranslationalForceDef& force : m_.translational_forces) check_line(force);
-    for (const RotationalForceDef& force : m_.rotational_forces) check_angle(force);
+    for (const TranslationalForceDef& force : m_.translational_forces) check_line(force), check_tables(force);
+    for (const RotationalForceDef& force : m_.rotational_forces) check_angle(force), check_tables(force);
     for (const ForceDummyDef& dummy : m_.force_dummies) check_dummy(dummy);
     for (const StaticDummyDef& dummy : m_.static_dummies) check_dummy(dummy);
+    if (!check_elements(m_, problems_)) references_hold_ = false;
     if (!references_hold_) return;
     const std::size_t before = problems_.size();
     const std::vector<Pose> poses = start_poses(m_, problems_);
@@ -55,6 +57,7 @@ class Validator {
       for (const JointDef& joint : m_.joints) check_frames(joint, poses);
       for (const TranslationalForceDef& force : m_.translational_forces) check_start_length(force, poses);
       check_neighbours(tree);
+      check_element_starts(m_, poses, problems_);
     }
     if (problems_.empty()) validate_contacts(m_, problems_);
     if (problems_.empty()) find_singular_joints(m_, problems_);
@@ -94,6 +97,9 @@ class Validator {
     check_all(m_.shapes, 4, [](const ShapeDef& shape) { return static_cast<std::size_t>(shape.type); });
     check_all(m_.contacts, 5, first);
     check_all(m_.frictions, 6, first);
+    for_each_element_list(m_, [&](const auto& defs, std::size_t section, std::size_t type) {
+      check_all(defs, section, [type](const auto&) { return type; });
+    });
   }
 
   void check_fields(const std::string& owner, std::span<const Field> fields, void* def) {
@@ -163,6 +169,7 @@ class Validator {
     collect(m_.rotational_forces);
     collect(m_.force_dummies);
     collect(m_.static_dummies);
+    for_each_element_list(m_, [&](const auto& defs, int, int) { collect(defs); });
     std::sort(names.begin(), names.end());
     for (std::size_t i = 1; i < names.size(); ++i) {
       if (names[i] != names[i - 1]) continue;
@@ -200,6 +207,17 @@ class Validator {
       add(joint.name + ".limit_stiffness", "the joint has limits but they have no stiffness",
           "limit_stiffness > 0, or no limits");
     }
+  }
+
+  // a table takes the place of its constant
+  template <typename Force>
+  void check_tables(const Force& force) {
+    check_table(force.name + ".spring_table", force.spring_table, TableUse::spring, problems_);
+    check_table(force.name + ".damper_table", force.damper_table, TableUse::damper, problems_);
+    if (!force.spring_table.empty() && force.spring_constant > 0)
+      add(force.name + ".spring_table", "the force has a spring_constant as well", "one of the two");
+    if (!force.damper_table.empty() && force.damping_constant > 0)
+      add(force.name + ".damper_table", "the force has a damping_constant as well", "one of the two");
   }
 
   void check_line(const TranslationalForceDef& force) {

@@ -74,28 +74,19 @@ class Names {
   void add_triple(const std::string& name, Dimension dimension) {
     for (const char* axis : kAxes) add(name + axis, dimension);
   }
+  [[nodiscard]] std::vector<ElementVariable>& list() { return list_; }
   [[nodiscard]] std::vector<ElementVariable> take() { return std::move(list_); }
 
  private:
   std::vector<ElementVariable> list_;
 };
 
-class Values {
- public:
-  explicit Values(std::span<double> values) : values_(values) {}
-  void add(double value) noexcept {
-    if (next_ < values_.size()) values_[next_++] = value;
-  }
+struct Values : VariableSink {
+  using VariableSink::put;
   template <std::size_t N>
-  void add(const std::array<double, N>& values) noexcept {
-    for (const double value : values) add(value);
+  void put(const std::array<double, N>& several) noexcept {
+    for (const double value : several) put(value);
   }
-
-  [[nodiscard]] std::span<double> rest() const noexcept { return values_.subspan(next_); }
-
- private:
-  std::span<double> values_;
-  std::size_t next_ = 0;
 };
 
 }  // namespace
@@ -159,6 +150,7 @@ std::vector<ElementVariable> variables(const Model& model) {
     names.add(element.name + ".rate", angular_velocity);
     names.add(element.name + ".torque", torque);
   }
+  list_variables(model.elements, names.list());
   names.add("mechanics.kinetic_energy", Dimension::energy);
   names.add("mechanics.potential_energy", Dimension::energy);
   std::vector<ElementVariable> all = names.take();
@@ -176,51 +168,52 @@ std::vector<ElementVariable> reaction_variables(const Model& model) {
 }
 
 void read_reactions(std::span<const JointReaction> reactions, std::span<double> values) noexcept {
-  Values out(values);
+  Values out{{values}};
   for (const JointReaction& reaction : reactions) {
-    out.add(reaction.force);
-    out.add(reaction.moment);
+    out.put(reaction.force);
+    out.put(reaction.moment);
   }
 }
 
 void read_variables(const Model& model, const State& state, const Workspace& ws, std::span<const double> row_forces,
                     std::span<double> values) noexcept {
-  Values out(values);
+  Values out{{values}};
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     const BodyPose pose = body_pose(model, ws, static_cast<int>(i));
-    out.add(pose.position);
-    out.add(pose.orientation);
-    out.add(pose.center_of_mass);
-    out.add(pose.velocity);
-    out.add(pose.angular_velocity);
+    out.put(pose.position);
+    out.put(pose.orientation);
+    out.put(pose.center_of_mass);
+    out.put(pose.velocity);
+    out.put(pose.angular_velocity);
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
     const int count = static_cast<int>(coordinates_of(joint.type).size());
     for (int number = 0; number < count; ++number) {
       const RowValue value = read_coordinate(model, state, ws, joint, number);
-      out.add(value.g);
-      out.add(value.rate);
+      out.put(value.g);
+      out.put(value.rate);
     }
-    if (count == 1) out.add(row_force_on(model, RowKind::joint, i, row_forces));
+    if (count == 1) out.put(row_force_on(model, RowKind::joint, i, row_forces));
   }
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
     const LineMotion& line = ws.lines[i];
-    out.add(line.length);
-    out.add(line.rate);
-    out.add(force_of(model.lines[i].law, line.length, line.rate, line.rate) +
+    out.put(line.length);
+    out.put(line.rate);
+    out.put(force_of(model.lines[i].law, line.length, line.rate, line.rate) +
             row_force_on(model, RowKind::length, i, row_forces));
   }
   for (std::size_t i = 0; i < model.angles.size(); ++i) {
     const AngleMotion& angle = ws.angles[i];
-    out.add(angle.angle);
-    out.add(angle.rate);
-    out.add(force_of(model.angles[i].law, angle.angle, angle.rate, damper_speed(model.angles[i], ws)) +
+    out.put(angle.angle);
+    out.put(angle.rate);
+    out.put(force_of(model.angles[i].law, angle.angle, angle.rate, damper_speed(model.angles[i], ws)) +
             row_force_on(model, RowKind::angle, i, row_forces));
   }
+  read_variables(model.elements, ws.motion, ws.time, out);
   const Energy sum = energy(model, ws);
-  out.add(sum.kinetic);
-  out.add(sum.potential);
+  out.put(sum.kinetic);
+  out.put(sum.potential);
   static_cast<void>(read_contact_variables(model, ws, out.rest()));
 }
 

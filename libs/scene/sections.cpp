@@ -135,8 +135,16 @@ void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& m
   }
   collect(refs, table_of("forces", "translational"), mechanics.translational_forces);
   collect(refs, table_of("forces", "rotational"), mechanics.rotational_forces);
+  collect(refs, table_of("forces", "point_force"), mechanics.point_forces);
+  collect(refs, table_of("forces", "point_torque"), mechanics.point_torques);
+  collect(refs, table_of("forces", "bushing"), mechanics.bushings);
+  collect(refs, table_of("forces", "beam"), mechanics.beams);
+  collect(refs, table_of("forces", "rope"), mechanics.ropes);
   collect(refs, table_of("dummies", "body_to_body_force"), mechanics.force_dummies);
   collect(refs, table_of("dummies", "static"), mechanics.static_dummies);
+  collect(refs, table_of("dummies", "tyre"), mechanics.tyre_dummies);
+  collect(refs, table_of("dummies", "part"), mechanics.part_dummies);
+  collect(refs, table_of("dummies", "constraint"), mechanics.constraint_dummies);
   // values of `type:` in the order of contact::ShapeType
   constexpr std::string_view kShapeTypes[] = {"sphere", "box",          "cylinder",    "capsule",
                                               "plane",  "height_field", "convex_mesh", "triangle_mesh"};

@@ -8,7 +8,7 @@ set -euo pipefail
 source=$1 slewring=$2
 page=$source/docs/variables.md
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-scenes=("$source"/scenes/*.yaml "$here/every_type.yaml")
+scenes=("$source"/scenes/*.yaml "$source"/scenes/*/*.yaml "$here/every_type.yaml")
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
