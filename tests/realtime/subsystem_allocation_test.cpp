@@ -5,6 +5,7 @@
 
 #include "core/allocation_guard.h"
 #include "support/crane_pair.h"
+#include "support/mechanics_alone.h"
 
 namespace slew::testing {
 namespace {
@@ -68,6 +69,22 @@ TEST_F(SubsystemStep, DoesNotAllocateWhileTheBagKnocksOnTheFloor) {
     EXPECT_EQ(use.allocations, 0u);
     EXPECT_EQ(use.frees, 0u);
     EXPECT_GT(points, 100u);
+  }
+}
+
+TEST(MechanicsStep, DoesNotAllocateWithAnyForceElement) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
+  for (const char* kind : {"point_force", "bushing", "beam", "rope", "tables", "tyres"}) {
+    MechanicsAlone mechanics(std::string("scenes/forces/") + kind + ".yaml");
+    std::vector<double> values(mechanics.subsystem.variables().size());
+    for (StepIndex i = 0; i < kWarmUp; ++i) mechanics.step();
+    const AllocationGuard guard;
+    for (StepIndex i = 0; i < kSteps; ++i) {
+      mechanics.step();
+      mechanics.subsystem.read_variables(values);
+    }
+    EXPECT_EQ(guard.allocations(), 0u) << kind;
+    EXPECT_EQ(guard.frees(), 0u) << kind;
   }
 }
 

@@ -1,0 +1,87 @@
+// The scenes of scenes/forces do what their comments say, in both formulations: figures by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/mechanics_alone.h"
+
+namespace slew::testing {
+namespace {
+
+class ForceScene : public ::testing::TestWithParam<const char*> {
+ protected:
+  static MechanicsAlone load(const std::string& name) {
+    return MechanicsAlone("scenes/forces/" + name + ".yaml", {std::string("mechanics.formulation=") + GetParam()});
+  }
+};
+
+TEST_P(ForceScene, PointForceMovesCartAndDisc) {
+  MechanicsAlone m = load("point_force");
+  m.run_to(3);
+  // a = 2 t up to 1 s, then 2: way 1/3 + 1 * 2 + 4 = 19/3; torque 4 on 0.8 kg m2 over 3 s
+  EXPECT_NEAR(m.value("Rail.position"), 19.0 / 3, 1e-9);
+  EXPECT_NEAR(m.value("Pin.velocity"), 15, 1e-9);
+}
+
+TEST_P(ForceScene, BushingSettlesByWeightOverStiffness) {
+  MechanicsAlone m = load("bushing");
+  m.run_to(3);
+  EXPECT_NEAR(m.value("Mount.deflection.y"), -0.04, 1e-6);
+}
+
+TEST_P(ForceScene, BeamBendsByItsFormula) {
+  MechanicsAlone m = load("beam");
+  m.run_to(2);
+  const double EI = 210e9 * 833.3333333e-8, kGA = 0.8333333333 * 210e9 / 2.6 * 1e-2;
+  EXPECT_NEAR(m.value("Cantilever.deflection.y"), -981 * (8 / (3 * EI) + 2 / kGA), 2e-8);
+}
+
+TEST_P(ForceScene, RopeHaulsItsLoad) {
+  MechanicsAlone m = load("rope");
+  m.run_to(0.99);
+  const double before = m.value("Load.position.y");
+  ASSERT_TRUE(m.subsystem.change_parameter(m.n, {"Hoist.free_length", 8.99, milliseconds(2000)}));
+  m.run_to(6);
+  EXPECT_NEAR(m.value("Hoist.tension"), 300 * 9.81, 1);
+  // the stretch shrinks with the rope
+  EXPECT_NEAR(m.value("Load.position.y") - before, 0.5 * (1 + 300 * 9.81 / 3e6), 1e-4);
+}
+
+TEST_P(ForceScene, TabledSpringCarriesTheSeat) {
+  MechanicsAlone m = load("tables");
+  m.run_to(10);
+  EXPECT_NEAR(m.value("Suspension.force"), 80 * 9.81, 0.1);
+  EXPECT_LT(m.value("Suspension.length"), 0.45);
+}
+
+TEST_P(ForceScene, TyresCarryAndRoll) {
+  MechanicsAlone m = load("tyres");
+  m.run_to(0.99);
+  const char* wheels[] = {"Wheel_FL", "Wheel_FR", "Wheel_RL", "Wheel_RR"};
+  double load = 0, resistance = 0;
+  for (const char* wheel : wheels) load += m.value(std::string(wheel) + ".normal_force");
+  // chassis, four wheels, ballast, coupling
+  EXPECT_NEAR(load, 550 * 9.81, 0.01 * load);
+  m.run_to(5);
+  for (const char* wheel : wheels) resistance -= std::fabs(m.value(std::string(wheel) + ".longitudinal_force"));
+  EXPECT_NEAR(resistance, -0.015 * 550 * 9.81, 1);
+  const double speed = m.value("Chassis.velocity.x");
+  m.run_to(6);
+  EXPECT_NEAR(m.value("Chassis.velocity.x") - speed, (500 + resistance) / 550, 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, ForceScene, ::testing::Values("recursive", "lagrange"));
+
+TEST(ForceSceneReset, StartsTheClockAgain) {
+  MechanicsAlone m("scenes/forces/point_force.yaml");
+  m.run_to(0.5);
+  const std::uint64_t first = m.subsystem.state_hash();
+  m.run_to(0.8);
+  m.subsystem.reset();
+  m.start();
+  m.run_to(0.5);
+  EXPECT_EQ(m.subsystem.state_hash(), first);
+}
+
+}  // namespace
+}  // namespace slew::testing
