@@ -5,30 +5,11 @@
 #include <optional>
 #include <string_view>
 
+#include "scene/csv_cells.h"
 #include "scene/number.h"
 
 namespace slew::scene {
 namespace {
-
-struct Cell {
-  std::string_view text;  // without spaces around it
-  std::size_t byte = 0;
-};
-
-std::vector<Cell> split_line(const SourceText& source, std::size_t begin, std::size_t end) {
-  std::vector<Cell> cells;
-  const std::string_view text = source.text;
-  for (std::size_t start = begin; start <= end;) {
-    std::size_t stop = text.find(',', start);
-    if (stop == std::string_view::npos || stop > end) stop = end;
-    std::size_t first = start, last = stop;
-    while (first < last && (text[first] == ' ' || text[first] == '\t')) ++first;
-    while (last > first && (text[last - 1] == ' ' || text[last - 1] == '\t' || text[last - 1] == '\r')) --last;
-    cells.push_back({text.substr(first, last - first), first});
-    start = stop + 1;
-  }
-  return cells;
-}
 
 // A plain number in a range, or nothing after a complaint.
 std::optional<double> read_cell(const SourceText& source, const Cell& cell, const Range& range, std::string_view what,
@@ -53,13 +34,7 @@ class TimeTableReader {
   TimeTableReader(const SourceText& source, Report& report) : source_(source), report_(report) {}
 
   std::vector<CsvColumn> read() {
-    for (std::size_t line = 0; line < source_.line_start.size(); ++line) {
-      const std::size_t begin = source_.line_start[line];
-      const std::size_t end =
-          line + 1 < source_.line_start.size() ? source_.line_start[line + 1] - 1 : source_.text.size();
-      const std::vector<Cell> cells = split_line(source_, begin, end);
-      const bool is_blank = cells.size() == 1 && cells[0].text.empty();
-      if (is_blank || cells[0].text.starts_with('#')) continue;
+    for (const std::vector<Cell>& cells : csv_lines(source_)) {
       if (!has_header_) {
         if (!read_header(cells)) break;
       } else {

@@ -7,7 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "scene/expand.h"
 #include "scene/number.h"
+#include "scene/point_file.h"
 #include "scene/suggestion.h"
 
 namespace slew::scene {
@@ -172,7 +174,27 @@ class ValueReader {
     member<std::vector<Triple>>() = std::move(triples);
   }
 
+  // points in a file beside the scene
+  void read_table_file(const Node& node) {
+    if (context_.surroundings == nullptr || !context_.surroundings->has_folder) {
+      complain(node.mark, {"a scene without a folder cannot name a file", "the points themselves", ""});
+      return;
+    }
+    const std::size_t problems = context_.report.size();
+    const std::string file = context_.surroundings->path_of(node.text);
+    const std::optional<SourceText> source = read_source(file, context_.report.add_source(file), context_.report);
+    if (source) {
+      if (auto table = read_point_file(*source, field_, context_.units, context_.report))
+        member<Table>() = std::move(*table);
+    }
+    if (context_.report.size() > problems) complain(node.mark, {describe(node) + " cannot be used", "", ""});
+  }
+
   void read_table(const Node& node) {
+    if (node.kind == Node::Kind::scalar && node.text.ends_with(".csv")) {
+      read_table_file(node);
+      return;
+    }
     if (node.kind != Node::Kind::sequence || node.items.empty()) {
       complain_kind(node);
       return;

@@ -22,11 +22,14 @@ struct Reference {
   Mark mark;
 };
 
+struct Surroundings;
+
 struct ReadContext {
   UnitSystem& units;
   Report& report;
   PlaceMap& places;
   std::vector<Reference>& references;
+  const Surroundings* surroundings = nullptr;  // null: no file may be named
 };
 
 // Reads every entry of `map` into the Def at `def`. Keys in `other_keys` are the caller's and are left alone.

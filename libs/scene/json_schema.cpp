@@ -60,7 +60,7 @@ Json type_of(const Field& field) {
     case FieldType::table: {
       Json table = list_of(point(field), 0);
       table["minItems"] = 1;
-      return table;
+      return {{"anyOf", {std::move(table), {{"type", "string"}, {"pattern", "\\.csv$"}}}}};
     }
     case FieldType::numbers:
       return list_of(quantity(field.range), 0);

@@ -294,7 +294,7 @@ class SceneReader {
   PlaceMap places_;
   std::vector<Reference> references_;
   UnitSystem units_;
-  ReadContext context_{units_, report_, places_, references_};
+  ReadContext context_{units_, report_, places_, references_, &surroundings_};
 };
 
 Scene read_tree(Node root, Surroundings surroundings, const std::string& name, const Overrides& overrides,

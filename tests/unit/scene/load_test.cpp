@@ -83,6 +83,31 @@ TEST(Load, AProblemInAnIncludedFileIsToldWhereItStands) {
   }
 }
 
+constexpr const char* kWithTable = R"(
+bodies: {Load: {position: [1 m, 0, 0], mass: 5 kg, inertia: [1, 1, 1]}}
+joints: {Free: {type: floating, body2: Load}}
+forces: {Line: {type: translational, body1: Ground, body2: Load, spring_table: line.csv}}
+)";
+
+TEST(Load, ATableMayBeAFileOfPointsWithUnits) {
+  const TemporaryFolder folder;
+  folder.write("line.csv", "# a comment\nway [mm], force [kN]\r\n-100, -1.2\n\n0, 0\n50, 0.25\n");
+  const Scene scene = load_file(folder.write("scene.yaml", kWithTable));
+  const Table expected = {{-0.1, -1200}, {0, 0}, {0.05, 250}};
+  EXPECT_EQ(scene.mechanics.translational_forces[0].spring_table, expected);
+  // the nodes get the points, not the name of the file
+  EXPECT_EQ(load_text(scene.expanded_text, "test").mechanics.translational_forces[0].spring_table, expected);
+  folder.write("line.csv", "way, force\n0, 0\n1, 2\n");
+  const Table in_si = {{0, 0}, {1, 2}};
+  EXPECT_EQ(load_file(folder.write("scene.yaml", kWithTable)).mechanics.translational_forces[0].spring_table, in_si);
+}
+
+TEST(Load, ASceneInMemoryNamesNoFileOfPoints) {
+  EXPECT_EQ(
+      problems_of(kWithTable),
+      "test:4:80: Line.spring_table: a scene without a folder cannot name a file; expected the points themselves");
+}
+
 TEST(Load, ASceneInMemoryIncludesNothing) {
   EXPECT_EQ(problems_of("include: base.yaml\n" + kPendulum),
             "test:1:1: include: a scene without a folder cannot include a file");
