@@ -35,19 +35,30 @@ multibody::Parameter parameter_of(int handle) {
 // the row's own law: cylinder line force or joint friction and limits
 class MechanicsSubsystem::Laws final : public coupling::RowLaws {
  public:
-  explicit Laws(const MechanicsSubsystem& owner) : owner_(owner) {}
+  explicit Laws(MechanicsSubsystem& owner) : owner_(owner) {}
+  bool begin(double h) const noexcept override {
+    owner_.bristle_interval_ = h;
+    return !owner_.state_.bristles.empty();
+  }
+  void carry(std::size_t index, double v, double h) const noexcept override {
+    const std::size_t row = owner_.active_[index];
+    const multibody::JointLaw& law = owner_.model_.rows[row].law;
+    double& z = owner_.state_.bristles[row];
+    if (multibody::has_bristles(law)) z = multibody::bent(law, v, h, z);
+  }
   coupling::RowForce evaluate(std::size_t index, double z, double x, double v) const noexcept override {
     const std::size_t row = owner_.active_[index];
     if (row < owner_.ports_.size()) {
       const coupling::LineForce line = owner_.ports_[row].law.evaluate(z, x, v);
       return {line.force, line.d_pressure, line.d_position, line.d_speed};
     }
-    const multibody::JointForce joint = multibody::evaluate(owner_.model_.rows[row].law, x, v);
+    const multibody::JointForce joint =
+        multibody::evaluate(owner_.model_.rows[row].law, x, v, owner_.bristle_interval_, owner_.bristle_of(row));
     return {joint.force, 0, joint.d_x, joint.d_v};
   }
 
  private:
-  const MechanicsSubsystem& owner_;
+  MechanicsSubsystem& owner_;
 };
 
 MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
@@ -241,6 +252,13 @@ void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
     sample.impulse[row] += dynamics_.impulse()[k];
     port.F -= K * dx;
   }
+  // bristles follow the true way as well: what sticks stays where it is
+  for (std::size_t k = 0; k < active_.size() && !state_.bristles.empty(); ++k) {
+    const std::size_t row = active_[k];
+    if (multibody::has_bristles(model_.rows[row].law)) {
+      state_.bristles[row] += workspace_.row_x[row] - dynamics_.x()[k];
+    }
+  }
 }
 
 StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double>,
@@ -356,11 +374,15 @@ void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noex
   for (std::size_t row = m; row < rows; ++row) {
     row_force_[row] = 0;
     if (row_is_active_[row] == 0) continue;
-    const multibody::JointForce law =
-        multibody::evaluate(model_.rows[row].law, workspace_.row_x[row], workspace_.row_v[row]);
+    const double x = workspace_.row_x[row], v = workspace_.row_v[row];
+    // now, and after H at the present speed: bristles bend on the way
+    const multibody::JointLaw& own = model_.rows[row].law;
+    const multibody::JointForce law = multibody::evaluate(own, x, v, 0, bristle_of(row));
+    const multibody::JointForce bent =
+        multibody::has_bristles(own) ? multibody::evaluate(own, x, v, H, bristle_of(row)) : law;
     row_force_[row] = law.force;
-    joint_mean_[row] = law.force + 0.5 * H * law.d_x * workspace_.row_v[row];
-    joint_slope_[row] = std::max(0.0, -(law.d_v + H * law.d_x));
+    joint_mean_[row] = 0.5 * (law.force + bent.force) + 0.5 * H * law.d_x * v;
+    joint_slope_[row] = std::max(0.0, -(bent.d_v + H * law.d_x));
     active_.push_back(row);
   }
   const std::size_t r = active_.size();

@@ -72,6 +72,9 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] double payload_mass() const noexcept;
   void find_payload_slopes(std::span<double> slopes) const noexcept;
   [[nodiscard]] std::int32_t first_not_finite() const noexcept;
+  [[nodiscard]] double bristle_of(std::size_t row) const noexcept {
+    return state_.bristles.empty() ? 0.0 : state_.bristles[row];
+  }
   [[nodiscard]] double ratio_of(std::size_t row) const noexcept {
     return row < ports_.size() ? ports_[row].ratio : 1.0;
   }
@@ -83,7 +86,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   multibody::Dynamics mechanism_;
   multibody::State last_good_;
   multibody::Workspace workspace_;
-  bool is_evaluated_ = false;  // workspace_ belongs to state_ and model_
+  double bristle_interval_ = 0;  // s, of the port problem's stages
+  bool is_evaluated_ = false;    // workspace_ belongs to state_ and model_
   coupling::Level level_;
   SimDuration H_;
   int substeps_ = 1;

@@ -91,6 +91,7 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
   const double delta = h / micro_steps;
   const double weight = kGamma * delta;
   for (std::size_t i = 0; i < rows_; ++i) f_mean_[i] = f_slope_[i] = work_[i] = impulse_[i] = 0;
+  const bool has_memory = laws.begin(weight);
   for (int step = 0; step < micro_steps; ++step) {
     for (int stage = 0; stage < 2; ++stage) {
       // first stage at gamma delta, second at delta
@@ -114,6 +115,8 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
         work_[i] += share * pressure_force * v_stage_[i];
         impulse_[i] += share * pressure_force;
       }
+      if (!has_memory) continue;
+      for (std::size_t i = 0; i < rows_; ++i) laws.carry(i, v_stage_[i], share);
     }
     for (std::size_t i = 0; i < rows_; ++i) {
       x_[i] = x_stage_[i];

@@ -42,6 +42,12 @@ class RowLaws {
  public:
   virtual ~RowLaws() = default;
   [[nodiscard]] virtual RowForce evaluate(std::size_t row, double z, double x, double v) const noexcept = 0;
+
+  // Laws that remember something (bristles of dry friction), which their owner keeps. begin(): from here on evaluate()
+  // means the end of an interval h at its speed, begun with what is remembered; true when any row of this solve
+  // remembers. carry(): the memory of a row moves on by h at the speed v.
+  virtual bool begin(double /*h*/) const noexcept { return false; }
+  virtual void carry(std::size_t /*row*/, double /*v*/, double /*h*/) const noexcept {}
 };
 
 struct PortStep {

@@ -117,6 +117,8 @@ Status SceneEquations::find_static_forces(std::span<double> F) {
 Status SceneEquations::start(std::span<double> y) {
   SLEW_CHECK(y.size() == size_);
   state_ = multibody::start_state(model_);
+  if (!state_.bristles.empty())
+    return Status::error(ExitCode::bad_input, "the reference does not carry the bristles of joint friction");
   std::fill(y.begin(), y.end(), 0.0);
   std::copy(state_.q.begin(), state_.q.end(), y.begin());
   std::copy(state_.u.begin(), state_.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));

@@ -238,6 +238,20 @@ class Builder {
     link_pose_.push_back(child);
   }
 
+  template <typename Def>
+  static ElementLaw law_of(const Def& def, double free, double min, double max) {
+    return {.spring = def.spring_constant,
+            .damping = def.damping_constant,
+            .free = free,
+            .min = min,
+            .max = max,
+            .end_spring = def.end_spring_constant,
+            .end_damping = def.end_damping_constant,
+            .is_active = false,
+            .spring_curve = math::monotone_cubic(def.spring_table, math::Ends::continued),
+            .damper_curve = math::monotone_cubic(def.damper_table, math::Ends::not_falling)};
+  }
+
   void add_line(const TranslationalForceDef& def) {
     const Body& body1 = body_of(def.body1);
     const Body& body2 = body_of(def.body2);
@@ -248,16 +262,7 @@ class Builder {
                             .link2 = body2.link,
                             .body1 = body_index(def.body1),
                             .body2 = body_index(def.body2),
-                            .law = {.spring = def.spring_constant,
-                                    .damping = def.damping_constant,
-                                    .free = def.free_length,
-                                    .min = def.min_length,
-                                    .max = def.max_length,
-                                    .end_spring = def.end_spring_constant,
-                                    .end_damping = def.end_damping_constant,
-                                    .is_active = false,
-                                    .spring_curve = math::monotone_cubic(def.spring_table, math::Ends::continued),
-                                    .damper_curve = math::monotone_cubic(def.damper_table, math::Ends::not_falling)}});
+                            .law = law_of(def, def.free_length, def.min_length, def.max_length)});
   }
 
   void add_angle(const RotationalForceDef& def) {
@@ -276,16 +281,7 @@ class Builder {
                          .link2 = body2.link,
                          .body1 = body_index(def.body1),
                          .body2 = body_index(def.body2),
-                         .law = {.spring = def.spring_constant,
-                                 .damping = def.damping_constant,
-                                 .free = def.free_angle,
-                                 .min = def.min_angle,
-                                 .max = def.max_angle,
-                                 .end_spring = def.end_spring_constant,
-                                 .end_damping = def.end_damping_constant,
-                                 .is_active = false,
-                                 .spring_curve = math::monotone_cubic(def.spring_table, math::Ends::continued),
-                                 .damper_curve = math::monotone_cubic(def.damper_table, math::Ends::not_falling)}};
+                         .law = law_of(def, def.free_angle, def.min_angle, def.max_angle)};
     element.first_path = static_cast<int>(model_.paths.size());
     add_path(model_, element.link1, element.link2);
     element.path_end = static_cast<int>(model_.paths.size());

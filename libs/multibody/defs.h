@@ -77,6 +77,9 @@ struct JointDef {
   double coulomb_friction = 0;     // N m or N
   double viscous_friction = 0;     // N m s/rad or N s/m
   double friction_speed = 1e-3;    // rad/s or m/s, over which the Coulomb part is smoothed
+  double bristle_stiffness = 0;    // N m/rad or N/m; > 0: bristles that hold at rest, instead of smoothing
+  double bristle_damping = 0;      // N m s/rad or N s/m, of the bristles
+  double breakaway_ratio = 1;      // breakaway over coulomb_friction, >= 1; falls with friction_speed
 };
 
 // Force along the line between a point of body 1 and a point of body 2; positive pushes them apart.

@@ -57,7 +57,23 @@ constexpr Field friction_speed_row(const AxisDimensions& d) {
   return field<&JointDef::friction_speed>(
       "friction_speed", {.dimension = d.speed,
                          .range = kPositive,
-                         .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed)"});
+                         .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed); of bristles the "
+                                "Stribeck speed"});
+}
+constexpr Field bristle_stiffness_row(const AxisDimensions& d) {
+  return field<&JointDef::bristle_stiffness>("bristle_stiffness",
+                                             {.dimension = d.stiffness,
+                                              .range = kNotNegative,
+                                              .doc = "dry friction by bristles, which hold at rest; 0: none"});
+}
+constexpr Field bristle_damping_row(const AxisDimensions& d) {
+  return field<&JointDef::bristle_damping>(
+      "bristle_damping", {.dimension = d.damping, .range = kNotNegative, .doc = "damping of the bristles"});
+}
+constexpr Range kFromOne{.min = 1, .min_is_open = false};
+constexpr Field breakaway_ratio_row() {
+  return field<&JointDef::breakaway_ratio>("breakaway_ratio",
+                                           {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"});
 }
 
 constexpr AxisDimensions kRotation{angle, angular_velocity, rotational_stiffness, rotational_damping, torque};
@@ -76,7 +92,10 @@ constexpr Field kRevoluteFields[] = {kBody1,
                                      limit_damping_row(kRotation),
                                      coulomb_row(kRotation),
                                      viscous_row(kRotation),
-                                     friction_speed_row(kRotation)};
+                                     friction_speed_row(kRotation),
+                                     bristle_stiffness_row(kRotation),
+                                     bristle_damping_row(kRotation),
+                                     breakaway_ratio_row()};
 
 constexpr Field kPrismaticFields[] = {kBody1,
                                       kPoint1,
@@ -91,7 +110,10 @@ constexpr Field kPrismaticFields[] = {kBody1,
                                       limit_damping_row(kTranslation),
                                       coulomb_row(kTranslation),
                                       viscous_row(kTranslation),
-                                      friction_speed_row(kTranslation)};
+                                      friction_speed_row(kTranslation),
+                                      bristle_stiffness_row(kTranslation),
+                                      bristle_damping_row(kTranslation),
+                                      breakaway_ratio_row()};
 
 constexpr Field kInitialRotation = field<&JointDef::initial_rotation>(
     "initial_angular_velocity",

@@ -2,9 +2,35 @@
 
 #include <cmath>
 
+#include "contact/friction_law.h"
 #include "math/stop.h"
 
 namespace slew::multibody {
+namespace {
+
+// viscous friction and limits
+JointForce without_dry_friction(const JointLaw& law, double x, double v) noexcept {
+  const math::StopForce limit =
+      math::stop_force(x, v, law.limit_min, law.limit_max, law.limit_stiffness, law.limit_damping);
+  return {limit.force - law.viscous * v, limit.d_x, limit.d_v - law.viscous};
+}
+
+// the contact's law along one tangent, under a normal force of one
+contact::FrictionForce bristle_force(const JointLaw& law, double v, double h, double z) noexcept {
+  const contact::FrictionLaw bristles{{.pressing_force = 0,
+                                       .stiffness = law.bristle_stiffness,
+                                       .damping = law.bristle_damping,
+                                       .stribeck_speed = law.friction_speed,
+                                       .viscosity = 0,
+                                       .static_coefficient = law.coulomb * law.breakaway_ratio,
+                                       .dynamic_coefficient = law.coulomb,
+                                       .exponent = 2}};
+  const contact::SlidingContact sliding{
+      .n_W = math::Vec3(0, 0, 1), .v_W = math::Vec3(v, 0, 0), .normal_force = 1, .share = 1};
+  return contact::evaluate(bristles, sliding, h, {math::Vec3(z, 0, 0)});
+}
+
+}  // namespace
 
 JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
   JointForce result;
@@ -17,6 +43,21 @@ JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
   result.d_x = limit.d_x;
   result.d_v += limit.d_v;
   return result;
+}
+
+JointForce evaluate(const JointLaw& law, double x, double v, double h, double z) noexcept {
+  if (!has_bristles(law)) return evaluate(law, x, v);
+  JointForce result = without_dry_friction(law, x, v);
+  // a live change may take the dry friction away
+  if (!(law.coulomb > 0)) return result;
+  const contact::FrictionForce bristles = bristle_force(law, v, h, z);
+  result.force -= bristles.f_W.x();
+  result.d_v -= bristles.d_velocity(0, 0);
+  return result;
+}
+
+double bent(const JointLaw& law, double v, double h, double z) noexcept {
+  return law.coulomb > 0 ? bristle_force(law, v, h, z).z_W.x() : 0.0;
 }
 
 }  // namespace slew::multibody

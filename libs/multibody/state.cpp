@@ -1,5 +1,6 @@
 #include "multibody/state.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace slew::multibody {
@@ -49,6 +50,9 @@ Workspace::Workspace(const Model& model)
 State start_state(const Model& model) {
   State state{.q = model.start_q, .u = model.start_u};
   if (model.contact != nullptr) state.contacts = contact::ContactMemory(model.contact->model);
+  const bool any =
+      std::any_of(model.rows.begin(), model.rows.end(), [](const Row& row) { return has_bristles(row.law); });
+  if (any) state.bristles.assign(model.rows.size(), 0.0);
   return state;
 }
 
@@ -56,6 +60,7 @@ void copy_state(const State& from, State& to) noexcept {
   to.q = from.q;
   to.u = from.u;
   to.time = from.time;
+  to.bristles = from.bristles;
   to.contacts.assign(from.contacts);
 }
 
@@ -63,6 +68,7 @@ void add_to_hash(const Model& model, const State& state, StateHash& hash) noexce
   hash.add(std::span<const double>(state.q));
   hash.add(std::span<const double>(state.u));
   state.contacts.add_to_hash(hash);
+  for (const double z : state.bristles) hash.add(z);
   if (depends_on_time(model.elements)) hash.add(state.time);
   for (const double g : model.gravity.array()) hash.add(g);
   for (const LumpedMass& part : model.lumped) hash.add(part.mass);

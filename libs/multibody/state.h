@@ -20,6 +20,7 @@ struct State {
   std::vector<double> q;              // rad, m, quaternions
   std::vector<double> u;              // rad/s, m/s
   double time = 0;                    // s, for loads that follow a table
+  std::vector<double> bristles{};     // rad or m, bending of joint friction by row; empty: no joint has bristles
   contact::ContactMemory contacts{};  // impact speeds and bristles at the end of the last sub-step
 };
 

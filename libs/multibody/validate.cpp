@@ -203,6 +203,12 @@ class Validator {
           fmt::format("lower limit {} is not below the upper limit {}", joint.limit_min, joint.limit_max),
           "limit_min < limit_max");
     }
+    if (joint.bristle_stiffness > 0 && joint.coulomb_friction == 0) {
+      add(joint.name + ".bristle_stiffness", "the bristles have no dry friction to hold with", "coulomb_friction > 0");
+    }
+    if (joint.bristle_stiffness == 0 && (joint.bristle_damping > 0 || joint.breakaway_ratio > 1)) {
+      add(joint.name, "bristle_damping or breakaway_ratio without bristles", "bristle_stiffness > 0");
+    }
     if (has_limits && joint.limit_stiffness == 0) {
       add(joint.name + ".limit_stiffness", "the joint has limits but they have no stiffness",
           "limit_stiffness > 0, or no limits");

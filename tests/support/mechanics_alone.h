@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "build_paths.h"
@@ -16,9 +17,8 @@ class MechanicsAlone {
  public:
   // file: relative to the source tree.
   explicit MechanicsAlone(const std::string& file, const std::vector<std::string>& overrides = {})
-      : scene(scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/" + file, overrides)), subsystem(scene) {
-    start();
-  }
+      : MechanicsAlone(scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/" + file, overrides)) {}
+  explicit MechanicsAlone(scene::Scene loaded) : scene(std::move(loaded)), subsystem(scene) { start(); }
 
   void start() {
     static_cast<void>(subsystem.first_sample(sample));

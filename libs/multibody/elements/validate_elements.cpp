@@ -135,11 +135,15 @@ class ElementValidator {
   }
 
   void check_constraint(const ConstraintDummyDef& def) {
-    const bool is_known = std::any_of(m_.joints.begin(), m_.joints.end(),
-                                      [&](const JointDef& joint) { return joint.name == def.relative_to; });
-    if (!is_known) {
+    const auto joint = std::find_if(m_.joints.begin(), m_.joints.end(),
+                                    [&](const JointDef& candidate) { return candidate.name == def.relative_to; });
+    if (joint == m_.joints.end()) {
       names_hold_ = false;
       add(def.name + ".relative_to", fmt::format("there is no joint '{}'", def.relative_to), "the name of a joint");
+    } else if (joint->type == JointType::spherical_spherical || joint->type == JointType::revolute_spherical ||
+               joint->type == JointType::revolute_revolute) {
+      add(def.name + ".relative_to", fmt::format("'{}' is a massless link between its bodies", def.relative_to),
+          "a joint with its frames on the bodies; give a link with mass a body of its own");
     }
     check_inertia(def.name, def.inertia);
   }

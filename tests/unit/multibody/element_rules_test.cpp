@@ -80,6 +80,8 @@ TEST(ElementRules, WantElementsThatCanDoSomething) {
   expect_problem([](auto& d) { d.ropes[0].axial_rigidity = 1; }, "Rope", "several springs");
   expect_problem([](auto& d) { d.tyre_dummies[0].relative_to = "Ground"; }, "Wheel.relative_to", "is on Ground");
   expect_problem([](auto& d) { d.tyre_dummies[0].ground_normal = {}; }, "Wheel.ground_normal", "is zero");
+  expect_problem([](auto& d) { d.joints[0].type = JointType::spherical_spherical; }, "Pin.relative_to",
+                 "massless link");
   expect_problem([](auto& d) { d.part_dummies[0].inertia = {1, 1, 3}; }, "Part.inertia", "triangle rule");
 }
 
