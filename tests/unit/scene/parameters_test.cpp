@@ -81,6 +81,20 @@ TEST(ParametersOfAJoint, ThatAreNotPartOfTheMechanismAreRefusedNamingWhy) {
   EXPECT_TRUE(limited.check("Hinge.coulomb_friction", 5).status.is_ok());
 }
 
+TEST(ParametersOfARope, AreLiveWhereTheyAreItsOwn) {
+  const ParameterDirectory rope(load_text(R"(
+bodies: {Load: {mass: 1 kg, inertia: [1, 1, 1]}}
+joints: {Free: {type: floating, body2: Load}}
+forces:
+  Rope: {type: rope, bodies: [Ground, Load], points: [[0, 2 m, 0], [0, 0, 0]], free_length: 2 m, axial_rigidity: 1 kN}
+)",
+                                          "test"));
+  EXPECT_TRUE(rope.check("Rope.axial_rigidity", 5).status.is_ok());
+  EXPECT_TRUE(rope.check("Rope.free_length", 1).status.is_ok());
+  EXPECT_EQ(rope.check("Rope.stiffness", 5).status.text,
+            "Rope.stiffness would change nothing: the rope has its spring by axial_rigidity");
+}
+
 TEST_F(Parameters, AValueFromTheWireIsCheckedInTheSameWay) {
   EXPECT_TRUE(directory.check("Rod.mass", 3).status.is_ok());
   EXPECT_FALSE(directory.check("Rod.mass", 0).status.is_ok());

@@ -121,41 +121,61 @@ TEST(Cantilever, OscillatesAtTheFrequencyOfItsLoad) {
   EXPECT_NEAR(mechanism.state.u[3], -1e-4 * omega, 1e-7 * omega);
 }
 
-TEST(Cantilever, OfManySegmentsIsTheSame) {
-  // four segments of a quarter of the length: solved by letting a well damped chain come to rest
-  constexpr int kSegments = 4;
-  constexpr double kPart = kLength / kSegments, kForce = 1000;
+// The cantilever as `segments` beams between heavy bodies in a viscous medium, so that an explicit step can follow it
+// to rest: Node0, Node1, ..., the last one at the end.
+MechanicsDef chain_of_segments(int segments) {
+  const double part = kLength / segments;
   MechanicsDef def;
   def.gravity = {};
-  for (int i = 0; i < kSegments; ++i) {
-    const std::string name = "Node" + std::to_string(i);
-    const Triple place = {kPart * (i + 1), 0, 0};
-    // heavy nodes, so that an explicit step can follow
+  for (int i = 0; i < segments; ++i) {
+    const std::string number = std::to_string(i), name = "Node" + number;
+    const Triple place = {part * (i + 1), 0, 0};
     def.bodies.push_back({.name = name, .position = place, .mass = 1e5, .inertia = {1e4, 1e4, 1e4}});
-    def.joints.push_back(
-        {.name = "Free" + std::to_string(i), .type = JointType::floating, .point1 = place, .body2 = name});
+    def.joints.push_back({.name = "Free" + number, .type = JointType::floating, .point1 = place, .body2 = name});
     BeamDef beam = cantilever(kShear);
-    beam.name = "Beam" + std::to_string(i);
-    beam.length = kPart;
-    beam.damping_time = 0.01;
+    beam.name = "Beam" + number;
+    beam.length = part;
+    beam.damping_time = 2e-3;
     beam.frames.body1 = i == 0 ? "Ground" : "Node" + std::to_string(i - 1);
     beam.frames.body2 = name;
     def.beams.push_back(beam);
+    def.bushings.push_back({.name = "Medium" + number,
+                            .frames = {.body1 = "Ground", .point1 = place, .body2 = name},
+                            .damping = {3e5, 3e5, 3e5},
+                            .rotational_damping = {1e5, 1e5, 1e5}});
   }
+  return def;
+}
+
+TEST(Cantilever, OfManySegmentsIsTheSame) {
+  constexpr double kForce = 1000;
+  MechanicsDef def = chain_of_segments(4);
   def.point_forces = {{.name = "Tip", .body = "Node3", .direction = {0, 1, 0}, .force = kForce}};
-  // viscous medium by bushings without springs
-  for (int i = 0; i < kSegments; ++i) {
-    BushingDef damper{
-        .name = "Medium" + std::to_string(i),
-        .frames = {.body1 = "Ground", .point1 = {kPart * (i + 1), 0, 0}, .body2 = "Node" + std::to_string(i)},
-        .damping = {3e5, 3e5, 3e5},
-        .rotational_damping = {1e5, 1e5, 1e5}};
-    def.bushings.push_back(damper);
-  }
   Mechanism mechanism(def);
   mechanism.run(30, 2e-3);
   const End end = end_of_cantilever(kForce, 0, kShear);
   EXPECT_NEAR(mechanism.pose("Node3").position[1], end.w, 1e-5 * end.w);
+}
+
+// a tip moment bends a beam to an arc: by 1 rad over its length, with an error that falls with the square of the
+// segments
+TEST(Cantilever, OfManySegmentsBendsToAnArc) {
+  double error[2];
+  for (const int segments : {4, 8}) {
+    MechanicsDef def = chain_of_segments(segments);
+    const std::string tip = "Node" + std::to_string(segments - 1);
+    def.point_torques = {{.name = "Tip",
+                          .body = tip,
+                          .direction = {0, 0, 1},
+                          .axes = LoadAxes::ground,
+                          .torque = kE * kSecond / kLength}};
+    Mechanism mechanism(def);
+    mechanism.run(40, 2e-3);
+    const Triple end = mechanism.pose(tip).position;
+    error[segments / 8] = std::hypot(end[0] - kLength * std::sin(1), end[1] - kLength * (1 - std::cos(1)));
+  }
+  EXPECT_LT(error[1], 5e-3 * kLength);
+  EXPECT_NEAR(error[0] / error[1], 4, 0.4);
 }
 
 TEST(PointForce, InGroundAxesAcceleratesItsBodyAndTurnsIt) {
