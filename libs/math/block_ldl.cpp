@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/check.h"
+#include "math/small_cholesky.h"
 
 namespace slew::math {
 namespace {
@@ -267,6 +268,13 @@ bool BlockLdl::invert_regular(int node) noexcept {
   return is_whole;
 }
 
+bool BlockLdl::factorize_definite(int node) noexcept {
+  const int size = nodes_[at(node)].size;
+  double* C = inverse_.data() + first_value_[at(node)];
+  std::copy_n(values_.data() + first_value_[at(node)], size * size, C);
+  return factorize_cholesky(C, size);
+}
+
 // Inverse over the independent rows, zero in the others: the largest pivot, by what was put into its row, first.
 void BlockLdl::invert_closing(int node, double tolerance) noexcept {
   const int size = nodes_[at(node)].size, row = first_row_[at(node)];
@@ -304,16 +312,25 @@ bool BlockLdl::factorize(double tolerance) noexcept {
   bool is_regular = true;
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const int node = order_[k], size = nodes_[at(node)].size;
-    if (nodes_[at(node)].kind == BlockKind::regular) {
-      is_regular = invert_regular(node) && is_regular;
-    } else {
+    const BlockKind kind = nodes_[at(node)].kind;
+    if (kind == BlockKind::closing) {
       invert_closing(node, tolerance);
+    } else {
+      is_regular = (kind == BlockKind::regular ? invert_regular(node) : factorize_definite(node)) && is_regular;
     }
-    // L of this column beside what it came from
+    // L of this column beside what it came from; below a definite node C of A = C C^T takes the place of both
     double* L = scaled_.data();
     for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
       const int rows = nodes_[at(below_[at(i)].row)].size;
-      multiply(values_.data() + below_[at(i)].value, inverse_.data() + first_value_[at(node)], rows, size, L);
+      double* A = values_.data() + below_[at(i)].value;
+      if (kind == BlockKind::definite) {
+        for (int r = 0; r < rows; ++r) {
+          substitute_forward(inverse_.data() + first_value_[at(node)], size, A + r * size);
+        }
+        std::copy_n(A, rows * size, L);
+      } else {
+        multiply(A, inverse_.data() + first_value_[at(node)], rows, size, L);
+      }
       L += rows * size;
     }
     const int column_value = first_below_[k] < first_below_[k + 1] ? below_[at(first_below_[k])].value : 0;
@@ -346,13 +363,16 @@ void BlockLdl::solve(std::span<double> b) const noexcept {
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const int node = order_[k], size = nodes_[at(node)].size;
     double* x = b.data() + first_row_[at(node)];
+    const bool is_definite = nodes_[at(node)].kind == BlockKind::definite;
+    const double* inverse = inverse_.data() + first_value_[at(node)];
+    if (is_definite) substitute_forward(inverse, size, x);
     for (int i = first_below_[k]; i < first_below_[k + 1]; ++i) {
       const Below& below = below_[at(i)];
       subtract_product(values_.data() + below.value, nodes_[at(below.row)].size, size, x,
                        b.data() + first_row_[at(below.row)]);
     }
+    if (is_definite) continue;
     std::array<double, kMaxBlock> y{};
-    const double* inverse = inverse_.data() + first_value_[at(node)];
     for (int r = 0; r < size; ++r) {
       for (int c = 0; c < size; ++c) y[at(r)] += inverse[r * size + c] * x[c];
     }
@@ -365,6 +385,9 @@ void BlockLdl::solve(std::span<double> b) const noexcept {
       const Below& below = below_[at(i)];
       subtract_transposed_product(values_.data() + below.value, nodes_[at(below.row)].size, size,
                                   b.data() + first_row_[at(below.row)], x);
+    }
+    if (nodes_[at(node)].kind == BlockKind::definite) {
+      substitute_backward(inverse_.data() + first_value_[at(node)], size, x);
     }
   }
 }

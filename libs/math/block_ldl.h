@@ -4,11 +4,13 @@
 //       [ G   0  ]     G the rows of constraints                                                    (1)
 //
 // A `regular` node holds unknowns whose own block is regular: a body, or a body with the rows of the joint that hangs
-// it on another one. A `closing` node holds rows that close a loop. Nodes are eliminated one after the other,
-// K = L D L^T with D block-diagonal: of those that may go the one with the fewest neighbours, a closing node after
-// everything that it closes. So the cost of a tree grows linearly with its size, and a loop adds the fill along itself.
-// (A body and its joint go together, not one after the other as in Baraff 1996: -G M^-1 G^T alone would square the
-// condition of M.)
+// it on another one. A `definite` node holds unknowns whose own block is positive definite even when what was
+// eliminated before is taken from it: all nodes of a matrix that is positive definite as a whole. It is factorised by
+// Cholesky, so that stiff and soft unknowns may stand in one block. A `closing` node holds rows that close a loop.
+// Nodes are eliminated one after the other, K = L D L^T with D block-diagonal: of those that may go the one with the
+// fewest neighbours, a closing node after everything that it closes. So the cost of a tree grows linearly with its
+// size, and a loop adds the fill along itself. (A body and its joint go together, not one after the other as in Baraff
+// 1996: -G M^-1 G^T alone would square the condition of M.)
 //
 // Rows of a closing node that depend on rows eliminated before are found by the pivots of its block and left out: their
 // unknowns become zero, the others solve the rest exactly when the right-hand side is consistent. is_redundant() names
@@ -25,7 +27,7 @@ namespace slew::math {
 
 inline constexpr int kMaxBlock = 12;
 
-enum class BlockKind : std::uint8_t { regular, closing };
+enum class BlockKind : std::uint8_t { regular, definite, closing };
 
 struct BlockNode {
   int size = 0;  // 1 .. kMaxBlock
@@ -58,7 +60,7 @@ class BlockLdl {
   }
 
   // A closing row whose pivot is below `tolerance` times what it is compared with is redundant. False when a regular
-  // node is singular to working precision.
+  // node is singular to working precision, or a definite one is not definite.
   [[nodiscard]] bool factorize(double tolerance) noexcept;
   [[nodiscard]] bool is_redundant(int node, int row) const noexcept {
     return is_redundant_[at(first_row_[at(node)] + row)] != 0;
@@ -89,6 +91,7 @@ class BlockLdl {
   void list_updates();
   [[nodiscard]] int find(int row, int column) const noexcept;
   [[nodiscard]] bool invert_regular(int node) noexcept;
+  [[nodiscard]] bool factorize_definite(int node) noexcept;
   void invert_closing(int node, double tolerance) noexcept;
 
   std::vector<BlockNode> nodes_;
@@ -100,8 +103,8 @@ class BlockLdl {
   std::vector<Update> updates_;   // by column
   std::vector<int> first_update_;
   std::vector<int> first_value_;   // of diagonal blocks, by node
-  std::vector<double> values_;     // A, then L below the diagonal
-  std::vector<double> inverse_;    // of the diagonal blocks, by first_value_
+  std::vector<double> values_;     // A, then L below the diagonal; below a definite node L times its factor
+  std::vector<double> inverse_;    // of the diagonal blocks, by first_value_; of a definite one Cholesky's factor
   std::vector<double> scaled_;     // L of the column under way
   std::vector<double> reference_;  // of each closing row's pivot
   std::vector<double> scale_;      // of each closing row's pivot, reference included

@@ -197,6 +197,39 @@ TEST(BlockLdl, TakesABodyWithoutInertiaThatItsJointHolds) {
   expect_solved(system, 1e-10);
 }
 
+// masses with rows as stiff springs between them: definite, with eigenvalues far apart in every block
+System sprung(int bodies, double stiffness) {
+  BlockPattern pattern;
+  pattern.nodes.resize(static_cast<std::size_t>(bodies), {6, BlockKind::definite});
+  for (int i = 1; i < bodies; ++i) pattern.couplings.emplace_back(i, i - 1);
+  System system(pattern);
+  for (int i = 0; i < bodies; ++i) {
+    const Eigen::MatrixXd G = system.random(5, 6), to_parent = system.random(5, 6);
+    system.add(i, i, system.random_inertia(6) + stiffness * G.transpose() * G);
+    if (i == 0) continue;
+    system.add(i - 1, i - 1, stiffness * to_parent.transpose() * to_parent);
+    system.add(i, i - 1, stiffness * G.transpose() * to_parent);
+  }
+  return system;
+}
+
+TEST(BlockLdl, SolvesADefiniteMatrix) {
+  System system = sprung(8, 10);
+  expect_solved(system, 1e-10);
+}
+
+TEST(BlockLdl, LosesTheRatioOfStiffAndSoftInADefiniteMatrixNotItsSquare) {
+  // rounding is 1e-16, soft directions have 1e-2 of the mass
+  System system = sprung(8, 1e8);
+  expect_solved(system, 1e-4);
+}
+
+TEST(BlockLdl, SaysThatADefiniteNodeIsNot) {
+  System system = sprung(2, 10);
+  system.add(1, 1, -1e3 * Eigen::MatrixXd::Identity(6, 6));
+  EXPECT_FALSE(system.ldl().factorize(kTolerance));
+}
+
 TEST(BlockLdl, SaysThatANodeIsSingular) {
   System system(chain(2, 5));
   system.hang(0, 5, -1);
