@@ -42,6 +42,7 @@ class Builder {
     SLEW_CHECK(problems.empty());
     model_.gravity = Vec3(def_.gravity);
     model_.max_substep = def_.max_substep;
+    model_.penalty = {def_.penalty_factor, def_.penalty_damping, def_.penalty_frequency};
     add_bodies();
     add_joints();
     for (const int joint : cut_joints(def_, tree_)) add_cut(joint);

@@ -144,10 +144,13 @@ struct StaticDummyDef {
 enum class Formulation : int { recursive, lagrange, augmented, penalty };
 
 struct MechanicsDef {
-  Triple gravity{0, -9.81, 0};                       // m/s2
-  Formulation formulation = Formulation::recursive;  // or lagrange in this version
-  double assembly_tolerance = 1e-3;                  // m and rad, how far a joint may be open at the start
-  double max_substep = 1e-3;                         // s, longest sub-step of the integrator
+  Triple gravity{0, -9.81, 0};  // m/s2
+  Formulation formulation = Formulation::recursive;
+  double assembly_tolerance = 1e-3;  // m and rad, how far a joint may be open at the start
+  double max_substep = 1e-3;         // s, longest sub-step of the integrator
+  double penalty_factor = 1e7;       // penalty mass of the joints' rows over the mechanism's mass (augmented, penalty)
+  double penalty_damping = 1;        // xi, damping ratio of the rows (penalty)
+  double penalty_frequency = 100;    // rad/s, omega_n of the rows (penalty)
 
   std::vector<BodyDef> bodies;
   std::vector<JointDef> joints;

@@ -190,10 +190,18 @@ struct Row {
   JointLaw law{};  // of a joint row
 };
 
+// Numbers of the formulations that hold joints by penalties (body_penalty.h).
+struct PenaltyNumbers {
+  double factor = 0;     // alpha over the mechanism's mass
+  double damping = 0;    // xi
+  double frequency = 0;  // omega_n [rad/s]
+};
+
 struct Model {
   math::Vec3 gravity;         // m/s2, Ground axes
   double max_substep = 1e-3;  // s
-  std::vector<Link> links;    // [0] is Ground
+  PenaltyNumbers penalty;
+  std::vector<Link> links;  // [0] is Ground
   std::vector<LumpedMass> lumped;
   std::vector<CoupledMass> coupled;  // by child link
   std::vector<CoupledMass> welded;   // within one link: lumped into it, but carried by both bodies of their line

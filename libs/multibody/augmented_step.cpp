@@ -1,0 +1,184 @@
+// The step of the formulation `augmented`: equations (5) to (8) of body_penalty.h.
+#include <algorithm>
+#include <cmath>
+
+#include "multibody/body_attitude.h"
+#include "multibody/penalty_passes.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+// corrections of Newton's method, m and rad: each is worth a factor of a hundred to ten thousand
+constexpr int kMostCorrections = 30;
+constexpr double kSettled = 1e-12;
+// far from Ground's origin, or under stiff springs, rounding ends the way down before that
+constexpr double kRounded = 1e-9;
+constexpr double kStalled = 0.5;
+// the matrix is made anew when a correction shrinks by less
+constexpr double kSlow = 0.1;
+constexpr double kClosedRate = 1e-12;  // m/s, 1/s
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+double largest_of(std::span<const double> x) noexcept {
+  double largest = 0;
+  for (const double value : x) largest = std::max(largest, std::fabs(value));
+  return largest;
+}
+
+math::Quaternion turned(Vec3 turn, const math::Quaternion& attitude) noexcept {
+  const double angle = norm(turn);
+  const auto [s, c] = math::sin_cos(0.5 * angle);
+  // sin(x/2)/x near zero
+  constexpr double kSmall = 1e-4;
+  const double scale = angle > kSmall ? s / angle : 0.5 - angle * angle / 48;
+  return math::Quaternion{c, scale * turn[0], scale * turn[1], scale * turn[2]} * attitude;
+}
+
+// the change of a rotation vector that turns its end by delta: exp(delta~) exp(turn~) = exp((turn + result)~)
+Vec3 change_of_turn(Vec3 turn, Vec3 delta) noexcept {
+  const double square = dot(turn, turn);
+  constexpr double kSmall = 1e-4;
+  double factor = 1.0 / 12 + square / 720;
+  if (square > kSmall) {
+    const double half = 0.5 * std::sqrt(square);
+    const auto [s, c] = math::sin_cos(half);
+    factor = (1 - half * c / s) / square;
+  }
+  return delta - cross(turn, delta) * 0.5 + cross(turn, cross(turn, delta)) * factor;
+}
+
+class Trapezoid {
+ public:
+  Trapezoid(const Model& model, const PenaltyModel& body, const BodyState& start, Workspace& ws, PenaltyWorkspace& pws,
+            double h) noexcept
+      : model_(model), body_(body), start_(start), ws_(ws), pws_(pws), h_(h) {}
+
+  // from accelerations that stay as they are
+  void predict() noexcept {
+    for (std::size_t k = 0; k < pws_.displacement.size(); ++k) {
+      pws_.displacement[k] = h_ * (start_.u[k] + 0.5 * h_ * pws_.udot[k]);
+    }
+    place();
+  }
+
+  bool close_positions() noexcept {
+    bool is_regular = factorize(model_, body_, ws_, pws_, h_);
+    double before = 0, size = 0;
+    for (pws_.iterations = 1; pws_.iterations <= kMostCorrections; ++pws_.iterations) {
+      correct();
+      size = largest_of(pws_.correction);
+      if (size <= kSettled) return is_regular;
+      const bool is_slow = pws_.iterations > 1 && size > kSlow * before;
+      if (is_slow && size <= kRounded && size > kStalled * before) return is_regular;
+      if (is_slow) is_regular = factorize(model_, body_, ws_, pws_, h_) && is_regular;
+      before = size;
+    }
+    return is_regular && size <= kRounded;
+  }
+
+  // (8)
+  void close_speeds() noexcept {
+    double before = 0;
+    for (int i = 0; i < kMostCorrections; ++i) {
+      std::fill(pws_.correction.begin(), pws_.correction.end(), 0.0);
+      double largest = 0;
+      for_each_row([&](const Constraint& constraint, std::size_t row) {
+        const double rate = along(constraint, pws_.rows[row].G, pws_.stage.u);
+        largest = std::max(largest, std::fabs(rate));
+        subtract_row(constraint, pws_.factored[row], body_.alpha[row] * rate, pws_.correction);
+      });
+      if (largest <= kClosedRate || (i > 0 && largest > kStalled * before)) return;
+      before = largest;
+      pws_.ldl.solve(pws_.correction);
+      for (std::size_t k = 0; k < pws_.stage.u.size(); ++k) pws_.stage.u[k] += pws_.correction[k];
+    }
+  }
+
+ private:
+  template <typename Visit>
+  void for_each_row(Visit visit) noexcept {
+    for (std::size_t i = 0; i < body_.constraints.size(); ++i) {
+      for (std::size_t row = at(body_.first_row[i]); row < at(body_.first_row[i + 1]); ++row) {
+        visit(body_.constraints[i], row);
+      }
+    }
+  }
+
+  // state and accelerations at the end, from (5)
+  void place() noexcept {
+    for (std::size_t k = 0; k < pws_.displacement.size(); ++k) {
+      pws_.stage.u[k] = 2 / h_ * pws_.displacement[k] - start_.u[k];
+      pws_.end_udot[k] = 2 / h_ * (pws_.stage.u[k] - start_.u[k]) - pws_.udot[k];
+    }
+    for (std::size_t link = 1; link < model_.links.size(); ++link) {
+      const double* d = pws_.displacement.data() + 6 * (link - 1);
+      for (std::size_t k = 0; k < 3; ++k) pws_.stage.q[7 * (link - 1) + k] = start_.q[7 * (link - 1) + k] + d[k];
+      put_attitude(turned({d[3], d[4], d[5]}, attitude_at(start_.q, link)), pws_.stage.q, link);
+    }
+    see(model_, body_, pws_.stage, pws_.stage_joints, ws_, pws_);
+  }
+
+  // one round of (7)
+  void correct() noexcept {
+    const double quarter = 0.25 * h_ * h_;
+    put_free_forces(model_, ws_, pws_.correction);
+    add_row_forces(model_, body_, pws_.stage_joints, ws_, pws_.row_force, pws_.ldl, pws_.correction);
+    subtract_mass(model_, ws_, pws_.end_udot, pws_.correction);
+    for_each_row([&](const Constraint& constraint, std::size_t row) {
+      subtract_row(constraint, pws_.rows[row].G, pws_.multipliers[row], pws_.correction);
+    });
+    for (double& x : pws_.correction) x *= quarter;
+    for_each_row([&](const Constraint& constraint, std::size_t row) {
+      subtract_row(constraint, pws_.factored[row], body_.alpha[row] * pws_.rows[row].g, pws_.correction);
+    });
+    pws_.ldl.solve(pws_.correction);
+    for_each_row([&](const Constraint& constraint, std::size_t row) {
+      const double missed = pws_.rows[row].g + along(constraint, pws_.factored[row], pws_.correction);
+      pws_.multipliers[row] += body_.alpha[row] / quarter * missed;
+    });
+    for (std::size_t i = 0; i < pws_.displacement.size(); i += 6) {
+      double* d = pws_.displacement.data() + i;
+      const double* delta = pws_.correction.data() + i;
+      for (std::size_t k = 0; k < 3; ++k) d[k] += delta[k];
+      const Vec3 change = change_of_turn({d[3], d[4], d[5]}, {delta[3], delta[4], delta[5]});
+      for (std::size_t k = 0; k < 3; ++k) d[3 + k] += change[static_cast<int>(k)];
+    }
+    place();
+  }
+
+  const Model& model_;
+  const PenaltyModel& body_;
+  const BodyState& start_;
+  Workspace& ws_;
+  PenaltyWorkspace& pws_;
+  double h_;
+};
+
+}  // namespace
+
+bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyState& state, State& joints, Workspace& ws,
+                          PenaltyWorkspace& pws, double h, std::span<const double> mean,
+                          std::span<const double> slope) noexcept {
+  for (std::size_t k = 0; k < mean.size(); ++k) pws.row_force[k] = mean[k] - 0.5 * h * slope[k];
+  accelerations(model, pws, pws.row_force, pws.udot);
+  for (std::size_t k = 0; k < mean.size(); ++k) pws.row_force[k] = mean[k] + 0.5 * h * slope[k];
+  pws.stage_joints.q = joints.q;
+  Trapezoid step(model, body, state, ws, pws, h);
+  step.predict();
+  const bool has_settled = step.close_positions();
+  step.close_speeds();
+  state.q.swap(pws.stage.q);
+  state.u.swap(pws.stage.u);
+  normalize_attitudes(state.q);
+  see(model, body, state, joints, ws, pws);
+  const Drift left = drift(pws);
+  return has_settled && left.position <= kHeld && left.rate <= kHeld;
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,128 @@
+#include "multibody/body_penalty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <set>
+#include <utility>
+
+#include "core/check.h"
+#include "multibody/penalty_passes.h"
+
+namespace slew::multibody {
+
+namespace {
+
+bool is_length(RowForm form) noexcept {
+  return form != RowForm::perpendicular;
+}
+
+// every pair of links between which the matrix has a block
+std::vector<std::pair<int, int>> coupled_links(const Model& model, std::span<const Constraint> constraints) {
+  std::set<std::pair<int, int>> pairs;
+  const auto couple = [&pairs](int link1, int link2) {
+    if (link1 > 0 && link2 > 0 && link1 != link2) pairs.insert(std::minmax(link1 - 1, link2 - 1));
+  };
+  for (const Constraint& constraint : constraints) couple(constraint.link1, constraint.link2);
+  // elements may get constants while running
+  for (const LineElement& line : model.lines) couple(line.link1, line.link2);
+  for (const AngleElement& angle : model.angles) couple(angle.link1, angle.link2);
+  return {pairs.begin(), pairs.end()};
+}
+
+}  // namespace
+
+double moving_mass(const Model& model) noexcept {
+  double mass = 0;
+  for (std::size_t i = 1; i < model.links.size(); ++i) mass += model.links[i].mass;
+  for (const CoupledMass& coupled : model.coupled) mass += coupled.m1 + coupled.m2;
+  return mass;
+}
+
+double penalty_length(const Model& model, std::span<const Constraint> constraints) noexcept {
+  double square = 0;
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    const double polar = 0.5 * (link.I_L(0, 0) + link.I_L(1, 1) + link.I_L(2, 2));
+    if (link.mass > 0) square = std::max(square, polar / link.mass);
+  }
+  for (const Constraint& constraint : constraints) {
+    if (constraint.link1 > 0) square = std::max(square, dot(constraint.p_L1, constraint.p_L1));
+    if (constraint.link2 > 0) square = std::max(square, dot(constraint.p_L2, constraint.p_L2));
+  }
+  // point masses at their joints: any length does
+  return square > 0 ? std::sqrt(square) : 1.0;
+}
+
+PenaltyModel build_penalty_model(const Model& model, Formulation formulation, std::span<const Constraint> more) {
+  SLEW_CHECK(formulation == Formulation::augmented || formulation == Formulation::penalty);
+  PenaltyModel body;
+  body.formulation = formulation;
+  body.bodies = build_body_model(model);
+  for (const Constraint& joint : body.bodies.joints) {
+    if (!joint.rows.empty()) body.constraints.push_back(joint);
+  }
+  body.constraints.insert(body.constraints.end(), more.begin(), more.end());
+  const double length = penalty_length(model, body.constraints);
+  const double alpha = model.penalty.factor * moving_mass(model);
+  for (const Constraint& constraint : body.constraints) {
+    body.first_row.push_back(static_cast<int>(body.alpha.size()));
+    for (const ConstraintRow& row : constraint.rows) {
+      body.alpha.push_back(is_length(row.form) ? alpha : alpha * length * length);
+    }
+  }
+  body.first_row.push_back(static_cast<int>(body.alpha.size()));
+  body.pattern.nodes.resize(model.links.size() - 1, {kBody, math::BlockKind::definite});
+  body.pattern.couplings = coupled_links(model, body.constraints);
+  return body;
+}
+
+PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body) : ldl(body.pattern) {
+  const std::size_t links = model.links.size() - 1, speeds = 6 * links, row_count = body.alpha.size();
+  rows.resize(row_count);
+  factored.resize(row_count);
+  for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target}) by_row->resize(row_count);
+  for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement}) by_u->resize(speeds);
+  responses.resize(model.rows.size() * speeds);
+  response_multipliers.resize(model.rows.size() * row_count);
+  qdot.resize(7 * links);
+  for (BodyState* copy : {&stage, &sum}) {
+    copy->q.resize(7 * links);
+    copy->u.resize(speeds);
+  }
+  stage_joints = {model.start_q, model.start_u};
+  row_force.resize(model.rows.size());
+}
+
+Drift drift(const PenaltyWorkspace& pws) noexcept {
+  Drift largest;
+  for (const RowValue& row : pws.rows) {
+    largest.position = std::max(largest.position, std::fabs(row.g));
+    largest.rate = std::max(largest.rate, std::fabs(row.rate));
+  }
+  return largest;
+}
+
+double longest_penalty_step(double damping_ratio, double frequency) noexcept {
+  // |1 + z + z^2/2 + z^3/6 + z^4/24| at z = omega h times the roots of s^2 + 2 xi s + 1, over ever longer steps
+  constexpr double kResolution = 1e-3, kLongest = 4;
+  const std::complex<double> root = std::sqrt(std::complex<double>(damping_ratio * damping_ratio - 1));
+  const std::complex<double> faster = -damping_ratio - root;
+  double limit = 0;
+  for (double step = kResolution; step < kLongest; step += kResolution) {
+    const std::complex<double> z = faster * step;
+    if (std::abs(1.0 + z * (1.0 + z * (0.5 + z * (1.0 / 6 + z / 24.0)))) > 1) break;
+    limit = step;
+  }
+  return limit / frequency;
+}
+
+bool advance(const Model& model, const PenaltyModel& body, BodyState& state, State& joints, Workspace& ws,
+             PenaltyWorkspace& pws, double h, std::span<const double> mean, std::span<const double> slope) noexcept {
+  if (body.formulation == Formulation::penalty) {
+    return advance_by_runge_kutta(model, body, state, joints, ws, pws, h, mean, slope);
+  }
+  return advance_by_trapezoid(model, body, state, joints, ws, pws, h, mean, slope);
+}
+
+}  // namespace slew::multibody

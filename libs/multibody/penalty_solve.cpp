@@ -1,0 +1,172 @@
+// Right-hand sides of the penalty formulations, and solutions with the factors of their matrix.
+#include <algorithm>
+#include <cmath>
+
+#include "multibody/passes.h"
+#include "multibody/penalty_passes.h"
+#include "multibody/spatial_block.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+// rounds of (4), each worth a factor of f; a well-conditioned mechanism needs three
+constexpr int kMostRounds = 10;
+// corrections below this share of the solution are rounding, and so are small ones that stop shrinking
+constexpr double kRounding = 1e-14;
+constexpr double kSmall = 1e-9;
+constexpr double kStalled = 0.5;
+// Rows that come near to depending on each other leave the direction that they are about to give free to more rounds
+// than there are: what is left is a share of its acceleration. More than that is a matrix that does not fit.
+constexpr double kSettled = 1e-3;
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+Vec3 vector_at(const double* x) noexcept {
+  return {x[0], x[1], x[2]};
+}
+
+void subtract(Vec3 a, double* x) noexcept {
+  for (int k = 0; k < 3; ++k) x[k] -= a[k];
+}
+
+double* link_at(std::span<double> x, int link) noexcept {
+  return x.data() + kLinkSpeeds * (at(link) - 1);
+}
+
+const double* link_at(std::span<const double> x, int link) noexcept {
+  return x.data() + kLinkSpeeds * (at(link) - 1);
+}
+
+double largest_of(std::span<const double> x) noexcept {
+  double largest = 0;
+  for (const double value : x) largest = std::fabs(value) > largest ? std::fabs(value) : largest;
+  return largest;
+}
+
+// a force on a point of a link
+void subtract_force(int link, Vec3 s, Vec3 force, std::span<double> y) noexcept {
+  if (link == 0) return;
+  subtract(force, link_at(y, link));
+  subtract(cross(s, force), link_at(y, link) + 3);
+}
+
+}  // namespace
+
+void see(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
+         PenaltyWorkspace& pws) noexcept {
+  update_body_motion(model, state, ws);
+  find_joint_coordinates(model, ws, joints);
+  update_elements(model, joints.q, Elements::used, ws);
+  update_inertia(model, ws);
+  update_coupled(model, ws);
+  apply_elements(model, ws);
+  for (std::size_t i = 0; i < body.constraints.size(); ++i) {
+    const Constraint& constraint = body.constraints[i];
+    const std::span<RowValue> rows(pws.rows.data() + body.first_row[i], constraint.rows.size());
+    evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], rows);
+  }
+}
+
+void put_free_forces(const Model& model, const Workspace& ws, std::span<double> y) noexcept {
+  std::fill(y.begin(), y.end(), 0.0);
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    double* at_link = link_at(y, static_cast<int>(i));
+    subtract(ws.inertia[i].f, at_link);
+    subtract(ws.inertia[i].n, at_link + 3);
+  }
+  for (std::size_t i = 0; i < model.coupled.size(); ++i) {
+    const LineElement& line = model.lines[at(model.coupled[i].line)];
+    const LineMotion& m = ws.lines[at(model.coupled[i].line)];
+    subtract_force(line.link1, m.P1 - ws.motion[at(line.link1)].p, ws.coupled[i].F1, y);
+    subtract_force(line.link2, m.P2 - ws.motion[at(line.link2)].p, ws.coupled[i].F2, y);
+  }
+}
+
+void subtract_mass(const Model& model, const Workspace& ws, std::span<const double> x, std::span<double> y) noexcept {
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const ArticulatedInertia& I = ws.inertia[i];
+    const Vec3 a = vector_at(link_at(x, static_cast<int>(i))), alpha = vector_at(link_at(x, static_cast<int>(i)) + 3);
+    double* at_link = link_at(y, static_cast<int>(i));
+    subtract(I.K * alpha + I.M * a, at_link);
+    subtract(I.J * alpha + transpose_multiply(I.K, a), at_link + 3);
+  }
+  for (std::size_t i = 0; i < model.coupled.size(); ++i) {
+    const LineElement& line = model.lines[at(model.coupled[i].line)];
+    const LineMotion& m = ws.lines[at(model.coupled[i].line)];
+    const Vec3 s1 = m.P1 - ws.motion[at(line.link1)].p, s2 = m.P2 - ws.motion[at(line.link2)].p;
+    const auto point = [&](int link, Vec3 s) {
+      if (link == 0) return Vec3();
+      return vector_at(link_at(x, link)) + cross(vector_at(link_at(x, link) + 3), s);
+    };
+    const Vec3 a1 = point(line.link1, s1), a2 = point(line.link2, s2);
+    const PointMasses A = point_masses(model.coupled[i], ws.coupled[i]);
+    subtract_force(line.link1, s1, A.A11 * a1 + A.A12 * a2, y);
+    subtract_force(line.link2, s2, A.A12 * a1 + A.A22 * a2, y);
+  }
+}
+
+void subtract_row(const Constraint& constraint, const RowGradient& G, double mu, std::span<double> y) noexcept {
+  if (constraint.link1 > 0) {
+    subtract(G.v1 * mu, link_at(y, constraint.link1));
+    subtract(G.w1 * mu, link_at(y, constraint.link1) + 3);
+  }
+  if (constraint.link2 > 0) {
+    subtract(G.v2 * mu, link_at(y, constraint.link2));
+    subtract(G.w2 * mu, link_at(y, constraint.link2) + 3);
+  }
+}
+
+double along(const Constraint& constraint, const RowGradient& G, std::span<const double> x) noexcept {
+  double sum = 0;
+  if (constraint.link1 > 0) {
+    const double* one = link_at(x, constraint.link1);
+    sum += dot(G.v1, vector_at(one)) + dot(G.w1, vector_at(one + 3));
+  }
+  if (constraint.link2 > 0) {
+    const double* two = link_at(x, constraint.link2);
+    sum += dot(G.v2, vector_at(two)) + dot(G.w2, vector_at(two + 3));
+  }
+  return sum;
+}
+
+bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, PenaltyWorkspace& pws,
+           std::span<const double> force, std::span<const double> target, std::span<double> x,
+           std::span<double> multipliers) noexcept {
+  const bool is_exact = body.formulation == Formulation::augmented;
+  std::fill(x.begin(), x.end(), 0.0);
+  std::fill(multipliers.begin(), multipliers.end(), 0.0);
+  double before = 0, share = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    // what is left of the equation of motion; of a plain penalty the multipliers are those of x alone
+    std::copy(force.begin(), force.end(), pws.correction.begin());
+    if (round > 0) subtract_mass(model, ws, x, pws.correction);
+    for (std::size_t i = 0; i < body.constraints.size(); ++i) {
+      const Constraint& constraint = body.constraints[i];
+      for (std::size_t row = at(body.first_row[i]); row < at(body.first_row[i + 1]); ++row) {
+        const RowGradient& G = pws.factored[row];
+        const double missed = body.alpha[row] * (along(constraint, G, x) + target[row]);
+        if (is_exact && round > 0) multipliers[row] += missed;
+        subtract_row(constraint, G, multipliers[row] + missed, pws.correction);
+      }
+    }
+    pws.ldl.solve(pws.correction);
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] += pws.correction[k];
+    const double size = largest_of(pws.correction), whole = largest_of(x);
+    share = whole > 0 ? size / whole : 0;
+    if (share <= kRounding || (share <= kSmall && size > kStalled * before)) break;
+    before = size;
+  }
+  for (std::size_t i = 0; i < body.constraints.size(); ++i) {
+    for (std::size_t row = at(body.first_row[i]); row < at(body.first_row[i + 1]); ++row) {
+      multipliers[row] += body.alpha[row] * (along(body.constraints[i], pws.factored[row], x) + target[row]);
+    }
+  }
+  return share <= kSettled;
+}
+
+}  // namespace slew::multibody
