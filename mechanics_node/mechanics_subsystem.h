@@ -2,7 +2,7 @@
 // limits solved implicitly at the rows, the partner's linearisation inside (coupling study, section 8).
 //
 // Ports come first among the rows, in the scene's order; then the joints with friction or limits. Per sub-step:
-//   rows x, v, a_free, W  ->  PortDynamics: mean and slope of every row's force  ->  one RK4 step of the mechanism.
+//   rows x, v, a_free, W  ->  PortDynamics: mean and slope of every row's force  ->  one step of the mechanism.
 // Published a_free and W contain the joints' laws condensed implicitly over H (MobilityKind::step), so that the partner
 // sees a slewing ring with its friction, not without.
 #pragma once

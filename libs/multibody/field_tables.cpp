@@ -13,6 +13,10 @@ using enum Dimension;
 
 constexpr Range kAssemblyRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kSubstepRange{.min = 1e-6, .max = 20e-3, .min_is_open = false, .max_is_open = false};
+// below, joints are soft; above, rounding spoils what they leave free
+constexpr Range kPenaltyFactorRange{.min = 1e3, .max = 1e10, .min_is_open = false, .max_is_open = false};
+constexpr Range kPenaltyDampingRange{.min = 0.01, .max = 10, .min_is_open = false, .max_is_open = false};
+constexpr Range kPenaltyFrequencyRange{.min = 0, .max = 1e6, .max_is_open = false};
 constexpr double kMassRamp = 1.0;  // s
 
 constexpr std::array<std::string_view, 2> kInertiaPoints = {"center_of_mass", "body_origin"};
@@ -21,9 +25,7 @@ constexpr std::array<std::string_view, 4> kFormulations = {"recursive", "lagrang
 constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::gravity>(
         "gravity", {.dimension = acceleration, .change = Change::live, .doc = "acceleration of gravity, global axes"}),
-    field<&MechanicsDef::formulation>(
-        "formulation",
-        {.choices = kFormulations, .doc = "equations of motion; this version has recursive and lagrange"}),
+    field<&MechanicsDef::formulation>("formulation", {.choices = kFormulations, .doc = "equations of motion"}),
     field<&MechanicsDef::assembly_tolerance>(
         "assembly_tolerance",
         {.dimension = length,
@@ -36,6 +38,16 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::contact_substep>(
         "contact_substep",
         {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step while shapes touch or are about to"}),
+    field<&MechanicsDef::penalty_factor>(
+        "penalty_factor",
+        {.range = kPenaltyFactorRange,
+         .doc = "augmented, penalty: mass that resists a joint's opening, over the mechanism's mass"}),
+    field<&MechanicsDef::penalty_damping>(
+        "penalty_damping", {.range = kPenaltyDampingRange, .doc = "penalty: damping ratio of what opens a joint"}),
+    field<&MechanicsDef::penalty_frequency>("penalty_frequency",
+                                            {.dimension = angular_velocity,
+                                             .range = kPenaltyFrequencyRange,
+                                             .doc = "penalty: angular frequency at which a joint closes again"}),
 };
 
 constexpr Field kBodyFields[] = {

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "core/check.h"
 #include "multibody/body_coordinates.h"
+#include "multibody/body_penalty.h"
 #include "multibody/contact_passes.h"
 #include "multibody/dynamics.h"
 
@@ -18,6 +18,15 @@ struct Dynamics::Bodies {
   BodyWorkspace ws;
 };
 
+struct Dynamics::HeldBodies {
+  HeldBodies(Formulation formulation, const Model& mechanism, const State& start)
+      : model(build_penalty_model(mechanism, formulation)), state(body_state(mechanism, start)), ws(mechanism, model) {}
+
+  PenaltyModel model;
+  BodyState state;
+  PenaltyWorkspace ws;
+};
+
 namespace {
 
 bool take_passed(Workspace& ws) noexcept {
@@ -27,8 +36,17 @@ bool take_passed(Workspace& ws) noexcept {
 }  // namespace
 
 Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start) {
-  SLEW_CHECK(formulation == Formulation::recursive || formulation == Formulation::lagrange);
-  if (formulation == Formulation::lagrange) bodies_ = std::make_unique<Bodies>(model, start);
+  switch (formulation) {
+    case Formulation::recursive:
+      break;
+    case Formulation::lagrange:
+      bodies_ = std::make_unique<Bodies>(model, start);
+      break;
+    case Formulation::augmented:
+    case Formulation::penalty:
+      held_ = std::make_unique<HeldBodies>(formulation, model, start);
+      break;
+  }
 }
 
 Dynamics::~Dynamics() = default;
@@ -36,8 +54,13 @@ Dynamics::Dynamics(Dynamics&&) noexcept = default;
 Dynamics& Dynamics::operator=(Dynamics&&) noexcept = default;
 
 void Dynamics::evaluate(const Model& model, State& state, Workspace& ws) noexcept {
-  if (bodies_ == nullptr) return multibody::evaluate(model, state, ws);
-  is_regular_ = multibody::evaluate(model, bodies_->model, bodies_->state, state, ws, bodies_->ws);
+  if (bodies_ != nullptr) {
+    is_regular_ = multibody::evaluate(model, bodies_->model, bodies_->state, state, ws, bodies_->ws);
+  } else if (held_ != nullptr) {
+    is_regular_ = multibody::evaluate(model, held_->model, held_->state, state, ws, held_->ws);
+  } else {
+    multibody::evaluate(model, state, ws);
+  }
 }
 
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
@@ -62,13 +85,17 @@ bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, dou
     return multibody::advance(model, bodies_->model, bodies_->state, state, ws, bodies_->ws, h, mean, slope) &&
            is_regular_;
   }
+  if (held_ != nullptr) {
+    return multibody::advance(model, held_->model, held_->state, state, ws, held_->ws, h, mean, slope) && is_regular_;
+  }
   return multibody::advance(model, state, ws, h, mean, slope);
 }
 
 void Dynamics::add_to_hash(StateHash& hash) const noexcept {
-  if (bodies_ == nullptr) return;
-  hash.add(std::span<const double>(bodies_->state.q));
-  hash.add(std::span<const double>(bodies_->state.u));
+  const BodyState* state = bodies_ != nullptr ? &bodies_->state : held_ != nullptr ? &held_->state : nullptr;
+  if (state == nullptr) return;
+  hash.add(std::span<const double>(state->q));
+  hash.add(std::span<const double>(state->u));
 }
 
 }  // namespace slew::multibody

@@ -1,5 +1,6 @@
 // A mechanism under the formulation that its scene chose, behind the calls of dynamics.h: the recursion in joint
-// coordinates (`recursive`), or body coordinates with multipliers (`lagrange`, body_coordinates.h).
+// coordinates (`recursive`), body coordinates with multipliers (`lagrange`, body_coordinates.h), or body coordinates
+// with joints held by penalties (`augmented`, `penalty`, body_penalty.h).
 //
 // Joint coordinates are what all formulations have in common: the State that goes with the calls follows whatever the
 // formulation integrates, so that positions, energies, reactions and variables are read off it in one way (observe.h).
@@ -23,8 +24,8 @@ class Dynamics {
   Dynamics& operator=(Dynamics&&) noexcept;
 
   // evaluate() and advance() of dynamics.h. While shapes touch, or are about to, advance() goes in parts of
-  // MechanicsDef::contact_substep at most. False: a matrix was singular, the joints could not be closed, or shapes went
-  // through each other between two instants.
+  // MechanicsDef::contact_substep at most. False: a matrix was singular, an iteration did not settle, the joints could
+  // not be closed, or shapes went through each other between two instants.
   void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;
@@ -37,8 +38,10 @@ class Dynamics {
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
 
   struct Bodies;
-  std::unique_ptr<Bodies> bodies_;  // none: recursive
-  bool is_regular_ = true;          // of the last evaluation
+  struct HeldBodies;
+  std::unique_ptr<Bodies> bodies_;    // lagrange
+  std::unique_ptr<HeldBodies> held_;  // augmented, penalty
+  bool is_regular_ = true;            // of the last evaluation
 };
 
 }  // namespace slew::multibody

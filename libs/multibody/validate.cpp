@@ -9,6 +9,7 @@
 
 #include "multibody/assembly.h"
 #include "multibody/body_inertia.h"
+#include "multibody/body_penalty.h"
 #include "multibody/constraint.h"
 #include "multibody/contact_elements.h"
 #include "multibody/dynamics.h"
@@ -33,6 +34,12 @@ constexpr double kRightAngleTolerance = 1e-3;
 constexpr double kTransverseTolerance = 1e-2;
 // a start on a limit, by numbers with six digits and more
 constexpr double kLimitTolerance = 1e-6;  // m, rad
+
+// to three digits
+double rounded_down(double x) {
+  const double digit = std::pow(10, std::floor(std::log10(x)) - 2);
+  return std::floor(x / digit) * digit;
+}
 
 class Validator {
  public:
@@ -70,11 +77,14 @@ class Validator {
   }
 
   void check_section() {
-    if (m_.formulation == Formulation::recursive || m_.formulation == Formulation::lagrange) return;
-    constexpr const char* kNames[] = {"recursive", "lagrange", "augmented", "penalty"};
-    add("mechanics.formulation",
-        fmt::format("the formulation '{}' is not in this version", kNames[static_cast<int>(m_.formulation)]),
-        "recursive or lagrange");
+    if (m_.formulation != Formulation::penalty || !(m_.penalty_frequency > 0)) return;
+    const double longest = longest_penalty_step(m_.penalty_damping, m_.penalty_frequency);
+    if (m_.max_substep <= longest) return;
+    add("mechanics.penalty_frequency",
+        fmt::format("{:.4g} rad/s with penalty_damping {:.4g} is unstable in sub-steps of {:.4g} s",
+                    m_.penalty_frequency, m_.penalty_damping, m_.max_substep),
+        fmt::format("at most {:.6g} rad/s, or max_substep of at most {:.3g} s",
+                    rounded_down(longest * m_.penalty_frequency / m_.max_substep), rounded_down(longest)));
   }
 
   // ranges of the field tables, for Defs that no scene reader has seen

@@ -49,12 +49,14 @@ TEST_F(SubsystemStep, DoesNotAllocateInAThousandSteps) {
 }
 
 TEST_F(SubsystemStep, DoesNotAllocateInBodyCoordinates) {
-  const scene::Scene with_multipliers = CranePair::load({"mechanics.formulation=lagrange"});
-  CranePair bodies(with_multipliers);
-  bodies.start();
-  const HeapUse use = heap_use(bodies, [](StepIndex) {});
-  EXPECT_EQ(use.allocations, 0u);
-  EXPECT_EQ(use.frees, 0u);
+  for (const char* formulation : {"lagrange", "augmented", "penalty"}) {
+    const scene::Scene other = CranePair::load({std::string("mechanics.formulation=") + formulation});
+    CranePair bodies(other);
+    bodies.start();
+    const HeapUse use = heap_use(bodies, [](StepIndex) {});
+    EXPECT_EQ(use.allocations, 0u) << formulation;
+    EXPECT_EQ(use.frees, 0u) << formulation;
+  }
 }
 
 TEST_F(SubsystemStep, DoesNotAllocateWhileTheBagKnocksOnTheFloor) {

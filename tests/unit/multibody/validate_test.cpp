@@ -55,9 +55,26 @@ TEST(Validate, FindsNothingInASoundMechanism) {
   EXPECT_EQ(testing::text_of(problems), "");
 }
 
-TEST(Validate, NamesOtherFormulationsAsMissing) {
-  expect_problem([](auto& d) { d.formulation = Formulation::penalty; }, "mechanics.formulation",
-                 "'penalty' is not in this version");
+TEST(Validate, TakesEveryFormulation) {
+  for (const Formulation formulation :
+       {Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty}) {
+    EXPECT_EQ(testing::text_of(problems_of([&](auto& d) { d.formulation = formulation; })), "");
+  }
+}
+
+TEST(Validate, NamesTheLongestStepThatAPenaltyAllows) {
+  // a double root at -omega: the Runge-Kutta method of order 4 is stable to 2.785 on the negative axis
+  expect_problem([](auto& d) { d.formulation = Formulation::penalty, d.penalty_frequency = 3000; },
+                 "mechanics.penalty_frequency",
+                 "3000 rad/s with penalty_damping 1 is unstable in sub-steps of 0.001 s");
+  const Problems problems =
+      problems_of([](auto& d) { d.formulation = Formulation::penalty, d.penalty_frequency = 3000; });
+  EXPECT_EQ(problems[0].expected, "at most 2780 rad/s, or max_substep of at most 0.000928 s");
+  // the recursion has no such limit, and the longest step of a scene is stable at the frequency that goes without
+  // saying
+  EXPECT_EQ(testing::text_of(problems_of([](auto& d) { d.penalty_frequency = 3000; })), "");
+  EXPECT_EQ(testing::text_of(problems_of([](auto& d) { d.formulation = Formulation::penalty, d.max_substep = 20e-3; })),
+            "");
 }
 
 TEST(Validate, NamesDanglingBodies) {
@@ -247,6 +264,9 @@ TEST(Validate, WantsUnitsOfSenseInTheSection) {
   expect_problem([](auto& d) { d.max_substep = 0; }, "mechanics.max_substep", "out of range");
   expect_problem([](auto& d) { d.gravity[1] = std::numeric_limits<double>::infinity(); }, "mechanics.gravity",
                  "out of range");
+  expect_problem([](auto& d) { d.penalty_factor = 10; }, "mechanics.penalty_factor", "out of range");
+  expect_problem([](auto& d) { d.penalty_damping = 0; }, "mechanics.penalty_damping", "out of range");
+  expect_problem([](auto& d) { d.penalty_frequency = 0; }, "mechanics.penalty_frequency", "out of range");
 }
 
 TEST(ValidateRows, NamesWhatCannotBeActedOn) {
