@@ -101,6 +101,42 @@ void add_elements(const Model& model, const Workspace& ws, double h, math::Block
   }
 }
 
+// A pull T on a link at s from its origin turns the link back: T . s across s. A push would make the matrix indefinite
+// and is left to the right-hand side.
+void add_pull(int link, Vec3 s, Vec3 T, double h, math::BlockLdl& ldl) noexcept {
+  const double stiffness = dot(T, s);
+  if (link == 0 || !(stiffness > 0)) return;
+  SpatialBlock block{};
+  add_to_block((math::Mat3::identity() - outer(s, s) * (1 / dot(s, s))) * (0.25 * h * h * stiffness), 3, 3, block);
+  ldl.add_diagonal(link - 1, block);
+}
+
+// of the link's own weight and inertia at its centre of mass, and of the multipliers: light links between heavy ones
+// are strings
+void add_pulls(const Model& model, const PenaltyModel& body, const Workspace& ws, double h,
+               PenaltyWorkspace& pws) noexcept {
+  for (std::size_t link = 1; link < model.links.size(); ++link) {
+    if (!(model.links[link].mass > 0)) continue;
+    const double* udot = pws.end_udot.data() + kLinkSpeeds * (link - 1);
+    const LinkMotion& m = ws.motion[link];
+    const Vec3 c = m.R * model.links[link].h_L * (1 / model.links[link].mass);
+    const Vec3 a = Vec3(udot[0], udot[1], udot[2]) + cross({udot[3], udot[4], udot[5]}, c) + cross(m.w, cross(m.w, c));
+    add_pull(static_cast<int>(link), c, (model.gravity - a) * model.links[link].mass, h, pws.ldl);
+  }
+  for (std::size_t i = 0; i < body.constraints.size(); ++i) {
+    const Constraint& constraint = body.constraints[i];
+    Vec3 T;
+    for (std::size_t row = at(body.first_row[i]); row < at(body.first_row[i + 1]); ++row) {
+      T += pws.rows[row].G.v2 * pws.multipliers[row];
+    }
+    // both pulled at the point of frame 2
+    const LinkMotion& link2 = ws.motion[at(constraint.link2)];
+    const Vec3 s2 = link2.R * constraint.p_L2;
+    add_pull(constraint.link1, link2.p + s2 - ws.motion[at(constraint.link1)].p, T, h, pws.ldl);
+    add_pull(constraint.link2, s2, -T, h, pws.ldl);
+  }
+}
+
 }  // namespace
 
 bool factorize(const Model& model, const PenaltyModel& body, const Workspace& ws, PenaltyWorkspace& pws,
@@ -116,7 +152,10 @@ bool factorize(const Model& model, const PenaltyModel& body, const Workspace& ws
     }
     blocks.put(constraint.link1, constraint.link2, pws.ldl);
   }
-  if (h > 0) add_elements(model, ws, h, pws.ldl);
+  if (h > 0) {
+    add_elements(model, ws, h, pws.ldl);
+    add_pulls(model, body, ws, h, pws);
+  }
   return pws.ldl.factorize(0);  // there are no closing nodes
 }
 
