@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "multibody/body_attitude.h"
+#include "multibody/loops.h"
 #include "multibody/penalty_passes.h"
 
 namespace slew::multibody {
@@ -11,15 +12,16 @@ using math::Vec3;
 
 namespace {
 
-// corrections of Newton's method, m and rad: each is worth a factor of a hundred to ten thousand
+// corrections of Newton's method, m and rad of the mechanism's size: each is worth a factor of a hundred to ten
+// thousand
 constexpr int kMostCorrections = 30;
 constexpr double kSettled = 1e-12;
-// far from Ground's origin, or under stiff springs, rounding ends the way down before that
+// under stiff springs rounding ends the way down before that
 constexpr double kRounded = 1e-9;
 constexpr double kStalled = 0.5;
 // the matrix is made anew when a correction shrinks by less
 constexpr double kSlow = 0.1;
-constexpr double kClosedRate = 1e-12;  // m/s, 1/s
+constexpr double kClosedRate = 1e-12;  // m/s, 1/s of its speed
 
 std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
@@ -69,10 +71,11 @@ class Trapezoid {
 
   bool close_positions() noexcept {
     bool is_regular = factorize(model_, body_, ws_, pws_, h_);
+    const double extent = extent_of(ws_).length;
     double before = 0, size = 0;
     for (pws_.iterations = 1; pws_.iterations <= kMostCorrections; ++pws_.iterations) {
       correct();
-      size = largest_of(pws_.correction);
+      size = largest_of(pws_.correction) / extent;
       if (size <= kSettled) return is_regular;
       const bool is_slow = pws_.iterations > 1 && size > kSlow * before;
       if (is_slow && size <= kRounded && size > kStalled * before) return is_regular;
@@ -84,6 +87,7 @@ class Trapezoid {
 
   // (8)
   void close_speeds() noexcept {
+    const double closed = kClosedRate * extent_of(ws_).speed;
     double before = 0;
     for (int i = 0; i < kMostCorrections; ++i) {
       std::fill(pws_.correction.begin(), pws_.correction.end(), 0.0);
@@ -93,7 +97,7 @@ class Trapezoid {
         largest = std::max(largest, std::fabs(rate));
         subtract_row(constraint, pws_.factored[row], body_.alpha[row] * rate, pws_.correction);
       });
-      if (largest <= kClosedRate || (i > 0 && largest > kStalled * before)) return;
+      if (largest <= closed || (i > 0 && largest > kStalled * before)) return;
       before = largest;
       pws_.ldl.solve(pws_.correction);
       for (std::size_t k = 0; k < pws_.stage.u.size(); ++k) pws_.stage.u[k] += pws_.correction[k];
@@ -178,7 +182,8 @@ bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyStat
   normalize_attitudes(state.q);
   see(model, body, state, joints, ws, pws);
   const Drift left = drift(pws);
-  return has_settled && left.position <= kHeld && left.rate <= kHeld;
+  const Extent extent = extent_of(ws);
+  return has_settled && left.position <= kHeld * extent.length && left.rate <= kHeld * extent.speed;
 }
 
 }  // namespace slew::multibody

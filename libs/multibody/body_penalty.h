@@ -101,7 +101,7 @@ void accelerations(const Model& model, PenaltyWorkspace& pws, std::span<const do
                            PenaltyWorkspace& pws, double h, std::span<const double> mean,
                            std::span<const double> slope) noexcept;
 
-inline constexpr double kHeld = 1e-8;  // m, 1; and per second
+inline constexpr double kHeld = 1e-8;  // m, 1; per second; of the mechanism's size and speed where these exceed 1
 
 // After evaluate() or advance(): the largest g and g' of all rows.
 [[nodiscard]] Drift drift(const PenaltyWorkspace& pws) noexcept;

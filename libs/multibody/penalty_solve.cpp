@@ -140,7 +140,7 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
   const bool is_exact = body.formulation == Formulation::augmented;
   std::fill(x.begin(), x.end(), 0.0);
   std::fill(multipliers.begin(), multipliers.end(), 0.0);
-  double before = 0, share = 0;
+  double before = 0, whole = 0, share = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     // what is left of the equation of motion; of a plain penalty the multipliers are those of x alone
     std::copy(force.begin(), force.end(), pws.correction.begin());
@@ -156,7 +156,9 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
     }
     pws.ldl.solve(pws.correction);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] += pws.correction[k];
-    const double size = largest_of(pws.correction), whole = largest_of(x);
+    // forces that nearly balance leave less than their rounding
+    const double size = largest_of(pws.correction);
+    whole = std::max(whole, largest_of(x));
     share = whole > 0 ? size / whole : 0;
     if (share <= kRounding || (share <= kSmall && size > kStalled * before)) break;
     before = size;

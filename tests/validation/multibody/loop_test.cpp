@@ -91,7 +91,10 @@ TEST_P(FourBars, OneFollowsItsBranchThroughTheFlatPositions) {
 }
 
 TEST_P(FourBars, TwoFollowTheirBranchThroughTheFlatPositions) {
-  Formulated bars = start(four_bars(2));
+  MechanicsDef def = four_bars(2);
+  // three degrees of freedom in each pass, held apart by the penalty alone
+  def.penalty_factor = 1e8;
+  Formulated bars = start(def);
   follow_table(bars, "A02_N2.csv", 1e-3);
 }
 
@@ -155,7 +158,8 @@ MechanicsDef squeezer() {
   return def;
 }
 
-// The crank's torque acts through a row.
+// The crank's torque acts through a row. Joints that are held by penalties give by a share of the order of 1e-7.
+constexpr double kSoft = 1e-5;
 TEST_P(Squeezer, FollowsTheReferenceTo30ms) {
   MechanicsDef def = squeezer();
   def.formulation = GetParam();
@@ -167,7 +171,8 @@ TEST_P(Squeezer, FollowsTheReferenceTo30ms) {
   Dynamics dynamics(GetParam(), model, state);
   const double torque[] = {0.033}, slope[] = {0};
   dynamics.evaluate(model, state, ws);
-  EXPECT_NEAR(row_free_accelerations(ws)[0] + row_mobility(ws)[0] * 0.033, 14222.4439199541, 1e-5);
+  EXPECT_NEAR(row_free_accelerations(ws)[0] + row_mobility(ws)[0] * 0.033, 14222.4439199541,
+              GetParam() == Formulation::penalty ? kSoft * 14222 : 1e-5);
   bool is_closed = true;
   for (int i = 0; i < 3000; ++i) {
     dynamics.evaluate(model, state, ws);
@@ -259,9 +264,11 @@ TEST_P(SliderCrank, InSpaceFollowsTheReference) {
                                   {1, 0.2117216614, 10.9135907299, -0.503491865, 10.427593000},
                                   {2, 0.2890851971, 21.0727445230, 0.216539423, 22.584240030},
                                   {5, 0.2407195737, 54.3333321688, -0.595984412, 11.494996263}};
+  // second order against fourth
+  const double step = GetParam() == Formulation::augmented ? 5e-4 : 1e-3;
   double time = 0;
   for (const auto& [t, x, angle, v, omega] : kTable) {
-    crank.run(t - time, 1e-3);
+    crank.run(t - time, step);
     time = t;
     EXPECT_NEAR(crank.pose("Slider").position[0], x, 2e-4) << t;
     EXPECT_NEAR(crank.value("Pivot.position"), angle, 1e-2) << t;
@@ -270,7 +277,8 @@ TEST_P(SliderCrank, InSpaceFollowsTheReference) {
   }
 }
 
-const auto kFormulations = ::testing::Values(Formulation::recursive, Formulation::lagrange);
+const auto kFormulations =
+    ::testing::Values(Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty);
 const auto kName = [](const ::testing::TestParamInfo<Formulation>& tested) { return testing::name_of(tested.param); };
 INSTANTIATE_TEST_SUITE_P(In, FourBars, kFormulations, kName);
 INSTANTIATE_TEST_SUITE_P(In, Squeezer, kFormulations, kName);
