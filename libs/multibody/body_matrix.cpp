@@ -2,6 +2,7 @@
 #include <array>
 
 #include "multibody/body_passes.h"
+#include "multibody/spatial_block.h"
 
 namespace slew::multibody {
 
@@ -12,25 +13,6 @@ namespace {
 
 std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
-}
-
-// Six by six, row-major; rows and columns: velocity of the origin, angular velocity.
-using SpatialBlock = std::array<double, static_cast<std::size_t>(kBody) * kBody>;
-
-void put(const Mat3& a, int row, int column, SpatialBlock& block) noexcept {
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) block[at((row + r) * kBody + column + c)] += a.c[c][r];
-  }
-}
-
-// mass A between a point at s_row from one link's origin and one at s_column from another's: X_row^T A X_column
-void put_point_mass(const Mat3& A, Vec3 s_row, Vec3 s_column, SpatialBlock& block) noexcept {
-  const Mat3 S_row = math::skew(s_row), S_column = math::skew(s_column);
-  const Mat3 right = A * S_column;
-  put(A, 0, 0, block);
-  put(right * -1.0, 0, 3, block);
-  put(S_row * A, 3, 0, block);
-  put(S_row * right * -1.0, 3, 3, block);
 }
 
 class Filling {
@@ -67,15 +49,7 @@ class Filling {
     }
   }
 
-  void add_mass(int link) noexcept {
-    const ArticulatedInertia& I = ws_.inertia[at(link)];
-    SpatialBlock block{};
-    put(I.M, 0, 0, block);
-    put(I.K, 0, 3, block);
-    put(transpose(I.K), 3, 0, block);
-    put(I.J, 3, 3, block);
-    add(link, link, block);
-  }
+  void add_mass(int link) noexcept { add(link, link, inertia_block(ws_.inertia[at(link)])); }
 
   void add_joint(int link) noexcept {
     const Constraint& joint = body_.joints[at(link)];
@@ -119,17 +93,16 @@ class Filling {
   void add_coupled(const CoupledMass& mass, const CoupledMotion& m) noexcept {
     const LineElement& line = model_.lines[at(mass.line)];
     const LineMotion& motion = ws_.lines[at(mass.line)];
-    const Mat3 along = outer(m.e, m.e), across = Mat3::identity() - along;
     const std::array<int, 2> links = {line.link1, line.link2};
     const std::array<Vec3, 2> points = {motion.P1, motion.P2};
-    const Mat3 A[2][2] = {{across * m.a11 + along * mass.m1, across * m.a12},
-                          {across * m.a12, across * m.a22 + along * mass.m2}};
+    const PointMasses between = point_masses(mass, m);
+    const Mat3 A[2][2] = {{between.A11, between.A12}, {between.A12, between.A22}};
     for (std::size_t i = 0; i < 2; ++i) {
       for (std::size_t j = 0; j < 2; ++j) {
         // of the two couplings one is the other's transposed
         if (links[i] == 0 || links[j] == 0 || (i != j && links[i] < links[j])) continue;
-        SpatialBlock block{};
-        put_point_mass(A[i][j], points[i] - ws_.motion[at(links[i])].p, points[j] - ws_.motion[at(links[j])].p, block);
+        const SpatialBlock block =
+            point_mass_block(A[i][j], points[i] - ws_.motion[at(links[i])].p, points[j] - ws_.motion[at(links[j])].p);
         add(links[i], links[j], block);
       }
     }

@@ -1,46 +1,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multibody/body_attitude.h"
 #include "multibody/body_passes.h"
 #include "multibody/contact_passes.h"
 #include "multibody/loops.h"
 
 namespace slew::multibody {
 
-using math::Vec3;
-
 namespace {
 
-Vec3 vector_at(std::span<const double> x, std::size_t i) noexcept {
-  return {x[i], x[i + 1], x[i + 2]};
-}
-
 constexpr int kMostCorrections = 20;  // Newton with one matrix: an error of 1e-2 is gone after five
-
-void combine(std::span<const double> x, double scale, std::span<const double> rate, std::span<double> y) noexcept {
-  for (std::size_t i = 0; i < x.size(); ++i) y[i] = x[i] + scale * rate[i];
-}
-
-math::Quaternion attitude_at(std::span<const double> q, std::size_t link) noexcept {
-  const std::size_t k = 7 * (link - 1) + 3;
-  return {q[k], q[k + 1], q[k + 2], q[k + 3]};
-}
-
-void put_attitude(const math::Quaternion& attitude, std::span<double> q, std::size_t link) noexcept {
-  const std::size_t k = 7 * (link - 1) + 3;
-  q[k] = attitude.w;
-  q[k + 1] = attitude.x;
-  q[k + 2] = attitude.y;
-  q[k + 3] = attitude.z;
-}
-
-void find_rates(const BodyState& state, std::span<double> qdot) noexcept {
-  for (std::size_t link = 1; link <= state.u.size() / 6; ++link) {
-    const std::size_t u = 6 * (link - 1);
-    std::copy_n(state.u.data() + u, 3, qdot.data() + 7 * (link - 1));
-    put_attitude(math::derivative(attitude_at(state.q, link), vector_at(state.u, u + 3)), qdot, link);
-  }
-}
 
 // accelerations of a stage
 bool find_accelerations(const Model& model, const BodyModel& body, const BodyState& state,
@@ -136,9 +106,7 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
   state.q.swap(bws.sum.q);
   state.u.swap(bws.sum.u);
   joints.time += h;
-  for (std::size_t link = 1; link < model.links.size(); ++link) {
-    put_attitude(math::normalized(attitude_at(state.q, link)), state.q, link);
-  }
+  normalize_attitudes(state.q);
   const bool is_closed = project(model, body, state, joints, ws, bws);
   accept_contacts(model, h, joints, ws);
   return is_closed && is_regular;
