@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "multibody/body_attitude.h"
+#include "multibody/contact_passes.h"
 #include "multibody/loops.h"
 #include "multibody/penalty_passes.h"
 
@@ -173,6 +174,7 @@ bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyStat
   accelerations(model, pws, pws.row_force, pws.udot);
   for (std::size_t k = 0; k < mean.size(); ++k) pws.row_force[k] = mean[k] + 0.5 * h * slope[k];
   pws.stage_joints.q = joints.q;
+  set_stage_time(joints, h, ws);
   Trapezoid step(model, body, state, ws, pws, h);
   step.predict();
   const bool has_settled = step.close_positions();
@@ -180,7 +182,9 @@ bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyStat
   state.q.swap(pws.stage.q);
   state.u.swap(pws.stage.u);
   normalize_attitudes(state.q);
+  joints.time += h;
   see(model, body, state, joints, ws, pws);
+  accept_contacts(model, h, joints, ws);
   const Drift left = drift(pws);
   const Extent extent = extent_of(ws);
   return has_settled && left.position <= kHeld * extent.length && left.rate <= kHeld * extent.speed;

@@ -89,14 +89,13 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
   bool is_regular = true;
   for (int stage = 0; stage < 4; ++stage) {
     if (stage > 0) {
-      if (ws.contact != nullptr) ws.contact->time = kStageTime[stage] * h;
+      set_stage_time(joints, kStageTime[stage] * h, ws);
       combine(state.q, kStageTime[stage] * h, bws.qdot, bws.stage.q);
       combine(state.u, kStageTime[stage] * h, bws.udot, bws.stage.u);
       if (bws.ldl.smallest_pivot() < kNearSingular) {
         is_regular = project(model, body, bws.stage, bws.stage_joints, ws, bws) && is_regular;
       }
       forces_at(kStageTime[stage] * h);
-      ws.time = joints.time + kStageTime[stage] * h;
       is_regular = find_accelerations(model, body, bws.stage, bws.row_force, ws, bws) && is_regular;
       find_rates(bws.stage, bws.qdot);
     }

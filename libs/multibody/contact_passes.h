@@ -16,6 +16,12 @@ namespace slew::multibody {
 // At the start of a sub-step, before the first update: the evaluations to come belong to this state.
 void begin_contacts(const Model& model, const State& state, Workspace& ws) noexcept;
 
+// Before an evaluation that belongs to `later` [s] after the start.
+inline void set_stage_time(const State& start, double later, Workspace& ws) noexcept {
+  ws.time = start.time + later;
+  if (ws.contact != nullptr) ws.contact->time = later;
+}
+
 // Contacts and their forces at the motion in ws, ws.contact->time after the start.
 void update_contacts(const Model& model, Workspace& ws) noexcept;
 

@@ -112,8 +112,7 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
     combine(state.u, time, ws.udot, ws.u_stage);
     if (is_near_singular(ws)) is_closed = project(model, ws.q_stage, ws.u_stage, ws) && is_closed;
     row_forces_at(time, h, mean, slope, forces);
-    if (ws.contact != nullptr) ws.contact->time = time;
-    ws.time = state.time + time;
+    set_stage_time(state, time, ws);
     forward_dynamics(model, ws.q_stage, ws.u_stage, forces, ws);
     coordinate_rates(model, ws, ws.q_stage, ws.u_stage, ws.qdot);
     combine(ws.q_sum, h * kWeight[stage], ws.qdot, ws.q_sum);

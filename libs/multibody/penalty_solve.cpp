@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multibody/contact_passes.h"
 #include "multibody/passes.h"
 #include "multibody/penalty_passes.h"
 #include "multibody/spatial_block.h"
@@ -62,9 +63,11 @@ void see(const Model& model, const PenaltyModel& body, const BodyState& state, S
   update_body_motion(model, state, ws);
   find_joint_coordinates(model, ws, joints);
   update_elements(model, joints.q, Elements::used, ws);
+  update_contacts(model, ws);
   update_inertia(model, ws);
   update_coupled(model, ws);
   apply_elements(model, ws);
+  apply_contacts(model, ws);
   for (std::size_t i = 0; i < body.constraints.size(); ++i) {
     const Constraint& constraint = body.constraints[i];
     const std::span<RowValue> rows(pws.rows.data() + body.first_row[i], constraint.rows.size());

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "multibody/body_attitude.h"
+#include "multibody/contact_passes.h"
 #include "multibody/penalty_passes.h"
 
 namespace slew::multibody {
@@ -38,6 +39,7 @@ bool advance_by_runge_kutta(const Model& model, const PenaltyModel& body, BodySt
       combine(state.q, kStageTime[stage] * h, pws.qdot, pws.stage.q);
       combine(state.u, kStageTime[stage] * h, pws.udot, pws.stage.u);
       forces_at(kStageTime[stage] * h);
+      set_stage_time(joints, kStageTime[stage] * h, ws);
       is_solved = find_accelerations(model, body, pws.row_force, ws, pws) && is_solved;
       find_rates(pws.stage, pws.qdot);
     }
@@ -47,7 +49,9 @@ bool advance_by_runge_kutta(const Model& model, const PenaltyModel& body, BodySt
   state.q.swap(pws.sum.q);
   state.u.swap(pws.sum.u);
   normalize_attitudes(state.q);
+  joints.time += h;
   see(model, body, state, joints, ws, pws);
+  accept_contacts(model, h, joints, ws);
   return is_solved;
 }
 

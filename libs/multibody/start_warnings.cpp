@@ -43,8 +43,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
   for (const CutDescription& cut : describe(model).cuts) {
     for (const std::string& row : cut.redundant) {
       warnings.push_back({cut.joint, row + " is redundant: other joints hold it already",
-                          "nothing to do: motion is right, reactions are the smallest that fit",
-                          ""});
+                          "nothing to do: motion is right, reactions are the smallest that fit", ""});
     }
   }
 }

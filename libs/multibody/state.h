@@ -14,8 +14,8 @@
 
 namespace slew::multibody {
 
-// Coordinates and speeds, laid out as model.h says, and what contacts remember; nothing else is integrated. The steps add
-// their length to the time, which an owner with a clock of its own may set between them.
+// Coordinates and speeds, laid out as model.h says, and what contacts remember; nothing else is integrated. The steps
+// add their length to the time, which an owner with a clock of its own may set between them.
 struct State {
   std::vector<double> q;              // rad, m, quaternions
   std::vector<double> u;              // rad/s, m/s
