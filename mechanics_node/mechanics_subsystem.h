@@ -42,6 +42,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
 
   [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
   [[nodiscard]] const multibody::State& state() const noexcept { return state_; }
+  [[nodiscard]] const multibody::Dynamics& mechanism() const noexcept { return mechanism_; }
   [[nodiscard]] multibody::State& mutable_state() noexcept { return state_; }  // for tests; not between samples
 
  private:

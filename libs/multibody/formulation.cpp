@@ -3,9 +3,12 @@
 #include <utility>
 
 #include "multibody/body_coordinates.h"
+#include "multibody/body_passes.h"
 #include "multibody/body_penalty.h"
 #include "multibody/contact_passes.h"
 #include "multibody/dynamics.h"
+#include "multibody/observe.h"
+#include "multibody/passes.h"
 
 namespace slew::multibody {
 
@@ -91,8 +94,19 @@ bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, dou
   return multibody::advance(model, state, ws, h, mean, slope);
 }
 
+const BodyState* Dynamics::own_state() const noexcept {
+  return bodies_ != nullptr ? &bodies_->state : held_ != nullptr ? &held_->state : nullptr;
+}
+
+void Dynamics::observe(const Model& model, const State& state, Workspace& ws) const noexcept {
+  const BodyState* bodies = own_state();
+  if (bodies == nullptr) return multibody::observe(model, state, ws);
+  update_body_motion(model, *bodies, ws);
+  update_elements(model, state.q, Elements::all, ws);
+}
+
 void Dynamics::add_to_hash(StateHash& hash) const noexcept {
-  const BodyState* state = bodies_ != nullptr ? &bodies_->state : held_ != nullptr ? &held_->state : nullptr;
+  const BodyState* state = own_state();
   if (state == nullptr) return;
   hash.add(std::span<const double>(state->q));
   hash.add(std::span<const double>(state->u));

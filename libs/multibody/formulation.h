@@ -15,6 +15,8 @@
 
 namespace slew::multibody {
 
+struct BodyState;
+
 class Dynamics {
  public:
   // Starts from a state in joint coordinates. Pre-condition: validate() found nothing. Allocates.
@@ -30,10 +32,16 @@ class Dynamics {
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;
 
+  // observe() of observe.h on the poses and velocities that are integrated: where a formulation leaves the joints open,
+  // ws.motion shows it (joint_gauge.h), which the joint coordinates of the State cannot.
+  void observe(const Model& model, const State& state, Workspace& ws) const noexcept;
+
   // Raw bits of what is integrated beside the State.
   void add_to_hash(StateHash& hash) const noexcept;
 
  private:
+  // none: recursive
+  [[nodiscard]] const BodyState* own_state() const noexcept;
   [[nodiscard]] bool advance_part(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
 

@@ -1,0 +1,70 @@
+#include "multibody/joint_gauge.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "multibody/constraint.h"
+
+namespace slew::multibody {
+namespace {
+
+std::size_t at(int index) noexcept {
+  return static_cast<std::size_t>(index);
+}
+
+// a joint with coordinates, between the links of its bodies
+Constraint closed_joint(const Model& model, int index) {
+  const Joint& joint = model.joints[at(index)];
+  const Body &body1 = model.bodies[at(joint.body1)], &body2 = model.bodies[at(joint.body2)];
+  Constraint constraint;
+  constraint.joint = index;
+  constraint.link1 = body1.link;
+  constraint.link2 = body2.link;
+  constraint.R_L1 = body1.R_LB * joint.R_B1;
+  constraint.p_L1 = body1.p_LB + body1.R_LB * joint.p_B1;
+  constraint.R_L2 = body2.R_LB * joint.R_B2;
+  constraint.p_L2 = body2.p_LB + body2.R_LB * joint.p_B2;
+  constraint.rows = rows_of(joint.type, math::Mat3::identity(), math::Vec3());
+  return constraint;
+}
+
+// NaN stays
+bool is_larger(double value, double largest) noexcept {
+  return !std::isnan(largest) && !(value <= largest);
+}
+
+}  // namespace
+
+JointGauge::JointGauge(const Model& model) {
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    if (joint.cut >= 0) {
+      const Cut& cut = model.cuts[at(joint.cut)];
+      Constraint constraint = cut;
+      constraint.rows.insert(constraint.rows.end(), cut.redundant.begin(), cut.redundant.end());
+      constraints_.push_back(std::move(constraint));
+    } else if (joint.link > 0) {
+      constraints_.push_back(closed_joint(model, static_cast<int>(i)));
+    }
+  }
+}
+
+JointGap JointGauge::measure(const Workspace& ws) const noexcept {
+  JointGap largest;
+  std::array<RowValue, kMaxJointRows> values;
+  for (const Constraint& constraint : constraints_) {
+    const std::size_t rows = constraint.rows.size();
+    evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], {values.data(), rows});
+    for (std::size_t k = 0; k < rows; ++k) {
+      if (is_larger(std::fabs(values[k].g), largest.position)) {
+        largest.position = std::fabs(values[k].g);
+        largest.joint = constraint.joint;
+      }
+      if (is_larger(std::fabs(values[k].rate), largest.rate)) largest.rate = std::fabs(values[k].rate);
+    }
+  }
+  return largest;
+}
+
+}  // namespace slew::multibody
