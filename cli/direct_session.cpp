@@ -50,16 +50,20 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
     }
     return subsystem.step(n, partners, controls, next);
   };
+  const std::int64_t begin_ns = monotonic_ns();
   if (mechanics_ != nullptr) {
     PartnerSamples partners;
     if (hydraulics_ != nullptr) partners.actuators = &hydraulics_sample_.actuators;
     mechanics_report_ = advance(*mechanics_, partners, mechanics_next_);
   }
+  const std::int64_t middle_ns = monotonic_ns();
   if (hydraulics_ != nullptr) {
     PartnerSamples partners;
     if (mechanics_ != nullptr) partners.mechanism = &mechanics_sample_.mechanism;
     hydraulics_report_ = advance(*hydraulics_, partners, hydraulics_next_);
   }
+  mechanics_ns_ = middle_ns - begin_ns;
+  hydraulics_ns_ = monotonic_ns() - middle_ns;
   mechanics_sample_ = mechanics_next_;
   hydraulics_sample_ = hydraulics_next_;
 }
@@ -71,6 +75,14 @@ const coupling::Subsystem* DirectSession::subsystem(Role role) const noexcept {
 std::uint64_t DirectSession::state_hash(Role role) const noexcept {
   const coupling::Subsystem* found = subsystem(role);
   return found != nullptr ? found->state_hash() : 0;
+}
+
+const StepReport& DirectSession::report(Role role) const noexcept {
+  return role == Role::hydraulics ? hydraulics_report_ : mechanics_report_;
+}
+
+std::int64_t DirectSession::step_time_ns(Role role) const noexcept {
+  return role == Role::hydraulics ? hydraulics_ns_ : mechanics_ns_;
 }
 
 std::string DirectSession::failure() const {

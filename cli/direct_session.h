@@ -33,6 +33,9 @@ class DirectSession {
   [[nodiscard]] std::uint64_t state_hash(wire::Role role) const noexcept;
   // Mechanics' hash at its INIT sample.
   [[nodiscard]] std::uint64_t init_hash() const noexcept { return init_hash_; }
+  // What the role's part of the last step reported, and how long it took [ns of the wall clock].
+  [[nodiscard]] const StepReport& report(wire::Role role) const noexcept;
+  [[nodiscard]] std::int64_t step_time_ns(wire::Role role) const noexcept;
   // Why the last step failed; empty when it did not.
   [[nodiscard]] std::string failure() const;
 
@@ -45,6 +48,7 @@ class DirectSession {
   coupling::OwnSample hydraulics_next_;
   StepReport mechanics_report_;
   StepReport hydraulics_report_;
+  std::int64_t mechanics_ns_ = 0, hydraulics_ns_ = 0;
   std::uint64_t init_hash_ = 0;
 };
 

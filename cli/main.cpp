@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   cli::add_plot(app, action);
   cli::add_export(app, action);
   cli::add_replay(app, action);
+  cli::add_compare(app, action);
   cli::add_node(app, action);
   cli::add_doctor(app, action);
   int exit_code = 0;

@@ -25,6 +25,7 @@ void add_info(CLI::App& program, Action& action);
 void add_plot(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
+void add_compare(CLI::App& program, Action& action);
 void add_doctor(CLI::App& program, Action& action);
 
 // `slewring node ROLE ...` in the place of this program; gives a code only when that fails.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -11,6 +10,7 @@
 
 #include "cli/plotting/axis.h"
 #include "cli/plotting/decimation.h"
+#include "cli/plotting/svg_text.h"
 
 namespace slew::plotting {
 namespace {
@@ -26,21 +26,9 @@ constexpr double kLegendRow = 18;
 constexpr double kLegendGap = 8;  // to the plot area
 constexpr double kPanelGap = 20;
 constexpr double kTimeAxisHeight = 44;
-constexpr double kSwatch = 18;   // line in front of a name
-constexpr double kLetter = 7.3;  // mean width of a letter at 12 px in the widest of the fonts
+constexpr double kSwatch = 18;  // line in front of a name
 constexpr double kPixelsPerTimeTick = 95;
 constexpr double kPixelsPerValueTick = 38;
-
-// told apart also with a colour deficiency and in print
-constexpr std::array<std::string_view, 8> kColours = {"#1b6ca8", "#d95f02", "#2a9d5c", "#b8327a",
-                                                      "#7b5cc4", "#b8860b", "#2ba3b8", "#5f6670"};
-
-constexpr std::string_view kStyle =
-    "text{font-family:Inter,'Helvetica Neue',Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#3c434b}"
-    ".title{font-size:17px;font-weight:600;fill:#1d2227}.sub{fill:#6a727b}"
-    ".unit{font-weight:600;fill:#1d2227}.tick{fill:#5d656e}.end{text-anchor:end}.mid{text-anchor:middle}"
-    ".grid{stroke:#e7eaed;stroke-width:1}.zero{stroke:#b3bac1;stroke-width:1}.axis{stroke:#8a929a;stroke-width:1}"
-    ".curve{fill:none;stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}.dash{stroke-dasharray:6 4}";
 
 struct Panel {
   std::string unit;
@@ -50,29 +38,6 @@ struct Panel {
   Axis axis;
   bool is_empty = true;  // no value that can be shown
 };
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 // "m3/s2" with raised digits
 std::string typeset_unit(std::string_view unit) {
@@ -88,12 +53,6 @@ std::string typeset_unit(std::string_view unit) {
     }
   }
   return out;
-}
-
-double text_width(std::string_view text) {
-  // bytes that continue a character of UTF-8 take no room
-  const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
-  return kLetter * static_cast<double>(letters);
 }
 
 std::string power_of_ten(int exponent) {
@@ -252,7 +211,7 @@ class Picture {
     draw_line("axis", kLeft, panel.top + panel_height_, width_ - kRight, panel.top + panel_height_);
   }
 
-  static std::string_view colour(std::size_t i) { return kColours[i % kColours.size()]; }
+  static std::string_view colour(std::size_t i) { return colour_of(i); }
   static std::string_view dash(std::size_t i) { return i / kColours.size() % 2 == 1 ? " dash" : ""; }
 
   void draw_curve(const Panel& panel, std::size_t i) {

@@ -45,6 +45,7 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
                                                        {"plot"},
                                                        {"export"},
                                                        {"replay"},
+                                                       {"compare"},
                                                        {"node"},
                                                        {"doctor"}};
   for (std::vector<std::string> arguments : verbs) {
@@ -138,7 +139,7 @@ TEST_F(Program, CheckTellsEveryProblemWithItsPlace) {
 }
 
 TEST_F(Program, CheckAcceptsTheScenesOfTheRepository) {
-  for (const char* scene : {"first_steps.yaml", "truck_crane.yaml"}) {
+  for (const char* scene : {"first_steps.yaml", "truck_crane.yaml", "four_bar.yaml", "slider_crank.yaml"}) {
     const CommandResult result = slewring({"check", scene_file(scene)});
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_TRUE(contains(result.out, "ok")) << result.out;

@@ -1,0 +1,175 @@
+// `slewring compare SCENE`: one scene and input under every formulation, as a table and a picture of error over cost.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "cli/comparison/comparison_report.h"
+#include "cli/display.h"
+#include "cli/interrupts.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+
+namespace slew::cli {
+namespace {
+
+using cli_support::Failure;
+
+constexpr std::int64_t kTerminalPeriodNs = 200'000'000;
+constexpr int kMostRepeats = 1000;
+
+struct Options {
+  ComparisonWish wish;
+  std::string picture;  // empty: beside the user, named after the scene
+  std::string csv;
+  bool is_json = false;
+  bool is_quiet = false;
+};
+
+// Where the work is, on standard error: rewritten in place on a terminal, a line for each part elsewhere.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool is_quiet) : is_quiet_(is_quiet), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+  ~ProgressLine() { clear(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(std::string_view doing, double share) {
+    if (is_quiet_) return;
+    const std::int64_t now_ns = monotonic_ns();
+    if (!is_terminal_) {
+      if (doing != last_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * share, std::string(doing).c_str());
+    } else if (doing != last_ || now_ns >= next_ns_) {
+      next_ns_ = now_ns + kTerminalPeriodNs;
+      std::fprintf(stderr, "\r%3.0f %%  %s%s\x1b[K", 100 * share, std::string(doing).c_str(),
+                   left_text(share, now_ns).c_str());
+      is_shown_ = true;
+    }
+    last_ = doing;
+  }
+
+  void clear() {
+    if (is_shown_) std::fprintf(stderr, "\r\x1b[K");
+    is_shown_ = false;
+  }
+
+ private:
+  [[nodiscard]] std::string left_text(double share, std::int64_t now_ns) const {
+    constexpr double kKnown = 0.02;  // before it, a guess would only jump
+    if (share < kKnown) return "";
+    const double elapsed = static_cast<double>(now_ns - begin_ns_) * 1e-9;
+    return fmt::format("  {} left", duration_text(elapsed * (1 - share) / share));
+  }
+
+  bool is_quiet_, is_terminal_;
+  bool is_shown_ = false;
+  std::int64_t begin_ns_ = monotonic_ns(), next_ns_ = 0;
+  std::string last_;
+};
+
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) {
+    throw Failure(ExitCode::storage, "cannot write " + path + "; the table above is complete; name another file");
+  }
+}
+
+bool is_html(const std::string& path) {
+  return path.ends_with(".html") || path.ends_with(".htm");
+}
+
+// refused before anything has run for minutes
+void check_picture(const std::string& path) {
+  if (path.empty() || path.ends_with(".svg") || is_html(path)) return;
+  throw Failure(ExitCode::bad_input,
+                "-o " + path + ": the picture is .svg or .html; nothing was run; give the file one of these endings");
+}
+
+ExitCode run(const Options& options) {
+  check_picture(options.picture);
+  if (options.wish.scene.input == "keyboard") {
+    throw Failure(ExitCode::bad_input,
+                  "--input keyboard: every run needs the same input; nothing was run; write it "
+                  "into a .csv file");
+  }
+  count_interrupts();
+  Comparison comparison;
+  {
+    ProgressLine line(options.is_quiet);
+    comparison = compare(options.wish, [&line](std::string_view doing, double share) {
+      line.show(doing, share);
+      return interrupts() == 0;
+    });
+  }
+  fmt::print("{}", options.is_json ? report_json(comparison) + '\n' : report_text(comparison));
+  std::fflush(stdout);
+  if (!comparison.rows.empty()) {
+    if (!options.csv.empty()) write_file(options.csv, report_csv(comparison));
+    const std::string path = options.picture.empty() ? comparison.scene + "_compare.svg" : options.picture;
+    write_file(path, is_html(path) ? report_html(comparison) : report_svg(comparison));
+    if (!options.is_json) {
+      if (!options.csv.empty()) fmt::print("{}\n", options.csv);
+      fmt::print("{}\n", path);
+    }
+  }
+  return interrupts() > 0 ? static_cast<ExitCode>(interrupt_code()) : ExitCode::ok;
+}
+
+void add_what(CLI::App& verb, Options& options) {
+  ComparisonWish& wish = options.wish;
+  verb.add_option("scene", wish.scene.file, "scene file")->required()->type_name("SCENE");
+  const auto list = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
+    verb.add_option(name, to, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
+  };
+  list("--formulations", wish.formulations, "names separated by commas, or all; all without it", "NAMES");
+  list("--integrators", wish.integrators, "names separated by commas, or all; without it the scene's", "NAMES");
+  list("--steps", wish.steps,
+       "sub-steps of the mechanics, such as 0.5ms,1ms, that divide the communication step; a multiple of that "
+       "replaces it too. Without it the whole, a half and a quarter of the scene's",
+       "TIMES");
+  verb.add_option("--until", wish.scene.duration,
+                  "how long to simulate, such as '5 s'; without it the scene's duration")
+      ->type_name("TIME");
+  verb.add_option("--variables", wish.variables,
+                  "whose difference to the reference is shown: names, or patterns with * and ?; repeat for more; "
+                  "without it origins and centres of mass of all bodies")
+      ->type_name("PATTERN")
+      ->allow_extra_args(false);
+  verb.add_option("--reference", wish.reference_step,
+                  "sub-step of the reference; without it an eighth of the smallest of the steps")
+      ->type_name("TIME");
+  verb.add_option("--repeats", wish.repeats, "timed runs of every row")
+      ->check(CLI::Range(1, kMostRepeats))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("compare", "accuracy against cost of formulations, integrators and steps");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  add_what(*verb, *options);
+  verb->add_option("--set", options->wish.scene.overrides, "change a value of the scene; repeat for more")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  verb->add_option("--input", options->wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+      ->type_name("SOURCE")
+      ->capture_default_str();
+  verb->add_option("-o,--output", options->picture, "picture, .svg or .html; without it SCENE_compare.svg")
+      ->type_name("FILE");
+  verb->add_option("--csv", options->csv, "write the table as comma-separated values too")->type_name("FILE");
+  verb->add_flag("--json", options->is_json, "print the table as JSON and nothing else");
+  verb->add_flag("--quiet", options->is_quiet, "no progress");
+  verb->footer(
+      "All runs are in this process, one after the other, with the same input. Ctrl-C prints the rows that are done.\n"
+      "What the columns mean: docs/howto/compare.md.\n\n"
+      "Examples:\n"
+      "  slewring compare scenes/truck_crane.yaml --formulations all --until 5s\n"
+      "  slewring compare scenes/four_bar.yaml --formulations recursive,lagrange --steps 0.5ms,1ms,2ms -o bars.html");
+  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace slew::cli

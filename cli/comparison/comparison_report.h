@@ -1,0 +1,24 @@
+// A comparison for people, programs and spreadsheets, and as a picture of error over cost.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/comparison/comparison.h"
+
+namespace slew::cli {
+
+// What was run, against what, then the table; a line at the end for each thing that deserves one.
+[[nodiscard]] std::string report_text(const Comparison& comparison);
+
+[[nodiscard]] std::string report_json(const Comparison& comparison);
+
+// Comma-separated values (RFC 4180): one line for every row, SI units in the heading; what cannot be said is empty.
+[[nodiscard]] std::string report_csv(const Comparison& comparison);
+
+// Error of the first class of variables over the mechanics' cost, one mark for each row that ran and is stable, one
+// line for each formulation and integrator. Self-contained SVG; as_html: a page with the picture and the table.
+[[nodiscard]] std::string report_svg(const Comparison& comparison);
+[[nodiscard]] std::string report_html(const Comparison& comparison);
+
+}  // namespace slew::cli
