@@ -3,7 +3,8 @@
 //
 // The reference is the same scene and communication step with short sub-steps: recursive where the scene can, and the
 // integrator that scenes have by default. A second one with twice its sub-step estimates its error: their difference is
-// at least the error of any method of order one or more. A row's difference below the estimate says no more than that.
+// at least the error of any method of order one or more where the motion is smooth; near singular positions shorter
+// steps need not be better, which the energies show. A row's difference below the estimate says no more than that.
 //
 // Energy (kinetic and potential, multibody/observe.h), relative to the largest kinetic energy of the reference:
 //   kept      the reference keeps it: a row's drift is max |E(t) - E(0)|

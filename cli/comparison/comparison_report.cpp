@@ -103,8 +103,23 @@ std::string fitting(const std::vector<std::string>& variables) {
   return fmt::format("{} variables, {} to {}", variables.size(), variables.front(), variables.back());
 }
 
+// steps near a singular position can be worse when they are shorter, which an estimate by two steps does not see
+bool is_reference_in_doubt(const Comparison& comparison) {
+  constexpr double kClearlyBetter = 0.1;
+  constexpr double kRounding = 1e-12;
+  return comparison.energy_rule == EnergyRule::kept && comparison.reference_energy_drift > kRounding &&
+         std::any_of(comparison.rows.begin(), comparison.rows.end(), [&](const ComparedRow& row) {
+           return row.is_stable() && row.energy_drift &&
+                  *row.energy_drift < kClearlyBetter * comparison.reference_energy_drift;
+         });
+}
+
 std::vector<std::string> remarks(const Comparison& comparison) {
   std::vector<std::string> lines;
+  if (is_reference_in_doubt(comparison)) {
+    lines.emplace_back(
+        "the reference keeps its energy worse than some rows: the differences may be its own; try another --reference");
+  }
   for (const ComparedRow& row : comparison.rows) {
     const Configuration& c = row.configuration;
     if (row.has_run() && !row.cost.is_repeatable) {

@@ -291,6 +291,13 @@ TEST(ComparisonReport, NamesWhatIsUnstableAndWhatCannotRun) {
   EXPECT_TRUE(contains(text, "1.0e-04")) << text;
 }
 
+TEST(ComparisonReport, DoubtsAReferenceThatIsWorseThanWhatItJudges) {
+  Comparison comparison = by_hand();
+  EXPECT_FALSE(contains(report_text(comparison), "try another --reference"));
+  comparison.reference_energy_drift = 1e-3;  // the rows' is 1e-5
+  EXPECT_TRUE(contains(report_text(comparison), "try another --reference"));
+}
+
 TEST(ComparisonReport, PictureHasAMarkForEveryStableRow) {
   const std::string svg = report_svg(by_hand());
   std::size_t marks = 0;
