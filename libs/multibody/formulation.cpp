@@ -101,8 +101,11 @@ const BodyState* Dynamics::own_state() const noexcept {
 void Dynamics::observe(const Model& model, const State& state, Workspace& ws) const noexcept {
   const BodyState* bodies = own_state();
   if (bodies == nullptr) return multibody::observe(model, state, ws);
+  ws.time = state.time;
   update_body_motion(model, *bodies, ws);
   update_elements(model, state.q, Elements::all, ws);
+  begin_contacts(model, state, ws);
+  update_contacts(model, ws);
 }
 
 void Dynamics::add_to_hash(StateHash& hash) const noexcept {
