@@ -66,7 +66,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       row_names_(scene::row_names(scene)),
       model_(multibody::build_model(def_, row_names_)),
       state_(multibody::start_state(model_)),
-      mechanism_(def_.formulation, model_, state_),
+      mechanism_(def_.formulation, model_, state_, multibody::step_rule(def_)),
       last_good_(state_),
       workspace_(model_),
       level_(scene.session.coupling),
@@ -106,7 +106,7 @@ void MechanicsSubsystem::reset() {
   model_ = multibody::build_model(def_, row_names_);
   heavier_ = model_;
   state_ = multibody::start_state(model_);
-  mechanism_ = multibody::Dynamics(def_.formulation, model_, state_);
+  mechanism_ = multibody::Dynamics(def_.formulation, model_, state_, multibody::step_rule(def_));
   last_good_ = state_;
   workspace_ = multibody::Workspace(model_);
   is_evaluated_ = false;
@@ -285,7 +285,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     // by the count of steps, not by adding them up
     state_.time = static_cast<double>(n) * H_.seconds() + (i + 1) * h;
     if (!solved.has_converged) report.raise(StepFlag::not_converged);
-    report.iterations += static_cast<std::uint32_t>(solved.iterations);
+    report.iterations += static_cast<std::uint32_t>(solved.iterations + mechanism_.iterations());
     if (!(solved.residual <= report.residual)) report.residual = solved.residual;  // NaN stays
     finish_substep(partners.actuators, out);
   }

@@ -56,6 +56,15 @@ Quaternion derivative(const Quaternion& q, Vec3 w_A) noexcept {
   return Quaternion{0, 0.5 * w_A[0], 0.5 * w_A[1], 0.5 * w_A[2]} * q;
 }
 
+Quaternion turn_by(Vec3 turn_A) noexcept {
+  // below, sin(x)/x is 1 - x^2/6 to all digits
+  constexpr double kSmall = 1e-4;
+  const double half = 0.5 * norm(turn_A);
+  const double ratio = half < kSmall ? 1 - half * half / 6 : std::sin(half) / half;
+  const Vec3 v = turn_A * (0.5 * ratio);
+  return {std::cos(half), v[0], v[1], v[2]};
+}
+
 Mat3 rotation_x(double angle) noexcept {
   const auto [s, c] = sin_cos(angle);
   return {Vec3(1, 0, 0), Vec3(0, c, s), Vec3(0, -s, c)};

@@ -29,6 +29,9 @@ struct Quaternion {
 // dq_AB/dt = 1/2 (0, w) q for the angular velocity w of B seen from A, in A's axes [rad/s].
 [[nodiscard]] Quaternion derivative(const Quaternion& q, Vec3 w_A) noexcept;
 
+// Unit quaternion of a rotation by |turn_A| about turn_A [rad]: exp of half of it.
+[[nodiscard]] Quaternion turn_by(Vec3 turn_A) noexcept;
+
 [[nodiscard]] Mat3 rotation_x(double angle) noexcept;
 [[nodiscard]] Mat3 rotation_y(double angle) noexcept;
 [[nodiscard]] Mat3 rotation_z(double angle) noexcept;

@@ -28,7 +28,8 @@ double* body_at(const math::BlockLdl& ldl, std::vector<double>& x, int link) noe
   return x.data() + ldl.first_row(link - 1);
 }
 
-// minus the forces that a wrench on a link's origin needs
+}  // namespace
+
 void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept {
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     double* x = body_at(bws.ldl, bws.solution, static_cast<int>(i));
@@ -49,8 +50,6 @@ void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, Bo
     need(line.link2, motion.P2, ws.coupled[i].F2);
   }
 }
-
-}  // namespace
 
 void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept {
   for (std::size_t i = 1; i < body.joints.size(); ++i) {

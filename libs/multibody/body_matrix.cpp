@@ -1,12 +1,10 @@
 // The saddle-point matrix of body coordinates, block by block.
 #include <array>
 
-#include "multibody/body_passes.h"
-#include "multibody/spatial_block.h"
+#include "multibody/body_block.h"
 
 namespace slew::multibody {
 
-using math::Mat3;
 using math::Vec3;
 
 namespace {
@@ -34,22 +32,7 @@ class Filling {
   [[nodiscard]] int rows(int link) const noexcept { return static_cast<int>(body_.joints[at(link)].rows.size()); }
   [[nodiscard]] int node_size(int link) const noexcept { return kBody + rows(link); }
 
-  // a block of two links' bodies inside the blocks of their nodes
-  void add(int row_link, int column_link, const SpatialBlock& block) noexcept {
-    const int columns = node_size(column_link);
-    std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> wide{};
-    for (int r = 0; r < kBody; ++r) {
-      for (int c = 0; c < kBody; ++c) wide[at(r * columns + c)] = block[at(r * kBody + c)];
-    }
-    const std::span<const double> used(wide.data(), at(node_size(row_link) * columns));
-    if (row_link == column_link) {
-      bws_.ldl.add_diagonal(row_link - 1, used);
-    } else {
-      bws_.ldl.add_coupling(row_link - 1, column_link - 1, used);
-    }
-  }
-
-  void add_mass(int link) noexcept { add(link, link, inertia_block(ws_.inertia[at(link)])); }
+  void add_mass(int link) noexcept { add_block(body_, bws_.ldl, link, link, inertia_block(ws_.inertia[at(link)])); }
 
   void add_joint(int link) noexcept {
     const Constraint& joint = body_.joints[at(link)];
@@ -93,19 +76,11 @@ class Filling {
   void add_coupled(const CoupledMass& mass, const CoupledMotion& m) noexcept {
     const LineElement& line = model_.lines[at(mass.line)];
     const LineMotion& motion = ws_.lines[at(mass.line)];
-    const std::array<int, 2> links = {line.link1, line.link2};
-    const std::array<Vec3, 2> points = {motion.P1, motion.P2};
     const PointMasses between = point_masses(mass, m);
-    const Mat3 A[2][2] = {{between.A11, between.A12}, {between.A12, between.A22}};
-    for (std::size_t i = 0; i < 2; ++i) {
-      for (std::size_t j = 0; j < 2; ++j) {
-        // of the two couplings one is the other's transposed
-        if (links[i] == 0 || links[j] == 0 || (i != j && links[i] < links[j])) continue;
-        const SpatialBlock block =
-            point_mass_block(A[i][j], points[i] - ws_.motion[at(links[i])].p, points[j] - ws_.motion[at(links[j])].p);
-        add(links[i], links[j], block);
-      }
-    }
+    add_pair(body_, bws_.ldl,
+             {{line.link1, line.link2},
+              {motion.P1 - ws_.motion[at(line.link1)].p, motion.P2 - ws_.motion[at(line.link2)].p},
+              {{{between.A11, between.A12}, {between.A12, between.A22}}}});
   }
 
   const Model& model_;
@@ -115,6 +90,33 @@ class Filling {
 };
 
 }  // namespace
+
+void add_block(const BodyModel& body, math::BlockLdl& ldl, int row_link, int column_link,
+               const SpatialBlock& block) noexcept {
+  const auto node_size = [&body](int link) { return kBody + static_cast<int>(body.joints[at(link)].rows.size()); };
+  const int columns = node_size(column_link);
+  std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> wide{};
+  for (int r = 0; r < kBody; ++r) {
+    for (int c = 0; c < kBody; ++c) wide[at(r * columns + c)] = block[at(r * kBody + c)];
+  }
+  const std::span<const double> used(wide.data(), at(node_size(row_link) * columns));
+  if (row_link == column_link) {
+    ldl.add_diagonal(row_link - 1, used);
+  } else {
+    ldl.add_coupling(row_link - 1, column_link - 1, used);
+  }
+}
+
+void add_pair(const BodyModel& body, math::BlockLdl& ldl, const PointPair& pair) noexcept {
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < 2; ++j) {
+      // of the two couplings one is the other's transposed
+      const int row = pair.links[i], column = pair.links[j];
+      if (row == 0 || column == 0 || (i != j && row < column)) continue;
+      add_block(body, ldl, row, column, point_mass_block(pair.A[i][j], pair.s[i], pair.s[j]));
+    }
+  }
+}
 
 void fill_matrix(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept {
   Filling(model, body, ws, bws).fill();

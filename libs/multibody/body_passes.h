@@ -30,6 +30,10 @@ void put_rows(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
 [[nodiscard]] bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints,
                            Workspace& ws, BodyWorkspace& bws) noexcept;
 
+// Into the right-hand side: minus the wrenches that the links and the dummies between them need, at the accelerations
+// that the motion holds, and minus b of the joints' rows.
+void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
+
 // The matrix of equation (1) into bws.ldl, from inertias, joints and coupled masses.
 void fill_matrix(const Model& model, const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
 

@@ -71,8 +71,6 @@ void response_column(const Model& model, Workspace& ws, int row, std::span<doubl
   solve_forward(model, ws, residual, column);
 }
 
-namespace {
-
 void normalize_quaternions(const Model& model, std::span<double> q) noexcept {
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
@@ -85,6 +83,8 @@ void normalize_quaternions(const Model& model, std::span<double> q) noexcept {
     q[k + 3] = unit.z;
   }
 }
+
+namespace {
 
 // y = x + scale * rate
 void combine(std::span<const double> x, double scale, std::span<const double> rate, std::span<double> y) noexcept {

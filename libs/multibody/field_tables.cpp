@@ -17,10 +17,14 @@ constexpr Range kSubstepRange{.min = 1e-6, .max = 20e-3, .min_is_open = false, .
 constexpr Range kPenaltyFactorRange{.min = 1e3, .max = 1e10, .min_is_open = false, .max_is_open = false};
 constexpr Range kPenaltyDampingRange{.min = 0.01, .max = 10, .min_is_open = false, .max_is_open = false};
 constexpr Range kPenaltyFrequencyRange{.min = 0, .max = 1e6, .max_is_open = false};
+constexpr Range kRadiusRange{.min = 0, .max = 1, .min_is_open = false, .max_is_open = false};
+constexpr Range kIterationRange{.min = 1e-13, .max = 1e-3, .min_is_open = false, .max_is_open = false};
 constexpr double kMassRamp = 1.0;  // s
 
 constexpr std::array<std::string_view, 2> kInertiaPoints = {"center_of_mass", "body_origin"};
 constexpr std::array<std::string_view, 4> kFormulations = {"recursive", "lagrange", "augmented", "penalty"};
+constexpr std::array<std::string_view, 5> kIntegrators = {"rk4", "semi_implicit_euler", "trapezoidal",
+                                                          "generalised_alpha", "sdirk2"};
 
 constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::gravity>(
@@ -48,6 +52,18 @@ constexpr Field kMechanicsFields[] = {
                                             {.dimension = angular_velocity,
                                              .range = kPenaltyFrequencyRange,
                                              .doc = "penalty: angular frequency at which a joint closes again"}),
+    field<&MechanicsDef::integrator>(
+        "integrator", {.choices = kIntegrators,
+                       .doc = "rule of a sub-step; the last three are implicit: springs and dampers may be stiff"}),
+    field<&MechanicsDef::spectral_radius>(
+        "spectral_radius",
+        {.range = kRadiusRange,
+         .doc = "generalised_alpha: share of an oscillation far too fast for the sub-step that is left after one"}),
+    field<&MechanicsDef::iteration_tolerance>(
+        "iteration_tolerance",
+        {.range = kIterationRange,
+         .doc = "implicit integrators: error of speeds at which the iteration ends, of the mechanism's largest (at "
+                "least 1 m/s, 1 rad/s)"}),
 };
 
 constexpr Field kBodyFields[] = {

@@ -1,5 +1,6 @@
 #include "multibody/formulation.h"
 
+#include <optional>
 #include <utility>
 
 #include "multibody/body_coordinates.h"
@@ -13,8 +14,10 @@
 namespace slew::multibody {
 
 struct Dynamics::Bodies {
-  Bodies(const Model& mechanism, const State& start)
-      : model(build_body_model(mechanism)), state(body_state(mechanism, start)), ws(mechanism, model) {}
+  Bodies(const Model& mechanism, const State& start, const StepRule& rule)
+      : model(is_implicit(rule.integrator) ? build_stiff_body_model(mechanism) : build_body_model(mechanism)),
+        state(body_state(mechanism, start)),
+        ws(mechanism, model) {}
 
   BodyModel model;
   BodyState state;
@@ -30,6 +33,19 @@ struct Dynamics::HeldBodies {
   PenaltyWorkspace ws;
 };
 
+// Integrators beside rk4. In joint coordinates the iteration has a matrix of its own.
+struct Dynamics::Stages {
+  Stages(const Model& mechanism, const StepRule& step_rule, StageWorkspace::Coordinates coordinates)
+      : rule(step_rule), model(build_stiff_body_model(mechanism)), ws(mechanism, model, coordinates) {
+    if (coordinates == StageWorkspace::Coordinates::joint) matrix.emplace(mechanism, model);
+  }
+
+  StepRule rule;
+  BodyModel model;
+  StageWorkspace ws;
+  std::optional<BodyWorkspace> matrix;
+};
+
 namespace {
 
 bool take_passed(Workspace& ws) noexcept {
@@ -38,12 +54,16 @@ bool take_passed(Workspace& ws) noexcept {
 
 }  // namespace
 
-Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start) {
+Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start, StepRule rule) {
+  using enum StageWorkspace::Coordinates;
+  const bool has_rule = rule.integrator != Integrator::rk4;
   switch (formulation) {
     case Formulation::recursive:
+      if (has_rule) stages_ = std::make_unique<Stages>(model, rule, joint);
       break;
     case Formulation::lagrange:
-      bodies_ = std::make_unique<Bodies>(model, start);
+      bodies_ = std::make_unique<Bodies>(model, start, rule);
+      if (has_rule) stages_ = std::make_unique<Stages>(model, rule, body);
       break;
     case Formulation::augmented:
     case Formulation::penalty:
@@ -85,13 +105,24 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
 bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                             std::span<const double> slope) noexcept {
   if (bodies_ != nullptr) {
-    return multibody::advance(model, bodies_->model, bodies_->state, state, ws, bodies_->ws, h, mean, slope) &&
-           is_regular_;
+    Bodies& b = *bodies_;
+    if (stages_ == nullptr) {
+      return multibody::advance(model, b.model, b.state, state, ws, b.ws, h, mean, slope) && is_regular_;
+    }
+    const bool has_settled =
+        multibody::advance(model, b.model, stages_->rule, {state, &b.state}, ws, b.ws, stages_->ws, h, mean, slope);
+    return has_settled && is_regular_;
   }
   if (held_ != nullptr) {
     return multibody::advance(model, held_->model, held_->state, state, ws, held_->ws, h, mean, slope) && is_regular_;
   }
-  return multibody::advance(model, state, ws, h, mean, slope);
+  if (stages_ == nullptr) return multibody::advance(model, state, ws, h, mean, slope);
+  return multibody::advance(model, stages_->model, stages_->rule, {state}, ws, *stages_->matrix, stages_->ws, h, mean,
+                            slope);
+}
+
+int Dynamics::iterations() const noexcept {
+  return stages_ == nullptr ? 0 : stages_->ws.iterations;
 }
 
 const BodyState* Dynamics::own_state() const noexcept {
@@ -109,10 +140,15 @@ void Dynamics::observe(const Model& model, const State& state, Workspace& ws) co
 }
 
 void Dynamics::add_to_hash(StateHash& hash) const noexcept {
-  const BodyState* state = own_state();
-  if (state == nullptr) return;
-  hash.add(std::span<const double>(state->q));
-  hash.add(std::span<const double>(state->u));
+  if (const BodyState* bodies = own_state(); bodies != nullptr) {
+    hash.add(std::span<const double>(bodies->q));
+    hash.add(std::span<const double>(bodies->u));
+  }
+  if (stages_ == nullptr || stages_->rule.integrator != Integrator::generalised_alpha) return;
+  hash.add(std::span<const double>(stages_->ws.algorithmic));
+  for (const math::Vec3& turn : stages_->ws.algorithmic_turn) {
+    for (const double x : turn.array()) hash.add(x);
+  }
 }
 
 }  // namespace slew::multibody

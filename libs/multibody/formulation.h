@@ -11,6 +11,7 @@
 
 #include "core/state_hash.h"
 #include "multibody/defs.h"
+#include "multibody/integrators.h"
 #include "multibody/state.h"
 
 namespace slew::multibody {
@@ -20,14 +21,14 @@ struct BodyState;
 class Dynamics {
  public:
   // Starts from a state in joint coordinates. Pre-condition: validate() found nothing. Allocates.
-  Dynamics(Formulation formulation, const Model& model, const State& start);
+  Dynamics(Formulation formulation, const Model& model, const State& start, StepRule rule = {});
   ~Dynamics();
   Dynamics(Dynamics&&) noexcept;
   Dynamics& operator=(Dynamics&&) noexcept;
 
-  // evaluate() and advance() of dynamics.h. While shapes touch, or are about to, advance() goes in parts of
-  // MechanicsDef::contact_substep at most. False: a matrix was singular, an iteration did not settle, the joints could
-  // not be closed, or shapes went through each other between two instants.
+  // evaluate() and advance() of dynamics.h, with the integrator of the rule. While shapes touch, or are about to,
+  // advance() goes in parts of MechanicsDef::contact_substep at most. False: a matrix was singular, an iteration did
+  // not settle, the joints could not be closed, or shapes went through each other between two instants.
   void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;
@@ -35,6 +36,8 @@ class Dynamics {
   // observe() of observe.h on the poses and velocities that are integrated: where a formulation leaves the joints open,
   // ws.motion shows it (joint_gauge.h), which the joint coordinates of the State cannot.
   void observe(const Model& model, const State& state, Workspace& ws) const noexcept;
+  // Corrections of the last sub-step's implicit stages.
+  [[nodiscard]] int iterations() const noexcept;
 
   // Raw bits of what is integrated beside the State.
   void add_to_hash(StateHash& hash) const noexcept;
@@ -47,8 +50,10 @@ class Dynamics {
 
   struct Bodies;
   struct HeldBodies;
+  struct Stages;
   std::unique_ptr<Bodies> bodies_;    // lagrange
   std::unique_ptr<HeldBodies> held_;  // augmented, penalty
+  std::unique_ptr<Stages> stages_;    // integrators beside rk4
   bool is_regular_ = true;            // of the last evaluation
 };
 

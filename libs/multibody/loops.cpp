@@ -48,17 +48,6 @@ void find_step(const Model& model, Workspace& ws, Value value) noexcept {
   solve_forward(model, ws, ws.residual, loops.step);
 }
 
-void renew_matrix(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
-  update_motion(model, q, u, ws);
-  update_elements(model, q, Elements::used, ws);
-  update_inertia(model, ws);
-  update_coupled(model, ws);
-  std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
-  factorize(model, ws);
-  evaluate_cuts(model, ws);
-  factorize_cuts(model, ws);
-}
-
 void show_rows(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   update_motion(model, q, u, ws);
   evaluate_cuts(model, ws);
@@ -90,6 +79,17 @@ bool correct(const Model& model, std::span<const double> q, std::span<const doub
 }
 
 }  // namespace
+
+void renew_matrix(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+  update_motion(model, q, u, ws);
+  update_elements(model, q, Elements::used, ws);
+  update_inertia(model, ws);
+  update_coupled(model, ws);
+  std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
+  factorize(model, ws);
+  evaluate_cuts(model, ws);
+  factorize_cuts(model, ws);
+}
 
 void evaluate_cuts(const Model& model, Workspace& ws) noexcept {
   for (const Cut& cut : model.cuts) {

@@ -31,6 +31,9 @@ void close_loops(const Model& model, Workspace& ws) noexcept;
 // Takes what the cuts carry out of a port's row: its residual and rate.
 void reduce_row(const Model& model, Workspace& ws, std::span<double> residual, std::span<double> rate) noexcept;
 
+// Motion and factors of the tree and of the cuts for these coordinates; no forces.
+void renew_matrix(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
+
 // (2), beginning with the factors that ws holds. False when the rows did not come to kClosed.
 inline constexpr double kClosed = 1e-11;  // m, 1; per second; of the mechanism's size and speed where these exceed 1
 [[nodiscard]] bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept;

@@ -106,36 +106,39 @@ void move_floating(const LinkMotion& ground, std::span<const double> q, std::spa
   m.a = ground.a;
 }
 
+void move_link(const Model& model, std::size_t i, std::span<const double> q, std::span<const double> u,
+               Workspace& ws) noexcept {
+  const Link& link = model.links[i];
+  const LinkMotion& parent = ws.motion[static_cast<std::size_t>(link.parent)];
+  LinkMotion& m = ws.motion[i];
+  const auto qi = static_cast<std::size_t>(link.q), ui = static_cast<std::size_t>(link.u);
+  switch (link.joint) {
+    case LinkJoint::revolute:
+      move_revolute(link, parent, q[qi], u[ui], m);
+      break;
+    case LinkJoint::prismatic:
+      move_prismatic(link, parent, q[qi], u[ui], m);
+      break;
+    case LinkJoint::spherical:
+      move_spherical(link, parent, quaternion_at(q, qi), vector_at(u, ui), m);
+      break;
+    case LinkJoint::floating:
+      move_floating(parent, q.subspan(qi, 7), u.subspan(ui, 6), m);
+      break;
+    case LinkJoint::universal:
+      move_universal(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
+      break;
+    case LinkJoint::cylindrical:
+      move_cylindrical(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
+      break;
+  }
+}
+
 }  // namespace
 
 void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   ws.motion[0].a = -model.gravity;
-  for (std::size_t i = 1; i < model.links.size(); ++i) {
-    const Link& link = model.links[i];
-    const LinkMotion& parent = ws.motion[static_cast<std::size_t>(link.parent)];
-    LinkMotion& m = ws.motion[i];
-    const auto qi = static_cast<std::size_t>(link.q), ui = static_cast<std::size_t>(link.u);
-    switch (link.joint) {
-      case LinkJoint::revolute:
-        move_revolute(link, parent, q[qi], u[ui], m);
-        break;
-      case LinkJoint::prismatic:
-        move_prismatic(link, parent, q[qi], u[ui], m);
-        break;
-      case LinkJoint::spherical:
-        move_spherical(link, parent, quaternion_at(q, qi), vector_at(u, ui), m);
-        break;
-      case LinkJoint::floating:
-        move_floating(parent, q.subspan(qi, 7), u.subspan(ui, 6), m);
-        break;
-      case LinkJoint::universal:
-        move_universal(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
-        break;
-      case LinkJoint::cylindrical:
-        move_cylindrical(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
-        break;
-    }
-  }
+  for (std::size_t i = 1; i < model.links.size(); ++i) move_link(model, i, q, u, ws);
 }
 
 void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,
@@ -195,6 +198,35 @@ void displace(const Model& model, const Workspace& ws, std::span<const double> s
         q[qi] += step[ui];
         break;
     }
+  }
+}
+
+void move_from(const Model& model, std::span<const double> start, const Displacement& way, std::span<const double> u,
+               std::span<double> q, Workspace& ws) noexcept {
+  ws.motion[0].a = -model.gravity;
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    const auto ui = static_cast<std::size_t>(link.u);
+    auto qi = static_cast<std::size_t>(link.q);
+    if (link.joint != LinkJoint::spherical && link.joint != LinkJoint::floating) {
+      for (int k = 0; k < speed_count(link.joint); ++k, ++qi) {
+        const std::size_t j = ui + static_cast<std::size_t>(k);
+        q[qi] = start[qi] + way.base[j] + way.scale * u[j];
+      }
+    } else {
+      Vec3 w = vector_at(u, ui) + ws.motion[static_cast<std::size_t>(link.parent)].w;
+      if (link.joint == LinkJoint::floating) {
+        for (std::size_t k = 0; k < 3; ++k, ++qi) q[qi] = start[qi] + way.base[ui + k] + way.scale * u[ui + k];
+        w = vector_at(u, ui + 3);
+      }
+      const math::Quaternion turned =
+          math::normalized(math::turn_by(way.turn[i] + w * way.scale) * quaternion_at(start, qi));
+      q[qi] = turned.w;
+      q[qi + 1] = turned.x;
+      q[qi + 2] = turned.y;
+      q[qi + 3] = turned.z;
+    }
+    move_link(model, i, q, u, ws);
   }
 }
 

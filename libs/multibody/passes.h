@@ -50,6 +50,19 @@ void solve_backward(const Model& model, Workspace& ws, std::span<const int> supp
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, int link1, int link2,
                     std::span<const RowValue> rows, std::span<double> residual, std::span<double> rate) noexcept;
 
+// Coordinates a displacement away from others, base + scale times the speeds u, and the motion there. Turns of
+// quaternions are exponentials in Ground axes, of turn + scale times the link's angular velocity, by link.
+struct Displacement {
+  double scale = 0;                  // s
+  std::span<const double> base;      // by u [rad or m]
+  std::span<const math::Vec3> turn;  // rad
+};
+void move_from(const Model& model, std::span<const double> start, const Displacement& way, std::span<const double> u,
+               std::span<double> q, Workspace& ws) noexcept;
+
+// Unit quaternions, whatever their length was.
+void normalize_quaternions(const Model& model, std::span<double> q) noexcept;
+
 // q' of the coordinates for speeds u; needs the motion of the same q and u.
 void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,
                       std::span<double> qdot) noexcept;

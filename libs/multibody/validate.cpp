@@ -77,6 +77,7 @@ class Validator {
   }
 
   void check_section() {
+    check_integrator();
     if (m_.formulation != Formulation::penalty || !(m_.penalty_frequency > 0)) return;
     const double longest = longest_penalty_step(m_.penalty_damping, m_.penalty_frequency);
     if (m_.max_substep <= longest) return;
@@ -85,6 +86,15 @@ class Validator {
                     m_.penalty_frequency, m_.penalty_damping, m_.max_substep),
         fmt::format("at most {:.6g} rad/s, or max_substep of at most {:.3g} s",
                     rounded_down(longest * m_.penalty_frequency / m_.max_substep), rounded_down(longest)));
+  }
+
+  void check_integrator() {
+    if (m_.integrator == Integrator::rk4 || m_.formulation <= Formulation::lagrange) return;
+    constexpr const char* kNames[] = {"rk4", "semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2"};
+    add("mechanics.integrator",
+        fmt::format("the integrator '{}' is there for the formulations recursive and lagrange only",
+                    kNames[static_cast<int>(m_.integrator)]),
+        "rk4, which leaves this formulation its own rule");
   }
 
   // ranges of the field tables, for Defs that no scene reader has seen

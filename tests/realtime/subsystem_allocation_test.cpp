@@ -90,6 +90,20 @@ TEST(MechanicsStep, DoesNotAllocateWithAnyForceElement) {
   }
 }
 
+TEST_F(SubsystemStep, DoesNotAllocateUnderAnyIntegrator) {
+  for (const std::string formulation : {"recursive", "lagrange"}) {
+    for (const std::string integrator : {"semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2"}) {
+      const scene::Scene other =
+          CranePair::load({"mechanics.formulation=" + formulation, "mechanics.integrator=" + integrator});
+      CranePair machine(other);
+      machine.start();
+      const HeapUse use = heap_use(machine, [](StepIndex) {});
+      EXPECT_EQ(use.allocations, 0u) << formulation << ' ' << integrator;
+      EXPECT_EQ(use.frees, 0u) << formulation << ' ' << integrator;
+    }
+  }
+}
+
 TEST_F(SubsystemStep, DoesNotAllocateWhileParametersChange) {
   std::uint64_t taken = 0;
   const HeapUse use = heap_use(crane, [this, &taken](StepIndex i) {

@@ -77,6 +77,15 @@ TEST(Validate, NamesTheLongestStepThatAPenaltyAllows) {
             "");
 }
 
+TEST(Validate, NamesIntegratorsThatAFormulationDoesNotHave) {
+  expect_problem(
+      [](auto& d) {
+        d.formulation = Formulation::penalty;
+        d.integrator = Integrator::sdirk2;
+      },
+      "mechanics.integrator", "'sdirk2' is there for the formulations recursive and lagrange only");
+}
+
 TEST(Validate, NamesDanglingBodies) {
   expect_problem([](auto& d) { d.bodies[1].relative_to = "Army"; }, "Load.relative_to", "there is no body 'Army'");
   expect_problem([](auto& d) { d.joints[1].body2 = "Bag"; }, "Ball.body2", "there is no body 'Bag'");

@@ -56,6 +56,31 @@ TEST_P(CraneUnder, MovesAsUnderTheRecursion) {
   EXPECT_LT(force_error, GetParam().force);
 }
 
+// second order in steps of 1 ms, and the same forces from hydraulics
+TEST(Integrators, MoveTheCraneImplicitlyAsUnderRungeKutta) {
+  const scene::Scene of_recursive = CranePair::load();
+  for (const std::string formulation : {"recursive", "lagrange"}) {
+    for (const std::string integrator : {"trapezoidal", "generalised_alpha", "sdirk2"}) {
+      const scene::Scene scene =
+          CranePair::load({"mechanics.formulation=" + formulation, "mechanics.integrator=" + integrator});
+      CranePair other(scene), runge_kutta(of_recursive);
+      other.start();
+      runge_kutta.start();
+      double error = 0;
+      for (StepIndex i = 0; i < kSteps; ++i) {
+        other.step(CranePair::levers(other.n));
+        runge_kutta.step(CranePair::levers(runge_kutta.n));
+        for (std::size_t k = 0; k < other.mechanics_now.mechanism.x.size(); ++k) {
+          error =
+              std::max(error, std::fabs(other.mechanics_now.mechanism.x[k] - runge_kutta.mechanics_now.mechanism.x[k]));
+        }
+      }
+      EXPECT_LT(error, 1e-4) << formulation << ' ' << integrator;
+      EXPECT_GT(error, 0) << formulation << ' ' << integrator;
+    }
+  }
+}
+
 TEST_P(CraneUnder, HasAStateOfItsOwnInTheHash) {
   EXPECT_NE(recursive.mechanics->state_hash(), bodies.mechanics->state_hash());
 }

@@ -66,7 +66,8 @@ struct Mechanism {
 
 // The same under the formulation that its Def names.
 struct Formulated : Mechanism {
-  explicit Formulated(const MechanicsDef& def) : Mechanism(def), dynamics(def.formulation, model, state) {}
+  explicit Formulated(const MechanicsDef& def)
+      : Mechanism(def), dynamics(def.formulation, model, state, step_rule(def)) {}
 
   void run(double time, double h) {
     const int steps = static_cast<int>(std::lround(time / h));
@@ -81,6 +82,11 @@ struct Formulated : Mechanism {
 
   Dynamics dynamics;
 };
+
+inline std::string name_of(Integrator integrator) {
+  constexpr const char* kNames[] = {"rk4", "semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2"};
+  return kNames[static_cast<int>(integrator)];
+}
 
 inline std::string name_of(Formulation formulation) {
   constexpr const char* kNames[] = {"recursive", "lagrange", "augmented", "penalty"};

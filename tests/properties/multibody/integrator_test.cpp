@@ -1,0 +1,225 @@
+// Integrators: order of convergence, energy, and agreement with each other, in both formulations.
+#include "multibody/integrators.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/properties/multibody/random_tree.h"
+#include "tests/validation/multibody/crane_def.h"
+#include "tests/validation/multibody/loop_defs.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace {
+
+using namespace testing;
+
+struct Subject {
+  std::string name;
+  MechanicsDef def;
+  double time = 0;  // s
+  double step = 0;  // s, the coarser one
+};
+
+MechanicsDef pendulum() {
+  MechanicsDef def;
+  def.bodies.push_back(
+      {.name = "Rod", .mass = 1, .center_of_mass = {0.5, 0, 0}, .inertia = {0.01, 1.0 / 12, 1.0 / 12}});
+  def.joints.push_back({.name = "Pin", .body2 = "Rod"});
+  return def;
+}
+
+// three links on balls, tumbling
+MechanicsDef tumbling() {
+  MechanicsDef def;
+  def.bodies = {
+      {.name = "A", .mass = 1, .center_of_mass = {0.5, 0.1, 0}, .inertia = {0.02, 0.1, 0.11}},
+      {.name = "B", .position = {1, 0, 0}, .mass = 0.7, .center_of_mass = {0.4, 0, 0.2}, .inertia = {0.03, 0.09, 0.1}},
+      {.name = "C",
+       .position = {2, 0, 0},
+       .mass = 0.5,
+       .center_of_mass = {0.3, 0, 0.2},
+       .inertia = {0.03, 0.05, 0.06}}};
+  def.joints = {{.name = "Pin", .body2 = "A", .initial_velocity = 1},
+                {.name = "Ball1",
+                 .type = JointType::spherical,
+                 .body1 = "A",
+                 .point1 = {1, 0, 0},
+                 .body2 = "B",
+                 .initial_rotation = {1, 2, -1}},
+                {.name = "Ball2",
+                 .type = JointType::spherical,
+                 .body1 = "B",
+                 .point1 = {1, 0, 0},
+                 .body2 = "C",
+                 .initial_rotation = {1, 0, 3}}};
+  return def;
+}
+
+std::vector<double> state_after(const Subject& subject, Formulation formulation, Integrator integrator, double step) {
+  MechanicsDef def = subject.def;
+  def.formulation = formulation;
+  def.integrator = integrator;
+  Formulated mechanism(def);
+  mechanism.run(subject.time, step);
+  std::vector<double> all = mechanism.state.q;
+  all.insert(all.end(), mechanism.state.u.begin(), mechanism.state.u.end());
+  return all;
+}
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
+  return largest;
+}
+
+using Choice = std::tuple<Formulation, Integrator>;
+const auto kFormulations = ::testing::Values(Formulation::recursive, Formulation::lagrange);
+const auto kName = [](const ::testing::TestParamInfo<Choice>& tested) {
+  return name_of(std::get<0>(tested.param)) + "_" + name_of(std::get<1>(tested.param));
+};
+
+class Integrators : public ::testing::TestWithParam<Choice> {
+ protected:
+  [[nodiscard]] static Formulation formulation() { return std::get<0>(GetParam()); }
+  [[nodiscard]] static Integrator integrator() { return std::get<1>(GetParam()); }
+  [[nodiscard]] static int order() {
+    return integrator() == Integrator::rk4 ? 4 : integrator() == Integrator::semi_implicit_euler ? 1 : 2;
+  }
+  static void expect_order(const Subject& subject) {
+    const std::vector<double> exact = state_after(subject, Formulation::recursive, Integrator::rk4, subject.step / 32);
+    const double coarse = difference(state_after(subject, formulation(), integrator(), subject.step), exact);
+    const double fine = difference(state_after(subject, formulation(), integrator(), subject.step / 2), exact);
+    const double observed = std::log2(coarse / fine);
+    EXPECT_NEAR(observed, order(), order() == 4 ? 0.5 : 0.25) << coarse << " and " << fine;
+    RecordProperty(subject.name, std::to_string(observed));
+  }
+};
+
+TEST_P(Integrators, HaveTheirOrderOnAPendulum) {
+  expect_order({"pendulum", pendulum(), 1, 10e-3});
+}
+TEST_P(Integrators, HaveTheirOrderOnLinksWithBalls) {
+  expect_order({"balls", tumbling(), 0.5, 5e-3});
+}
+TEST_P(Integrators, HaveTheirOrderOnAFourBarThroughTheFlatPosition) {
+  expect_order({"four_bar", four_bars(1), 1, 20e-3});
+}
+TEST_P(Integrators, HaveTheirOrderOnASpatialSliderCrank) {
+  expect_order({"slider_crank", slider_crank(), 0.1, order() == 4 ? 10e-3 : 2.5e-3});
+}
+
+// crane with forces in its rows that are linear in time over the whole run
+std::vector<double> crane_after(Formulation formulation, Integrator integrator, double h) {
+  MechanicsDef def = crane_def();
+  def.integrator = integrator;
+  const std::vector<std::string> rows = {"ForceT_Lift", "ForceT_Jib", "ForceR_Pillar"};
+  Mechanism crane(def, rows);
+  Dynamics dynamics(formulation, crane.model, crane.state, step_rule(def));
+  const std::vector<double> slope = {2e4, -5e3, 3e3}, start = {2.4e5, 1.05e5, 1e3};
+  std::vector<double> mean(3);
+  bool has_settled = true;
+  for (int i = 0; i < static_cast<int>(std::lround(0.4 / h)); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) mean[k] = start[k] + slope[k] * (i + 0.5) * h;
+    dynamics.evaluate(crane.model, crane.state, crane.ws);
+    has_settled = dynamics.advance(crane.model, crane.state, crane.ws, h, mean, slope) && has_settled;
+  }
+  EXPECT_TRUE(has_settled);
+  return crane.state.u;
+}
+
+TEST_P(Integrators, HaveTheirOrderUnderRowForces) {
+  const std::vector<double> exact = crane_after(Formulation::recursive, Integrator::rk4, 2.5e-4);
+  const double coarse = difference(crane_after(formulation(), integrator(), 4e-3), exact);
+  const double fine = difference(crane_after(formulation(), integrator(), 2e-3), exact);
+  EXPECT_NEAR(std::log2(coarse / fine), order(), 0.3) << coarse << " and " << fine;
+}
+
+TEST_P(Integrators, AgreeOnRandomTreesInSmallSteps) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const RandomTree tree = random_tree(seed, {.bodies = 1 + static_cast<int>(seed) % 7});
+    if (build_model(tree.def).degrees_of_freedom() == 0) continue;
+    const Subject subject{"tree", tree.def, 0.02, 1e-3};
+    const std::vector<double> exact = state_after(subject, Formulation::recursive, Integrator::rk4, 5e-5);
+    double scale = 1;
+    for (const double x : exact) scale = std::max(scale, std::fabs(x));
+    const double error = difference(state_after(subject, formulation(), integrator(), 1e-4), exact);
+    EXPECT_LT(error / scale, order() == 1 ? 1e-2 : 1e-4) << seed;
+  }
+}
+
+TEST_P(Integrators, KeepQuaternionsUnit) {
+  MechanicsDef def = tumbling();
+  std::tie(def.formulation, def.integrator) = GetParam();
+  Formulated links(def);
+  links.run(0.5, 5e-3);
+  for (const Link& link : links.model.links) {
+    if (link.joint != LinkJoint::spherical) continue;
+    double square = 0;
+    for (int k = 0; k < 4; ++k) square += std::pow(links.state.q[static_cast<std::size_t>(link.q + k)], 2);
+    EXPECT_NEAR(square, 1, 1e-14);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(In, Integrators,
+                         ::testing::Combine(kFormulations,
+                                            ::testing::Values(Integrator::rk4, Integrator::semi_implicit_euler,
+                                                              Integrator::trapezoidal, Integrator::generalised_alpha,
+                                                              Integrator::sdirk2)),
+                         kName);
+
+// largest excursion of the energy over 20 s, and its end, of m g l
+struct Excursion {
+  double largest = 0, end = 0;
+};
+Excursion excursion(Formulation formulation, Integrator integrator, double spectral_radius) {
+  MechanicsDef def = pendulum();
+  def.formulation = formulation;
+  def.integrator = integrator;
+  def.spectral_radius = spectral_radius;
+  Formulated rod(def);
+  const double begin = rod.total_energy();
+  Excursion result;
+  for (int i = 0; i < 1000; ++i) {
+    rod.run(20e-3, 10e-3);
+    result.end = (rod.total_energy() - begin) / (9.81 * 0.5);
+    result.largest = std::max(result.largest, std::fabs(result.end));
+  }
+  return result;
+}
+
+class Energy20s : public ::testing::TestWithParam<Formulation> {};
+
+TEST_P(Energy20s, IsKeptByTheTrapezoidAndByGeneralisedAlphaOfRadius1) {
+  EXPECT_LT(excursion(GetParam(), Integrator::trapezoidal, 0).largest, 2e-3);
+  EXPECT_LT(excursion(GetParam(), Integrator::generalised_alpha, 1).largest, 2e-3);
+}
+
+TEST_P(Energy20s, IsTakenAwayByTheOthers) {
+  EXPECT_LT(excursion(GetParam(), Integrator::sdirk2, 0).end, 0);
+  EXPECT_LT(excursion(GetParam(), Integrator::generalised_alpha, 0.5).end, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(In, Energy20s, kFormulations,
+                         [](const ::testing::TestParamInfo<Formulation>& tested) { return name_of(tested.param); });
+
+TEST(GeneralisedAlpha, CarriesItsAccelerationInTheHash) {
+  MechanicsDef def = pendulum();
+  def.integrator = Integrator::generalised_alpha;
+  Formulated one(def);
+  def.spectral_radius = 0.2;
+  Formulated other(def);
+  const auto digest = [](const Formulated& mechanism) {
+    StateHash hash;
+    mechanism.dynamics.add_to_hash(hash);
+    return hash.digest();
+  };
+  EXPECT_EQ(digest(one), digest(other));
+  one.run(0.01, 0.01);
+  other.run(0.01, 0.01);
+  EXPECT_NE(digest(one), digest(other));
+}
+
+}  // namespace
+}  // namespace slew::multibody

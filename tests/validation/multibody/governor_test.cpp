@@ -1,0 +1,75 @@
+// Case A05 (Chrono and Radau: 3e-11): flyball governor with struts of 8e5 N/m and 4e4 N s/m. Tolerance: slider within
+// 1e-3 m at 10 s, in sub-steps of 1 ms and of 2 ms; in 5 and 10 ms, where the explicit rules leave the page, the slow
+// motion's own error of the order h^2 shows.
+#include "tests/validation/multibody/csv_table.h"
+#include "tests/validation/multibody/governor_def.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace {
+
+using testing::Formulated;
+
+constexpr double kSliderAt1s = 0.5014209224, kSliderAt10s = 0.6196229171, kSpinAt10s = 5.5482036227;
+
+using Choice = std::tuple<Formulation, Integrator>;
+
+class Governor : public ::testing::TestWithParam<Choice> {
+ protected:
+  [[nodiscard]] static Formulated start() {
+    MechanicsDef def = testing::governor_def();
+    std::tie(def.formulation, def.integrator) = GetParam();
+    return Formulated(def);
+  }
+  [[nodiscard]] static double slider(const Formulated& governor) { return governor.pose("Slider").position[2]; }
+};
+
+class ExplicitGovernor : public Governor {};
+
+TEST_P(Governor, FollowsTheReferenceInStepsOf1ms) {
+  Formulated governor = start();
+  double error = 0, time = 0;
+  for (const auto& row : testing::read_table("A05_flyball_2pi.csv")) {
+    governor.run(row[0] - time, 1e-3);
+    time = row[0];
+    error = std::max(error, std::abs(slider(governor) - row[1]));
+  }
+  EXPECT_NEAR(time, 10, 1e-9);
+  EXPECT_LT(error, 1e-3);
+  EXPECT_NEAR(slider(governor), kSliderAt10s, 1e-3);
+  EXPECT_NEAR(governor.value("Spin.velocity"), kSpinAt10s, 1e-2);
+}
+
+TEST_P(Governor, IsStableAndNearInStepsOf10ms) {
+  for (const double h : {2e-3, 5e-3, 10e-3}) {
+    Formulated governor = start();
+    governor.run(10, h);
+    // second order: 1e-3 m at 4 ms in the coarsest of them
+    EXPECT_NEAR(slider(governor), kSliderAt10s, std::max(1e-3, 1e-3 * h * h / 16e-6)) << h;
+  }
+}
+
+// struts are stiff for Runge-Kutta beyond 2.78 / 8117 s, for Euler beyond 2 / 8117 s
+TEST_P(ExplicitGovernor, FollowsTheReferenceInStepsBelowTheStrutsOwn) {
+  const bool is_rk4 = std::get<1>(GetParam()) == Integrator::rk4;
+  Formulated governor = start();
+  governor.run(1, is_rk4 ? 2.5e-4 : 1e-4);
+  EXPECT_NEAR(slider(governor), kSliderAt1s, is_rk4 ? 1e-8 : 1e-3);
+}
+
+const auto kFormulations = ::testing::Values(Formulation::recursive, Formulation::lagrange);
+const auto kName = [](const ::testing::TestParamInfo<Choice>& tested) {
+  return testing::name_of(std::get<0>(tested.param)) + "_" + testing::name_of(std::get<1>(tested.param));
+};
+INSTANTIATE_TEST_SUITE_P(In, Governor,
+                         ::testing::Combine(kFormulations,
+                                            ::testing::Values(Integrator::trapezoidal, Integrator::generalised_alpha,
+                                                              Integrator::sdirk2)),
+                         kName);
+INSTANTIATE_TEST_SUITE_P(In, ExplicitGovernor,
+                         ::testing::Combine(kFormulations,
+                                            ::testing::Values(Integrator::rk4, Integrator::semi_implicit_euler)),
+                         kName);
+
+}  // namespace
+}  // namespace slew::multibody
