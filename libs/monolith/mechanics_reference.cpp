@@ -1,0 +1,94 @@
+#include "monolith/mechanics_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/check.h"
+#include "multibody/dynamics.h"
+#include "multibody/joint_law.h"
+#include "multibody/loops.h"
+#include "multibody/passes.h"
+
+namespace slew::monolith {
+namespace {
+
+// loops are closed in the solver's values so often [s]: what it violates grows with the square of the time
+constexpr double kWindow = 0.05;
+
+// (1)
+class MechanicsEquations final : public DifferentialEquation {
+ public:
+  explicit MechanicsEquations(const multibody::Model& model)
+      : model_(model), state_(multibody::start_state(model)), ws_(model), forces_(model.rows.size()) {}
+
+  [[nodiscard]] std::vector<double> values() const {
+    std::vector<double> y = state_.q;
+    y.insert(y.end(), state_.u.begin(), state_.u.end());
+    return y;
+  }
+
+  void rates(double, const double* y, double* f) noexcept override {
+    take(y);
+    multibody::evaluate(model_, state_, ws_);
+    for (std::size_t k = 0; k < forces_.size(); ++k) {
+      forces_[k] = multibody::evaluate(model_.rows[k].law, ws_.row_x[k], ws_.row_v[k]).force;
+    }
+    const std::size_t coordinates = state_.q.size(), speeds = state_.u.size();
+    // with the solver's own quaternions, whose length the rates keep
+    multibody::coordinate_rates(model_, ws_, {y, coordinates}, state_.u, {f, coordinates});
+    multibody::accelerations(model_, ws_, forces_, {f + coordinates, speeds});
+  }
+
+  // the state that the solver's values stand for; whether its loops are closed
+  bool take(const double* y) noexcept {
+    std::copy_n(y, state_.q.size(), state_.q.begin());
+    std::copy_n(y + state_.q.size(), state_.u.size(), state_.u.begin());
+    multibody::normalize_quaternions(model_, state_.q);
+    if (model_.cuts.empty()) return true;
+    multibody::renew_matrix(model_, state_.q, state_.u, ws_);
+    return multibody::project(model_, state_.q, state_.u, ws_);
+  }
+  [[nodiscard]] const multibody::State& state() const noexcept { return state_; }
+
+ private:
+  const multibody::Model& model_;
+  multibody::State state_;
+  multibody::Workspace ws_;
+  std::vector<double> forces_;
+};
+
+}  // namespace
+
+Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<const double> times,
+                           const MechanicsReferenceOptions& options, MechanicsReference& result) {
+  result.model = multibody::build_model(mechanics, multibody::joint_rows(mechanics));
+  result.states.clear();
+  MechanicsEquations equations(result.model);
+  const std::vector<double> y = equations.values();
+  StiffSolver solver(equations, std::vector<double>(y.size(), options.absolute_tolerance), options.relative_tolerance);
+  solver.restart(0, y);
+  const auto give_up = [&](const std::string& why) {
+    return Status::error(ExitCode::diverged, "the reference integration of the mechanics ended at " +
+                                                 std::to_string(solver.time()) + " s (" + why + ")");
+  };
+  for (const double time : times) {
+    SLEW_CHECK(time >= solver.time());
+    bool is_closed = equations.take(solver.y().data());
+    const double begin = solver.time(), way = time - begin;
+    const int windows = !(way > 0) ? 0 : result.model.cuts.empty() ? 1 : static_cast<int>(std::ceil(way / kWindow));
+    for (int k = 1; k <= windows; ++k) {
+      const double next = k == windows ? time : begin + way * k / windows;
+      const std::string failure = solver.advance(next);
+      result.statistics = solver.statistics();
+      if (!failure.empty()) return give_up(failure);
+      is_closed = equations.take(solver.y().data());
+      if (!result.model.cuts.empty()) solver.restart(next, equations.values());
+    }
+    if (!is_closed) return give_up("its loops cannot be closed");
+    result.states.push_back(equations.state());
+  }
+  return Status::ok();
+}
+
+}  // namespace slew::monolith
