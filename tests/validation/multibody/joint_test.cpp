@@ -92,6 +92,28 @@ TEST(StaticJoint, FixedCarriesItsShareOfACylinderAcrossIt) {
   }
 }
 
+// A door on two hinges of one upright axis, L apart: statics leaves five numbers open. With F and -F across and M in
+// either hinge L F + 2 M = c m g, and F^2 + M^2 is smallest for F = c m g L / (L^2 + 4), M = 2 c m g / (L^2 + 4).
+TEST(StaticJoint, TwoHingesOfADoorShareItsWeightByTheSmallestReactions) {
+  constexpr double kApart = 1.5, kAside = 0.3, kLoad = 98.1;
+  MechanicsDef def = static_body(JointType::revolute, {});
+  def.bodies[0].center_of_mass = {kAside, 0, 0.4};
+  JointDef upper = def.joints[0];
+  upper.name = "Upper";
+  upper.point1 = upper.point2 = {0, 0, kApart};
+  def.joints.push_back(upper);
+  Mechanism door(def);
+  EXPECT_EQ(door.model.degrees_of_freedom(), 1);
+  EXPECT_EQ(describe(door.model).cuts.at(0).redundant.size(), 5U);
+  std::vector<JointReaction> reactions(2);
+  joint_reactions(door.model, door.state, door.ws, {}, reactions);
+  const double share = kAside * kLoad / (kApart * kApart + 4);
+  expect_near(reactions[0].force, {-share * kApart, 0, -kLoad / 2}, 1e-10);
+  expect_near(reactions[1].force, {share * kApart, 0, -kLoad / 2}, 1e-10);
+  expect_near(reactions[0].moment, {0, 2 * share, 0}, 1e-10);
+  expect_near(reactions[1].moment, {0, 2 * share, 0}, 1e-10);
+}
+
 TEST(StaticJoint, ReactionDoesNotDependOnTheOrderOfTheBodies) {
   MechanicsDef def = static_body(JointType::revolute, {0.3, 0.2, 0});
   std::swap(def.joints[0].body1, def.joints[0].body2);
