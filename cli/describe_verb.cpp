@@ -42,6 +42,7 @@ struct Description {
   std::size_t bodies = 0, joints = 0, links = 0, rows = 0;
   int degrees_of_freedom = 0;
   std::vector<std::string> motions;   // "Body_Pillar (revolute, 1)"
+  std::vector<std::string> closed;    // "Coupler (revolute_revolute, 1 row)": joints outside of the tree
   std::vector<std::string> merged;    // "Pole with Pillar"
   std::vector<std::string> contacts;  // pairs that are tested
   std::size_t components = 0, free_volumes = 0, fixed_volumes = 0;
@@ -52,6 +53,15 @@ struct Description {
   std::vector<std::string> left_out;
 };
 
+void describe_cuts(const multibody::Description& m, Description& d) {
+  for (const multibody::CutDescription& cut : m.cuts) {
+    std::string redundant;
+    for (const std::string& row : cut.redundant) redundant += (redundant.empty() ? "; redundant: " : ", ") + row;
+    d.closed.push_back(fmt::format("{} ({}, {}{})", cut.joint, cut.joint_type,
+                                   counted(static_cast<std::uint64_t>(cut.rows), "row", "rows"), redundant));
+  }
+}
+
 void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.bodies = scene.mechanics.bodies.size();
   d.joints = scene.mechanics.joints.size();
@@ -61,13 +71,15 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.links = m.links.size();
   d.rows = static_cast<std::size_t>(m.rows);
   d.degrees_of_freedom = m.degrees_of_freedom;
+  describe_cuts(m, d);
   d.contacts = m.pairs;
   for (const std::string& pair : m.pairs_at_rest) {
     d.left_out.push_back("contact " + pair + ": its shapes cannot move against each other, it is not tested");
   }
   for (const std::string& body : m.fixed_to_ground) d.merged.push_back(body + " with Ground");
   for (const multibody::LinkDescription& link : m.links) {
-    d.motions.push_back(fmt::format("{} ({}, {})", link.joint, link.joint_type, link.degrees_of_freedom));
+    const std::string& moved = link.joint.empty() ? link.bodies.at(0) : link.joint;
+    d.motions.push_back(fmt::format("{} ({}, {})", moved, link.joint_type, link.degrees_of_freedom));
     for (std::size_t i = 1; i < link.bodies.size(); ++i) d.merged.push_back(link.bodies[i] + " with " + link.bodies[0]);
   }
 }
@@ -164,6 +176,7 @@ nlohmann::json to_json(const Description& d) {
             {"joints", d.joints},
             {"links", d.links},
             {"motions", d.motions},
+            {"closed", d.closed},
             {"merged", d.merged},
             {"contacts", d.contacts},
             {"degrees_of_freedom", d.degrees_of_freedom},
@@ -205,6 +218,7 @@ void print(const Description& d) {
                              counted(static_cast<std::uint64_t>(d.hydraulic_states), "state", "states") + " in all"})},
       {"ports", joined(d.ports)},
       {"inputs", joined(d.inputs)}};
+  if (!d.closed.empty()) rows.push_back({"closed by rows", joined(d.closed)});
   for (const BodyNumbers& body : d.body_numbers) {
     if (body.mesh) rows.push_back({"inertia", mesh_text(body)});
   }
