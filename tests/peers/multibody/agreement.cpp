@@ -45,7 +45,7 @@ void PrintTo(const Case& chosen, std::ostream* out) {
   *out << (chosen.kind == Case::Kind::truck_crane ? "TruckCrane" : "RandomTree") << chosen.seed;
 }
 
-std::string name_of(const ::testing::TestParamInfo<Case>& info) {
+std::string case_name(const ::testing::TestParamInfo<Case>& info) {
   return ::testing::PrintToString(info.param);
 }
 

@@ -23,7 +23,7 @@ struct Case {
   unsigned seed = 0;
 };
 [[nodiscard]] std::vector<Case> cases();
-[[nodiscard]] std::string name_of(const ::testing::TestParamInfo<Case>& info);
+[[nodiscard]] std::string case_name(const ::testing::TestParamInfo<Case>& info);
 void PrintTo(const Case& chosen, std::ostream* out);
 
 enum class ForceDummies { with, without };

@@ -26,7 +26,7 @@ TEST_P(Mechanisms, ShowTheRowsThatMujocoSees) {
   expect_same_rows(rows_differ_by<MujocoPeer>(sample), kTolerance);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfOurs, Mechanisms, ::testing::ValuesIn(cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(OfOurs, Mechanisms, ::testing::ValuesIn(cases()), case_name);
 
 TEST(ComparisonWithMujoco, SeesAMassThatIsAMillionthOff) {
   const Sample sample({Case::Kind::truck_crane, 1}, ForceDummies::without);

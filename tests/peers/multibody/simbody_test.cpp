@@ -64,7 +64,7 @@ TEST_P(Mechanisms, HaveTheKineticEnergyThatSimbodySees) {
   EXPECT_LT(difference, kTolerance);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfOurs, Mechanisms, ::testing::ValuesIn(cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(OfOurs, Mechanisms, ::testing::ValuesIn(cases()), case_name);
 
 TEST(ComparisonWithSimbody, SeesAMassThatIsAMillionthOff) {
   const Sample sample({Case::Kind::truck_crane, 1}, ForceDummies::with);
