@@ -17,7 +17,8 @@
 
 namespace slew::multibody::testing {
 
-// The crane of scenes/truck_crane.yaml, or a random tree (tests/properties/multibody/random_tree.h), at a random state.
+// The crane of scenes/truck_crane.yaml without its contacts, or a random tree
+// (tests/properties/multibody/random_tree.h), at a random state.
 struct Case {
   enum class Kind { truck_crane, random_tree } kind = Kind::random_tree;
   unsigned seed = 0;
