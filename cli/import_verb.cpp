@@ -37,7 +37,7 @@ void write(const std::string& path, const std::string& text, bool is_overwriting
 nlohmann::json to_json(const Options& options, const urdf::Import& made) {
   nlohmann::json notes = nlohmann::json::array();
   for (const urdf::Note& note : made.notes) notes.push_back({{"line", note.line}, {"text", note.text}});
-  nlohmann::json json = {{"bodies", made.bodies}, {"joints", made.joints}, {"notes", notes}};
+  nlohmann::json json = {{"bodies", made.bodies}, {"joints", made.joints}, {"shapes", made.shapes}, {"notes", notes}};
   if (options.output.empty()) {
     json["scene"] = made.text;
   } else {
@@ -48,15 +48,15 @@ nlohmann::json to_json(const Options& options, const urdf::Import& made) {
 
 ExitCode import_urdf(const Options& options) {
   const auto mount = options.is_floating ? urdf::RootMount::floating : urdf::RootMount::fixed;
-  const urdf::Import made = urdf::import_file(options.file, mount);
+  const urdf::Import made = urdf::import_file(options.file, mount, options.output);
   if (!options.output.empty()) write(options.output, made.text, options.is_overwriting);
   if (options.is_json) {
     fmt::print("{}\n", to_json(options, made).dump(2));
   } else if (options.output.empty()) {
     fmt::print("{}", made.text);
   } else {
-    fmt::print("{}: {}, {}, {}\n", options.output, counted(made.bodies, "body", "bodies"),
-               counted(made.joints, "joint", "joints"),
+    fmt::print("{}: {}, {}, {}, {}\n", options.output, counted(made.bodies, "body", "bodies"),
+               counted(made.joints, "joint", "joints"), counted(made.shapes, "shape", "shapes"),
                counted(made.notes.size(), "note on what was not taken over", "notes on what was not taken over"));
   }
   return ExitCode::ok;

@@ -37,7 +37,9 @@ bool is_complete(const Surroundings& surroundings, const ShapeDef& shape, Proble
   return problems.size() == before;
 }
 
-void take_over(const contact::MeshDef& mesh, ShapeDef& shape) {
+}  // namespace
+
+void put_mesh(const contact::MeshDef& mesh, ShapeDef& shape) {
   for (const Triple& vertex : mesh.vertices) shape.vertices.insert(shape.vertices.end(), vertex.begin(), vertex.end());
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) shape.triangles.push_back(vertex);
@@ -46,8 +48,6 @@ void take_over(const contact::MeshDef& mesh, ShapeDef& shape) {
   shape.file_up.clear();
   shape.file_unit = std::numeric_limits<double>::infinity();
 }
-
-}  // namespace
 
 void read_meshes(const Surroundings& surroundings, multibody::MechanicsDef& mechanics, Problems& problems) {
   for (ShapeDef& shape : mechanics.shapes) {
@@ -71,7 +71,7 @@ void read_meshes(const Surroundings& surroundings, multibody::MechanicsDef& mech
     if (const auto fault = is_convex ? contact::find_convex_fault(mesh) : contact::find_surface_fault(mesh)) {
       problems.push_back({shape.name + ".file", fault->what, fault->expected, ""});
     } else {
-      take_over(mesh, shape);
+      put_mesh(mesh, shape);
     }
   }
 }

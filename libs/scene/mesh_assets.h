@@ -4,6 +4,7 @@
 // machines and replays have them without the file.
 #pragma once
 
+#include "contact/contact_def.h"
 #include "core/problem.h"
 #include "multibody/defs.h"
 #include "scene/expand.h"
@@ -13,5 +14,8 @@ namespace slew::scene {
 // Reads the file of every shape that names one, in metres and with its upward axis along y; the shape then has vertices
 // and triangles and no file. Appends a problem for every file that cannot be read, and for a missing unit or axis.
 void read_meshes(const Surroundings& surroundings, multibody::MechanicsDef& mechanics, Problems& problems);
+
+// The shape has these triangles, and no file.
+void put_mesh(const contact::MeshDef& mesh, multibody::ShapeDef& shape);
 
 }  // namespace slew::scene

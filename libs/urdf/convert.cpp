@@ -19,23 +19,8 @@ using multibody::JointType;
 
 namespace {
 
-// what rounding leaves of a zero when frames are turned
-constexpr double kRounding = 1e-15;
-
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
-}
-
-double without_rounding(double value, double scale) {
-  return std::abs(value) <= kRounding * scale ? 0 : value;
-}
-
-Triple without_rounding(const Triple& triple, double scale) {
-  return {without_rounding(triple[0], scale), without_rounding(triple[1], scale), without_rounding(triple[2], scale)};
-}
-
-Triple point(Vec3 p) {
-  return without_rounding(p.array(), norm(p));
 }
 
 // the turn about x, then y', that takes z to the axis
@@ -87,8 +72,8 @@ std::string shape_text(const Geometry& shape) {
 
 class Converter {
  public:
-  Converter(const Robot& robot, RootMount mount, const Complain& complain)
-      : robot_(robot), mount_(mount), complain_(complain) {}
+  Converter(const Robot& robot, RootMount mount, const Folders& folders, const Complain& complain)
+      : robot_(robot), mount_(mount), folders_(folders), complain_(complain) {}
 
   Conversion convert() {
     out_.notes = robot_.notes;
@@ -149,8 +134,8 @@ class Converter {
     body.name = body_names_[at(index)];
     const Place start = place_at_start(index);
     body.relative_to = body_name(start.body);
-    body.position = point(start.pose.p);
-    body.orientation = without_rounding(math::angles_zxz(start.pose.R), 1);
+    body.position = position_of(start.pose);
+    body.orientation = orientation_of(start.pose);
     put_inertial(*link.inertial, body);
     out_.mechanics.bodies.push_back(body);
     add_shapes(link, body.name, {});
@@ -198,22 +183,42 @@ class Converter {
 
   // a link without mass: its frame, for those who hang a force on it later
   void note_rider(const Link& link, const Place& place) {
-    const std::string where =
-        fmt::format("on {} at {} m, orientation (x, y', z'') {} rad", body_name(place.body),
-                    triple_text(point(place.pose.p)), triple_text(without_rounding(math::angles_xyz(place.pose.R), 1)));
+    const std::string where = fmt::format("on {} at {} m, orientation (x, y', z'') {} rad", body_name(place.body),
+                                          triple_text(position_of(place.pose)),
+                                          triple_text(without_rounding(math::angles_xyz(place.pose.R), 1)));
     out_.notes.push_back({link.line, fmt::format("link '{}' has no mass: a frame {}", link.name, where)});
     add_shapes(link, body_name(place.body), place.pose);
   }
 
+  // what touches becomes a shape; what is only seen, and what no shape can be, is told
   void add_shapes(const Link& link, const std::string& body, const Pose& place) {
-    for (const Geometry& shape : link.geometries) {
-      const Pose pose = place * pose_of(shape.origin);
-      const char* use = shape.use == Geometry::Use::visual ? "visual" : "collision";
-      const Triple angles = without_rounding(math::angles_zxz(pose.R), 1);
-      std::string text = fmt::format("{}: {}, position {} m", use, shape_text(shape), triple_text(point(pose.p)));
-      if (angles != Triple{}) text += fmt::format(", orientation {} rad", triple_text(angles));
-      out_.comments[body].push_back(text);
+    for (const Geometry& geometry : link.geometries) {
+      if (geometry.use == Geometry::Use::visual) {
+        comment_on(body, "visual", geometry, place);
+        continue;
+      }
+      CollisionShape shape = collision_shape(geometry, place, body == multibody::kGroundName, folders_);
+      if (!shape.refusal.empty()) {
+        comment_on(body, "collision", geometry, place);
+        out_.notes.push_back(
+            {geometry.line, fmt::format("link '{}': the collision mesh {} is no shape of the scene: {}", link.name,
+                                        geometry.file, shape.refusal)});
+        continue;
+      }
+      shape.def.name = names_.take(link.name + "_collision", "_shape");
+      shape.def.body = body;
+      out_.lines.emplace(shape.def.name, geometry.line);
+      if (!shape.mesh.triangles.empty()) out_.meshes.emplace(shape.def.name, std::move(shape.mesh));
+      out_.mechanics.shapes.push_back(std::move(shape.def));
     }
+  }
+
+  void comment_on(const std::string& body, const char* use, const Geometry& geometry, const Pose& place) {
+    const Pose pose = place * pose_of(geometry.origin);
+    const Triple angles = orientation_of(pose);
+    std::string text = fmt::format("{}: {}, position {} m", use, shape_text(geometry), triple_text(position_of(pose)));
+    if (angles != Triple{}) text += fmt::format(", orientation {} rad", triple_text(angles));
+    out_.comments[body].push_back(text);
   }
 
   void add_joint_of(int link) {
@@ -228,7 +233,7 @@ class Converter {
     def.body2 = body_name(child.body);
     if (joint.kind == JointKind::floating) {
       def.body1 = multibody::kGroundName;
-      def.point2 = point(child.pose.p);
+      def.point2 = position_of(child.pose);
     } else {
       put_frames(joint, parent.pose, child.pose, def);
       put_laws(joint, resistance_[at(index)], def);
@@ -259,9 +264,9 @@ class Converter {
     const Mat3 R_CA = math::rotation_xyz(axis);
     const Pose origin = pose_of(joint.origin);
     const Pose frame1 = parent * Pose{origin.R * R_CA, origin.p};
-    def.point1 = point(frame1.p);
+    def.point1 = position_of(frame1);
     def.orientation1 = without_rounding(math::angles_xyz(frame1.R), 1);
-    def.point2 = point(child.p);
+    def.point2 = position_of(child);
     def.orientation2 = without_rounding(math::angles_xyz(child.R * R_CA), 1);
   }
 
@@ -288,6 +293,7 @@ class Converter {
 
   const Robot& robot_;
   RootMount mount_;
+  const Folders& folders_;
   const Complain& complain_;
   Conversion out_;
   SceneNames names_;
@@ -298,8 +304,8 @@ class Converter {
 
 }  // namespace
 
-Conversion convert(const Robot& robot, RootMount mount, const Complain& complain) {
-  return Converter(robot, mount, complain).convert();
+Conversion convert(const Robot& robot, RootMount mount, const Folders& folders, const Complain& complain) {
+  return Converter(robot, mount, folders, complain).convert();
 }
 
 }  // namespace slew::urdf

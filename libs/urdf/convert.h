@@ -15,7 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "contact/contact_def.h"
 #include "multibody/defs.h"
+#include "urdf/collision_shape.h"
 #include "urdf/placement.h"
 #include "urdf/robot.h"
 
@@ -27,10 +29,11 @@ struct Conversion {
   multibody::MechanicsDef mechanics;
   std::map<std::string, std::vector<std::string>> comments;  // by element
   std::map<std::string, int> lines;                          // of the URDF, by element
+  std::map<std::string, contact::MeshDef> meshes;            // of shapes with a file, by shape
   std::vector<Note> notes;                                   // the robot's and those of the conversion, by line
 };
 
 // Complains about what has no counterpart.
-[[nodiscard]] Conversion convert(const Robot& robot, RootMount mount, const Complain& complain);
+[[nodiscard]] Conversion convert(const Robot& robot, RootMount mount, const Folders& folders, const Complain& complain);
 
 }  // namespace slew::urdf

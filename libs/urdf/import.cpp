@@ -12,6 +12,7 @@
 
 #include "scene/canonical.h"
 #include "scene/diagnostic.h"
+#include "scene/mesh_assets.h"
 #include "scene/scene.h"
 #include "scene/sections.h"
 #include "scene/source.h"
@@ -74,7 +75,7 @@ std::string header(const std::string& file, const Conversion& conversion) {
   return text;
 }
 
-std::string scene_text(const std::string& file, const std::string& name, Conversion& conversion) {
+std::string scene_text(const std::string& file, const std::string& name, const Conversion& conversion) {
   std::string text = header(file, conversion);
   text += fmt::format("\nscene: {}\n", scene::yaml_text(cut(name)));
   text += "\nmechanics:\n  gravity: [0, 0, -9.81]\n";
@@ -94,6 +95,15 @@ std::string scene_text(const std::string& file, const std::string& name, Convers
   return text;
 }
 
+// With the triangles of its meshes in it, as a session publishes it.
+std::string text_without_files(const std::string& file, const std::string& name, Conversion conversion) {
+  for (multibody::ShapeDef& shape : conversion.mechanics.shapes) {
+    const auto mesh = conversion.meshes.find(shape.name);
+    if (mesh != conversion.meshes.end()) scene::put_mesh(mesh->second, shape);
+  }
+  return scene_text(file, name, conversion);
+}
+
 // The scene is read as a run would; what is wrong with it is told at the line of the URDF.
 void check(const std::string& text, const Conversion& conversion, int source, scene::Report& report) {
   try {
@@ -110,7 +120,7 @@ void check(const std::string& text, const Conversion& conversion, int source, sc
 
 }  // namespace
 
-Import import_file(const std::string& path, RootMount mount) {
+Import import_file(const std::string& path, RootMount mount, const std::string& scene_file) {
   scene::Report report;
   const int source = report.add_source(path);
   const auto stop_at_problems = [&] {
@@ -119,17 +129,21 @@ Import import_file(const std::string& path, RootMount mount) {
   const std::optional<scene::SourceText> text = scene::read_source(path, source, report);
   const std::optional<Robot> robot = text ? read_robot(*text, report) : std::nullopt;
   stop_at_problems();
-  Conversion conversion = convert(*robot, mount, [&](int line, std::string what, std::string expected) {
+  const std::filesystem::path file(path), scene(scene_file.empty() ? path : scene_file);
+  const Folders folders{file.parent_path(), scene.parent_path()};
+  Conversion conversion = convert(*robot, mount, folders, [&](int line, std::string what, std::string expected) {
     report.add({source, line, 0}, "", {std::move(what), std::move(expected), ""});
   });
   stop_at_problems();
   Import result;
-  result.text = scene_text(std::filesystem::path(path).filename().string(), robot->name, conversion);
-  check(result.text, conversion, source, report);
+  const std::string name = file.filename().string();
+  result.text = scene_text(name, robot->name, conversion);
+  check(text_without_files(name, robot->name, conversion), conversion, source, report);
   stop_at_problems();
   result.notes = std::move(conversion.notes);
   result.bodies = conversion.mechanics.bodies.size();
   result.joints = conversion.mechanics.joints.size();
+  result.shapes = conversion.mechanics.shapes.size();
   return result;
 }
 

@@ -1,10 +1,10 @@
 // A scene from a URDF file: a starting point, to which loops, cylinders and a circuit are added.
 //
-// Taken over: links with their inertia, joints (revolute, continuous, prismatic, fixed, floating, planar) with axes,
-// limits, damping and friction. Told in comments of the scene: visual and collision shapes, frames of links without
-// mass, and everything that is not taken over, with its line. Gravity is 9.81 m/s2 along -z, as URDF's world has z up.
-// Source: the XML specification at wiki.ros.org/urdf/XML. Not covered: mimic joints, transmissions,
-// sensors, bounds of effort and velocity, xacro.
+// Taken over: links with their inertia and collision shapes, joints (revolute, continuous, prismatic, fixed, floating,
+// planar) with axes, limits, damping and friction. Told in comments of the scene: visual shapes, frames of links
+// without mass, and everything that is not taken over, with its line. Gravity is 9.81 m/s2 along -z, as URDF's world
+// has z up. Source: the XML specification at wiki.ros.org/urdf/XML. Not covered: mimic joints, transmissions, sensors,
+// bounds of effort and velocity, xacro.
 #pragma once
 
 #include <string>
@@ -18,10 +18,12 @@ namespace slew::urdf {
 struct Import {
   std::string text;  // the scene's file
   std::vector<Note> notes;
-  std::size_t bodies = 0, joints = 0;
+  std::size_t bodies = 0, joints = 0, shapes = 0;
 };
 
+// scene_file: where the scene will stand, whose folder it names the robot's meshes in; empty: beside the robot.
 // Throws scene::LoadError with all problems, each with its line: of the file, and of a scene that would be refused.
-[[nodiscard]] Import import_file(const std::string& path, RootMount mount = RootMount::fixed);
+[[nodiscard]] Import import_file(const std::string& path, RootMount mount = RootMount::fixed,
+                                 const std::string& scene_file = "");
 
 }  // namespace slew::urdf

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "math/euler_angles.h"
 #include "math/rotation.h"
 
 namespace slew::urdf {
@@ -91,6 +92,22 @@ Pose operator*(const Pose& a, const Pose& b) noexcept {
 
 Pose inverse(const Pose& a) noexcept {
   return {transpose(a.R), -transpose_multiply(a.R, a.p)};
+}
+
+Triple without_rounding(const Triple& triple, double scale) noexcept {
+  // what rounding leaves of a zero when frames are turned
+  constexpr double kRounding = 1e-15;
+  Triple clean = triple;
+  for (double& value : clean) value = std::abs(value) <= kRounding * scale ? 0 : value;
+  return clean;
+}
+
+Triple position_of(const Pose& pose) noexcept {
+  return without_rounding(pose.p.array(), norm(pose.p));
+}
+
+Triple orientation_of(const Pose& pose) noexcept {
+  return without_rounding(math::angles_zxz(pose.R), 1);
 }
 
 std::vector<Place> find_places(const Robot& robot, RootMount mount, const Complain& complain) {

@@ -28,6 +28,11 @@ struct Place {
 [[nodiscard]] Pose operator*(const Pose& a, const Pose& b) noexcept;  // C in A from B in A and C in B
 [[nodiscard]] Pose inverse(const Pose& a) noexcept;
 
+// Values of a pose as a scene writes them, without what rounding leaves of a zero.
+[[nodiscard]] Triple without_rounding(const Triple& triple, double scale) noexcept;
+[[nodiscard]] Triple position_of(const Pose& pose) noexcept;     // m
+[[nodiscard]] Triple orientation_of(const Pose& pose) noexcept;  // rad, Euler z-x'-z''
+
 // By link. Complains about moving groups without mass.
 [[nodiscard]] std::vector<Place> find_places(const Robot& robot, RootMount mount, const Complain& complain);
 

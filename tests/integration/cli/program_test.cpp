@@ -192,7 +192,7 @@ TEST_F(Program, ImportMakesASceneThatIsCheckedAndRuns) {
   const std::string scene = work_.path() / "arm.yaml";
   const CommandResult made = slewring({"import", "urdf", urdf, "-o", scene});
   ASSERT_EQ(made.code, 0) << made.err;
-  EXPECT_TRUE(contains(made.out, "2 bodies, 2 joints, 6 notes on what was not taken over")) << made.out;
+  EXPECT_TRUE(contains(made.out, "2 bodies, 2 joints, 1 shape, 6 notes on what was not taken over")) << made.out;
   EXPECT_EQ(slewring({"check", scene}).code, 0);
   const CommandResult ran = slewring({"run", scene, "--in-process", "--pace", "free", "--duration", "1 s"});
   EXPECT_EQ(ran.code, 0) << ran.err;

@@ -170,19 +170,19 @@ TEST(JointTypes, LimitsFarFromZeroAreTakenBackByWholeTurns) {
   }
 }
 
-TEST(JointTypes, ShapesAreToldAsComments) {
+TEST(JointTypes, WhatIsOnlySeenIsToldAsComments) {
   const scene::TemporaryFolder folder;
   const std::string text =
       import_file(
           folder.write(
               "r.urdf",
               robot("<link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>"
-                    "<collision><origin xyz=\"0 0 1\"/><geometry><box size=\"1 2 3\"/></geometry></collision>"
+                    "<visual><origin xyz=\"0 0 1\"/><geometry><box size=\"1 2 3\"/></geometry></visual>"
                     "<visual><geometry><mesh filename=\"a\nb.stl\" scale=\"0.001 0.001 "
                     "0.002\"/></geometry></visual></link>" +
                     joint("j", "floating", "world", "a", ""))))
           .text;
-  EXPECT_NE(text.find("    # collision: box [1, 2, 3] m, position [0, 0, 1] m\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("    # visual: box [1, 2, 3] m, position [0, 0, 1] m\n"), std::string::npos) << text;
   EXPECT_NE(text.find("    # visual: mesh a b.stl, scale [0.001, 0.001, 0.002], which no unit can express"),
             std::string::npos)
       << text;
