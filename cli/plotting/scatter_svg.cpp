@@ -86,7 +86,7 @@ class Picture {
     }
     floor_ = s_.y_floor > 0 ? s_.y_floor : std::isfinite(y_low) ? y_low : 1;
     x_ = axis_around(x_low, x_high);
-    y_ = axis_around(std::min(y_low, floor_), std::max(y_high, floor_));
+    y_ = axis_around(std::min(y_low, 0.5 * floor_), std::max(y_high, floor_));
   }
 
   [[nodiscard]] double x_of(double value) const { return kLeft + (right_ - kLeft) * x_.fraction(value); }
@@ -130,7 +130,8 @@ class Picture {
 
   void draw_floor() {
     draw_line("zero dash", kLeft, y_of(s_.y_floor), right_, y_of(s_.y_floor));
-    put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kLeft + 6, y_of(s_.y_floor) - 5,
+    // nothing is below the floor
+    put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kLeft + 6, y_of(s_.y_floor) + 13,
         escaped(s_.y_floor_label));
   }
 
