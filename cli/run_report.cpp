@@ -13,6 +13,7 @@
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
 #include "cli/stall_report.h"
+#include "cli/status_line.h"
 #include "cli_support/failure.h"
 #include "coupling/indicator.h"
 #include "node/identity.h"
@@ -30,15 +31,7 @@ std::string lamp_of(double eta, double net) {
   coupling::PortDefects defects;
   defects.eta = eta;
   defects.net = net;
-  switch (coupling::lamp_of(defects)) {
-    case coupling::Lamp::green:
-      return "green";
-    case coupling::Lamp::amber:
-      return "amber";
-    case coupling::Lamp::red:
-      return "red";
-  }
-  return "";
+  return std::string(lamp_text(coupling::lamp_of(defects)));
 }
 
 void report_nodes(const SessionView& view, RunReport& report) {

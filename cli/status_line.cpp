@@ -28,18 +28,6 @@ std::size_t terminal_width() {
   return 100;
 }
 
-std::string_view lamp_text(coupling::Lamp lamp) {
-  switch (lamp) {
-    case coupling::Lamp::green:
-      return "green";
-    case coupling::Lamp::amber:
-      return "amber";
-    case coupling::Lamp::red:
-      return "red";
-  }
-  return "";
-}
-
 // "mechanics running", or what a node waits for
 std::string node_text(const SessionView& view, Role role) {
   const NodeView& node = view.node(role);
@@ -54,6 +42,18 @@ std::string node_text(const SessionView& view, Role role) {
 }
 
 }  // namespace
+
+std::string_view lamp_text(coupling::Lamp lamp) {
+  switch (lamp) {
+    case coupling::Lamp::green:
+      return "green";
+    case coupling::Lamp::amber:
+      return "amber";
+    case coupling::Lamp::red:
+      return "red";
+  }
+  return "";
+}
 
 bool StatusLine::is_due(std::int64_t now_ns) const noexcept {
   return mode_ != Mode::off && now_ns >= next_ns_;
