@@ -1,7 +1,6 @@
 #include "contact/mass_properties.h"
 
-#include <algorithm>
-
+#include "contact/mesh_check.h"
 #include "core/check.h"
 
 namespace slew::contact {
@@ -12,14 +11,7 @@ using math::Vec3;
 namespace {
 
 Vec3 middle_of(const MeshDef& mesh) {
-  Vec3 low(mesh.vertices[0]), high(mesh.vertices[0]);
-  for (const Triple& v : mesh.vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int lane = static_cast<int>(k);
-      low.lanes[lane] = std::min(low[lane], v[k]);
-      high.lanes[lane] = std::max(high[lane], v[k]);
-    }
-  }
+  const auto [low, high] = extent_of(mesh);
   return (low + high) * 0.5;
 }
 

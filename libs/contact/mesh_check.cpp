@@ -22,14 +22,7 @@ constexpr double kAreaTolerance = 1e-12;
 constexpr const char* kTurning = "triangles that all turn counter-clockwise seen from outside";
 
 double size_of(const MeshDef& mesh) {
-  Vec3 low(mesh.vertices[0]), high(mesh.vertices[0]);
-  for (const Triple& v : mesh.vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int lane = static_cast<int>(k);
-      low.lanes[lane] = std::min(low[lane], v[k]);
-      high.lanes[lane] = std::max(high[lane], v[k]);
-    }
-  }
+  const auto [low, high] = extent_of(mesh);
   return norm(high - low);
 }
 
@@ -89,6 +82,18 @@ double volume_of(const MeshDef& mesh) {
 }
 
 }  // namespace
+
+Extent extent_of(const MeshDef& mesh) {
+  Vec3 low(mesh.vertices[0]), high(mesh.vertices[0]);
+  for (const Triple& v : mesh.vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int lane = static_cast<int>(k);
+      low.lanes[lane] = std::min(low[lane], v[k]);
+      high.lanes[lane] = std::max(high[lane], v[k]);
+    }
+  }
+  return {low, high};
+}
 
 std::optional<MeshFault> find_surface_fault(const MeshDef& mesh) {
   if (auto fault = find_number_fault(mesh)) return fault;

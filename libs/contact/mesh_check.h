@@ -5,8 +5,15 @@
 #include <string>
 
 #include "contact/contact_def.h"
+#include "math/vector3.h"
 
 namespace slew::contact {
+
+// Corners of the box around a mesh that has vertices [m].
+struct Extent {
+  math::Vec3 low, high;
+};
+[[nodiscard]] Extent extent_of(const MeshDef& mesh);
 
 struct MeshFault {
   std::string what;

@@ -48,6 +48,31 @@ inline ShapeDef box_mesh(double x, double y, double z) {
   return def;
 }
 
+inline void append(MeshDef& mesh, const MeshDef& other) {
+  const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+}
+
+// regular prism of n sides about z
+inline MeshDef prism(std::uint32_t n, double r, double h) {
+  MeshDef mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * M_PI * i / n;
+    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), -h / 2});
+    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), h / 2});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t low = 2 * i, next = 2 * ((i + 1) % n);
+    mesh.triangles.push_back({low, next, low + 1});
+    mesh.triangles.push_back({next, next + 1, low + 1});
+    if (i == 0 || i + 1 == n) continue;
+    mesh.triangles.push_back({0, next, low});
+    mesh.triangles.push_back({1, low + 1, next + 1});
+  }
+  return mesh;
+}
+
 // columns x rows heights of 0 with the spacing [m]
 inline ShapeDef flat_field(std::size_t columns, std::size_t rows, double spacing) {
   ShapeDef def;

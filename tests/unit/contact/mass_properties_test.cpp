@@ -23,12 +23,6 @@ MeshDef moved(MeshDef mesh, const Mat3& R, Vec3 p) {
   return mesh;
 }
 
-void append(MeshDef& mesh, const MeshDef& other) {
-  const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-}
-
 void expect_inertia(const Mat3& I, const Mat3& expected, double tolerance) {
   const double scale = expected(0, 0) + expected(1, 1) + expected(2, 2);
   for (int i = 0; i < 3; ++i) {
@@ -93,25 +87,7 @@ TEST(MassProperties, AddUpAndSubtract) {
   expect_inertia(shell.inertia, box_inertia(8 * kDensity, 2, 2, 2) - box_inertia(kDensity, 1, 1, 1), 1e-13);
 }
 
-// regular prism of n sides: J/A = r^2 (2 + cos(2 pi/n))/6; a cylinder in the limit, with an error of 1/n^2
-MeshDef prism(std::uint32_t n, double r, double h) {
-  MeshDef mesh;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double angle = 2 * M_PI * i / n;
-    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), -h / 2});
-    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), h / 2});
-  }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t low = 2 * i, next = 2 * ((i + 1) % n);
-    mesh.triangles.push_back({low, next, low + 1});
-    mesh.triangles.push_back({next, next + 1, low + 1});
-    if (i == 0 || i + 1 == n) continue;
-    mesh.triangles.push_back({0, next, low});
-    mesh.triangles.push_back({1, low + 1, next + 1});
-  }
-  return mesh;
-}
-
+// J/A = r^2 (2 + cos(2 pi/n))/6; a cylinder in the limit, with an error of 1/n^2
 TEST(MassProperties, OfAPrismAreExactAndThoseOfACylinderInTheLimit) {
   const double r = 0.4, h = 1.5;
   double before = 0;

@@ -19,6 +19,8 @@ namespace slew::scene {
 namespace {
 
 using contact::MeshDef;
+using contact::testing::append;
+using contact::testing::prism;
 using math::Mat3;
 using math::Vec3;
 
@@ -42,33 +44,8 @@ MeshDef box(double x, double y, double z) {
   return contact::testing::box_mesh(x, y, z).mesh;
 }
 
-void append(MeshDef& mesh, const MeshDef& other) {
-  const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-}
-
 void turn_inside_out(MeshDef& mesh) {
   for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
-}
-
-// regular prism of n sides about z
-MeshDef prism(std::uint32_t n, double r, double h) {
-  MeshDef mesh;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double angle = 2 * M_PI * i / n;
-    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), -h / 2});
-    mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), h / 2});
-  }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t low = 2 * i, next = 2 * ((i + 1) % n);
-    mesh.triangles.push_back({low, next, low + 1});
-    mesh.triangles.push_back({next, next + 1, low + 1});
-    if (i == 0 || i + 1 == n) continue;
-    mesh.triangles.push_back({0, next, low});
-    mesh.triangles.push_back({1, low + 1, next + 1});
-  }
-  return mesh;
 }
 
 // octahedron refined `levels` times on a sphere about the origin
