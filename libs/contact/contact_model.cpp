@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string>
 
-#include "contact/fcl/fcl_border.h"
 #include "contact/kernels.h"
 #include "core/check.h"
 #include "math/rotation.h"
@@ -15,9 +14,6 @@ namespace {
 
 using math::Mat3;
 using math::Vec3;
-
-// convex against convex has one point in FCL, which the faces then widen
-constexpr std::size_t kFclContacts = 4;
 
 template <typename Def>
 std::size_t index_of(const std::vector<Def>& defs, const std::string& name) {
@@ -33,17 +29,6 @@ bool are_near(const Solid& a, const Solid& b) noexcept {
   return dot(apart, apart) < reach * reach;
 }
 
-struct PlainPlacement {
-  std::array<double, 3> p;
-  std::array<double, 9> R;
-};
-
-PlainPlacement plain(const Solid& s) noexcept {
-  PlainPlacement out{s.p_WS.array(), {}};
-  for (std::size_t k = 0; k < 9; ++k) out.R[k] = s.R_WS.c[k / 3][static_cast<int>(k % 3)];
-  return out;
-}
-
 // the same contacts seen from the other shape
 void swap_sides(Manifold& points) noexcept {
   for (ManifoldPoint& point : points) point.n_W = -point.n_W;
@@ -51,64 +36,8 @@ void swap_sides(Manifold& points) noexcept {
 
 }  // namespace
 
-struct ContactModel::Fcl {
-  fcl_border::Geometries* geometries = fcl_border::create_geometries();
-  Fcl() = default;
-  ~Fcl() { fcl_border::destroy(geometries); }
-  Fcl(const Fcl&) = delete;
-  Fcl& operator=(const Fcl&) = delete;
-};
-
-struct ContactSet::Fcl {
-  fcl_border::Scratch* scratch = fcl_border::create_scratch(kFclContacts);
-  Fcl() = default;
-  ~Fcl() { fcl_border::destroy(scratch); }
-  Fcl(const Fcl&) = delete;
-  Fcl& operator=(const Fcl&) = delete;
-};
-
-ContactModel::ContactModel() = default;
-ContactModel::~ContactModel() = default;
-ContactModel::ContactModel(ContactModel&&) noexcept = default;
-ContactModel& ContactModel::operator=(ContactModel&&) noexcept = default;
-
-ContactSet::~ContactSet() = default;
-ContactSet::ContactSet(ContactSet&&) noexcept = default;
-ContactSet& ContactSet::operator=(ContactSet&&) noexcept = default;
-
 ContactSet::ContactSet(const ContactModel& model)
-    : points_(model.pairs().size() * kMaxPointsPerPair), clearances_(model.pairs().size()) {
-  if (model.asks_fcl()) fcl_ = std::make_unique<Fcl>();
-}
-
-void ContactModel::add_to_fcl(const ContactDef& def) {
-  fcl_ = std::make_unique<Fcl>();
-  for (std::size_t i = 0; i < shapes_.size(); ++i) {
-    const ShapeDef& shape = def.shapes[i];
-    fcl_border::Geometries& g = *fcl_->geometries;
-    std::size_t& index = shapes_[i].fcl_index;
-    switch (shape.type) {
-      case ShapeType::sphere:
-        index = fcl_border::add_sphere(g, shape.radius);
-        break;
-      case ShapeType::box:
-        index = fcl_border::add_box(g, shape.size[0], shape.size[1], shape.size[2]);
-        break;
-      case ShapeType::cylinder:
-        index = fcl_border::add_cylinder(g, shape.radius, shape.length);
-        break;
-      case ShapeType::capsule:
-        index = fcl_border::add_capsule(g, shape.radius, shape.length);
-        break;
-      case ShapeType::convex_mesh:
-        index = fcl_border::add_convex(g, shape.mesh.vertices[0].data(), shape.mesh.vertices.size(),
-                                       shape.mesh.triangles[0].data(), shape.mesh.triangles.size());
-        break;
-      default:
-        break;  // own kernels only
-    }
-  }
-}
+    : points_(model.pairs().size() * kMaxPointsPerPair), clearances_(model.pairs().size()) {}
 
 ContactModel build(const ContactDef& def) {
   ContactModel model;
@@ -118,8 +47,7 @@ ContactModel build(const ContactDef& def) {
                              .frame = index_of(def.frames, shape.frame),
                              .p_FS = Vec3(shape.position),
                              .R_FS = math::rotation_zxz(shape.orientation),
-                             .extent = 0,
-                             .fcl_index = 0});
+                             .extent = 0});
     ContactModel::Shape& built = model.shapes_.back();
     built.extent = norm(built.p_FS + built.R_FS * built.geometry.centre) + built.geometry.bounding_radius;
   }
@@ -135,11 +63,8 @@ ContactModel build(const ContactDef& def) {
                                              model.shapes_[built.shape_b].geometry.bounding_radius);
     built.half_thickness =
         inner_radius(model.shapes_[built.shape_a].geometry) + inner_radius(model.shapes_[built.shape_b].geometry);
-    const ShapeType a = def.shapes[built.shape_a].type, b = def.shapes[built.shape_b].type;
-    if (find_kernel(a, b) == nullptr && find_kernel(b, a) == nullptr) model.asks_fcl_ = true;
     model.pairs_.push_back(built);
   }
-  if (model.asks_fcl_) model.add_to_fcl(def);
   return model;
 }
 
@@ -158,32 +83,15 @@ void ContactModel::find_pair(std::size_t pair, const Pose& frame_a, const Pose& 
     kernel(a, b, found);
     return;
   }
-  if (const Kernel kernel = find_kernel(b.geometry->type, a.geometry->type)) {
-    kernel(b, a, found);
-    swap_sides(found);
-    return;
-  }
-  const PlainPlacement at_a = plain(a), at_b = plain(b);
-  std::array<fcl_border::RawContact, kFclContacts> raw;
-  std::size_t count = 0;
-  const fcl_border::QueryResult result =
-      fcl_border::collide(*fcl_->geometries, *set.fcl_->scratch, shape_a.fcl_index, {at_a.p.data(), at_a.R.data()},
-                          shape_b.fcl_index, {at_b.p.data(), at_b.R.data()}, raw.data(), raw.size(), count);
-  if (result == fcl_border::QueryResult::failed) ++set.unresolved_;
-  if (count == 0) return;
-  const Vec3 n_W(raw[0].n_W[0], raw[0].n_W[1], raw[0].n_W[2]);
-  clip_faces(supporting_face(a, -n_W), supporting_face(b, n_W), n_W, found);
-  // the faces may miss what touches (edge on edge, a slim shape's tip): then FCL's point as well
-  constexpr double kMissed = 0.99;
-  const bool is_found = std::any_of(found.begin(), found.end(),
-                                    [&](const ManifoldPoint& point) { return point.depth > kMissed * raw[0].depth; });
-  if (!is_found) found.push_back({Vec3(raw[0].p_W[0], raw[0].p_W[1], raw[0].p_W[2]), n_W, raw[0].depth});
+  const Kernel kernel = find_kernel(b.geometry->type, a.geometry->type);
+  SLEW_ASSERT(kernel != nullptr);
+  kernel(b, a, found);
+  swap_sides(found);
 }
 
 void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept {
   SLEW_ASSERT(poses.size() == model.frame_count());
   set.count_ = 0;
-  set.unresolved_ = 0;
   for (std::size_t pair = 0; pair < model.pairs_.size(); ++pair) {
     const ContactPair& shapes = model.pairs_[pair];
     const Pose &frame_a = poses[model.frame_of(shapes.shape_a)], &frame_b = poses[model.frame_of(shapes.shape_b)];

@@ -4,18 +4,14 @@
 //   ContactSet     the contacts found, and memory of the search; sized once
 //   find_contacts  poses of the frames -> contacts, in the order of the pairs
 //
-// A pair is first tested by bounding spheres, then by a kernel of our own (kernels.h) or, for the other convex
-// shapes, by FCL's GJK and EPA for the direction and the depth and by clipping of the facing faces for the points.
-// Pairs are few and declared, so there is no broad phase over all shapes. A pair that was found apart is not searched
-// again before both shapes have moved by less than what was between them (clearance.cpp): this saves time and changes
-// nothing that is found.
+// A pair is first tested by bounding spheres, then by the kernel of its types (kernels.h). Pairs are few and declared,
+// so there is no broad phase over all shapes. A pair that was found apart is not searched again before both shapes have
+// moved by less than what was between them (clearance.cpp): this saves time and changes nothing that is found.
 //
-// Own kernels neither allocate nor lock, and their cost is bounded. FCL allocates inside a query (up to 25 blocks,
-// given back before it returns): pairs with it are not yet fit for a step under the allocation guard. A search sees one
-// instant; what passed through something between two of them is found by sweep.h.
+// Real-time safe: no search allocates or locks, and its cost is bounded. A search sees one instant; what passed through
+// something between two of them is found by sweep.h.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -52,22 +48,16 @@ class ContactSet;
 
 class ContactModel {
  public:
-  ~ContactModel();
-  ContactModel(ContactModel&&) noexcept;
-  ContactModel& operator=(ContactModel&&) noexcept;
-
   [[nodiscard]] std::span<const ContactPair> pairs() const noexcept { return pairs_; }
   [[nodiscard]] std::size_t frame_of(std::size_t shape) const noexcept { return shapes_[shape].frame; }
   [[nodiscard]] std::size_t frame_count() const noexcept { return frame_count_; }
-  // True when a pair needs FCL.
-  [[nodiscard]] bool asks_fcl() const noexcept { return asks_fcl_; }
 
  private:
   friend ContactModel build(const ContactDef& def);
   friend class ContactSet;
   friend void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
   friend class Sweeper;
-  ContactModel();
+  ContactModel() = default;
 
   struct Shape {
     Geometry geometry;
@@ -75,11 +65,7 @@ class ContactModel {
     math::Vec3 p_FS;
     math::Mat3 R_FS;
     double extent = 0;  // m, of the farthest point from the frame's origin
-    std::size_t fcl_index = 0;
   };
-  struct Fcl;
-
-  void add_to_fcl(const ContactDef& def);
   [[nodiscard]] Solid place(const Shape& shape, const Pose& pose) const noexcept;
   void find_pair(std::size_t pair, const Pose& frame_a, const Pose& frame_b, ContactSet& set) const noexcept;
   [[nodiscard]] bool is_clear(std::size_t pair, const Pose& frame_a, const Pose& frame_b,
@@ -89,8 +75,6 @@ class ContactModel {
   std::vector<Shape> shapes_;
   std::vector<ContactPair> pairs_;
   std::size_t frame_count_ = 0;
-  bool asks_fcl_ = false;
-  std::unique_ptr<Fcl> fcl_;
 };
 
 // Pre-condition: validate() found nothing.
@@ -99,20 +83,14 @@ class ContactModel {
 class ContactSet {
  public:
   explicit ContactSet(const ContactModel& model);
-  ~ContactSet();
-  ContactSet(ContactSet&&) noexcept;
-  ContactSet& operator=(ContactSet&&) noexcept;
 
   // Contacts in the order of the pairs.
   [[nodiscard]] std::span<const ContactPoint> points() const noexcept { return {points_.data(), count_}; }
-  // Pairs for which FCL gave up in the last search: their contacts are missing.
-  [[nodiscard]] std::size_t unresolved() const noexcept { return unresolved_; }
 
  private:
   friend class ContactModel;
   friend class Sweeper;
   friend void find_contacts(const ContactModel& model, std::span<const Pose> poses, ContactSet& set) noexcept;
-  struct Fcl;
   // Where a pair was found apart, and by how much at least.
   struct Clearance {
     Pose frame_a, frame_b;
@@ -122,9 +100,7 @@ class ContactSet {
   std::vector<ContactPoint> points_;
   std::vector<Clearance> clearances_;  // by pair
   std::size_t count_ = 0;
-  std::size_t unresolved_ = 0;
   Manifold manifold_;
-  std::unique_ptr<Fcl> fcl_;
 };
 
 // poses: one per frame, in the order of ContactDef::frames.

@@ -157,7 +157,16 @@ Kernel find_kernel(ShapeType a, ShapeType b) noexcept {
                                        Row{convex_mesh, plane, convex_mesh_plane},
                                        Row{box, box, box_box},
                                        Row{capsule, capsule, capsule_capsule},
-                                       Row{capsule, box, capsule_box}};
+                                       Row{capsule, box, capsule_box},
+                                       Row{sphere, cylinder, sphere_cylinder},
+                                       Row{sphere, convex_mesh, sphere_convex_mesh},
+                                       Row{cylinder, box, convex_convex},
+                                       Row{cylinder, cylinder, convex_convex},
+                                       Row{cylinder, capsule, convex_convex},
+                                       Row{convex_mesh, box, convex_convex},
+                                       Row{convex_mesh, cylinder, convex_convex},
+                                       Row{convex_mesh, capsule, convex_convex},
+                                       Row{convex_mesh, convex_mesh, convex_convex}};
   if (b == triangle_mesh || b == height_field) {
     const bool is_ground = a == plane || a == triangle_mesh || a == height_field;
     return is_ground ? nullptr : a == sphere ? sphere_on_triangles : convex_on_triangles;

@@ -11,7 +11,8 @@ namespace slew::contact {
 
 using Kernel = void (*)(const Solid& a, const Solid& b, Manifold& out) noexcept;
 
-// The kernel of a pair of types in this order, null when there is none.
+// The kernel of a pair of types in this order, null when there is none: then there is one of the other order, but for
+// pairs of which nothing can move.
 [[nodiscard]] Kernel find_kernel(ShapeType a, ShapeType b) noexcept;
 
 void sphere_sphere(const Solid& a, const Solid& b, Manifold& out) noexcept;
@@ -34,6 +35,11 @@ void convex_mesh_plane(const Solid& a, const Solid& b, Manifold& out) noexcept;
 // 15 separating axes; face against face gives up to eight points, edge against edge one (Gottschalk, Lin and Manocha
 // 1996 for the axes)
 void box_box(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// by the nearest point of the surface; a centre inside leaves by the nearest face, cap or side
+void sphere_cylinder(const Solid& a, const Solid& b, Manifold& out) noexcept;
+void sphere_convex_mesh(const Solid& a, const Solid& b, Manifold& out) noexcept;
+// any two of box, cylinder, capsule, convex mesh: shortest way out (overlap.h), facing faces clipped
+void convex_convex(const Solid& a, const Solid& b, Manifold& out) noexcept;
 
 // B is a triangle mesh or a height field. Sphere: the points of the ground that are
 // nearer than all around them.

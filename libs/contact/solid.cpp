@@ -201,7 +201,10 @@ Geometry make_geometry(const ShapeDef& def) {
       break;
   }
   if (!g.vertices.empty()) bound_vertices(g);
-  if (def.type == ShapeType::convex_mesh) merge_faces(g);
+  if (def.type == ShapeType::convex_mesh) {
+    for (const Vec3& v : g.vertices) g.inside += v * (1 / static_cast<double>(g.vertices.size()));
+    merge_faces(g);
+  }
   if (def.type == ShapeType::triangle_mesh || def.type == ShapeType::height_field) {
     for (const Triangle& triangle : g.triangles) g.triangle_normals.push_back(normal_of(g, triangle));
     find_ways_out(g);
@@ -254,6 +257,35 @@ double reach(const Solid& solid, Vec3 d_W) noexcept {
     }
     default:
       return origin + g.radius;
+  }
+}
+
+Vec3 farthest_point(const Geometry& g, Vec3 d) noexcept {
+  const auto toward = [](double along, double extent) { return along < 0 ? -extent : extent; };
+  switch (g.type) {
+    case ShapeType::box:
+      return {toward(d[0], g.half_size[0]), toward(d[1], g.half_size[1]), toward(d[2], g.half_size[2])};
+    case ShapeType::cylinder: {
+      const double across = std::hypot(d.x(), d.y());
+      const double scale = across > 0 ? g.radius / across : 0.0;
+      return {scale * d.x(), scale * d.y(), toward(d.z(), g.half_length)};
+    }
+    case ShapeType::convex_mesh: {
+      std::size_t best = 0;
+      double farthest = dot(g.vertices[0], d);
+      for (std::size_t i = 1; i < g.vertices.size(); ++i) {
+        const double along = dot(g.vertices[i], d);
+        if (along <= farthest) continue;
+        farthest = along;
+        best = i;
+      }
+      return g.vertices[best];
+    }
+    default: {  // sphere, capsule
+      const double length = norm(d);
+      const Vec3 round = length > 0 ? d * (g.radius / length) : Vec3();
+      return round + Vec3(0, 0, toward(d.z(), g.half_length));
+    }
   }
 }
 

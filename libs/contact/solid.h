@@ -18,6 +18,7 @@ struct Geometry {
   math::Vec3 half_size;              // m: box
   double bounding_radius = 0;        // m about `centre`; infinite for a plane
   math::Vec3 centre;                 // m
+  math::Vec3 inside;                 // m: a point within a convex shape
   std::vector<math::Vec3> vertices;  // m: convex mesh, triangle mesh, height field
   std::vector<Triangle> triangles;
 
@@ -54,6 +55,10 @@ struct Solid {
 
 // The largest p_W . d_W of all points of a convex shape [m]; d_W is a unit vector.
 [[nodiscard]] double reach(const Solid& solid, math::Vec3 d_W) noexcept;
+
+// The point of a convex shape farthest along d_S [m], shape's axes; the first of those that are equally far. d_S need
+// not be a unit vector.
+[[nodiscard]] math::Vec3 farthest_point(const Geometry& geometry, math::Vec3 d_S) noexcept;
 
 // The face, edge or vertex of a convex shape that looks most squarely along d_W (unit). Triangle meshes and planes have
 // none here.

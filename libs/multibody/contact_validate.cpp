@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "contact/kernels.h"
 #include "contact/mesh_check.h"
 #include "multibody/contact_conversion.h"
 #include "multibody/contact_elements.h"
@@ -121,20 +120,6 @@ class ContactValidator {
   std::vector<int> carrier_;
 };
 
-void find_fcl_pairs(const MechanicsDef& m, Problems& warnings) {
-  for (const ContactPairDef& pair : m.contacts) {
-    const ShapeDef* a = find_named(m.shapes, pair.shape_a);
-    const ShapeDef* b = find_named(m.shapes, pair.shape_b);
-    if (contact::find_kernel(a->type, b->type) != nullptr || contact::find_kernel(b->type, a->type) != nullptr)
-      continue;
-    warnings.push_back({pair.name,
-                        "FCL searches this pair, and allocates memory in every sub-step in which they are near",
-                        "shapes with a search of their own when the run has to keep real time "
-                        "(docs/howto/contact.md)",
-                        ""});
-  }
-}
-
 void find_deep_starts(const MechanicsDef& m, Problems& warnings) {
   const Model model = build_model(m);
   Workspace ws(model);
@@ -162,7 +147,6 @@ void validate_contacts(const MechanicsDef& mechanics, Problems& problems) {
 
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings) {
   if (mechanics.contacts.empty()) return;
-  find_fcl_pairs(mechanics, warnings);
   find_deep_starts(mechanics, warnings);
 }
 

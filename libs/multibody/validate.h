@@ -23,8 +23,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings);
 // Pre-condition: validate() found nothing.
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings);
 
-// Appends a warning for every pair that needs FCL, which allocates in a step, and for every pair whose shapes start
-// deep in each other. Pre-condition: validate() found nothing.
+// Appends a warning for every pair whose shapes start deep in each other. Pre-condition: validate() found nothing.
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings);
 
 }  // namespace slew::multibody

@@ -23,7 +23,6 @@ using enum ShapeType;
 std::vector<ContactPoint> contacts(const ShapeDef& a, const ShapeDef& ground, const Pose& pose_a,
                                    const Pose& pose_ground = {}) {
   const ContactModel model = build(two_shapes(a, ground));
-  EXPECT_FALSE(model.asks_fcl());
   ContactSet set(model);
   const Pose poses[] = {pose_ground, pose_a};
   find_contacts(model, poses, set);

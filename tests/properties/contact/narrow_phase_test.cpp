@@ -3,14 +3,14 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "contact/fcl/fcl_border.h"
 #include "contact/kernels.h"
+#include "contact/overlap.h"
 #include "core/allocation_guard.h"
 #include "math/rotation.h"
 #include "support/contact_shapes.h"
@@ -25,14 +25,12 @@ using enum ShapeType;
 
 constexpr ShapeType kOwn[][2] = {{sphere, sphere},     {sphere, capsule},  {sphere, box},     {sphere, plane},
                                  {capsule, plane},     {box, plane},       {cylinder, plane}, {box, box},
-                                 {convex_mesh, plane}, {capsule, capsule}, {capsule, box}};
-constexpr ShapeType kCurvedByFcl[][2] = {
-    {cylinder, box}, {cylinder, cylinder}, {cylinder, capsule}, {convex_mesh, cylinder}};
-constexpr ShapeType kFlatByFcl[][2] = {{convex_mesh, box}, {convex_mesh, convex_mesh}};
-
-// FCL's EPA stops early on curved shapes of 1 m: by 4 mm at a tenth of their size, by 6 % when deep in each other
-constexpr double kShallow = 0.1;          // m
-constexpr double kCurvedAccuracy = 1e-2;  // m
+                                 {convex_mesh, plane}, {capsule, capsule}, {capsule, box},    {sphere, cylinder},
+                                 {sphere, convex_mesh}};
+// by the growing polytope of overlap.h
+constexpr ShapeType kSearched[][2] = {{cylinder, box},           {cylinder, cylinder},   {cylinder, capsule},
+                                      {convex_mesh, cylinder},   {convex_mesh, capsule}, {convex_mesh, box},
+                                      {convex_mesh, convex_mesh}};
 
 class NarrowPhase : public ::testing::Test {
  protected:
@@ -62,8 +60,19 @@ class NarrowPhase : public ::testing::Test {
     const ContactModel model = build(def);
     ContactSet set(model);
     find_contacts(model, poses, set);
-    EXPECT_EQ(set.unresolved(), 0u);
     return {set.points().begin(), set.points().end()};
+  }
+  // the second frame carries shape A
+  [[nodiscard]] Overlap overlap() const {
+    const Geometry a = make_geometry(def_.shapes[0]), b = make_geometry(def_.shapes[1]);
+    return find_overlap({&a, poses_[1].p_WF, poses_[1].R_WF}, {&b, poses_[0].p_WF, poses_[0].R_WF});
+  }
+  // both shapes, as one
+  std::pair<Vec3, Mat3> move_all() {
+    const Mat3 R = rotation();
+    const Vec3 p(uniform(-9, 9), uniform(-9, 9), uniform(-9, 9));
+    for (Pose& pose : poses_) pose = {p + R * pose.p_WF, R * pose.R_WF};
+    return {p, R};
   }
   static double deepest(const std::vector<ContactPoint>& points) {
     double depth = 0;
@@ -143,10 +152,12 @@ TEST_F(NarrowPhase, OwnKernelsFindWhatFclFinds) {
         continue;
       }
       if (types[0] == capsule && types[1] == box) continue;
+      // FCL's iteration is 4 % too deep with a ball on a mesh; drawn in tests/unit/contact/kernel_test.cpp
+      if (types[0] == sphere && types[1] == convex_mesh) continue;
       // boxes: both choose an edge only when it is better than a face by their own share, so near-ties may differ
       const bool are_boxes = types[0] == box && types[1] == box;
       ASSERT_NEAR(deepest(points), other.depth, (are_boxes ? 0.06 : 1e-9) * std::max(1.0, other.depth)) << what;
-      // a centre deep inside a box may leave by another face of nearly the same depth: depths were compared
+      // a centre deep inside a box or mesh may leave by another face of nearly the same depth: depths were compared
       if (types[0] == box && types[1] == box) continue;
       ASSERT_GT(dot(points[0].n_W, Vec3(other.n_W[0], other.n_W[1], other.n_W[2])), 1 - 1e-9) << what;
     }
@@ -216,16 +227,42 @@ TEST_F(NarrowPhase, ACapsuleIsAsDeepInABoxAsItsAxisIsNear) {
   EXPECT_GT(touching, 300);
 }
 
+// FCL's EPA stops early, on curved shapes by 17 % of the depth at worst: it is never less deep than ours, which
+// overlap_test.cpp proves to be the least, and mostly the same between polyhedra
+TEST_F(NarrowPhase, SearchesFindWhatFclFinds) {
+  constexpr double kFclFlat = 1e-5, kMostly = 0.9;
+  for (const auto& types : kSearched) {
+    int touching = 0, alike = 0;
+    for (int i = 0; i < 400; ++i) {
+      draw(types);
+      const Overlap own = overlap();
+      const double other = by_fcl(def_, poses_).depth;
+      const std::string what = std::to_string(static_cast<int>(types[0])) + " " +
+                               std::to_string(static_cast<int>(types[1])) + " draw " + std::to_string(i);
+      if (own.is_found != (other > 0)) {
+        ASSERT_LT(std::max(own.depth, other), 1e-6) << what;
+        continue;
+      }
+      if (!own.is_found) continue;
+      ++touching;
+      alike += own.depth > other - kFclFlat ? 1 : 0;
+      ASSERT_LT(own.depth, other + kFclFlat) << what;
+    }
+    EXPECT_GT(touching, 100);
+    const bool is_flat = types[0] == convex_mesh && (types[1] == box || types[1] == convex_mesh);
+    EXPECT_GT(alike, is_flat ? kMostly * touching : 0) << static_cast<int>(types[1]);
+  }
+}
+
 // no shift along the normal that is shorter than the depth takes the shapes apart, and the depth does
 TEST_F(NarrowPhase, DepthAlongTheNormalIsWhatTakesTheShapesApart) {
-  const auto check_all = [&](const auto& list, double slack, double deepest_tested) {
+  const auto check_all = [&](const auto& list, double slack) {
     for (const auto& types : list) {
       for (int i = 0; i < 400; ++i) {
         draw(types);
         const auto points = contacts(def_, poses_);
         if (points.empty()) continue;
         const double depth = deepest(points);
-        if (depth > deepest_tested) continue;
         // its axis is in the box: what it does then is a way out, not the shortest
         if (types[0] == capsule && types[1] == box && depth >= def_.shapes[0].radius) continue;
         std::array<Pose, 2> moved = poses_;
@@ -236,20 +273,17 @@ TEST_F(NarrowPhase, DepthAlongTheNormalIsWhatTakesTheShapesApart) {
       }
     }
   };
-  check_all(kOwn, 1e-9, 10);
-  check_all(kCurvedByFcl, kCurvedAccuracy, kShallow);
-  check_all(kFlatByFcl, 1e-6, kShallow);
+  check_all(kOwn, 1e-9);
+  check_all(kSearched, 1e-8);
 }
 
 TEST_F(NarrowPhase, ContactsMoveWithTheShapes) {
   for (const auto& types : kOwn) {
     for (int i = 0; i < 100; ++i) {
       draw(types);
-      const Mat3 R = rotation();
-      const Vec3 p(uniform(-9, 9), uniform(-9, 9), uniform(-9, 9));
-      std::array<Pose, 2> moved = poses_;
-      for (Pose& pose : moved) pose = {p + R * pose.p_WF, R * pose.R_WF};
-      const auto here = contacts(def_, poses_), there = contacts(def_, moved);
+      const auto here = contacts(def_, poses_);
+      const auto [p, R] = move_all();
+      const auto there = contacts(def_, poses_);
       // an axis in the box has ways out that are equally long
       if (types[0] == capsule && types[1] == box && deepest(here) >= def_.shapes[0].radius) continue;
       ASSERT_EQ(here.size(), there.size());
@@ -262,8 +296,22 @@ TEST_F(NarrowPhase, ContactsMoveWithTheShapes) {
   }
 }
 
+TEST_F(NarrowPhase, DepthsOfSearchesMoveWithTheShapes) {
+  for (const auto& types : kSearched) {
+    for (int i = 0; i < 200; ++i) {
+      draw(types);
+      const Overlap here = overlap();
+      static_cast<void>(move_all());
+      const Overlap there = overlap();
+      ASSERT_EQ(here.is_found, there.is_found);
+      ASSERT_NEAR(here.depth, there.depth, here.has_settled && there.has_settled ? 2e-9 : 1e-6)
+          << static_cast<int>(types[0]) << " " << static_cast<int>(types[1]);
+    }
+  }
+}
+
 TEST_F(NarrowPhase, BothOrdersOfAPairAgree) {
-  const auto check_all = [&](const auto& list, double tolerance, double deepest_tested) {
+  const auto check_all = [&](const auto& list, double tolerance) {
     for (const auto& types : list) {
       for (int i = 0; i < 400; ++i) {
         draw(types);
@@ -271,15 +319,14 @@ TEST_F(NarrowPhase, BothOrdersOfAPairAgree) {
         std::swap(swapped.pairs[0].shape_a, swapped.pairs[0].shape_b);
         const auto here = contacts(def_, poses_), there = contacts(swapped, poses_);
         ASSERT_EQ(here.empty(), there.empty());
-        if (here.empty() || deepest(here) > deepest_tested) continue;
+        if (here.empty()) continue;
         EXPECT_NEAR(deepest(here), deepest(there), tolerance)
             << static_cast<int>(types[0]) << " " << static_cast<int>(types[1]) << " " << i;
       }
     }
   };
-  check_all(kOwn, 1e-9, 10);
-  check_all(kCurvedByFcl, kCurvedAccuracy, kShallow);
-  check_all(kFlatByFcl, 1e-6, kShallow);
+  check_all(kOwn, 1e-9);
+  check_all(kSearched, 1e-8);
 }
 
 TEST_F(NarrowPhase, SharesOfAPairSumToOne) {
@@ -295,62 +342,25 @@ TEST_F(NarrowPhase, SharesOfAPairSumToOne) {
   }
 }
 
-// the same bits whatever the heap looks like
-TEST_F(NarrowPhase, RepeatsItselfToTheBit) {
-  for (const auto& types : kCurvedByFcl) {
-    for (int i = 0; i < 50; ++i) {
-      draw(types);
-      const auto first = contacts(def_, poses_);
-      std::vector<std::unique_ptr<char[]>> litter;
-      for (int k = 0; k < 50; ++k) litter.push_back(std::make_unique<char[]>(static_cast<std::size_t>(8 + 24 * k)));
-      const auto second = contacts(def_, poses_);
-      ASSERT_EQ(first.size(), second.size());
-      for (std::size_t k = 0; k < first.size(); ++k) {
-        ASSERT_EQ(first[k].depth, second[k].depth);
-        for (int axis = 0; axis < 3; ++axis) {
-          ASSERT_EQ(first[k].p_W[axis], second[k].p_W[axis]);
-          ASSERT_EQ(first[k].n_W[axis], second[k].n_W[axis]);
-        }
-      }
-    }
-  }
-}
-
-TEST_F(NarrowPhase, OwnKernelsDoNotAllocate) {
+TEST_F(NarrowPhase, DoesNotAllocate) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
   std::size_t found = 0;
-  for (const auto& types : kOwn) {
-    for (int i = 0; i < 50; ++i) {
-      draw(types);
-      const ContactModel model = build(def_);
-      ASSERT_FALSE(model.asks_fcl());
-      ContactSet set(model);
-      const AllocationGuard guard;
-      find_contacts(model, poses_, set);
-      ASSERT_EQ(guard.allocations(), 0u);
-      found += set.points().size();
+  const auto check_all = [&](const auto& list) {
+    for (const auto& types : list) {
+      for (int i = 0; i < 50; ++i) {
+        draw(types);
+        const ContactModel model = build(def_);
+        ContactSet set(model);
+        const AllocationGuard guard;
+        find_contacts(model, poses_, set);
+        ASSERT_EQ(guard.allocations(), 0u);
+        found += set.points().size();
+      }
     }
-  }
+  };
+  check_all(kOwn);
+  check_all(kSearched);
   EXPECT_GT(found, 100u);
-}
-
-TEST_F(NarrowPhase, FclGivesBackWhatItAllocates) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
-  std::uint64_t most = 0;
-  for (const auto& types : kCurvedByFcl) {
-    for (int i = 0; i < 50; ++i) {
-      draw(types);
-      const ContactModel model = build(def_);
-      ASSERT_TRUE(model.asks_fcl());
-      ContactSet set(model);
-      find_contacts(model, poses_, set);
-      const AllocationGuard guard;
-      find_contacts(model, poses_, set);
-      most = std::max(most, guard.allocations());
-      ASSERT_EQ(guard.allocations(), guard.frees());
-    }
-  }
-  RecordProperty("most_allocations_of_a_query", std::to_string(most));
 }
 
 }  // namespace

@@ -68,20 +68,6 @@ TEST(Mesh, FileIsRefusedInASceneFromMemory) {
   }
 }
 
-TEST(Pair, ThatFclSearchesIsWarnedAbout) {
-  const Scene scene = load_text(std::string(kBlock) + R"(
-shapes:
-  Roll: {type: cylinder, body: Block, radius: 0.1 m, length: 0.2 m}
-  Post: {type: cylinder, position: [5 m, 0, 0], radius: 0.1 m, length: 0.2 m}
-contacts:
-  Touch: {shape_a: Roll, shape_b: Post, spring_constant: 1e6 N/m}
-)",
-                                "test");
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("Touch: FCL searches this pair, and allocates memory"), std::string::npos)
-      << scene.warnings[0];
-}
-
 TEST(Pair, ThatStartsDeepInsideIsWarnedAbout) {
   const Scene scene = load_text(std::string(kBlock) + R"(
 shapes:
