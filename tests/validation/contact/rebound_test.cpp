@@ -60,6 +60,30 @@ TEST(Rebound, HasTheWantedRestitution) {
   EXPECT_LT(worst, 1e-6) << "worse than what the derivation and the integrator give";
 }
 
+// Laws of the literature differ in the number a of (2) only, and return what case D02 lists. For comparison: a scene
+// cannot choose them.
+TEST(Rebound, OfTheCommonLawsIsWhatTheCaseLists) {
+  struct Listed {
+    const char* name;
+    double (*a)(double e);
+    double rebound[3];  // of e = 0.1, 0.5, 0.9
+  };
+  const Listed laws[] = {
+      {"Hunt-Crossley", [](double e) { return 3 * (1 - e) / 2; }, {0.515833, 0.662962, 0.909016}},
+      {"Lankarani-Nikravesh", [](double e) { return 3 * (1 - e * e) / 4; }, {0.665265, 0.725241, 0.913177}},
+      {"Flores", [](double e) { return 8 * (1 - e) / (5 * e); }, {0.069444, 0.470445, 0.893921}},
+      {"Hu-Guo", [](double e) { return 3 * (1 - e) / (2 * e); }, {0.074074, 0.487741, 0.899900}},
+  };
+  const double wanted[] = {0.1, 0.5, 0.9};
+  for (const Listed& listed : laws) {
+    for (int i = 0; i < 3; ++i) {
+      NormalLaw law = build({.stiffness = 1e5, .restitution = 0.5, .exponent = 1.5});
+      law.damping_number = listed.a(wanted[i]);
+      EXPECT_NEAR(bounce(law, 1, 3).rebound, listed.rebound[i], 2e-6) << listed.name << " " << wanted[i];
+    }
+  }
+}
+
 TEST(Rebound, WithWeightIsWithinAPercent) {
   for (const double e : {0.3, 0.5, 0.9}) {
     const NormalLaw law = build({.stiffness = 1e8, .restitution = e});

@@ -1,8 +1,8 @@
 // Case D03 through the whole path: a block on an incline sticks or slips, stops on the flat, rests at its depth.
 #include <gtest/gtest.h>
 
-#include "contact_scene.h"
 #include "core/state_hash.h"
+#include "scene_cases.h"
 #include "support/nightly.h"
 
 namespace slew::multibody {
@@ -26,12 +26,14 @@ MechanicsDef block(double angle, double mu, const Triple& velocity = {}) {
   return def;
 }
 
-class Block : public ::testing::TestWithParam<Formulation> {};
-INSTANTIATE_TEST_SUITE_P(All, Block, ::testing::Values(Formulation::recursive, Formulation::lagrange));
+class Block : public EveryWay {};
+INSTANTIATE_TEST_SUITE_P(D03, Block, ::testing::ValuesIn(every_way()), name_of_way);
 
 TEST_P(Block, RestsAtTheDepthOfItsWeight) {
   Motion motion(block(0, 0.3), GetParam());
   motion.run(2, 1e-3);
+  RecordProperty("rest_error_1e_6",
+                 std::to_string(1e6 * (motion.value("Sides_Floor.depth") / (2 * kGravity / 1e6) - 1)));
   EXPECT_NEAR(motion.value("Sides_Floor.depth"), 2 * kGravity / 1e6, 1e-3 * 2e-5);
   EXPECT_NEAR(motion.value("Sides_Floor.normal_force.y"), 2 * kGravity, 1e-3 * 20);
   EXPECT_EQ(motion.value("Sides_Floor.contacts"), 4);
@@ -39,13 +41,23 @@ TEST_P(Block, RestsAtTheDepthOfItsWeight) {
   EXPECT_LT(std::fabs(motion.pose("Block").velocity[1]), 1e-6);
 }
 
+// F = K d^1.5 with K = 1e8, shared by four points of equal depth
+TEST_P(Block, RestsAtTheDepthOfHertzsLaw) {
+  MechanicsDef def = block(0, 0.3);
+  def.contacts[0].normal = {.stiffness = 1e8, .restitution = 0.1, .exponent = 1.5, .smallest_impact_speed = 0.1};
+  Motion motion(def, GetParam());
+  motion.run(2, 1e-3);
+  EXPECT_NEAR(motion.value("Sides_Floor.depth"), 3.376494153e-5, 1e-3 * 3.4e-5);
+}
+
 TEST_P(Block, SticksOnAFlatInclineWithoutCreep) {
-  Motion motion(block(15 * kDegree, 0.3), GetParam());
+  Motion motion(contact_scene("incline"), GetParam());
   motion.run(2, 1e-3);
   EXPECT_NEAR(motion.value("Sides_Floor.friction_force.x"), -2 * 2.539014832, 1e-3 * 5);
   EXPECT_NEAR(motion.value("Sides_Floor.normal_force.y"), 2 * 9.475732356, 1e-3 * 19);
   const double x = motion.pose("Block").position[0];
-  motion.run(GetParam() == Formulation::recursive ? rounds(20.0, 3600.0) : 5.0, 1e-3);
+  motion.run(is_recursion(GetParam()) ? rounds(20.0, 3600.0) : 5.0, 1e-3);
+  RecordProperty("creep_1e_15_m", std::to_string(1e15 * (motion.pose("Block").position[0] - x)));
   EXPECT_NEAR(motion.pose("Block").position[0], x, 1e-9);
   EXPECT_LT(std::fabs(motion.pose("Block").velocity[0]), 1e-9);
 }
@@ -55,7 +67,9 @@ TEST_P(Block, SlipsOnASteepIncline) {
   motion.run(0.5, 1e-3);
   const double v = motion.pose("Block").velocity[0];
   motion.run(0.5, 1e-3);
-  EXPECT_NEAR((motion.pose("Block").velocity[0] - v) / 0.5, 2.356287237, 1e-3 * 2.356);
+  const double a = (motion.pose("Block").velocity[0] - v) / 0.5;
+  RecordProperty("slip_acceleration_error_1e_6", std::to_string(1e6 * (a / 2.356287237 - 1)));
+  EXPECT_NEAR(a, 2.356287237, 1e-3 * 2.356);
 }
 
 TEST_P(Block, StopsOnTheFlat) {
@@ -63,7 +77,9 @@ TEST_P(Block, StopsOnTheFlat) {
   motion.run(0.3, 1e-3);  // off the start, where it drops onto its own depth
   const double v = motion.pose("Block").velocity[0], x = motion.pose("Block").position[0];
   motion.run(1.5, 1e-3);
-  EXPECT_NEAR(motion.pose("Block").position[0] - x, v * v / (2 * 0.3 * kGravity), 2e-3);
+  const double way = motion.pose("Block").position[0] - x, expected = v * v / (2 * 0.3 * kGravity);
+  RecordProperty("stop_error_1e_6", std::to_string(1e6 * (way / expected - 1)));
+  EXPECT_NEAR(way, expected, 1e-3 * expected);
   EXPECT_LT(std::fabs(motion.pose("Block").velocity[0]), 1e-6);
 }
 
@@ -117,7 +133,7 @@ TEST_P(Block, TouchingIsPartOfTheStateHash) {
 
 // a rolled back state goes on with the same bits
 TEST_P(Block, GoesOnWithTheSameBitsFromACopy) {
-  if (GetParam() != Formulation::recursive) GTEST_SKIP() << "body coordinates are kept inside Dynamics";
+  if (!is_recursion(GetParam())) GTEST_SKIP() << "body coordinates are kept inside Dynamics";
   Motion motion(block(30 * kDegree, 0.3), GetParam());
   motion.run(0.1, 1e-3);
   State copy = start_state(motion.model);

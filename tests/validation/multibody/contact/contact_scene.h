@@ -1,15 +1,7 @@
-// Bodies on a ground, as a scene defines them, moved by the Dynamics of either formulation.
+// Bodies on a ground, as a scene defines them, moved by the Dynamics of any formulation.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "multibody/formulation.h"
-#include "multibody/observe.h"
-#include "multibody/validate.h"
+#include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody::testing {
 
@@ -92,21 +84,44 @@ inline void add_free(MechanicsDef& def, const BodyDef& body, const Triple& veloc
   def.joints.push_back(joint);
 }
 
-class Motion {
- public:
-  explicit Motion(const MechanicsDef& def, Formulation formulation = Formulation::recursive)
-      : model((expect_sound(def), build_model(def))),
-        state(start_state(model)),
-        ws(model),
-        dynamics(formulation, model, state) {
-    see();
-  }
+// How a mechanism is moved: formulation, and the rule of its sub-steps where that can be chosen.
+struct Way {
+  Way(Formulation chosen = Formulation::recursive, Integrator rule = Integrator::rk4)  // NOLINT: a formulation is one
+      : formulation(chosen), integrator(rule) {}
+  Formulation formulation;
+  Integrator integrator;
+};
 
-  static void expect_sound(const MechanicsDef& def) {
-    Problems problems;
-    validate(def, problems);
-    for (const Problem& problem : problems) ADD_FAILURE() << problem.path << ": " << problem.what;
+// the cheap one, for long runs
+inline bool is_recursion(const Way& way) {
+  return way.formulation == Formulation::recursive && way.integrator == Integrator::rk4;
+}
+
+inline std::string name_of(const Way& way) {
+  return name_of(way.formulation) + (way.integrator == Integrator::rk4 ? "" : "_" + name_of(way.integrator));
+}
+inline std::string name_of_way(const ::testing::TestParamInfo<Way>& test) {
+  return name_of(test.param);
+}
+
+// each formulation with its own rule, and those two that have a choice with the implicit ones
+inline std::vector<Way> every_way() {
+  using enum Formulation;
+  std::vector<Way> ways = {recursive, lagrange, augmented, penalty};
+  for (const Formulation formulation : {recursive, lagrange}) {
+    for (const Integrator rule : {Integrator::trapezoidal, Integrator::generalised_alpha, Integrator::sdirk2}) {
+      ways.emplace_back(formulation, rule);
+    }
   }
+  return ways;
+}
+
+// A mechanism that is moved in one way by communication steps.
+class Motion : public Mechanism {
+ public:
+  explicit Motion(const MechanicsDef& def, const Way& way = {})
+      : Mechanism(def),
+        dynamics(way.formulation, model, state, {way.integrator, def.spectral_radius, def.iteration_tolerance}) {}
 
   // one communication step of h; false when it was flagged
   bool step(double h) {
@@ -118,27 +133,7 @@ class Motion {
     for (long i = 0; i < steps; ++i) is_sound = step(h) && is_sound;
     see();
   }
-  void see() { observe(model, state, ws); }
 
-  [[nodiscard]] BodyPose pose(const std::string& body) const { return body_pose(model, ws, find_body(model, body)); }
-  [[nodiscard]] double total_energy() const {
-    const Energy e = energy(model, ws);
-    return e.kinetic + e.potential;
-  }
-  [[nodiscard]] double value(const std::string& variable) const {
-    const std::vector<ElementVariable> names = variables(model);
-    std::vector<double> values(names.size());
-    read_variables(model, state, ws, {}, values);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i].name == variable) return values[i];
-    }
-    ADD_FAILURE() << "no variable " << variable;
-    return 0;
-  }
-
-  Model model;
-  State state;
-  Workspace ws;
   Dynamics dynamics;
   bool is_sound = true;
 };
