@@ -40,7 +40,8 @@ struct ContactPairDef {
   contact::NormalLawDef normal{};
   std::string name{};
   std::string shape_a{}, shape_b{};
-  std::string friction{};  // name of a FrictionDef; empty: frictionless
+  std::string friction{};            // name of a FrictionDef; empty: frictionless
+  std::int64_t point_variables = 4;  // contact points that are variables, 0 .. contact::kMaxPointsPerPair
 };
 
 // A named friction as in table 12.

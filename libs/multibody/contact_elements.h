@@ -25,7 +25,8 @@ struct ContactFrame {
 
 struct ContactPairElement {
   std::string name;
-  int tested = -1;  // pair of ContactElements::model; -1: the shapes cannot move against each other
+  std::size_t point_slots = 0;  // contact points that are variables
+  int tested = -1;              // pair of ContactElements::model; -1: the shapes cannot move against each other
 };
 
 struct ContactElements {

@@ -4,6 +4,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "contact/manifold.h"
+
 namespace slew::multibody {
 namespace {
 
@@ -12,6 +14,8 @@ using enum Dimension;
 // the laws' own tables bind to the first member
 static_assert(std::is_standard_layout_v<ContactPairDef> && std::is_standard_layout_v<FrictionDef>);
 
+constexpr Range kPointSlots{
+    .min = 0, .max = static_cast<double>(contact::kMaxPointsPerPair), .min_is_open = false, .max_is_open = false};
 constexpr Range kGrid{.min = 2, .max = 1e4, .min_is_open = false, .max_is_open = false};
 
 constexpr Field kBody = field<&ShapeDef::body>("body", {.reference = "body", .doc = "body that the shape belongs to"});
@@ -81,6 +85,8 @@ constexpr Field kPairFields[] = {
                                     {.presence = Presence::required, .reference = "shape", .doc = "second shape"}),
     field<&ContactPairDef::friction>("friction",
                                      {.reference = "friction", .doc = "friction between them; without it none"}),
+    field<&ContactPairDef::point_variables>(
+        "point_variables", {.range = kPointSlots, .doc = "contact points that are variables, with place and forces"}),
 };
 
 // the pair's own rows, then those of its normal law

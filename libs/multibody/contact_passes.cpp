@@ -100,6 +100,7 @@ ContactForce force_at(const ContactPair& pair, const Touch& touch, RememberedCon
                    .frame_a = static_cast<int>(touch.a),
                    .frame_b = static_cast<int>(touch.b),
                    .p_W = point.p_W,
+                   .n_W = point.n_W,
                    .normal_W = point.n_W * normal.force,
                    .friction_W = Vec3(),
                    .depth = point.depth,

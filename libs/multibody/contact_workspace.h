@@ -13,6 +13,7 @@ struct ContactForce {
   int pair = 0;  // of ContactElements::pairs
   int frame_a = 0, frame_b = 0;
   math::Vec3 p_W;         // m
+  math::Vec3 n_W;         // unit, from B to A
   math::Vec3 normal_W;    // N, on A
   math::Vec3 friction_W;  // N, on A
   double depth = 0;       // m

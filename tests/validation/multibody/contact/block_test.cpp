@@ -83,6 +83,57 @@ TEST_P(Block, StopsOnTheFlat) {
   EXPECT_LT(std::fabs(motion.pose("Block").velocity[0]), 1e-6);
 }
 
+// the points of the sum: corners of the block with a quarter of its weight and friction each
+TEST_P(Block, ShowsTheContactPointsThatItStandsOn) {
+  Motion motion(contact_scene("incline"), GetParam());
+  motion.run(2, 1e-3);
+  math::Vec3 normal, friction;
+  double corners = 0;  // sum of x z over the corners' signs: each of the four once
+  for (int n = 1; n <= 4; ++n) {
+    const std::string point = "Sides_Floor.point" + std::to_string(n);
+    const auto vector = [&](const std::string& quantity) {
+      return math::Vec3(motion.value(point + quantity + ".x"), motion.value(point + quantity + ".y"),
+                        motion.value(point + quantity + ".z"));
+    };
+    const math::Vec3 p = vector(".position"), n_W = vector(".normal");
+    EXPECT_NEAR(std::fabs(p.x() - motion.pose("Block").position[0]), 0.2, 1e-4);
+    EXPECT_NEAR(std::fabs(p.z()), 0.2, 1e-4);
+    corners += std::copysign(2.0, p.x()) + std::copysign(1.0, p.z());
+    EXPECT_LT(norm(n_W - math::Vec3(0, 1, 0)), 1e-4);
+    EXPECT_GT(motion.value(point + ".depth"), 0);
+    EXPECT_NEAR(p.y(), -motion.value(point + ".depth") / 2, 1e-9);
+    normal += n_W * motion.value(point + ".normal_force");
+    friction += vector(".friction_force");
+  }
+  EXPECT_EQ(corners, 0);
+  EXPECT_NEAR(normal.y(), motion.value("Sides_Floor.normal_force.y"), 1e-9 * 19);
+  EXPECT_NEAR(friction.x(), motion.value("Sides_Floor.friction_force.x"), 1e-9 * 5);
+  EXPECT_NEAR(friction.x(), -2 * 2.539014832, 1e-3 * 5);
+}
+
+TEST(Points, OfWhichThereAreMoreThanSlotsAreTheDeepest) {
+  MechanicsDef def = contact_scene("incline");
+  def.contacts[0].point_variables = 2;
+  Motion motion(def);
+  motion.run(2, 1e-3);
+  // pushed down the slope at its middle, the block stands deeper on its lower edge
+  for (const char* point : {"Sides_Floor.point1", "Sides_Floor.point2"}) {
+    EXPECT_GT(motion.value(std::string(point) + ".position.x"), 0);
+  }
+  for (const ElementVariable& variable : variables(motion.model)) {
+    EXPECT_EQ(variable.name.find("point3"), std::string::npos) << variable.name;
+  }
+}
+
+TEST(Points, ThatAreNotThereAreZero) {
+  Motion motion(block(0, 0.3, {0, 3, 0}));
+  motion.run(0.1, 1e-3);
+  EXPECT_EQ(motion.value("Sides_Floor.contacts"), 0);
+  for (const char* quantity : {".position.x", ".normal.y", ".depth", ".normal_force", ".friction_force.z"}) {
+    EXPECT_EQ(motion.value(std::string("Sides_Floor.point1") + quantity), 0) << quantity;
+  }
+}
+
 // a shape on one of two merged bodies, and the reaction of their fixed joint
 TEST_P(Block, LoadsTheJointOfTheBodyThatCarriesTheShape) {
   MechanicsDef def = block(0, 0.3);
