@@ -11,7 +11,7 @@
 #include "multibody/dynamics.h"
 #include "multibody/topology.h"
 #include "tests/properties/multibody/assembled.h"
-#include "tests/properties/multibody/random_tree.h"
+#include "tests/properties/multibody/random_loops.h"
 #include "tests/validation/multibody/angles.h"
 #include "tests/validation/multibody/mechanism.h"
 
@@ -24,19 +24,6 @@ using math::Vec3;
 
 constexpr Real kTolerance = 1e-9L;
 
-constexpr JointType kTypes[] = {JointType::revolute,
-                                JointType::prismatic,
-                                JointType::spherical,
-                                JointType::universal,
-                                JointType::cylindrical,
-                                JointType::in_plane,
-                                JointType::in_line,
-                                JointType::perpendicular,
-                                JointType::spherical_spherical,
-                                JointType::revolute_spherical,
-                                JointType::revolute_revolute,
-                                JointType::fixed};
-
 Vector to_vector(const std::vector<double>& values) {
   Vector v(static_cast<Eigen::Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) v[static_cast<Eigen::Index>(i)] = values[i];
@@ -48,87 +35,17 @@ Real difference(const Vector& a, const Vector& b) {
   return (a - b).cwiseAbs().maxCoeff() / (1 + b.cwiseAbs().maxCoeff());
 }
 
-// A tree with one or two joints more, which the start fits.
-class Closing {
- public:
-  explicit Closing(unsigned seed) : random_(seed + 77) {
-    tree =
-        random_tree(seed, {.bodies = 3 + static_cast<int>(seed) % 6, .with_dummies = false, .two_coordinates = true});
-    Problems problems;
-    poses_ = start_poses(tree.def, problems);
-    add(kTypes[seed % std::size(kTypes)]);
-    if (seed % 3 == 0) add(kTypes[(seed / 3) % std::size(kTypes)]);
-  }
-
-  RandomTree tree;
-
- private:
-  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-  Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
-  Mat3 rotation() { return math::rotation_xyz({number(-3, 3), number(-1.5, 1.5), number(-3, 3)}); }
-
-  void add(JointType type) {
-    const int bodies = static_cast<int>(poses_.size());
-    const int a = std::uniform_int_distribution<int>(0, bodies - 1)(random_);
-    const int b = (a + std::uniform_int_distribution<int>(1, bodies - 1)(random_)) % bodies;
-    const Mat3 R1 = rotation();
-    const Vec3 P1 = poses_[static_cast<std::size_t>(a)].p + vector(0.5);
-    Mat3 R2 = R1;
-    Vec3 P2 = P1;
-    switch (type) {
-      case JointType::revolute:
-        R2 = R1 * math::rotation_z(number(-3, 3));
-        break;
-      case JointType::prismatic:
-        P2 = P1 + R1.c[2] * number(-1, 1);
-        break;
-      case JointType::cylindrical:
-        R2 = R1 * math::rotation_z(number(-3, 3));
-        [[fallthrough]];
-      case JointType::in_line:
-        P2 = P1 + R1.c[2] * number(-1, 1);
-        break;
-      case JointType::in_plane:
-        P2 = P1 + R1.c[0] * number(-1, 1) + R1.c[1] * number(-1, 1);
-        break;
-      case JointType::universal:
-      case JointType::perpendicular:
-        R2 = R1 * math::rotation_z(number(-3, 3)) * math::rotation_xyz({0, M_PI / 2, 0}) * math::rotation_z(1);
-        break;
-      case JointType::fixed:
-      case JointType::spherical:
-        break;
-      default:
-        P2 = P1 + vector(1);
-        R2 = rotation();
-    }
-    const auto into = [&](int body, const Mat3& R, Vec3 P, Triple& point, Triple& orientation, std::string& name) {
-      const Pose& pose = poses_[static_cast<std::size_t>(body)];
-      point = (transpose(pose.R) * (P - pose.p)).array();
-      orientation = angles_xyz(transpose(pose.R) * R);
-      name = body_name(tree.def, body);
-    };
-    JointDef joint{.name = "C" + std::to_string(tree.def.joints.size()), .type = type};
-    into(a, R1, P1, joint.point1, joint.orientation1, joint.body1);
-    into(b, R2, P2, joint.point2, joint.orientation2, joint.body2);
-    tree.def.joints.push_back(joint);
-  }
-
-  std::mt19937 random_;
-  std::vector<Pose> poses_;
-};
-
 class RandomLoops : public ::testing::TestWithParam<unsigned> {
  protected:
   RandomLoops()
-      : closing(GetParam()), mechanism(closing.tree.def, rows()), reference(closing.tree.def, mechanism.model) {}
+      : closing(random_loops(GetParam())), mechanism(closing.def, rows()), reference(closing.def, mechanism.model) {}
 
   // of two joints on one coordinate the tree may hold the later one
   [[nodiscard]] std::vector<std::string> rows() const {
     std::vector<std::string> names;
-    for (const std::string& row : closing.tree.rows) {
+    for (const std::string& row : closing.rows) {
       Problems problems;
-      validate_rows(closing.tree.def, std::vector<std::string>{row}, problems);
+      validate_rows(closing.def, std::vector<std::string>{row}, problems);
       const bool is_force = row[0] == 'F';
       if (problems.empty() && is_force) names.push_back(row);
     }
@@ -154,7 +71,7 @@ class RandomLoops : public ::testing::TestWithParam<unsigned> {
     const Eigen::Index n = mechanism.model.speed_count();
     J.resize(0, n);
     bias.resize(0);
-    for (std::size_t j = 0; j < closing.tree.def.joints.size(); ++j) {
+    for (std::size_t j = 0; j < closing.def.joints.size(); ++j) {
       if (mechanism.model.joints[j].cut < 0) continue;
       const Matrix here = reference.cut_jacobian(j, q);
       if (here.cwiseAbs().maxCoeff() < 1e-10L) continue;  // between bodies that fixed joints merge
@@ -179,7 +96,7 @@ class RandomLoops : public ::testing::TestWithParam<unsigned> {
     return free + response * inverse.solve(right - J * free);
   }
 
-  Closing closing;
+  RandomTree closing;
   Mechanism mechanism;
   Assembled reference;
   Vector q, u, bias;
@@ -236,7 +153,7 @@ TEST_P(RandomLoops, AreTheSameInBodyCoordinates) {
 }
 
 TEST_P(RandomLoops, StayClosedAndKeepTheirEnergy) {
-  MechanicsDef def = closing.tree.def;
+  MechanicsDef def = closing.def;
   def.translational_forces.clear();
   def.rotational_forces.clear();
   for (const Formulation formulation : {Formulation::recursive, Formulation::lagrange}) {
