@@ -191,10 +191,7 @@ void find_joint_coordinates(const Model& model, const Workspace& ws, State& stat
 
 Drift drift(const BodyWorkspace& bws) noexcept {
   Drift largest;
-  for (const RowValue& row : bws.rows) {
-    largest.position = std::max(largest.position, std::fabs(row.g));
-    largest.rate = std::max(largest.rate, std::fabs(row.rate));
-  }
+  for (const RowValue& row : bws.rows) largest.add(row);
   return largest;
 }
 

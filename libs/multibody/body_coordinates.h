@@ -17,6 +17,7 @@
 // but for the fill along loops. Nothing here allocates but the builders.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -86,6 +87,15 @@ void accelerations(const Model& model, BodyWorkspace& bws, std::span<const doubl
 // After evaluate(): the largest violation of (2), positions [m or 1] and rates [m/s or 1/s].
 struct Drift {
   double position = 0, rate = 0;
+
+  // Not a number stays.
+  void add(const RowValue& row) noexcept {
+    const auto raise = [](double& largest, double value) {
+      if (value > largest || std::isnan(value)) largest = value;
+    };
+    raise(position, std::fabs(row.g));
+    raise(rate, std::fabs(row.rate));
+  }
 };
 [[nodiscard]] Drift drift(const BodyWorkspace& bws) noexcept;
 

@@ -96,10 +96,7 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
 
 Drift drift(const PenaltyWorkspace& pws) noexcept {
   Drift largest;
-  for (const RowValue& row : pws.rows) {
-    largest.position = std::max(largest.position, std::fabs(row.g));
-    largest.rate = std::max(largest.rate, std::fabs(row.rate));
-  }
+  for (const RowValue& row : pws.rows) largest.add(row);
   return largest;
 }
 

@@ -58,7 +58,7 @@ double largest(const LoopWorkspace& loops, Value value) noexcept {
   double result = 0;
   for (const RowValue& row : loops.rows) {
     const double size = std::fabs(value(row));
-    if (!(size <= result)) result = size;  // NaN stays
+    if (size > result || std::isnan(size)) result = size;  // NaN stays
   }
   return result;
 }
