@@ -3,60 +3,47 @@
 // A02: IFToMM; the parallelogram branch is an ODE of one coordinate. Tolerances: position 1e-3 m at 10 s, energy 1e-4.
 // A03: Bari IVP test set; angles within 1e-4 at a fixed step of 1e-5 s, loops within 1e-9 m.
 // A08: Haug, IFToMM; slider within 2e-4 m, crank within 1e-2 rad at 5 s.
+// Figures: docs/validation/A02_four_bars.md, A03_squeezer.md, A08_slider_crank.md.
 #include "tests/validation/multibody/csv_table.h"
+#include "tests/validation/multibody/every_formulation.h"
 #include "tests/validation/multibody/loop_defs.h"
-#include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
 namespace {
 
+using testing::expect_figure;
 using testing::Formulated;
 using testing::four_bars;
+using testing::opening;
 using testing::slider_crank;
 
-class Loops : public ::testing::TestWithParam<Formulation> {
+class FourBars : public testing::EveryFormulation {
  protected:
-  [[nodiscard]] Formulated start(MechanicsDef def) const {
-    def.formulation = GetParam();
-    return Formulated(def);
+  static void follow_table(Formulated& bars, int n, const std::string& table, double step) {
+    const double begin = bars.total_energy();
+    double error = 0, drift = 0, time = 0, open = 0;
+    for (const auto& row : testing::read_table(table)) {
+      if (row[0] > time) bars.run(row[0] - time, step);
+      time = row[0];
+      const BodyPose pose = bars.pose("Coupler0");
+      error = std::max({error, std::abs(pose.position[0] - row[1]), std::abs(pose.position[1] - row[2])});
+      drift = std::max(drift, std::abs(bars.total_energy() - begin) / begin);
+      open = std::max(open, opening(bars).position);
+    }
+    EXPECT_NEAR(time, 10, 1e-9);
+    const std::string which = "N=" + std::to_string(n) + ": ";
+    expect_figure("A02", setting(step), {which + "B0 to 10 s [m]", error, 1e-3});
+    expect_figure("A02", setting(step), {which + "energy, relative", drift, 1e-4});
+    expect_figure("A02", setting(step), {which + "constraint [m]", open, 1e-8, is(Formulation::penalty) ? 1e-6 : 1e-8});
   }
 };
 
-class FourBars : public Loops {};
-class Squeezer : public Loops {};
-class SliderCrank : public Loops {};
-
-TEST(RedundantRows, OfAPlanarFourBarInSpaceAreThree) {
-  const Model model = build_model(four_bars(1));
-  const Description text = describe(model);
-  ASSERT_EQ(text.cuts.size(), 1U);
-  EXPECT_EQ(text.cuts[0].joint, "Right0");
-  EXPECT_EQ(text.cuts[0].rows, 2);
-  EXPECT_EQ(text.cuts[0].redundant,
-            (std::vector<std::string>{"row 3 (position along z)", "row 4 (angle between x and z of body 2)",
-                                      "row 5 (angle between y and z of body 2)"}));
-  EXPECT_EQ(model.degrees_of_freedom(), 1);
-}
-
-void follow_table(Formulated& bars, const std::string& table, double step) {
-  const double start = bars.total_energy();
-  double error = 0, drift = 0, time = 0;
-  for (const auto& row : testing::read_table(table)) {
-    bars.run(row[0] - time, step);
-    time = row[0];
-    const BodyPose pose = bars.pose("Coupler0");
-    error = std::max({error, std::abs(pose.position[0] - row[1]), std::abs(pose.position[1] - row[2])});
-    drift = std::max(drift, std::abs(bars.total_energy() - start) / start);
-  }
-  EXPECT_NEAR(time, 10, 1e-9);
-  EXPECT_LT(error, 1e-3);
-  EXPECT_LT(drift, 1e-4);
-  ::testing::Test::RecordProperty("position_error_um", std::to_string(error * 1e6));
-}
+class Squeezer : public testing::EveryFormulation {};
+class SliderCrank : public testing::EveryFormulation {};
 
 TEST_P(FourBars, OneFollowsItsBranchThroughTheFlatPositions) {
   Formulated bars = start(four_bars(1));
-  follow_table(bars, "A02_N1_spatial_redundant.csv", 1e-3);
+  follow_table(bars, 1, "A02_N1_spatial_redundant.csv", 1e-3);
 }
 
 TEST_P(FourBars, TwoFollowTheirBranchThroughTheFlatPositions) {
@@ -64,7 +51,7 @@ TEST_P(FourBars, TwoFollowTheirBranchThroughTheFlatPositions) {
   // three degrees of freedom in each pass, held apart by the penalty alone
   def.penalty_factor = 1e8;
   Formulated bars = start(def);
-  follow_table(bars, "A02_N2.csv", 1e-3);
+  follow_table(bars, 2, "A02_N2.csv", 1e-3);
 }
 
 // Seven bodies, ten hinges: the reference's numbering of bodies, points and angles.
@@ -148,24 +135,26 @@ TEST_P(Squeezer, FollowsTheReferenceTo30ms) {
     is_closed = dynamics.advance(model, state, ws, 1e-5, torque, slope) && is_closed;
   }
   EXPECT_TRUE(is_closed);
+  dynamics.observe(model, state, ws);
+  const double open = JointGauge(model).measure(ws).position;
   observe(model, state, ws);
   const std::vector<ElementVariable> names = variables(model);
   std::vector<double> values(names.size());
   read_variables(model, state, ws, {}, values);
-  const auto value = [&](const std::string& name) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i].name == name) return values[i];
-    }
-    ADD_FAILURE() << name;
-    return 0.0;
-  };
-  EXPECT_NEAR(value("Crank.position"), 15.81077119629904, 1e-4);
-  EXPECT_NEAR(value("Pin.position"), -15.75637105984298, 1e-4);
-  EXPECT_NEAR(value("Pivot_B.position"), 0.0408222401307310, 1e-4);
-  EXPECT_NEAR(value("Hinge_G.position"), -0.5347301163226948, 1e-4);
-  EXPECT_NEAR(value("Pivot_A5.position"), 0.5244099658805304, 1e-4);
-  EXPECT_NEAR(value("Hinge_H.position"), 0.5347301163226948, 1e-4);
-  EXPECT_NEAR(value("Pivot_A7.position"), 1.048080741042263, 1e-4);
+  constexpr std::pair<const char*, double> kAngles[] = {
+      {"Crank", 15.81077119629904},     {"Pin", -15.75637105984298},      {"Pivot_B", 0.0408222401307310},
+      {"Hinge_G", -0.5347301163226948}, {"Pivot_A5", 0.5244099658805304}, {"Hinge_H", 0.5347301163226948},
+      {"Pivot_A7", 1.048080741042263}};
+  double error = 0;
+  for (const auto& [joint, angle] : kAngles) {
+    const auto found = std::find_if(names.begin(), names.end(), [&joint = joint](const ElementVariable& variable) {
+      return variable.name == std::string(joint) + ".position";
+    });
+    ASSERT_NE(found, names.end()) << joint;
+    error = std::max(error, std::abs(values[static_cast<std::size_t>(found - names.begin())] - angle));
+  }
+  expect_figure("A03", setting(1e-5), {"angles at 30 ms [rad]", error, 1e-4});
+  expect_figure("A03", setting(1e-5), {"loops at 30 ms [m]", open, 1e-9, is(Formulation::penalty) ? 1e-6 : 1e-9});
 }
 
 TEST_P(SliderCrank, InSpaceFollowsTheReference) {
@@ -177,30 +166,27 @@ TEST_P(SliderCrank, InSpaceFollowsTheReference) {
   EXPECT_NEAR(w[1], -0.96, 1e-9);
   EXPECT_NEAR(w[2], 0.48, 1e-9);
   EXPECT_NEAR(crank.total_energy(), 0.76643568, 1e-8);
-  constexpr double kTable[][5] = {{0.2, 0.2630389726, 1.2872423269, 0.426024565, 9.782890466},
-                                  {0.5, 0.1849526298, 5.5837625533, -0.004560291, 14.408160810},
-                                  {1, 0.2117216614, 10.9135907299, -0.503491865, 10.427593000},
-                                  {2, 0.2890851971, 21.0727445230, 0.216539423, 22.584240030},
-                                  {5, 0.2407195737, 54.3333321688, -0.595984412, 11.494996263}};
   // second order against fourth
-  const double step = GetParam() == Formulation::augmented ? 5e-4 : 1e-3;
-  double time = 0;
-  for (const auto& [t, x, angle, v, omega] : kTable) {
-    crank.run(t - time, step);
-    time = t;
-    EXPECT_NEAR(crank.pose("Slider").position[0], x, 2e-4) << t;
-    EXPECT_NEAR(crank.value("Pivot.position"), angle, 1e-2) << t;
-    EXPECT_NEAR(crank.pose("Slider").velocity[0], v, 1e-2) << t;
-    EXPECT_NEAR(crank.value("Pivot.velocity"), omega, 1e-1) << t;
+  const double step = is(Formulation::augmented) ? 5e-4 : 1e-3;
+  double time = 0, slider = 0, angle = 0, speed = 0, open = 0;
+  for (const auto& row : testing::read_table("haug_slider_crank3d.csv")) {
+    if (row[0] > time) crank.run(row[0] - time, step);
+    time = row[0];
+    slider = std::max(slider, std::abs(crank.pose("Slider").position[0] - row[1]));
+    angle = std::max(angle, std::abs(crank.value("Pivot.position") - row[2]));
+    speed = std::max(speed, std::abs(crank.pose("Slider").velocity[0] - row[3]));
+    open = std::max(open, opening(crank).position);
   }
+  EXPECT_NEAR(time, 5, 1e-9);
+  expect_figure("A08", setting(step), {"slider to 5 s [m]", slider, 2e-4});
+  expect_figure("A08", setting(step), {"crank to 5 s [rad]", angle, 1e-2});
+  expect_figure("A08", setting(step), {"slider's speed [m/s]", speed, 1e-2});
+  expect_figure("A08", setting(step), {"constraint [m]", open, 1e-8, is(Formulation::penalty) ? 1e-6 : 1e-8});
 }
 
-const auto kFormulations =
-    ::testing::Values(Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty);
-const auto kName = [](const ::testing::TestParamInfo<Formulation>& tested) { return testing::name_of(tested.param); };
-INSTANTIATE_TEST_SUITE_P(In, FourBars, kFormulations, kName);
-INSTANTIATE_TEST_SUITE_P(In, Squeezer, kFormulations, kName);
-INSTANTIATE_TEST_SUITE_P(In, SliderCrank, kFormulations, kName);
+INSTANTIATE_TEST_SUITE_P(In, FourBars, testing::kEveryFormulation, testing::kFormulationName);
+INSTANTIATE_TEST_SUITE_P(In, Squeezer, testing::kEveryFormulation, testing::kFormulationName);
+INSTANTIATE_TEST_SUITE_P(In, SliderCrank, testing::kEveryFormulation, testing::kFormulationName);
 
 }  // namespace
 }  // namespace slew::multibody

@@ -66,18 +66,23 @@ struct Mechanism {
 
 // The same under the formulation that its Def names.
 struct Formulated : Mechanism {
-  explicit Formulated(const MechanicsDef& def)
-      : Mechanism(def), dynamics(def.formulation, model, state, step_rule(def)) {}
+  explicit Formulated(const MechanicsDef& def, const std::vector<std::string>& rows = {})
+      : Mechanism(def, rows), dynamics(def.formulation, model, state, step_rule(def)) {}
 
-  void run(double time, double h) {
+  void run(double time, double h) { run(time, h, std::vector<double>(model.rows.size())); }
+  // under constant forces of the rows
+  void run(double time, double h, const std::vector<double>& row_forces) { EXPECT_TRUE(try_run(time, h, row_forces)); }
+  // False: a step was flagged.
+  [[nodiscard]] bool try_run(double time, double h, const std::vector<double>& row_forces = {}) {
     const int steps = static_cast<int>(std::lround(time / h));
-    bool is_closed = true;
+    const std::vector<double> slope(row_forces.size());
+    bool is_sound = true;
     for (int i = 0; i < steps; ++i) {
       dynamics.evaluate(model, state, ws);
-      is_closed = dynamics.advance(model, state, ws, h, {}, {}) && is_closed;
+      is_sound = dynamics.advance(model, state, ws, h, row_forces, slope) && is_sound;
     }
-    EXPECT_TRUE(is_closed);
     see();
+    return is_sound;
   }
 
   Dynamics dynamics;

@@ -1,0 +1,63 @@
+// A case of the validation in every formulation, and what it reached beside the tolerance that the case states.
+//
+// With SLEWRING_FIGURES set every figure is printed as a row of the tables in docs/validation.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "multibody/joint_gauge.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody::testing {
+
+// `stated`: tolerance of the case; `bound`: what is asserted, looser only where the card says why.
+struct Figure {
+  std::string what;  // with its unit
+  double reached = 0, stated = 0;
+  double bound = stated;
+};
+
+inline void expect_figure(const std::string& which, const std::string& setting, const Figure& figure) {
+  EXPECT_LE(figure.reached, figure.bound) << which << ", " << setting << ": " << figure.what;
+  if (std::getenv("SLEWRING_FIGURES") == nullptr) return;
+  std::printf("| %s | %s | %s | %.1e | %.1e%s |\n", which.c_str(), setting.c_str(), figure.what.c_str(), figure.stated,
+              figure.reached, figure.reached > figure.stated ? " *" : "");
+}
+
+inline std::string in_milliseconds(double step) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g ms", step * 1e3);
+  return text;
+}
+
+// How far the joints of a mechanism stand open, of the poses that its formulation integrates.
+inline JointGap opening(Formulated& mechanism) {
+  mechanism.dynamics.observe(mechanism.model, mechanism.state, mechanism.ws);
+  const JointGap gap = JointGauge(mechanism.model).measure(mechanism.ws);
+  mechanism.see();
+  return gap;
+}
+
+class EveryFormulation : public ::testing::TestWithParam<Formulation> {
+ protected:
+  [[nodiscard]] static Formulated start(MechanicsDef def, const std::vector<std::string>& rows = {}) {
+    def.formulation = GetParam();
+    return Formulated(def, rows);
+  }
+  [[nodiscard]] static bool is(Formulation formulation) { return GetParam() == formulation; }
+  // second order against fourth
+  [[nodiscard]] static int order() { return is(Formulation::augmented) ? 2 : 4; }
+  [[nodiscard]] static std::string setting(double step) { return name_of(GetParam()) + ", " + in_milliseconds(step); }
+};
+
+inline const auto kEveryFormulation =
+    ::testing::Values(Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty);
+inline const auto kFormulationName = [](const ::testing::TestParamInfo<Formulation>& tested) {
+  return name_of(tested.param);
+};
+
+}  // namespace slew::multibody::testing
