@@ -48,6 +48,15 @@ struct Dynamics::Stages {
 
 namespace {
 
+// by the motion at the start of a sub-step; not finite: no
+bool is_resolved(const Workspace& ws, double h) noexcept {
+  constexpr double kSquare = kLargestTurn * kLargestTurn;
+  for (const LinkMotion& m : ws.motion) {
+    if (!(dot(m.w, m.w) * h * h <= kSquare)) return false;
+  }
+  return true;
+}
+
 bool take_passed(Workspace& ws) noexcept {
   return ws.contact != nullptr && std::exchange(ws.contact->has_passed, false);
 }
@@ -103,6 +112,12 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
 }
 
 bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                            std::span<const double> slope) noexcept {
+  const bool is_fine_enough = is_resolved(ws, h);
+  return take_substep(model, state, ws, h, mean, slope) && is_fine_enough;
+}
+
+bool Dynamics::take_substep(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                             std::span<const double> slope) noexcept {
   if (bodies_ != nullptr) {
     Bodies& b = *bodies_;
