@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "multibody/body_penalty.h"
 #include "multibody/constraint.h"
 #include "multibody/loops.h"
 #include "multibody/passes.h"
@@ -16,6 +17,10 @@ using math::Vec3;
 
 // pivot below which a row is taken as dependent: axes that should be parallel may be off by its root
 constexpr double kDependentAtStart = 1e-8;
+// A row that the tree holds by itself moves by rounding alone, and cannot be judged by its own mobility. Its pivot is
+// compared with this share of the mobility of the mechanism as one body as well: with kDependentAtStart 1e-12, the
+// square of what six digits in a scene leave open.
+constexpr double kVanishing = 1e-4;
 constexpr int kMostIterations = 100;
 constexpr int kMostHalvings = 20;
 constexpr double kTurn = 0.05;   // rad, of the positions nearby
@@ -246,6 +251,19 @@ Nearby look_nearby(const Model& model) {
   return result;
 }
 
+// by row of the cuts [1/kg or 1/(kg m2)]
+std::vector<double> vanishing_mobilities(const Model& model) {
+  const double mass = moving_mass(model), length = penalty_length(model, build_body_model(model).joints);
+  std::vector<double> mobilities;
+  for (const Cut& cut : model.cuts) {
+    for (const ConstraintRow& row : cut.rows) {
+      const double inertia = row.form == RowForm::perpendicular ? mass * length * length : mass;
+      mobilities.push_back(inertia > 0 ? kVanishing / inertia : 0);
+    }
+  }
+  return mobilities;
+}
+
 void leave_out(Model& model, const Nearby& nearby) {
   std::size_t row = 0;
   for (Cut& cut : model.cuts) {
@@ -275,7 +293,10 @@ void leave_out(Model& model, const Nearby& nearby) {
 AssemblyReport assemble(Model& model) {
   AssemblyReport report;
   if (model.cuts.empty()) return report;
-  leave_out(model, look_nearby(model));
+  model.cut_reference = vanishing_mobilities(model);
+  const Nearby nearby = look_nearby(model);
+  model.cut_reference.clear();
+  leave_out(model, nearby);
   Assembler assembler(model);
   assembler.close();
   report.speeds = assembler.settle_speeds();

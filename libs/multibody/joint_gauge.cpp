@@ -36,19 +36,23 @@ bool is_larger(double value, double largest) noexcept {
 
 }  // namespace
 
-JointGauge::JointGauge(const Model& model) {
+std::vector<Constraint> joint_constraints(const Model& model) {
+  std::vector<Constraint> constraints;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
     if (joint.cut >= 0) {
       const Cut& cut = model.cuts[at(joint.cut)];
       Constraint constraint = cut;
       constraint.rows.insert(constraint.rows.end(), cut.redundant.begin(), cut.redundant.end());
-      constraints_.push_back(std::move(constraint));
+      constraints.push_back(std::move(constraint));
     } else if (joint.link > 0) {
-      constraints_.push_back(closed_joint(model, static_cast<int>(i)));
+      constraints.push_back(closed_joint(model, static_cast<int>(i)));
     }
   }
+  return constraints;
 }
+
+JointGauge::JointGauge(const Model& model) : constraints_(joint_constraints(model)) {}
 
 JointGap JointGauge::measure(const Workspace& ws) const noexcept {
   JointGap largest;

@@ -10,9 +10,14 @@
 
 #include <vector>
 
+#include "multibody/model.h"
 #include "multibody/state.h"
 
 namespace slew::multibody {
+
+// All rows of the scene's joints that hold links to each other, redundant ones included, in the order of the joints.
+// Allocates.
+[[nodiscard]] std::vector<Constraint> joint_constraints(const Model& model);
 
 struct JointGap {
   double position = 0;  // largest |g|, m or rad

@@ -27,9 +27,8 @@ constexpr JointType kTypes[] = {JointType::revolute,
 
 class Closing {
  public:
-  explicit Closing(unsigned seed) : random_(seed + 77) {
-    tree =
-        random_tree(seed, {.bodies = 3 + static_cast<int>(seed) % 6, .with_dummies = false, .two_coordinates = true});
+  Closing(unsigned seed, const TreeOptions& options)
+      : tree(random_tree(seed, options)), random_(seed + 77), first_(options.floating_root ? 1 : 0) {
     Problems problems;
     poses_ = start_poses(tree.def, problems);
     add(kTypes[seed % std::size(kTypes)]);
@@ -45,8 +44,10 @@ class Closing {
 
   void add(JointType type) {
     const int bodies = static_cast<int>(poses_.size());
-    const int a = std::uniform_int_distribution<int>(0, bodies - 1)(random_);
-    const int b = (a + std::uniform_int_distribution<int>(1, bodies - 1)(random_)) % bodies;
+    const int others = bodies - first_;
+    const int i = std::uniform_int_distribution<int>(0, others - 1)(random_);
+    const int a = first_ + i;
+    const int b = first_ + (i + std::uniform_int_distribution<int>(1, others - 1)(random_)) % others;
     const Mat3 R1 = rotation();
     const Vec3 P1 = poses_[static_cast<std::size_t>(a)].p + vector(0.5);
     Mat3 R2 = R1;
@@ -91,13 +92,25 @@ class Closing {
   }
 
   std::mt19937 random_;
+  int first_;  // body that the joints may hold
   std::vector<Pose> poses_;
 };
+
+TreeOptions options_of(unsigned seed) {
+  return {.bodies = 3 + static_cast<int>(seed) % 6, .with_dummies = false, .two_coordinates = true};
+}
 
 }  // namespace
 
 RandomTree random_loops(unsigned seed) {
-  return Closing(seed).tree;
+  return Closing(seed, options_of(seed)).tree;
+}
+
+RandomTree random_floating_loops(unsigned seed) {
+  TreeOptions options = options_of(seed);
+  options.with_gravity = options.lines_to_ground = false;
+  options.floating_root = true;
+  return Closing(seed, options).tree;
 }
 
 }  // namespace slew::multibody::testing

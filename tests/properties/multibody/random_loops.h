@@ -9,4 +9,7 @@ namespace slew::multibody::testing {
 // have each joint type but floating among the joints that were added.
 [[nodiscard]] RandomTree random_loops(unsigned seed);
 
+// The same without Ground: nothing but the inner forces and joints acts on the bodies.
+[[nodiscard]] RandomTree random_floating_loops(unsigned seed);
+
 }  // namespace slew::multibody::testing

@@ -1,0 +1,181 @@
+// Reactions of random trees and loops: no work through any velocity that the joints allow, and where rows are redundant
+// the smallest ones, against a pseudo-inverse. Redundant rows do not change the motion.
+#include <Eigen/Dense>
+
+#include "multibody/constraint.h"
+#include "multibody/joint_gauge.h"
+#include "tests/properties/multibody/random_motion.h"
+#include "tests/support/nightly.h"
+#include "tests/validation/multibody/every_formulation.h"
+
+namespace slew::multibody {
+namespace {
+
+using namespace testing;
+using math::Vec3;
+using Real = long double;
+using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+std::vector<JointReaction> reactions_of(Mechanism& mechanism) {
+  std::vector<JointReaction> reactions(mechanism.model.joints.size());
+  joint_reactions(mechanism.model, mechanism.state, mechanism.ws, {}, reactions);
+  mechanism.see();
+  return reactions;
+}
+
+// the joint's point of body 2, in Ground
+Vec3 point_of(const Mechanism& mechanism, const Joint& joint) {
+  const Body& body = mechanism.model.bodies[at(joint.body2)];
+  const LinkMotion& m = mechanism.ws.motion[at(body.link)];
+  return m.p + m.R * (body.p_LB + body.R_LB * joint.p_B2);
+}
+
+Vec3 velocity_at(const Mechanism& mechanism, int body, Vec3 point) {
+  const LinkMotion& m = mechanism.ws.motion[at(mechanism.model.bodies[at(body)].link)];
+  return m.v + cross(m.w, point - m.p);
+}
+
+TEST(Reactions, DoNoWorkThroughAnyVelocityThatTheJointsAllow) {
+  for (unsigned seed = 1; seed <= slew::testing::rounds(60U, 600U); ++seed) {
+    Mechanism mechanism(random_mechanism(seed));
+    if (mechanism.model.degrees_of_freedom() == 0) continue;
+    set_random_speeds(mechanism, seed, 1);
+    const std::vector<JointReaction> reactions = reactions_of(mechanism);
+    for (unsigned trial = 0; trial < 3; ++trial) {
+      set_random_speeds(mechanism, seed + 100 * (trial + 1), 1);
+      for (std::size_t j = 0; j < reactions.size(); ++j) {
+        const Joint& joint = mechanism.model.joints[j];
+        const Vec3 point = point_of(mechanism, joint), f(reactions[j].force), n(reactions[j].moment);
+        const auto w = [&](int body) { return mechanism.ws.motion[at(mechanism.model.bodies[at(body)].link)].w; };
+        const double power =
+            dot(f, velocity_at(mechanism, joint.body1, point) - velocity_at(mechanism, joint.body2, point)) +
+            dot(n, w(joint.body1) - w(joint.body2));
+        EXPECT_NEAR(power, 0, 1e-10 * (1 + norm(f) + norm(n))) << joint.name << ", seed " << seed;
+      }
+    }
+  }
+}
+
+// Wrenches that a joint's rows can transmit to body 1, orthonormal, as force and moment about the joint's point.
+Matrix transmitted(const Mechanism& mechanism, const std::vector<Constraint>& constraints, int joint) {
+  const auto found = std::find_if(constraints.begin(), constraints.end(),
+                                  [&](const Constraint& constraint) { return constraint.joint == joint; });
+  const Joint& named = mechanism.model.joints[at(joint)];
+  // a fixed joint within a link transmits everything
+  if (found == constraints.end()) return Matrix::Identity(6, named.type == JointType::fixed ? 6 : 0);
+  if (found->rows.empty()) return {6, 0};
+  std::vector<RowValue> rows(found->rows.size());
+  const LinkMotion& m1 = mechanism.ws.motion[at(found->link1)];
+  evaluate(*found, m1, mechanism.ws.motion[at(found->link2)], rows);
+  const Vec3 point = point_of(mechanism, named);
+  Matrix B(6, static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Vec3 f = rows[k].G.v1, n = rows[k].G.w1 + cross(m1.p - point, f);
+    for (int i = 0; i < 3; ++i) {
+      B(i, static_cast<Eigen::Index>(k)) = f[i];
+      B(3 + i, static_cast<Eigen::Index>(k)) = n[i];
+    }
+  }
+  Eigen::ColPivHouseholderQR<Matrix> qr;
+  qr.setThreshold(1e-12L);
+  qr.compute(B);
+  return Matrix(qr.householderQ()).leftCols(qr.rank());
+}
+
+// What the joints put on each body together, by the wrenches of all of them: force and moment about the origin.
+Matrix loads(const Mechanism& mechanism) {
+  const auto bodies = static_cast<Eigen::Index>(mechanism.model.bodies.size()) - 1;
+  const auto joints = static_cast<Eigen::Index>(mechanism.model.joints.size());
+  Matrix A = Matrix::Zero(6 * bodies, 6 * joints);
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    const Joint& joint = mechanism.model.joints[static_cast<std::size_t>(j)];
+    const Vec3 p = point_of(mechanism, joint);
+    Matrix shift = Matrix::Identity(6, 6);
+    shift.block<3, 3>(3, 0) << 0, -p[2], p[1], p[2], 0, -p[0], -p[1], p[0], 0;
+    if (joint.body1 > 0) A.block<6, 6>(6 * (joint.body1 - 1), 6 * j) += shift;
+    if (joint.body2 > 0) A.block<6, 6>(6 * (joint.body2 - 1), 6 * j) -= shift;
+  }
+  return A;
+}
+
+Vector stacked(const std::vector<JointReaction>& reactions) {
+  Vector w(6 * static_cast<Eigen::Index>(reactions.size()));
+  for (std::size_t j = 0; j < reactions.size(); ++j) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      w[static_cast<Eigen::Index>(6 * j + k)] = reactions[j].force[k];
+      w[static_cast<Eigen::Index>(6 * j + 3 + k)] = reactions[j].moment[k];
+    }
+  }
+  return w;
+}
+
+// the joint that was added last once more, with the same frames: all of its rows are redundant
+MechanicsDef doubled(MechanicsDef def) {
+  JointDef twin = def.joints.back();
+  twin.name += "_Twin";
+  def.joints.push_back(twin);
+  return def;
+}
+
+// r: what the joints put on the bodies, which the motion prescribes. Of all wrenches w = B x with A w = r the library's
+// is the smallest one.
+TEST(Reactions, OfRedundantLoopsAreThoseOfThePseudoInverse) {
+  int redundant = 0;
+  for (unsigned seed = 1; seed <= slew::testing::rounds(36U, 360U); ++seed) {
+    Mechanism mechanism(doubled(random_loops(seed).def));
+    if (mechanism.model.degrees_of_freedom() == 0) continue;
+    set_random_speeds(mechanism, seed, 1);
+    const Vector found = stacked(reactions_of(mechanism));
+    const std::vector<Constraint> constraints = joint_constraints(mechanism.model);
+    const auto joints = static_cast<Eigen::Index>(mechanism.model.joints.size());
+    Matrix B = Matrix::Zero(6 * joints, 0);
+    for (Eigen::Index j = 0; j < joints; ++j) {
+      const Matrix own = transmitted(mechanism, constraints, static_cast<int>(j));
+      B.conservativeResize(Eigen::NoChange, B.cols() + own.cols());
+      B.rightCols(own.cols()).setZero();
+      B.block(6 * j, B.cols() - own.cols(), 6, own.cols()) = own;
+    }
+    const Matrix A = loads(mechanism);
+    Eigen::CompleteOrthogonalDecomposition<Matrix> inverse;
+    inverse.setThreshold(1e-11L);
+    inverse.compute(A * B);
+    if (inverse.rank() < B.cols()) ++redundant;
+    const Vector smallest = B * inverse.solve(A * found);
+    EXPECT_LT((smallest - found).cwiseAbs().maxCoeff(), 1e-9L * (1 + found.cwiseAbs().maxCoeff())) << "seed " << seed;
+  }
+  EXPECT_GT(redundant, 20);
+}
+
+class RedundantJoints : public EveryFormulation {};
+
+TEST_P(RedundantJoints, DoNotChangeTheMotion) {
+  for (unsigned seed = 1; seed <= slew::testing::rounds(24U, 240U); ++seed) {
+    MechanicsDef def = random_loops(seed).def;
+    def.formulation = GetParam();
+    const MechanicsDef twice = doubled(def);
+    Formulated single(def), twin(twice);
+    if (single.model.degrees_of_freedom() == 0) continue;
+    ASSERT_EQ(single.model.degrees_of_freedom(), twin.model.degrees_of_freedom()) << "seed " << seed;
+    set_random_speeds(single, seed, 0.5);
+    copy_state(single.state, twin.state);
+    restart(single, def);
+    restart(twin, twice);
+    EXPECT_TRUE(single.try_run(0.02, 1e-3) && twin.try_run(0.02, 1e-3)) << "seed " << seed;
+    double error = 0, scale = 1;
+    for (std::size_t i = 0; i < single.state.u.size(); ++i) {
+      scale = std::max(scale, std::abs(single.state.u[i]));
+      error = std::max(error, std::abs(single.state.u[i] - twin.state.u[i]));
+    }
+    EXPECT_LT(error, (is(Formulation::penalty) ? 1e-5 : 1e-7) * scale) << "seed " << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(In, RedundantJoints, kEveryFormulation, kFormulationName);
+
+}  // namespace
+}  // namespace slew::multibody
