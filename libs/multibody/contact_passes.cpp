@@ -201,6 +201,33 @@ void apply_contacts(const Model& model, Workspace& ws) noexcept {
   }
 }
 
+ContactSlopes slopes_of_contact(const Model& model, const Workspace& ws, std::size_t index,
+                                ChangeWeights weights) noexcept {
+  const ContactElements& elements = *model.contact;
+  const ContactPoint& point = ws.contact->set.points()[index];
+  const ContactPair& pair = elements.model.pairs()[point.pair];
+  const RememberedContact& state = ws.contact->now.states()[index];
+  const Touch touch = touch_of(elements, ws, point);
+  const contact::NormalForce normal = evaluate(pair.normal, point.share, point.depth, touch.rate(), state.normal);
+  ContactSlopes slopes{.link_a = elements.frames[touch.a].link,
+                       .link_b = elements.frames[touch.b].link,
+                       .n_W = point.n_W,
+                       .along = weights.position * normal.d_depth + weights.rate * normal.d_depth_rate,
+                       .of_share = weights.position * normal.force / point.depth,
+                       .tangential = Mat3()};
+  if (!pair.has_friction) return slopes;
+  contact::SlidingContact sliding{point.n_W, touch.velocity(), normal.force, point.share};
+  slopes.tangential = evaluate(pair.friction, sliding, 0, state.friction).d_velocity * weights.rate;
+  // bristles bend with the mean velocity since the start
+  const double time = ws.contact->time;
+  if (!(time > 0)) return slopes;
+  sliding.v_W = touch.mean_velocity();
+  const Mat3 bending = evaluate(pair.friction, sliding, time, state.friction).d_velocity -
+                       evaluate(pair.friction, sliding, 0, state.friction).d_velocity;
+  slopes.tangential += bending * (weights.position / time);
+  return slopes;
+}
+
 void accept_contacts(const Model& model, double h, State& state, Workspace& ws) noexcept {
   if (model.contact == nullptr || !ws.contact->is_near) return;
   const ContactElements& elements = *model.contact;

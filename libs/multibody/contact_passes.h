@@ -36,4 +36,16 @@ void accept_contacts(const Model& model, double h, State& state, Workspace& ws) 
 // touches and the present speeds lead into nothing within h; there is then no search until the next start.
 [[nodiscard]] int contact_parts(const Model& model, double h, Workspace& ws) noexcept;
 
+// What the force of one contact point loses by a small motion of shape A against shape B, after update_contacts() at an
+// instant after the start: position and rate of the weights, ways beginning at the start.
+struct ContactSlopes {
+  int link_a = 0, link_b = 0;
+  math::Vec3 n_W;         // unit
+  double along = 0;       // along n, with the share of the point held
+  double of_share = 0;    // along n, on top of it: the share grows with the depth
+  math::Mat3 tangential;  // across n; not symmetric
+};
+[[nodiscard]] ContactSlopes slopes_of_contact(const Model& model, const Workspace& ws, std::size_t index,
+                                              ChangeWeights weights) noexcept;
+
 }  // namespace slew::multibody

@@ -23,6 +23,27 @@ namespace slew::multibody {
   return force;
 }
 
+// Whether (1) depends on x: a damper alone needs no coordinate.
+[[nodiscard]] inline bool has_spring(const ElementLaw& law) noexcept {
+  return law.spring != 0 || law.end_spring != 0 || !law.spring_curve.empty();
+}
+
+// -dF/dx, -dF/dv of the end dampers, and that of the damper alone.
+struct ElementSlopes {
+  double stiffness = 0, end_damping = 0, damping = 0;
+};
+[[nodiscard]] inline ElementSlopes slopes_of(const ElementLaw& law, double x, double v, double damper_speed) noexcept {
+  ElementSlopes slopes{law.spring, 0, law.damping};
+  if (!law.spring_curve.empty()) slopes.stiffness += math::slope_at(law.spring_curve, x - law.free);
+  if (!law.damper_curve.empty()) slopes.damping += math::slope_at(law.damper_curve, damper_speed);
+  if (law.end_spring > 0) {
+    const math::StopForce stop = math::stop_force(x, v, law.min, law.max, law.end_spring, law.end_damping);
+    slopes.stiffness -= stop.d_x;
+    slopes.end_damping -= stop.d_v;
+  }
+  return slopes;
+}
+
 [[nodiscard]] inline double stored_energy(const ElementLaw& law, double x) noexcept {
   double energy = 0.5 * law.spring * (x - law.free) * (x - law.free);
   if (!law.spring_curve.empty()) energy += math::integral_to(law.spring_curve, x - law.free);

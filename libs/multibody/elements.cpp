@@ -14,10 +14,6 @@ std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
-bool has_spring(const ElementLaw& law) noexcept {
-  return law.spring != 0 || law.end_spring != 0 || !law.spring_curve.empty();
-}
-
 // a damper alone needs the axis only
 bool needs_angle(const AngleElement& element) noexcept {
   return element.has_row || has_spring(element.law);

@@ -244,7 +244,8 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
   const std::size_t speeds = is_body ? 6 * (links - 1) : model.start_u.size();
   for (auto* by_u : {&u_0, &rate_0, &rate, &fixed, &base, &algorithmic, &step, &last_step}) by_u->resize(speeds);
   for (auto* by_link : {&turn, &turn_0, &turn_rate_0, &algorithmic_turn}) by_link->resize(is_body ? 0 : links);
-  for (auto* by_element : {&stops, &stops_0}) by_element->resize(model.lines.size() + model.angles.size());
+  for (auto* by_element : {&stops, &stops_0}) by_element->resize(stop_count(model));
+  has_stops = !model.elements.ropes.empty() || !model.elements.tyres.empty() || model.contact != nullptr;
   for (const LineElement& line : model.lines) has_stops = has_stops || line.law.end_spring > 0;
   for (const AngleElement& angle : model.angles) has_stops = has_stops || angle.law.end_spring > 0;
   row_force.resize(model.rows.size());

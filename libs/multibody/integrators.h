@@ -17,14 +17,14 @@
 //   [ M + tau D + tau sigma K  G^T ] [ delta ]         [ Q - M a  ]
 //   [ G                        0   ] [ mu    ]  =  tau [ -b - G a ]                                          (4)
 // M a - Q by Newton and Euler with all forces at the stage, so that the result does not depend on the left side; K and
-// D: spring-dampers with their end dampers, K also a spring's pull across its line and, once the iteration proves slow,
-// that of a joint's force F at s from a link's origin, (F . s) across s where it is positive. Left out of it:
-// gyroscopic and centrifugal terms, row forces, pushing joints. In joint coordinates delta is read off as relative
-// speeds. A force that jumps at the edge of a stop takes a value between its two there: (4) is relaxed when it goes to
-// and fro. A sub-step in which a stop is touched or left, or whose iteration a stop or a singular position keeps from
-// settling, is taken with tau = sigma = h, u* = u_0, d = 0 in the place of the rule: of order 1, but it never gains
-// energy from a spring that only pushes, as the others do when the touch is shorter than h. After the step the state is
-// put onto the joints (project()).
+// D: those of all force elements and contacts (link_stiffness.h) and, once the iteration proves slow, the pull of a
+// joint's force F at s from a link's origin, (F . s) across s where it is positive. Left out of it: gyroscopic and
+// centrifugal terms, row forces, pushing joints. In joint coordinates delta is read off as relative speeds. A force
+// that jumps at the edge of a stop takes a value between its two there: (4) is relaxed when it goes to and fro. A
+// sub-step in which a stop is touched or left, or whose iteration a stop or a singular position keeps from settling, is
+// taken with tau = sigma = h, u* = u_0, d = 0 in the place of the rule: of order 1, but it never gains energy from a
+// spring that only pushes, as the others do when the touch is shorter than h. After the step the state is put onto the
+// joints (project()).
 //
 // Row forces are the owner's, linear in time over the sub-step (dynamics.h). The number of corrections is fixed at
 // most, an iteration that did not settle is reported. Nothing here allocates but the builders.
@@ -69,7 +69,7 @@ struct StageWorkspace {
   std::vector<math::Vec3> turn;                 // d of the quaternions of joint coordinates, by link
   std::vector<math::Vec3> turn_0, turn_rate_0;  // angular velocity and acceleration at the start, by link
   std::vector<math::Vec3> algorithmic_turn;     // A of the same
-  std::vector<signed char> stops, stops_0;      // side on which an element's end damper pushes, by line and angle
+  std::vector<signed char> stops, stops_0;      // what pushes on one side only, as see_stops(): now, at the start
   std::vector<double> row_force;
   std::vector<double> multipliers;  // of the joints, by BlockLdl::first_row(), once they are asked for
   bool has_multipliers = false;

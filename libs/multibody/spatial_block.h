@@ -44,6 +44,25 @@ inline void add_to_block(const math::Mat3& a, std::size_t row, std::size_t colum
   return block;
 }
 
+// A symmetric matrix over the velocity of a point and the angular velocity with which one link moves against another.
+struct RelativeMatrix {
+  math::Mat3 vv, vw, ww;
+};
+
+// What it is between a link from whose origin the point is at s_row, and one from whose it is at s_column:
+// X_row^T A X_column with X = [1 -s~; 0 1]. Of two links it is negative.
+[[nodiscard]] inline SpatialBlock relative_block(const RelativeMatrix& A, math::Vec3 s_row,
+                                                 math::Vec3 s_column) noexcept {
+  const math::Mat3 S_row = math::skew(s_row), S_column = math::skew(s_column), wv = transpose(A.vw);
+  const math::Mat3 lower = S_row * A.vv + wv;
+  SpatialBlock block{};
+  add_to_block(A.vv, 0, 0, block);
+  add_to_block(A.vw - A.vv * S_column, 0, 3, block);
+  add_to_block(lower, 3, 0, block);
+  add_to_block(S_row * A.vw + A.ww - lower * S_column, 3, 3, block);
+  return block;
+}
+
 // Masses of a cylinder and piston between the two points of their line.
 struct PointMasses {
   math::Mat3 A11, A12, A22;  // kg; A12 is symmetric

@@ -32,7 +32,9 @@ void place(const StageContext& at, double sigma) noexcept;
 // Accelerations that the speeds' rates cause, on top of those that the motion holds.
 void add_accelerations(const StageContext& at, std::span<const double> rate) noexcept;
 
-// On which side of its range every element's end damper pushes: -1, 0, 1. Needs the elements' motion.
+// What pushes on one side only, by element: on which side of its range an end damper does (-1, 0, 1), LimitedForce of
+// ropes and tyres, the pushing contact points of a pair. Needs the elements' motion and a search for contacts.
+[[nodiscard]] std::size_t stop_count(const Model& model) noexcept;
 void see_stops(const Model& model, const Workspace& ws, std::span<signed char> stops) noexcept;
 
 // Right side of (4) into bws.solution; elements, inertia and joints' rows on the way. Needs place().

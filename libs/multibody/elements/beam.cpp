@@ -35,6 +35,18 @@ Six force_of(const Beam& beam, const Deflection& deflection) noexcept {
   return times(beam.K, strained);
 }
 
+SixBySix slopes_of(const Beam& beam, ChangeWeights weights) noexcept {
+  const double weight = weights.position + weights.rate * beam.damping_time;
+  SixBySix A{};
+  for (std::size_t j = 0; j < 6; ++j) {
+    Six unit{};
+    unit[j] = weight;
+    const Six column = times(beam.K, unit);
+    for (std::size_t i = 0; i < 6; ++i) A[6 * i + j] = column[i];
+  }
+  return A;
+}
+
 double stored_energy(const Beam& beam, const Deflection& deflection) noexcept {
   const Six Kx = times(beam.K, deflection.x);
   double energy = 0;

@@ -48,6 +48,8 @@ struct Beam {
 };
 
 [[nodiscard]] Six force_of(const Beam& beam, const Deflection& deflection) noexcept;
+// (position + rate beta) K.
+[[nodiscard]] SixBySix slopes_of(const Beam& beam, ChangeWeights weights) noexcept;
 [[nodiscard]] double stored_energy(const Beam& beam, const Deflection& deflection) noexcept;  // x^T K x/2 [J]
 [[nodiscard]] WrenchPair wrenches_of(const Beam& beam, const LinkMotion& link1, const LinkMotion& link2) noexcept;
 

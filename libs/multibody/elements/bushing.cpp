@@ -1,5 +1,7 @@
 #include "multibody/elements/bushing.h"
 
+#include <algorithm>
+
 namespace slew::multibody {
 namespace {
 
@@ -27,6 +29,22 @@ Six force_of(const Bushing& bushing, const Deflection& deflection) noexcept {
     Q[i] -= math::value_at(own.curve, own.is_damper ? deflection.rate[i] : deflection.x[i]);
   }
   return Q;
+}
+
+SixBySix slopes_of(const Bushing& bushing, const Deflection& deflection, ChangeWeights weights) noexcept {
+  SixBySix A{};
+  if (bushing.has_coupling) {
+    for (std::size_t i = 0; i < A.size(); ++i) A[i] = weights.position * bushing.K[i] + weights.rate * bushing.D[i];
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    A[7 * i] += weights.position * bushing.spring[i] + weights.rate * bushing.damping[i];
+  }
+  for (const DirectionCurve& own : bushing.curves) {
+    const auto i = static_cast<std::size_t>(own.direction);
+    const double slope = math::slope_at(own.curve, own.is_damper ? deflection.rate[i] : deflection.x[i]);
+    A[7 * i] += (own.is_damper ? weights.rate : weights.position) * std::max(0.0, slope);
+  }
+  return A;
 }
 
 double stored_energy(const Bushing& bushing, const Deflection& deflection) noexcept {

@@ -15,8 +15,6 @@
 
 namespace slew::multibody {
 
-using SixBySix = std::array<double, 36>;  // row by row
-
 // Table of one direction.
 struct DirectionCurve {
   int direction = 0;  // entry of Six
@@ -35,6 +33,8 @@ struct Bushing {
 };
 
 [[nodiscard]] Six force_of(const Bushing& bushing, const Deflection& deflection) noexcept;
+// position (K + k + s') + rate (D + d + b'), tables' slopes where they rise.
+[[nodiscard]] SixBySix slopes_of(const Bushing& bushing, const Deflection& deflection, ChangeWeights weights) noexcept;
 [[nodiscard]] double stored_energy(const Bushing& bushing, const Deflection& deflection) noexcept;  // V [J]
 [[nodiscard]] WrenchPair wrenches_of(const Bushing& bushing, const LinkMotion& link1, const LinkMotion& link2) noexcept;
 

@@ -57,6 +57,20 @@ Vec3 moment_of(const Deflection& d, const Six& force) noexcept {
   return m + cross(d.theta, m) * 0.5 + cross(d.theta, cross(d.theta, m)) * d.c;
 }
 
+PairMatrix matrix_of(const Deflection& d, const SixBySix& A) noexcept {
+  const auto part = [&A](std::size_t row, std::size_t column) {
+    Mat3 block;
+    for (std::size_t c = 0; c < 3; ++c) {
+      block.c[c] = Vec3(A[6 * row + column + c], A[6 * (row + 1) + column + c], A[6 * (row + 2) + column + c]);
+    }
+    return block;
+  };
+  const Mat3 theta = math::skew(d.theta);
+  const Mat3 into = math::transpose(d.R_W1);
+  const Mat3 turn = (Mat3::identity() - theta * 0.5 + theta * theta * d.c) * into;
+  return {d.R_W1 * part(0, 0) * into, d.R_W1 * part(0, 3) * turn, math::transpose(turn) * part(3, 3) * turn};
+}
+
 WrenchPair wrenches_of(const Deflection& d, const Six& force, const LinkMotion& link1,
                        const LinkMotion& link2) noexcept {
   const Vec3 F = d.R_W1 * Vec3(force[0], force[1], force[2]);

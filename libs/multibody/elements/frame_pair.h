@@ -19,7 +19,8 @@
 
 namespace slew::multibody {
 
-using Six = std::array<double, 6>;  // along x, y, z, then about them
+using Six = std::array<double, 6>;        // along x, y, z, then about them
+using SixBySix = std::array<double, 36>;  // row by row
 
 struct FramePair {
   int link1 = 0, link2 = 0;
@@ -47,5 +48,12 @@ struct Deflection {
 // force: Q [N, N m].
 [[nodiscard]] WrenchPair wrenches_of(const Deflection& deflection, const Six& force, const LinkMotion& link1,
                                      const LinkMotion& link2) noexcept;
+
+// A law's slopes A over x' as it is over the velocity of P_2 and the angular velocity of link 2 seen from link 1,
+// Ground axes: J^T A J with J of (2) and (3).
+struct PairMatrix {
+  math::Mat3 vv, vw, ww;
+};
+[[nodiscard]] PairMatrix matrix_of(const Deflection& deflection, const SixBySix& A) noexcept;
 
 }  // namespace slew::multibody

@@ -25,18 +25,26 @@ PointMotion motion_of(const RopePoint& point, std::span<const LinkMotion> motion
   return {link.p + s, link.v + cross(link.w, s)};
 }
 
+double spring_tension(const Rope& rope, double stretch) noexcept {
+  if (!rope.spring_curve.empty()) return math::value_at(rope.spring_curve, stretch);
+  return (rope.rigidity > 0 ? rope.rigidity / rope.free_length : rope.spring) * stretch;
+}
+
+double damper_tension(const Rope& rope, double rate) noexcept {
+  return rope.damper_curve.empty() ? rope.damping * rate : math::value_at(rope.damper_curve, rate);
+}
+
+}  // namespace
+
 Vec3 direction(Vec3 from, Vec3 to) noexcept {
   const Vec3 d = to - from;
   const double length = norm(d);
   return length > kShortest ? d * (1 / length) : Vec3();
 }
 
-double spring_tension(const Rope& rope, double stretch) noexcept {
-  if (!rope.spring_curve.empty()) return math::value_at(rope.spring_curve, stretch);
-  return (rope.rigidity > 0 ? rope.rigidity / rope.free_length : rope.spring) * stretch;
+Vec3 position_of(const Rope& rope, std::size_t k, std::span<const LinkMotion> motion) noexcept {
+  return motion_of(rope.points[k], motion).P;
 }
-
-}  // namespace
 
 RopeState state_of(const Rope& rope, std::span<const LinkMotion> motion) noexcept {
   RopeState state;
@@ -50,11 +58,19 @@ RopeState state_of(const Rope& rope, std::span<const LinkMotion> motion) noexcep
   const double stretch = state.length - rope.free_length;
   state.slack = std::max(0.0, -stretch);
   if (!(stretch > 0)) return state;
-  const double spring = spring_tension(rope, stretch);
-  const double damper =
-      rope.damper_curve.empty() ? rope.damping * state.rate : math::value_at(rope.damper_curve, state.rate);
-  state.tension = spring + std::min(spring, std::max(-spring, damper));
+  const LimitedForce limited = limited_force(spring_tension(rope, stretch), damper_tension(rope, state.rate));
+  state.tension = limited.force;
+  state.springs = limited.springs;
   return state;
+}
+
+RopeSlopes slopes_of(const Rope& rope, const RopeState& state) noexcept {
+  if (state.springs == 0) return {};
+  const double stretch = state.length - rope.free_length;
+  const double spring =
+      rope.spring_curve.empty() ? spring_tension(rope, 1) : math::slope_at(rope.spring_curve, stretch);
+  const double damper = rope.damper_curve.empty() ? rope.damping : math::slope_at(rope.damper_curve, state.rate);
+  return {state.springs * std::max(0.0, spring), state.springs == 1 ? std::max(0.0, damper) : 0.0};
 }
 
 double stored_energy(const Rope& rope, const RopeState& state) noexcept {

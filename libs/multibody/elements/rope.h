@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "math/monotone_cubic.h"
+#include "multibody/elements/limited_damper.h"
 #include "multibody/elements/wrench.h"
 
 namespace slew::multibody {
@@ -38,11 +39,23 @@ struct RopeState {
   double rate = 0;     // L' [m/s]
   double slack = 0;    // max(0, L_0 - L) [m]
   double tension = 0;  // T [N]
+  int springs = 0;     // LimitedForce
 };
 
 // motion: of all links.
 [[nodiscard]] RopeState state_of(const Rope& rope, std::span<const LinkMotion> motion) noexcept;
 [[nodiscard]] double stored_energy(const Rope& rope, const RopeState& state) noexcept;  // J
+
+// Slopes of the tension over L and L', where they rise.
+struct RopeSlopes {
+  double stiffness = 0;  // N/m
+  double damping = 0;    // N s/m
+};
+[[nodiscard]] RopeSlopes slopes_of(const Rope& rope, const RopeState& state) noexcept;
+
+// Points and the unit vector from point k to point k + 1, Ground; zero where both are in one place.
+[[nodiscard]] math::Vec3 position_of(const Rope& rope, std::size_t k, std::span<const LinkMotion> motion) noexcept;
+[[nodiscard]] math::Vec3 direction(math::Vec3 from, math::Vec3 to) noexcept;
 
 // On the link of point k, by the tension of state_of().
 [[nodiscard]] Wrench wrench_on(const Rope& rope, std::size_t k, double tension,

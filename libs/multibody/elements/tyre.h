@@ -21,6 +21,7 @@
 #include <string>
 
 #include "multibody/elements/element_defs.h"
+#include "multibody/elements/limited_damper.h"
 #include "multibody/elements/wrench.h"
 
 namespace slew::multibody {
@@ -46,6 +47,7 @@ struct TyreState {
   math::Vec3 t, l, axle;          // unit, Ground axes
   double depth = 0;               // delta [m], negative in the air
   double normal_force = 0;        // N [N]
+  int springs = 0;                // LimitedForce of (2)
   double longitudinal_force = 0;  // F_x [N]; of a free wheel its resistance
   double lateral_force = 0;       // F_y [N]
   double axle_moment = 0;         // N m, on the wheel about its axle
@@ -55,6 +57,16 @@ struct TyreState {
 
 [[nodiscard]] TyreState state_of(const Tyre& tyre, const LinkMotion& link) noexcept;
 [[nodiscard]] Wrench wrench_of(const Tyre& tyre, const TyreState& state, const LinkMotion& link) noexcept;
+// Directions in which the ground holds the wheel: a force A (s, e) . u on the velocity of the point at Q or C along e,
+// and about the axle; position K + rate D of (2), the secant of (4) over the speed.
+struct TyreSlopes {
+  double normal = 0;        // along n at Q
+  double lateral = 0;       // along l at Q
+  double longitudinal = 0;  // along t, at Q (with_body) or at C
+  double axle = 0;          // about the axle
+};
+[[nodiscard]] TyreSlopes slopes_of(const Tyre& tyre, const TyreState& state, const LinkMotion& link,
+                                   ChangeWeights weights) noexcept;
 [[nodiscard]] double stored_energy(const Tyre& tyre, const TyreState& state) noexcept;  // k delta^2/2 [J]
 
 }  // namespace slew::multibody

@@ -26,4 +26,9 @@ struct WrenchPair {
   return {force, moment + cross(point - link.p, force)};
 }
 
+// What -dF of a law counts for a small motion over its coordinate and over its rate: position K + rate D.
+struct ChangeWeights {
+  double position = 0, rate = 0;
+};
+
 }  // namespace slew::multibody
