@@ -18,4 +18,9 @@ namespace slew::multibody {
   return I;
 }
 
+// R I R^T: a tensor in other axes.
+[[nodiscard]] inline math::Mat3 rotated(const math::Mat3& R, const math::Mat3& I) noexcept {
+  return R * I * math::transpose(R);
+}
+
 }  // namespace slew::multibody

@@ -140,6 +140,21 @@ std::vector<ConstraintRow> rows_of(JointType type, const Mat3& R_12, Vec3 p_12) 
   return {};
 }
 
+Constraint constraint_between(const Model& model, int index) {
+  const Joint& joint = model.joints[static_cast<std::size_t>(index)];
+  const Body& body1 = model.bodies[static_cast<std::size_t>(joint.body1)];
+  const Body& body2 = model.bodies[static_cast<std::size_t>(joint.body2)];
+  Constraint constraint;
+  constraint.joint = index;
+  constraint.link1 = body1.link;
+  constraint.link2 = body2.link;
+  constraint.R_L1 = body1.R_LB * joint.R_B1;
+  constraint.p_L1 = body1.p_LB + body1.R_LB * joint.p_B1;
+  constraint.R_L2 = body2.R_LB * joint.R_B2;
+  constraint.p_L2 = body2.p_LB + body2.R_LB * joint.p_B2;
+  return constraint;
+}
+
 std::string describe(const ConstraintRow& row) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   switch (row.form) {

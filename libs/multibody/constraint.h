@@ -33,6 +33,9 @@ inline constexpr double kShortestLink = 1e-9;  // m
 // closed at offset zero. Empty for a floating joint. Allocates.
 [[nodiscard]] std::vector<ConstraintRow> rows_of(JointType type, const math::Mat3& R_12, math::Vec3 p_12);
 
+// A joint of the scene between the links of its bodies, without rows.
+[[nodiscard]] Constraint constraint_between(const Model& model, int joint);
+
 // What a row holds, "position along x" or "angle between z and x": for messages. Allocates.
 [[nodiscard]] std::string describe(const ConstraintRow& row);
 

@@ -15,17 +15,8 @@ std::size_t at(int index) noexcept {
 
 // a joint with coordinates, between the links of its bodies
 Constraint closed_joint(const Model& model, int index) {
-  const Joint& joint = model.joints[at(index)];
-  const Body &body1 = model.bodies[at(joint.body1)], &body2 = model.bodies[at(joint.body2)];
-  Constraint constraint;
-  constraint.joint = index;
-  constraint.link1 = body1.link;
-  constraint.link2 = body2.link;
-  constraint.R_L1 = body1.R_LB * joint.R_B1;
-  constraint.p_L1 = body1.p_LB + body1.R_LB * joint.p_B1;
-  constraint.R_L2 = body2.R_LB * joint.R_B2;
-  constraint.p_L2 = body2.p_LB + body2.R_LB * joint.p_B2;
-  constraint.rows = rows_of(joint.type, math::Mat3::identity(), math::Vec3());
+  Constraint constraint = constraint_between(model, index);
+  constraint.rows = rows_of(model.joints[at(index)].type, math::Mat3::identity(), math::Vec3());
   return constraint;
 }
 

@@ -10,14 +10,13 @@
 #include "multibody/assembly.h"
 #include "multibody/body_inertia.h"
 #include "multibody/body_penalty.h"
-#include "multibody/constraint.h"
 #include "multibody/contact_elements.h"
 #include "multibody/dynamics.h"
 #include "multibody/elements/validate_elements.h"
 #include "multibody/field_tables.h"
 #include "multibody/observe.h"
 #include "multibody/singularity.h"
-#include "multibody/start_pose.h"
+#include "multibody/start_rules.h"
 #include "multibody/topology.h"
 
 namespace slew::multibody {
@@ -32,9 +31,6 @@ constexpr double kInertiaTolerance = 1e-6;
 constexpr double kRightAngleTolerance = 1e-3;
 // transverse moments of a cylinder as CAD prints them
 constexpr double kTransverseTolerance = 1e-2;
-// a start on a limit, by numbers with six digits and more
-constexpr double kLimitTolerance = 1e-6;  // m, rad
-
 // to three digits
 double rounded_down(double x) {
   const double digit = std::pow(10, std::floor(std::log10(x)) - 2);
@@ -61,9 +57,7 @@ class Validator {
     const std::vector<Pose> poses = start_poses(m_, problems_);
     const std::vector<TreeEdge> tree = find_tree(m_, problems_);
     if (problems_.size() == before) {
-      for (const JointDef& joint : m_.joints) check_frames(joint, poses);
-      for (const TranslationalForceDef& force : m_.translational_forces) check_start_length(force, poses);
-      check_neighbours(tree);
+      check_start(m_, poses, tree, problems_);
       check_element_starts(m_, poses, problems_);
     }
     if (problems_.empty()) validate_contacts(m_, problems_);
@@ -306,47 +300,6 @@ class Validator {
     }
   }
 
-  const Pose& pose_of(const std::vector<Pose>& poses, const std::string& body) const {
-    return poses[static_cast<std::size_t>(multibody::find_body(m_, body))];
-  }
-
-  // what the joint holds must agree at the start, or nearly
-  void check_frames(const JointDef& joint, const std::vector<Pose>& poses) {
-    if (joint.type == JointType::floating) return;
-    const JointFrames frames = joint_frames(joint, pose_of(poses, joint.body1), pose_of(poses, joint.body2));
-    check_link(joint, math::norm(frames.frame2.p - frames.frame1.p));
-    check_start(joint, frames);
-    const Pose held = nearest_frame(joint.type, frames);
-    const double gap = math::norm(held.p - frames.frame2.p);
-    const double tilt = math::rotation_angle(held.R * math::transpose(frames.frame2.R));
-    const double tolerance = std::max(m_.assembly_tolerance, kFrameTolerance);
-    if (gap > tolerance) {
-      const bool has_axis = joint.type == JointType::prismatic || joint.type == JointType::cylindrical;
-      add(joint.name + ".point2",
-          fmt::format("the joint's points are {:.6g} m apart at the start{}", gap, has_axis ? " across the axis" : ""),
-          fmt::format("points that agree within {} m (mechanics.assembly_tolerance)", tolerance));
-    }
-    if (tilt > tolerance) {
-      const bool has_one_axis = joint.type == JointType::revolute || joint.type == JointType::cylindrical;
-      add(joint.name + ".orientation2",
-          fmt::format("the joint's {} {:.6g} rad apart at the start", has_one_axis ? "axes are" : "frames are turned",
-                      tilt),
-          fmt::format("joint frames that agree within {} rad (mechanics.assembly_tolerance)", tolerance));
-    }
-  }
-
-  void check_link(const JointDef& joint, double distance) {
-    if (joint.type < JointType::spherical_spherical) return;
-    if (joint.length == 0 && distance < kShortestLink) {
-      add(joint.name + ".point2", "the link's points coincide at the start", "two points apart, or a length");
-    } else if (joint.length > 0 && std::abs(distance - joint.length) > m_.assembly_tolerance) {
-      add(joint.name + ".length",
-          fmt::format("the link's points are {:.6g} m apart at the start, its length is {:.6g} m", distance,
-                      joint.length),
-          fmt::format("points that fit the length within {} m (mechanics.assembly_tolerance)", m_.assembly_tolerance));
-    }
-  }
-
   // loops that cannot be closed, and speeds that they do not allow
   void check_loops() {
     AssemblyReport report;
@@ -363,49 +316,6 @@ class Validator {
           fmt::format("the loops do not allow {:.6g}; with the other speeds given it is {:.6g}", speed.wanted,
                       speed.found),
           "speeds that fit each other: those that are not given follow from the others");
-    }
-  }
-
-  // a limit that is passed at the start would throw the machine
-  void check_start(const JointDef& joint, const JointFrames& frames) {
-    if (joint.type != JointType::revolute && joint.type != JointType::prismatic) return;
-    if (joint.limit_min >= joint.limit_max) return;
-    const double start = start_coordinate(joint.type, frames);
-    const bool is_below = start < joint.limit_min - kLimitTolerance;
-    if (!is_below && start <= joint.limit_max + kLimitTolerance) return;
-    const char* unit = joint.type == JointType::revolute ? "rad" : "m";
-    add(joint.name + (is_below ? ".limit_min" : ".limit_max"),
-        fmt::format("the joint starts at {:.4g} {}, outside of its limits", start, unit),
-        fmt::format("limits that hold {0:.4g} {2}, or poses that start between {1:.4g} and {3:.4g} {2}", start,
-                    joint.limit_min, unit, joint.limit_max));
-  }
-
-  void check_start_length(const TranslationalForceDef& force, const std::vector<Pose>& poses) {
-    const Pose& body1 = pose_of(poses, force.body1);
-    const Pose& body2 = pose_of(poses, force.body2);
-    const Vec3 gap = body1.p + body1.R * Vec3(force.point1) - body2.p - body2.R * Vec3(force.point2);
-    if (math::norm(gap) > kFrameTolerance) return;
-    add(force.name + ".point2", "the force's points coincide at the start", "two points that stay apart");
-  }
-
-  // a dummy's mass couples the links of its two points, which the recursion takes for parent and child only
-  void check_neighbours(const std::vector<TreeEdge>& tree) {
-    const std::vector<int> merged = merged_into(m_, tree);
-    std::vector<int> parent(merged.size(), kGround);
-    for (const TreeEdge& edge : tree) {
-      const auto child = static_cast<std::size_t>(edge.child);
-      if (merged[child] == edge.child) parent[child] = merged[static_cast<std::size_t>(edge.parent)];
-    }
-    for (const ForceDummyDef& dummy : m_.force_dummies) {
-      for (const TranslationalForceDef& force : m_.translational_forces) {
-        if (force.name != dummy.relative_to) continue;
-        const int a = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body1))];
-        const int b = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body2))];
-        if (a == b || parent[static_cast<std::size_t>(a)] == b || parent[static_cast<std::size_t>(b)] == a) continue;
-        add(dummy.name + ".relative_to",
-            fmt::format("'{}' acts between bodies that more than one joint connects", force.name),
-            "a force between neighbours; dummies on a force across more than one joint are not in this version");
-      }
     }
   }
 

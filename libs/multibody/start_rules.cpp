@@ -1,0 +1,130 @@
+#include "multibody/start_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "multibody/assembly.h"
+#include "multibody/constraint.h"
+#include "multibody/start_pose.h"
+
+namespace slew::multibody {
+namespace {
+
+using math::Vec3;
+
+// a start on a limit, by numbers with six digits and more
+constexpr double kLimitTolerance = 1e-6;  // m, rad
+
+class StartRules {
+ public:
+  StartRules(const MechanicsDef& mechanics, std::span<const Pose> poses, Problems& problems)
+      : m_(mechanics), poses_(poses), problems_(problems) {}
+
+  // what the joint holds must agree at the start, or nearly
+  void check_frames(const JointDef& joint) {
+    if (joint.type == JointType::floating) return;
+    const JointFrames frames = joint_frames(joint, pose_of(joint.body1), pose_of(joint.body2));
+    check_link(joint, math::norm(frames.frame2.p - frames.frame1.p));
+    check_limits(joint, frames);
+    const Pose held = nearest_frame(joint.type, frames);
+    const double gap = math::norm(held.p - frames.frame2.p);
+    const double tilt = math::rotation_angle(held.R * math::transpose(frames.frame2.R));
+    const double tolerance = std::max(m_.assembly_tolerance, kFrameTolerance);
+    if (gap > tolerance) {
+      const bool has_axis = joint.type == JointType::prismatic || joint.type == JointType::cylindrical;
+      add(joint.name + ".point2",
+          fmt::format("the joint's points are {:.6g} m apart at the start{}", gap, has_axis ? " across the axis" : ""),
+          fmt::format("points that agree within {} m (mechanics.assembly_tolerance)", tolerance));
+    }
+    if (tilt > tolerance) {
+      const bool has_one_axis = joint.type == JointType::revolute || joint.type == JointType::cylindrical;
+      add(joint.name + ".orientation2",
+          fmt::format("the joint's {} {:.6g} rad apart at the start", has_one_axis ? "axes are" : "frames are turned",
+                      tilt),
+          fmt::format("joint frames that agree within {} rad (mechanics.assembly_tolerance)", tolerance));
+    }
+  }
+
+  void check_link(const JointDef& joint, double distance) {
+    if (joint.type < JointType::spherical_spherical) return;
+    if (joint.length == 0 && distance < kShortestLink) {
+      add(joint.name + ".point2", "the link's points coincide at the start", "two points apart, or a length");
+    } else if (joint.length > 0 && std::abs(distance - joint.length) > m_.assembly_tolerance) {
+      add(joint.name + ".length",
+          fmt::format("the link's points are {:.6g} m apart at the start, its length is {:.6g} m", distance,
+                      joint.length),
+          fmt::format("points that fit the length within {} m (mechanics.assembly_tolerance)", m_.assembly_tolerance));
+    }
+  }
+
+  // a limit that is passed at the start would throw the machine
+  void check_limits(const JointDef& joint, const JointFrames& frames) {
+    if (joint.type != JointType::revolute && joint.type != JointType::prismatic) return;
+    if (joint.limit_min >= joint.limit_max) return;
+    const double start = start_coordinate(joint.type, frames);
+    const bool is_below = start < joint.limit_min - kLimitTolerance;
+    if (!is_below && start <= joint.limit_max + kLimitTolerance) return;
+    const char* unit = joint.type == JointType::revolute ? "rad" : "m";
+    add(joint.name + (is_below ? ".limit_min" : ".limit_max"),
+        fmt::format("the joint starts at {:.4g} {}, outside of its limits", start, unit),
+        fmt::format("limits that hold {0:.4g} {2}, or poses that start between {1:.4g} and {3:.4g} {2}", start,
+                    joint.limit_min, unit, joint.limit_max));
+  }
+
+  void check_start_length(const TranslationalForceDef& force) {
+    const Pose& body1 = pose_of(force.body1);
+    const Pose& body2 = pose_of(force.body2);
+    const Vec3 gap = body1.p + body1.R * Vec3(force.point1) - body2.p - body2.R * Vec3(force.point2);
+    if (math::norm(gap) > kFrameTolerance) return;
+    add(force.name + ".point2", "the force's points coincide at the start", "two points that stay apart");
+  }
+
+  // a dummy's mass couples the links of its two points, which the recursion takes for parent and child only
+  void check_neighbours(const std::vector<TreeEdge>& tree) {
+    const std::vector<int> merged = merged_into(m_, tree);
+    std::vector<int> parent(merged.size(), kGround);
+    for (const TreeEdge& edge : tree) {
+      const auto child = static_cast<std::size_t>(edge.child);
+      if (merged[child] == edge.child) parent[child] = merged[static_cast<std::size_t>(edge.parent)];
+    }
+    for (const ForceDummyDef& dummy : m_.force_dummies) {
+      for (const TranslationalForceDef& force : m_.translational_forces) {
+        if (force.name != dummy.relative_to) continue;
+        const int a = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body1))];
+        const int b = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body2))];
+        if (a == b || parent[static_cast<std::size_t>(a)] == b || parent[static_cast<std::size_t>(b)] == a) continue;
+        add(dummy.name + ".relative_to",
+            fmt::format("'{}' acts between bodies that more than one joint connects", force.name),
+            "a force between neighbours; dummies on a force across more than one joint are not in this version");
+      }
+    }
+  }
+
+ private:
+  void add(std::string path, std::string what, std::string expected) {
+    problems_.push_back({std::move(path), std::move(what), std::move(expected), {}});
+  }
+
+  [[nodiscard]] const Pose& pose_of(const std::string& body) const {
+    return poses_[static_cast<std::size_t>(multibody::find_body(m_, body))];
+  }
+
+  const MechanicsDef& m_;
+  std::span<const Pose> poses_;
+  Problems& problems_;
+};
+
+}  // namespace
+
+void check_start(const MechanicsDef& mechanics, std::span<const Pose> poses, const std::vector<TreeEdge>& tree,
+                 Problems& problems) {
+  StartRules rules(mechanics, poses, problems);
+  for (const JointDef& joint : mechanics.joints) rules.check_frames(joint);
+  for (const TranslationalForceDef& force : mechanics.translational_forces) rules.check_start_length(force);
+  rules.check_neighbours(tree);
+}
+
+}  // namespace slew::multibody
