@@ -29,12 +29,18 @@ void update_contacts(const Model& model, Workspace& ws) noexcept;
 void apply_contacts(const Model& model, Workspace& ws) noexcept;
 
 // After a sub-step of h [s], with the motion of the new state in ws: the memory of the state becomes that of the end.
-// Shapes that went through each other unseen set ws.contact->has_passed.
+// Shapes that went through each other unseen set ws.contact->is_lost.
 void accept_contacts(const Model& model, double h, State& state, Workspace& ws) noexcept;
 
+// How a sub-step treats contacts: by a rule that has to resolve them, by corrections without their slopes
+// (`augmented`), or with their slopes inside the iteration.
+enum class StepKind { explicit_rule, corrected, implicit };
+
 // In how many equal parts a sub-step of h [s] from here should go, after an evaluation at its start: one when nothing
-// touches and the present speeds lead into nothing within h; there is then no search until the next start.
-[[nodiscard]] int contact_parts(const Model& model, double h, Workspace& ws) noexcept;
+// touches and the present speeds lead into nothing within h; there is then no search until the next start. Contacts
+// that touch are resolved as fast as they answer (contact_rate.h); those too fast for the shortest part set
+// ws.contact->is_lost.
+[[nodiscard]] int contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept;
 
 // What the force of one contact point loses by a small motion of shape A against shape B, after update_contacts() at an
 // instant after the start: position and rate of the weights, ways beginning at the start.

@@ -1,6 +1,7 @@
 // What a search for contacts and their forces leaves behind, and what a sub-step needs to carry contacts along.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "contact/contact_memory.h"
@@ -17,7 +18,14 @@ struct ContactForce {
   math::Vec3 normal_W;    // N, on A
   math::Vec3 friction_W;  // N, on A
   double depth = 0;       // m
+  double depth_rate = 0;  // m/s
   double energy = 0;      // J, held by the normal law's spring and by the bristles
+};
+
+// What the contacts of a link add up to, scaled by its mass (contact_rate.h).
+struct ContactRates {
+  std::array<double, 36> damping{};    // 1/s
+  std::array<double, 36> stiffness{};  // 1/s^2
 };
 
 struct ContactWorkspace {
@@ -36,9 +44,11 @@ struct ContactWorkspace {
   std::vector<unsigned char> was_touching;               // by pair, at the start: 0 or 1
   std::vector<ContactForce> forces;                      // of the last search
   std::size_t force_count = 0;
-  double time = 0;          // s, since the start of the sub-step
-  bool is_near = true;      // something touches or may touch within the sub-step; false: no search until its end
-  bool has_passed = false;  // shapes went through each other unseen since this was last cleared
+  std::vector<ContactRates> rates;  // by link, up to the last one with a shape
+  double time = 0;                  // s, since the start of the sub-step
+  bool is_near = true;   // something touches or may touch within the sub-step; false: no search until its end
+  bool is_lost = false;  // since this was last cleared, shapes went through each other unseen, or contacts answered
+                         // faster than the shortest part
 };
 
 }  // namespace slew::multibody

@@ -57,8 +57,8 @@ bool is_resolved(const Workspace& ws, double h) noexcept {
   return true;
 }
 
-bool take_passed(Workspace& ws) noexcept {
-  return ws.contact != nullptr && std::exchange(ws.contact->has_passed, false);
+bool take_lost(Workspace& ws) noexcept {
+  return ws.contact != nullptr && std::exchange(ws.contact->is_lost, false);
 }
 
 }  // namespace
@@ -95,10 +95,16 @@ void Dynamics::evaluate(const Model& model, State& state, Workspace& ws) noexcep
   }
 }
 
+StepKind Dynamics::contact_step() const noexcept {
+  if (stages_ != nullptr && is_implicit(stages_->rule.integrator)) return StepKind::implicit;
+  return held_ != nullptr && held_->model.formulation == Formulation::augmented ? StepKind::corrected
+                                                                                : StepKind::explicit_rule;
+}
+
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                        std::span<const double> slope) noexcept {
-  const int parts = contact_parts(model, h, ws);
-  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && !take_passed(ws);
+  const int parts = contact_parts(model, h, contact_step(), ws);
+  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && !take_lost(ws);
   // the rows' forces go on along their lines
   const double part = h / parts;
   bool is_sound = true;
@@ -108,7 +114,7 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
     for (std::size_t k = 0; k < mean.size(); ++k) ws.row_part[k] = mean[k] + later * slope[k];
     is_sound = advance_part(model, state, ws, part, ws.row_part, slope) && is_sound;
   }
-  return !take_passed(ws) && is_sound;
+  return !take_lost(ws) && is_sound;
 }
 
 bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,

@@ -17,6 +17,7 @@
 namespace slew::multibody {
 
 struct BodyState;
+enum class StepKind;
 
 // A sub-step in which a body turns further does not resolve the motion: a spin of one rad a sub-step loses 6e-3 of its
 // energy in 10 s under rk4 and a third under augmented. What a too long sub-step drives up ends here as well.
@@ -32,8 +33,8 @@ class Dynamics {
 
   // evaluate() and advance() of dynamics.h, with the integrator of the rule. While shapes touch, or are about to,
   // advance() goes in parts of MechanicsDef::contact_substep at most. False: a matrix was singular, an iteration did
-  // not settle, the joints could not be closed, a body turned by more than kLargestTurn in a sub-step, or shapes went
-  // through each other between two instants.
+  // not settle, the joints could not be closed, a body turned by more than kLargestTurn in a sub-step, shapes went
+  // through each other between two instants, or contacts are stiffer than the shortest part resolves.
   void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;
@@ -50,6 +51,7 @@ class Dynamics {
  private:
   // none: recursive
   [[nodiscard]] const BodyState* own_state() const noexcept;
+  [[nodiscard]] StepKind contact_step() const noexcept;
   [[nodiscard]] bool advance_part(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
   [[nodiscard]] bool take_substep(const Model& model, State& state, Workspace& ws, double h,

@@ -1,13 +1,15 @@
 // Contact at its limits: each ends finite and bounded, or is named.
 #include <gtest/gtest.h>
 
-#include "contact_scene.h"
 #include "multibody/dynamics.h"
+#include "scene_cases.h"
+#include "support/nightly.h"
 
 namespace slew::multibody {
 namespace {
 
 using namespace testing;
+using slew::testing::rounds;
 
 constexpr double kGravity = 9.81;
 
@@ -27,41 +29,67 @@ MechanicsDef stack(const std::vector<double>& masses, const contact::NormalLawDe
   return def;
 }
 
-TEST(Stack, OfTenBoxesStandsAtTheDepthOfItsWeight) {
-  // damping at rest a N / v_min / m = 3.1 x 10 g / 0.1 = 3e3 1/s, four times that between two boxes that swing
-  MechanicsDef def =
+std::vector<Way> formulations() {
+  return {Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty};
+}
+
+class Stack : public EveryWay {};
+INSTANTIATE_TEST_SUITE_P(All, Stack, ::testing::ValuesIn(formulations()), name_of_way);
+
+// nothing said about sub-steps: damping at rest a N / v_min / m = 3.1 x 10 g / 0.1 = 3e3 1/s, more between two boxes
+// that swing, which parts of 0.1 ms do not resolve
+TEST_P(Stack, OfTenBoxesStandsAtTheDepthOfItsWeight) {
+  const MechanicsDef def =
       stack(std::vector<double>(10, 1.0), {.stiffness = 1e6, .restitution = 0.3, .smallest_impact_speed = 0.1});
-  def.contact_substep = 5e-5;
-  Motion motion(def);
-  motion.run(1.5, 1e-3);
+  Motion motion(def, GetParam());
+  motion.run(is_recursion(GetParam()) ? 2.0 : rounds(0.6, 60.0), 1e-3);
+  EXPECT_TRUE(motion.is_sound);
+  double creep = 0, speed = 0;
   for (int i = 0; i < 10; ++i) {
     const std::string pair = i == 0 ? "Sides0_Floor" : "Sides" + std::to_string(i) + "_Sides" + std::to_string(i - 1);
     const double load = (10 - i) * kGravity;
     EXPECT_NEAR(motion.value(pair + ".normal_force.y"), load, 1e-3 * load) << pair;
-    EXPECT_NEAR(motion.value(pair + ".depth"), load / 1e6, 2e-3 * load / 1e6) << pair;
+    EXPECT_NEAR(motion.value(pair + ".depth"), load / 1e6, 1e-3 * load / 1e6) << pair;
     const BodyPose pose = motion.pose("Box" + std::to_string(i));
-    EXPECT_LT(std::fabs(pose.velocity[1]), 1e-6);
-    EXPECT_LT(std::hypot(pose.position[0], pose.position[2]), 1e-6);
+    creep = std::max(creep, std::hypot(pose.position[0], pose.position[2]));
+    speed = std::max(speed, std::fabs(pose.velocity[1]));
   }
+  RecordProperty("creep_1e_15_m", std::to_string(1e15 * creep));
+  RecordProperty("speed_1e_9", std::to_string(1e9 * speed));
+  EXPECT_LT(creep, 1e-9);
+  EXPECT_LT(speed, 1e-6);
 }
 
-TEST(Stack, OfAHeavyBoxOnALightOneStands) {
+TEST_P(Stack, OfAHeavyBoxOnALightOneStands) {
   // the light box: damping a N / v_min / m = 1.6e5 1/s
   MechanicsDef def = stack({1.0, 1e4}, {.stiffness = 1e8, .restitution = 0.9, .smallest_impact_speed = 0.1});
-  def.contact_substep = 2e-6;
   // from the depths of their weights: it would take seconds to swing into them
   for (std::size_t i = 0; i < 2; ++i) {
     const double sunk = (i == 0 ? 10001 : 10001 + 10000) * kGravity / 1e8;
     def.bodies[i].position[1] -= sunk;
     def.joints[i].point1[1] -= sunk;
   }
-  Motion motion(def);
-  motion.run(0.2, 1e-3);
-  EXPECT_NEAR(motion.value("Sides0_Floor.normal_force.y"), 10001 * kGravity, 1e-2 * 1e5);
+  Motion motion(def, GetParam());
+  motion.run(is_recursion(GetParam()) ? 0.2 : rounds(0.05, 1.0), 1e-3);
+  EXPECT_TRUE(motion.is_sound);
+  const double load = motion.value("Sides0_Floor.normal_force.y") / (10001 * kGravity) - 1;
+  RecordProperty("load_error_1e_6", std::to_string(1e6 * load));
+  RecordProperty("speed_1e_6", std::to_string(1e6 * motion.pose("Box0").velocity[1]));
+  EXPECT_LT(std::fabs(load), 1e-2);
   EXPECT_LT(std::fabs(motion.pose("Box0").velocity[1]), 1e-3);
 }
 
-TEST(Penetration, OfATenthOfAMetreEndsBoundedAndIsWarnedAbout) {
+// a contact that the shortest part (a thousandth of the sub-step) does not resolve is not integrated in silence
+TEST_P(Stack, ThatIsTooStiffForItsStepIsFlagged) {
+  Motion motion(stack({1e-3, 1e4}, {.stiffness = 1e9, .restitution = 0.1, .smallest_impact_speed = 1e-3}), GetParam());
+  motion.run(2e-3, 1e-3);
+  EXPECT_FALSE(motion.is_sound);
+}
+
+class Penetration : public EveryWay {};
+INSTANTIATE_TEST_SUITE_P(All, Penetration, ::testing::ValuesIn(formulations()), name_of_way);
+
+TEST_P(Penetration, OfATenthOfAMetreEndsBoundedAndIsWarnedAbout) {
   MechanicsDef def;
   add_free(def, box_body("Bag", 500, {0.8, 1, 0.8}, {0, 0.4, 0}));
   def.shapes = {box_shape("Sides", "Bag", {0.8, 1, 0.8}), ground_shape("Floor")};
@@ -70,17 +98,19 @@ TEST(Penetration, OfATenthOfAMetreEndsBoundedAndIsWarnedAbout) {
   find_unlikely_contacts(def, warnings);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].what.find("0.1 m deep"), std::string::npos) << warnings[0].what;
-  Motion motion(def);
+  Motion motion(def, GetParam());
   double fastest = 0;
-  for (int i = 0; i < 2000; ++i) {
-    motion.step(1e-3);
+  for (int i = 0; i < 150; ++i) {
+    motion.is_sound = motion.step(1e-3) && motion.is_sound;
     motion.see();
     fastest = std::max(fastest, std::fabs(motion.pose("Bag").velocity[1]));
   }
-  ASSERT_TRUE(is_finite(motion.state));
-  // the spring holds 250 kJ, that is 32 m/s; the law lets v_min / a = 1 cm/s come out, and parts of 0.1 ms add some
-  EXPECT_LT(fastest, 1);
-  RecordProperty("fastest", std::to_string(fastest));
+  // the parts of `augmented` would have to be shorter than the shortest while it is deep: flagged, and right all the
+  // same
+  EXPECT_EQ(motion.is_sound, GetParam().formulation != Formulation::augmented);
+  // the spring holds 250 kJ, that is 32 m/s; the law lets v_min / a = 1 cm/s come out
+  RecordProperty("fastest_mm_s", std::to_string(1e3 * fastest));
+  EXPECT_LT(fastest, 0.02);
 }
 
 MechanicsDef bullet(double speed, double thickness) {
@@ -92,29 +122,34 @@ MechanicsDef bullet(double speed, double thickness) {
   return def;
 }
 
-TEST(Bullet, OfAKilometreASecondBouncesOffAThinWall) {
+class Bullet : public EveryWay {};
+INSTANTIATE_TEST_SUITE_P(All, Bullet, ::testing::ValuesIn(formulations()), name_of_way);
+
+TEST_P(Bullet, OfAKilometreASecondBouncesOffAThinWall) {
   MechanicsDef def = bullet(1e3, 0.02);
   def.contact_substep = 1e-6;
-  Motion motion(def);
+  Motion motion(def, GetParam());
   motion.run(0.01, 1e-3);
-  EXPECT_TRUE(motion.is_sound);
+  RecordProperty("rebound", std::to_string(-motion.pose("Ball").velocity[0] / 1e3));
+  // 1 mm a part in a touch of 10 us: too coarse for the corrections of `augmented`, which says so
+  EXPECT_EQ(motion.is_sound, GetParam().formulation != Formulation::augmented);
   EXPECT_LT(motion.pose("Ball").velocity[0], 0);
   EXPECT_LT(motion.pose("Ball").position[0], 0);
 }
 
 // so thin that the parts of a sub-step do not resolve it: it goes through, and the step says so
-TEST(Bullet, ThatPassesUnseenIsFlagged) {
+TEST_P(Bullet, ThatPassesUnseenIsFlagged) {
   MechanicsDef def = bullet(1e3, 1e-5);
   def.shapes[0].radius = 1e-4;
-  Motion motion(def);
+  Motion motion(def, GetParam());
   motion.run(0.01, 1e-3);
   EXPECT_FALSE(motion.is_sound);
 }
 
-TEST(Bullet, ThatMissesTheWallIsNot) {
+TEST_P(Bullet, ThatMissesTheWallIsNot) {
   MechanicsDef def = bullet(1e3, 0.02);
   def.bodies[0].position[1] = def.joints[0].point1[1] = 1.5;
-  Motion motion(def);
+  Motion motion(def, GetParam());
   motion.run(0.01, 1e-3);
   EXPECT_TRUE(motion.is_sound);
   EXPECT_NEAR(motion.pose("Ball").velocity[0], 1e3, 1e-9);
