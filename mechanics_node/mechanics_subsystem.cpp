@@ -286,10 +286,10 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     state_.time = static_cast<double>(n) * H_.seconds() + (i + 1) * h;
     if (!solved.has_converged) report.raise(StepFlag::not_converged);
     report.iterations += static_cast<std::uint32_t>(solved.iterations + mechanism_.iterations());
+    report.substeps += static_cast<std::uint32_t>(mechanism_.parts());
     if (!(solved.residual <= report.residual)) report.residual = solved.residual;  // NaN stays
     finish_substep(partners.actuators, out);
   }
-  report.substeps = static_cast<std::uint32_t>(substeps_);
   if (!multibody::is_finite(state_)) {
     has_failed_ = true;
     report.raise(StepFlag::non_finite);

@@ -84,6 +84,11 @@ void accelerations(const Model& model, BodyWorkspace& bws, std::span<const doubl
 [[nodiscard]] bool project(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
                            BodyWorkspace& bws) noexcept;
 
+// The same for an impulse step of h [s] after evaluate() at its start: the positions are corrected with the matrix of
+// the start, and what they were corrected by, over h, was missing in the speeds (project_step() of loops.h).
+[[nodiscard]] bool project_step(const Model& model, const BodyModel& body, double h, BodyState& state, State& joints,
+                                Workspace& ws, BodyWorkspace& bws) noexcept;
+
 // After evaluate(): the largest violation of (2), positions [m or 1] and rates [m/s or 1/s].
 struct Drift {
   double position = 0, rate = 0;

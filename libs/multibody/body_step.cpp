@@ -35,6 +35,15 @@ void displace(BodyState& state, const BodyWorkspace& bws) noexcept {
   }
 }
 
+// adds a share of the links' parts of a solution to speeds
+void add_bodies(const math::BlockLdl& ldl, std::span<const double> solution, double share,
+                std::span<double> u) noexcept {
+  for (std::size_t link = 0; link < u.size() / 6; ++link) {
+    const double* delta = solution.data() + ldl.first_row(static_cast<int>(link));
+    for (std::size_t k = 0; k < 6; ++k) u[6 * link + k] += share * delta[k];
+  }
+}
+
 // the displacement or change of speed that takes away what the joints' rows show
 template <typename Value>
 void solve_violation(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
@@ -61,16 +70,28 @@ bool project(const Model& model, const BodyModel& body, BodyState& state, State&
   }
   for (int i = 0; i < kMostCorrections && left.rate > steady; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.rate; });
-    for (std::size_t link = 1; link < model.links.size(); ++link) {
-      const double* delta = bws.solution.data() + bws.ldl.first_row(static_cast<int>(link) - 1);
-      for (std::size_t k = 0; k < 6; ++k) state.u[6 * (link - 1) + k] += delta[k];
-    }
+    add_bodies(bws.ldl, bws.solution, 1, state.u);
     update_body_motion(model, state, ws);
     evaluate_joints(body, ws, bws);
     left = drift(bws);
   }
   find_joint_coordinates(model, ws, joints);
   return is_regular && left.position <= closed && left.rate <= steady;
+}
+
+bool project_step(const Model& model, const BodyModel& body, double h, BodyState& state, State& joints, Workspace& ws,
+                  BodyWorkspace& bws) noexcept {
+  update_body_motion(model, state, ws);
+  const double closed = kClosed * extent_of(ws).length;
+  for (int i = 0; i < kMostCorrections && bws.ldl.smallest_pivot() >= kNearSingular; ++i) {
+    evaluate_joints(body, ws, bws);
+    if (!(drift(bws).position > closed)) break;
+    solve_violation(body, bws, [](const RowValue& row) { return row.g; });
+    displace(state, bws);
+    add_bodies(bws.ldl, bws.solution, 1 / h, state.u);
+    update_body_motion(model, state, ws);
+  }
+  return project(model, body, state, joints, ws, bws);
 }
 
 bool advance(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,

@@ -1,5 +1,7 @@
 #include "multibody/formulation.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,6 +14,23 @@
 #include "multibody/passes.h"
 
 namespace slew::multibody {
+
+namespace {
+
+// a sub-step whose iteration does not settle is taken in 2, 4, ... parts, at most so many
+constexpr int kMostParts = 8;
+// An iteration that did not settle even then and left speeds so many times larger has run away.
+constexpr double kMostGrowth = 1e3;
+
+double largest_of(std::span<const double> x) noexcept {
+  double largest = 0;
+  for (const double value : x) {
+    if (!(std::fabs(value) <= largest)) largest = std::fabs(value);  // NaN stays
+  }
+  return largest;
+}
+
+}  // namespace
 
 struct Dynamics::Bodies {
   Bodies(const Model& mechanism, const State& start, const StepRule& rule)
@@ -38,12 +57,42 @@ struct Dynamics::Stages {
   Stages(const Model& mechanism, const StepRule& step_rule, StageWorkspace::Coordinates coordinates)
       : rule(step_rule), model(build_stiff_body_model(mechanism)), ws(mechanism, model, coordinates) {
     if (coordinates == StageWorkspace::Coordinates::joint) matrix.emplace(mechanism, model);
+    start.joints = start_state(mechanism);
+    start.bodies = body_state(mechanism, start.joints);
+    keep(start.joints, nullptr);
+    part_mean.resize(mechanism.rows.size());
+  }
+
+  // The start of a sub-step, for another try in parts.
+  struct Start {
+    State joints;
+    BodyState bodies;
+    std::vector<double> algorithmic;
+    std::vector<math::Vec3> algorithmic_turn;
+    bool has_algorithmic = false;
+  };
+  void keep(const State& joints, const BodyState* bodies) noexcept {
+    copy_state(joints, start.joints);
+    if (bodies != nullptr) start.bodies = *bodies;
+    start.algorithmic = ws.algorithmic;
+    start.algorithmic_turn = ws.algorithmic_turn;
+    start.has_algorithmic = ws.has_algorithmic;
+  }
+  void go_back(State& joints, BodyState* bodies) noexcept {
+    copy_state(start.joints, joints);
+    if (bodies != nullptr) *bodies = start.bodies;
+    ws.algorithmic = start.algorithmic;
+    ws.algorithmic_turn = start.algorithmic_turn;
+    ws.has_algorithmic = start.has_algorithmic;
   }
 
   StepRule rule;
   BodyModel model;
   StageWorkspace ws;
   std::optional<BodyWorkspace> matrix;
+  Start start;
+  std::vector<double> part_mean;
+  int iterations = 0, parts = 1;  // of the last sub-step
 };
 
 namespace {
@@ -104,7 +153,7 @@ StepKind Dynamics::contact_step() const noexcept {
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                        std::span<const double> slope) noexcept {
   const int parts = contact_parts(model, h, contact_step(), ws);
-  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && !take_lost(ws);
+  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && !take_lost(ws) && is_finite(state);
   // the rows' forces go on along their lines
   const double part = h / parts;
   bool is_sound = true;
@@ -114,7 +163,7 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
     for (std::size_t k = 0; k < mean.size(); ++k) ws.row_part[k] = mean[k] + later * slope[k];
     is_sound = advance_part(model, state, ws, part, ws.row_part, slope) && is_sound;
   }
-  return !take_lost(ws) && is_sound;
+  return !take_lost(ws) && is_sound && is_finite(state);
 }
 
 bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
@@ -125,25 +174,57 @@ bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, dou
 
 bool Dynamics::take_substep(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                             std::span<const double> slope) noexcept {
+  if (stages_ != nullptr) return advance_by_rule(model, state, ws, h, mean, slope);
   if (bodies_ != nullptr) {
     Bodies& b = *bodies_;
-    if (stages_ == nullptr) {
-      return multibody::advance(model, b.model, b.state, state, ws, b.ws, h, mean, slope) && is_regular_;
-    }
-    const bool has_settled =
-        multibody::advance(model, b.model, stages_->rule, {state, &b.state}, ws, b.ws, stages_->ws, h, mean, slope);
-    return has_settled && is_regular_;
+    return multibody::advance(model, b.model, b.state, state, ws, b.ws, h, mean, slope) && is_regular_;
   }
   if (held_ != nullptr) {
     return multibody::advance(model, held_->model, held_->state, state, ws, held_->ws, h, mean, slope) && is_regular_;
   }
-  if (stages_ == nullptr) return multibody::advance(model, state, ws, h, mean, slope);
-  return multibody::advance(model, stages_->model, stages_->rule, {state}, ws, *stages_->matrix, stages_->ws, h, mean,
-                            slope);
+  return multibody::advance(model, state, ws, h, mean, slope);
+}
+
+bool Dynamics::advance_by_rule(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                               std::span<const double> slope) noexcept {
+  Stages& s = *stages_;
+  BodyState* const bodies = bodies_ == nullptr ? nullptr : &bodies_->state;
+  BodyWorkspace& bws = bodies_ == nullptr ? *s.matrix : bodies_->ws;
+  const BodyModel& body = bodies_ == nullptr ? s.model : bodies_->model;
+  const int most = is_implicit(s.rule.integrator) ? kMostParts : 1;
+  if (most > 1) s.keep(state, bodies);
+  s.iterations = 0;
+  bool is_sound = true;
+  for (s.parts = 1;; s.parts *= 2) {
+    // what does not settle is tried again in twice as many parts; the rows' forces go on along their lines
+    const double part = h / s.parts;
+    is_sound = true;
+    for (int i = 0; i < s.parts && (is_sound || s.parts == most); ++i) {
+      if (s.parts > 1) evaluate(model, state, ws);
+      const double later = (i + 0.5) * part - 0.5 * h;
+      for (std::size_t k = 0; k < mean.size(); ++k) s.part_mean[k] = mean[k] + later * slope[k];
+      is_sound = multibody::advance(model, body, s.rule, {state, bodies}, ws, bws, s.ws, part, s.part_mean, slope) &&
+                 is_regular_ && is_sound;
+      s.iterations += s.ws.iterations;
+    }
+    if (is_sound) return true;
+    if (s.parts == most) break;
+    s.go_back(state, bodies);
+  }
+  // what has run away is held where it was
+  if (most > 1 && !(largest_of(state.u) <= kMostGrowth * std::max(1.0, largest_of(s.start.joints.u)))) {
+    s.go_back(state, bodies);
+    evaluate(model, state, ws);
+  }
+  return false;
 }
 
 int Dynamics::iterations() const noexcept {
-  return stages_ == nullptr ? 0 : stages_->ws.iterations;
+  return stages_ == nullptr ? 0 : stages_->iterations;
+}
+
+int Dynamics::parts() const noexcept {
+  return stages_ == nullptr ? 1 : stages_->parts;
 }
 
 const BodyState* Dynamics::own_state() const noexcept {

@@ -32,9 +32,11 @@ class Dynamics {
   Dynamics& operator=(Dynamics&&) noexcept;
 
   // evaluate() and advance() of dynamics.h, with the integrator of the rule. While shapes touch, or are about to,
-  // advance() goes in parts of MechanicsDef::contact_substep at most. False: a matrix was singular, an iteration did
-  // not settle, the joints could not be closed, a body turned by more than kLargestTurn in a sub-step, shapes went
-  // through each other between two instants, or contacts are stiffer than the shortest part resolves.
+  // advance() goes in parts of MechanicsDef::contact_substep at most. An implicit iteration that does not settle is
+  // tried again from the start in 2, 4 and 8 parts; one that runs away even then is held where it was. False: a
+  // matrix was singular, an iteration did not settle in the end, the joints could not be closed, a body turned by more
+  // than kLargestTurn in a sub-step, shapes went through each other between two instants, contacts are stiffer than the
+  // shortest part resolves, or the state is not finite.
   void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;
@@ -42,8 +44,10 @@ class Dynamics {
   // observe() of observe.h on the poses and velocities that are integrated: where a formulation leaves the joints open,
   // ws.motion shows it (joint_gauge.h), which the joint coordinates of the State cannot.
   void observe(const Model& model, const State& state, Workspace& ws) const noexcept;
-  // Corrections of the last sub-step's implicit stages.
+  // Corrections of the last sub-step's implicit stages, and in how many parts it settled: one, but for an iteration
+  // that did not settle at once.
   [[nodiscard]] int iterations() const noexcept;
+  [[nodiscard]] int parts() const noexcept;
 
   // Raw bits of what is integrated beside the State.
   void add_to_hash(StateHash& hash) const noexcept;
@@ -56,6 +60,8 @@ class Dynamics {
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
   [[nodiscard]] bool take_substep(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
+  [[nodiscard]] bool advance_by_rule(const Model& model, State& state, Workspace& ws, double h,
+                                     std::span<const double> mean, std::span<const double> slope) noexcept;
 
   struct Bodies;
   struct HeldBodies;

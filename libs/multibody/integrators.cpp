@@ -228,6 +228,13 @@ bool close(const StageContext& at) noexcept {
   return project(at.model, joints.q, joints.u, at.ws);
 }
 
+// the same after (1), with the matrix of the start
+bool close_impulse(const StageContext& at, double h) noexcept {
+  State& joints = at.moving.joints;
+  if (at.moving.bodies != nullptr) return project_step(at.model, at.body, h, *at.moving.bodies, joints, at.ws, at.bws);
+  return at.model.cuts.empty() || project_step(at.model, h, joints.q, joints.u, at.ws);
+}
+
 }  // namespace
 
 StepRule step_rule(const MechanicsDef& mechanics) noexcept {
@@ -279,7 +286,8 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
       has_settled = take_sdirk(at, rule.iteration_tolerance, forces);
       break;
   }
-  const bool is_closed = close(at);
+  const bool is_impulse = rule.integrator == Integrator::semi_implicit_euler;
+  const bool is_closed = is_impulse ? close_impulse(at, h) : close(at);
   moving.joints.time += h;
   if (ws.contact != nullptr && ws.contact->is_near) {
     if (moving.bodies == nullptr) update_motion(model, moving.joints.q, moving.joints.u, ws);

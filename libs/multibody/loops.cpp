@@ -145,6 +145,24 @@ void reduce_row(const Model&, Workspace& ws, std::span<double> residual, std::sp
   }
 }
 
+namespace {
+
+// (2) with the rows' values at hand; move() applies loops.step to the positions
+template <typename Move>
+bool close_rows(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws, Move move) noexcept {
+  const Extent extent = extent_of(ws);
+  const bool is_closed = correct(
+      model, q, u, ws, kClosed * extent.length, [](const RowValue& row) { return row.g; }, move);
+  const bool is_moving_along = correct(
+      model, q, u, ws, kClosed * extent.speed, [](const RowValue& row) { return row.rate; },
+      [&] {
+        for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j];
+      });
+  return is_closed && is_moving_along;
+}
+
+}  // namespace
+
 bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
   // near a singular position the matrix of the stage before leads astray
   if (is_near_singular(ws)) {
@@ -152,16 +170,16 @@ bool project(const Model& model, std::span<double> q, std::span<double> u, Works
   } else {
     show_rows(model, q, u, ws);
   }
-  const Extent extent = extent_of(ws);
-  const bool is_closed = correct(
-      model, q, u, ws, kClosed * extent.length, [](const RowValue& row) { return row.g; },
-      [&] { displace(model, ws, ws.loops.step, q); });
-  const bool is_moving_along = correct(
-      model, q, u, ws, kClosed * extent.speed, [](const RowValue& row) { return row.rate; },
-      [&] {
-        for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j];
-      });
-  return is_closed && is_moving_along;
+  return close_rows(model, q, u, ws, [&] { displace(model, ws, ws.loops.step, q); });
+}
+
+bool project_step(const Model& model, double h, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
+  if (is_near_singular(ws)) return project(model, q, u, ws);
+  show_rows(model, q, u, ws);
+  return close_rows(model, q, u, ws, [&] {
+    displace(model, ws, ws.loops.step, q);
+    for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j] / h;
+  });
 }
 
 Extent extent_of(const Workspace& ws) noexcept {

@@ -7,7 +7,8 @@
 // Rows that become dependent in a singular position, or vanish there, are left out while they are (math::Semidefinite
 // with the rows' mobilities elsewhere for reference). Near it (1) divides what a stage of the integrator violates by
 // little, so there every stage is put back with (2) before it is evaluated.
-// Source: Featherstone 2008, section 8.6, with W by back-solves; (2) as body_coordinates.h.
+// Source: Featherstone 2008, section 8.6, with W by back-solves; (2) as body_coordinates.h; SHAKE: Ryckaert, Ciccotti
+// and Berendsen 1977.
 #pragma once
 
 #include "multibody/state.h"
@@ -37,6 +38,12 @@ void renew_matrix(const Model& model, std::span<const double> q, std::span<const
 // (2), beginning with the factors that ws holds. False when the rows did not come to kClosed.
 inline constexpr double kClosed = 1e-11;  // m, 1; per second; of the mechanism's size and speed where these exceed 1
 [[nodiscard]] bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept;
+
+// The same for an impulse step of h [s] with the factors of its start: what the positions were corrected by, over h,
+// was missing in the speeds. Then the step is symplectic with the joints closed (SHAKE), and energy stays bounded. Near
+// a singular position, where corrections say little about forces, as project().
+[[nodiscard]] bool project_step(const Model& model, double h, std::span<double> q, std::span<double> u,
+                                Workspace& ws) noexcept;
 
 // Largest distance of a link from Ground's origin and largest speed, at least 1: what kClosed is multiplied by.
 struct Extent {

@@ -204,6 +204,106 @@ TEST_P(Energy20s, IsTakenAwayByTheOthers) {
 INSTANTIATE_TEST_SUITE_P(In, Energy20s, kFormulations,
                          [](const ::testing::TestParamInfo<Formulation>& tested) { return name_of(tested.param); });
 
+// Links of 1 kg and 0.1 m on hinges, and what hangs at the end of them: strings, whose own motion is stiff.
+MechanicsDef light_links(int links, double tip) {
+  MechanicsDef def;
+  for (int i = 0; i < links; ++i) {
+    const std::string name = "L" + std::to_string(i), inner = i > 0 ? "L" + std::to_string(i - 1) : "Ground";
+    def.bodies.push_back({.name = name,
+                          .position = {0.1 * i, 0, 0},
+                          .mass = 1,
+                          .center_of_mass = {0.05, 0, 0},
+                          .inertia = {1e-3, 1e-3, 1e-3}});
+    def.joints.push_back(
+        {.name = "J" + std::to_string(i), .body1 = inner, .point1 = {i > 0 ? 0.1 : 0.0, 0, 0}, .body2 = name});
+  }
+  const double moment = 1e-3 * tip;
+  def.static_dummies.push_back({.name = "Tip",
+                                .relative_to = "L" + std::to_string(links - 1),
+                                .position = {0.1, 0, 0},
+                                .mass = tip,
+                                .inertia = {moment, moment, moment}});
+  return def;
+}
+
+class LightLinks : public ::testing::TestWithParam<Choice> {
+ protected:
+  // what a swing leaves of the energy, of m g l, and how it went
+  struct Swing {
+    double energy = 0;
+    int unsettled = 0, most_parts = 1;
+    bool stayed_finite = true;
+  };
+  static Swing swing(int links, double tip, double time, double h) {
+    MechanicsDef def = light_links(links, tip);
+    std::tie(def.formulation, def.integrator) = GetParam();
+    Formulated chain(def);
+    const double begin = chain.total_energy();
+    Swing result;
+    for (int i = 0; i < std::lround(time / h); ++i) {
+      chain.dynamics.evaluate(chain.model, chain.state, chain.ws);
+      const bool is_sound = chain.dynamics.advance(chain.model, chain.state, chain.ws, h, {}, {});
+      result.unsettled += is_sound ? 0 : 1;
+      result.most_parts = std::max(result.most_parts, chain.dynamics.parts());
+      // whatever is not finite is told
+      const bool is_finite_now = is_finite(chain.state);
+      EXPECT_TRUE(is_finite_now || !is_sound);
+      result.stayed_finite = result.stayed_finite && is_finite_now;
+      if (!is_finite_now) break;
+    }
+    chain.see();
+    result.energy = (chain.total_energy() - begin) / (9.81 * 0.1 * links * tip);
+    return result;
+  }
+};
+
+TEST_P(LightLinks, CarryAThousandfoldAtTheirEnd) {
+  for (const int links : {3, 20}) {
+    const Swing result = swing(links, 1e3, 1, 1e-3);
+    EXPECT_EQ(result.unsettled, 0);
+    const bool is_impulse = std::get<1>(GetParam()) == Integrator::semi_implicit_euler;
+    EXPECT_LT(std::fabs(result.energy), is_impulse ? 2e-2 : 4e-3) << links << " links";
+    EXPECT_LE(result.most_parts, 2);
+  }
+}
+
+// at 1e6 : 1 the strings do 3e4 rad/s: steps of 10 us resolve them
+TEST_P(LightLinks, CarryAMillionfoldInShortSteps) {
+  const Swing fine = swing(3, 1e6, 0.1, 1e-5);
+  EXPECT_EQ(fine.unsettled, 0);
+  EXPECT_LT(std::fabs(fine.energy), 1e-4);
+}
+
+// longer ones may lose the motion, but an implicit rule tells so and holds what runs away
+TEST_P(LightLinks, TellWhenAMillionfoldIsTooMuch) {
+  if (!is_implicit(std::get<1>(GetParam()))) GTEST_SKIP() << "no iteration that could tell";
+  const Swing coarse = swing(3, 1e6, 0.15, 1e-3);
+  EXPECT_TRUE(coarse.unsettled > 0 || std::fabs(coarse.energy) < 0.1) << coarse.energy;
+  EXPECT_TRUE(coarse.stayed_finite);
+}
+
+INSTANTIATE_TEST_SUITE_P(In, LightLinks,
+                         ::testing::Combine(kFormulations,
+                                            ::testing::Values(Integrator::rk4, Integrator::semi_implicit_euler,
+                                                              Integrator::trapezoidal, Integrator::generalised_alpha,
+                                                              Integrator::sdirk2)),
+                         kName);
+
+// What positions are corrected by is missing in the speeds, or energy grows with every step.
+TEST(SemiImplicitEuler, KeepsTheEnergyOfALoopBoundedInBodyCoordinates) {
+  MechanicsDef def = slider_crank();
+  def.formulation = Formulation::lagrange;
+  def.integrator = Integrator::semi_implicit_euler;
+  Formulated crank(def);
+  const double begin = crank.total_energy();
+  double largest = 0;
+  for (int i = 0; i < 100; ++i) {
+    crank.run(0.05, 1e-3);
+    largest = std::max(largest, std::fabs(crank.total_energy() - begin));
+  }
+  EXPECT_LT(largest, 1e-2 * std::fabs(begin));
+}
+
 TEST(GeneralisedAlpha, CarriesItsAccelerationInTheHash) {
   MechanicsDef def = pendulum();
   def.integrator = Integrator::generalised_alpha;
