@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/check.h"
+#include "monolith/body_reference.h"
 #include "multibody/dynamics.h"
 #include "multibody/joint_law.h"
 #include "multibody/loops.h"
@@ -25,6 +26,7 @@ class MechanicsEquations final : public DifferentialEquation {
   [[nodiscard]] std::vector<double> values() const {
     std::vector<double> y = state_.q;
     y.insert(y.end(), state_.u.begin(), state_.u.end());
+    y.insert(y.end(), state_.bristles.begin(), state_.bristles.end());
     return y;
   }
 
@@ -32,9 +34,13 @@ class MechanicsEquations final : public DifferentialEquation {
     take(y);
     multibody::evaluate(model_, state_, ws_);
     for (std::size_t k = 0; k < forces_.size(); ++k) {
-      forces_[k] = multibody::evaluate(model_.rows[k].law, ws_.row_x[k], ws_.row_v[k]).force;
+      const double z = state_.bristles.empty() ? 0.0 : state_.bristles[k];
+      forces_[k] = multibody::evaluate(model_.rows[k].law, ws_.row_x[k], ws_.row_v[k], 0, z).force;
     }
     const std::size_t coordinates = state_.q.size(), speeds = state_.u.size();
+    for (std::size_t k = 0; k < state_.bristles.size(); ++k) {
+      f[coordinates + speeds + k] = multibody::bristle_rate(model_.rows[k].law, ws_.row_v[k], state_.bristles[k]);
+    }
     // with the solver's own quaternions, whose length the rates keep
     multibody::coordinate_rates(model_, ws_, {y, coordinates}, state_.u, {f, coordinates});
     multibody::accelerations(model_, ws_, forces_, {f + coordinates, speeds});
@@ -44,6 +50,7 @@ class MechanicsEquations final : public DifferentialEquation {
   bool take(const double* y) noexcept {
     std::copy_n(y, state_.q.size(), state_.q.begin());
     std::copy_n(y + state_.q.size(), state_.u.size(), state_.u.begin());
+    std::copy_n(y + state_.q.size() + state_.u.size(), state_.bristles.size(), state_.bristles.begin());
     multibody::normalize_quaternions(model_, state_.q);
     if (model_.cuts.empty()) return true;
     multibody::renew_matrix(model_, state_.q, state_.u, ws_);
@@ -64,6 +71,14 @@ Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<c
                            const MechanicsReferenceOptions& options, MechanicsReference& result) {
   result.model = multibody::build_model(mechanics, multibody::joint_rows(mechanics));
   result.states.clear();
+  if (result.model.contact != nullptr) {
+    for (const multibody::ContactPairElement& pair : result.model.contact->pairs) {
+      if (pair.tested < 0) continue;
+      return Status::error(ExitCode::bad_input, "the reference of the mechanics does not follow contacts; the pair '" +
+                                                    pair.name + "' is tested for one");
+    }
+  }
+  if (options.equations == ReferenceEquations::body_coordinates) return integrate_bodies(times, options, result);
   MechanicsEquations equations(result.model);
   const std::vector<double> y = equations.values();
   StiffSolver solver(equations, std::vector<double>(y.size(), options.absolute_tolerance), options.relative_tolerance);

@@ -4,9 +4,11 @@
 // in joint coordinates under CVODE's BDF (stiff_solver.h). Joints of the tree hold by themselves; cut joints are closed
 // by P (multibody::project) before every evaluation, and every 50 ms in the solver's own values, from which it then
 // goes on anew. Forces are those of the elements, and friction and limits of joints; their corners cost many small
-// steps. Not for real time.
+// steps. Bristles of joint friction are states, with the rates of joint_law.h. Not for real time.
+// A second reference shares neither coordinates nor equations nor solver with this one: body_reference.h.
 //
-// What it does not cover: hydraulics and their ports (monolith.h), formulations and steps of the scene.
+// What it does not cover: hydraulics and their ports (monolith.h), formulations and steps of the scene, contacts: what
+// they remember (impact speeds, bristles that go from point to point) changes at the ends of steps.
 #pragma once
 
 #include <span>
@@ -20,7 +22,13 @@
 
 namespace slew::monolith {
 
+enum class ReferenceEquations : unsigned char {
+  joint_coordinates,  // (1) under CVODE
+  body_coordinates    // body_reference.h under IDA
+};
+
 struct MechanicsReferenceOptions {
+  ReferenceEquations equations = ReferenceEquations::joint_coordinates;
   double relative_tolerance = 1e-10;
   double absolute_tolerance = 1e-11;  // rad, m, rad/s, m/s
 };
@@ -32,7 +40,8 @@ struct MechanicsReference {
 };
 
 // States of the mechanism at the given times [s, rising, the first at least 0 = the scene's start]. Pre-condition:
-// validate() found nothing. Error (diverged): CVODE gave up, with the time; the states before are there.
+// validate() found nothing. Errors: a pair of shapes is tested for contact (bad_input); the solver gave up (diverged),
+// with the time: the states before are there.
 [[nodiscard]] Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<const double> times,
                                          const MechanicsReferenceOptions& options, MechanicsReference& result);
 

@@ -16,18 +16,23 @@ JointForce without_dry_friction(const JointLaw& law, double x, double v) noexcep
 }
 
 // the contact's law along one tangent, under a normal force of one
+contact::FrictionLaw bristles_of(const JointLaw& law) noexcept {
+  return {{.pressing_force = 0,
+           .stiffness = law.bristle_stiffness,
+           .damping = law.bristle_damping,
+           .stribeck_speed = law.friction_speed,
+           .viscosity = 0,
+           .static_coefficient = law.coulomb * law.breakaway_ratio,
+           .dynamic_coefficient = law.coulomb,
+           .exponent = 2}};
+}
+
+contact::SlidingContact sliding_at(double v) noexcept {
+  return {.n_W = math::Vec3(0, 0, 1), .v_W = math::Vec3(v, 0, 0), .normal_force = 1, .share = 1};
+}
+
 contact::FrictionForce bristle_force(const JointLaw& law, double v, double h, double z) noexcept {
-  const contact::FrictionLaw bristles{{.pressing_force = 0,
-                                       .stiffness = law.bristle_stiffness,
-                                       .damping = law.bristle_damping,
-                                       .stribeck_speed = law.friction_speed,
-                                       .viscosity = 0,
-                                       .static_coefficient = law.coulomb * law.breakaway_ratio,
-                                       .dynamic_coefficient = law.coulomb,
-                                       .exponent = 2}};
-  const contact::SlidingContact sliding{
-      .n_W = math::Vec3(0, 0, 1), .v_W = math::Vec3(v, 0, 0), .normal_force = 1, .share = 1};
-  return contact::evaluate(bristles, sliding, h, {math::Vec3(z, 0, 0)});
+  return contact::evaluate(bristles_of(law), sliding_at(v), h, {math::Vec3(z, 0, 0)});
 }
 
 }  // namespace
@@ -58,6 +63,11 @@ JointForce evaluate(const JointLaw& law, double x, double v, double h, double z)
 
 double bent(const JointLaw& law, double v, double h, double z) noexcept {
   return law.coulomb > 0 ? bristle_force(law, v, h, z).z_W.x() : 0.0;
+}
+
+double bristle_rate(const JointLaw& law, double v, double z) noexcept {
+  if (!has_bristles(law) || !(law.coulomb > 0)) return 0;
+  return contact::bristle_rate(bristles_of(law), sliding_at(v), math::Vec3(z, 0, 0)).x();
 }
 
 }  // namespace slew::multibody

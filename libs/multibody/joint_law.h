@@ -51,6 +51,9 @@ struct JointForce {
 // The bending after h at the speed v.
 [[nodiscard]] double bent(const JointLaw& law, double v, double h, double z) noexcept;
 
+// z' of (4) [rad/s or m/s]; 0 of a law without bristles.
+[[nodiscard]] double bristle_rate(const JointLaw& law, double v, double z) noexcept;
+
 [[nodiscard]] inline bool touches_limit(const JointLaw& law, double x) noexcept {
   return x < law.limit_min || x > law.limit_max;
 }

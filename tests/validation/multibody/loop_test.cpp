@@ -7,6 +7,7 @@
 #include "tests/validation/multibody/csv_table.h"
 #include "tests/validation/multibody/every_formulation.h"
 #include "tests/validation/multibody/loop_defs.h"
+#include "tests/validation/multibody/squeezer_def.h"
 
 namespace slew::multibody {
 namespace {
@@ -54,70 +55,10 @@ TEST_P(FourBars, TwoFollowTheirBranchThroughTheFlatPositions) {
   follow_table(bars, 2, "A02_N2.csv", 1e-3);
 }
 
-// Seven bodies, ten hinges: the reference's numbering of bodies, points and angles.
-MechanicsDef squeezer() {
-  constexpr double kBeta = -0.0617138900142764496, kTheta = 0, kGamma = 0.455279819163070380,
-                   kPhi = 0.222668390165885885, kDelta = 0.487364979543842550, kOmega = -0.222668390165885885,
-                   kEps = 1.23054744454982119;
-  constexpr double d = .028, da = .0115, e = .02, ea = .01421, rr = .007, ra = .00092, ss = .035, sa = .01874,
-                   sb = .01043, sc = .018, sd = .02, ta = .02308, tb = .00916, u = .04, ua = .01228, ub = .00449,
-                   zf = .02, zt = .04, fa = .01421;
-  const Triple A{-.06934, -.00227, 0}, B{-.03635, .03273, 0}, C{.014, .072, 0};
-  const double m[] = {.04325, .00365, .02373, .00706, .07050, .00706, .05498};
-  const double I[] = {2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5};
-  const auto turned = [](double angle, double x, double y) {
-    return Triple{std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y, 0};
-  };
-  const auto plus = [](const Triple& a, const Triple& b) { return Triple{a[0] + b[0], a[1] + b[1], 0}; };
-  MechanicsDef def;
-  def.gravity = {0, 0, 0};
-  const auto add = [&](std::size_t i, const Triple& origin, double angle, double cx, double cy) {
-    def.bodies.push_back({.name = "K" + std::to_string(i + 1),
-                          .position = origin,
-                          .orientation = {angle, 0, 0},
-                          .mass = m[i],
-                          .center_of_mass = {cx, cy, 0},
-                          .inertia = {0.5 * I[i], 0.5 * I[i], I[i]}});
-  };
-  // body axes: K1 x along the crank; K2 and the others as the angle of each turns them
-  const Triple F = turned(kBeta, rr, 0), G = plus(A, turned(kDelta, zt, 0));
-  const Triple H = plus(A, turned(kEps, 0, -u));
-  add(0, {0, 0, 0}, kBeta, ra, 0);
-  add(1, F, kBeta + kTheta, -da, 0);
-  add(2, B, kGamma, sb, -sa);
-  // of the thesis of the reference: sa(sin, -cos) + sb(cos, sin)
-  def.bodies.back().center_of_mass = {sb, -sa, 0};
-  add(3, G, kPhi + kDelta, 0, -(e - ea));
-  add(4, A, kDelta, ta, tb);
-  add(5, H, kOmega + kEps, zf - fa, 0);
-  add(6, A, kEps, -ub, -ua);
-  const auto hinge = [&](const char* name, const std::string& body1, Triple p1, const std::string& body2, Triple p2) {
-    def.joints.push_back({.name = name, .body1 = body1, .point1 = p1, .body2 = body2, .point2 = p2});
-  };
-  hinge("Crank", "Ground", {}, "K1", {});
-  hinge("Pin", "K1", {rr, 0, 0}, "K2", {});
-  hinge("Pivot_B", "Ground", B, "K3", {});
-  hinge("Pivot_A5", "Ground", A, "K5", {});
-  hinge("Pivot_A7", "Ground", A, "K7", {});
-  hinge("Hinge_G", "K5", {zt, 0, 0}, "K4", {});
-  hinge("Hinge_H", "K7", {0, -u, 0}, "K6", {});
-  hinge("Hinge_E3", "K2", {-d, 0, 0}, "K3", {0, -ss, 0});
-  hinge("Hinge_E4", "K2", {-d, 0, 0}, "K4", {0, -e, 0});
-  hinge("Hinge_E6", "K2", {-d, 0, 0}, "K6", {zf, 0, 0});
-  def.translational_forces.push_back({.name = "Spring",
-                                      .body1 = "Ground",
-                                      .point1 = C,
-                                      .body2 = "K3",
-                                      .point2 = {sd, -sc, 0},
-                                      .spring_constant = 4530,
-                                      .free_length = 0.07785});
-  return def;
-}
-
 // The crank's torque acts through a row. Joints that are held by penalties give by a share of the order of 1e-7.
 constexpr double kSoft = 1e-5;
 TEST_P(Squeezer, FollowsTheReferenceTo30ms) {
-  MechanicsDef def = squeezer();
+  MechanicsDef def = testing::squeezer();
   def.formulation = GetParam();
   const std::vector<std::string> rows = {"Crank"};
   const Model model = build_model(def, rows);

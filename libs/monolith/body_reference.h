@@ -1,0 +1,23 @@
+// Mechanics alone in body coordinates under IDA: the second reference beside the one in joint coordinates.
+//
+// Every link has its own coordinates q (position, quaternion) and speeds u; joints are rows with the multipliers lambda
+// and mu (body_coordinates.h, constraint.h),
+//   q' = rates(q, u + G^T mu)
+//   M u' + G^T lambda = Q(q, u),   g(q) = 0,   G u = 0                                                (1)
+// the stabilised form of index 2 of Gear, Leimkuhler and Gupta 1985: positions and speeds stay on the joints by
+// themselves, and mu stays at the size of the error. Nothing is projected, nothing is started anew. Bristles of joints
+// are variables of their own. In common with the other reference are the laws of the elements and the rows;
+// coordinates, equations, linear algebra and solver are others.
+//
+// What it does not cover: contacts, and singular positions, in which (1) has no unique multipliers: IDA then gives up.
+#pragma once
+
+#include "monolith/mechanics_reference.h"
+
+namespace slew::monolith {
+
+// integrate_mechanics() with ReferenceEquations::body_coordinates; result.model is built.
+[[nodiscard]] Status integrate_bodies(std::span<const double> times, const MechanicsReferenceOptions& options,
+                                      MechanicsReference& result);
+
+}  // namespace slew::monolith
