@@ -42,6 +42,7 @@ struct Description {
   std::size_t bodies = 0, joints = 0, links = 0, rows = 0;
   int degrees_of_freedom = 0;
   std::vector<std::string> motions;   // "Body_Pillar (revolute, 1)"
+  std::vector<std::string> driven;    // "Crank_Drive (Crank_Pin, angle)": prescribed motions
   std::vector<std::string> closed;    // "Coupler (revolute_revolute, 1 row)": joints outside of the tree
   std::vector<std::string> merged;    // "Pole with Pillar"
   std::vector<std::string> contacts;  // pairs that are tested
@@ -72,6 +73,7 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.rows = static_cast<std::size_t>(m.rows);
   d.degrees_of_freedom = m.degrees_of_freedom;
   describe_cuts(m, d);
+  d.driven = m.driven;
   d.contacts = m.pairs;
   for (const std::string& pair : m.pairs_at_rest) {
     d.left_out.push_back("contact " + pair + ": its shapes cannot move against each other, it is not tested");
@@ -176,6 +178,7 @@ nlohmann::json to_json(const Description& d) {
             {"joints", d.joints},
             {"links", d.links},
             {"motions", d.motions},
+            {"driven", d.driven},
             {"closed", d.closed},
             {"merged", d.merged},
             {"contacts", d.contacts},
@@ -218,6 +221,7 @@ void print(const Description& d) {
                              counted(static_cast<std::uint64_t>(d.hydraulic_states), "state", "states") + " in all"})},
       {"ports", joined(d.ports)},
       {"inputs", joined(d.inputs)}};
+  if (!d.driven.empty()) rows.push_back({"driven", joined(d.driven)});
   if (!d.closed.empty()) rows.push_back({"closed by rows", joined(d.closed)});
   for (const BodyNumbers& body : d.body_numbers) {
     if (body.mesh) rows.push_back({"inertia", mesh_text(body)});

@@ -516,7 +516,8 @@ void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noe
 void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept {
   multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
   multibody::joint_reactions(model_, state_, reading_workspace_, row_force_, reactions_);
-  multibody::read_reactions(reactions_, values.subspan(model_variables_, reaction_variables_));
+  multibody::read_reactions(model_, reading_workspace_, row_force_, reactions_,
+                            values.subspan(model_variables_, reaction_variables_));
   std::size_t k = model_variables_ + reaction_variables_;
   coupling::PortArray slopes;
   slopes.resize(ports_.size());

@@ -30,8 +30,8 @@ class MechanicsEquations final : public DifferentialEquation {
     return y;
   }
 
-  void rates(double, const double* y, double* f) noexcept override {
-    take(y);
+  void rates(double t, const double* y, double* f) noexcept override {
+    take(t, y);
     multibody::evaluate(model_, state_, ws_);
     for (std::size_t k = 0; k < forces_.size(); ++k) {
       const double z = state_.bristles.empty() ? 0.0 : state_.bristles[k];
@@ -47,11 +47,15 @@ class MechanicsEquations final : public DifferentialEquation {
   }
 
   // the state that the solver's values stand for; whether its loops are closed
-  bool take(const double* y) noexcept {
+  bool take(double t, const double* y) noexcept {
+    state_.time = t;
     std::copy_n(y, state_.q.size(), state_.q.begin());
     std::copy_n(y + state_.q.size(), state_.u.size(), state_.u.begin());
     std::copy_n(y + state_.q.size() + state_.u.size(), state_.bristles.size(), state_.bristles.begin());
     multibody::normalize_quaternions(model_, state_.q);
+    multibody::set_time(model_, t, ws_);
+    multibody::impose_positions(model_, ws_, state_.q);
+    multibody::impose_speeds(model_, ws_, state_.u);
     if (model_.cuts.empty()) return true;
     multibody::renew_matrix(model_, state_.q, state_.u, ws_);
     return multibody::project(model_, state_.q, state_.u, ws_);
@@ -89,7 +93,7 @@ Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<c
   };
   for (const double time : times) {
     SLEW_CHECK(time >= solver.time());
-    bool is_closed = equations.take(solver.y().data());
+    bool is_closed = equations.take(solver.time(), solver.y().data());
     const double begin = solver.time(), way = time - begin;
     const int windows = !(way > 0) ? 0 : result.model.cuts.empty() ? 1 : static_cast<int>(std::ceil(way / kWindow));
     for (int k = 1; k <= windows; ++k) {
@@ -97,7 +101,7 @@ Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<c
       const std::string failure = solver.advance(next);
       result.statistics = solver.statistics();
       if (!failure.empty()) return give_up(failure);
-      is_closed = equations.take(solver.y().data());
+      is_closed = equations.take(next, solver.y().data());
       if (!result.model.cuts.empty()) solver.restart(next, equations.values());
     }
     if (!is_closed) return give_up("its loops cannot be closed");

@@ -181,6 +181,9 @@ void SceneEquations::take_state(double t, const double* y) noexcept {
   normalize(state_.q);
   std::copy_n(y + u_, state_.u.size(), state_.u.begin());
   state_.time = t;
+  multibody::set_time(model_, t, workspace_);
+  multibody::impose_positions(model_, workspace_, state_.q);
+  multibody::impose_speeds(model_, workspace_, state_.u);
   multibody::evaluate(model_, state_, workspace_);
   if (circuit_ == nullptr) return;
   take_controls(t);
@@ -269,7 +272,8 @@ void SceneEquations::read_variables(std::span<double> values) {
   SLEW_CHECK(values.size() == variables_.size());
   multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
   multibody::joint_reactions(model_, state_, workspace_, row_force_, reactions_);
-  multibody::read_reactions(reactions_, values.subspan(model_variables_, reaction_variables_));
+  multibody::read_reactions(model_, workspace_, row_force_, reactions_,
+                            values.subspan(model_variables_, reaction_variables_));
   std::size_t k = model_variables_ + reaction_variables_;
   for (const PortState& port : port_states_) {
     values[k++] = port.line_force;

@@ -3,6 +3,7 @@
 // The bias wrenches are those of the accelerations with u' = 0, so that the recursion solves for u' alone:
 //   delta_A_i = X_i delta_A_parent + S_i u'_i,   X: (alpha, a) -> (alpha, a + alpha x r)            (1)
 //   U = (IA + E) S,  D = S^T U,  Ia = IA + E - U D^-1 U^T,  passed on to the parent through X       (2)
+// D^-1 is zero along directions that are prescribed (motions/drive.h).
 // E is what dummies between the link and its parent add. They see both links' motion, so E differs between the two
 // sides of (2): E_Vq and E_qq for motion of the joint alone, E_VV for motion of both links as one rigid body.
 #include <cstddef>
@@ -96,7 +97,7 @@ void factorize_axis(const Model& model, Workspace& ws, std::size_t i, Wrench U, 
   JointFactor& factor = ws.factor[i];
   factor.U_ang.c[0] = U.n;
   factor.U_lin.c[0] = U.f;
-  factor.d_inv = 1 / d;
+  factor.d_inv = link.is_driven ? 0 : 1 / d;
   ws.residual[at(link.u)] = residual;
   if (link.parent == 0) return;
 
@@ -173,6 +174,15 @@ Mat3 inverse_pair(double a, double b, double d) noexcept {
   return {Vec3(d * scale, -b * scale, 0), Vec3(-b * scale, a * scale, 0), Vec3()};
 }
 
+// of the directions that are not prescribed
+Mat3 inverse_of_free(const Link& link, double a, double b, double d) noexcept {
+  if (!link.is_driven) return inverse_pair(a, b, d);
+  Mat3 inverse;
+  if (link.drive[0] < 0) inverse.c[0] = Vec3(1 / a, 0, 0);
+  if (link.drive[1] < 0) inverse.c[1] = Vec3(0, 1 / d, 0);
+  return inverse;
+}
+
 // universal and cylindrical: two directions
 void factorize_pair(const Model& model, Workspace& ws, std::size_t i) noexcept {
   const Link& link = model.links[i];
@@ -200,7 +210,7 @@ void factorize_pair(const Model& model, Workspace& ws, std::size_t i) noexcept {
       for (int l = 0; l < 2; ++l) D[l][k] += dot(u[l], response.F_child);
     }
   }
-  factor.D_inv = inverse_pair(D[0][0], D[0][1], D[1][1]);
+  factor.D_inv = inverse_of_free(link, D[0][0], D[0][1], D[1][1]);
   const Vec3 rest(residual[0], residual[1], 0);
   store_pair(ws.residual, link.u, rest);
   if (link.parent != 0) pass_on(model, ws, i, I, rest);

@@ -100,8 +100,7 @@ class Assembler {
     for (const Cut& cut : model_.cuts) {
       for (std::size_t i = 0; i < cut.rows.size(); ++i) {
         for (std::size_t k = 0; k < cut.rows.size(); ++k) {
-          const bool is_alike =
-              (cut.rows[i].form == RowForm::perpendicular) == (cut.rows[k].form == RowForm::perpendicular);
+          const bool is_alike = is_angle(cut.rows[i].form) == is_angle(cut.rows[k].form);
           const std::size_t other = at(cut.first_row) + k;
           double& largest = result[at(cut.first_row) + i];
           if (is_alike) largest = std::max(largest, ws_.loops.W[other * rows + other]);
@@ -116,7 +115,7 @@ class Assembler {
     std::vector<AssemblyReport::Row> open;
     for (const Cut& cut : model_.cuts) {
       const auto see = [&](const ConstraintRow& row) {
-        const double g = evaluate(row, cut, ws_.motion[at(cut.link1)], ws_.motion[at(cut.link2)]).g;
+        const double g = evaluate(row, cut, ws_.motion[at(cut.link1)], ws_.motion[at(cut.link2)], ws_.drives).g;
         if (!(std::fabs(g) <= kFrameTolerance)) open.push_back({cut.joint, describe(row), std::fabs(g)});
       };
       for (const ConstraintRow& row : cut.rows) see(row);
@@ -129,9 +128,9 @@ class Assembler {
   [[nodiscard]] std::vector<AssemblyReport::Speed> settle_speeds() {
     std::vector<std::size_t> given;
     for (std::size_t j = 0; j < state_.u.size(); ++j) {
-      if (state_.u[j] != 0) given.push_back(j);
+      if (state_.u[j] != 0 && !is_prescribed(j)) given.push_back(j);
     }
-    if (given.empty()) return {};
+    if (given.empty() && model_.drives.empty()) return {};
     const std::vector<double> wanted = state_.u;
     renew(state_);
     const std::size_t cuts = ws_.loops.rows.size(), rows = cuts + given.size(), speeds = state_.u.size();
@@ -167,6 +166,11 @@ class Assembler {
   }
 
  private:
+  [[nodiscard]] bool is_prescribed(std::size_t speed) const {
+    return std::any_of(model_.drives.begin(), model_.drives.end(),
+                       [speed](const Drive& drive) { return drive.u == static_cast<int>(speed); });
+  }
+
   void renew(const State& state) {
     update_motion(model_, state.q, state.u, ws_);
     update_elements(model_, state.q, Elements::used, ws_);
@@ -227,7 +231,21 @@ struct Nearby {
   std::vector<double> mobility;    // the largest
 };
 
-Nearby look_nearby(const Model& model) {
+// by row of the cuts [1/kg or 1/(kg m2)]
+std::vector<double> vanishing_mobilities(const Model& model) {
+  const double mass = moving_mass(model), length = penalty_length(model, build_body_model(model).joints);
+  std::vector<double> mobilities;
+  for (const Cut& cut : model.cuts) {
+    for (const ConstraintRow& row : cut.rows) {
+      const double inertia = is_angle(row.form) ? mass * length * length : mass;
+      mobilities.push_back(inertia > 0 ? kVanishing / inertia : 0);
+    }
+  }
+  return mobilities;
+}
+
+Nearby look_nearby(Model model) {
+  model.cut_reference = vanishing_mobilities(model);
   Assembler start(model);
   start.close();
   Nearby result;
@@ -251,17 +269,31 @@ Nearby look_nearby(const Model& model) {
   return result;
 }
 
-// by row of the cuts [1/kg or 1/(kg m2)]
-std::vector<double> vanishing_mobilities(const Model& model) {
-  const double mass = moving_mass(model), length = penalty_length(model, build_body_model(model).joints);
-  std::vector<double> mobilities;
+// Rows that others imply only because of what is prescribed: they would hold until the laws part.
+std::vector<AssemblyReport::Row> find_held_twice(const Model& model, const Nearby& nearby) {
+  if (model.drives.empty()) return {};
+  Model released = model;
+  released.drives.clear();
+  for (Link& link : released.links) {
+    link.is_driven = false;
+    link.drive = {-1, -1};
+  }
+  int first = 0;
+  for (Cut& cut : released.cuts) {
+    std::erase_if(cut.rows, [](const ConstraintRow& row) { return row.drive >= 0; });
+    cut.first_row = first;
+    first += static_cast<int>(cut.rows.size());
+  }
+  const Nearby free = look_nearby(released);
+  std::vector<AssemblyReport::Row> twice;
+  std::size_t row = 0, free_row = 0;
   for (const Cut& cut : model.cuts) {
-    for (const ConstraintRow& row : cut.rows) {
-      const double inertia = row.form == RowForm::perpendicular ? mass * length * length : mass;
-      mobilities.push_back(inertia > 0 ? kVanishing / inertia : 0);
+    for (const ConstraintRow& held : cut.rows) {
+      const bool was_dependent = held.drive < 0 && free.is_dependent[free_row++];
+      if (nearby.is_dependent[row++] && !was_dependent) twice.push_back({cut.joint, describe(held), 0});
     }
   }
-  return mobilities;
+  return twice;
 }
 
 void leave_out(Model& model, const Nearby& nearby) {
@@ -293,9 +325,8 @@ void leave_out(Model& model, const Nearby& nearby) {
 AssemblyReport assemble(Model& model) {
   AssemblyReport report;
   if (model.cuts.empty()) return report;
-  model.cut_reference = vanishing_mobilities(model);
   const Nearby nearby = look_nearby(model);
-  model.cut_reference.clear();
+  report.held_twice = find_held_twice(model, nearby);
   leave_out(model, nearby);
   Assembler assembler(model);
   assembler.close();

@@ -23,8 +23,9 @@ struct AssemblyReport {
     int link = 0;
     double wanted = 0, found = 0;  // rad/s or m/s
   };
-  std::vector<Row> open;      // rows that the start does not fit, worse than kFrameTolerance
-  std::vector<Speed> speeds;  // given by the scene, but the loops do not allow them
+  std::vector<Row> open;        // rows that the start does not fit, worse than kFrameTolerance
+  std::vector<Row> held_twice;  // rows that prescribed motions and loops already imply
+  std::vector<Speed> speeds;    // given by the scene, but the loops do not allow them
 };
 
 // Rows of a cut joint that the tree and the cuts before it imply are taken out of the model: planar loops in space,

@@ -93,8 +93,9 @@ class Trapezoid {
     for (int i = 0; i < kMostCorrections; ++i) {
       std::fill(pws_.correction.begin(), pws_.correction.end(), 0.0);
       double largest = 0;
-      for_each_row([&](const Constraint& constraint, std::size_t row) {
-        const double rate = along(constraint, pws_.rows[row].G, pws_.stage.u);
+      for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t first) {
+        const double rate =
+            along(constraint, pws_.rows[row].G, pws_.stage.u) - prescribed_rate(constraint, row - first, ws_.drives);
         largest = std::max(largest, std::fabs(rate));
         subtract_row(constraint, pws_.factored[row], body_.alpha[row] * rate, pws_.correction);
       });
@@ -110,7 +111,7 @@ class Trapezoid {
   void for_each_row(Visit visit) noexcept {
     for (std::size_t i = 0; i < body_.constraints.size(); ++i) {
       for (std::size_t row = at(body_.first_row[i]); row < at(body_.first_row[i + 1]); ++row) {
-        visit(body_.constraints[i], row);
+        visit(body_.constraints[i], row, at(body_.first_row[i]));
       }
     }
   }
@@ -135,15 +136,15 @@ class Trapezoid {
     put_free_forces(model_, ws_, pws_.correction);
     add_row_forces(model_, body_, pws_.stage_joints, ws_, pws_.row_force, pws_.ldl, pws_.correction);
     subtract_mass(model_, ws_, pws_.end_udot, pws_.correction);
-    for_each_row([&](const Constraint& constraint, std::size_t row) {
+    for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t) {
       subtract_row(constraint, pws_.rows[row].G, pws_.multipliers[row], pws_.correction);
     });
     for (double& x : pws_.correction) x *= quarter;
-    for_each_row([&](const Constraint& constraint, std::size_t row) {
+    for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t) {
       subtract_row(constraint, pws_.factored[row], body_.alpha[row] * pws_.rows[row].g, pws_.correction);
     });
     pws_.ldl.solve(pws_.correction);
-    for_each_row([&](const Constraint& constraint, std::size_t row) {
+    for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t) {
       const double missed = pws_.rows[row].g + along(constraint, pws_.factored[row], pws_.correction);
       pws_.multipliers[row] += body_.alpha[row] / quarter * missed;
     });
@@ -174,7 +175,7 @@ bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyStat
   accelerations(model, pws, pws.row_force, pws.udot);
   for (std::size_t k = 0; k < mean.size(); ++k) pws.row_force[k] = mean[k] + 0.5 * h * slope[k];
   pws.stage_joints.q = joints.q;
-  set_stage_time(joints, h, ws);
+  set_stage_time(model, joints, h, ws);
   Trapezoid step(model, body, state, ws, pws, h);
   step.predict();
   const bool has_settled = step.close_positions();

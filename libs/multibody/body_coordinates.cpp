@@ -43,7 +43,13 @@ BodyModel build_body_model(const Model& model) {
     joint.R_L1 = link.R_PJ;
     joint.p_L1 = link.p_PJ;
     joint.R_L2 = Mat3::identity();
-    joint.rows = rows_of(kTypes[static_cast<std::size_t>(link.joint)], Mat3::identity(), Vec3());
+    const JointType type = kTypes[static_cast<std::size_t>(link.joint)];
+    joint.rows = rows_of(type, Mat3::identity(), Vec3());
+    for (int k = 0; k < 2; ++k) {
+      if (link.drive[at(k)] < 0) continue;
+      joint.rows.push_back(coordinate_row(type, k));
+      joint.rows.back().drive = link.drive[at(k)];
+    }
     body.pattern.nodes.push_back({kBody + static_cast<int>(joint.rows.size()), math::BlockKind::regular});
     if (link.parent > 0 && !joint.rows.empty()) {
       body.pattern.couplings.emplace_back(static_cast<int>(i) - 1, link.parent - 1);

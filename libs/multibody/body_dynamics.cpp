@@ -55,7 +55,7 @@ void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& 
   for (std::size_t i = 1; i < body.joints.size(); ++i) {
     const Constraint& joint = body.joints[i];
     const std::span<RowValue> rows(bws.rows.data() + bws.first_row[i], joint.rows.size());
-    evaluate(joint, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)], rows);
+    evaluate(joint, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)], ws.drives, rows);
   }
 }
 
@@ -79,7 +79,7 @@ bool prepare(const Model& model, const BodyModel& body, const BodyState& state, 
 bool evaluate(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
               BodyWorkspace& bws) noexcept {
   begin_contacts(model, joints, ws);
-  ws.time = joints.time;
+  set_time(model, joints.time, ws);
   const bool is_regular = prepare(model, body, state, joints, ws, bws);
   bws.ldl.solve(bws.solution);
   bws.free = bws.solution;

@@ -13,10 +13,6 @@ namespace slew::multibody {
 
 namespace {
 
-bool is_length(RowForm form) noexcept {
-  return form != RowForm::perpendicular;
-}
-
 // every pair of links between which the matrix has a block
 std::vector<std::pair<int, int>> coupled_links(const Model& model, std::span<const Constraint> constraints) {
   std::set<std::pair<int, int>> pairs;
@@ -68,7 +64,7 @@ PenaltyModel build_penalty_model(const Model& model, Formulation formulation, st
   for (const Constraint& constraint : body.constraints) {
     body.first_row.push_back(static_cast<int>(body.alpha.size()));
     for (const ConstraintRow& row : constraint.rows) {
-      body.alpha.push_back(is_length(row.form) ? alpha : alpha * length * length);
+      body.alpha.push_back(is_angle(row.form) ? alpha * length * length : alpha);
     }
   }
   body.first_row.push_back(static_cast<int>(body.alpha.size()));

@@ -38,7 +38,7 @@ BodyRow joint_row(const Model& model, const BodyModel& body, const State& joints
   }
   // displacement: minus the position of the parent's point along z of the child
   const Constraint& joint = body.joints[at(row.link)];
-  const RowValue slide = evaluate(ConstraintRow{RowForm::in_plane_of_2, 0, 2, 0}, joint, parent, child);
+  const RowValue slide = evaluate(ConstraintRow{.form = RowForm::in_plane_of_2, .axis2 = 2}, joint, parent, child, {});
   result.J = {-slide.G.v1, -slide.G.w1, -slide.G.v2, -slide.G.w2};
   result.bias = -slide.bias;
   return result;

@@ -110,7 +110,7 @@ bool advance(const Model& model, const BodyModel& body, BodyState& state, State&
   bool is_regular = true;
   for (int stage = 0; stage < 4; ++stage) {
     if (stage > 0) {
-      set_stage_time(joints, kStageTime[stage] * h, ws);
+      set_stage_time(model, joints, kStageTime[stage] * h, ws);
       combine(state.q, kStageTime[stage] * h, bws.qdot, bws.stage.q);
       combine(state.u, kStageTime[stage] * h, bws.udot, bws.stage.u);
       if (bws.ldl.smallest_pivot() < kNearSingular) {

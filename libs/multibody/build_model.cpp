@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -10,6 +11,7 @@
 #include "multibody/constraint.h"
 #include "multibody/elements/build_elements.h"
 #include "multibody/model.h"
+#include "multibody/motions/build_drives.h"
 #include "multibody/start_pose.h"
 #include "multibody/topology.h"
 
@@ -41,6 +43,7 @@ class Builder {
     model_.max_substep = def_.max_substep;
     model_.penalty = {def_.penalty_factor, def_.penalty_damping, def_.penalty_frequency};
     add_bodies();
+    model_.drives = declared_drives(def_);
     add_joints();
     for (const int joint : cut_joints(def_, tree_)) add_cut(joint);
     add_forces(def_, link_pose_, model_);
@@ -140,11 +143,36 @@ class Builder {
   // moves a body that the joint does not hold to where it does; as the scene has it within its tolerance
   void settle(const JointDef& def, const TreeEdge& edge) {
     const auto [frame1, frame2] = frames_of(def, edge);
-    const Pose held = nearest_frame(def.type, {frame1, frame2});
+    const bool is_driven = edge.joint != kNoJoint && begin_drives(edge.joint);
+    const Pose held = is_driven ? frame_at(def.type, frame1, coordinates_of(def, edge, {frame1, frame2}))
+                                : nearest_frame(def.type, {frame1, frame2});
     const Mat3 turn = held.R * math::transpose(frame2.R);
     if (math::norm(held.p - frame2.p) <= kFrameTolerance && math::rotation_angle(turn) <= kFrameTolerance) return;
     Pose& child = poses_[at(edge.child)];
     child = {turn * child.R, held.p + turn * (child.p - frame2.p)};
+  }
+
+  // completes the laws of a joint by what the poses say; whether it has some
+  bool begin_drives(int joint) {
+    const JointDef& def = def_.joints[at(joint)];
+    const Pose &body1 = poses_[at(body_index(def.body1))], &body2 = poses_[at(body_index(def.body2))];
+    return multibody::begin_drives(def_, joint, start_coordinates(def.type, joint_frames(def, body1, body2)), model_);
+  }
+
+  // coordinates at the start as the tree walks the joint: from the poses, and from the laws of those that have one
+  [[nodiscard]] std::array<double, 2> coordinates_of(const JointDef& def, const TreeEdge& edge,
+                                                     const JointFrames& frames) const {
+    std::array<double, 2> q = start_coordinates(def.type, frames);
+    for (const Drive& drive : model_.drives) {
+      if (drive.joint == edge.joint) q[at(place_of(drive, edge))] = evaluate(drive.law, 0).position;
+    }
+    return q;
+  }
+
+  // a universal joint that the tree walks backwards has its coordinates in the other order
+  [[nodiscard]] int place_of(const Drive& drive, const TreeEdge& edge) const {
+    const bool is_swapped = edge.is_reversed && def_.joints[at(drive.joint)].type == JointType::universal;
+    return is_swapped ? 1 - drive.number : drive.number;
   }
 
   void add_cut(int index) {
@@ -159,9 +187,33 @@ class Builder {
     for (ConstraintRow& row : cut.rows) {
       if (row.form == RowForm::distance && def.length > 0) row.offset = def.length;
     }
+    begin_drives(index);
+    add_drive_rows(model_, index, cut);
     cut.first_row = model_.cut_row_count();
     for (std::size_t k = 0; k < cut.rows.size(); ++k) cut.kept.push_back(static_cast<int>(k));
     model_.cuts.push_back(cut);
+  }
+
+  static LinkJoint link_joint(JointType type) {
+    return type == JointType::revolute    ? LinkJoint::revolute
+           : type == JointType::prismatic ? LinkJoint::prismatic
+           : type == JointType::universal ? LinkJoint::universal
+                                          : LinkJoint::cylindrical;
+  }
+
+  // of a link whose coordinates are the last ones so far
+  void add_drives(const TreeEdge& edge, Link& link) {
+    for (std::size_t k = 0; k < model_.drives.size(); ++k) {
+      Drive& drive = model_.drives[k];
+      if (drive.joint != edge.joint) continue;
+      drive.place = place_of(drive, edge);
+      drive.link = static_cast<int>(model_.links.size());
+      drive.q = link.q + drive.place;
+      drive.u = link.u + drive.place;
+      link.is_driven = true;
+      link.drive[at(drive.place)] = static_cast<int>(k);
+      model_.start_u[at(drive.u)] = evaluate(drive.law, 0).speed;
+    }
   }
 
   int add_link(const JointDef& def, const TreeEdge& edge) {
@@ -185,30 +237,15 @@ class Builder {
     std::vector<double>& u = model_.start_u;
     const auto& [frame1, frame2] = frames;
     Pose child = {frame2.R, frame1.p};
-    if (def.type == JointType::revolute) {
-      link.joint = LinkJoint::revolute;
-      q.push_back(start_coordinate(def.type, frames));
-      u.push_back(def.initial_velocity);
-      child.R = frame1.R * math::rotation_z(q.back());
-    } else if (def.type == JointType::prismatic) {
-      link.joint = LinkJoint::prismatic;
-      q.push_back(start_coordinate(def.type, frames));
-      u.push_back(def.initial_velocity);
-      child = {frame1.R, frame1.p + frame1.R.c[2] * q.back()};
-    } else if (def.type == JointType::cylindrical) {
-      link.joint = LinkJoint::cylindrical;
-      const Vec3 z = frame1.R.c[2];
-      q.push_back(start_coordinate(JointType::revolute, frames));
-      q.push_back(start_coordinate(JointType::prismatic, frames));
-      u.insert(u.end(), {def.initial_velocity, def.initial_velocity_2});
-      child = {frame1.R * math::rotation_z(q[q.size() - 2]), frame1.p + z * q.back()};
-    } else if (def.type == JointType::universal) {
-      link.joint = LinkJoint::universal;
-      const auto [q1, q2, R] = universal_start(frames);
-      q.insert(q.end(), {q1, q2});
-      u.insert(u.end(), {def.initial_velocity, def.initial_velocity_2});
-      if (edge.is_reversed) std::swap(u[u.size() - 2], u.back());
-      child.R = R;
+    if (const int count = coordinate_count(def.type); count > 0) {
+      link.joint = link_joint(def.type);
+      const std::array<double, 2> start = coordinates_of(def, edge, frames);
+      q.insert(q.end(), start.begin(), start.begin() + count);
+      std::array<double, 2> rate = {def.initial_velocity, def.initial_velocity_2};
+      if (edge.is_reversed && def.type == JointType::universal) std::swap(rate[0], rate[1]);
+      u.insert(u.end(), rate.begin(), rate.begin() + count);
+      child = frame_at(def.type, frame1, start);
+      add_drives(edge, link);
     } else {
       link.joint = def.type == JointType::spherical ? LinkJoint::spherical : LinkJoint::floating;
       const Mat3& R_body1 = poses_[at(edge.joint == kNoJoint ? kGround : body_index(def.body1))].R;

@@ -15,12 +15,12 @@ constexpr int kX = 0, kY = 1, kZ = 2;
 // sine of the angle below which the hinges of a massless link are taken as parallel
 constexpr double kParallel = 1e-6;
 
-ConstraintRow in_plane(int axis, double offset = 0) {
-  return {RowForm::in_plane, axis, 0, offset};
+ConstraintRow in_plane(int axis, double offset = 0) noexcept {
+  return {.form = RowForm::in_plane, .axis1 = axis, .offset = offset};
 }
 
 ConstraintRow perpendicular(int axis1, int axis2, double offset = 0) {
-  return {RowForm::perpendicular, axis1, axis2, offset};
+  return {.form = RowForm::perpendicular, .axis1 = axis1, .axis2 = axis2, .offset = offset};
 }
 
 // a frame's point and axes in Ground, and what moves with it
@@ -78,6 +78,17 @@ RowValue distance(const Side& one, const Side& two, double length) noexcept {
   return row;
 }
 
+// angle of a direction of side 2 in the plane of p and q, both at a right angle to `axis`, which belongs to `holder`
+RowValue angle_about(Vec3 axis, Vec3 p, Vec3 q, Vec3 direction, const Side& holder, const Side& one, const Side& two) {
+  const Vec3 w = two.w - one.w;
+  RowValue row;
+  row.g = std::atan2(dot(direction, q), dot(direction, p));
+  row.rate = dot(axis, w);
+  row.bias = dot(cross(holder.w, axis), w);
+  row.G = {Vec3(), -axis, Vec3(), axis};
+  return row;
+}
+
 RowValue evaluate(const ConstraintRow& row, const Side& one, const Side& two) noexcept {
   const Vec3 a = one.axes[static_cast<std::size_t>(row.axis1)], b = two.axes[static_cast<std::size_t>(row.axis2)];
   switch (row.form) {
@@ -89,8 +100,28 @@ RowValue evaluate(const ConstraintRow& row, const Side& one, const Side& two) no
       return perpendicular(one, two, a, b, row.offset);
     case RowForm::distance:
       return distance(one, two, row.offset);
+    case RowForm::turn:
+      return angle_about(one.axes[kZ], one.axes[kX], one.axes[kY], two.axes[kX], one, one, two);
+    case RowForm::first_turn:
+      return angle_about(one.axes[kZ], one.axes[kX], one.axes[kY], two.axes[kZ], one, one, two);
+    case RowForm::second_turn:
+      return angle_about(two.axes[kZ], cross(one.axes[kZ], two.axes[kZ]), one.axes[kZ], two.axes[kX], two, one, two);
   }
   return {};
+}
+
+// less what its law says
+RowValue evaluate(const ConstraintRow& row, const Side& one, const Side& two,
+                  std::span<const MotionValue> drives) noexcept {
+  constexpr double kTurn = 2 * 3.14159265358979323846;
+  RowValue value = evaluate(row, one, two);
+  if (row.drive < 0) return value;
+  const MotionValue& law = drives[static_cast<std::size_t>(row.drive)];
+  value.g -= law.position;
+  if (is_angle(row.form)) value.g = std::remainder(value.g, kTurn);
+  value.rate -= law.speed;
+  value.bias -= law.acceleration;
+  return value;
 }
 
 }  // namespace
@@ -125,19 +156,26 @@ std::vector<ConstraintRow> rows_of(JointType type, const Mat3& R_12, Vec3 p_12) 
     case JointType::perpendicular:
       return {perpendicular(kZ, kZ)};
     case JointType::spherical_spherical:
-      return {{RowForm::distance, 0, 0, length}};
+      return {{.form = RowForm::distance, .offset = length}};
     case JointType::revolute_spherical:
-      return {{RowForm::distance, 0, 0, length}, in_plane(kZ, p_12.z())};
+      return {{.form = RowForm::distance, .offset = length}, in_plane(kZ, p_12.z())};
     case JointType::revolute_revolute: {
-      const std::vector<ConstraintRow> hinged = {{RowForm::distance, 0, 0, length}, in_plane(kZ, p_12.z())};
+      const std::vector<ConstraintRow> hinged = {{.form = RowForm::distance, .offset = length}, in_plane(kZ, p_12.z())};
       const Vec3 z2 = R_12.c[kZ];
       // parallel hinges: their angle is at an extreme, its gradient zero
       if (std::hypot(z2.x(), z2.y()) < kParallel) return joined(hinged, {parallel[0], parallel[1]});
-      return joined(hinged, {{RowForm::in_plane_of_2, 0, kZ, -dot(z2, p_12)}, perpendicular(kZ, kZ, z2.z())});
+      return joined(hinged, {{.form = RowForm::in_plane_of_2, .axis2 = kZ, .offset = -dot(z2, p_12)},
+                             perpendicular(kZ, kZ, z2.z())});
     }
   }
   SLEW_CHECK(false);
   return {};
+}
+
+ConstraintRow coordinate_row(JointType type, int number) noexcept {
+  if (type == JointType::universal) return {.form = number == 0 ? RowForm::first_turn : RowForm::second_turn};
+  if (type == JointType::prismatic || number == 1) return in_plane(kZ);
+  return {.form = RowForm::turn};
 }
 
 Constraint constraint_between(const Model& model, int index) {
@@ -166,21 +204,26 @@ std::string describe(const ConstraintRow& row) {
       return std::string("angle between ") + kAxes[row.axis1] + " and " + kAxes[row.axis2] + " of body 2";
     case RowForm::distance:
       return "distance";
+    case RowForm::turn:
+    case RowForm::first_turn:
+      return "angle about z";
+    case RowForm::second_turn:
+      return "angle about z of body 2";
   }
   return "";
 }
 
 void evaluate(const Constraint& constraint, const LinkMotion& link1, const LinkMotion& link2,
-              std::span<RowValue> values) noexcept {
+              std::span<const MotionValue> drives, std::span<RowValue> values) noexcept {
   const Side one = side_of(link1, constraint.R_L1, constraint.p_L1);
   const Side two = side_of(link2, constraint.R_L2, constraint.p_L2);
-  for (std::size_t i = 0; i < constraint.rows.size(); ++i) values[i] = evaluate(constraint.rows[i], one, two);
+  for (std::size_t i = 0; i < constraint.rows.size(); ++i) values[i] = evaluate(constraint.rows[i], one, two, drives);
 }
 
 RowValue evaluate(const ConstraintRow& row, const Constraint& constraint, const LinkMotion& link1,
-                  const LinkMotion& link2) noexcept {
+                  const LinkMotion& link2, std::span<const MotionValue> drives) noexcept {
   return evaluate(row, side_of(link1, constraint.R_L1, constraint.p_L1),
-                  side_of(link2, constraint.R_L2, constraint.p_L2));
+                  side_of(link2, constraint.R_L2, constraint.p_L2), drives);
 }
 
 int coordinate_count(JointType type) noexcept {
@@ -196,33 +239,11 @@ int coordinate_count(JointType type) noexcept {
   }
 }
 
-namespace {
-
-// angle of a direction of side 2 in the plane of p and q, both at a right angle to `axis`, which belongs to `holder`
-RowValue angle_about(Vec3 axis, Vec3 p, Vec3 q, Vec3 direction, const Side& holder, const Side& one, const Side& two) {
-  const Vec3 w = two.w - one.w;
-  RowValue row;
-  row.g = std::atan2(dot(direction, q), dot(direction, p));
-  row.rate = dot(axis, w);
-  row.bias = dot(cross(holder.w, axis), w);
-  row.G = {Vec3(), -axis, Vec3(), axis};
-  return row;
-}
-
-}  // namespace
-
 RowValue coordinate(JointType type, int number, const Constraint& constraint, const LinkMotion& link1,
                     const LinkMotion& link2) noexcept {
   const Side one = side_of(link1, constraint.R_L1, constraint.p_L1);
   const Side two = side_of(link2, constraint.R_L2, constraint.p_L2);
-  const auto& [x1, y1, z1] = one.axes;
-  const auto& [x2, y2, z2] = two.axes;
-  if (type == JointType::universal) {
-    return number == 0 ? angle_about(z1, x1, y1, z2, one, one, two)
-                       : angle_about(z2, cross(z1, z2), z1, x2, two, one, two);
-  }
-  if (type == JointType::prismatic || number == 1) return in_plane(one, two, z1, 0);
-  return angle_about(z1, x1, y1, x2, one, one, two);
+  return evaluate(coordinate_row(type, number), one, two);
 }
 
 }  // namespace slew::multibody

@@ -17,8 +17,8 @@ namespace slew::multibody {
 void begin_contacts(const Model& model, const State& state, Workspace& ws) noexcept;
 
 // Before an evaluation that belongs to `later` [s] after the start.
-inline void set_stage_time(const State& start, double later, Workspace& ws) noexcept {
-  ws.time = start.time + later;
+inline void set_stage_time(const Model& model, const State& start, double later, Workspace& ws) noexcept {
+  set_time(model, start.time + later, ws);
   if (ws.contact != nullptr) ws.contact->time = later;
 }
 

@@ -17,6 +17,7 @@
 #include "core/field.h"
 #include "multibody/contact_defs.h"
 #include "multibody/elements/element_defs.h"
+#include "multibody/motions/motion_defs.h"
 
 namespace slew::multibody {
 
@@ -177,6 +178,7 @@ struct MechanicsDef {
   std::vector<TyreDummyDef> tyre_dummies;
   std::vector<PartDummyDef> part_dummies;
   std::vector<ConstraintDummyDef> constraint_dummies;
+  std::vector<MotionDef> motions;
 };
 
 }  // namespace slew::multibody

@@ -35,6 +35,11 @@ Description describe(const Model& model) {
     text.links[i].degrees_of_freedom = speed_count(model.links[i + 1].joint);
     if (text.links[i].joint.empty()) text.links[i].joint_type = "free";
   }
+  for (const Drive& drive : model.drives) {
+    const std::string& joint = model.joints[static_cast<std::size_t>(drive.joint)].name;
+    text.driven.push_back(drive.name + " (" + joint + (drive.is_angle ? ", angle)" : ", displacement)"));
+    if (drive.link > 0) --text.links[static_cast<std::size_t>(drive.link) - 1].degrees_of_freedom;
+  }
   for (const Cut& cut : model.cuts) {
     const Joint& joint = model.joints[static_cast<std::size_t>(cut.joint)];
     CutDescription& entry = text.cuts.emplace_back();

@@ -46,7 +46,7 @@ void forward_dynamics(const Model& model, std::span<const double> q, std::span<c
 
 void evaluate(const Model& model, const State& state, Workspace& ws) noexcept {
   begin_contacts(model, state, ws);
-  ws.time = state.time;
+  set_time(model, state.time, ws);
   forward_dynamics(model, state.q, state.u, {}, ws);
   ws.udot_free = ws.udot;
   ws.residual_free = ws.residual;
@@ -63,6 +63,7 @@ void accelerations(const Model& model, Workspace& ws, std::span<const double> ro
     for (std::size_t j = 0; j < dof; ++j) ws.residual[j] += residual[j] * row_forces[k];
   }
   solve_forward(model, ws, ws.residual, udot);
+  impose_accelerations(model, ws, udot);
 }
 
 void response_column(const Model& model, Workspace& ws, int row, std::span<double> column) noexcept {
@@ -110,9 +111,11 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
     const double time = kStageTime[stage - 1] * h;
     combine(state.q, time, ws.qdot, ws.q_stage);
     combine(state.u, time, ws.udot, ws.u_stage);
+    set_stage_time(model, state, time, ws);
+    impose_positions(model, ws, ws.q_stage);
+    impose_speeds(model, ws, ws.u_stage);
     if (is_near_singular(ws)) is_closed = project(model, ws.q_stage, ws.u_stage, ws) && is_closed;
     row_forces_at(time, h, mean, slope, forces);
-    set_stage_time(state, time, ws);
     forward_dynamics(model, ws.q_stage, ws.u_stage, forces, ws);
     coordinate_rates(model, ws, ws.q_stage, ws.u_stage, ws.qdot);
     combine(ws.q_sum, h * kWeight[stage], ws.qdot, ws.q_sum);
@@ -121,6 +124,8 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
   state.q.swap(ws.q_sum);
   state.u.swap(ws.u_sum);
   state.time += h;
+  impose_positions(model, ws, state.q);
+  impose_speeds(model, ws, state.u);
   normalize_quaternions(model, state.q);
   if (!model.cuts.empty()) is_closed = project(model, state.q, state.u, ws) && is_closed;
   if (ws.contact != nullptr && ws.contact->is_near) {
@@ -142,7 +147,7 @@ bool advance(const Model& model, State& state, Workspace& ws, double h, std::spa
 
 bool advance_free(const Model& model, State& state, Workspace& ws, double h) noexcept {
   begin_contacts(model, state, ws);
-  ws.time = state.time;
+  set_time(model, state.time, ws);
   forward_dynamics(model, state.q, state.u, {}, ws);
   return finish_step(model, state, ws, h, {}, {});
 }

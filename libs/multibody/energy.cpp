@@ -38,7 +38,7 @@ CoupledPoints coupled_points(const Model& model, const Workspace& ws, const Coup
 }  // namespace
 
 void observe(const Model& model, const State& state, Workspace& ws) noexcept {
-  ws.time = state.time;
+  set_time(model, state.time, ws);
   update_motion(model, state.q, state.u, ws);
   update_elements(model, state.q, Elements::all, ws);
   begin_contacts(model, state, ws);

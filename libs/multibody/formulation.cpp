@@ -110,6 +110,12 @@ bool take_lost(Workspace& ws) noexcept {
   return ws.contact != nullptr && std::exchange(ws.contact->is_lost, false);
 }
 
+// what a sub-step must leave behind
+bool is_right(const Model& model, const State& state, Workspace& ws) noexcept {
+  const bool is_lost = take_lost(ws);
+  return !is_lost && is_finite(state) && are_drives_defined(model, state.time);
+}
+
 }  // namespace
 
 Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start, StepRule rule) {
@@ -153,7 +159,7 @@ StepKind Dynamics::contact_step() const noexcept {
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                        std::span<const double> slope) noexcept {
   const int parts = contact_parts(model, h, contact_step(), ws);
-  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && !take_lost(ws) && is_finite(state);
+  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && is_right(model, state, ws);
   // the rows' forces go on along their lines
   const double part = h / parts;
   bool is_sound = true;
@@ -163,7 +169,7 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
     for (std::size_t k = 0; k < mean.size(); ++k) ws.row_part[k] = mean[k] + later * slope[k];
     is_sound = advance_part(model, state, ws, part, ws.row_part, slope) && is_sound;
   }
-  return !take_lost(ws) && is_sound && is_finite(state);
+  return is_right(model, state, ws) && is_sound;
 }
 
 bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
@@ -234,7 +240,7 @@ const BodyState* Dynamics::own_state() const noexcept {
 void Dynamics::observe(const Model& model, const State& state, Workspace& ws) const noexcept {
   const BodyState* bodies = own_state();
   if (bodies == nullptr) return multibody::observe(model, state, ws);
-  ws.time = state.time;
+  set_time(model, state.time, ws);
   update_body_motion(model, *bodies, ws);
   update_elements(model, state.q, Elements::all, ws);
   begin_contacts(model, state, ws);

@@ -36,7 +36,7 @@ class Dynamics {
   // tried again from the start in 2, 4 and 8 parts; one that runs away even then is held where it was. False: a
   // matrix was singular, an iteration did not settle in the end, the joints could not be closed, a body turned by more
   // than kLargestTurn in a sub-step, shapes went through each other between two instants, contacts are stiffer than the
-  // shortest part resolves, or the state is not finite.
+  // shortest part resolves, a table of prescribed motion that refuses to be left has ended, or the state is not finite.
   void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;

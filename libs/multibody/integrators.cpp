@@ -59,6 +59,7 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
   double share = 1, last = INFINITY;
   int fresh = -1;  // correction for which the matrix was made
   s.has_multipliers = false;
+  set_stage_time(at.model, at.moving.joints, stage.time, at.ws);
   place(at, stage.sigma);
   const Extent extent = extent_of(at.ws);
   const double settled = tolerance * extent.speed + kRounding * extent.length / stage.tau;
@@ -201,6 +202,7 @@ bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const 
     return (f_1 * (1 - alpha_f) + f_0 * alpha_f - A_0 * alpha_m) * (1 / (1 - alpha_m));
   };
   for (std::size_t j = 0; j < u.size(); ++j) s.rate[j] = (u[j] - s.fixed[j]) / tau;
+  if (at.moving.bodies == nullptr) clear_prescribed(at.model, s.rate);
   if (!s.turn.empty()) add_accelerations(at, s.rate);
   for (std::size_t i = 1; i < s.turn.size(); ++i) {
     s.algorithmic_turn[i] = carried(s.algorithmic_turn[i], s.turn_rate_0[i], at.ws.motion[i].alpha);
@@ -213,6 +215,7 @@ bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const 
 void take_euler(const StageContext& at, double h) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<double> u = at.u();
+  set_stage_time(at.model, at.moving.joints, h, at.ws);
   for (std::size_t j = 0; j < u.size(); ++j) u[j] += h * s.rate_0[j];
   std::fill(s.base.begin(), s.base.end(), 0.0);
   std::fill(s.turn.begin(), s.turn.end(), Vec3());

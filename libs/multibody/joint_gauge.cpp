@@ -17,6 +17,11 @@ std::size_t at(int index) noexcept {
 Constraint closed_joint(const Model& model, int index) {
   Constraint constraint = constraint_between(model, index);
   constraint.rows = rows_of(model.joints[at(index)].type, math::Mat3::identity(), math::Vec3());
+  for (std::size_t k = 0; k < model.drives.size(); ++k) {
+    if (model.drives[k].joint != index) continue;
+    constraint.rows.push_back(coordinate_row(model.joints[at(index)].type, model.drives[k].number));
+    constraint.rows.back().drive = static_cast<int>(k);
+  }
   return constraint;
 }
 
@@ -50,7 +55,8 @@ JointGap JointGauge::measure(const Workspace& ws) const noexcept {
   std::array<RowValue, kMaxJointRows> values;
   for (const Constraint& constraint : constraints_) {
     const std::size_t rows = constraint.rows.size();
-    evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], {values.data(), rows});
+    evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], ws.drives,
+             {values.data(), rows});
     for (std::size_t k = 0; k < rows; ++k) {
       if (is_larger(std::fabs(values[k].g), largest.position)) {
         largest.position = std::fabs(values[k].g);

@@ -93,7 +93,7 @@ void renew_matrix(const Model& model, std::span<const double> q, std::span<const
 
 void evaluate_cuts(const Model& model, Workspace& ws) noexcept {
   for (const Cut& cut : model.cuts) {
-    evaluate(cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)],
+    evaluate(cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)], ws.drives,
              {ws.loops.rows.data() + cut.first_row, cut.rows.size()});
   }
 }

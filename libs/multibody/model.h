@@ -15,6 +15,7 @@
 // parameters.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -27,6 +28,7 @@
 #include "multibody/defs.h"
 #include "multibody/elements/element_set.h"
 #include "multibody/joint_law.h"
+#include "multibody/motions/drive.h"
 
 namespace slew::multibody {
 
@@ -63,6 +65,8 @@ struct Link {
   int u = 0;              // first entry in State::u
   int first_coupled = 0;  // CoupledMass entries of this link's joint: [first_coupled, coupled_end)
   int coupled_end = 0;
+  bool is_driven = false;
+  std::array<int, 2> drive = {-1, -1};  // Model::drives, by coordinate; -1: free
 };
 
 // Something with a mass that is fixed to a link: a body, a static dummy, a force dummy between merged bodies.
@@ -148,13 +152,22 @@ struct PathEntry {
 };
 
 // The laws that a constraint row is made of: constraint.h.
-enum class RowForm : std::uint8_t { in_plane, in_plane_of_2, perpendicular, distance };
+enum class RowForm : std::uint8_t {
+  in_plane,
+  in_plane_of_2,
+  perpendicular,
+  distance,
+  turn,         // angles that are coordinates: of x_2 about z_1
+  first_turn,   // of z_2 about z_1
+  second_turn,  // of x_2 about z_2
+};
 
 struct ConstraintRow {
   RowForm form = RowForm::in_plane;
   int axis1 = 0;      // 0 x, 1 y, 2 z: a, of frame 1
   int axis2 = 0;      // b, of frame 2
   double offset = 0;  // c [m or 1]
+  int drive = -1;     // Model::drives: the row follows its law
 };
 
 // The rows of one joint between two links.
@@ -214,6 +227,7 @@ struct Model {
   std::vector<Body> bodies;  // [0] is Ground
   std::vector<Joint> joints;
   std::vector<Cut> cuts;
+  std::vector<Drive> drives;          // prescribed coordinates, in the order of the scene
   std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by row of the cuts: a mobility that is not near zero
   std::vector<int> body_order;        // bodies from Ground outwards, parents first; without Ground
   std::vector<double> start_q, start_u;
@@ -225,7 +239,11 @@ struct Model {
     return cuts.empty() ? 0 : cuts.back().first_row + static_cast<int>(cuts.back().rows.size());
   }
   // Where the mechanism is not in a singular position.
-  [[nodiscard]] int degrees_of_freedom() const noexcept { return speed_count() - cut_row_count(); }
+  [[nodiscard]] int degrees_of_freedom() const noexcept {
+    int prescribed = 0;
+    for (const Drive& drive : drives) prescribed += drive.link > 0 ? 1 : 0;
+    return speed_count() - cut_row_count() - prescribed;
+  }
   [[nodiscard]] int row_count() const noexcept { return static_cast<int>(rows.size()); }
 };
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "multibody/joint_directions.h"
 #include "multibody/passes.h"
 
 namespace slew::multibody {
@@ -106,6 +107,20 @@ void move_floating(const LinkMotion& ground, std::span<const double> q, std::spa
   m.a = ground.a;
 }
 
+// what the laws say of a joint's accelerations
+void add_prescribed(const Link& link, const Workspace& ws, LinkMotion& m) noexcept {
+  const auto acceleration = [&](std::size_t k) {
+    return link.drive[k] < 0 ? 0.0 : ws.drives[static_cast<std::size_t>(link.drive[k])].acceleration;
+  };
+  if (speed_count(link.joint) == 1) {
+    (link.joint == LinkJoint::revolute ? m.alpha : m.a) += m.axis * acceleration(0);
+    return;
+  }
+  const Pair S = directions(link.joint, m);
+  m.alpha += S.turn[0] * acceleration(0) + S.turn[1] * acceleration(1);
+  m.a += S.slide[0] * acceleration(0) + S.slide[1] * acceleration(1);
+}
+
 void move_link(const Model& model, std::size_t i, std::span<const double> q, std::span<const double> u,
                Workspace& ws) noexcept {
   const Link& link = model.links[i];
@@ -132,6 +147,7 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
       move_cylindrical(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
       break;
   }
+  if (link.is_driven) add_prescribed(link, ws, m);
 }
 
 }  // namespace
@@ -211,7 +227,9 @@ void move_from(const Model& model, std::span<const double> start, const Displace
     if (link.joint != LinkJoint::spherical && link.joint != LinkJoint::floating) {
       for (int k = 0; k < speed_count(link.joint); ++k, ++qi) {
         const std::size_t j = ui + static_cast<std::size_t>(k);
-        q[qi] = start[qi] + way.base[j] + way.scale * u[j];
+        const int drive = link.drive[static_cast<std::size_t>(k)];
+        q[qi] = drive < 0 ? start[qi] + way.base[j] + way.scale * u[j]
+                          : ws.drives[static_cast<std::size_t>(drive)].position;
       }
     } else {
       Vec3 w = vector_at(u, ui) + ws.motion[static_cast<std::size_t>(link.parent)].w;

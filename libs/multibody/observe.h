@@ -63,11 +63,18 @@ void append_contact_variables(const Model& model, std::vector<ElementVariable>& 
 std::size_t read_contact_variables(const Model& model, const Workspace& ws, std::span<double> values) noexcept;
 
 // What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
-// scene, in the order and form of JointReaction; allocates.
+// scene, in the order and form of JointReaction; then "Motion.torque" or "Motion.force", and "Motion.power", for each
+// prescribed motion. Allocates.
 [[nodiscard]] std::vector<ElementVariable> reaction_variables(const Model& model);
 
-// Values in the order of reaction_variables(). Does not allocate.
-void read_reactions(std::span<const JointReaction> reactions, std::span<double> values) noexcept;
+// Values in the order of reaction_variables(), after joint_reactions() with this workspace. Does not allocate.
+void read_reactions(const Model& model, const Workspace& ws, std::span<const double> row_forces,
+                    std::span<const JointReaction> reactions, std::span<double> values) noexcept;
+
+// Force of a prescribed motion on its coordinate, positive when it pushes the coordinate to grow [N or N m]: what the
+// joint transmits along it, less the joint's own friction and limits. After joint_reactions() with this workspace.
+[[nodiscard]] double drive_force(const Model& model, const Workspace& ws, std::size_t drive,
+                                 std::span<const double> row_forces, std::span<const JointReaction> reactions) noexcept;
 
 // Name of the joint that a coordinate (index < coordinates) or a speed (counted on from there) belongs to.
 [[nodiscard]] std::string_view joint_of(const Model& model, int state_index) noexcept;
@@ -93,6 +100,7 @@ struct Description {
   int rows = 0;
   std::vector<LinkDescription> links;
   std::vector<CutDescription> cuts;
+  std::vector<std::string> driven;           // "Crank_Drive (Crank_Pin, angle)": prescribed motions
   std::vector<std::string> fixed_to_ground;  // bodies that do not move
   std::vector<std::string> pairs;            // of shapes, that are tested
   std::vector<std::string> pairs_at_rest;    // whose shapes cannot move against each other

@@ -40,7 +40,7 @@ bool prepare(const Model& model, const PenaltyModel& body, const BodyState& stat
 bool evaluate(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
               PenaltyWorkspace& pws) noexcept {
   begin_contacts(model, joints, ws);
-  ws.time = joints.time;
+  set_time(model, joints.time, ws);
   bool is_solved = prepare(model, body, state, joints, ws, pws);
   is_solved = solve(model, body, ws, pws, pws.force, pws.target, pws.free, pws.free_multipliers) && is_solved;
   const std::size_t rows = model.rows.size(), size = pws.free.size(), joint_rows = pws.multipliers.size();

@@ -71,7 +71,7 @@ void see(const Model& model, const PenaltyModel& body, const BodyState& state, S
   for (std::size_t i = 0; i < body.constraints.size(); ++i) {
     const Constraint& constraint = body.constraints[i];
     const std::span<RowValue> rows(pws.rows.data() + body.first_row[i], constraint.rows.size());
-    evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], rows);
+    evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], ws.drives, rows);
   }
 }
 

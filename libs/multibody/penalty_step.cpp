@@ -39,7 +39,7 @@ bool advance_by_runge_kutta(const Model& model, const PenaltyModel& body, BodySt
       combine(state.q, kStageTime[stage] * h, pws.qdot, pws.stage.q);
       combine(state.u, kStageTime[stage] * h, pws.udot, pws.stage.u);
       forces_at(kStageTime[stage] * h);
-      set_stage_time(joints, kStageTime[stage] * h, ws);
+      set_stage_time(model, joints, kStageTime[stage] * h, ws);
       is_solved = find_accelerations(model, body, pws.row_force, ws, pws) && is_solved;
       find_rates(pws.stage, pws.qdot);
     }

@@ -174,7 +174,7 @@ void find_unit_reactions(const Model& model, const Cut& cut, const ConstraintRow
                          std::span<JointReaction> reactions) noexcept {
   LoopWorkspace& loops = ws.loops;
   const std::size_t speeds = ws.udot.size();
-  const RowValue value = evaluate(row, cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]);
+  const RowValue value = evaluate(row, cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)], ws.drives);
   const std::span<const int> supports(model.supports.data() + cut.first_support,
                                       model.supports.data() + cut.support_end);
   std::fill(ws.unit_rate.begin(), ws.unit_rate.end(), 0.0);
@@ -239,7 +239,7 @@ void take_smallest(const Model& model, Workspace& ws, std::span<JointReaction> r
 void joint_reactions(const Model& model, const State& state, Workspace& ws, std::span<const double> row_forces,
                      std::span<JointReaction> reactions) noexcept {
   begin_contacts(model, state, ws);
-  ws.time = state.time;
+  set_time(model, state.time, ws);
   forward_dynamics(model, state.q, state.u, row_forces, ws);
   if (!model.welded.empty())
     update_elements(model, state.q, Elements::all, ws);  // their lines need no motion in a step

@@ -117,6 +117,7 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
       const Link& link = model.links[at(row.link)];
       ws.row_x[k] = state.q[at(link.q)];
       ws.row_v[k] = state.u[at(link.u)];
+      if (link.drive[0] >= 0) bias = ws.drives[at(link.drive[0])].acceleration;
       break;
     }
   }

@@ -84,6 +84,7 @@ void add_body_accelerations(std::span<const double> rate, Workspace& ws) noexcep
 void place(const StageContext& at, double sigma) noexcept {
   if (at.moving.bodies != nullptr) return place_bodies(at, sigma);
   const StageWorkspace& s = at.stages;
+  impose_speeds(at.model, at.ws, at.moving.joints.u);
   move_from(at.model, s.q_0, {sigma, s.base, s.turn}, at.moving.joints.u, at.moving.joints.q, at.ws);
 }
 
@@ -96,7 +97,8 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<const double> u = at.u();
   for (std::size_t j = 0; j < u.size(); ++j) s.rate[j] = (u[j] - s.fixed[j]) / stage.tau;
-  set_stage_time(at.moving.joints, stage.time, at.ws);
+  // of these the motion holds the accelerations
+  if (at.moving.bodies == nullptr) clear_prescribed(at.model, s.rate);
   update_elements(at.model, at.moving.joints.q, Elements::used, at.ws);
   update_contacts(at.model, at.ws);
   add_accelerations(at, s.rate);

@@ -30,6 +30,39 @@ UniversalStart universal_start(const JointFrames& frames) noexcept {
   return start;
 }
 
+std::array<double, 2> start_coordinates(JointType type, const JointFrames& frames) noexcept {
+  switch (type) {
+    case JointType::revolute:
+    case JointType::prismatic:
+      return {start_coordinate(type, frames), 0};
+    case JointType::cylindrical:
+      return {start_coordinate(JointType::revolute, frames), start_coordinate(JointType::prismatic, frames)};
+    case JointType::universal: {
+      const UniversalStart start = universal_start(frames);
+      return {start.q1, start.q2};
+    }
+    default:
+      return {};
+  }
+}
+
+Pose frame_at(JointType type, const Pose& frame1, const std::array<double, 2>& q) noexcept {
+  switch (type) {
+    case JointType::revolute:
+      return {frame1.R * math::rotation_z(q[0]), frame1.p};
+    case JointType::prismatic:
+      return {frame1.R, frame1.p + frame1.R.c[2] * q[0]};
+    case JointType::cylindrical:
+      return {frame1.R * math::rotation_z(q[0]), frame1.p + frame1.R.c[2] * q[1]};
+    case JointType::universal: {
+      const Mat3 between = frame1.R * math::rotation_z(q[0]);
+      return {Mat3{between.c[1], between.c[2], between.c[0]} * math::rotation_z(q[1]), frame1.p};
+    }
+    default:
+      return frame1;
+  }
+}
+
 Pose nearest_frame(JointType type, const JointFrames& frames) noexcept {
   const auto& [frame1, frame2] = frames;
   const Vec3 z = frame1.R.c[2];

@@ -45,6 +45,8 @@ Workspace::Workspace(const Model& model)
   unit_factor = math::Semidefinite(static_cast<int>(redundant));
   if (model.contact != nullptr) contact = std::make_unique<ContactWorkspace>(*model.contact);
   motion[0].R = math::Mat3::identity();
+  drives.resize(model.drives.size());
+  set_time(model, 0, *this);
 }
 
 State start_state(const Model& model) {
@@ -69,7 +71,7 @@ void add_to_hash(const Model& model, const State& state, StateHash& hash) noexce
   hash.add(std::span<const double>(state.u));
   state.contacts.add_to_hash(hash);
   for (const double z : state.bristles) hash.add(z);
-  if (depends_on_time(model.elements)) hash.add(state.time);
+  if (depends_on_time(model.elements) || !model.drives.empty()) hash.add(state.time);
   for (const double g : model.gravity.array()) hash.add(g);
   for (const LumpedMass& part : model.lumped) hash.add(part.mass);
   const auto add_law = [&hash](const ElementLaw& law) {

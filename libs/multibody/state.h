@@ -93,7 +93,8 @@ struct LoopWorkspace {
 struct Workspace {
   explicit Workspace(const Model& model);
 
-  double time = 0;  // s, of the motion
+  double time = 0;                  // s, of the motion
+  std::vector<MotionValue> drives;  // by Model::drives, at that time: set_time()
   std::vector<LinkMotion> motion;
   std::vector<ArticulatedInertia> inertia;
   std::vector<JointFactor> factor;

@@ -48,11 +48,16 @@ bool needs_coordinates(const JointDef& joint) noexcept {
          is_any(joint.initial_rotation);
 }
 
+bool is_driven(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
+  return std::any_of(mechanics.motions.begin(), mechanics.motions.end(),
+                     [&joint](const MotionDef& motion) { return motion.joint == joint.name; });
+}
+
 // joints are taken into the tree by classes, within a class in the order of the file
-int class_of(const JointDef& joint) noexcept {
+int class_of(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
   if (joint.type == JointType::fixed) return 0;
   if (joint.type == JointType::floating) return 3;
-  return needs_coordinates(joint) ? 1 : 2;
+  return needs_coordinates(joint) || is_driven(mechanics, joint) ? 1 : 2;
 }
 
 std::vector<bool> choose_tree(const MechanicsDef& mechanics) {
@@ -62,7 +67,8 @@ std::vector<bool> choose_tree(const MechanicsDef& mechanics) {
     for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
       const JointDef& joint = mechanics.joints[j];
       const auto [body1, body2] = bodies_of(mechanics, joint);
-      if (body1 == kNoBody || body2 == kNoBody || !has_coordinates(joint.type) || class_of(joint) != choice) continue;
+      if (body1 == kNoBody || body2 == kNoBody || !has_coordinates(joint.type) || class_of(mechanics, joint) != choice)
+        continue;
       is_in_tree[j] = groups.connect(body1, body2);
     }
   }

@@ -14,6 +14,8 @@
 #include "multibody/dynamics.h"
 #include "multibody/elements/validate_elements.h"
 #include "multibody/field_tables.h"
+#include "multibody/motions/motion_fields.h"
+#include "multibody/motions/validate_motions.h"
 #include "multibody/observe.h"
 #include "multibody/singularity.h"
 #include "multibody/start_rules.h"
@@ -52,6 +54,7 @@ class Validator {
     for (const ForceDummyDef& dummy : m_.force_dummies) check_dummy(dummy);
     for (const StaticDummyDef& dummy : m_.static_dummies) check_dummy(dummy);
     if (!check_elements(m_, problems_)) references_hold_ = false;
+    if (!check_motions(m_, problems_)) references_hold_ = false;
     if (!references_hold_) return;
     const std::size_t before = problems_.size();
     const std::vector<Pose> poses = start_poses(m_, problems_);
@@ -59,6 +62,7 @@ class Validator {
     if (problems_.size() == before) {
       check_start(m_, poses, tree, problems_);
       check_element_starts(m_, poses, problems_);
+      check_motion_starts(m_, poses, problems_);
     }
     if (problems_.empty()) validate_contacts(m_, problems_);
     if (problems_.empty()) find_singular_joints(m_, problems_);
@@ -111,6 +115,7 @@ class Validator {
     check_all(m_.shapes, 4, [](const ShapeDef& shape) { return static_cast<std::size_t>(shape.type); });
     check_all(m_.contacts, 5, first);
     check_all(m_.frictions, 6, first);
+    check_all(m_.motions, 7, motion_type_index);
     for_each_element_list(m_, [&](const auto& defs, std::size_t section, std::size_t type) {
       check_all(defs, section, [type](const auto&) { return type; });
     });
@@ -137,7 +142,7 @@ class Validator {
 
   static bool is_open_ended(std::string_view key) {
     return key == "limit_min" || key == "limit_max" || key == "max_length" || key == "min_angle" ||
-           key == "max_angle" || key == "unit";
+           key == "max_angle" || key == "unit" || key == "offset" || key == "from";
   }
 
   void report_range(const std::string& owner, const Field& row, double value) {
@@ -183,6 +188,7 @@ class Validator {
     collect(m_.rotational_forces);
     collect(m_.force_dummies);
     collect(m_.static_dummies);
+    collect(m_.motions);
     for_each_element_list(m_, [&](const auto& defs, int, int) { collect(defs); });
     std::sort(names.begin(), names.end());
     for (std::size_t i = 1; i < names.size(); ++i) {
@@ -304,6 +310,12 @@ class Validator {
   void check_loops() {
     AssemblyReport report;
     const Model model = build_model(m_, {}, report);
+    for (const AssemblyReport::Row& row : report.held_twice) {
+      add(model.joints[static_cast<std::size_t>(row.joint)].name,
+          fmt::format("the prescribed motions hold what this joint holds: {}", row.what),
+          "fewer prescribed motions than the loop has freedoms");
+    }
+    if (!report.held_twice.empty()) return;
     for (const AssemblyReport::Row& row : report.open) {
       add(model.joints[static_cast<std::size_t>(row.joint)].name,
           fmt::format("the joint cannot be closed: {} is off by {:.3g} after all bodies were moved", row.what,

@@ -3,6 +3,7 @@
 
 #include "multibody/constraint.h"
 #include "multibody/element_law.h"
+#include "multibody/motions/drive_variables.h"
 #include "multibody/observe.h"
 #include "multibody/passes.h"
 
@@ -151,6 +152,7 @@ std::vector<ElementVariable> variables(const Model& model) {
     names.add(element.name + ".torque", torque);
   }
   list_variables(model.elements, names.list());
+  list_drives(model, names.list());
   names.add("mechanics.kinetic_energy", Dimension::energy);
   names.add("mechanics.potential_energy", Dimension::energy);
   std::vector<ElementVariable> all = names.take();
@@ -164,14 +166,21 @@ std::vector<ElementVariable> reaction_variables(const Model& model) {
     names.add_triple(joint.name + ".reaction_force", Dimension::force);
     names.add_triple(joint.name + ".reaction_moment", Dimension::torque);
   }
+  list_drive_forces(model, names.list());
   return names.take();
 }
 
-void read_reactions(std::span<const JointReaction> reactions, std::span<double> values) noexcept {
+void read_reactions(const Model& model, const Workspace& ws, std::span<const double> row_forces,
+                    std::span<const JointReaction> reactions, std::span<double> values) noexcept {
   Values out{{values}};
   for (const JointReaction& reaction : reactions) {
     out.put(reaction.force);
     out.put(reaction.moment);
+  }
+  for (std::size_t k = 0; k < model.drives.size(); ++k) {
+    const double force = drive_force(model, ws, k, row_forces, reactions);
+    out.put(force);
+    out.put(force * ws.drives[k].speed);
   }
 }
 
@@ -211,6 +220,11 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
             row_force_on(model, RowKind::angle, i, row_forces));
   }
   read_variables(model.elements, ws.motion, ws.time, out);
+  for (const MotionValue& value : ws.drives) {
+    out.put(value.position);
+    out.put(value.speed);
+    out.put(value.acceleration);
+  }
   const Energy sum = energy(model, ws);
   out.put(sum.kinetic);
   out.put(sum.potential);

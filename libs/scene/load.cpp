@@ -28,8 +28,8 @@
 namespace slew::scene {
 namespace {
 
-constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies", "joints",   "forces",
-                                                   "dummies",   "shapes", "contacts", "frictions"};
+constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies",   "joints",    "forces", "dummies",
+                                                   "shapes",    "contacts", "frictions", "motions"};
 constexpr std::string_view kHydraulicsSections[] = {"hydraulics", "volumes", "components", "curves"};
 constexpr std::string_view kTypeKey[] = {"type"};
 
@@ -209,6 +209,7 @@ class SceneReader {
     check_problems([&](Problems& errors, Problems& warnings) {
       read_meshes(surroundings_, scene_.mechanics, errors);
       if (errors.empty()) multibody::validate(scene_.mechanics, errors);
+      if (errors.empty()) check_motion_ends(errors);
       if (errors.empty()) {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);
         multibody::find_start_changes(scene_.mechanics, warnings);
@@ -216,6 +217,19 @@ class SceneReader {
       }
     });
     return report_.size() == problems;
+  }
+
+  // a table that refuses to be left lasts as long as the session, where that ends
+  void check_motion_ends(Problems& errors) const {
+    const double duration = scene_.session.duration;
+    for (const multibody::MotionDef& motion : scene_.mechanics.motions) {
+      if (motion.ends != multibody::TableEnds::refused || motion.points.empty()) continue;
+      if (motion.points.back()[0] >= duration) continue;
+      errors.push_back({motion.name + ".points",
+                        fmt::format("the table ends at {} s and refuses to be left, the session lasts {} s",
+                                    motion.points.back()[0], duration),
+                        fmt::format("a last time of at least {} s, or other ends", duration), ""});
+    }
   }
 
   bool read_hydraulics() {

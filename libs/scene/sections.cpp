@@ -6,6 +6,7 @@
 
 #include "multibody/field_tables.h"
 #include "multibody/joint_fields.h"
+#include "multibody/motions/motion_fields.h"
 
 namespace slew::scene {
 namespace {
@@ -153,6 +154,10 @@ void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& m
   }
   collect(refs, table_of("contacts", ""), mechanics.contacts);
   collect(refs, table_of("frictions", ""), mechanics.frictions);
+  for (multibody::MotionDef& motion : mechanics.motions) {
+    const std::size_t type = multibody::motion_type_index(motion);
+    refs.push_back(ref(table_of("motions", multibody::motion_types()[type].name), motion.name, &motion));
+  }
 }
 
 }  // namespace
@@ -169,17 +174,17 @@ const std::vector<SingleTable>& single_tables() {
 }
 
 const std::vector<std::string_view>& element_sections() {
-  static const std::vector<std::string_view> names = {"bodies",     "joints",   "forces",    "dummies",
-                                                      "shapes",     "contacts", "frictions", "volumes",
-                                                      "components", "curves",   "inputs",    "plots"};
+  static const std::vector<std::string_view> names = {"bodies",   "joints",    "forces",  "dummies", "shapes",
+                                                      "contacts", "frictions", "motions", "volumes", "components",
+                                                      "curves",   "inputs",    "plots"};
   return names;
 }
 
 const std::vector<std::string_view>& top_level_keys() {
   static const std::vector<std::string_view> keys = {
-      "scene",   "description", "include", "assets", "session",  "mechanics", "bodies",
-      "joints",  "forces",      "dummies", "shapes", "contacts", "frictions", "hydraulics",
-      "volumes", "components",  "curves",  "inputs", "script",   "recording", "plots"};
+      "scene",      "description", "include", "assets",   "session",   "mechanics", "bodies",     "joints",
+      "forces",     "dummies",     "shapes",  "contacts", "frictions", "motions",   "hydraulics", "volumes",
+      "components", "curves",      "inputs",  "script",   "recording", "plots"};
   return keys;
 }
 

@@ -170,7 +170,7 @@ TEST_P(RandomLoops, StayClosedAndKeepTheirEnergy) {
     for (const Cut& cut : moving.model.cuts) {
       for (const ConstraintRow& row : cut.rows) {
         const RowValue value = evaluate(row, cut, moving.ws.motion[static_cast<std::size_t>(cut.link1)],
-                                        moving.ws.motion[static_cast<std::size_t>(cut.link2)]);
+                                        moving.ws.motion[static_cast<std::size_t>(cut.link2)], moving.ws.drives);
         EXPECT_LT(std::fabs(value.g), 1e-9) << name_of(formulation);
         EXPECT_LT(std::fabs(value.rate), 1e-8) << name_of(formulation);
       }

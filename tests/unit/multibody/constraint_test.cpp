@@ -130,7 +130,7 @@ class Joints : public testing::TestWithParam<Kind> {
 
   [[nodiscard]] std::vector<RowValue> values(const LinkMotion& one, const LinkMotion& two) const {
     std::vector<RowValue> row(constraint.rows.size());
-    evaluate(constraint, one, two, row);
+    evaluate(constraint, one, two, {}, row);
     return row;
   }
   [[nodiscard]] std::vector<RowValue> values() const { return values(link1, link2); }

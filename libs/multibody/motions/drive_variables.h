@@ -1,0 +1,17 @@
+// Names of what a prescribed motion shows. Internal to the library.
+#pragma once
+
+#include <vector>
+
+#include "core/element_variable.h"
+#include "multibody/model.h"
+
+namespace slew::multibody {
+
+// "Motion.position", "Motion.velocity", "Motion.acceleration": what the law says.
+void list_drives(const Model& model, std::vector<ElementVariable>& variables);
+
+// "Motion.torque" or "Motion.force", "Motion.power".
+void list_drive_forces(const Model& model, std::vector<ElementVariable>& variables);
+
+}  // namespace slew::multibody

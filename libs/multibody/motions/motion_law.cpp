@@ -1,0 +1,80 @@
+#include "multibody/motions/motion_law.h"
+
+#include <cmath>
+
+#include "math/rotation.h"
+
+namespace slew::multibody {
+namespace {
+
+constexpr double kTurn = 2 * 3.14159265358979323846;  // rad
+
+MotionValue harmonic(const MotionLaw& law, double time) noexcept {
+  // whole turns are taken out before they cost digits
+  const double turns = law.frequency * time;
+  const auto [s, c] = math::sin_cos(kTurn * (turns - std::floor(turns)) + law.phase);
+  const double omega = kTurn * law.frequency;
+  return {law.offset + law.amplitude * s, law.amplitude * omega * c, -law.amplitude * omega * omega * s};
+}
+
+MotionValue ramp(const MotionLaw& law, double time) noexcept {
+  const double tau = (time - law.start) / law.duration;
+  if (tau <= 0) return {law.from, 0, 0};
+  if (tau >= 1) return {law.to, 0, 0};
+  const double way = law.to - law.from, rest = 1 - tau;
+  return {law.from + way * tau * tau * tau * (10 + tau * (6 * tau - 15)),
+          way * 30 * tau * tau * rest * rest / law.duration,
+          way * 60 * tau * rest * (rest - tau) / (law.duration * law.duration)};
+}
+
+}  // namespace
+
+MotionValue evaluate(const MotionLaw& law, double time) noexcept {
+  switch (law.shape) {
+    case MotionShape::table: {
+      const math::SplineValue value = math::value_at(law.spline, time);
+      return {value.y, value.slope, value.second};
+    }
+    case MotionShape::harmonic:
+      return harmonic(law, time);
+    case MotionShape::ramp:
+      return ramp(law, time);
+    case MotionShape::speed:
+      break;
+  }
+  MotionValue value{law.first + law.speed * time, law.speed, 0};
+  if (law.spline.empty()) return value;
+  const math::SplineValue more = math::value_at(law.spline, time);
+  value.position += more.integral;
+  value.speed += more.y;
+  value.acceleration = more.slope;
+  return value;
+}
+
+bool holds_at(const MotionLaw& law, double time) noexcept {
+  if (!law.is_refused_outside || law.spline.empty()) return true;
+  return time >= law.spline.points.front().x && time <= law.spline.points.back().x;
+}
+
+MotionLaw motion_law(const MotionDef& def, double start) {
+  MotionLaw law;
+  law.shape = def.shape;
+  law.amplitude = def.amplitude;
+  law.frequency = def.frequency;
+  law.phase = def.phase;
+  law.offset = def.offset != kFromStart ? def.offset : start - def.amplitude * math::sin_cos(def.phase).sin;
+  law.from = def.from != kFromStart ? def.from : start;
+  law.to = def.to;
+  law.start = def.start;
+  law.duration = def.duration;
+  law.speed = def.speed;
+  law.is_refused_outside = def.ends == TableEnds::refused;
+  if (!def.points.empty()) {
+    const auto ends = def.ends == TableEnds::hold ? math::SplineEnds::level : math::SplineEnds::natural;
+    law.spline = math::cubic_spline(def.points, ends);
+  }
+  law.first = start - (law.spline.empty() ? 0.0 : math::value_at(law.spline, 0).integral);
+  return law;
+}
+
+}  // namespace slew::multibody

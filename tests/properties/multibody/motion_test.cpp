@@ -1,0 +1,178 @@
+// Prescribed motion on random trees, against the assembled equations of motion (assembled.h) with the prescribed u'
+// put in: M_ff u'_f = Q_f - M_fd p'' for the free speeds, and the drives' forces from the rows that are left.
+#include <gtest/gtest.h>
+
+#include "multibody/dynamics.h"
+#include "multibody/joint_gauge.h"
+#include "multibody/motions/build_drives.h"
+#include "tests/properties/multibody/assembled.h"
+#include "tests/properties/multibody/random_tree.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace {
+
+using namespace testing;
+
+// relative to the largest entry
+constexpr double kTolerance = 1e-9;
+constexpr Formulation kFormulations[] = {Formulation::recursive, Formulation::lagrange, Formulation::augmented,
+                                         Formulation::penalty};
+
+Vector to_vector(std::span<const double> values) {
+  Vector v(static_cast<Eigen::Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) v[static_cast<Eigen::Index>(i)] = values[i];
+  return v;
+}
+
+Real difference(const Vector& a, const Vector& b) {
+  return b.size() == 0 ? Real(0) : (a - b).cwiseAbs().maxCoeff() / (1 + b.cwiseAbs().maxCoeff());
+}
+
+MotionDef random_motion(std::mt19937& random, const JointDef& joint, MotionKind kind, int axis) {
+  std::uniform_real_distribution<double> number(0.2, 1);
+  return {.name = joint.name + (kind == MotionKind::rotation ? "_Turn" : "_Slide") + std::to_string(axis),
+          .kind = kind,
+          .shape = MotionShape::harmonic,
+          .joint = joint.name,
+          .axis = axis,
+          .amplitude = 0.3 * number(random),
+          .frequency = number(random),
+          .phase = number(random)};
+}
+
+// every other coordinate of the tree's joints follows a sine
+RandomTree driven_tree(unsigned seed) {
+  RandomTree tree = random_tree(seed, {.bodies = 1 + static_cast<int>(seed) % 9, .two_coordinates = true});
+  std::mt19937 random(seed + 31);
+  for (JointDef& joint : tree.def.joints) {
+    for (const MotionKind kind : {MotionKind::rotation, MotionKind::translation}) {
+      for (const int axis : {1, 2}) {
+        MotionDef motion = random_motion(random, joint, kind, axis);
+        const int number = kind == MotionKind::translation && axis == 2 ? -1 : driven_coordinate(motion, joint.type);
+        if (number < 0 || std::uniform_int_distribution<int>(0, 1)(random) == 0) continue;
+        (number == 0 ? joint.initial_velocity : joint.initial_velocity_2) = 0;
+        tree.def.motions.push_back(motion);
+      }
+    }
+  }
+  return tree;
+}
+
+class DrivenTrees : public ::testing::TestWithParam<unsigned> {
+ protected:
+  static constexpr double kTime = 0.7;  // s
+  RandomTree tree = driven_tree(GetParam());
+
+  // anywhere, but where the laws say
+  static State state_at(const Mechanism& mechanism, unsigned seed) {
+    State state = random_state(seed, mechanism.model);
+    state.time = kTime;
+    for (const Drive& drive : mechanism.model.drives) {
+      const MotionValue value = evaluate(drive.law, kTime);
+      state.q[static_cast<std::size_t>(drive.q)] = value.position;
+      state.u[static_cast<std::size_t>(drive.u)] = value.speed;
+    }
+    return state;
+  }
+};
+
+// u' of all speeds, and the forces that the drives need, from the assembled equations
+struct Expected {
+  Vector udot, forces;
+  Matrix free_mobility;  // M_ff^-1, zero along prescribed speeds
+};
+
+Expected solve(const Assembled& reference, const Model& model, const Vector& q, const Vector& u) {
+  const Matrix M = reference.mass_matrix(q);
+  const Vector Q = reference.forces(q, u);
+  std::vector<Eigen::Index> free;
+  Vector known = Vector::Zero(u.size());
+  std::vector<bool> is_driven(static_cast<std::size_t>(u.size()), false);
+  for (const Drive& drive : model.drives) {
+    is_driven[static_cast<std::size_t>(drive.u)] = true;
+    known[drive.u] = evaluate(drive.law, 0.7).acceleration;
+  }
+  for (Eigen::Index j = 0; j < u.size(); ++j) {
+    if (!is_driven[static_cast<std::size_t>(j)]) free.push_back(j);
+  }
+  Expected expected{known, Vector(static_cast<Eigen::Index>(model.drives.size())), Matrix::Zero(u.size(), u.size())};
+  if (!free.empty()) {
+    const Matrix inverse = Matrix(M(free, free)).inverse();
+    expected.udot(free) = inverse * Vector(Q - M * known)(free);
+    expected.free_mobility(free, free) = inverse;
+  }
+  const Vector needed = M * expected.udot - Q;
+  for (std::size_t k = 0; k < model.drives.size(); ++k) {
+    expected.forces[static_cast<Eigen::Index>(k)] = needed[model.drives[k].u];
+  }
+  return expected;
+}
+
+TEST_P(DrivenTrees, AccelerateAndLoadTheirDrivesAsTheAssembledEquationsSay) {
+  Mechanism mechanism(tree.def, tree.rows);
+  if (mechanism.model.speed_count() == 0) GTEST_SKIP() << "all joints are fixed";
+  const Assembled reference(tree.def, mechanism.model);
+  const State state = state_at(mechanism, GetParam());
+  const Expected expected = solve(reference, mechanism.model, to_vector(state.q), to_vector(state.u));
+  evaluate(mechanism.model, state, mechanism.ws);
+  std::vector<double> udot(state.u.size());
+  accelerations(mechanism.model, mechanism.ws, {}, udot);
+  EXPECT_LT(difference(to_vector(udot), expected.udot), kTolerance);
+  std::vector<JointReaction> reactions(mechanism.model.joints.size());
+  joint_reactions(mechanism.model, state, mechanism.ws, {}, reactions);
+  std::vector<double> forces;
+  for (std::size_t k = 0; k < mechanism.model.drives.size(); ++k) {
+    forces.push_back(drive_force(mechanism.model, mechanism.ws, k, {}, reactions));
+  }
+  EXPECT_LT(difference(to_vector(forces), expected.forces), kTolerance);
+}
+
+TEST_P(DrivenTrees, ShowTheirPortsWhatIsLeftToMove) {
+  const auto rows = static_cast<Eigen::Index>(tree.rows.size());
+  if (rows == 0) GTEST_SKIP() << "nothing to act on";
+  for (const Formulation formulation : kFormulations) {
+    tree.def.formulation = formulation;
+    Mechanism mechanism(tree.def, tree.rows);
+    const Assembled reference(tree.def, mechanism.model);
+    State state = state_at(mechanism, GetParam());
+    const Vector q = to_vector(state.q), u = to_vector(state.u);
+    const Expected expected = solve(reference, mechanism.model, q, u);
+    Matrix J(rows, u.size());
+    Vector a_free(rows);
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      const std::string& name = tree.rows[static_cast<std::size_t>(k)];
+      J.row(k) = reference.row_jacobian(name, q);
+      a_free[k] = J.row(k).dot(expected.udot) + reference.row_bias(name, q, u);
+    }
+    const Matrix W = J * expected.free_mobility * J.transpose();
+    Dynamics dynamics(formulation, mechanism.model, state);
+    dynamics.evaluate(mechanism.model, state, mechanism.ws);
+    const double tolerance = formulation == Formulation::penalty ? 1e-4 : 1e-8;
+    EXPECT_LT(difference(to_vector(row_free_accelerations(mechanism.ws)), a_free), tolerance) << name_of(formulation);
+    EXPECT_LT(difference(to_vector(row_mobility(mechanism.ws)), Eigen::Map<const Vector>(W.data(), W.size())),
+              tolerance)
+        << name_of(formulation);
+  }
+}
+
+TEST_P(DrivenTrees, MoveAlikeInEveryFormulation) {
+  std::vector<double> by_recursion;
+  for (const Formulation formulation : kFormulations) {
+    tree.def.formulation = formulation;
+    Formulated moving(tree.def);
+    moving.run(0.05, 5e-4);
+    const double tolerance = formulation == Formulation::penalty || formulation == Formulation::augmented ? 2e-3 : 1e-7;
+    if (by_recursion.empty()) by_recursion = moving.state.u;
+    EXPECT_LT(difference(to_vector(moving.state.u), to_vector(by_recursion)), tolerance) << name_of(formulation);
+    moving.dynamics.observe(moving.model, moving.state, moving.ws);
+    const JointGap gap = JointGauge(moving.model).measure(moving.ws);
+    EXPECT_LT(gap.position, formulation == Formulation::penalty ? 1e-4 : 1e-8) << name_of(formulation);
+    EXPECT_LT(gap.rate, formulation == Formulation::penalty ? 1e-2 : 1e-7) << name_of(formulation);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, DrivenTrees, ::testing::Range(1u, 25u));
+
+}  // namespace
+}  // namespace slew::multibody

@@ -1,0 +1,302 @@
+// Prescribed motion against closed forms, under every formulation and integrator.
+//
+// Driven pendulum: T = J q'' + m g l sin q. Arm with a bead that slides on it, turned at constant speed in the plane of
+// gravity: r'' = w^2 r - g sin(w t), so r = A e^(w t) + B e^(-w t) + g/(2 w^2) sin(w t), and the arm takes
+// T = 2 m w r r' + (m r + M l/2) g cos(w t). Slider-crank: the slider's way from the crank's angle by Pythagoras.
+// Tolerances: positions that are prescribed 1e-9 (penalty: what its rows leave), the others by the order of the rule.
+#include <array>
+#include <tuple>
+
+#include "multibody/joint_gauge.h"
+#include "tests/validation/multibody/loop_defs.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace {
+
+using testing::Formulated;
+using testing::name_of;
+
+constexpr Formulation kFormulations[] = {Formulation::recursive, Formulation::lagrange, Formulation::augmented,
+                                         Formulation::penalty};
+constexpr double kGravity = 9.81;
+
+// forces of all motions at the present state, in the order of the scene
+std::vector<double> drive_forces(Formulated& m) {
+  std::vector<JointReaction> reactions(m.model.joints.size());
+  joint_reactions(m.model, m.state, m.ws, {}, reactions);
+  std::vector<double> forces;
+  for (std::size_t k = 0; k < m.model.drives.size(); ++k) {
+    forces.push_back(drive_force(m.model, m.ws, k, {}, reactions));
+  }
+  m.see();
+  return forces;
+}
+
+MotionDef harmonic(const std::string& joint, double amplitude, double frequency, double phase) {
+  return {.name = joint + "_Motion",
+          .shape = MotionShape::harmonic,
+          .joint = joint,
+          .amplitude = amplitude,
+          .frequency = frequency,
+          .phase = phase};
+}
+
+MotionDef turning(const std::string& joint, double speed) {
+  return {.name = joint + "_Motion", .shape = MotionShape::speed, .joint = joint, .speed = speed};
+}
+
+// hangs along -y, and turns about z
+MechanicsDef driven_pendulum() {
+  MechanicsDef def;
+  def.bodies = {{.name = "Rod", .mass = 2, .center_of_mass = {0, -0.4, 0}, .inertia = {0.1, 0.01, 0.1}}};
+  def.joints = {{.name = "Pivot", .body2 = "Rod"}};
+  def.motions = {harmonic("Pivot", 0.7, 0.8, 0.3)};
+  def.motions[0].offset = -0.7 * std::sin(0.3);
+  return def;
+}
+
+class Driven : public ::testing::TestWithParam<Formulation> {};
+
+TEST_P(Driven, PendulumTakesTheTorqueOfItsEquationOfMotion) {
+  MechanicsDef def = driven_pendulum();
+  def.formulation = GetParam();
+  Formulated pendulum(def);
+  const double position_tolerance = GetParam() == Formulation::penalty ? 1e-7 : 1e-10;
+  const double J = 0.1 + 2 * 0.4 * 0.4, omega = 2 * M_PI * 0.8;
+  for (int i = 0; i < 20; ++i) {
+    pendulum.run(0.05, 1e-3);
+    const double angle = omega * pendulum.state.time + 0.3;
+    const double q = 0.7 * (std::sin(angle) - std::sin(0.3));
+    EXPECT_NEAR(pendulum.value("Pivot.position"), q, position_tolerance);
+    EXPECT_NEAR(pendulum.value("Pivot.velocity"), 0.7 * omega * std::cos(angle), 100 * position_tolerance);
+    const double T = -J * 0.7 * omega * omega * std::sin(angle) + 2 * kGravity * 0.4 * std::sin(q);
+    EXPECT_NEAR(drive_forces(pendulum)[0], T, 1e-4 * (GetParam() == Formulation::penalty ? 1 : 1e-4));
+  }
+}
+
+TEST_P(Driven, PendulumGainsTheWorkOfItsDrive) {
+  MechanicsDef def = driven_pendulum();
+  def.formulation = GetParam();
+  Formulated pendulum(def);
+  const double before = pendulum.total_energy();
+  // Simpson's rule over the drive's power
+  const double h = 1e-3;
+  const auto power = [&] { return drive_forces(pendulum)[0] * pendulum.ws.drives[0].speed; };
+  double work = power() * h / 3;
+  const int steps = 700;
+  for (int i = 1; i <= steps; ++i) {
+    pendulum.run(h, h);
+    work += power() * (i == steps ? 1 : i % 2 == 1 ? 4 : 2) * h / 3;
+  }
+  EXPECT_GT(std::fabs(work), 0.5);
+  EXPECT_NEAR(pendulum.total_energy() - before, work, 1e-6 * (GetParam() == Formulation::penalty ? 10 : 1e-2));
+}
+
+// arm along x, turned about z; a bead slides along it
+MechanicsDef arm_with_bead(double speed) {
+  MechanicsDef def;
+  def.bodies = {{.name = "Arm", .mass = 3, .center_of_mass = {0.5, 0, 0}, .inertia = {0, 0.25, 0.25}},
+                {.name = "Bead", .position = {0.2, 0, 0}, .mass = 0.5, .inertia = {1e-3, 1e-3, 1e-3}}};
+  const Triple along_x = {0, M_PI / 2, 0};
+  def.joints = {{.name = "Pivot", .body2 = "Arm"},
+                {.name = "Slide",
+                 .type = JointType::prismatic,
+                 .body1 = "Arm",
+                 .orientation1 = along_x,
+                 .body2 = "Bead",
+                 .orientation2 = along_x}};
+  def.motions = {turning("Pivot", speed)};
+  return def;
+}
+
+struct BeadMotion {
+  double r, v;
+};
+
+BeadMotion bead_at(double t, double w) {
+  // r(0) = 0.2, r'(0) = 0
+  const double c = kGravity / (2 * w * w), A = 0.5 * (0.2 - c), B = 0.5 * (0.2 + c);
+  return {A * std::exp(w * t) + B * std::exp(-w * t) + c * std::sin(w * t),
+          w * (A * std::exp(w * t) - B * std::exp(-w * t) + c * std::cos(w * t))};
+}
+
+TEST_P(Driven, ArmThrowsItsBeadOutAndFeelsCoriolis) {
+  constexpr double w = 4;
+  MechanicsDef def = arm_with_bead(w);
+  def.formulation = GetParam();
+  Formulated arm(def);
+  const double tolerance = GetParam() == Formulation::recursive || GetParam() == Formulation::lagrange ? 1e-8 : 2e-5;
+  for (int i = 0; i < 8; ++i) {
+    arm.run(0.05, 5e-4);
+    const double t = arm.state.time;
+    const auto [r, v] = bead_at(t, w);
+    EXPECT_NEAR(arm.value("Slide.position"), r, tolerance);
+    EXPECT_NEAR(arm.value("Slide.velocity"), v, 10 * tolerance);
+    EXPECT_NEAR(arm.value("Pivot.position"), w * t, 1e-7);
+    const double T = 2 * 0.5 * w * r * v + (0.5 * r + 3 * 0.5) * kGravity * std::cos(w * t);
+    EXPECT_NEAR(drive_forces(arm)[0], T, 100 * tolerance);
+  }
+}
+
+// x of the slider for an angle of the crank, and its rate for a speed of the crank
+std::array<double, 2> slider_at(double angle, double speed) {
+  // the crank's pin turns about x from the top; the rod is 0.3 m long
+  const double y = 0.1 - 0.08 * std::sin(angle), z = 0.12 + 0.08 * std::cos(angle);
+  const double dy = -0.08 * std::cos(angle) * speed, dz = -0.08 * std::sin(angle) * speed;
+  const double x = std::sqrt(0.09 - y * y - z * z);
+  return {x, -(y * dy + z * dz) / x};
+}
+
+TEST_P(Driven, CrankOfASpatialLoopMovesItsSliderAsGeometrySays) {
+  MechanicsDef def = testing::slider_crank();
+  def.formulation = GetParam();
+  for (JointDef& joint : def.joints) joint.initial_velocity = joint.initial_velocity_2 = 0;
+  const std::string crank = def.joints[0].name;
+  def.motions = {turning(crank, 6)};
+  Formulated machine(def);
+  EXPECT_EQ(machine.model.degrees_of_freedom(), 0);
+  EXPECT_NEAR(machine.pose("Slider").velocity[0], slider_at(0, 6)[1], 1e-10) << "the start speeds follow the drive";
+  const double tolerance = GetParam() == Formulation::penalty ? 1e-6 : 1e-9;
+  const JointGauge gauge(machine.model);
+  for (int i = 0; i < 25; ++i) {
+    machine.run(0.1, 1e-3);
+    const auto [x, v] = slider_at(6 * machine.state.time, 6);
+    EXPECT_NEAR(machine.pose("Slider").position[0], x, tolerance);
+    EXPECT_NEAR(machine.pose("Slider").velocity[0], v, 100 * tolerance);
+    machine.dynamics.observe(machine.model, machine.state, machine.ws);
+    EXPECT_LT(gauge.measure(machine.ws).position, tolerance);
+  }
+}
+
+TEST_P(Driven, JointThatClosesALoopMovesTheOthers) {
+  // crank 0.1 m, coupler 0.3 m, slider along x; friction on all, so that the last listed joint is cut
+  MechanicsDef def;
+  def.formulation = GetParam();
+  const double angle = 0.4, x0 = 0.1 * std::cos(angle) + std::sqrt(0.09 - 0.01 * std::pow(std::sin(angle), 2));
+  const double rod = std::asin(0.1 * std::sin(angle) / 0.3);
+  def.bodies = {{.name = "Crank", .orientation = {angle, 0, 0}, .mass = 1, .inertia = {0, 0.01, 0.01}},
+                {.name = "Rod",
+                 .position = {0.1 * std::cos(angle), 0.1 * std::sin(angle), 0},
+                 .orientation = {-rod, 0, 0},
+                 .mass = 1,
+                 .center_of_mass = {0.15, 0, 0},
+                 .inertia = {1e-3, 0.01, 0.01}},
+                {.name = "Slider", .position = {x0, 0, 0}, .mass = 2, .inertia = {1e-3, 1e-3, 1e-3}}};
+  const Triple along_x = {0, M_PI / 2, 0};
+  def.joints = {{.name = "Main", .body2 = "Crank"},
+                {.name = "Pin", .body1 = "Crank", .point1 = {0.1, 0, 0}, .body2 = "Rod"},
+                {.name = "Wrist", .body1 = "Rod", .point1 = {0.3, 0, 0}, .body2 = "Slider"},
+                {.name = "Slot",
+                 .type = JointType::prismatic,
+                 .orientation1 = along_x,
+                 .body2 = "Slider",
+                 .orientation2 = along_x}};
+  for (JointDef& joint : def.joints) joint.viscous_friction = 1e-9;
+  def.motions = {{.name = "Push",
+                  .kind = MotionKind::translation,
+                  .shape = MotionShape::ramp,
+                  .joint = "Slot",
+                  .to = 0.33,
+                  .start = 0.1,
+                  .duration = 0.4}};
+  Formulated machine(def);
+  ASSERT_EQ(machine.model.joints[3].cut, 0);
+  const double tolerance = GetParam() == Formulation::penalty ? 1e-6 : 1e-9;
+  for (int i = 0; i < 6; ++i) {
+    machine.run(0.1, 1e-3);
+    const double x = machine.value("Push.position");
+    EXPECT_NEAR(machine.pose("Slider").position[0], x, tolerance);
+    // the triangle of crank, rod and slider
+    const double cosine = (0.01 + x * x - 0.09) / (2 * 0.1 * x);
+    EXPECT_NEAR(std::cos(machine.value("Main.position")), cosine, 10 * tolerance);
+  }
+  EXPECT_NEAR(machine.pose("Slider").position[0], 0.33, tolerance);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, Driven, ::testing::ValuesIn(kFormulations),
+                         [](const auto& test) { return name_of(test.param); });
+
+// ---- integrators ----------------------------------------------------------------------------------------------
+
+class DrivenBy : public ::testing::TestWithParam<std::tuple<Formulation, Integrator>> {};
+
+TEST_P(DrivenBy, ArmFollowsItsClosedFormWithTheRulesOrder) {
+  constexpr double w = 4;
+  const auto error_at = [&](double h) {
+    MechanicsDef def = arm_with_bead(w);
+    std::tie(def.formulation, def.integrator) = GetParam();
+    Formulated arm(def);
+    arm.run(0.4, h);
+    EXPECT_NEAR(arm.value("Pivot.position"), w * 0.4, 1e-9) << h;
+    EXPECT_NEAR(arm.value("Pivot.velocity"), w, 1e-9) << h;
+    return std::fabs(arm.value("Slide.position") - bead_at(0.4, w).r);
+  };
+  const double coarse = error_at(4e-3), fine = error_at(2e-3);
+  const double order = std::get<1>(GetParam()) == Integrator::semi_implicit_euler ? 1 : 2;
+  EXPECT_LT(coarse, order == 1 ? 2e-2 : 1e-3);
+  EXPECT_NEAR(std::log2(coarse / fine), order, 0.25);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rules, DrivenBy,
+                         ::testing::Combine(::testing::Values(Formulation::recursive, Formulation::lagrange),
+                                            ::testing::Values(Integrator::semi_implicit_euler, Integrator::trapezoidal,
+                                                              Integrator::generalised_alpha, Integrator::sdirk2)),
+                         [](const auto& test) {
+                           return name_of(std::get<0>(test.param)) + "_" + name_of(std::get<1>(test.param));
+                         });
+
+TEST(DrivenArm, ConvergesWithFourthOrderInRungeKutta) {
+  const auto error_at = [](double h) {
+    Formulated arm(arm_with_bead(4));
+    arm.run(0.4, h);
+    return std::fabs(arm.value("Slide.position") - bead_at(0.4, 4).r);
+  };
+  EXPECT_NEAR(std::log2(error_at(0.02) / error_at(0.01)), 4, 0.3);
+}
+
+// ---- time -----------------------------------------------------------------------------------------------------
+
+TEST(PrescribedMotion, KeepsItsLawAfterADayOfSession) {
+  for (const Formulation formulation : kFormulations) {
+    MechanicsDef def = driven_pendulum();
+    def.formulation = formulation;
+    Formulated late(def);
+    // a day is a whole number of the harmonic's periods (0.8 Hz)
+    constexpr double kDay = 86400;
+    late.state.time = kDay;
+    late.run(0.25, 1e-3);
+    Formulated early(def);
+    early.run(0.25, 1e-3);
+    EXPECT_NEAR(late.value("Pivot.position"), early.value("Pivot.position"), 1e-9) << name_of(formulation);
+    EXPECT_NEAR(drive_forces(late)[0], drive_forces(early)[0], 1e-6) << name_of(formulation);
+  }
+}
+
+TEST(PrescribedMotion, GivesTheSameBitsWhenRunAgain) {
+  for (const Formulation formulation : kFormulations) {
+    const auto hash = [&] {
+      MechanicsDef def = arm_with_bead(4);
+      def.formulation = formulation;
+      Formulated arm(def);
+      arm.run(0.2, 1e-3);
+      StateHash sum;
+      add_to_hash(arm.model, arm.state, sum);
+      arm.dynamics.add_to_hash(sum);
+      return sum.digest();
+    };
+    EXPECT_EQ(hash(), hash()) << name_of(formulation);
+  }
+}
+
+TEST(PrescribedMotion, FailsWhereItsTableRefusesToBeLeft) {
+  MechanicsDef def = driven_pendulum();
+  def.motions[0] = {.name = "Swing", .joint = "Pivot", .points = {{0, 0}, {0.1, 0.2}}, .ends = TableEnds::refused};
+  Formulated pendulum(def);
+  pendulum.run(0.1, 0.01);
+  pendulum.dynamics.evaluate(pendulum.model, pendulum.state, pendulum.ws);
+  EXPECT_FALSE(pendulum.dynamics.advance(pendulum.model, pendulum.state, pendulum.ws, 0.01, {}, {}));
+}
+
+}  // namespace
+}  // namespace slew::multibody
