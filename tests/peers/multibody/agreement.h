@@ -19,15 +19,22 @@ namespace slew::multibody::testing {
 
 // The crane of scenes/truck_crane.yaml without its contacts, or a random tree
 // (tests/properties/multibody/random_tree.h), at a random state.
+// With loops: the crane with its cylinders as two bodies each (tests/validation/multibody/cylinder_bodies.h), a random
+// mechanism (tests/properties/multibody/random_loops.h), or another scene, shortly after a start with random speeds
+// that keep the loops closed.
 struct Case {
-  enum class Kind { truck_crane, random_tree } kind = Kind::random_tree;
+  enum class Kind { truck_crane, random_tree, crane_cylinders, random_loops, scene } kind = Kind::random_tree;
   unsigned seed = 0;
+  std::string scene{};  // in scenes/, without .yaml
 };
 [[nodiscard]] std::vector<Case> cases();
+[[nodiscard]] std::vector<Case> loop_cases();
 [[nodiscard]] std::string case_name(const ::testing::TestParamInfo<Case>& info);
 void PrintTo(const Case& chosen, std::ostream* out);
 
 enum class ForceDummies { with, without };
+
+[[nodiscard]] bool has_loops(const Case& chosen);
 
 struct Sample {
   Sample(const Case& chosen, ForceDummies dummies);
@@ -53,15 +60,24 @@ void grow(double& largest, double x);
 
 [[nodiscard]] Motions at_rest(Motions motions);
 
-// Largest difference over the bodies, of angular and of linear quantities relative to the largest of their kind.
+// Largest difference over the bodies, relative to the largest quantity of all with 1 m between angular and linear ones,
+// and at least to one SI unit.
 [[nodiscard]] double velocity_difference(const Motions& a, const Motions& b);
 [[nodiscard]] double acceleration_difference(const Motions& a, const Motions& b);
 // Likewise of the joints' forces and moments.
 [[nodiscard]] double reaction_difference(const std::vector<JointReaction>& a, const std::vector<JointReaction>& b);
+// Whether joints hold more than they need, so that their reactions are not the only ones possible.
+[[nodiscard]] bool has_redundant_rows(const Model& model);
+// What two sets of joint reactions put on the bodies: the largest difference of the sums over a body's joints, as
+// above.
+[[nodiscard]] double load_difference(const MechanicsDef& def, const Motions& motions,
+                                     const std::vector<JointReaction>& a, const std::vector<JointReaction>& b);
+// Sum of squares of all forces [N] and moments [N m].
+[[nodiscard]] double square_of(const std::vector<JointReaction>& reactions);
 // Largest difference over the bodies [rad and m].
 [[nodiscard]] double pose_difference(const Motions& a, const Motions& b);
 
-// Rows: x [rad and m]; v and a relative to the largest of the same kind of coordinate; W_kl to sqrt(W_kk W_ll).
+// Rows: x [rad and m]; v and a relative to the largest, as above; W_kl to sqrt(W_kk W_ll).
 struct RowDifference {
   double x = 0, v = 0, a = 0, W = 0;
 };

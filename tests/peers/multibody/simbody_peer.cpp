@@ -1,47 +1,15 @@
 #include "tests/peers/multibody/simbody_peer.h"
 
-#include <stdexcept>
 #include <vector>
 
-#include "multibody/topology.h"
 #include "tests/peers/multibody/def_laws.h"
-#include "tests/peers/multibody/simbody_headers.h"
+#include "tests/peers/multibody/simbody_mechanism.h"
 
 namespace slew::multibody::testing {
-namespace {
 
 using math::Mat3;
 
-SimTK::Vec3 to_peer(math::Vec3 a) {
-  return {a[0], a[1], a[2]};
-}
-
-math::Vec3 from_peer(const SimTK::Vec3& a) {
-  return {a[0], a[1], a[2]};
-}
-
-SimTK::Transform to_peer(const Mat3& R, math::Vec3 p) {
-  // the constructor that takes the matrix as it is
-  return {SimTK::Rotation(SimTK::Mat33(to_peer(R.c[0]), to_peer(R.c[1]), to_peer(R.c[2])), true), to_peer(p)};
-}
-
-Mat3 from_peer(const SimTK::Rotation& R) {
-  return {from_peer(SimTK::Vec3(R.asMat33().col(0))), from_peer(SimTK::Vec3(R.asMat33().col(1))),
-          from_peer(SimTK::Vec3(R.asMat33().col(2)))};
-}
-
-SimTK::Body::Rigid rigid_body(double mass, math::Vec3 center, const Mat3& I) {
-  const SimTK::Inertia central(I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2));
-  return SimTK::Body::Rigid(
-      SimTK::MassProperties(mass, to_peer(center), central.shiftFromMassCenter(to_peer(center), mass)));
-}
-
-// axes in another order: a slider moves along x, a joint's coordinate is along z
-const Mat3 kAlongZ = {math::Vec3(0, 0, 1), math::Vec3(1, 0, 0), math::Vec3(0, 1, 0)};
-
-}  // namespace
-
-struct SimbodyPeer::System {
+struct SimbodyPeer::System : SimbodyMechanism {
   // a cylinder or piston: at its end's point, axis through the other end's
   struct Dummy {
     SimTK::MobilizedBodyIndex index;
@@ -69,48 +37,12 @@ struct SimbodyPeer::System {
     const System& system_;
   };
 
-  explicit System(const MechanicsDef& mechanics)
-      : def(mechanics), matter(system), forces(system), wrenches(forces, matter) {
-    SimTK::Force::UniformGravity(forces, matter, to_peer(math::Vec3(def.gravity)));
+  explicit System(const MechanicsDef& mechanics) : SimbodyMechanism(mechanics), wrenches(forces, matter) {
     SimTK::Force::Custom(forces, new Elements(*this));  // the system owns it
-    bodies.resize(def.bodies.size() + 1);
-    bodies[0] = matter.Ground().getMobilizedBodyIndex();
-    Problems problems;
-    edges = find_tree(def, problems);
-    for (const TreeEdge& edge : edges) add_body(edge);
     for (const StaticDummyDef& dummy : def.static_dummies) add_static_dummy(dummy);
     for (const ForceDummyDef& dummy : def.force_dummies) add_force_dummy(dummy);
     state = system.realizeTopology();
     system.realize(state, SimTK::Stage::Instance);
-  }
-
-  SimTK::MobilizedBody& mobilized(std::size_t body) { return matter.updMobilizedBody(bodies[body]); }
-
-  void add_body(const TreeEdge& edge) {
-    const JointDef& joint = def.joints[static_cast<std::size_t>(edge.joint)];
-    const auto child = static_cast<std::size_t>(edge.child);
-    const BodyDef& body = def.bodies[child - 1];
-    const SimTK::Body::Rigid rigid = rigid_body(body.mass, math::Vec3(body.center_of_mass), central_inertia(body));
-    const Mat3 turn = joint.type == JointType::prismatic ? kAlongZ : Mat3::identity();
-    const Frame inner = edge.is_reversed ? frame2(joint) : frame1(joint);
-    const Frame outer = edge.is_reversed ? frame1(joint) : frame2(joint);
-    const SimTK::Transform F = to_peer(inner.R * turn, inner.p), M = to_peer(outer.R * turn, outer.p);
-    SimTK::MobilizedBody& parent = mobilized(static_cast<std::size_t>(edge.parent));
-    const auto add = [&](const SimTK::MobilizedBody& mobilizer) { bodies[child] = mobilizer.getMobilizedBodyIndex(); };
-    switch (joint.type) {
-      case JointType::revolute:
-        return add(SimTK::MobilizedBody::Pin(parent, F, rigid, M));
-      case JointType::prismatic:
-        return add(SimTK::MobilizedBody::Slider(parent, F, rigid, M));
-      case JointType::spherical:
-        return add(SimTK::MobilizedBody::Ball(parent, F, rigid, M));
-      case JointType::fixed:
-        return add(SimTK::MobilizedBody::Weld(parent, F, rigid, M));
-      case JointType::floating:
-        return add(SimTK::MobilizedBody::Free(parent, F, rigid, M));
-      default:
-        throw std::logic_error("the tree has no such joint");
-    }
   }
 
   void add_static_dummy(const StaticDummyDef& dummy) {
@@ -161,14 +93,28 @@ struct SimbodyPeer::System {
     return list;
   }
 
-  MechanicsDef def;
-  SimTK::MultibodySystem system;
-  SimTK::SimbodyMatterSubsystem matter;
-  SimTK::GeneralForceSubsystem forces;
+  // the constraints' forces on body 1; Simbody's have the opposite sign of applied ones
+  [[nodiscard]] JointReaction cut_reaction(const CutJoint& cut, const Motions& motions) const {
+    const JointDef& joint = def.joints[cut.joint];
+    const std::size_t body1 = body_number(def, joint.body1);
+    const math::Vec3 P2 = motion_of_point(motions[body_number(def, joint.body2)], frame2(joint).p).p;
+    math::Vec3 f, n;
+    for (const SimTK::ConstraintIndex index : cut.constraints) {
+      const SimTK::Constraint& constraint = matter.getConstraint(index);
+      const SimTK::Vector_<SimTK::SpatialVec> on_bodies = constraint.getConstrainedBodyForcesAsVector(state);
+      for (SimTK::ConstrainedBodyIndex b(0); b < constraint.getNumConstrainedBodies(); ++b) {
+        const SimTK::MobilizedBody& body = constraint.getMobilizedBodyFromConstrainedBody(b);
+        if (!(body.getMobilizedBodyIndex() == bodies[body1])) continue;
+        f -= from_peer(on_bodies[b][1]);
+        n -= from_peer(on_bodies[b][0]);
+      }
+    }
+    n += cross(motions[body1].p - P2, f);
+    return {f.array(), n.array()};
+  }
+
   SimTK::Force::DiscreteForces wrenches;
   SimTK::State state;
-  std::vector<SimTK::MobilizedBodyIndex> bodies;  // by body, [0] is Ground
-  std::vector<TreeEdge> edges;
   std::vector<Dummy> dummies;
 };
 
@@ -227,6 +173,7 @@ std::vector<JointReaction> SimbodyPeer::reactions() const {
   s.matter.calcMobilizerReactionForces(s.state, on_children);
   std::vector<JointReaction> list(s.def.joints.size());
   for (const TreeEdge& edge : s.edges) {
+    if (edge.joint == kNoJoint) continue;
     const auto number = static_cast<std::size_t>(edge.joint), child = static_cast<std::size_t>(edge.child);
     const JointDef& joint = s.def.joints[number];
     const SimTK::SpatialVec& on_child = on_children[s.bodies[child]];
@@ -237,6 +184,7 @@ std::vector<JointReaction> SimbodyPeer::reactions() const {
     const double sign = edge.is_reversed ? 1 : -1;  // the child is body 1 or body 2
     list[number] = {(f * sign).array(), (n * sign).array()};
   }
+  for (const SimbodyMechanism::CutJoint& cut : s.cuts) list[cut.joint] = s.cut_reaction(cut, motions);
   return list;
 }
 

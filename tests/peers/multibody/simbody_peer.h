@@ -1,6 +1,7 @@
 // A MechanicsDef as a mechanism of Simbody (Sherman, Seth, Delp 2011).
 //
-// Every body of the Def is a body there, fixed joints are welds, static dummies are welded bodies. A cylinder or piston
+// Every body of the Def is a body there (simbody_mechanism.h), fixed joints are welds, joints that are cut are
+// constraints, static dummies are welded bodies. A cylinder or piston
 // on a force is a body of its own without inertia about its axis: it turns about its end's point
 // (MobilizedBody::LineOrientation) and its axis is held on the other end's point (Constraint::PointOnLine), so that the
 // loop which our recursion eliminates is closed by multipliers there. Force elements act by def_laws.h. Friction and

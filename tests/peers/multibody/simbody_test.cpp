@@ -13,28 +13,48 @@
 //   sub-step 0.1 ms: 1e-10 rad and m, energies 1e-10 of the peak kinetic energy; four times what is reached, which is
 //   Simbody's own error: ours would be 1e-13
 //   sub-step 1 ms, the scene's: 1e-8 likewise, eight times what is reached; the error of ours, order 4
+//
+// With loops, where cut joints are Simbody's own constraints (simbody_mechanism.h) and multipliers are found by its
+// orthogonal factorisation: the crane with both cylinders as two bodies each, 48 random mechanisms that have every
+// joint type among the cut ones, the scenes of the four-bars, the slider-crank and the thirteen joints. 1e-9 allowed;
+// reached 6e-13 for accelerations, 6e-14 for the reactions of joints and constraints. Redundant rows leave reactions
+// open: then either's differ by what loads no body, and the sum of squares of ours is not larger. The slider-crank
+// moves for 1 s in sub-steps of 0.1 ms: 1e-8, ten times what is reached with either's projections.
+#include <algorithm>
+
 #include "tests/peers/multibody/agreement.h"
 #include "tests/peers/multibody/simbody_peer.h"
 
 namespace slew::multibody::testing {
 namespace {
 
-constexpr double kTolerance = 1e-12;
+constexpr double kTolerance = 1e-12, kLoopTolerance = 1e-9;
 
 class Mechanisms : public ::testing::TestWithParam<Case> {
  protected:
+  void SetUp() override {
+    const Mechanism mechanism(sample.def);
+    const std::vector<Cut>& cuts = mechanism.model.cuts;
+    const auto holds_nothing = [](const Cut& cut) { return cut.rows.empty(); };
+    if (!cuts.empty() && std::all_of(cuts.begin(), cuts.end(), holds_nothing)) {
+      GTEST_SKIP() << "Simbody's answer is not finite where the constraints forbid nothing that the tree allows";
+    }
+  }
+
   const Sample sample{GetParam(), ForceDummies::with};
+  const double tolerance = has_loops(GetParam()) ? kLoopTolerance : kTolerance;
 };
 
 TEST_P(Mechanisms, AccelerateAsSimbodySays) {
+  if (Mechanism(sample.def).model.degrees_of_freedom() == 0) GTEST_SKIP() << "nothing moves";
   const double difference = accelerations_differ_by<SimbodyPeer>(sample, sample.def);
   record("difference", difference);
-  EXPECT_LT(difference, kTolerance);
+  EXPECT_LT(difference, tolerance);
 }
 
 TEST_P(Mechanisms, ShowTheRowsThatSimbodySees) {
   if (sample.rows.empty()) GTEST_SKIP() << "nothing to act on";
-  expect_same_rows(rows_differ_by<SimbodyPeer>(sample), kTolerance);
+  expect_same_rows(rows_differ_by<SimbodyPeer>(sample), tolerance);
 }
 
 TEST_P(Mechanisms, LoadTheirJointsAsSimbodySays) {
@@ -47,9 +67,14 @@ TEST_P(Mechanisms, LoadTheirJointsAsSimbodySays) {
   SimbodyPeer peer(def);
   peer.set_motion(motions_of(ours.model, ours.ws));
   static_cast<void>(peer.accelerate(Wrenches(def.bodies.size() + 1)));
-  const double difference = reaction_difference(peer.reactions(), expected);
+  const std::vector<JointReaction> got = peer.reactions();
+  // redundant rows leave the reactions open: they load the bodies alike, and ours are the smallest
+  const bool are_open = has_redundant_rows(ours.model);
+  const double difference = are_open ? load_difference(def, motions_of(ours.model, ours.ws), got, expected)
+                                     : reaction_difference(got, expected);
   record("difference", difference);
-  EXPECT_LT(difference, kTolerance);
+  EXPECT_LT(difference, tolerance);
+  EXPECT_LE(square_of(expected), square_of(got) * (1 + tolerance) + tolerance);
 }
 
 TEST_P(Mechanisms, HaveTheKineticEnergyThatSimbodySees) {
@@ -61,10 +86,11 @@ TEST_P(Mechanisms, HaveTheKineticEnergyThatSimbodySees) {
   peer.set_motion(motions_of(ours.model, ours.ws));
   const double difference = std::abs(peer.energy().kinetic - expected) / expected;
   record("difference", difference);
-  EXPECT_LT(difference, kTolerance);
+  EXPECT_LT(difference, tolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfOurs, Mechanisms, ::testing::ValuesIn(cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(WithLoops, Mechanisms, ::testing::ValuesIn(loop_cases()), case_name);
 
 TEST(ComparisonWithSimbody, SeesAMassThatIsAMillionthOff) {
   const Sample sample({Case::Kind::truck_crane, 1}, ForceDummies::with);
@@ -129,6 +155,11 @@ TEST_P(RandomTrees, MoveAsInSimbody) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomTrees, ::testing::Range(1u, 17u));
+
+TEST(SliderCrank, MovesAsInSimbody) {
+  const Sample sample({.kind = Case::Kind::scene, .seed = 1, .scene = "slider_crank"}, ForceDummies::with);
+  expect_small(motions_differ_by(sample.def, Mechanism(sample.def).state, 1, 1e-4), kCoarse);
+}
 
 class TruckCrane : public ::testing::Test {
  protected:
