@@ -65,6 +65,10 @@ void push_apart(const LineElement& line, const LineMotion& m, double force, Work
   push(ws, line.link2, m.P2, -F);
 }
 
+double speed_about(Vec3 axis, const LinkMotion& link1, const LinkMotion& link2) noexcept {
+  return dot(axis, link2.w - link1.w);
+}
+
 void turn(const AngleElement& element, Vec3 torque, Workspace& ws) noexcept {
   ws.inertia[at(element.link2)].n -= torque;
   ws.inertia[at(element.link1)].n += torque;
@@ -74,13 +78,14 @@ void turn(const AngleElement& element, Vec3 torque, Workspace& ws) noexcept {
 
 double damper_speed(const AngleElement& element, const Workspace& ws) noexcept {
   const LinkMotion& link1 = ws.motion[at(element.link1)];
-  return dot(link1.R * element.axis, ws.motion[at(element.link2)].w - link1.w);
+  return speed_about(link1.R * element.axis, link1, ws.motion[at(element.link2)]);
 }
 
 Vec3 torque_of(const AngleElement& element, const AngleMotion& m, const Workspace& ws) noexcept {
   // the damper acts about the axis itself, so that three of them at right angles damp any rotation alike
-  const Vec3 axis = ws.motion[at(element.link1)].R * element.axis;
-  Vec3 torque = axis * damper_force(element.law, damper_speed(element, ws));
+  const LinkMotion& link1 = ws.motion[at(element.link1)];
+  const Vec3 axis = link1.R * element.axis;
+  Vec3 torque = axis * damper_force(element.law, speed_about(axis, link1, ws.motion[at(element.link2)]));
   if (has_spring(element.law)) torque += m.n * force_of(element.law, m.angle, m.rate, 0);
   return torque;
 }
