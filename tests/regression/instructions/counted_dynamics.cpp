@@ -1,0 +1,49 @@
+// Calls the forward dynamics of a mechanism often enough that an instruction counter sees nothing else.
+//
+//   counted_dynamics crane | crane_loops | chain10
+//
+// Prints the number of calls. count_instructions.cmake counts what they execute.
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "multibody/dynamics.h"
+#include "tests/support/chain_def.h"
+#include "tests/validation/multibody/crane_def.h"
+#include "tests/validation/multibody/cylinder_bodies.h"
+
+namespace {
+
+using namespace slew::multibody;
+
+MechanicsDef crane_loops_def() {
+  MechanicsDef def = testing::crane_def();
+  for (const char* force : {"ForceT_Lift", "ForceT_Jib"}) testing::replace_dummies(def, force, {0, 0, 1});
+  return def;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const std::map<std::string, std::function<MechanicsDef()>> mechanisms = {
+      {"crane", [] { return testing::crane_def({.dummies = testing::Dummies::without}); }},
+      {"crane_loops", crane_loops_def},
+      {"chain10", [] { return testing::chain_def(10); }}};
+  const auto chosen = mechanisms.find(count == 2 ? arguments[1] : "");
+  if (chosen == mechanisms.end()) {
+    std::fputs("counted_dynamics: expected one of crane, crane_loops, chain10\n", stderr);
+    return 2;
+  }
+  const Model model = build_model(chosen->second());
+  Workspace ws(model);
+  State state = start_state(model);
+  constexpr int kCalls = 160;
+  for (int i = 0; i < kCalls; ++i) {
+    // states of a motion; the sub-steps between them are not forward_dynamics() of this program
+    for (double& u : state.u) u = 0.1 + 1e-3 * i;
+    forward_dynamics(model, state.q, state.u, {}, ws);
+  }
+  std::printf("calls %d\n", kCalls);
+  return 0;
+}
