@@ -8,6 +8,7 @@
 #include "multibody/body_penalty.h"
 #include "multibody/constraint.h"
 #include "multibody/loops.h"
+#include "multibody/observe.h"
 #include "multibody/passes.h"
 
 namespace slew::multibody {
@@ -124,17 +125,18 @@ class Assembler {
     return open;
   }
 
-  // Speeds that are not zero stay, the others follow: a projection in which the given ones are rows of their own.
+  // Speeds that the scene gives stay, the others follow: a projection in which the given ones are rows of their own.
   [[nodiscard]] std::vector<AssemblyReport::Speed> settle_speeds() {
     std::vector<std::size_t> given;
     for (std::size_t j = 0; j < state_.u.size(); ++j) {
-      if (state_.u[j] != 0 && !is_prescribed(j)) given.push_back(j);
+      if (model_.start_is_given[j] != 0 && !is_prescribed(j)) given.push_back(j);
     }
-    if (given.empty() && model_.drives.empty()) return {};
+    if (given.empty() && model_.given_speeds.empty() && model_.drives.empty()) return {};
     const std::vector<double> wanted = state_.u;
     renew(state_);
-    const std::size_t cuts = ws_.loops.rows.size(), rows = cuts + given.size(), speeds = state_.u.size();
-    std::vector<double> residual(rows * speeds), rate(rows * speeds), W(rows * rows), right(rows);
+    const std::size_t cuts = ws_.loops.rows.size(), first_cut_speed = cuts + given.size();
+    const std::size_t rows = first_cut_speed + model_.given_speeds.size(), speeds = state_.u.size();
+    std::vector<double> residual(rows * speeds), rate(rows * speeds), right(rows);
     std::copy(ws_.loops.residual.begin(), ws_.loops.residual.end(), residual.begin());
     std::copy(ws_.loops.rate.begin(), ws_.loops.rate.end(), rate.begin());
     std::vector<int> all_links;
@@ -145,13 +147,17 @@ class Assembler {
       const std::size_t first = (cuts + k) * speeds;
       solve_backward(model_, ws_, all_links, tau, {&residual[first], speeds}, {&rate[first], speeds});
     }
-    for (std::size_t k = 0; k < rows; ++k) {
-      for (std::size_t l = 0; l <= k; ++l) {
-        for (std::size_t j = 0; j < speeds; ++j) W[k * rows + l] += residual[k * speeds + j] * rate[l * speeds + j];
-      }
+    for (std::size_t k = 0; k < model_.given_speeds.size(); ++k) {
+      const GivenSpeed& speed = model_.given_speeds[k];
+      const Cut& cut = model_.cuts[at(speed.cut)];
+      const RowValue row = row_of(speed);
+      const std::size_t first = (first_cut_speed + k) * speeds;
+      solve_backward(model_, ws_, all_links, cut.link1, cut.link2, {&row, 1}, {&residual[first], speeds},
+                     {&rate[first], speeds});
+      right[first_cut_speed + k] = speed.speed - row.rate;
     }
     math::Semidefinite factor(static_cast<int>(rows));
-    factor.factorize(W, {}, kDependentAtStart);
+    factor.factorize(products(residual, rate, rows), {}, kDependentAtStart);
     for (std::size_t k = 0; k < cuts; ++k) right[k] = -ws_.loops.rows[k].rate;
     factor.solve(right);
     std::fill(ws_.residual.begin(), ws_.residual.end(), 0.0);
@@ -206,16 +212,42 @@ class Assembler {
     }
   }
 
-  [[nodiscard]] std::vector<AssemblyReport::Speed> lost_speeds(const std::vector<double>& wanted,
-                                                               const std::vector<std::size_t>& given) const {
-    std::vector<AssemblyReport::Speed> lost;
-    for (std::size_t i = 1; i < model_.links.size(); ++i) {
-      const Link& link = model_.links[i];
-      for (const std::size_t j : given) {
-        if (j < at(link.u) || j >= at(link.u + speed_count(link.joint))) continue;
-        if (std::fabs(state_.u[j] - wanted[j]) <= kSpeedTolerance * std::max(1.0, std::fabs(wanted[j]))) continue;
-        lost.push_back({static_cast<int>(i), wanted[j], state_.u[j]});
+  // residuals times rates of all rows, lower triangle
+  [[nodiscard]] static std::vector<double> products(const std::vector<double>& residual,
+                                                    const std::vector<double>& rate, std::size_t rows) {
+    const std::size_t speeds = rows > 0 ? residual.size() / rows : 0;
+    std::vector<double> W(rows * rows);
+    for (std::size_t k = 0; k < rows; ++k) {
+      for (std::size_t l = 0; l <= k; ++l) {
+        for (std::size_t j = 0; j < speeds; ++j) W[k * rows + l] += residual[k * speeds + j] * rate[l * speeds + j];
       }
+    }
+    return W;
+  }
+
+  // rate of a coordinate of a joint that is cut; of a spherical joint about an axis of body 1
+  [[nodiscard]] RowValue row_of(const GivenSpeed& speed) const {
+    const Cut& cut = model_.cuts[at(speed.cut)];
+    const Joint& joint = model_.joints[at(cut.joint)];
+    const LinkMotion &link1 = ws_.motion[at(cut.link1)], &link2 = ws_.motion[at(cut.link2)];
+    if (joint.type != JointType::spherical) return coordinate(joint.type, speed.number, cut, link1, link2);
+    const Vec3 axis = link1.R * model_.bodies[at(joint.body1)].R_LB.c[speed.number];
+    return {.rate = dot(axis, link2.w - link1.w), .G = {Vec3(), -axis, Vec3(), axis}};
+  }
+
+  [[nodiscard]] std::vector<AssemblyReport::Speed> lost_speeds(const std::vector<double>& wanted,
+                                                               const std::vector<std::size_t>& given) {
+    std::vector<AssemblyReport::Speed> lost;
+    const auto see = [&lost](std::string_view joint, double asked, double found) {
+      if (std::fabs(found - asked) <= kSpeedTolerance * std::max(1.0, std::fabs(asked))) return;
+      lost.push_back({std::string(joint), asked, found});
+    };
+    for (const std::size_t j : given) {
+      see(joint_of(model_, model_.coordinate_count() + static_cast<int>(j)), wanted[j], state_.u[j]);
+    }
+    update_motion(model_, state_.q, state_.u, ws_);
+    for (const GivenSpeed& speed : model_.given_speeds) {
+      see(model_.joints[at(model_.cuts[at(speed.cut)].joint)].name, speed.speed, row_of(speed).rate);
     }
     return lost;
   }

@@ -20,7 +20,7 @@ struct AssemblyReport {
     double violation = 0;  // m or 1
   };
   struct Speed {
-    int link = 0;
+    std::string joint;
     double wanted = 0, found = 0;  // rad/s or m/s
   };
   std::vector<Row> open;        // rows that the start does not fit, worse than kFrameTolerance
@@ -31,7 +31,7 @@ struct AssemblyReport {
 // Rows of a cut joint that the tree and the cuts before it imply are taken out of the model: planar loops in space,
 // doubled hinges. A row is left out when it is dependent in several positions near the start; one that depends on the
 // others at the start alone (a singular position) stays. Then start_q and start_u are moved onto all joints, in the
-// metric of the masses. Speeds that the scene gives (not zero) are kept, the others follow.
+// metric of the masses. Speeds that the scene gives are kept, the others follow.
 [[nodiscard]] AssemblyReport assemble(Model& model);
 
 // build_model() with what assemble() found.

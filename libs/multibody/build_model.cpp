@@ -192,6 +192,14 @@ class Builder {
     cut.first_row = model_.cut_row_count();
     for (std::size_t k = 0; k < cut.rows.size(); ++k) cut.kept.push_back(static_cast<int>(k));
     model_.cuts.push_back(cut);
+    add_given_speeds(def, joint.cut);
+  }
+
+  void add_given_speeds(const JointDef& def, int cut) {
+    if (is_given(def.initial_velocity)) model_.given_speeds.push_back({cut, 0, def.initial_velocity});
+    if (is_given(def.initial_velocity_2)) model_.given_speeds.push_back({cut, 1, def.initial_velocity_2});
+    if (!is_given(def.initial_rotation)) return;
+    for (int axis = 0; axis < 3; ++axis) model_.given_speeds.push_back({cut, axis, def.initial_rotation[at(axis)]});
   }
 
   static LinkJoint link_joint(JointType type) {
@@ -243,7 +251,10 @@ class Builder {
       q.insert(q.end(), start.begin(), start.begin() + count);
       std::array<double, 2> rate = {def.initial_velocity, def.initial_velocity_2};
       if (edge.is_reversed && def.type == JointType::universal) std::swap(rate[0], rate[1]);
-      u.insert(u.end(), rate.begin(), rate.begin() + count);
+      for (int k = 0; k < count; ++k) {
+        u.push_back(given_or(rate[at(k)], 0));
+        model_.start_is_given.push_back(is_given(rate[at(k)]) ? 1 : 0);
+      }
       child = frame_at(def.type, frame1, start);
       add_drives(edge, link);
     } else {
@@ -252,13 +263,15 @@ class Builder {
       if (link.joint == LinkJoint::floating) {
         child.p = frame2.p;
         for (const double x : frame2.p.array()) q.push_back(x);
-        for (const double v : (R_body1 * Vec3(def.initial_translation)).array()) u.push_back(v);
+        for (const double v : (R_body1 * Vec3(given_or(def.initial_translation, {}))).array()) u.push_back(v);
+        model_.start_is_given.insert(model_.start_is_given.end(), 3, is_given(def.initial_translation) ? 1 : 0);
       }
       const math::Quaternion attitude = math::quaternion_of(frame2.R);
       child.R = math::rotation_of(attitude);
       q.insert(q.end(), {attitude.w, attitude.x, attitude.y, attitude.z});
-      const Vec3 w = R_body1 * Vec3(def.initial_rotation) * (edge.is_reversed ? -1.0 : 1.0);
+      const Vec3 w = R_body1 * Vec3(given_or(def.initial_rotation, {})) * (edge.is_reversed ? -1.0 : 1.0);
       for (const double x : w.array()) u.push_back(x);
+      model_.start_is_given.insert(model_.start_is_given.end(), 3, is_given(def.initial_rotation) ? 1 : 0);
     }
     link_pose_.push_back(child);
   }

@@ -18,6 +18,7 @@
 #include "multibody/contact_defs.h"
 #include "multibody/elements/element_defs.h"
 #include "multibody/motions/motion_defs.h"
+#include "multibody/not_given.h"
 
 namespace slew::multibody {
 
@@ -64,23 +65,24 @@ struct JointDef {
   Triple point1{};        // m, body 1 frame
   Triple orientation1{};  // rad, successive x, y', z''
   std::string body2{};
-  Triple point2{};              // m, body 2 frame
-  Triple orientation2{};        // rad
-  double initial_velocity = 0;  // rad/s or m/s (revolute, prismatic); rad/s about z of frame 1 (universal, cylindrical)
-  double initial_velocity_2 = 0;   // rad/s about z of frame 2 (universal); m/s along z (cylindrical)
-  double length = 0;               // m, of a massless link; 0: as its points stand at the start
-  Triple initial_translation{};    // m/s, of point 2 seen from body 1, in body 1 axes (floating)
-  Triple initial_rotation{};       // rad/s, of body 2 seen from body 1, in body 1 axes (spherical, floating)
-  double limit_min = -kUnlimited;  // rad or m
-  double limit_max = kUnlimited;   // rad or m
-  double limit_stiffness = 0;      // N m/rad or N/m
-  double limit_damping = 0;        // N m s/rad or N s/m; a limit pushes only
-  double coulomb_friction = 0;     // N m or N
-  double viscous_friction = 0;     // N m s/rad or N s/m
-  double friction_speed = 1e-3;    // rad/s or m/s, over which the Coulomb part is smoothed
-  double bristle_stiffness = 0;    // N m/rad or N/m; > 0: bristles that hold at rest, instead of smoothing
-  double bristle_damping = 0;      // N m s/rad or N s/m, of the bristles
-  double breakaway_ratio = 1;      // breakaway over coulomb_friction, >= 1; falls with friction_speed
+  Triple point2{};        // m, body 2 frame
+  Triple orientation2{};  // rad
+  // Speeds at the start: those that are given are held where loops leave a choice.
+  double initial_velocity = kNotGiven;      // rad/s or m/s; rad/s about z of frame 1 (universal, cylindrical)
+  double initial_velocity_2 = kNotGiven;    // rad/s about z of frame 2 (universal); m/s along z (cylindrical)
+  double length = 0;                        // m, of a massless link; 0: as its points stand at the start
+  Triple initial_translation = kNoneGiven;  // m/s, of point 2 seen from body 1, in body 1 axes (floating)
+  Triple initial_rotation = kNoneGiven;     // rad/s, of body 2 seen from body 1, in body 1 axes (spherical, floating)
+  double limit_min = -kUnlimited;           // rad or m
+  double limit_max = kUnlimited;            // rad or m
+  double limit_stiffness = 0;               // N m/rad or N/m
+  double limit_damping = 0;                 // N m s/rad or N s/m; a limit pushes only
+  double coulomb_friction = 0;              // N m or N
+  double viscous_friction = 0;              // N m s/rad or N s/m
+  double friction_speed = 1e-3;             // rad/s or m/s, over which the Coulomb part is smoothed
+  double bristle_stiffness = 0;             // N m/rad or N/m; > 0: bristles that hold at rest, instead of smoothing
+  double bristle_damping = 0;               // N m s/rad or N s/m, of the bristles
+  double breakaway_ratio = 1;               // breakaway over coulomb_friction, >= 1; falls with friction_speed
 };
 
 // Force along the line between a point of body 1 and a point of body 2; positive pushes them apart.

@@ -21,8 +21,9 @@ struct AxisDimensions {
 };
 
 constexpr Field initial_velocity_row(const AxisDimensions& d) {
-  return field<&JointDef::initial_velocity>("initial_velocity",
-                                            {.dimension = d.speed, .doc = "rate of the joint coordinate at the start"});
+  return field<&JointDef::initial_velocity>(
+      "initial_velocity",
+      {.dimension = d.speed, .doc = "rate of the joint coordinate at the start; none: 0, or what a loop makes of it"});
 }
 constexpr Field limit_min_row(const AxisDimensions& d) {
   return field<&JointDef::limit_min>("limit_min",
@@ -117,7 +118,9 @@ constexpr Field kPrismaticFields[] = {kBody1,
 
 constexpr Field kInitialRotation = field<&JointDef::initial_rotation>(
     "initial_angular_velocity",
-    {.dimension = angular_velocity, .doc = "angular velocity of body 2 seen from body 1 at the start, body 1 axes"});
+    {.dimension = angular_velocity,
+     .doc =
+         "angular velocity of body 2 seen from body 1 at the start, body 1 axes; none: 0, or what a loop makes of it"});
 constexpr Field kInitialTranslation = field<&JointDef::initial_translation>(
     "initial_velocity",
     {.dimension = velocity, .doc = "velocity of point 2 seen from body 1 at the start, body 1 axes"});

@@ -203,6 +203,13 @@ struct Row {
   JointLaw law{};  // of a joint row
 };
 
+// A speed that the scene gives a joint which is cut.
+struct GivenSpeed {
+  int cut = 0;
+  int number = 0;    // of the joint's coordinate; of a spherical joint the axis of body 1
+  double speed = 0;  // rad/s or m/s
+};
+
 // Numbers of the formulations that hold joints by penalties (body_penalty.h).
 struct PenaltyNumbers {
   double factor = 0;     // alpha over the mechanism's mass
@@ -231,6 +238,8 @@ struct Model {
   std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by row of the cuts: a mobility that is not near zero
   std::vector<int> body_order;        // bodies from Ground outwards, parents first; without Ground
   std::vector<double> start_q, start_u;
+  std::vector<char> start_is_given;  // by u: 1 where the scene gives the speed
+  std::vector<GivenSpeed> given_speeds;
   std::shared_ptr<const ContactElements> contact;  // none: no pairs; immutable, the same for all copies
 
   [[nodiscard]] int coordinate_count() const noexcept { return static_cast<int>(start_q.size()); }

@@ -38,14 +38,10 @@ class Groups {
   std::vector<int> parent_;
 };
 
-bool is_any(const Triple& values) noexcept {
-  return std::any_of(values.begin(), values.end(), [](double x) { return x != 0; });
-}
-
 bool needs_coordinates(const JointDef& joint) noexcept {
   return std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max) || joint.coulomb_friction > 0 ||
-         joint.viscous_friction > 0 || joint.initial_velocity != 0 || joint.initial_velocity_2 != 0 ||
-         is_any(joint.initial_rotation);
+         joint.viscous_friction > 0 || is_given(joint.initial_velocity) || is_given(joint.initial_velocity_2) ||
+         is_given(joint.initial_rotation);
 }
 
 bool is_driven(const MechanicsDef& mechanics, const JointDef& joint) noexcept {

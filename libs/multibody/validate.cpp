@@ -133,7 +133,9 @@ class Validator {
         const double value = static_cast<double>(*static_cast<std::int64_t*>(row.member(def)));
         if (!row.range.contains(value)) report_range(owner, row, value);
       } else if (row.type == FieldType::triple) {
-        for (const double value : *static_cast<Triple*>(row.member(def))) {
+        const Triple& triple = *static_cast<Triple*>(row.member(def));
+        if (is_open_ended(row.key) && !is_given(triple)) continue;
+        for (const double value : triple) {
           if (!row.range.contains(value)) report_range(owner, row, value);
         }
       }
@@ -142,7 +144,7 @@ class Validator {
 
   static bool is_open_ended(std::string_view key) {
     return key == "limit_min" || key == "limit_max" || key == "max_length" || key == "min_angle" ||
-           key == "max_angle" || key == "unit" || key == "offset" || key == "from";
+           key == "max_angle" || key == "unit" || key == "offset" || key == "from" || key.starts_with("initial_");
   }
 
   void report_range(const std::string& owner, const Field& row, double value) {
@@ -323,8 +325,7 @@ class Validator {
           "poses, points and lengths that let all joints of the loop close");
     }
     for (const AssemblyReport::Speed& speed : report.speeds) {
-      add(fmt::format("{}.initial_velocity",
-                      joint_of(model, model.coordinate_count() + model.links[static_cast<std::size_t>(speed.link)].u)),
+      add(speed.joint + ".initial_velocity",
           fmt::format("the loops do not allow {:.6g}; with the other speeds given it is {:.6g}", speed.wanted,
                       speed.found),
           "speeds that fit each other: those that are not given follow from the others");

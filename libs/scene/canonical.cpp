@@ -102,8 +102,11 @@ std::string value_text(const Field& field, void* def) {
       const auto& text = member<std::string>(field, def);
       return text.empty() ? "" : yaml_text(text);
     }
-    case FieldType::triple:
-      return list_text(member<Triple>(field, def), number_text);
+    case FieldType::triple: {
+      // what is not given is infinite
+      const auto& triple = member<Triple>(field, def);
+      return std::isfinite(triple[0]) ? list_text(triple, number_text) : "";
+    }
     case FieldType::triples:
       return list_text(member<std::vector<Triple>>(field, def),
                        [](const Triple& triple) { return list_text(triple, number_text); });

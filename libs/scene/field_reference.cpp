@@ -56,7 +56,7 @@ std::string cell(std::string text) {
 std::string default_text(const Field& field, void* def) {
   if (field.presence == Presence::required) return "required";
   const std::string value = value_text(field, def);
-  if (value.empty()) return field.type == FieldType::number ? "none" : "";
+  if (value.empty()) return field.type == FieldType::number || field.type == FieldType::triple ? "none" : "";
   return value;
 }
 

@@ -5,15 +5,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include "core/field.h"
+#include "multibody/not_given.h"
 
 namespace slew::multibody {
-
-// A number that follows from the start position when it is not given: no scene can write it.
-inline constexpr double kFromStart = std::numeric_limits<double>::infinity();
 
 enum class MotionKind : int { rotation, translation };
 enum class MotionShape : int { table, harmonic, ramp, speed };
@@ -34,11 +31,11 @@ struct MotionDef {
   std::int64_t axis = 1;             // of a universal joint: 1 about z of frame 1, 2 about z of frame 2
   Table points{};                    // s, rad or m (table); s, rad/s or m/s (speed)
   TableEnds ends = TableEnds::hold;  // of the table
-  double offset = kFromStart;        // rad or m (harmonic); not given: such that it fits the start position
+  double offset = kNotGiven;         // rad or m (harmonic); not given: such that it fits the start position
   double amplitude = 0;              // rad or m (harmonic)
   double frequency = 0;              // Hz (harmonic)
   double phase = 0;                  // rad (harmonic)
-  double from = kFromStart;          // rad or m (ramp); not given: the start position
+  double from = kNotGiven;           // rad or m (ramp); not given: the start position
   double to = 0;                     // rad or m (ramp)
   double start = 0;                  // s (ramp)
   double duration = 1;               // s (ramp)

@@ -62,8 +62,8 @@ MotionLaw motion_law(const MotionDef& def, double start) {
   law.amplitude = def.amplitude;
   law.frequency = def.frequency;
   law.phase = def.phase;
-  law.offset = def.offset != kFromStart ? def.offset : start - def.amplitude * math::sin_cos(def.phase).sin;
-  law.from = def.from != kFromStart ? def.from : start;
+  law.offset = given_or(def.offset, start - def.amplitude * math::sin_cos(def.phase).sin);
+  law.from = given_or(def.from, start);
   law.to = def.to;
   law.start = def.start;
   law.duration = def.duration;

@@ -72,7 +72,7 @@ class MotionRules {
           fmt::format("a motion that fits the poses within {} {} (mechanics.assembly_tolerance)", tolerance, unit));
     }
     const double given = number == 0 ? joint.initial_velocity : joint.initial_velocity_2;
-    if (given != 0 && std::fabs(given - begin.speed) > kSpeedTolerance * std::max(1.0, std::fabs(given))) {
+    if (is_given(given) && std::fabs(given - begin.speed) > kSpeedTolerance * std::max(1.0, std::fabs(given))) {
       add(motion.name,
           fmt::format("the motion starts with {:.6g} {}/s, the initial velocity of '{}' is {:.6g} {}/s", begin.speed,
                       unit, motion.joint, given, unit),

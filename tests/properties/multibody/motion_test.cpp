@@ -51,7 +51,7 @@ RandomTree driven_tree(unsigned seed) {
         MotionDef motion = random_motion(random, joint, kind, axis);
         const int number = kind == MotionKind::translation && axis == 2 ? -1 : driven_coordinate(motion, joint.type);
         if (number < 0 || std::uniform_int_distribution<int>(0, 1)(random) == 0) continue;
-        (number == 0 ? joint.initial_velocity : joint.initial_velocity_2) = 0;
+        (number == 0 ? joint.initial_velocity : joint.initial_velocity_2) = kNotGiven;
         tree.def.motions.push_back(motion);
       }
     }

@@ -36,7 +36,7 @@ MechanicsDef chain() {
 
 MechanicsDef looped_chain() {
   MechanicsDef def = chain();
-  def.joints[0].initial_velocity = 0;
+  def.joints[0].initial_velocity = kNotGiven;
   def.joints.push_back({.name = "Link",
                         .type = JointType::spherical_spherical,
                         .point1 = {3, 1, 0},

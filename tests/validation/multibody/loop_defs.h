@@ -24,7 +24,7 @@ inline MechanicsDef four_bars(int n) {
                           .body1 = "Ground",
                           .point1 = {static_cast<double>(i), 0, 0},
                           .body2 = name("Rod", i),
-                          .initial_velocity = i == 0 ? -1.0 : 0.0});
+                          .initial_velocity = i == 0 ? -1.0 : kNotGiven});
   }
   for (int i = 0; i < n; ++i) {
     def.bodies.push_back({.name = name("Coupler", i),

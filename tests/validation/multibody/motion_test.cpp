@@ -151,7 +151,7 @@ std::array<double, 2> slider_at(double angle, double speed) {
 TEST_P(Driven, CrankOfASpatialLoopMovesItsSliderAsGeometrySays) {
   MechanicsDef def = testing::slider_crank();
   def.formulation = GetParam();
-  for (JointDef& joint : def.joints) joint.initial_velocity = joint.initial_velocity_2 = 0;
+  for (JointDef& joint : def.joints) joint.initial_velocity = joint.initial_velocity_2 = kNotGiven;
   const std::string crank = def.joints[0].name;
   def.motions = {turning(crank, 6)};
   Formulated machine(def);

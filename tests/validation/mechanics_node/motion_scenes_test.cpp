@@ -1,0 +1,55 @@
+// scenes/joints/prescribed.yaml follows its laws in every formulation, and its clock starts again with a reset.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/mechanics_alone.h"
+
+namespace slew::testing {
+namespace {
+
+class PrescribedScene : public ::testing::TestWithParam<const char*> {
+ protected:
+  static MechanicsAlone load() {
+    return MechanicsAlone("scenes/joints/prescribed.yaml", {std::string("mechanics.formulation=") + GetParam()});
+  }
+};
+
+TEST_P(PrescribedScene, FollowsRampSineAndTable) {
+  MechanicsAlone m = load();
+  const bool is_penalty = std::string(GetParam()) == "penalty";
+  const double tolerance = is_penalty ? 1e-5 : 1e-8, swing = M_PI / 9;
+  for (const double time : {0.7, 1.5, 2.0, 3.0, 5.0}) {
+    m.run_to(time);
+    EXPECT_FALSE(m.report.has(StepFlag::not_converged)) << time;
+    const double tau = std::min(1.0, (time - 0.5) / 2);
+    EXPECT_NEAR(m.value("Slew.position"), M_PI / 2 * tau * tau * tau * (10 - 15 * tau + 6 * tau * tau), tolerance);
+    EXPECT_NEAR(m.value("Shoulder.position"), swing * (std::cos(0.8 * M_PI * time) - 1), tolerance);
+    if (time == 2.0) {
+      EXPECT_NEAR(m.value("Extension.position"), 0.1, tolerance);
+    }
+    if (time >= 3.0) {
+      EXPECT_NEAR(m.value("Extension.position"), 0.6, tolerance);
+    }
+    EXPECT_NEAR(m.value("Extension_Table.power"),
+                m.value("Extension_Table.force") * m.value("Extension_Table.velocity"), 1e-9);
+  }
+}
+
+TEST_P(PrescribedScene, StartsTheClockAgain) {
+  MechanicsAlone m = load();
+  m.run_to(0.9);
+  const std::uint64_t first = m.subsystem.state_hash();
+  m.run_to(1.3);
+  m.subsystem.reset();
+  m.start();
+  m.run_to(0.9);
+  EXPECT_EQ(m.subsystem.state_hash(), first);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, PrescribedScene,
+                         ::testing::Values("recursive", "lagrange", "augmented", "penalty"),
+                         [](const auto& test) { return std::string(test.param); });
+
+}  // namespace
+}  // namespace slew::testing
