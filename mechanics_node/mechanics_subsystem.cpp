@@ -86,6 +86,11 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
   for (const scene::PortDef& port : scene.ports) {
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
   }
+  for (std::size_t i = 0; i < scene.inputs.size(); ++i) {
+    const int load = multibody::find_load(model_.elements, scene.inputs[i].primitive);
+    if (load >= 0) operated_.push_back({i, static_cast<std::size_t>(load)});
+  }
+  put_signals({});
   substeps_ = multibody::substep_count(model_, H_.seconds());
   micro_steps_ = static_cast<int>(std::ceil(H_.seconds() / substeps_ / kMicroStep - 1e-9));
   micro_steps_ = std::max(1, micro_steps_);
@@ -109,6 +114,7 @@ void MechanicsSubsystem::reset() {
   mechanism_ = multibody::Dynamics(def_.formulation, model_, state_, multibody::step_rule(def_));
   last_good_ = state_;
   workspace_ = multibody::Workspace(model_);
+  put_signals({});
   is_evaluated_ = false;
   std::fill(row_is_active_.begin(), row_is_active_.end(), 1);
   ramps_.clear();
@@ -261,8 +267,18 @@ void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
   }
 }
 
-StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double>,
-                                    coupling::OwnSample& sample) noexcept {
+// what inputs give to loads; neutral where there is no value yet
+void MechanicsSubsystem::put_signals(std::span<const double> controls) noexcept {
+  for (const OperatedLoad& operated : operated_) {
+    const double signal = operated.channel < controls.size() ? controls[operated.channel] : 0.0;
+    if (model_.elements.loads[operated.load].signal == signal) continue;
+    for (multibody::Model* model : {&model_, &heavier_}) model->elements.loads[operated.load].signal = signal;
+    is_evaluated_ = false;
+  }
+}
+
+StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners,
+                                    std::span<const double> controls, coupling::OwnSample& sample) noexcept {
   if (has_failed_) {
     sample.mechanism = published_;
     return failure_;
@@ -274,6 +290,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     });
     is_evaluated_ = false;
   }
+  put_signals(controls);
   StepReport report;
   const double h = H_.seconds() / substeps_;
   coupling::MechanismSample& out = sample.mechanism;
@@ -457,6 +474,7 @@ std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
   ramps_.add_to(hash);
   for (const Port& port : ports_) hash.add(port.F);
   for (const char is_active : row_is_active_) hash.add(is_active);
+  for (const OperatedLoad& operated : operated_) hash.add(model_.elements.loads[operated.load].signal);
   hash.add(has_failed_);
   return hash.digest();
 }

@@ -61,6 +61,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] PortPositions port_positions() const noexcept;
   void evaluate() noexcept;
   bool select_rows(double h) noexcept;
+  void put_signals(std::span<const double> controls) noexcept;
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
   [[nodiscard]] coupling::PortStep advance(double h, const coupling::ActuatorSample* partner,
                                            bool is_first_substep) noexcept;
@@ -80,6 +81,11 @@ class MechanicsSubsystem final : public coupling::Subsystem {
     return row < ports_.size() ? ports_[row].ratio : 1.0;
   }
 
+  // A point force or torque that an input drives.
+  struct OperatedLoad {
+    std::size_t channel = 0, load = 0;  // of the scene's inputs, of the model's loads
+  };
+
   multibody::MechanicsDef def_;
   std::vector<std::string> row_names_;
   multibody::Model model_;
@@ -94,6 +100,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   int substeps_ = 1;
   int micro_steps_ = 1;
   std::vector<Port> ports_;
+  std::vector<OperatedLoad> operated_;
   std::vector<char> row_is_active_;
   std::vector<std::size_t> active_;  // rows of the port problem, ascending
   std::unique_ptr<Laws> laws_;

@@ -75,7 +75,7 @@ struct FieldOptions {
   Presence presence = Presence::optional;
   Change change = Change::restart;
   double ramp = 0;                  // s: a live change is spread over this time by default
-  std::string_view reference = {};  // kind of element the text must name: "body", "force", "volume", ...
+  std::string_view reference = {};  // kind of element the text must name: "body", "force", "component or force", ...
   std::span<const std::string_view> choices = {};
   std::string_view doc = {};
 };

@@ -54,6 +54,7 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
   size_ = work_ + ports_.size();
   for (const scene::InputDef& input : scene.inputs) {
     control_of_channel_.push_back(circuit_ ? circuit_->find_control(input.primitive) : -1);
+    load_of_channel_.push_back(multibody::find_load(model_.elements, input.primitive));
   }
   control_.assign(scene.inputs.size(), 0);
   control_slope_.assign(scene.inputs.size(), 0);
@@ -171,8 +172,9 @@ void SceneEquations::normalize(std::span<double> y) const noexcept {
 
 void SceneEquations::take_controls(double t) noexcept {
   for (std::size_t i = 0; i < control_.size(); ++i) {
-    if (control_of_channel_[i] < 0) continue;
-    circuit_->set_control(control_of_channel_[i], control_[i] + (t - control_time_) * control_slope_[i]);
+    const double signal = control_[i] + (t - control_time_) * control_slope_[i];
+    if (load_of_channel_[i] >= 0) model_.elements.loads[static_cast<std::size_t>(load_of_channel_[i])].signal = signal;
+    if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], signal);
   }
 }
 
@@ -181,12 +183,12 @@ void SceneEquations::take_state(double t, const double* y) noexcept {
   normalize(state_.q);
   std::copy_n(y + u_, state_.u.size(), state_.u.begin());
   state_.time = t;
+  take_controls(t);
   multibody::set_time(model_, t, workspace_);
   multibody::impose_positions(model_, workspace_, state_.q);
   multibody::impose_speeds(model_, workspace_, state_.u);
   multibody::evaluate(model_, state_, workspace_);
   if (circuit_ == nullptr) return;
-  take_controls(t);
   std::copy_n(y + p_, component_ - p_, circuit_y_.begin());
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     const int actuator = static_cast<int>(i);

@@ -98,6 +98,7 @@ class SceneEquations {
   std::unique_ptr<hydraulics::Circuit> circuit_;  // null: none in the scene
   std::vector<Port> ports_;
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
+  std::vector<int> load_of_channel_;     // -1: it drives no point force or torque
   double control_time_ = 0;
   std::vector<double> control_, control_slope_;  // by channel
   // layout (1)

@@ -52,9 +52,11 @@ constexpr Field kSessionFields[] = {
 };
 
 constexpr Field kInputFields[] = {
-    field<&InputDef::primitive>("primitive", {.presence = Presence::required,
-                                              .reference = "component",
-                                              .doc = "component that gets the signal; it must have a control signal"}),
+    field<&InputDef::primitive>(
+        "primitive",
+        {.presence = Presence::required,
+         .reference = "component or force",
+         .doc = "component with a control signal that gets it, or point force or torque that is multiplied by it"}),
     field<&InputDef::sub>("sub", {.choices = kSubs, .doc = "which of the component's signals"}),
     field<&InputDef::block>(
         "block", {.range = kBlockRange,

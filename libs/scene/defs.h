@@ -33,14 +33,15 @@ struct SessionDef {
 enum class InputType : int { analog, digital };
 enum class InputSub : int { control_voltage };
 
-// One channel from the operator to a component. Applied in this order to the raw value r (-1..1, digital 0 or 1):
+// One channel from the operator to a component or a load. Applied in this order to the raw value r (-1..1, digital 0 or
+// 1):
 //   dead zone  r if |r| > dead_zone else 0        it cuts, it does not rescale
 //   ramp       at most 1 / ramp per second
-//   scale      the component gets scale * r
+//   scale      the component gets scale * r; a point force or torque is multiplied by it
 struct InputDef {
   std::string name;
   InputType type = InputType::analog;
-  std::string primitive;                     // component with a control signal
+  std::string primitive;                     // component with a control signal, or point force or torque
   InputSub sub = InputSub::control_voltage;  // which of its signals
   std::int64_t block = 0;                    // I/O block: number of the joystick
   std::int64_t channel = 0;                  // I/O channel: its axis or button

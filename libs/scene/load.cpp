@@ -262,11 +262,12 @@ class SceneReader {
       const hydraulics::ComponentType* type = hydraulics::find_component_type(component->type_name());
       if (type != nullptr && type->has_control_signal) controlled.push_back(component->name);
     }
-    const bool is_known = std::any_of(scene_.hydraulics.components.begin(), scene_.hydraulics.components.end(),
-                                      [&](const auto& component) { return component->name == input.primitive; });
-    if (!is_known || std::find(controlled.begin(), controlled.end(), input.primitive) != controlled.end()) return;
+    for (const multibody::PointForceDef& load : scene_.mechanics.point_forces) controlled.push_back(load.name);
+    for (const multibody::PointTorqueDef& load : scene_.mechanics.point_torques) controlled.push_back(load.name);
+    if (std::find(controlled.begin(), controlled.end(), input.primitive) != controlled.end()) return;
     errors.push_back({input.name + ".primitive", "'" + input.primitive + "' takes no control signal",
-                      "a component with a control signal, such as a valve", closest(input.primitive, controlled)});
+                      "a component with a control signal, such as a valve, or a point_force or point_torque",
+                      closest(input.primitive, controlled)});
   }
 
   void read_outputs() {

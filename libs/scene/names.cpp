@@ -30,6 +30,16 @@ std::string_view kind_of_section(std::string_view section) {
   return {};
 }
 
+// kinds: one, or several as in "component or force"
+bool is_one_of(std::string_view kind, std::string_view kinds) {
+  constexpr std::string_view kOr = " or ";
+  for (std::size_t end = kinds.find(kOr); end != std::string_view::npos; end = kinds.find(kOr)) {
+    if (kinds.substr(0, end) == kind) return true;
+    kinds.remove_prefix(end + kOr.size());
+  }
+  return kinds == kind;
+}
+
 std::string with_article(std::string_view kind) {
   return (kind == "input" ? "an " : "a ") + std::string(kind);
 }
@@ -65,7 +75,7 @@ void NameTable::declare_all(const Node& root, Report& report) {
 void NameTable::resolve(const std::vector<Reference>& references, Report& report) const {
   for (const Reference& reference : references) {
     const std::string_view found = kind_of(reference.name);
-    if (found == reference.kind) continue;
+    if (is_one_of(found, reference.kind)) continue;
     const std::string kind(reference.kind);
     if (found.empty()) {
       report.add(reference.mark, reference.path,
@@ -87,7 +97,7 @@ std::string_view NameTable::kind_of(std::string_view name) const {
 std::vector<std::string_view> NameTable::names_of(std::string_view kind) const {
   std::vector<std::string_view> names;
   for (const auto& [name, declared] : names_) {
-    if (kind.empty() || declared.kind == kind) names.push_back(name);
+    if (kind.empty() || is_one_of(declared.kind, kind)) names.push_back(name);
   }
   if (kind == "body") names.push_back(multibody::kGroundName);
   return names;

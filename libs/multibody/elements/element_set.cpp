@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string_view>
 
 namespace slew::multibody {
 namespace {
@@ -23,6 +24,13 @@ double stored_energy(const ElementSet& set, std::span<const LinkMotion> motion) 
   for (const Rope& rope : set.ropes) energy += stored_energy(rope, state_of(rope, motion));
   for (const Tyre& tyre : set.tyres) energy += stored_energy(tyre, state_of(tyre, at(motion, tyre.link)));
   return energy;
+}
+
+int find_load(const ElementSet& set, std::string_view name) noexcept {
+  for (std::size_t i = 0; i < set.loads.size(); ++i) {
+    if (set.loads[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
 }
 
 bool depends_on_time(const ElementSet& set) noexcept {

@@ -73,6 +73,9 @@ struct VariableSink {
 void read_variables(const ElementSet& set, std::span<const LinkMotion> motion, double time,
                     VariableSink& sink) noexcept;
 
+// Index of a point force or torque by name; -1: none.
+[[nodiscard]] int find_load(const ElementSet& set, std::string_view name) noexcept;
+
 // Live constants. kind: in the order of the arrays above; member: of that kind; -1 when there is none of that key.
 enum class ElementKind : int { load, bushing, beam, rope, tyre };
 struct ElementValue {

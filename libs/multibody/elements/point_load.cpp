@@ -3,7 +3,7 @@
 namespace slew::multibody {
 
 double magnitude_of(const PointLoad& load, double time) noexcept {
-  return load.constant + (load.table.empty() ? 0.0 : math::value_at(load.table, time));
+  return load.signal * (load.constant + (load.table.empty() ? 0.0 : math::value_at(load.table, time)));
 }
 
 Wrench wrench_of(const PointLoad& load, const LinkMotion& link, double time) noexcept {

@@ -1,6 +1,7 @@
 // A force at a point of a body, or a torque on it, of given magnitude and direction.
 //
-//   F(t) = (F_0 + F_table(t)) d,   d unit, fixed in the body or in Ground                            (1)
+//   F(t) = s (F_0 + F_table(t)) d,   d unit, fixed in the body or in Ground                          (1)
+// s is 1, or what an input gives, held over a step of the session.
 // A torque has no point. The table is a monotone cubic over time that holds its last values.
 // Card: docs/models/multibody_point_loads.md.
 #pragma once
@@ -23,10 +24,11 @@ struct PointLoad {
   math::Vec3 p_L;        // m, point in the link
   math::Vec3 direction;  // d, unit, link axes or Ground axes
   double constant = 0;   // F_0 [N or N m]
+  double signal = 1;     // s
   math::MonotoneCubic table;
 };
 
-// F_0 + F_table at a time [s]; [N or N m].
+// s (F_0 + F_table) at a time [s]; [N or N m].
 [[nodiscard]] double magnitude_of(const PointLoad& load, double time) noexcept;
 
 [[nodiscard]] Wrench wrench_of(const PointLoad& load, const LinkMotion& link, double time) noexcept;

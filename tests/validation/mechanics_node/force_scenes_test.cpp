@@ -83,5 +83,25 @@ TEST(ForceSceneReset, StartsTheClockAgain) {
   EXPECT_EQ(m.subsystem.state_hash(), first);
 }
 
+TEST(OperatedLoad, IsMultipliedByItsInputAndNeutralWithoutOne) {
+  for (const char* formulation : {"recursive", "lagrange", "augmented", "penalty"}) {
+    MechanicsAlone m("scenes/forces/operated.yaml", {std::string("mechanics.formulation=") + formulation});
+    EXPECT_EQ(m.value("Motor.torque"), 0);
+    m.run_to(0.5);
+    EXPECT_EQ(m.value("Axle.velocity"), 0);
+    const std::vector<double> half = {0.5}, none = {0.0};
+    const std::uint64_t before = m.subsystem.state_hash();
+    while (m.n < 1500) m.report = m.subsystem.step(m.n++, {}, half, m.sample);
+    EXPECT_EQ(m.value("Motor.torque"), 10);
+    EXPECT_NE(m.subsystem.state_hash(), before);
+    m.report = m.subsystem.step(m.n++, {}, none, m.sample);
+    EXPECT_NEAR(m.value("Axle.velocity"), 12.5, 1e-9) << formulation;
+    EXPECT_EQ(m.value("Motor.torque"), 0);
+    m.subsystem.reset();
+    m.start();
+    EXPECT_EQ(m.value("Motor.torque"), 0);
+  }
+}
+
 }  // namespace
 }  // namespace slew::testing
