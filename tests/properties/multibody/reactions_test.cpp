@@ -1,5 +1,6 @@
-// Reactions of random trees and loops: no work through any velocity that the joints allow, and where rows are redundant
-// the smallest ones, against a pseudo-inverse. Redundant rows do not change the motion.
+// Reactions of random trees and loops: they do no work through any velocity that the joints allow, they and the weight
+// are what every body's momenta gain, and where rows are redundant they are the smallest ones, against a
+// pseudo-inverse. Redundant rows do not change the motion.
 #include <Eigen/Dense>
 
 #include "multibody/constraint.h"
@@ -57,6 +58,64 @@ TEST(Reactions, DoNoWorkThroughAnyVelocityThatTheJointsAllow) {
             dot(n, w(joint.body1) - w(joint.body2));
         EXPECT_NEAR(power, 0, 1e-10 * (1 + norm(f) + norm(n))) << joint.name << ", seed " << seed;
       }
+    }
+  }
+}
+
+// linear momentum, then angular momentum about the centre of mass, of every body of the scene
+std::vector<Vec3> momenta(const Mechanism& mechanism) {
+  std::vector<Vec3> result;
+  for (std::size_t i = 1; i < mechanism.model.bodies.size(); ++i) {
+    const Body& body = mechanism.model.bodies[i];
+    const LinkMotion& m = mechanism.ws.motion[at(body.link)];
+    const math::Mat3 R = m.R * body.R_LB;
+    const Vec3 center = m.p + m.R * body.p_LB + R * body.c_B;
+    const double mass = mechanism.model.lumped[at(body.lumped)].mass;
+    result.push_back(velocity_at(mechanism, static_cast<int>(i), center) * mass);
+    result.push_back(R * (body.I_B * (transpose(R) * m.w)));
+  }
+  return result;
+}
+
+// nothing but joints and weight: what the joints do to each body is what its momenta gain, by differences in time
+TEST(Reactions, MoveEveryBodyAsNewtonAndEulerSay) {
+  for (unsigned seed = 1; seed <= slew::testing::rounds(36U, 360U); ++seed) {
+    MechanicsDef def = random_mechanism(seed);
+    def.translational_forces.clear();
+    def.rotational_forces.clear();
+    def.force_dummies.clear();
+    def.static_dummies.clear();
+    Mechanism mechanism(def);
+    if (mechanism.model.degrees_of_freedom() == 0) continue;
+    set_random_speeds(mechanism, seed, 0.5);
+    const std::vector<JointReaction> reactions = reactions_of(mechanism);
+    std::vector<Vec3> gained;
+    for (std::size_t i = 1; i < mechanism.model.bodies.size(); ++i) {
+      gained.push_back(mechanism.model.gravity * mechanism.model.lumped[at(mechanism.model.bodies[i].lumped)].mass);
+      gained.emplace_back();
+    }
+    for (std::size_t j = 0; j < reactions.size(); ++j) {
+      const Joint& joint = mechanism.model.joints[j];
+      const Vec3 point = point_of(mechanism, joint), f(reactions[j].force), n(reactions[j].moment);
+      for (const auto& [index, sign] : {std::pair{joint.body1, 1.0}, {joint.body2, -1.0}}) {
+        if (index == 0) continue;
+        const Vec3 center(mechanism.pose(mechanism.model.bodies[at(index)].name).center_of_mass);
+        gained[2 * at(index) - 2] += f * sign;
+        gained[2 * at(index) - 1] += (n + cross(point - center, f)) * sign;
+      }
+    }
+    constexpr double kTiny = 1e-5;
+    const State now = mechanism.state;
+    ASSERT_TRUE(advance_free(mechanism.model, mechanism.state, mechanism.ws, kTiny));
+    mechanism.see();
+    const std::vector<Vec3> later = momenta(mechanism);
+    copy_state(now, mechanism.state);
+    ASSERT_TRUE(advance_free(mechanism.model, mechanism.state, mechanism.ws, -kTiny));
+    mechanism.see();
+    const std::vector<Vec3> earlier = momenta(mechanism);
+    for (std::size_t k = 0; k < gained.size(); ++k) {
+      const Vec3 rate = (later[k] - earlier[k]) * (0.5 / kTiny);
+      EXPECT_LT(norm(rate - gained[k]), 1e-5 * (1 + norm(rate))) << "seed " << seed << ", body " << k / 2;
     }
   }
 }

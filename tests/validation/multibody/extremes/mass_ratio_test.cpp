@@ -134,13 +134,14 @@ class MassRatioUnder : public ::testing::TestWithParam<std::tuple<Formulation, I
 
 TEST_P(MassRatioUnder, OfAMillionIsRightOrFlagged) {
   for (const Weights& weights : {kHeavyTip, kLightOnHeavy}) {
+    const double time = slew::testing::rounds(0.2, 0.5);
     MechanicsDef def = def_of(weights);
     std::tie(def.formulation, def.integrator) = GetParam();
     Formulated chain(def);
     PlanarChain reference = reference_of(weights);
-    reference.run(0.5, 10000);
+    reference.run(time, 10000);
     Outcome outcome;
-    outcome.is_flagged = !chain.try_run(0.5, 1e-3) || !is_finite(chain.state);
+    outcome.is_flagged = !chain.try_run(time, 1e-3) || !is_finite(chain.state);
     outcome.error = error_of(chain, reference);
     const bool is_euler = def.integrator == Integrator::semi_implicit_euler;
     const bool is_easy = weights.tip == 0;
