@@ -22,7 +22,7 @@ constexpr double kStep = 1e-3;
 class Invariance : public EveryFormulation {
  protected:
   // Penalties of 1e7 masses amplify the rounding of what is compared.
-  static double tolerance() { return is(Formulation::penalty) || is(Formulation::augmented) ? 1e-6 : 1e-9; }
+  static double tolerance() { return is(Formulation::penalty) || is(Formulation::augmented) ? 1e-6 : 1e-8; }
   static unsigned seeds() { return slew::testing::rounds(30U, 300U); }
 };
 
