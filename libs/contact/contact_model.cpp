@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "contact/find_named.h"
 #include "contact/kernels.h"
 #include "core/check.h"
 #include "math/rotation.h"
@@ -17,9 +18,9 @@ using math::Vec3;
 
 template <typename Def>
 std::size_t index_of(const std::vector<Def>& defs, const std::string& name) {
-  const auto found = std::find_if(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
-  SLEW_CHECK(found != defs.end());
-  return static_cast<std::size_t>(found - defs.begin());
+  const Def* def = find_named(defs, name);
+  SLEW_CHECK(def != nullptr);
+  return static_cast<std::size_t>(def - defs.data());
 }
 
 bool are_near(const Solid& a, const Solid& b) noexcept {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "contact/contact_def.h"
+#include "contact/find_named.h"
 #include "contact/mesh_check.h"
 
 namespace slew::contact {
@@ -24,12 +25,6 @@ bool must_not_move(ShapeType type) {
 
 bool is_finite(const Triple& t) {
   return std::isfinite(t[0]) && std::isfinite(t[1]) && std::isfinite(t[2]);
-}
-
-template <typename Def>
-const Def* find(const std::vector<Def>& defs, const std::string& name) {
-  const auto found = std::find_if(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
-  return found == defs.end() ? nullptr : &*found;
 }
 
 class Validator {
@@ -66,7 +61,7 @@ class Validator {
   }
 
   void check_shape(const ShapeDef& shape) {
-    const FrameDef* frame = find(def_.frames, shape.frame);
+    const FrameDef* frame = find_named(def_.frames, shape.frame);
     if (frame == nullptr) {
       add(shape.name, "frame", fmt::format("there is no frame '{}'", shape.frame), "the name of a frame");
     } else if (must_not_move(shape.type) && !frame->is_static) {
@@ -111,7 +106,7 @@ class Validator {
     const ShapeDef* a = find_shape(pair, "shape_a", pair.shape_a);
     const ShapeDef* b = find_shape(pair, "shape_b", pair.shape_b);
     if (a == nullptr || b == nullptr) return;
-    const FrameDef *frame_a = find(def_.frames, a->frame), *frame_b = find(def_.frames, b->frame);
+    const FrameDef *frame_a = find_named(def_.frames, a->frame), *frame_b = find_named(def_.frames, b->frame);
     if (frame_a == nullptr || frame_b == nullptr) return;
     if (frame_a == frame_b) {
       add(pair.name, "shape_b", fmt::format("both shapes are fixed to '{}'", a->frame), "shapes of different frames");
@@ -121,7 +116,7 @@ class Validator {
   }
 
   const ShapeDef* find_shape(const PairDef& pair, const char* key, const std::string& name) {
-    const ShapeDef* shape = find(def_.shapes, name);
+    const ShapeDef* shape = find_named(def_.shapes, name);
     if (shape == nullptr) add(pair.name, key, fmt::format("there is no shape '{}'", name), "the name of a shape");
     return shape;
   }

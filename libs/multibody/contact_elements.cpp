@@ -1,8 +1,8 @@
 #include "multibody/contact_elements.h"
 
-#include <algorithm>
 #include <utility>
 
+#include "contact/find_named.h"
 #include "core/check.h"
 #include "multibody/contact_conversion.h"
 #include "multibody/model.h"
@@ -10,11 +10,10 @@
 namespace slew::multibody {
 namespace {
 
-template <typename Def>
-const Def& named(const std::vector<Def>& defs, const std::string& name) {
-  const auto found = std::find_if(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
-  SLEW_CHECK(found != defs.end());
-  return *found;
+const ShapeDef& named(const std::vector<ShapeDef>& shapes, const std::string& name) {
+  const ShapeDef* shape = contact::find_named(shapes, name);
+  SLEW_CHECK(shape != nullptr);
+  return *shape;
 }
 
 class ContactBuilder {
@@ -47,10 +46,9 @@ class ContactBuilder {
   [[nodiscard]] int link_of(const ShapeDef& shape) const { return body_of(shape).link; }
 
   void add_shape(const ShapeDef& shape) {
-    const auto has_name = [](const std::string& name) { return [&](const auto& def) { return def.name == name; }; };
-    if (std::any_of(def_.shapes.begin(), def_.shapes.end(), has_name(shape.name))) return;
+    if (contact::find_named(def_.shapes, shape.name) != nullptr) return;
     def_.shapes.push_back(contact_shape(shape));
-    if (std::any_of(def_.frames.begin(), def_.frames.end(), has_name(shape.body))) return;
+    if (contact::find_named(def_.frames, shape.body) != nullptr) return;
     const Body& body = body_of(shape);
     def_.frames.push_back({shape.body, body.link == 0});
     frames_.push_back({multibody::find_body(model_, shape.body), body.link, body.R_LB, body.p_LB});

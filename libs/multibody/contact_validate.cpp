@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "contact/find_named.h"
 #include "contact/mesh_check.h"
 #include "multibody/contact_conversion.h"
 #include "multibody/contact_elements.h"
@@ -12,6 +13,8 @@
 #include "multibody/validate.h"
 
 namespace slew::multibody {
+using contact::find_named;
+
 namespace {
 
 // deeper than any load presses shapes that a scene puts onto each other
@@ -19,12 +22,6 @@ constexpr double kDeepStart = 1e-2;  // m
 
 bool is_mesh(const ShapeDef& shape) {
   return shape.type == contact::ShapeType::convex_mesh || shape.type == contact::ShapeType::triangle_mesh;
-}
-
-template <typename Def>
-const Def* find_named(const std::vector<Def>& defs, const std::string& name) {
-  const auto found = std::find_if(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
-  return found == defs.end() ? nullptr : &*found;
 }
 
 class ContactValidator {

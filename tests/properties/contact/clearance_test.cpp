@@ -1,10 +1,7 @@
 // What a set remembers of pairs that were apart saves searches and changes nothing that is found.
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "math/rotation.h"
-#include "support/contact_shapes.h"
+#include "support/random_shapes.h"
 
 namespace slew::contact {
 namespace {
@@ -14,28 +11,13 @@ using math::Vec3;
 using namespace testing;
 using enum ShapeType;
 
-class Clearance : public ::testing::Test {
+class Clearance : public RandomShapes {
  protected:
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-  ShapeDef shape(ShapeType type) {
-    switch (type) {
-      case sphere:
-        return testing::sphere(uniform(0.2, 1));
-      case box:
-        return testing::box(uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2));
-      case plane:
-        return testing::plane();
-      case height_field:
-        return flat_field(4, 4, 0.5);
-      case convex_mesh:
-        return box_mesh(uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2));
-      default:
-        return rounded(type, uniform(0.1, 0.8), uniform(0.2, 2));
-    }
-  }
+  Clearance() : RandomShapes(7) {}
+
   Pose moved(const Pose& pose, double size) {
-    const Mat3 turn = math::rotation_zxz({uniform(-size, size), uniform(-size, size), uniform(-size, size)});
-    return {pose.p_WF + Vec3(uniform(-size, size), uniform(-size, size), uniform(-size, size)), turn * pose.R_WF};
+    const Mat3 turn = rotation(size);
+    return {pose.p_WF + place(size), turn * pose.R_WF};
   }
   // a random walk in small and large steps, from apart to deep in each other and back
   void walk(ShapeType a, ShapeType b, bool b_moves) {
@@ -61,7 +43,6 @@ class Clearance : public ::testing::Test {
     }
   }
 
-  std::mt19937_64 random_{7};
   int touching_ = 0, looks_ = 0;
 };
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,8 +11,7 @@
 #include "contact/kernels.h"
 #include "contact/overlap.h"
 #include "core/allocation_guard.h"
-#include "math/rotation.h"
-#include "support/contact_shapes.h"
+#include "support/random_shapes.h"
 
 namespace slew::contact {
 namespace {
@@ -32,29 +30,14 @@ constexpr ShapeType kSearched[][2] = {{cylinder, box},           {cylinder, cyli
                                       {convex_mesh, cylinder},   {convex_mesh, capsule}, {convex_mesh, box},
                                       {convex_mesh, convex_mesh}};
 
-class NarrowPhase : public ::testing::Test {
+class NarrowPhase : public RandomShapes {
  protected:
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-  Mat3 rotation() { return math::rotation_zxz({uniform(-3, 3), uniform(-3, 3), uniform(-3, 3)}); }
-  ShapeDef shape(ShapeType type) {
-    switch (type) {
-      case sphere:
-        return testing::sphere(uniform(0.2, 1));
-      case box:
-        return testing::box(uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2));
-      case plane:
-        return testing::plane();
-      case convex_mesh:
-        return box_mesh(uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2));
-      default:
-        return rounded(type, uniform(0.1, 0.8), uniform(0.2, 2));
-    }
-  }
+  NarrowPhase() : RandomShapes(3) {}
+
   // two shapes at random, near enough to touch more often than not
   void draw(const ShapeType types[2]) {
     def_ = two_shapes(shape(types[0]), shape(types[1]));
-    poses_ = {Pose{{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, rotation()},
-              Pose{{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, rotation()}};
+    poses_ = {Pose{place(1), rotation()}, Pose{place(1), rotation()}};
   }
   static std::vector<ContactPoint> contacts(const ContactDef& def, const std::array<Pose, 2>& poses) {
     const ContactModel model = build(def);
@@ -70,7 +53,7 @@ class NarrowPhase : public ::testing::Test {
   // both shapes, as one
   std::pair<Vec3, Mat3> move_all() {
     const Mat3 R = rotation();
-    const Vec3 p(uniform(-9, 9), uniform(-9, 9), uniform(-9, 9));
+    const Vec3 p = place(9);
     for (Pose& pose : poses_) pose = {p + R * pose.p_WF, R * pose.R_WF};
     return {p, R};
   }
@@ -80,7 +63,6 @@ class NarrowPhase : public ::testing::Test {
     return depth;
   }
 
-  std::mt19937 random_{3};
   ContactDef def_;
   std::array<Pose, 2> poses_;
 };

@@ -4,13 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "math/rotation.h"
-#include "support/contact_shapes.h"
+#include "support/random_shapes.h"
 
 namespace slew::contact {
 namespace {
@@ -68,16 +67,9 @@ double least_overlap(const Placed& shapes) {
   return least;
 }
 
-class FindOverlap : public ::testing::Test {
+class FindOverlap : public RandomShapes {
  protected:
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-  Mat3 rotation() { return math::rotation_zxz({uniform(-3, 3), uniform(-3, 3), uniform(-3, 3)}); }
-  ShapeDef shape(ShapeType type) {
-    if (type == box) return testing::box(uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2));
-    if (type == convex_mesh) return box_mesh(uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2));
-    return rounded(type, uniform(0.1, 0.8), uniform(0.2, 2));
-  }
-  std::mt19937 random_{5};
+  FindOverlap() : RandomShapes(5) {}
 };
 
 constexpr ShapeType kTypes[] = {box, cylinder, capsule, convex_mesh};
