@@ -339,7 +339,10 @@ void read_fields(const Node& map, std::span<const Field> fields, void* def, cons
     }
     std::vector<std::string_view> candidates(other_keys.begin(), other_keys.end());
     for (const Field& field : fields) candidates.push_back(field.key);
-    context.report.add(entry.mark, value_path, {"unknown key", "", closest(entry.key, candidates)});
+    // where no key is near, the list of them helps
+    const std::string suggestion = closest(entry.key, candidates);
+    const std::string expected = suggestion.empty() ? choice_list(candidates) : std::string();
+    context.report.add(entry.mark, value_path, {"unknown key", expected, suggestion});
   }
   for (const Field& field : fields) {
     if (field.presence == Presence::required && map.find(field.key) == nullptr) {

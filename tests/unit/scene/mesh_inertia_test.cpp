@@ -303,7 +303,8 @@ TEST_F(FromMesh, WhatTheMeshAnswersIsNotAskedFor) {
 TEST_F(FromMesh, AMeshBesideGivenInertiaIsAnUnknownKey) {
   EXPECT_EQ(problems_of("bodies:\n  Part: {mass: 1, inertia: [1, 1, 1], mesh: part.stl}\n"
                         "joints:\n  Free: {type: floating, body2: Part}\n"),
-            "test:2:39: Part.mesh: unknown key");
+            "test:2:39: Part.mesh: unknown key; expected relative_to, position, orientation, mass, center_of_mass, "
+            "inertia, products or inertia_about");
 }
 
 }  // namespace
