@@ -1,7 +1,8 @@
 // How far two shapes are apart at least, and whether they can have come together since.
 //
 // Convex shapes are apart by at least the gap between them along any direction; the directions tried are the line of
-// their middles and the axes of boxes and planes. A point of a shape that lies up to r from its frame's origin moves by
+// their middles and the axes of boxes, meshes and planes. Surfaces of triangles count as the box around them. A point
+// of a shape that lies up to r from its frame's origin moves by
 //   |p - p_0| + |R - R_0| r                                                                          (1)
 // at most, with the Frobenius norm.
 #include <algorithm>
@@ -16,14 +17,26 @@ using math::Vec3;
 
 namespace {
 
-bool is_ground(const Geometry& g) noexcept {
+bool is_surface(const Geometry& g) noexcept {
   return g.type == ShapeType::triangle_mesh || g.type == ShapeType::height_field;
+}
+
+bool has_axes(const Geometry& g) noexcept {
+  return g.type == ShapeType::box || g.type == ShapeType::convex_mesh || is_surface(g);
+}
+
+// how far a shape, or the box around a surface, reaches along n [m]
+double extent_along(const Solid& s, Vec3 n) noexcept {
+  if (!is_surface(*s.geometry)) return reach(s, n);
+  const Vec3 d = transpose_multiply(s.R_WS, n), h = s.geometry->half_size;
+  return dot(s.to_world(s.geometry->centre), n) + h[0] * std::fabs(d[0]) + h[1] * std::fabs(d[1]) +
+         h[2] * std::fabs(d[2]);
 }
 
 // gap along n, which looks from b to a; negative: they overlap there
 double gap_along(const Solid& a, const Solid& b, Vec3 n) noexcept {
-  const double top_of_b = b.geometry->type == ShapeType::plane ? dot(b.p_WS, n) : reach(b, n);
-  return -reach(a, -n) - top_of_b;
+  const double top_of_b = b.geometry->type == ShapeType::plane ? dot(b.p_WS, n) : extent_along(b, n);
+  return -extent_along(a, -n) - top_of_b;
 }
 
 // the largest gap along the directions that are tried
@@ -33,11 +46,11 @@ double gap_between(const Solid& a, const Solid& b) noexcept {
   const Vec3 apart = a.to_world(a.geometry->centre) - b.to_world(b.geometry->centre);
   const double distance = norm(apart);
   const double of_balls = distance - a.geometry->bounding_radius - b.geometry->bounding_radius;
-  if (is_ground(*a.geometry) || is_ground(*b.geometry) || !(distance > 0)) return of_balls;
+  if (!(distance > 0)) return of_balls;
   double largest = std::max(of_balls, gap_along(a, b, apart * (1 / distance)));
-  for (const Solid* box : {&a, &b}) {
-    if (box->geometry->type != ShapeType::box) continue;
-    for (const Vec3& axis : box->R_WS.c) {
+  for (const Solid* solid : {&a, &b}) {
+    if (!has_axes(*solid->geometry)) continue;
+    for (const Vec3& axis : solid->R_WS.c) {
       largest = std::max(largest, gap_along(a, b, dot(axis, apart) < 0 ? -axis : axis));
     }
   }

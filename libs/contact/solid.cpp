@@ -28,6 +28,7 @@ void bound_vertices(Geometry& g) {
     }
   }
   g.centre = (low + high) * 0.5;
+  g.half_size = (high - low) * 0.5;
   for (const Vec3& v : g.vertices) g.bounding_radius = std::max(g.bounding_radius, norm(v - g.centre));
 }
 

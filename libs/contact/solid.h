@@ -15,7 +15,7 @@ struct Geometry {
   ShapeType type = ShapeType::sphere;
   double radius = 0;                 // m: sphere, cylinder, capsule
   double half_length = 0;            // m: cylinder, capsule (to the centre of an end)
-  math::Vec3 half_size;              // m: box
+  math::Vec3 half_size;              // m: box; meshes and height fields: of the box around them about `centre`
   double bounding_radius = 0;        // m about `centre`; infinite for a plane
   math::Vec3 centre;                 // m
   math::Vec3 inside;                 // m: a point within a convex shape

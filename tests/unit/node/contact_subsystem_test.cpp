@@ -14,7 +14,7 @@ namespace slew::testing {
 namespace {
 
 // the floor just below the bag: it touches within the first steps
-const std::string kHighFloor = "Ground_Plane.position=[0, 0.936 m, 0]";
+const std::string kHighFloor = "Ground_Mesh.position=[0, 0.936 m, 0]";
 
 class Touching : public ::testing::TestWithParam<const char*> {
  protected:
