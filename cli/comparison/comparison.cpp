@@ -147,9 +147,7 @@ class Comparer {
 
   // the default formulation where the scene has it, else the first that runs
   void choose_reference() {
-    scene::Scene default_scene;
-    Configuration wanted = {choice_of(default_scene, "formulation"), choice_of(default_scene, "integrator"),
-                            reference_step_};
+    Configuration wanted = default_configuration(reference_step_);
     if (!load(wish_, base_, wanted).scene) {
       const auto runs =
           std::find_if(planned_.begin(), planned_.end(), [](const Planned& p) { return p.row.has_run(); });

@@ -23,7 +23,6 @@ std::string cost(double microseconds) {
 }
 
 std::string formulation_and_integrator(const Configuration& configuration) {
-  if (configuration.integrator == kOwnIntegrator) return configuration.formulation;
   return configuration.formulation + ", " + configuration.integrator;
 }
 

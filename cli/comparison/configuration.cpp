@@ -7,6 +7,7 @@
 
 #include "cli_support/failure.h"
 #include "multibody/field_tables.h"
+#include "multibody/integrators.h"
 #include "scene/units.h"
 
 namespace slew::cli {
@@ -14,7 +15,8 @@ namespace {
 
 using cli_support::Failure;
 
-constexpr std::string_view kFormulation = "formulation", kIntegrator = "integrator", kSubstep = "max_substep";
+constexpr std::string_view kFormulation = "formulation", kIntegrator = "integrator", kSubstep = "max_substep",
+                           kOwnIntegrator = "own";
 constexpr double kSameRatio = 1e-9;    // of a whole number that decimals of a step miss by rounding
 constexpr double kReferenceRatio = 8;  // of the smallest step to the reference's: RK4 is then 4096 times better
 constexpr double kDefaultRatios[] = {1, 0.5, 0.25};  // of the scene's sub-step
@@ -45,6 +47,25 @@ std::vector<std::string> select(const char* option, const std::vector<std::strin
     } else {
       refuse(fmt::format("{}: there is no '{}' in this version; expected all, or some of {}", option, name,
                          fmt::join(available, ", ")));
+    }
+  }
+  return chosen;
+}
+
+// Integrators of a formulation: what is wanted, with its own rule by its name and with all that it has for "all".
+std::vector<std::string> integrators_for(const std::string& formulation, const std::vector<std::string>& wanted) {
+  const std::vector<std::string> formulations = choices_of(kFormulation);
+  const auto index = std::find(formulations.begin(), formulations.end(), formulation) - formulations.begin();
+  const auto which = static_cast<multibody::Formulation>(index);
+  std::vector<std::string> chosen;
+  const auto add = [&chosen](std::string_view name) {
+    if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.emplace_back(name);
+  };
+  for (const std::string& name : wanted) {
+    if (name == "all") {
+      for (const multibody::Integrator each : multibody::integrators_of(which)) add(multibody::key_of(each));
+    } else {
+      add(name == kOwnIntegrator ? multibody::key_of(multibody::own_integrator(which)) : name);
     }
   }
   return chosen;
@@ -107,24 +128,30 @@ std::vector<std::string> choices_of(std::string_view key) {
 
 std::string choice_of(const scene::Scene& scene, std::string_view key) {
   const Field* field = find_field(key);
-  if (field == nullptr) return std::string(kOwnIntegrator);
+  if (field == nullptr) return {};
   return std::string(field->choices[static_cast<std::size_t>(field->get_choice(&scene.mechanics))]);
 }
 
 std::vector<Configuration> configurations(const ComparisonWish& wish, const scene::Scene& scene) {
-  std::vector<std::string> integrators = choices_of(kIntegrator);
-  if (integrators.empty()) integrators.emplace_back(kOwnIntegrator);
   const std::vector<std::string> all = {"all"}, scenes_own = {choice_of(scene, kIntegrator)};
   const auto formulations =
       select("--formulations", wish.formulations.empty() ? all : wish.formulations, choices_of(kFormulation));
-  integrators = select("--integrators", wish.integrators.empty() ? scenes_own : wish.integrators, integrators);
+  const std::vector<std::string>& wanted = wish.integrators.empty() ? scenes_own : wish.integrators;
+  // names that are none are refused here
+  static_cast<void>(select("--integrators", wanted, choices_of(kIntegrator)));
   std::vector<Configuration> result;
   for (const std::string& formulation : formulations) {
-    for (const std::string& integrator : integrators) {
+    for (const std::string& integrator : integrators_for(formulation, wanted)) {
       for (const double step : select_steps(wish, scene)) result.push_back({formulation, integrator, step});
     }
   }
   return result;
+}
+
+Configuration default_configuration(double step) {
+  const scene::Scene scene;
+  const std::string formulation = choice_of(scene, kFormulation);
+  return {formulation, integrators_for(formulation, {choice_of(scene, kIntegrator)}).front(), step};
 }
 
 double reference_step(const ComparisonWish& wish, const scene::Scene& scene, double smallest_step) {
@@ -143,7 +170,7 @@ Configured load(const ComparisonWish& wish, const scene::Scene& base, const Conf
     options.overrides.push_back(fmt::format("{}={}", path, value));
   };
   set("mechanics.formulation", configuration.formulation);
-  if (find_field(kIntegrator) != nullptr) set("mechanics.integrator", configuration.integrator);
+  set("mechanics.integrator", configuration.integrator);
   set("mechanics.max_substep", fmt::format("{:.17g}", configuration.step));
   if (configuration.step > base.session.step) set("session.step", fmt::format("{:.17g}", configuration.step));
   try {

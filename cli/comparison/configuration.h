@@ -18,9 +18,6 @@
 
 namespace slew::cli {
 
-// Integrator of a version whose formulations have one each.
-inline constexpr std::string_view kOwnIntegrator = "own";
-
 struct Configuration {
   std::string formulation;
   std::string integrator;
@@ -41,11 +38,15 @@ struct ComparisonWish {
 
 // Names that mechanics.KEY may have; empty: there is no such key.
 [[nodiscard]] std::vector<std::string> choices_of(std::string_view key);
-// The one that the scene has chosen, and the one that a scene has that does not choose.
+// The one that the scene has chosen.
 [[nodiscard]] std::string choice_of(const scene::Scene& scene, std::string_view key);
 
-// Every combination, by formulation, integrator, step. Throws Failure (bad_input) for names and steps that cannot be.
+// Every combination, by formulation, integrator, step: `own` by the name of the rule that the formulation has, `all`
+// integrators those of the formulation. Throws Failure (bad_input) for names and steps that cannot be.
 [[nodiscard]] std::vector<Configuration> configurations(const ComparisonWish& wish, const scene::Scene& scene);
+
+// Formulation and integrator of a scene that does not choose.
+[[nodiscard]] Configuration default_configuration(double step);
 
 // Sub-step of the reference: it divides H evenly into an even number of parts.
 [[nodiscard]] double reference_step(const ComparisonWish& wish, const scene::Scene& scene, double smallest_step);

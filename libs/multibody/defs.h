@@ -146,8 +146,16 @@ struct StaticDummyDef {
 
 enum class Formulation : int { recursive, lagrange, augmented, penalty };
 
-// How a sub-step is integrated: integrators.h.
-enum class Integrator : int { rk4, semi_implicit_euler, trapezoidal, generalised_alpha, sdirk2 };
+// How a sub-step is integrated: integrators.h; index3_trapezoidal: body_penalty.h; own: own_integrator().
+enum class Integrator : int {
+  rk4,
+  semi_implicit_euler,
+  trapezoidal,
+  generalised_alpha,
+  sdirk2,
+  index3_trapezoidal,
+  own
+};
 
 struct MechanicsDef {
   Triple gravity{0, -9.81, 0};  // m/s2
@@ -157,7 +165,7 @@ struct MechanicsDef {
   double penalty_factor = 1e7;       // penalty mass of the joints' rows over the mechanism's mass (augmented, penalty)
   double penalty_damping = 1;        // xi, damping ratio of the rows (penalty)
   double penalty_frequency = 100;    // rad/s, omega_n of the rows (penalty)
-  Integrator integrator = Integrator::rk4;
+  Integrator integrator = Integrator::own;
   double spectral_radius = 0.8;       // rho_inf of generalised_alpha, 0 .. 1: 1 damps nothing
   double iteration_tolerance = 1e-9;  // implicit integrators: error of speeds, of the mechanism's speed or of 1 m/s
 

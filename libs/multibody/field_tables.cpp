@@ -24,8 +24,8 @@ constexpr double kMassRamp = 1.0;  // s
 
 constexpr std::array<std::string_view, 2> kInertiaPoints = {"center_of_mass", "body_origin"};
 constexpr std::array<std::string_view, 4> kFormulations = {"recursive", "lagrange", "augmented", "penalty"};
-constexpr std::array<std::string_view, 5> kIntegrators = {"rk4", "semi_implicit_euler", "trapezoidal",
-                                                          "generalised_alpha", "sdirk2"};
+constexpr std::array<std::string_view, 7> kIntegrators = {
+    "rk4", "semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2", "index3_trapezoidal", "own"};
 
 constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::gravity>(
@@ -54,8 +54,11 @@ constexpr Field kMechanicsFields[] = {
                                              .range = kPenaltyFrequencyRange,
                                              .doc = "penalty: angular frequency at which a joint closes again"}),
     field<&MechanicsDef::integrator>(
-        "integrator", {.choices = kIntegrators,
-                       .doc = "rule of a sub-step; the last three are implicit: springs and dampers may be stiff"}),
+        "integrator",
+        {.choices = kIntegrators,
+         .doc =
+             "rule of a sub-step. recursive, lagrange: the first five, of which the last three are implicit (springs "
+             "and dampers may be stiff); augmented: index3_trapezoidal; penalty: rk4. own: the first of these"}),
     field<&MechanicsDef::spectral_radius>(
         "spectral_radius",
         {.range = kRadiusRange,
@@ -250,6 +253,14 @@ std::span<const Section> sections() noexcept {
 
 std::span<const Field> mechanics_fields() noexcept {
   return kMechanicsFields;
+}
+
+std::string_view key_of(Formulation formulation) noexcept {
+  return kFormulations[static_cast<std::size_t>(formulation)];
+}
+
+std::string_view key_of(Integrator integrator) noexcept {
+  return kIntegrators[static_cast<std::size_t>(integrator)];
 }
 
 }  // namespace slew::multibody

@@ -32,4 +32,8 @@ struct Section {
 // Rows of the section `mechanics`; they bind to MechanicsDef itself.
 [[nodiscard]] std::span<const Field> mechanics_fields() noexcept;
 
+// What a scene calls them.
+[[nodiscard]] std::string_view key_of(Formulation formulation) noexcept;
+[[nodiscard]] std::string_view key_of(Integrator integrator) noexcept;
+
 }  // namespace slew::multibody

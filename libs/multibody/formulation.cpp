@@ -120,7 +120,7 @@ bool is_right(const Model& model, const State& state, Workspace& ws) noexcept {
 
 Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start, StepRule rule) {
   using enum StageWorkspace::Coordinates;
-  const bool has_rule = rule.integrator != Integrator::rk4;
+  const bool has_rule = is_implicit(rule.integrator) || rule.integrator == Integrator::semi_implicit_euler;
   switch (formulation) {
     case Formulation::recursive:
       if (has_rule) stages_ = std::make_unique<Stages>(model, rule, joint);

@@ -240,8 +240,30 @@ bool close_impulse(const StageContext& at, double h) noexcept {
 
 }  // namespace
 
+Integrator own_integrator(Formulation formulation) noexcept {
+  return integrators_of(formulation).front();
+}
+
+std::span<const Integrator> integrators_of(Formulation formulation) noexcept {
+  using enum Integrator;
+  static constexpr Integrator kStages[] = {rk4, semi_implicit_euler, trapezoidal, generalised_alpha, sdirk2};
+  static constexpr Integrator kAugmented[] = {index3_trapezoidal};
+  switch (formulation) {
+    case Formulation::recursive:
+    case Formulation::lagrange:
+      break;
+    case Formulation::augmented:
+      return kAugmented;
+    case Formulation::penalty:
+      return {kStages, 1};
+  }
+  return kStages;
+}
+
 StepRule step_rule(const MechanicsDef& mechanics) noexcept {
-  return {mechanics.integrator, mechanics.spectral_radius, mechanics.iteration_tolerance};
+  const bool is_own = mechanics.integrator == Integrator::own;
+  return {is_own ? own_integrator(mechanics.formulation) : mechanics.integrator, mechanics.spectral_radius,
+          mechanics.iteration_tolerance};
 }
 
 StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordinates coordinates) {
@@ -275,6 +297,8 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
   bool has_settled = true;
   switch (rule.integrator) {
     case Integrator::rk4:
+    case Integrator::index3_trapezoidal:
+    case Integrator::own:
       return false;
     case Integrator::semi_implicit_euler:
       take_euler(at, h);

@@ -41,14 +41,18 @@
 
 namespace slew::multibody {
 
+// The rule that a formulation has unless its scene chooses, and all that it has, that one first.
+[[nodiscard]] Integrator own_integrator(Formulation formulation) noexcept;
+[[nodiscard]] std::span<const Integrator> integrators_of(Formulation formulation) noexcept;
+
 struct StepRule {
   Integrator integrator = Integrator::rk4;
   double spectral_radius = 0.8;       // rho of (3)
   double iteration_tolerance = 1e-9;  // of the mechanism's largest speed, at least 1 m/s, 1 rad/s
 };
-[[nodiscard]] StepRule step_rule(const MechanicsDef& mechanics) noexcept;
+[[nodiscard]] StepRule step_rule(const MechanicsDef& mechanics) noexcept;  // its integrator is never `own`
 [[nodiscard]] constexpr bool is_implicit(Integrator integrator) noexcept {
-  return integrator >= Integrator::trapezoidal;
+  return integrator >= Integrator::trapezoidal && integrator <= Integrator::sdirk2;
 }
 
 // What runs: in joint coordinates, or in body coordinates with joint coordinates beside them.

@@ -14,6 +14,7 @@
 #include "multibody/dynamics.h"
 #include "multibody/elements/validate_elements.h"
 #include "multibody/field_tables.h"
+#include "multibody/integrators.h"
 #include "multibody/motions/motion_fields.h"
 #include "multibody/motions/validate_motions.h"
 #include "multibody/observe.h"
@@ -87,12 +88,15 @@ class Validator {
   }
 
   void check_integrator() {
-    if (m_.integrator == Integrator::rk4 || m_.formulation <= Formulation::lagrange) return;
-    constexpr const char* kNames[] = {"rk4", "semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2"};
+    if (m_.integrator == Integrator::own) return;
+    std::vector<std::string_view> names;
+    for (const Integrator integrator : integrators_of(m_.formulation)) {
+      if (integrator == m_.integrator) return;
+      names.push_back(key_of(integrator));
+    }
     add("mechanics.integrator",
-        fmt::format("the integrator '{}' is there for the formulations recursive and lagrange only",
-                    kNames[static_cast<int>(m_.integrator)]),
-        "rk4, which leaves this formulation its own rule");
+        fmt::format("the formulation '{}' has no integrator '{}'", key_of(m_.formulation), key_of(m_.integrator)),
+        fmt::format("{} or own", fmt::join(names, ", ")));
   }
 
   // ranges of the field tables, for Defs that no scene reader has seen

@@ -126,6 +126,30 @@ TEST_F(Compare, EveryFormulationThatTheFieldTableListsHasARow) {
   }
 }
 
+// a rule by the name that it has, not by that of the default; what a formulation does not have is no row of `all`
+TEST_F(Compare, EveryRowNamesTheRuleThatItRunsWith) {
+  write(kDoublePendulum);
+  wish.scene.duration = "0.02s";
+  wish.steps = {"2ms"};
+  const auto rules = [this] {
+    std::vector<std::string> names;
+    for (const ComparedRow& row : run().rows) {
+      EXPECT_TRUE(row.has_run()) << row.refusal;
+      names.push_back(row.configuration.formulation + " " + row.configuration.integrator);
+    }
+    return names;
+  };
+  EXPECT_EQ(rules(),
+            (std::vector<std::string>{"recursive rk4", "lagrange rk4", "augmented index3_trapezoidal", "penalty rk4"}));
+  wish.formulations = {"augmented", "penalty"};
+  wish.integrators = {"all"};
+  EXPECT_EQ(rules(), (std::vector<std::string>{"augmented index3_trapezoidal", "penalty rk4"}));
+  wish.integrators = {"rk4"};
+  const Comparison explicit_rule = run();
+  EXPECT_TRUE(contains(explicit_rule.rows[0].refusal, "the formulation 'augmented' has no integrator 'rk4'"));
+  EXPECT_TRUE(explicit_rule.rows[1].has_run());
+}
+
 TEST_F(Compare, DampedMotionIsComparedWithTheEnergyOfTheReference) {
   use("first_steps.yaml");
   wish.scene.duration = "1s";
@@ -262,13 +286,13 @@ Comparison by_hand() {
   c.until = 1;
   c.communication_step = 1e-3;
   c.repeats = 2;
-  c.reference = {"recursive", "own", 1e-4};
+  c.reference = {"recursive", "rk4", 1e-4};
   c.largest_kinetic_energy = 5;
   c.variables = {"A.position.x"};
   c.classes = {{.unit = "m", .columns = {0}, .extent = 1, .reference_error = 1e-9, .reference_rms = 1e-10}};
   c.rows.resize(4);
   const auto fill = [&c](std::size_t i, const char* name, double step, double error, double cost) {
-    c.rows[i].configuration = {name, "own", step};
+    c.rows[i].configuration = {name, "rk4", step};
     c.rows[i].differences = {{error, error / 2}};
     c.rows[i].cost = {cost, 2 * cost, 3 * cost};
     c.rows[i].energy_drift = 1e-5;
@@ -277,7 +301,7 @@ Comparison by_hand() {
   fill(1, "recursive", 5e-4, 1e-12, 4);
   fill(2, "lagrange", 1e-3, 3, 8);
   c.rows[2].parted_at = 0.25;
-  c.rows[3].configuration = {"penalty", "own", 0};
+  c.rows[3].configuration = {"penalty", "rk4", 0};
   c.rows[3].refusal = "a <reason>, with a comma";
   c.wanted_rows = 4;
   return c;
@@ -315,8 +339,8 @@ TEST(ComparisonReport, PictureHasAMarkForEveryStableRow) {
 TEST(ComparisonReport, TableOfValuesHasOneLineForEveryRowAndAllDigits) {
   const std::string csv = report_csv(by_hand());
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
-  EXPECT_TRUE(contains(csv, "\r\nrecursive,own,0.001,0,0,1e-05,0.0001,5e-05,2,4,6,0,0,yes\r\n")) << csv;
-  EXPECT_TRUE(contains(csv, "penalty,own,,,,,,,,,,,,\"cannot run: a <reason>, with a comma\"\r\n")) << csv;
+  EXPECT_TRUE(contains(csv, "\r\nrecursive,rk4,0.001,0,0,1e-05,0.0001,5e-05,2,4,6,0,0,yes\r\n")) << csv;
+  EXPECT_TRUE(contains(csv, "penalty,rk4,,,,,,,,,,,,\"cannot run: a <reason>, with a comma\"\r\n")) << csv;
 }
 
 TEST(ComparisonReport, JsonHoldsEveryRowAndTheReference) {

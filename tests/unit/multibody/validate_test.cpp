@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "multibody/field_tables.h"
+#include "multibody/integrators.h"
 #include "tests/validation/multibody/crane_def.h"
 #include "tests/validation/multibody/mechanism.h"
 
@@ -83,7 +84,26 @@ TEST(Validate, NamesIntegratorsThatAFormulationDoesNotHave) {
         d.formulation = Formulation::penalty;
         d.integrator = Integrator::sdirk2;
       },
-      "mechanics.integrator", "'sdirk2' is there for the formulations recursive and lagrange only");
+      "mechanics.integrator", "the formulation 'penalty' has no integrator 'sdirk2'");
+  expect_problem(
+      [](auto& d) {
+        d.formulation = Formulation::augmented;
+        d.integrator = Integrator::rk4;
+      },
+      "mechanics.integrator", "the formulation 'augmented' has no integrator 'rk4'");
+  for (const Formulation formulation :
+       {Formulation::recursive, Formulation::lagrange, Formulation::augmented, Formulation::penalty}) {
+    const auto with = [formulation](Integrator integrator) {
+      return testing::text_of(problems_of([&](auto& d) { d.formulation = formulation, d.integrator = integrator; }));
+    };
+    EXPECT_EQ(with(Integrator::own), "");
+    for (const Integrator integrator : integrators_of(formulation)) EXPECT_EQ(with(integrator), "");
+  }
+  const std::string refusal = testing::text_of(problems_of([](auto& d) {
+    d.formulation = Formulation::augmented;
+    d.integrator = Integrator::sdirk2;
+  }));
+  EXPECT_NE(refusal.find("expected index3_trapezoidal or own"), std::string::npos) << refusal;
 }
 
 TEST(Validate, NamesDanglingBodies) {
