@@ -59,16 +59,15 @@ void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& 
   }
 }
 
-bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
-             BodyWorkspace& bws) noexcept {
+void apply_all(const Model& model, const BodyState& state, State& joints, Workspace& ws) noexcept {
   update_body_motion(model, state, ws);
   find_joint_coordinates(model, ws, joints);
-  update_elements(model, joints.q, Elements::used, ws);
-  update_contacts(model, ws);
-  update_inertia(model, ws);
-  update_coupled(model, ws);
-  apply_elements(model, ws);
-  apply_contacts(model, ws);
+  apply_all(model, joints.q, ws);
+}
+
+bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
+             BodyWorkspace& bws) noexcept {
+  apply_all(model, state, joints, ws);
   evaluate_joints(body, ws, bws);
   fill_matrix(model, body, ws, bws);
   const bool is_regular = bws.ldl.factorize(kDependent);

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "multibody/body_block.h"
+#include "multibody/body_passes.h"
 
 namespace slew::multibody {
 
@@ -20,19 +21,15 @@ class Filling {
 
   void fill() noexcept {
     bws_.ldl.clear();
-    for (std::size_t link = 1; link < model_.links.size(); ++link) {
-      add_mass(static_cast<int>(link));
-      add_joint(static_cast<int>(link));
-    }
-    for (std::size_t i = 0; i < model_.coupled.size(); ++i) add_coupled(model_.coupled[i], ws_.coupled[i]);
+    BodyMatrix matrix(body_, bws_.ldl);
+    add_masses(model_, ws_, matrix);
+    for (std::size_t link = 1; link < model_.links.size(); ++link) add_joint(static_cast<int>(link));
     for (std::size_t i = model_.links.size(); i < body_.joints.size(); ++i) add_cut(i);
   }
 
  private:
   [[nodiscard]] int rows(int link) const noexcept { return static_cast<int>(body_.joints[at(link)].rows.size()); }
   [[nodiscard]] int node_size(int link) const noexcept { return kBody + rows(link); }
-
-  void add_mass(int link) noexcept { add_block(body_, bws_.ldl, link, link, inertia_block(ws_.inertia[at(link)])); }
 
   void add_joint(int link) noexcept {
     const Constraint& joint = body_.joints[at(link)];
@@ -73,16 +70,6 @@ class Filling {
     }
   }
 
-  void add_coupled(const CoupledMass& mass, const CoupledMotion& m) noexcept {
-    const LineElement& line = model_.lines[at(mass.line)];
-    const LineMotion& motion = ws_.lines[at(mass.line)];
-    const PointMasses between = point_masses(mass, m);
-    add_pair(body_, bws_.ldl,
-             {{line.link1, line.link2},
-              {motion.P1 - ws_.motion[at(line.link1)].p, motion.P2 - ws_.motion[at(line.link2)].p},
-              {{{between.A11, between.A12}, {between.A12, between.A22}}}});
-  }
-
   const Model& model_;
   const BodyModel& body_;
   const Workspace& ws_;
@@ -91,9 +78,8 @@ class Filling {
 
 }  // namespace
 
-void add_block(const BodyModel& body, math::BlockLdl& ldl, int row_link, int column_link,
-               const SpatialBlock& block) noexcept {
-  const auto node_size = [&body](int link) { return kBody + static_cast<int>(body.joints[at(link)].rows.size()); };
+void BodyMatrix::add(int row_link, int column_link, const SpatialBlock& block) noexcept {
+  const auto node_size = [this](int link) { return kBody + static_cast<int>(body_.joints[at(link)].rows.size()); };
   const int columns = node_size(column_link);
   std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> wide{};
   for (int r = 0; r < kBody; ++r) {
@@ -101,20 +87,9 @@ void add_block(const BodyModel& body, math::BlockLdl& ldl, int row_link, int col
   }
   const std::span<const double> used(wide.data(), at(node_size(row_link) * columns));
   if (row_link == column_link) {
-    ldl.add_diagonal(row_link - 1, used);
+    ldl_.add_diagonal(row_link - 1, used);
   } else {
-    ldl.add_coupling(row_link - 1, column_link - 1, used);
-  }
-}
-
-void add_pair(const BodyModel& body, math::BlockLdl& ldl, const PointPair& pair) noexcept {
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (std::size_t j = 0; j < 2; ++j) {
-      // of the two couplings one is the other's transposed
-      const int row = pair.links[i], column = pair.links[j];
-      if (row == 0 || column == 0 || (i != j && row < column)) continue;
-      add_block(body, ldl, row, column, point_mass_block(pair.A[i][j], pair.s[i], pair.s[j]));
-    }
+    ldl_.add_coupling(row_link - 1, column_link - 1, used);
   }
 }
 

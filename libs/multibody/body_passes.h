@@ -12,6 +12,9 @@ inline constexpr int kBody = 6;  // speeds of a link
 // Poses and velocities of all links; accelerations with u' = 0, as LinkMotion says.
 void update_body_motion(const Model& model, const BodyState& state, Workspace& ws) noexcept;
 
+// The same, and what acts there (apply_all()); joints: as of find_joint_coordinates().
+void apply_all(const Model& model, const BodyState& state, State& joints, Workspace& ws) noexcept;
+
 // Rows of all joints, from the motion.
 void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "multibody/link_stiffness.h"
 #include "multibody/penalty_passes.h"
 
 namespace slew::multibody {
@@ -21,8 +22,7 @@ std::vector<std::pair<int, int>> coupled_links(const Model& model, std::span<con
   };
   for (const Constraint& constraint : constraints) couple(constraint.link1, constraint.link2);
   // elements may get constants while running
-  for (const LineElement& line : model.lines) couple(line.link1, line.link2);
-  for (const AngleElement& angle : model.angles) couple(angle.link1, angle.link2);
+  for_each_coupling(model, couple);
   return {pairs.begin(), pairs.end()};
 }
 

@@ -23,8 +23,9 @@
 // by Newton's method on d, lambda carried along (an external spring of 4 alpha / h^2 on every row),
 //   A_h delta = h^2/4 (Q - M u_1' - G^T lambda) - G^T alpha g,   lambda += 4/h^2 alpha (g + G delta)   (7)
 //   A_h = A + h/2 C + h^2/4 K
-// C: spring-dampers; K: their springs, and what pulls a link at s from its origin with T . s > 0 across s: multipliers,
-// and its own weight and inertia. Light links between heavy ones are strings, which no step resolves.
+// C, K: slopes of all force elements and contacts (link_stiffness.h), and in K what pulls a link at s from its origin
+// with T . s > 0 across s: multipliers, and its own weight and inertia. Light links between heavy ones are strings,
+// which no step resolves.
 // What (5) leaves in G u is taken away in the metric of A_h, and u_1' of the next step comes from (3):
 //   u := u - A_h^-1 G^T alpha G u   until G u = 0                                                      (8)
 // (8) is the velocity projection, (3) the acceleration projection of the sources; both need no matrix of their own.
@@ -32,8 +33,8 @@
 // Sources: (2) flexible-body tutorial thesis (2017), equation 7 as corrected in the errata; (4) Bayo and Ledesma 1996;
 // (5) to (8) Cuadrado et al. 2000 and 2004, Dopico et al. 2014. Deviations: alpha is scaled by the mechanism; rotations
 // in (5) by the exponential, as u is no derivative of coordinates; (3) in the metric of M, and from the state alone, so
-// that nothing but q and u is carried from step to step: row forces jump between steps. C and K leave out other
-// elements and the turning of gradients; the right sides are exact.
+// that nothing but q and u is carried from step to step: row forces jump between steps. C and K leave out the turning
+// of gradients; the right sides are exact.
 //
 // One node of math::BlockLdl holds a link: the cost is linear in the number of links. Nothing here allocates but the
 // builders.

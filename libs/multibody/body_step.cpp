@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "multibody/body_attitude.h"
 #include "multibody/body_passes.h"
-#include "multibody/contact_passes.h"
+#include "multibody/body_runge_kutta.h"
 #include "multibody/loops.h"
 
 namespace slew::multibody {
@@ -96,37 +95,13 @@ bool project_step(const Model& model, const BodyModel& body, double h, BodyState
 
 bool advance(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
              BodyWorkspace& bws, double h, std::span<const double> mean, std::span<const double> slope) noexcept {
-  constexpr double kStageTime[4] = {0, 0.5, 0.5, 1.0};
-  constexpr double kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-  const auto forces_at = [&](double t) {
-    for (std::size_t k = 0; k < mean.size(); ++k) bws.row_force[k] = mean[k] + (t - 0.5 * h) * slope[k];
-  };
-  forces_at(0);
+  for (std::size_t k = 0; k < mean.size(); ++k) bws.row_force[k] = mean[k] - 0.5 * h * slope[k];
   accelerations(model, bws, bws.row_force, bws.udot);
-  find_rates(state, bws.qdot);
-  bws.sum.q = state.q;
-  bws.sum.u = state.u;
-  bws.stage_joints.q = joints.q;
-  bool is_regular = true;
-  for (int stage = 0; stage < 4; ++stage) {
-    if (stage > 0) {
-      set_stage_time(model, joints, kStageTime[stage] * h, ws);
-      combine(state.q, kStageTime[stage] * h, bws.qdot, bws.stage.q);
-      combine(state.u, kStageTime[stage] * h, bws.udot, bws.stage.u);
-      if (bws.ldl.smallest_pivot() < kNearSingular) {
-        is_regular = project(model, body, bws.stage, bws.stage_joints, ws, bws) && is_regular;
-      }
-      forces_at(kStageTime[stage] * h);
-      is_regular = find_accelerations(model, body, bws.stage, bws.row_force, ws, bws) && is_regular;
-      find_rates(bws.stage, bws.qdot);
-    }
-    combine(bws.sum.q, h * kWeight[stage], bws.qdot, bws.sum.q);
-    combine(bws.sum.u, h * kWeight[stage], bws.udot, bws.sum.u);
-  }
-  state.q.swap(bws.sum.q);
-  state.u.swap(bws.sum.u);
-  joints.time += h;
-  normalize_attitudes(state.q);
+  const bool is_regular = step_by_runge_kutta(model, state, joints, ws, bws, h, mean, slope, [&](BodyState& stage) {
+    const bool is_near_singular = bws.ldl.smallest_pivot() < kNearSingular;
+    const bool is_closed = !is_near_singular || project(model, body, stage, bws.stage_joints, ws, bws);
+    return find_accelerations(model, body, stage, bws.row_force, ws, bws) && is_closed;
+  });
   const bool is_closed = project(model, body, state, joints, ws, bws);
   accept_contacts(model, h, joints, ws);
   return is_closed && is_regular;

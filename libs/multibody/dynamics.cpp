@@ -17,13 +17,8 @@ namespace {
 // everything up to and including the backward pass
 void prepare(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   update_motion(model, q, u, ws);
-  update_elements(model, q, Elements::used, ws);
-  update_contacts(model, ws);
-  update_inertia(model, ws);
-  update_coupled(model, ws);
   std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
-  apply_elements(model, ws);
-  apply_contacts(model, ws);
+  apply_all(model, q, ws);
 }
 
 }  // namespace

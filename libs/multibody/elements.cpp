@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "multibody/contact_passes.h"
 #include "multibody/element_law.h"
 #include "multibody/passes.h"
 
@@ -135,6 +136,15 @@ void apply_row_forces(const Model& model, Workspace& ws) noexcept {
         break;
     }
   }
+}
+
+void apply_all(const Model& model, std::span<const double> q, Workspace& ws) noexcept {
+  update_elements(model, q, Elements::used, ws);
+  update_contacts(model, ws);
+  update_inertia(model, ws);
+  update_coupled(model, ws);
+  apply_elements(model, ws);
+  apply_contacts(model, ws);
 }
 
 }  // namespace slew::multibody

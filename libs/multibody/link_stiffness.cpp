@@ -16,13 +16,6 @@ std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
-// the part of a matrix between two points, each at s from the origin of its link
-void add_points(int link_a, Vec3 s_a, int link_b, Vec3 s_b, const Mat3& A, LinkMatrix& matrix) noexcept {
-  // of the two blocks between two links one is the other's transposed
-  if (link_a == 0 || link_b == 0 || link_a < link_b) return;
-  matrix.add(link_a, link_b, point_mass_block(A, s_a, s_b));
-}
-
 class Adding {
  public:
   Adding(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix) noexcept
@@ -146,19 +139,6 @@ class Adding {
 };
 
 }  // namespace
-
-void add_relative(const Workspace& ws, int link1, int link2, Vec3 P, const RelativeMatrix& A,
-                  LinkMatrix& matrix) noexcept {
-  if (link1 == link2) return;
-  const Vec3 s1 = P - ws.motion[at(link1)].p, s2 = P - ws.motion[at(link2)].p;
-  if (link1 > 0) matrix.add(link1, link1, relative_block(A, s1, s1));
-  if (link2 > 0) matrix.add(link2, link2, relative_block(A, s2, s2));
-  if (link1 == 0 || link2 == 0) return;
-  const bool is_first_later = link1 > link2;
-  SpatialBlock between = is_first_later ? relative_block(A, s1, s2) : relative_block(A, s2, s1);
-  for (double& x : between) x = -x;
-  matrix.add(std::max(link1, link2), std::min(link1, link2), between);
-}
 
 void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix) noexcept {
   Adding(model, ws, weights, matrix).add_all();

@@ -11,21 +11,9 @@
 // tables) are left out: it stays symmetric and positive semi-definite. Contacts: contact_stiffness.h.
 #pragma once
 
-#include "multibody/spatial_block.h"
+#include "multibody/link_matrix.h"
 
 namespace slew::multibody {
-
-// A symmetric matrix over the speeds of all links, to which blocks are added.
-class LinkMatrix {
- public:
-  virtual ~LinkMatrix() = default;
-  // Ground has no rows: both links are at least 1, and of two links only the block with row > column is given.
-  virtual void add(int row_link, int column_link, const SpatialBlock& block) noexcept = 0;
-};
-
-// A over the motion of link 2 against link 1, the point at P [m, Ground].
-void add_relative(const Workspace& ws, int link1, int link2, math::Vec3 P, const RelativeMatrix& A,
-                  LinkMatrix& matrix) noexcept;
 
 // (1) to (3) at the motion in ws; needs update_elements().
 void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix) noexcept;

@@ -25,6 +25,10 @@ void update_elements(const Model& model, std::span<const double> q, Elements whi
 void update_inertia(const Model& model, Workspace& ws) noexcept;
 void update_coupled(const Model& model, Workspace& ws) noexcept;
 
+// All that acts at the motion in ws but rows, with inertias and coupled masses: elements and contacts found at these
+// joint coordinates and subtracted from the bias wrenches.
+void apply_all(const Model& model, std::span<const double> q, Workspace& ws) noexcept;
+
 // Subtracts spring-dampers, then the rows' forces ws.row_force, from the bias wrenches.
 void apply_elements(const Model& model, Workspace& ws) noexcept;
 void apply_row_forces(const Model& model, Workspace& ws) noexcept;

@@ -60,14 +60,7 @@ void subtract_force(int link, Vec3 s, Vec3 force, std::span<double> y) noexcept 
 
 void see(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
          PenaltyWorkspace& pws) noexcept {
-  update_body_motion(model, state, ws);
-  find_joint_coordinates(model, ws, joints);
-  update_elements(model, joints.q, Elements::used, ws);
-  update_contacts(model, ws);
-  update_inertia(model, ws);
-  update_coupled(model, ws);
-  apply_elements(model, ws);
-  apply_contacts(model, ws);
+  apply_all(model, state, joints, ws);
   for (std::size_t i = 0; i < body.constraints.size(); ++i) {
     const Constraint& constraint = body.constraints[i];
     const std::span<RowValue> rows(pws.rows.data() + body.first_row[i], constraint.rows.size());

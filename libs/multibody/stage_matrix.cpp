@@ -18,19 +18,6 @@ std::size_t at_index(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
-// blocks of links into the matrix of body coordinates
-class StageMatrix final : public LinkMatrix {
- public:
-  StageMatrix(const BodyModel& body, math::BlockLdl& ldl) noexcept : body_(body), ldl_(ldl) {}
-  void add(int row_link, int column_link, const SpatialBlock& block) noexcept override {
-    add_block(body_, ldl_, row_link, column_link, block);
-  }
-
- private:
-  const BodyModel& body_;
-  math::BlockLdl& ldl_;
-};
-
 // A joint's force F at s from a link's origin turns it back when it pulls: (F . s) across s. Where it pushes nothing is
 // added, the matrix stays definite.
 void add_pulls(const StageContext& at, double weight, LinkMatrix& matrix) noexcept {
@@ -97,7 +84,7 @@ BodyModel build_stiff_body_model(const Model& model) {
 
 bool factorize_stage(const StageContext& at, const Stage& stage) noexcept {
   fill_matrix(at.model, at.body, at.ws, at.bws);
-  StageMatrix matrix(at.body, at.bws.ldl);
+  BodyMatrix matrix(at.body, at.bws.ldl);
   const ChangeWeights weights{.position = stage.tau * stage.sigma, .rate = stage.tau};
   add_stiffness(at.model, at.ws, weights, matrix);
   add_contact_stiffness(at.model, at.ws, weights, matrix);

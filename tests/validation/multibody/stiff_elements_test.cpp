@@ -283,6 +283,19 @@ TEST_P(StiffElement, TableOfAHingeCarriesTheWeight) {
   EXPECT_NEAR(rod.value("Table.torque"), moment, 1e-5 * moment);
 }
 
+// ---- the trapezoid of index 3 shares the slopes ----------------------------------------------------------------
+
+TEST(AugmentedLagrangian, SettlesOnStiffBushings) {
+  for (const int bodies : {1, 6}) {
+    MechanicsDef def = on_bushings(bodies, 1e-2);
+    def.formulation = Formulation::augmented;
+    Formulated chain(def);
+    EXPECT_EQ(count(chain, 0.5).unsettled, 0);
+    const double weight = bodies * kGravity;
+    EXPECT_NEAR(chain.pose("B0").position[1], -weight / kMount, 1e-3 * weight / kMount);
+  }
+}
+
 const auto kName = [](const ::testing::TestParamInfo<Choice>& tested) {
   return testing::name_of(std::get<0>(tested.param)) + "_" + testing::name_of(std::get<1>(tested.param));
 };
