@@ -211,7 +211,7 @@ bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const 
   return has_settled;
 }
 
-// (1)
+// (1) in body coordinates
 void take_euler(const StageContext& at, double h) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<double> u = at.u();
@@ -286,9 +286,12 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
 bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Moving moving, Workspace& ws,
              BodyWorkspace& bws, StageWorkspace& stages, double h, std::span<const double> mean,
              std::span<const double> slope) noexcept {
+  stages.iterations = 0;
+  if (rule.integrator == Integrator::semi_implicit_euler && moving.bodies == nullptr && model.drives.empty()) {
+    return advance_by_euler(model, moving.joints, ws, h, mean);
+  }
   const StageContext at{model, body, moving, ws, bws, stages};
   const RowForces forces{h, mean, slope};
-  stages.iterations = 0;
   stages.is_near_singular = false;
   // an impulse needs the mean force, the implicit ones begin with the force at the start
   forces.put(is_implicit(rule.integrator) ? 0 : 0.5 * h, stages.row_force);

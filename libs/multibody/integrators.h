@@ -11,9 +11,10 @@
 //     (1 - alpha_m) A_1 + alpha_m A_0 = (1 - alpha_f) f_1 + alpha_f f_0,   u_1 = u_0 + h ((1 - gamma) A_0 + gamma A_1),
 //     q_1 = q_0 (+) (h u_0 + h^2 ((1/2 - beta) A_0 + beta A_1)),   alpha_m = (2 rho - 1)/(rho + 1),
 //     alpha_f = rho/(rho + 1), gamma = 1/2 - alpha_m + alpha_f, beta = (1/2 + gamma)^2/4                     (3)
-// (+) adds what is a coordinate and turns quaternions by the exponential in Ground axes. f: accelerations of the
-// mechanism, of the form (1) of body_coordinates.h whichever coordinates are integrated, so that stiff elements,
-// joints and loops are solved for together. Newton's method in body coordinates:
+// (+) adds what is a coordinate and turns quaternions by the exponential in Ground axes; (1) turns a link on a ball
+// with the angular velocity that the new speeds give it about the axes of q_0. f: accelerations of the mechanism, of
+// the form (1) of body_coordinates.h whichever coordinates are integrated, so that stiff elements, joints and loops are
+// solved for together. Newton's method in body coordinates:
 //   [ M + tau D + tau sigma K  G^T ] [ delta ]         [ Q - M a  ]
 //   [ G                        0   ] [ mu    ]  =  tau [ -b - G a ]                                          (4)
 // M a - Q by Newton and Euler with all forces at the stage, so that the result does not depend on the left side; K and

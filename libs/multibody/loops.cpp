@@ -145,14 +145,17 @@ void reduce_row(const Model&, Workspace& ws, std::span<double> residual, std::sp
   }
 }
 
-namespace {
-
-// (2) with the rows' values at hand; move() applies loops.step to the positions
-template <typename Move>
-bool close_rows(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws, Move move) noexcept {
+bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
+  // near a singular position the matrix of the stage before leads astray
+  if (is_near_singular(ws)) {
+    renew_matrix(model, q, u, ws);
+  } else {
+    show_rows(model, q, u, ws);
+  }
   const Extent extent = extent_of(ws);
   const bool is_closed = correct(
-      model, q, u, ws, kClosed * extent.length, [](const RowValue& row) { return row.g; }, move);
+      model, q, u, ws, kClosed * extent.length, [](const RowValue& row) { return row.g; },
+      [&] { displace(model, ws, ws.loops.step, q); });
   const bool is_moving_along = correct(
       model, q, u, ws, kClosed * extent.speed, [](const RowValue& row) { return row.rate; },
       [&] {
@@ -161,25 +164,55 @@ bool close_rows(const Model& model, std::span<double> q, std::span<double> u, Wo
   return is_closed && is_moving_along;
 }
 
-}  // namespace
+namespace {
 
-bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
-  // near a singular position the matrix of the stage before leads astray
-  if (is_near_singular(ws)) {
-    renew_matrix(model, q, u, ws);
-  } else {
-    show_rows(model, q, u, ws);
-  }
-  return close_rows(model, q, u, ws, [&] { displace(model, ws, ws.loops.step, q); });
+// what a small displacement or a change of the speeds, which solve_forward() has just found, makes of a row
+double change_of(const RowValue& row, const Cut& cut, const Workspace& ws) noexcept {
+  const std::size_t link1 = at(cut.link1), link2 = at(cut.link2);
+  return dot(row.G.v1, ws.delta_a[link1]) + dot(row.G.w1, ws.delta_alpha[link1]) + dot(row.G.v2, ws.delta_a[link2]) +
+         dot(row.G.w2, ws.delta_alpha[link2]);
 }
 
+void shift(const Model& model, double RowValue::*member, double times, Workspace& ws) noexcept {
+  for (const Cut& cut : model.cuts) {
+    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+      RowValue& row = ws.loops.rows[at(cut.first_row) + i];
+      row.*member += times * change_of(row, cut, ws);
+    }
+  }
+}
+
+}  // namespace
+
 bool project_step(const Model& model, double h, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
+  constexpr int kMostQuickCorrections = 4;
+  // the square of what is opened less, which shift() does not see, is far below kClosedByEuler
+  constexpr double kSmall = 1e-5;
   if (is_near_singular(ws)) return project(model, q, u, ws);
   show_rows(model, q, u, ws);
-  return close_rows(model, q, u, ws, [&] {
+  const Extent extent = extent_of(ws);
+  const auto value = [](const RowValue& row) { return row.g; };
+  const auto rate = [](const RowValue& row) { return row.rate; };
+  int left = kMostQuickCorrections;
+  for (; left > 0; --left) {
+    const double open = largest(ws.loops, value);
+    if (open <= kClosedByEuler * extent.length) break;
+    find_step(model, ws, value);
     displace(model, ws, ws.loops.step, q);
     for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j] / h;
-  });
+    if (open <= kSmall) {
+      shift(model, &RowValue::g, 1, ws);
+      shift(model, &RowValue::rate, 1 / h, ws);
+    } else {
+      show_rows(model, q, u, ws);
+    }
+  }
+  for (; left > 0 && !(largest(ws.loops, rate) <= kClosedByEuler * extent.speed); --left) {
+    find_step(model, ws, rate);
+    for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j];
+    shift(model, &RowValue::rate, 1, ws);
+  }
+  return left > 0 || project(model, q, u, ws);
 }
 
 Extent extent_of(const Workspace& ws) noexcept {

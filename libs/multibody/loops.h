@@ -39,9 +39,12 @@ void renew_matrix(const Model& model, std::span<const double> q, std::span<const
 inline constexpr double kClosed = 1e-11;  // m, 1; per second; of the mechanism's size and speed where these exceed 1
 [[nodiscard]] bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept;
 
-// The same for an impulse step of h [s] with the factors of its start: what the positions were corrected by, over h,
-// was missing in the speeds. Then the step is symplectic with the joints closed (SHAKE), and energy stays bounded. Near
-// a singular position, where corrections say little about forces, as project().
+// The same for an impulse step of h [s], to kClosedByEuler and with the factors of its start: what the positions were
+// corrected by, over h, was missing in the speeds. Then the step is symplectic with the joints closed (SHAKE), and
+// energy stays bounded. Speeds go along the rows as they stood before the last correction of the positions, which is
+// far below the step's own error; ws.motion is left there. Near a singular position, where corrections say little about
+// forces, as project().
+inline constexpr double kClosedByEuler = 1e-9;  // as kClosed
 [[nodiscard]] bool project_step(const Model& model, double h, std::span<double> q, std::span<double> u,
                                 Workspace& ws) noexcept;
 
