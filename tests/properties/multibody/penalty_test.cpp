@@ -109,7 +109,8 @@ TEST_P(Penalties, AugmentedTakesEveryJointTwice) {
   EXPECT_LT(coordinate_difference(once.joints, twice.joints), 1e-11);
   EXPECT_LT(difference(once.joints.u, twice.joints.u), 1e-10);
   EXPECT_LT(twice.position_error, 1e-12);
-  EXPECT_LT(twice.rate_error, 1e-11);
+  // 1e-12 of speeds that go beyond 10 m/s
+  EXPECT_LT(twice.rate_error, 2e-11);
   // each of a pair carries the same half: the multipliers of the smallest norm
   ASSERT_TRUE(once.see());
   ASSERT_TRUE(twice.see());
