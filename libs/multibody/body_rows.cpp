@@ -26,11 +26,18 @@ BodyRow joint_row(const Model& model, const BodyModel& body, const State& joints
   const Link& link = model.links[at(row.link)];
   result.link1 = link.parent;
   result.link2 = row.link;
-  result.x = joints.q[at(link.q)];
-  result.v = joints.u[at(link.u)];
+  result.x = joints.q[at(link.q + row.place)];
+  result.v = joints.u[at(link.u + row.place)];
   const LinkMotion& parent = ws.motion[at(link.parent)];
   const LinkMotion& child = ws.motion[at(row.link)];
-  if (link.joint == LinkJoint::revolute) {
+  if (link.joint == LinkJoint::universal) {
+    const ConstraintRow turn = coordinate_row(JointType::universal, row.place);
+    const RowValue value = evaluate(turn, body.joints[at(row.link)], parent, child, {});
+    result.J = value.G;
+    result.bias = value.bias;
+    return result;
+  }
+  if (link.joint == LinkJoint::revolute || (link.joint == LinkJoint::cylindrical && row.place == 0)) {
     result.J.w1 = -child.axis;
     result.J.w2 = child.axis;
     result.bias = dot(cross(child.w, child.axis), child.w - parent.w);

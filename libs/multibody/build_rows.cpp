@@ -1,12 +1,12 @@
 #include "multibody/build_rows.h"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <tuple>
 #include <utility>
 
 #include "core/check.h"
+#include "multibody/joint_axes.h"
 #include "multibody/topology.h"
 
 namespace slew::multibody {
@@ -14,10 +14,6 @@ namespace {
 
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
-}
-
-bool has_one_coordinate(const JointDef& joint) {
-  return joint.type == JointType::revolute || joint.type == JointType::prismatic;
 }
 
 // appends all links between those given and Ground, outermost first; returns where they begin and end
@@ -48,8 +44,12 @@ Row angle_row(const Model& model, std::size_t angle) {
           .path_end = model.angles[angle].path_end};
 }
 
-Row joint_row(const JointDef& def, std::size_t joint, Model& model) {
-  Row row{.kind = RowKind::joint, .element = static_cast<int>(joint), .link = model.joints[joint].link};
+Row joint_row(const JointDef& joint_def, std::size_t joint, int number, Model& model) {
+  const JointAxisDef def = axis_of(joint_def, number);
+  Row row{
+      .kind = RowKind::joint, .element = static_cast<int>(joint), .link = model.joints[joint].link, .number = number};
+  // a universal joint that the tree walks backwards has its coordinates in the other order
+  row.place = joint_def.type == JointType::universal && model.joints[joint].is_reversed ? 1 - number : number;
   row.first_path = static_cast<int>(model.paths.size());
   if (row.link > 0) {
     model.paths.push_back({.link = row.link, .sign = 1});
@@ -96,8 +96,11 @@ void add_row(const MechanicsDef& mechanics, const std::string& name, Model& mode
     if (model.angles[i].name == name) row = angle_row(model, i);
   }
   for (std::size_t i = 0; i < mechanics.joints.size(); ++i) {
-    if (mechanics.joints[i].name == name) row = joint_row(mechanics.joints[i], i, model);
+    for (int number = 0; number < coordinate_count(mechanics.joints[i].type); ++number) {
+      if (row_label(mechanics.joints[i], number) == name) row = joint_row(mechanics.joints[i], i, number, model);
+    }
   }
+  row.name = name;
   SLEW_CHECK(row.path_end > row.first_path);
   std::vector<int> moved;
   for (int i = row.first_path; i < row.path_end; ++i) moved.push_back(model.paths[at(i)].link);
@@ -108,9 +111,8 @@ void add_row(const MechanicsDef& mechanics, const std::string& name, Model& mode
 std::vector<std::string> joint_rows(const MechanicsDef& mechanics) {
   std::vector<std::string> names;
   for (const JointDef& joint : mechanics.joints) {
-    const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
-    if (has_one_coordinate(joint) && (has_limits || joint.coulomb_friction > 0 || joint.viscous_friction > 0)) {
-      names.push_back(joint.name);
+    for (int number = 0; number < coordinate_count(joint.type); ++number) {
+      if (has_row(axis_of(joint, number))) names.push_back(row_label(joint, number));
     }
   }
   return names;
@@ -137,7 +139,10 @@ void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> r
     for (const RotationalForceDef& force : mechanics.rotational_forces) {
       if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
     }
-    for (const JointDef& joint : mechanics.joints) is_known |= joint.name == name && has_one_coordinate(joint);
+    for (const JointDef& joint : mechanics.joints) {
+      for (int number = 0; number < coordinate_count(joint.type); ++number)
+        is_known |= row_label(joint, number) == name;
+    }
     if (!is_known) {
       problems.push_back({name,
                           "nothing can act here: '" + name + "' is no force and no joint with one coordinate",

@@ -226,19 +226,6 @@ RowValue evaluate(const ConstraintRow& row, const Constraint& constraint, const 
                   side_of(link2, constraint.R_L2, constraint.p_L2), drives);
 }
 
-int coordinate_count(JointType type) noexcept {
-  switch (type) {
-    case JointType::revolute:
-    case JointType::prismatic:
-      return 1;
-    case JointType::universal:
-    case JointType::cylindrical:
-      return 2;
-    default:
-      return 0;
-  }
-}
-
 RowValue coordinate(JointType type, int number, const Constraint& constraint, const LinkMotion& link1,
                     const LinkMotion& link2) noexcept {
   const Side one = side_of(link1, constraint.R_L1, constraint.p_L1);

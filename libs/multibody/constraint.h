@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "multibody/joint_axes.h"
 #include "multibody/state.h"
 
 namespace slew::multibody {
@@ -62,7 +63,6 @@ void evaluate(const Constraint& constraint, const LinkMotion& link1, const LinkM
 
 // A coordinate of a joint that is cut, measured between its frames: number 0 or 1 of a universal or cylindrical joint,
 // 0 of a revolute or prismatic one. g is its value, an angle in (-pi, pi]. Pre-condition: the joint has it.
-[[nodiscard]] int coordinate_count(JointType type) noexcept;
 [[nodiscard]] RowValue coordinate(JointType type, int number, const Constraint& constraint, const LinkMotion& link1,
                                   const LinkMotion& link2) noexcept;
 

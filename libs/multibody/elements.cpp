@@ -4,6 +4,7 @@
 #include "multibody/contact_passes.h"
 #include "multibody/element_law.h"
 #include "multibody/passes.h"
+#include "multibody/rows.h"
 
 namespace slew::multibody {
 
@@ -75,6 +76,17 @@ void turn(const AngleElement& element, Vec3 torque, Workspace& ws) noexcept {
   ws.inertia[at(element.link1)].n += torque;
 }
 
+// along a coordinate of a joint that is cut
+void push_cut(const Model& model, const Row& row, double force, Workspace& ws) noexcept {
+  const Cut& cut = model.cuts[at(model.joints[at(row.element)].cut)];
+  const RowGradient G = coordinate_of_cut(model, row, ws).G;
+  ArticulatedInertia &body1 = ws.inertia[at(cut.link1)], &body2 = ws.inertia[at(cut.link2)];
+  body1.f -= G.v1 * force;
+  body1.n -= G.w1 * force;
+  body2.f -= G.v2 * force;
+  body2.n -= G.w2 * force;
+}
+
 }  // namespace
 
 double damper_speed(const AngleElement& element, const Workspace& ws) noexcept {
@@ -132,7 +144,11 @@ void apply_row_forces(const Model& model, Workspace& ws) noexcept {
         turn(model.angles[at(row.element)], ws.angles[at(row.element)].n * force, ws);
         break;
       case RowKind::joint:
-        ws.tau[at(model.links[at(row.link)].u)] += force;
+        if (row.link == 0) {
+          push_cut(model, row, force, ws);
+        } else {
+          ws.tau[at(model.links[at(row.link)].u + row.place)] += force;
+        }
         break;
     }
   }

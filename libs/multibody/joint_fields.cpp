@@ -1,5 +1,7 @@
 #include "multibody/joint_fields.h"
 
+#include <array>
+
 namespace slew::multibody {
 namespace {
 
@@ -15,106 +17,106 @@ constexpr Field kPoint2 = field<&JointDef::point2>("point2", {.dimension = lengt
 constexpr Field kOrientation2 = field<&JointDef::orientation2>(
     "orientation2", {.dimension = angle, .doc = "joint frame in body 2: successive rotations about x, y', z''"});
 
-// limits and friction of a joint with one coordinate, in the dimensions of that coordinate
+// limits and friction of a coordinate, in its dimensions
 struct AxisDimensions {
   Dimension coordinate, speed, stiffness, damping, force;
 };
-
-constexpr Field initial_velocity_row(const AxisDimensions& d) {
-  return field<&JointDef::initial_velocity>(
-      "initial_velocity",
-      {.dimension = d.speed, .doc = "rate of the joint coordinate at the start; none: 0, or what a loop makes of it"});
-}
-constexpr Field limit_min_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_min>("limit_min",
-                                     {.dimension = d.coordinate, .doc = "lower limit of the joint coordinate"});
-}
-constexpr Field limit_max_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_max>("limit_max",
-                                     {.dimension = d.coordinate, .doc = "upper limit of the joint coordinate"});
-}
-constexpr Field limit_stiffness_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_stiffness>("limit_stiffness", {.dimension = d.stiffness,
-                                                               .range = kNotNegative,
-                                                               .change = Change::live,
-                                                               .doc = "spring of the limits; they push only"});
-}
-constexpr Field limit_damping_row(const AxisDimensions& d) {
-  return field<&JointDef::limit_damping>(
-      "limit_damping",
-      {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the limits"});
-}
-constexpr Field coulomb_row(const AxisDimensions& d) {
-  return field<&JointDef::coulomb_friction>(
-      "coulomb_friction",
-      {.dimension = d.force, .range = kNotNegative, .change = Change::live, .doc = "dry friction of the joint"});
-}
-constexpr Field viscous_row(const AxisDimensions& d) {
-  return field<&JointDef::viscous_friction>(
-      "viscous_friction",
-      {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "viscous friction of the joint"});
-}
-constexpr Field friction_speed_row(const AxisDimensions& d) {
-  return field<&JointDef::friction_speed>(
-      "friction_speed", {.dimension = d.speed,
-                         .range = kPositive,
-                         .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed); of bristles the "
-                                "Stribeck speed"});
-}
-constexpr Field bristle_stiffness_row(const AxisDimensions& d) {
-  return field<&JointDef::bristle_stiffness>("bristle_stiffness",
-                                             {.dimension = d.stiffness,
-                                              .range = kNotNegative,
-                                              .doc = "dry friction by bristles, which hold at rest; 0: none"});
-}
-constexpr Field bristle_damping_row(const AxisDimensions& d) {
-  return field<&JointDef::bristle_damping>(
-      "bristle_damping", {.dimension = d.damping, .range = kNotNegative, .doc = "damping of the bristles"});
-}
-constexpr Range kFromOne{.min = 1, .min_is_open = false};
-constexpr Field breakaway_ratio_row() {
-  return field<&JointDef::breakaway_ratio>("breakaway_ratio",
-                                           {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"});
-}
-
 constexpr AxisDimensions kRotation{angle, angular_velocity, rotational_stiffness, rotational_damping, torque};
 constexpr AxisDimensions kTranslation{length, velocity, stiffness, damping, force};
 
-constexpr Field kRevoluteFields[] = {kBody1,
-                                     kPoint1,
-                                     kOrientation1,
-                                     kBody2,
-                                     kPoint2,
-                                     kOrientation2,
-                                     initial_velocity_row(kRotation),
-                                     limit_min_row(kRotation),
-                                     limit_max_row(kRotation),
-                                     limit_stiffness_row(kRotation),
-                                     limit_damping_row(kRotation),
-                                     coulomb_row(kRotation),
-                                     viscous_row(kRotation),
-                                     friction_speed_row(kRotation),
-                                     bristle_stiffness_row(kRotation),
-                                     bristle_damping_row(kRotation),
-                                     breakaway_ratio_row()};
+// keys of a coordinate, with its suffix
+struct AxisKeys {
+  std::string_view limit_min, limit_max, limit_stiffness, limit_damping, coulomb, viscous, friction_speed,
+      bristle_stiffness, bristle_damping, breakaway_ratio;
+};
+constexpr AxisKeys kPlain{"limit_min",        "limit_max",        "limit_stiffness", "limit_damping",
+                          "coulomb_friction", "viscous_friction", "friction_speed",  "bristle_stiffness",
+                          "bristle_damping",  "breakaway_ratio"};
+constexpr AxisKeys kFirst{"limit_min_1",        "limit_max_1",        "limit_stiffness_1", "limit_damping_1",
+                          "coulomb_friction_1", "viscous_friction_1", "friction_speed_1",  "bristle_stiffness_1",
+                          "bristle_damping_1",  "breakaway_ratio_1"};
+constexpr AxisKeys kSecond{"limit_min_2",        "limit_max_2",        "limit_stiffness_2", "limit_damping_2",
+                           "coulomb_friction_2", "viscous_friction_2", "friction_speed_2",  "bristle_stiffness_2",
+                           "bristle_damping_2",  "breakaway_ratio_2"};
+constexpr AxisKeys kAngle{"limit_min_angle",      "limit_max_angle",         "limit_stiffness_angle",
+                          "limit_damping_angle",  "coulomb_friction_angle",  "viscous_friction_angle",
+                          "friction_speed_angle", "bristle_stiffness_angle", "bristle_damping_angle",
+                          "breakaway_ratio_angle"};
 
-constexpr Field kPrismaticFields[] = {kBody1,
-                                      kPoint1,
-                                      kOrientation1,
-                                      kBody2,
-                                      kPoint2,
-                                      kOrientation2,
-                                      initial_velocity_row(kTranslation),
-                                      limit_min_row(kTranslation),
-                                      limit_max_row(kTranslation),
-                                      limit_stiffness_row(kTranslation),
-                                      limit_damping_row(kTranslation),
-                                      coulomb_row(kTranslation),
-                                      viscous_row(kTranslation),
-                                      friction_speed_row(kTranslation),
-                                      bristle_stiffness_row(kTranslation),
-                                      bristle_damping_row(kTranslation),
-                                      breakaway_ratio_row()};
+constexpr Range kFromOne{.min = 1, .min_is_open = false};
+
+// a member of the first coordinate, or of the second
+template <int Number, auto First, auto Second>
+constexpr Field axis_field(std::string_view key, const FieldOptions& options) {
+  if constexpr (Number == 0) {
+    return field<First>(key, options);
+  } else {
+    return field<&JointDef::second, Second>(key, options);
+  }
+}
+
+template <int Number>
+constexpr std::array<Field, 10> axis_rows(const AxisDimensions& d, const AxisKeys& k) {
+  using Joint = JointDef;
+  using Axis = JointAxisDef;
+  return {
+      axis_field<Number, &Joint::limit_min, &Axis::limit_min>(
+          k.limit_min, {.dimension = d.coordinate, .doc = "lower limit of the joint coordinate"}),
+      axis_field<Number, &Joint::limit_max, &Axis::limit_max>(
+          k.limit_max, {.dimension = d.coordinate, .doc = "upper limit of the joint coordinate"}),
+      axis_field<Number, &Joint::limit_stiffness, &Axis::limit_stiffness>(
+          k.limit_stiffness, {.dimension = d.stiffness,
+                              .range = kNotNegative,
+                              .change = Change::live,
+                              .doc = "spring of the limits; they push only"}),
+      axis_field<Number, &Joint::limit_damping, &Axis::limit_damping>(
+          k.limit_damping,
+          {.dimension = d.damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the limits"}),
+      axis_field<Number, &Joint::coulomb_friction, &Axis::coulomb_friction>(
+          k.coulomb,
+          {.dimension = d.force, .range = kNotNegative, .change = Change::live, .doc = "dry friction of the joint"}),
+      axis_field<Number, &Joint::viscous_friction, &Axis::viscous_friction>(k.viscous,
+                                                                            {.dimension = d.damping,
+                                                                             .range = kNotNegative,
+                                                                             .change = Change::live,
+                                                                             .doc = "viscous friction of the joint"}),
+      axis_field<Number, &Joint::friction_speed, &Axis::friction_speed>(
+          k.friction_speed, {.dimension = d.speed,
+                             .range = kPositive,
+                             .doc = "speed over which dry friction is smoothed, tanh(v / friction_speed); of bristles "
+                                    "the Stribeck speed"}),
+      axis_field<Number, &Joint::bristle_stiffness, &Axis::bristle_stiffness>(
+          k.bristle_stiffness, {.dimension = d.stiffness,
+                                .range = kNotNegative,
+                                .doc = "dry friction by bristles, which hold at rest; 0: none"}),
+      axis_field<Number, &Joint::bristle_damping, &Axis::bristle_damping>(
+          k.bristle_damping, {.dimension = d.damping, .range = kNotNegative, .doc = "damping of the bristles"}),
+      axis_field<Number, &Joint::breakaway_ratio, &Axis::breakaway_ratio>(
+          k.breakaway_ratio, {.range = kFromOne, .doc = "breakaway over dry friction, of bristles"})};
+}
+
+template <std::size_t... Sizes>
+constexpr auto joined(const std::array<Field, Sizes>&... parts) {
+  std::array<Field, (Sizes + ...)> all{};
+  std::size_t next = 0;
+  const auto add = [&](const auto& part) {
+    for (const Field& row : part) all[next++] = row;
+  };
+  (add(parts), ...);
+  return all;
+}
+
+constexpr std::array<Field, 6> kFrames = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2};
+
+constexpr std::array<Field, 1> initial_velocity_row(const AxisDimensions& d) {
+  return {field<&JointDef::initial_velocity>(
+      "initial_velocity",
+      {.dimension = d.speed, .doc = "rate of the joint coordinate at the start; none: 0, or what a loop makes of it"})};
+}
+
+constexpr auto kRevoluteFields = joined(kFrames, initial_velocity_row(kRotation), axis_rows<0>(kRotation, kPlain));
+constexpr auto kPrismaticFields =
+    joined(kFrames, initial_velocity_row(kTranslation), axis_rows<0>(kTranslation, kPlain));
 
 constexpr Field kInitialRotation = field<&JointDef::initial_rotation>(
     "initial_angular_velocity",
@@ -132,29 +134,21 @@ constexpr Field kFixedFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint
 constexpr Field kFloatingFields[] = {kBody1,  kPoint1,       kOrientation1,       kBody2,
                                      kPoint2, kOrientation2, kInitialTranslation, kInitialRotation};
 
-constexpr Field kUniversalFields[] = {
-    kBody1,
-    kPoint1,
-    kOrientation1,
-    kBody2,
-    kPoint2,
-    kOrientation2,
+constexpr std::array<Field, 2> kUniversalSpeeds = {
     field<&JointDef::initial_velocity>("initial_velocity_1",
                                        {.dimension = angular_velocity, .doc = "rate about z of frame 1 at the start"}),
     field<&JointDef::initial_velocity_2>(
         "initial_velocity_2", {.dimension = angular_velocity, .doc = "rate about z of frame 2 at the start"})};
+constexpr auto kUniversalFields =
+    joined(kFrames, kUniversalSpeeds, axis_rows<0>(kRotation, kFirst), axis_rows<1>(kRotation, kSecond));
 
-constexpr Field kCylindricalFields[] = {
-    kBody1,
-    kPoint1,
-    kOrientation1,
-    kBody2,
-    kPoint2,
-    kOrientation2,
+constexpr std::array<Field, 2> kCylindricalSpeeds = {
     field<&JointDef::initial_velocity>("initial_angular_velocity",
                                        {.dimension = angular_velocity, .doc = "rate about z at the start"}),
     field<&JointDef::initial_velocity_2>("initial_velocity",
                                          {.dimension = velocity, .doc = "rate along z at the start"})};
+constexpr auto kCylindricalFields =
+    joined(kFrames, kCylindricalSpeeds, axis_rows<0>(kRotation, kAngle), axis_rows<1>(kTranslation, kPlain));
 
 constexpr Field kInPlaneFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2};
 constexpr Field kInLineFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2};

@@ -1,4 +1,4 @@
-// Friction and limits of a joint with one coordinate, as a force law along that coordinate.
+// Friction and limits along one coordinate of a joint, as a force law along that coordinate.
 //
 //   F     = -F_c tanh(v / v_c) - d v + F_min - F_max                                               (1)
 //   F_min = max(0, k (x_min - x) - c v) while x < x_min, else 0                                    (2)

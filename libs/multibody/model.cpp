@@ -35,17 +35,7 @@ int find_row(const Model& model, std::string_view name) noexcept {
 }
 
 std::string_view row_name(const Model& model, int row) noexcept {
-  const Row& r = model.rows[static_cast<std::size_t>(row)];
-  const auto element = static_cast<std::size_t>(r.element);
-  switch (r.kind) {
-    case RowKind::length:
-      return model.lines[element].name;
-    case RowKind::angle:
-      return model.angles[element].name;
-    case RowKind::joint:
-      break;
-  }
-  return model.joints[element].name;
+  return model.rows[static_cast<std::size_t>(row)].name;
 }
 
 bool has_effect(const ElementLaw& law) noexcept {

@@ -196,11 +196,14 @@ struct Row {
   RowKind kind = RowKind::joint;
   int element = 0;     // LineElement, AngleElement or Joint
   int link = 0;        // of a joint row; 0: the joint is cut
+  int number = 0;      // of a joint row: which coordinate of the joint
+  int place = 0;       // of a joint row: that coordinate's among the link's
   int first_path = 0;  // entries of Model::paths
   int path_end = 0;
   int first_support = 0;  // entries of Model::supports: all links between its bodies and Ground, outermost first
   int support_end = 0;
   JointLaw law{};  // of a joint row
+  std::string name{};
 };
 
 // A speed that the scene gives a joint which is cut.
@@ -256,14 +259,14 @@ struct Model {
   [[nodiscard]] int row_count() const noexcept { return static_cast<int>(rows.size()); }
 };
 
-// Names of the joints that need a row because they have friction or limits, in the scene's order.
+// Labels of the joints' coordinates that need a row because they have friction or limits, in the scene's order.
 [[nodiscard]] std::vector<std::string> joint_rows(const MechanicsDef& mechanics);
 
-// Appends a problem for every name that is no force and no joint with one coordinate, and for too many rows.
+// Appends a problem for every name that is no force and no coordinate of a joint, and for too many rows.
 void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems);
 
 // Pre-condition: validate() and validate_rows() found nothing. rows: names of translational forces (coordinate:
-// length), rotational forces (angle) and revolute or prismatic joints (joint coordinate), in the order of the rows.
+// length), rotational forces (angle) and coordinates of joints (row_label()), in the order of the rows.
 // Allocates; not for a step.
 [[nodiscard]] Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows = {});
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 
+#include "multibody/joint_axes.h"
+
 namespace slew::multibody {
 namespace {
 
@@ -90,8 +92,12 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
       return member_of(ParameterKind::angle_law, i, member_index(kAngleMembers, key));
   }
   for (std::size_t i = 0; i < model.rows.size(); ++i) {
-    if (model.rows[i].kind != RowKind::joint || row_name(model, static_cast<int>(i)) != element) continue;
-    return member_of(ParameterKind::joint_law, i, member_index(kJointMembers, key));
+    const Row& row = model.rows[i];
+    if (row.kind != RowKind::joint || model.joints[at(row.element)].name != element) continue;
+    const std::string_view suffix = suffix_of(model.joints[at(row.element)].type, row.number);
+    if (!key.ends_with(suffix)) continue;
+    const int member = member_index(kJointMembers, key.substr(0, key.size() - suffix.size()));
+    if (member >= 0) return member_of(ParameterKind::joint_law, i, member);
   }
   const ElementValue value = find_value(model.elements, element, key);
   const int kind = static_cast<int>(ParameterKind::load) + static_cast<int>(value.kind);

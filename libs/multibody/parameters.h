@@ -2,7 +2,7 @@
 //
 //   "Bag.mass"                     body: inertia scales with the mass, the centre of mass stays
 //   "ForceT_Lift.damping_constant" the live fields of force elements
-//   "Body_Pillar.viscous_friction" friction and limit constants of joints that have a row
+//   "Body_Pillar.viscous_friction", "Cross.limit_damping_2"  friction and limit constants of joints that have a row
 //   "mechanics.gravity.x" (y, z)   gravity
 //   "Mount.stiffness.x"            the live fields of the other elements (elements/element_set.h)
 #pragma once

@@ -61,7 +61,7 @@ const Constraint& cut_of(const Model& model, const Row& row) noexcept {
 
 void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std::span<double> J) noexcept {
   if (row.kind == RowKind::joint && row.link > 0) {
-    J[at(model.links[at(row.link)].u)] = 1;
+    J[at(model.links[at(row.link)].u + row.place)] = 1;
     return;
   }
   const RowValue cut = row.kind == RowKind::joint ? coordinate_of_cut(model, row, ws) : RowValue{};
@@ -115,9 +115,9 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
         break;
       }
       const Link& link = model.links[at(row.link)];
-      ws.row_x[k] = state.q[at(link.q)];
-      ws.row_v[k] = state.u[at(link.u)];
-      if (link.drive[0] >= 0) bias = ws.drives[at(link.drive[0])].acceleration;
+      ws.row_x[k] = state.q[at(link.q + row.place)];
+      ws.row_v[k] = state.u[at(link.u + row.place)];
+      if (const int drive = link.drive[at(row.place)]; drive >= 0) bias = ws.drives[at(drive)].acceleration;
       break;
     }
   }
@@ -143,7 +143,7 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
 
 RowValue coordinate_of_cut(const Model& model, const Row& row, const Workspace& ws) noexcept {
   const Constraint& joint = cut_of(model, row);
-  return coordinate(model.joints[at(row.element)].type, 0, joint, ws.motion[at(joint.link1)],
+  return coordinate(model.joints[at(row.element)].type, row.number, joint, ws.motion[at(joint.link1)],
                     ws.motion[at(joint.link2)]);
 }
 

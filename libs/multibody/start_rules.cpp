@@ -8,6 +8,7 @@
 
 #include "multibody/assembly.h"
 #include "multibody/constraint.h"
+#include "multibody/joint_axes.h"
 #include "multibody/start_pose.h"
 
 namespace slew::multibody {
@@ -62,16 +63,21 @@ class StartRules {
 
   // a limit that is passed at the start would throw the machine
   void check_limits(const JointDef& joint, const JointFrames& frames) {
-    if (joint.type != JointType::revolute && joint.type != JointType::prismatic) return;
-    if (joint.limit_min >= joint.limit_max) return;
-    const double start = start_coordinate(joint.type, frames);
-    const bool is_below = start < joint.limit_min - kLimitTolerance;
-    if (!is_below && start <= joint.limit_max + kLimitTolerance) return;
-    const char* unit = joint.type == JointType::revolute ? "rad" : "m";
-    add(joint.name + (is_below ? ".limit_min" : ".limit_max"),
+    for (int number = 0; number < coordinate_count(joint.type); ++number) {
+      check_limits(joint, number, start_coordinates(joint.type, frames)[static_cast<std::size_t>(number)]);
+    }
+  }
+
+  void check_limits(const JointDef& joint, int number, double start) {
+    const JointAxisDef axis = axis_of(joint, number);
+    if (axis.limit_min >= axis.limit_max) return;
+    const bool is_below = start < axis.limit_min - kLimitTolerance;
+    if (!is_below && start <= axis.limit_max + kLimitTolerance) return;
+    const char* unit = is_angle(joint.type, number) ? "rad" : "m";
+    add(fmt::format("{}.{}{}", joint.name, is_below ? "limit_min" : "limit_max", suffix_of(joint.type, number)),
         fmt::format("the joint starts at {:.4g} {}, outside of its limits", start, unit),
         fmt::format("limits that hold {0:.4g} {2}, or poses that start between {1:.4g} and {3:.4g} {2}", start,
-                    joint.limit_min, unit, joint.limit_max));
+                    axis.limit_min, unit, axis.limit_max));
   }
 
   void check_start_length(const TranslationalForceDef& force) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "multibody/joint_axes.h"
+
 namespace slew::multibody {
 namespace {
 
@@ -39,9 +41,8 @@ class Groups {
 };
 
 bool needs_coordinates(const JointDef& joint) noexcept {
-  return std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max) || joint.coulomb_friction > 0 ||
-         joint.viscous_friction > 0 || is_given(joint.initial_velocity) || is_given(joint.initial_velocity_2) ||
-         is_given(joint.initial_rotation);
+  return has_row(axis_of(joint, 0)) || has_row(axis_of(joint, 1)) || is_given(joint.initial_velocity) ||
+         is_given(joint.initial_velocity_2) || is_given(joint.initial_rotation);
 }
 
 bool is_driven(const MechanicsDef& mechanics, const JointDef& joint) noexcept {

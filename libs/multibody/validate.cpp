@@ -15,6 +15,7 @@
 #include "multibody/elements/validate_elements.h"
 #include "multibody/field_tables.h"
 #include "multibody/integrators.h"
+#include "multibody/joint_axes.h"
 #include "multibody/motions/motion_fields.h"
 #include "multibody/motions/validate_motions.h"
 #include "multibody/observe.h"
@@ -49,7 +50,9 @@ class Validator {
     check_ranges();
     check_names();
     for (const BodyDef& body : m_.bodies) check_inertia(body);
-    for (const JointDef& joint : m_.joints) check_limits(joint);
+    for (const JointDef& joint : m_.joints) {
+      for (int number = 0; number < coordinate_count(joint.type); ++number) check_axis(joint, number);
+    }
     for (const TranslationalForceDef& force : m_.translational_forces) check_line(force), check_tables(force);
     for (const RotationalForceDef& force : m_.rotational_forces) check_angle(force), check_tables(force);
     for (const ForceDummyDef& dummy : m_.force_dummies) check_dummy(dummy);
@@ -147,8 +150,8 @@ class Validator {
   }
 
   static bool is_open_ended(std::string_view key) {
-    return key == "limit_min" || key == "limit_max" || key == "max_length" || key == "min_angle" ||
-           key == "max_angle" || key == "unit" || key == "offset" || key == "from" || key.starts_with("initial_");
+    return key.starts_with("limit_m") || key == "max_length" || key == "min_angle" || key == "max_angle" ||
+           key == "unit" || key == "offset" || key == "from" || key.starts_with("initial_");
   }
 
   void report_range(const std::string& owner, const Field& row, double value) {
@@ -221,23 +224,26 @@ class Validator {
     }
   }
 
-  void check_limits(const JointDef& joint) {
-    const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
-    if (joint.type != JointType::revolute && joint.type != JointType::prismatic) return;
-    if (joint.limit_min >= joint.limit_max) {
-      add(joint.name + ".limit_min",
-          fmt::format("lower limit {} is not below the upper limit {}", joint.limit_min, joint.limit_max),
-          "limit_min < limit_max");
+  void check_axis(const JointDef& joint, int number) {
+    const JointAxisDef axis = axis_of(joint, number);
+    const std::string_view suffix = suffix_of(joint.type, number);
+    const auto complain = [&](std::string_view key, std::string what, std::string expected) {
+      add(fmt::format("{}.{}{}", joint.name, key, suffix), std::move(what), std::move(expected));
+    };
+    if (axis.limit_min >= axis.limit_max) {
+      complain("limit_min",
+               fmt::format("lower limit {} is not below the upper limit {}", axis.limit_min, axis.limit_max),
+               "limit_min < limit_max");
     }
-    if (joint.bristle_stiffness > 0 && joint.coulomb_friction == 0) {
-      add(joint.name + ".bristle_stiffness", "the bristles have no dry friction to hold with", "coulomb_friction > 0");
+    if (axis.bristle_stiffness > 0 && axis.coulomb_friction == 0) {
+      complain("bristle_stiffness", "the bristles have no dry friction to hold with", "coulomb_friction > 0");
     }
-    if (joint.bristle_stiffness == 0 && (joint.bristle_damping > 0 || joint.breakaway_ratio > 1)) {
+    if (axis.bristle_stiffness == 0 && (axis.bristle_damping > 0 || axis.breakaway_ratio > 1)) {
       add(joint.name, "bristle_damping or breakaway_ratio without bristles", "bristle_stiffness > 0");
     }
-    if (has_limits && joint.limit_stiffness == 0) {
-      add(joint.name + ".limit_stiffness", "the joint has limits but they have no stiffness",
-          "limit_stiffness > 0, or no limits");
+    if (has_limits(axis) && axis.limit_stiffness == 0) {
+      complain("limit_stiffness", "the joint has limits but they have no stiffness",
+               "limit_stiffness > 0, or no limits");
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include "multibody/constraint.h"
 #include "multibody/element_law.h"
+#include "multibody/joint_axes.h"
 #include "multibody/motions/drive_variables.h"
 #include "multibody/observe.h"
 #include "multibody/passes.h"
@@ -20,30 +21,6 @@ std::size_t at(int index) noexcept {
 
 constexpr std::array<const char*, 3> kAxes = {".x", ".y", ".z"};
 
-struct CoordinateName {
-  const char* suffix;  // of position and velocity
-  bool is_angle;
-};
-
-// names of a joint's coordinates, in their order
-std::span<const CoordinateName> coordinates_of(JointType type) noexcept {
-  static constexpr CoordinateName kTurn[] = {{"", true}}, kSlide[] = {{"", false}};
-  static constexpr CoordinateName kUniversal[] = {{"_1", true}, {"_2", true}};
-  static constexpr CoordinateName kCylindrical[] = {{"_angle", true}, {"", false}};
-  switch (type) {
-    case JointType::revolute:
-      return kTurn;
-    case JointType::prismatic:
-      return kSlide;
-    case JointType::universal:
-      return kUniversal;
-    case JointType::cylindrical:
-      return kCylindrical;
-    default:
-      return {};
-  }
-}
-
 // value and rate of a joint's coordinate
 RowValue read_coordinate(const Model& model, const State& state, const Workspace& ws, const Joint& joint, int number) {
   RowValue value;
@@ -59,12 +36,13 @@ RowValue read_coordinate(const Model& model, const State& state, const Workspace
   return value;
 }
 
-// force of the row that acts on an element or joint; 0 without one
-double row_force_on(const Model& model, RowKind kind, std::size_t element,
-                    std::span<const double> row_forces) noexcept {
+// force of the row that acts on an element or on a joint's coordinate; 0 without one
+double row_force_on(const Model& model, RowKind kind, std::size_t element, std::span<const double> row_forces,
+                    int number = 0) noexcept {
   double force = 0;
   for (std::size_t k = 0; k < row_forces.size(); ++k) {
-    if (model.rows[k].kind == kind && at(model.rows[k].element) == element) force += row_forces[k];
+    const Row& row = model.rows[k];
+    if (row.kind == kind && at(row.element) == element && row.number == number) force += row_forces[k];
   }
   return force;
 }
@@ -134,12 +112,21 @@ std::vector<ElementVariable> variables(const Model& model) {
     names.add_triple(body + ".angular_velocity", angular_velocity);
   }
   for (const Joint& joint : model.joints) {
-    for (const auto& [suffix, is_angle] : coordinates_of(joint.type)) {
-      names.add(joint.name + ".position" + suffix, is_angle ? angle : length);
-      names.add(joint.name + ".velocity" + suffix, is_angle ? angular_velocity : velocity);
+    const int count = coordinate_count(joint.type);
+    for (int number = 0; number < count; ++number) {
+      const std::string suffix(suffix_of(joint.type, number));
+      names.add(joint.name + ".position" + suffix, is_angle(joint.type, number) ? angle : length);
+      names.add(joint.name + ".velocity" + suffix, is_angle(joint.type, number) ? angular_velocity : velocity);
     }
-    if (joint.type == JointType::revolute) names.add(joint.name + ".torque", torque);
-    if (joint.type == JointType::prismatic) names.add(joint.name + ".force", force);
+    for (int number = 0; number < count; ++number) {
+      if (!is_angle(joint.type, number)) {
+        names.add(joint.name + ".force", force);
+      } else {
+        // of a cylindrical joint the dimension tells
+        const bool is_one_of_two = joint.type == JointType::universal;
+        names.add(joint.name + ".torque" + (is_one_of_two ? std::string(suffix_of(joint.type, number)) : ""), torque);
+      }
+    }
   }
   for (const LineElement& line : model.lines) {
     names.add(line.name + ".length", length);
@@ -197,13 +184,15 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    const int count = static_cast<int>(coordinates_of(joint.type).size());
+    const int count = coordinate_count(joint.type);
     for (int number = 0; number < count; ++number) {
       const RowValue value = read_coordinate(model, state, ws, joint, number);
       out.put(value.g);
       out.put(value.rate);
     }
-    if (count == 1) out.put(row_force_on(model, RowKind::joint, i, row_forces));
+    for (int number = 0; number < count; ++number) {
+      out.put(row_force_on(model, RowKind::joint, i, row_forces, number));
+    }
   }
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
     const LineMotion& line = ws.lines[i];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "multibody/joint_axes.h"
 #include "multibody/model.h"
 #include "scene/field_reader.h"
 #include "scene/sections.h"
@@ -73,11 +74,13 @@ std::string obstacle(const Scene& scene, const ElementRef& element, const Field&
   if (element.type == "rope") return obstacle_of_rope(*static_cast<const multibody::RopeDef*>(element.def), field);
   if (element.section != "joints") return {};
   const auto& joint = *static_cast<const multibody::JointDef*>(element.def);
-  const bool has_limits = std::isfinite(joint.limit_min) || std::isfinite(joint.limit_max);
-  const bool is_of_limits = field.key == "limit_stiffness" || field.key == "limit_damping";
-  if (is_of_limits && !has_limits) return "the joint has no limits" + restart("limit_max");
-  const std::vector<std::string> rows = multibody::joint_rows(scene.mechanics);
-  if (std::find(rows.begin(), rows.end(), element.name) != rows.end()) return {};
+  const int number = multibody::coordinate_of_key(joint.type, field.key);
+  const std::string_view suffix = multibody::suffix_of(joint.type, number);
+  const std::string_view key = field.key.substr(0, field.key.size() - suffix.size());
+  const bool is_of_limits = key == "limit_stiffness" || key == "limit_damping";
+  if (is_of_limits && !multibody::has_limits(multibody::axis_of(joint, number)))
+    return "the joint has no limits" + restart(fmt::format("limit_max{}", suffix));
+  if (multibody::has_row(multibody::axis_of(joint, number))) return {};
   return "the scene gives the joint neither friction nor limits, so none is computed" + restart(field.key);
 }
 

@@ -51,7 +51,7 @@ double drive_force(const Model& model, const Workspace& ws, std::size_t index, s
   double force = -dot(axis, Vec3(drive.is_angle ? reaction.moment : reaction.force));
   for (std::size_t k = 0; k < row_forces.size(); ++k) {
     const Row& row = model.rows[k];
-    if (row.kind == RowKind::joint && row.element == drive.joint) force -= row_forces[k];
+    if (row.kind == RowKind::joint && row.element == drive.joint && row.number == drive.number) force -= row_forces[k];
   }
   return force;
 }
