@@ -23,7 +23,7 @@ Eigen::MatrixXd jacobian(const Model& model, const Workspace& ws) {
   for (const Constraint& joint : joints) {
     std::vector<RowValue> values(joint.rows.size());
     const auto motion = [&](int link) -> const LinkMotion& { return ws.motion[static_cast<std::size_t>(link)]; };
-    evaluate(joint, motion(joint.link1), motion(joint.link2), values);
+    evaluate(joint, motion(joint.link1), motion(joint.link2), {}, values);
     for (const RowValue& value : values) {
       G.conservativeResize(G.rows() + 1, Eigen::NoChange);
       G.bottomRows(1).setZero();
@@ -197,9 +197,9 @@ TEST(JointRows, OfRandomMechanismsHaveTheirRatesAsDerivatives) {
       const std::size_t count = joint.rows.size(), l1 = static_cast<std::size_t>(joint.link1),
                         l2 = static_cast<std::size_t>(joint.link2);
       std::vector<RowValue> here(count), back(count), ahead(count);
-      evaluate(joint, now[l1], now[l2], here);
-      evaluate(joint, before[l1], before[l2], back);
-      evaluate(joint, after[l1], after[l2], ahead);
+      evaluate(joint, now[l1], now[l2], {}, here);
+      evaluate(joint, before[l1], before[l2], {}, back);
+      evaluate(joint, after[l1], after[l2], {}, ahead);
       for (std::size_t k = 0; k < count; ++k) {
         EXPECT_NEAR(here[k].rate, (ahead[k].g - back[k].g) / (2 * h), 1e-6) << "seed " << seed;
         EXPECT_NEAR(acceleration_of(here[k], now[l1], now[l2]), (ahead[k].rate - back[k].rate) / (2 * h), 1e-5)

@@ -130,7 +130,7 @@ Matrix transmitted(const Mechanism& mechanism, const std::vector<Constraint>& co
   if (found->rows.empty()) return {6, 0};
   std::vector<RowValue> rows(found->rows.size());
   const LinkMotion& m1 = mechanism.ws.motion[at(found->link1)];
-  evaluate(*found, m1, mechanism.ws.motion[at(found->link2)], rows);
+  evaluate(*found, m1, mechanism.ws.motion[at(found->link2)], {}, rows);
   const Vec3 point = point_of(mechanism, named);
   Matrix B(6, static_cast<Eigen::Index>(rows.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
