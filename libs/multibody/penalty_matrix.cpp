@@ -1,7 +1,7 @@
 // The matrix of the penalty formulations, block by block: equation (1) of body_penalty.h, and A_h of (7).
 #include <array>
 
-#include "multibody/contact_stiffness.h"
+#include "multibody/link_stiffness.h"
 #include "multibody/penalty_passes.h"
 
 namespace slew::multibody {
@@ -103,8 +103,8 @@ bool factorize(const Model& model, const PenaltyModel& body, const Workspace& ws
   }
   if (h > 0) {
     const ChangeWeights weights{.position = 0.25 * h * h, .rate = 0.5 * h};
+    // contacts are resolved by parts of the sub-step instead (contact_rate.h)
     add_stiffness(model, ws, weights, matrix);
-    add_contact_stiffness(model, ws, weights, matrix);
     add_pulls(model, body, ws, pws, weights.position, matrix);
   }
   return pws.ldl.factorize(0);  // there are no closing nodes
