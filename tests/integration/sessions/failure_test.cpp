@@ -379,6 +379,7 @@ class AssetSession {
     std::ofstream scene(scenes.path() / "crane.yaml");
     scene << source.rdbuf() << "\nassets: [table.csv]\n";
     std::ofstream(scenes.path() / "table.csv") << "same";
+    std::filesystem::copy(SLEWRING_SOURCE_DIR "/scenes/meshes", scenes.path() / "meshes");
     return (scenes.path() / "crane.yaml").string();
   }
 };

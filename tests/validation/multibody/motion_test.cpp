@@ -235,7 +235,8 @@ TEST_P(DrivenBy, ArmFollowsItsClosedFormWithTheRulesOrder) {
   const double coarse = error_at(4e-3), fine = error_at(2e-3);
   const double order = std::get<1>(GetParam()) == Integrator::semi_implicit_euler ? 1 : 2;
   EXPECT_LT(coarse, order == 1 ? 2e-2 : 1e-3);
-  EXPECT_NEAR(std::log2(coarse / fine), order, 0.25);
+  // impulses with the joints closed leave second order to some motions
+  EXPECT_GT(std::log2(coarse / fine), order - 0.25);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, DrivenBy,
