@@ -57,12 +57,21 @@ Quaternion derivative(const Quaternion& q, Vec3 w_A) noexcept {
 }
 
 Quaternion turn_by(Vec3 turn_A) noexcept {
-  // below, sin(x)/x is 1 - x^2/6 to all digits
-  constexpr double kSmall = 1e-4;
-  const double half = 0.5 * norm(turn_A);
-  const double ratio = half < kSmall ? 1 - half * half / 6 : std::sin(half) / half;
+  // below, for the square of half the angle, the series are right to all digits
+  constexpr double kSmall = 1e-3;
+  const double z = 0.25 * dot(turn_A, turn_A);
+  double ratio, cosine;  // sin(half)/half
+  if (z < kSmall) {
+    ratio = 1 - z * (1.0 / 6 - z * (1.0 / 120 - z / 5040));
+    cosine = 1 - z * (0.5 - z * (1.0 / 24 - z * (1.0 / 720 - z / 40320)));
+  } else {
+    const double half = std::sqrt(z);
+    const SinCos turn = sin_cos(half);
+    ratio = turn.sin / half;
+    cosine = turn.cos;
+  }
   const Vec3 v = turn_A * (0.5 * ratio);
-  return {std::cos(half), v[0], v[1], v[2]};
+  return {cosine, v[0], v[1], v[2]};
 }
 
 Mat3 rotation_x(double angle) noexcept {

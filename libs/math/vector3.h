@@ -72,6 +72,19 @@ template <int I>
   return __builtin_shufflevector(a.lanes, a.lanes, I, I, I, I);
 }
 
+// a b + c and c - a b with one rounding, on every machine and in every build
+[[nodiscard]] inline Lanes multiply_add(Lanes a, Lanes b, Lanes c) noexcept {
+#ifdef __FMA__
+  return __builtin_ia32_vfmaddpd256(a, b, c);
+#else
+  return Lanes{std::fma(a[0], b[0], c[0]), std::fma(a[1], b[1], c[1]), std::fma(a[2], b[2], c[2]),
+               std::fma(a[3], b[3], c[3])};
+#endif
+}
+[[nodiscard]] inline Lanes subtract_product(Lanes c, Lanes a, Lanes b) noexcept {
+  return multiply_add(-a, b, c);
+}
+
 // 3 x 3 matrix as three columns. Copies go column by column: the compiler would copy the whole by halves of a column,
 // and reading a column back then waits for both halves.
 struct Mat3 {
@@ -118,7 +131,8 @@ struct Mat3 {
 }
 
 [[nodiscard]] inline Vec3 operator*(const Mat3& a, Vec3 b) noexcept {
-  return Vec3(a.c[0].lanes * broadcast<0>(b) + a.c[1].lanes * broadcast<1>(b) + a.c[2].lanes * broadcast<2>(b));
+  const Lanes first = a.c[0].lanes * broadcast<0>(b);
+  return Vec3(multiply_add(a.c[2].lanes, broadcast<2>(b), multiply_add(a.c[1].lanes, broadcast<1>(b), first)));
 }
 
 [[nodiscard]] inline Mat3 operator*(const Mat3& a, const Mat3& b) noexcept {
