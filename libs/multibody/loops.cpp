@@ -216,12 +216,13 @@ bool project_step(const Model& model, double h, std::span<double> q, std::span<d
 }
 
 Extent extent_of(const Workspace& ws) noexcept {
-  Extent extent;
+  double length = 0, speed = 0;  // squares
   for (const LinkMotion& m : ws.motion) {
-    extent.length = std::max(extent.length, norm(m.p));
-    extent.speed = std::max({extent.speed, norm(m.v), norm(m.w)});
+    length = std::max(length, dot(m.p, m.p));
+    speed = std::max({speed, dot(m.v, m.v), dot(m.w, m.w)});
   }
-  return extent;
+  const Extent least;
+  return {std::max(least.length, std::sqrt(length)), std::max(least.speed, std::sqrt(speed))};
 }
 
 }  // namespace slew::multibody
