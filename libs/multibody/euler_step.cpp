@@ -69,7 +69,10 @@ bool advance_by_euler(const Model& model, State& state, Workspace& ws, double h,
   if (!row_forces.empty()) accelerations(model, ws, row_forces, ws.udot);
   const std::vector<double>& udot = row_forces.empty() ? ws.udot_free : ws.udot;
   for (std::size_t j = 0; j < state.u.size(); ++j) state.u[j] += h * udot[j];
+  set_stage_time(model, state, h, ws);
+  impose_speeds(model, ws, state.u);
   move_on(model, h, state.u, state.q, ws);
+  impose_positions(model, ws, state.q);
   const bool is_closed = model.cuts.empty() || project_step(model, h, state.q, state.u, ws);
   state.time += h;
   if (ws.contact != nullptr && ws.contact->is_near) {

@@ -218,7 +218,6 @@ void take_euler(const StageContext& at, double h) noexcept {
   set_stage_time(at.model, at.moving.joints, h, at.ws);
   for (std::size_t j = 0; j < u.size(); ++j) u[j] += h * s.rate_0[j];
   std::fill(s.base.begin(), s.base.end(), 0.0);
-  std::fill(s.turn.begin(), s.turn.end(), Vec3());
   place(at, h);
 }
 
@@ -231,11 +230,9 @@ bool close(const StageContext& at) noexcept {
   return project(at.model, joints.q, joints.u, at.ws);
 }
 
-// the same after (1), with the matrix of the start
+// the same after (1) in body coordinates, with the matrix of the start
 bool close_impulse(const StageContext& at, double h) noexcept {
-  State& joints = at.moving.joints;
-  if (at.moving.bodies != nullptr) return project_step(at.model, at.body, h, *at.moving.bodies, joints, at.ws, at.bws);
-  return at.model.cuts.empty() || project_step(at.model, h, joints.q, joints.u, at.ws);
+  return project_step(at.model, at.body, h, *at.moving.bodies, at.moving.joints, at.ws, at.bws);
 }
 
 }  // namespace
@@ -287,7 +284,7 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
              BodyWorkspace& bws, StageWorkspace& stages, double h, std::span<const double> mean,
              std::span<const double> slope) noexcept {
   stages.iterations = 0;
-  if (rule.integrator == Integrator::semi_implicit_euler && moving.bodies == nullptr && model.drives.empty()) {
+  if (rule.integrator == Integrator::semi_implicit_euler && moving.bodies == nullptr) {
     return advance_by_euler(model, moving.joints, ws, h, mean);
   }
   const StageContext at{model, body, moving, ws, bws, stages};
