@@ -10,73 +10,85 @@ using math::Vec3;
 
 namespace {
 
-constexpr std::size_t kSpeeds = 6;
-
 std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
-// A link as if it were free.
-struct FreeLink {
-  Vec3 c_W;              // m, centre of mass
-  double per_root_mass;  // 1/sqrt(kg)
-  Mat3 L;                // lower triangle of the inertia about it [kg^0.5 m], link axes; 0 of a point mass
-  Mat3 R_WL;
-
-  FreeLink(const Link& link, const LinkMotion& motion) noexcept : R_WL(motion.R) {
-    const Vec3 c = link.h_L * (1 / link.mass);
-    c_W = motion.p + motion.R * c;
-    per_root_mass = 1 / std::sqrt(link.mass);
-    const Mat3 I = link.I_L - (Mat3::identity() * dot(c, c) - outer(c, c)) * link.mass;
-    factorize(I);
-  }
-
-  // L^-1 J of a direction at a point
-  [[nodiscard]] std::array<double, kSpeeds> scaled(Vec3 p_W, Vec3 d_W) const noexcept {
-    const Vec3 push = d_W * per_root_mass;
-    std::array<double, kSpeeds> x = {push[0], push[1], push[2], 0, 0, 0};
-    if (!(L(0, 0) > 0)) return x;
-    const Vec3 turn = transpose_multiply(R_WL, cross(p_W - c_W, d_W));
-    x[3] = turn[0] / L(0, 0);
-    x[4] = (turn[1] - L(1, 0) * x[3]) / L(1, 1);
-    x[5] = (turn[2] - L(2, 0) * x[3] - L(2, 1) * x[4]) / L(2, 2);
-    return x;
-  }
-
- private:
-  void factorize(const Mat3& I) noexcept {
-    constexpr double kPointMass = 1e-12;  // of the largest moment, below which rounding decides
-    const double least = kPointMass * std::max({I(0, 0), I(1, 1), I(2, 2)});
-    if (!(I(0, 0) > least)) return;
-    const double a = std::sqrt(I(0, 0)), b = I(1, 0) / a, c = I(2, 0) / a;
-    const double d2 = I(1, 1) - b * b;
-    if (!(d2 > least)) return;
-    const double d = std::sqrt(d2), e = (I(2, 1) - c * b) / d;
-    const double f2 = I(2, 2) - c * c - e * e;
-    if (!(f2 > least)) return;
-    L.c[0] = Vec3(a, b, c);
-    L.c[1] = Vec3(0, d, e);
-    L.c[2] = Vec3(0, 0, std::sqrt(f2));
-  }
-};
-
-void add_direction(const std::array<double, kSpeeds>& x, double c, double k, ContactRates& link) noexcept {
-  for (std::size_t i = 0; i < kSpeeds; ++i) {
-    for (std::size_t j = 0; j < kSpeeds; ++j) {
-      link.damping[kSpeeds * i + j] += c * x[i] * x[j];
-      link.stiffness[kSpeeds * i + j] += k * x[i] * x[j];
-    }
-  }
+// L^-1 of the inertia about the centre of mass, L its lower triangle; 0 of a point mass
+Mat3 inverse_root(const Link& link) noexcept {
+  constexpr double kPointMass = 1e-12;  // of the largest moment, below which rounding decides
+  const Vec3 c = link.h_L * (1 / link.mass);
+  const Mat3 I = link.I_L - (Mat3::identity() * dot(c, c) - outer(c, c)) * link.mass;
+  const double least = kPointMass * std::max({I(0, 0), I(1, 1), I(2, 2)});
+  if (!(I(0, 0) > least)) return {};
+  const double a = 1 / std::sqrt(I(0, 0)), b = I(1, 0) * a, e = I(2, 0) * a;
+  const double d2 = I(1, 1) - b * b;
+  if (!(d2 > least)) return {};
+  const double d = 1 / std::sqrt(d2), f = (I(2, 1) - e * b) * d;
+  const double g2 = I(2, 2) - e * e - f * f;
+  if (!(g2 > least)) return {};
+  const double g = 1 / std::sqrt(g2);
+  return {Vec3(a, -b * a * d, (b * d * f - e) * a * g), Vec3(0, d, -f * d * g), Vec3(0, 0, g)};
 }
 
-double largest_row_sum(const std::array<double, kSpeeds * kSpeeds>& matrix) noexcept {
-  double largest = 0;
-  for (std::size_t i = 0; i < kSpeeds; ++i) {
-    double sum = 0;
-    for (std::size_t j = 0; j < kSpeeds; ++j) sum += std::fabs(matrix[kSpeeds * i + j]);
-    largest = std::max(largest, sum);
+void begin(const Link& link, const LinkMotion& motion, ContactRates& rates) noexcept {
+  rates = ContactRates();
+  rates.is_touched = true;
+  rates.c_W = motion.p + motion.R * (link.h_L * (1 / link.mass));
+  rates.per_root_mass = 1 / std::sqrt(link.mass);
+  rates.turning = inverse_root(link) * transpose(motion.R);
+}
+
+// Where a contact point pushes a link: L^-1 J of direction d is (per_root_mass d, S d).
+struct Leverage {
+  Leverage(const ContactRates& link, Vec3 p_W, Vec3 normal)
+      : n_W(normal),
+        S(times_skew(link.turning, p_W - link.c_W)),
+        S_n(S * normal),
+        S_S(S * transpose(S)),
+        per_root_mass(link.per_root_mass) {}
+
+  Vec3 n_W;
+  Mat3 S;
+  Vec3 S_n;
+  Mat3 S_S;
+  double per_root_mass;
+};
+
+// (1) for slopes across and along the normal
+void add_slopes(const Leverage& at, double across, double along, ScaledSlopes& sum) noexcept {
+  const double more = along - across, r = at.per_root_mass;
+  const double all = across * r * r;
+  sum.push += Mat3::diagonal(all, all, all) + outer(at.n_W * (more * r * r), at.n_W);
+  sum.mixed += at.S * (across * r) + outer(at.S_n * (more * r), at.n_W);
+  sum.turn += at.S_S * across + outer(at.S_n * more, at.S_n);
+}
+
+Vec3 absolute(Vec3 a) noexcept {
+  return Vec3(a.lanes < 0 ? -a.lanes : a.lanes);
+}
+
+Mat3 absolute(const Mat3& a) noexcept {
+  return {absolute(a.c[0]), absolute(a.c[1]), absolute(a.c[2])};
+}
+
+// (2)
+double bound_of(const ScaledSlopes& sum) noexcept {
+  const Mat3 push = absolute(sum.push), mixed = absolute(sum.mixed), turn = absolute(sum.turn);
+  const auto times = [&](Vec3 v, Vec3 w, Vec3& out_v, Vec3& out_w) {
+    out_v = push * v + transpose_multiply(mixed, w);
+    out_w = mixed * v + turn * w;
+  };
+  const Vec3 ones(1, 1, 1);
+  Vec3 v, w, next_v, next_w;
+  times(ones, ones, v, w);
+  times(v, w, next_v, next_w);
+  double bound = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (v[i] > 0) bound = std::max(bound, next_v[i] / v[i]);
+    if (w[i] > 0) bound = std::max(bound, next_w[i] / w[i]);
   }
-  return largest;
+  return bound;
 }
 
 // slopes of one contact point's laws
@@ -98,16 +110,13 @@ void add_contact(const Model& model, const Workspace& ws, const ContactForce& fo
                  std::span<ContactRates> rates) noexcept {
   const int links[2] = {model.contact->frames[at(force.frame_a)].link, model.contact->frames[at(force.frame_b)].link};
   const double both = links[0] == 0 || links[1] == 0 ? 1 : 2;
-  // two directions at right angles to the normal
-  const Vec3 side = cross(force.n_W, std::fabs(force.n_W.x()) < 0.5 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
-  const Vec3 t = side * (1 / norm(side)), s = cross(force.n_W, t);
   for (const int link : links) {
     if (link == 0 || !(model.links[at(link)].mass > 0)) continue;
-    const FreeLink body(model.links[at(link)], ws.motion[at(link)]);
-    add_direction(body.scaled(force.p_W, force.n_W), both * slopes.c_n, both * slopes.k_n, rates[at(link)]);
-    for (const Vec3& d_W : {t, s}) {
-      add_direction(body.scaled(force.p_W, d_W), both * slopes.c_t, both * slopes.k_t, rates[at(link)]);
-    }
+    ContactRates& sum = rates[at(link)];
+    if (!sum.is_touched) begin(model.links[at(link)], ws.motion[at(link)], sum);
+    const Leverage leverage(sum, force.p_W, force.n_W);
+    add_slopes(leverage, both * slopes.c_t, both * slopes.c_n, sum.damping);
+    add_slopes(leverage, both * slopes.k_t, both * slopes.k_n, sum.stiffness);
   }
 }
 
@@ -116,7 +125,7 @@ void add_contact(const Model& model, const Workspace& ws, const ContactForce& fo
 double contact_rate(const Model& model, Workspace& ws) noexcept {
   if (model.contact == nullptr || ws.contact->force_count == 0) return 0;
   ContactWorkspace& contacts = *ws.contact;
-  std::fill(contacts.rates.begin(), contacts.rates.end(), ContactRates{});
+  for (ContactRates& link : contacts.rates) link.is_touched = false;
   const std::span<const contact::ContactPoint> points = contacts.set.points();
   for (std::size_t i = 0; i < contacts.force_count; ++i) {
     const contact::ContactPair& pair = model.contact->model.pairs()[points[i].pair];
@@ -126,7 +135,7 @@ double contact_rate(const Model& model, Workspace& ws) noexcept {
   }
   double rate = 0;
   for (const ContactRates& link : contacts.rates) {
-    rate = std::max({rate, largest_row_sum(link.damping), std::sqrt(largest_row_sum(link.stiffness))});
+    if (link.is_touched) rate = std::max({rate, bound_of(link.damping), std::sqrt(bound_of(link.stiffness))});
   }
   return rate;
 }

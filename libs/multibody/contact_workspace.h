@@ -1,7 +1,6 @@
 // What a search for contacts and their forces leaves behind, and what a sub-step needs to carry contacts along.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "contact/contact_memory.h"
@@ -22,10 +21,19 @@ struct ContactForce {
   double energy = 0;      // J, held by the normal law's spring and by the bristles
 };
 
-// What the contacts of a link add up to, scaled by its mass (contact_rate.h).
+// Blocks of a symmetric 6 by 6 matrix: rows and columns of push, rows of turn and columns of push, of turn.
+struct ScaledSlopes {
+  math::Mat3 push, mixed, turn;
+};
+
+// A link as if it were free, and what its contacts add up to, scaled by its mass (contact_rate.h).
 struct ContactRates {
-  std::array<double, 36> damping{};    // 1/s
-  std::array<double, 36> stiffness{};  // 1/s^2
+  bool is_touched = false;   // or nothing else is valid
+  math::Vec3 c_W;            // m, centre of mass
+  double per_root_mass = 0;  // 1/sqrt(kg)
+  math::Mat3 turning;        // from a moment in Ground axes [1/(kg^0.5 m)]
+  ScaledSlopes damping;      // 1/s
+  ScaledSlopes stiffness;    // 1/s^2
 };
 
 struct ContactWorkspace {
