@@ -100,10 +100,13 @@ void find_contacts(const ContactModel& model, std::span<const Pose> poses, Conta
     model.find_pair(pair, frame_a, frame_b, set);
     if (set.manifold_.empty()) model.note_clearance(pair, frame_a, frame_b, set);
     reduce(set.manifold_);
-    std::array<double, kMaxPointsPerPair> depths{}, shares{};
+    std::array<double, kMaxPointsPerPair> depths{}, areas{}, shares{};
     const std::size_t n = set.manifold_.size();
-    for (std::size_t i = 0; i < n; ++i) depths[i] = set.manifold_[i].depth;
-    share_stiffness({depths.data(), n}, {shares.data(), n});
+    for (std::size_t i = 0; i < n; ++i) {
+      depths[i] = set.manifold_[i].depth;
+      areas[i] = set.manifold_[i].area;
+    }
+    share_stiffness({depths.data(), n}, {areas.data(), n}, {shares.data(), n});
     for (std::size_t i = 0; i < n; ++i) {
       const ManifoldPoint& point = set.manifold_[i];
       set.points_[set.count_++] = {pair, point.p_W, point.n_W, point.depth, shares[i]};

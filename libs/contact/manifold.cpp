@@ -34,6 +34,36 @@ Polygon clipped(const Polygon& in, const Side& side) noexcept {
   return out;
 }
 
+// Areas that the corners of a plane polygon, or of an edge, stand for.
+using Areas = std::array<double, Polygon::capacity()>;
+
+Areas areas_of(const Polygon& polygon) noexcept {
+  Areas areas;
+  areas.fill(kSpot);
+  const std::size_t n = polygon.size();
+  if (n == 2) areas[0] = areas[1] = std::max(kSpot, 0.5 * kStrip * norm(polygon[1] - polygon[0]));
+  if (n < 3) return areas;
+  // triangles to the first corner; their areas as vectors, all along the polygon's normal
+  Vec3 sum, moment;
+  for (std::size_t i = 2; i < n; ++i) {
+    const Vec3 to_last = polygon[i - 1] - polygon[0], to_this = polygon[i] - polygon[0];
+    const Vec3 twice = cross(to_last, to_this);
+    sum += twice;
+    moment += (to_last + to_this) * (norm(twice) / 3);
+  }
+  const double whole = norm(sum);
+  if (!(whole > kSpot)) return areas;
+  const Vec3 centroid = polygon[0] + moment * (1 / whole);
+  areas.fill(0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    const double quarter = norm(cross(polygon[i] - centroid, polygon[next] - centroid)) / 4;
+    areas[i] += quarter;
+    areas[next] += quarter;
+  }
+  return areas;
+}
+
 bool is_polygon(const Face& face) noexcept {
   return face.vertices.size() >= 3;
 }
@@ -64,9 +94,10 @@ void clip_faces(const Face& a, const Face& b, Vec3 n_W, Manifold& out) noexcept 
   }
   // depth along n: from the incident point to the reference plane
   const Vec3 towards = b_is_reference ? n_W : -n_W;
-  for (const Vec3& p : polygon) {
-    const double depth = dot(reference.vertices[0] - p, reference.normal) / squareness;
-    if (depth > 0 && out.size() < Manifold::capacity()) out.push_back({p + towards * (depth / 2), n_W, depth});
+  const Areas areas = areas_of(polygon);
+  for (std::size_t i = 0; i < polygon.size() && out.size() < Manifold::capacity(); ++i) {
+    const double depth = dot(reference.vertices[0] - polygon[i], reference.normal) / squareness;
+    if (depth > 0) out.push_back({polygon[i] + towards * (depth / 2), n_W, depth, areas[i]});
   }
 }
 
@@ -93,6 +124,18 @@ void reduce(Manifold& points) noexcept {
       }
     }
     chosen = farthest;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_kept[i]) continue;
+    std::size_t nearest = chosen;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Vec3 away = points[k].p_W - points[i].p_W;
+      if (!is_kept[k] || !(dot(away, away) < least)) continue;
+      least = dot(away, away);
+      nearest = k;
+    }
+    points[nearest].area += points[i].area;
   }
   std::size_t end = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -17,10 +17,15 @@ namespace slew::contact {
 inline constexpr std::size_t kMaxPointsPerPair = 8;
 inline constexpr std::size_t kMaxFaceVertices = 16;
 
+// what a point without a face stands for: a square of 1 mm; and an edge: a strip of 1 mm
+inline constexpr double kSpot = 1e-6;   // m^2
+inline constexpr double kStrip = 1e-3;  // m
+
 struct ManifoldPoint {
-  math::Vec3 p_W;    // m
-  math::Vec3 n_W;    // unit, from B to A
-  double depth = 0;  // m, > 0
+  math::Vec3 p_W;       // m
+  math::Vec3 n_W;       // unit, from B to A
+  double depth = 0;     // m, > 0
+  double area = kSpot;  // m^2 > 0, part of the touching faces that the point stands for
 };
 
 // The points found for one pair, before they are cut down to kMaxPointsPerPair.
@@ -34,10 +39,12 @@ struct Face {
 
 // Appends the points of A's and B's faces that overlap along n_W. The flatter face against n_W clips the other one.
 // Nothing is appended when no face is at right angles to n_W, or when nothing is left: the caller then has its single
-// point.
+// point. A corner of the common face stands for half of the triangles that its two edges make with the face's centroid,
+// so that a corner that rounding doubles stands for what it did before.
 void clip_faces(const Face& a, const Face& b, math::Vec3 n_W, Manifold& out) noexcept;
 
 // Cuts the points down to kMaxPointsPerPair: the deepest, then always the one farthest from those kept. Order kept.
+// What is left out leaves its area to the nearest one.
 void reduce(Manifold& points) noexcept;
 
 }  // namespace slew::contact

@@ -39,11 +39,13 @@ void drop_doubles(double size, Manifold& out) noexcept {
   constexpr double kSame = 1e-9;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    bool is_double = false;
-    for (std::size_t k = 0; k < kept && !is_double; ++k) {
-      is_double = norm(out[i].p_W - out[k].p_W) < kSame * size && dot(out[i].n_W, out[k].n_W) > 1 - kSame;
+    std::size_t k = 0;
+    while (k < kept && !(norm(out[i].p_W - out[k].p_W) < kSame * size && dot(out[i].n_W, out[k].n_W) > 1 - kSame)) ++k;
+    if (k < kept) {
+      out[k].area += out[i].area;
+    } else {
+      out[kept++] = out[i];
     }
-    if (!is_double) out[kept++] = out[i];
   }
   out.resize(kept);
 }

@@ -84,11 +84,14 @@ double stored_energy(const NormalLaw& law, double share, double depth) noexcept 
   return share * spring_at(law, depth).force * depth / (law.exponent + 1);
 }
 
-void share_stiffness(std::span<const double> depths, std::span<double> shares) noexcept {
-  SLEW_ASSERT(depths.size() == shares.size());
+void share_stiffness(std::span<const double> depths, std::span<const double> areas, std::span<double> shares) noexcept {
+  SLEW_ASSERT(depths.size() == shares.size() && areas.size() == shares.size());
   double sum = 0;
-  for (const double depth : depths) sum += std::max(depth, 0.0);
-  for (std::size_t i = 0; i < depths.size(); ++i) shares[i] = sum > 0 ? std::max(depths[i], 0.0) / sum : 0.0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    shares[i] = areas[i] * std::max(depths[i], 0.0);
+    sum += shares[i];
+  }
+  for (double& share : shares) share = sum > 0 ? share / sum : 0.0;
 }
 
 }  // namespace slew::contact

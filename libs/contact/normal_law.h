@@ -82,9 +82,10 @@ struct NormalForce {
 // Energy [J] that the spring of (1) holds: integral of F over d at d' = 0.
 [[nodiscard]] double stored_energy(const NormalLaw& law, double share, double depth) noexcept;
 
-// Shares of the contact points of one pair: w_i = d_i / sum of d_j over the depths above 0, all 0 when none is. A point
-// that comes in or goes out does so with no jump of force; points of equal depth share equally. Held over a sub-step.
-// depths [m] and shares [-]: one entry per point.
-void share_stiffness(std::span<const double> depths, std::span<double> shares) noexcept;
+// Shares of the contact points of one pair: w_i = A_i d_i / sum of A_j d_j over the depths above 0, all 0 when none is.
+// A point that comes in, goes out or parts in two at the same place does so with no jump of force; points of equal
+// depth and area share equally. Held over a sub-step. depths [m], areas that the points stand for [m^2] > 0 and shares
+// [-]: one entry per point.
+void share_stiffness(std::span<const double> depths, std::span<const double> areas, std::span<double> shares) noexcept;
 
 }  // namespace slew::contact

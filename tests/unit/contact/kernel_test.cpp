@@ -307,5 +307,40 @@ TEST(ConvexMeshOnBox, StandsLikeTheBoxThatItIs) {
   }
 }
 
+// Equal boxes on each other, shifted and turned by what rounding does: corners of the common face double, and the
+// centre of the normal forces stays where it was.
+class CentreOfPressure : public ::testing::TestWithParam<std::pair<const char*, ShapeDef (*)(double, double, double)>> {
+};
+INSTANTIATE_TEST_SUITE_P(All, CentreOfPressure,
+                         ::testing::Values(std::pair{"box", &box}, std::pair{"convex_mesh", &box_mesh}),
+                         [](const auto& test) { return test.param.first; });
+
+TEST_P(CentreOfPressure, OfEqualFacesDoesNotDependOnRounding) {
+  const ShapeDef cube = GetParam().second(1, 1, 1);
+  std::size_t most = 0, least = 100;
+  for (int i = 0; i < 200; ++i) {
+    const auto rounding = [i](int k) { return 1e-15 * ((7 * i * k + 3 * i + k) % 11 - 5); };
+    const Pose pose{{rounding(1), rounding(2), 1 - kDeep}, math::rotation_xyz({rounding(3), rounding(4), rounding(5)})};
+    const Touch touch(cube, cube, pose);
+    Vec3 centre;
+    for (const ContactPoint& point : touch.points()) centre += point.p_W * point.share;
+    EXPECT_LT(std::hypot(centre.x(), centre.y()), 1e-12);
+    most = std::max(most, touch.points().size());
+    least = std::min(least, touch.points().size());
+  }
+  EXPECT_LT(least, most) << "no corner was doubled: nothing was tested";
+}
+
+TEST(BoxOnTriangles, AcrossTheirCommonEdgePressesInItsMiddle) {
+  // two squares of two triangles each; the box stands across the line between them, with points on every edge
+  ShapeDef ground = flat_field(3, 2, 2);
+  const Touch touch(box(1, 1, 1), ground, {.p_WF = {1.9, 1.2, 0.5 - kDeep}});
+  ASSERT_GT(touch.points().size(), 4u);
+  Vec3 centre;
+  for (const ContactPoint& point : touch.points()) centre += point.p_W * point.share;
+  EXPECT_NEAR(centre.x(), 1.9, 1e-9);
+  EXPECT_NEAR(centre.y(), 1.2, 1e-9);
+}
+
 }  // namespace
 }  // namespace slew::contact

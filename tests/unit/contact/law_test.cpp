@@ -69,13 +69,16 @@ TEST(NormalState, OfAStartInPenetrationIsTheSmallestSpeed) {
 
 TEST(Shares, SumToOneAndComeInWithoutAJump) {
   const std::vector<double> depths = {1e-3, 2e-3, -1e-3, 1e-9};
-  std::vector<double> shares(4);
-  share_stiffness(depths, shares);
+  std::vector<double> areas(4, 0.5), shares(4);
+  share_stiffness(depths, areas, shares);
   EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1, 1e-15);
   EXPECT_EQ(shares[2], 0);
   EXPECT_LT(shares[3], 1e-6);
   EXPECT_NEAR(shares[1], 2 * shares[0], 1e-15);
-  share_stiffness(std::vector<double>{-1, 0, -2, 0}, shares);
+  areas[0] = 1;
+  share_stiffness(depths, areas, shares);
+  EXPECT_NEAR(shares[1], shares[0], 1e-15);
+  share_stiffness(std::vector<double>{-1, 0, -2, 0}, areas, shares);
   for (const double share : shares) EXPECT_EQ(share, 0);
 }
 
