@@ -67,8 +67,34 @@ TEST(References, AgreeOnAndrewsSqueezer) {
   EXPECT_LT(difference(def, {0.01, 0.02, 0.03}, 1e-12), 2e-8);
   const MechanicsReference end = integrate(def, {0.03}, ReferenceEquations::body_coordinates, 1e-12);
   ASSERT_EQ(end.states.size(), 1U);
-  constexpr double kCrank = 15.81077119629904;
-  EXPECT_NEAR(end.states[0].q[0], kCrank, 1e-8);
+  EXPECT_NEAR(end.states[0].q[0], multibody::testing::kSqueezerAngles[0].second, 1e-8);
+}
+
+// case A03, with steps chosen by a relative tolerance of 1e-9: all angles within 1e-6 rad
+TEST(References, TurnAndrewsSqueezerAsTheCaseAllowsAtItsAdaptiveTolerance) {
+  MechanicsDef def = multibody::testing::squeezer();
+  def.point_torques.push_back({.name = "Drive", .body = "K1", .direction = {0, 0, 1}, .torque = 0.033});
+  for (const ReferenceEquations equations :
+       {ReferenceEquations::joint_coordinates, ReferenceEquations::body_coordinates}) {
+    const MechanicsReference end = integrate(def, {0.03}, equations, 1e-9);
+    ASSERT_EQ(end.states.size(), 1U);
+    multibody::Workspace ws(end.model);
+    multibody::observe(end.model, end.states[0], ws);
+    const std::vector<ElementVariable> names = multibody::variables(end.model);
+    std::vector<double> values(names.size());
+    multibody::read_variables(end.model, end.states[0], ws, std::vector<double>(end.model.rows.size()), values);
+    double error = 0;
+    for (const auto& [joint, angle] : multibody::testing::kSqueezerAngles) {
+      const auto found = std::find_if(names.begin(), names.end(), [&joint = joint](const ElementVariable& variable) {
+        return variable.name == std::string(joint) + ".position";
+      });
+      ASSERT_NE(found, names.end()) << joint;
+      error = std::max(error, std::fabs(values[static_cast<std::size_t>(found - names.begin())] - angle));
+    }
+    EXPECT_LT(error, 1e-6);
+    RecordProperty(equations == ReferenceEquations::joint_coordinates ? "joint_1e_9" : "body_1e_9",
+                   std::to_string(1e9 * error));
+  }
 }
 
 TEST(References, AgreeOnTheStiffGovernor) {

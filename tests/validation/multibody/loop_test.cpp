@@ -82,12 +82,8 @@ TEST_P(Squeezer, FollowsTheReferenceTo30ms) {
   const std::vector<ElementVariable> names = variables(model);
   std::vector<double> values(names.size());
   read_variables(model, state, ws, {}, values);
-  constexpr std::pair<const char*, double> kAngles[] = {
-      {"Crank", 15.81077119629904},     {"Pin", -15.75637105984298},      {"Pivot_B", 0.0408222401307310},
-      {"Hinge_G", -0.5347301163226948}, {"Pivot_A5", 0.5244099658805304}, {"Hinge_H", 0.5347301163226948},
-      {"Pivot_A7", 1.048080741042263}};
   double error = 0;
-  for (const auto& [joint, angle] : kAngles) {
+  for (const auto& [joint, angle] : testing::kSqueezerAngles) {
     const auto found = std::find_if(names.begin(), names.end(), [&joint = joint](const ElementVariable& variable) {
       return variable.name == std::string(joint) + ".position";
     });

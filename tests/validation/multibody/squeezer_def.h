@@ -3,10 +3,17 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "multibody/defs.h"
 
 namespace slew::multibody::testing {
+
+// angles [rad] after 30 ms, by joint: Bari IVP test set
+inline constexpr std::pair<const char*, double> kSqueezerAngles[] = {
+    {"Crank", 15.81077119629904},     {"Pin", -15.75637105984298},      {"Pivot_B", 0.0408222401307310},
+    {"Hinge_G", -0.5347301163226948}, {"Pivot_A5", 0.5244099658805304}, {"Hinge_H", 0.5347301163226948},
+    {"Pivot_A7", 1.048080741042263}};
 
 // Seven bodies, ten hinges: the reference's numbering of bodies, points and angles.
 inline MechanicsDef squeezer() {
