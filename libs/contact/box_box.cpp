@@ -10,10 +10,8 @@ namespace {
 using math::Mat3;
 using math::Vec3;
 
-// A face of A must have less overlap than the best of B by this share: two faces that rest on each other, of which now
-// one, now the other leans less, would tilt the normal to and fro and keep a stack rocking. An edge axis must be better
-// than the best face by as much, since faces carry more points.
-constexpr double kPreference = 0.95;
+// an edge axis must be better than the best face by this share, since faces carry more points
+constexpr double kFacePreference = 0.95;
 // edges closer to parallel than this have no axis of their own (sine of the angle)
 constexpr double kParallel = 1e-6;
 
@@ -44,17 +42,14 @@ struct Boxes {
 // the axis of least overlap, or a separating one
 Axis best_axis(const Boxes& boxes) noexcept {
   Axis best = boxes.along(boxes.b.R_WS.c[0]);
-  double least = best.depth;
   for (const Solid* solid : {&boxes.b, &boxes.a}) {
     for (const Vec3& normal : solid->R_WS.c) {
       const Axis axis = boxes.along(normal);
       if (axis.is_separating) return axis;
-      if (!(axis.depth < least)) continue;
-      best = axis;
-      least = axis.depth;
+      if (axis.depth < best.depth) best = axis;
     }
-    least = best.depth * kPreference;
   }
+  double least = best.depth * kFacePreference;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const Vec3 product = cross(boxes.a.R_WS.c[i], boxes.b.R_WS.c[j]);
