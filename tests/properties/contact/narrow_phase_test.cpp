@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "contact/fcl/fcl_border.h"
 #include "contact/kernels.h"
 #include "contact/overlap.h"
 #include "core/allocation_guard.h"
+#include "support/fcl/fcl_border.h"
 #include "support/random_shapes.h"
 
 namespace slew::contact {

@@ -1,4 +1,4 @@
-#include "contact/fcl/fcl_border.h"
+#include "support/fcl/fcl_border.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // they are aligned to 32, and an object made on one side would be read wrongly on the other. So the code behind this
 // header is built with FCL's own flags, hides all its symbols but these, and no type of FCL or Eigen crosses.
 //
-// Tests compare our searches with it; no program uses it (docs/decisions/own-contact-search.md).
+// Our searches are compared with it; no program uses it (docs/decisions/own-contact-search.md).
 //
 // Vectors are x, y, z [m]; a rotation is three columns of three. Queries on one Geometries object may run in several
 // threads at once as long as each has a Scratch of its own.
