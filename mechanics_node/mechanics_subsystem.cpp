@@ -7,6 +7,7 @@
 #include "math/small_solve.h"
 #include "multibody/joint_law.h"
 #include "multibody/parameters.h"
+#include "multibody/rows.h"
 #include "scene/ports.h"
 
 namespace slew::mechanics {
@@ -38,13 +39,21 @@ class MechanicsSubsystem::Laws final : public coupling::RowLaws {
   explicit Laws(MechanicsSubsystem& owner) : owner_(owner) {}
   bool begin(double h) const noexcept override {
     owner_.bristle_interval_ = h;
-    return !owner_.state_.bristles.empty();
+    owner_.stage_speed_ = owner_.workspace_.row_v;
+    return owner_.has_balls_ || !owner_.state_.bristles.empty();
   }
   void carry(std::size_t index, double v, double h) const noexcept override {
     const std::size_t row = owner_.active_[index];
-    const multibody::JointLaw& law = owner_.model_.rows[row].law;
-    double& z = owner_.state_.bristles[row];
-    if (multibody::has_bristles(law)) z = multibody::bent(law, v, h, z);
+    if (row < owner_.ports_.size()) return;
+    const multibody::JointLaw& law = multibody::law_of(owner_.model_, row);
+    const bool is_ball = owner_.is_ball(row);
+    // the three parts of a ball come one after the other
+    if (is_ball && owner_.model_.rows[row].number == 0) held_speed_ = speed_of(row);
+    if (multibody::has_bristles(law)) {
+      double& z = owner_.state_.bristles[row];
+      z = is_ball ? multibody::bent_part(law, v, held_speed_, h, z) : multibody::bent(law, v, h, z);
+    }
+    owner_.stage_speed_[row] = v;
   }
   coupling::RowForce evaluate(std::size_t index, double z, double x, double v) const noexcept override {
     const std::size_t row = owner_.active_[index];
@@ -52,13 +61,22 @@ class MechanicsSubsystem::Laws final : public coupling::RowLaws {
       const coupling::LineForce line = owner_.ports_[row].law.evaluate(z, x, v);
       return {line.force, line.d_pressure, line.d_position, line.d_speed};
     }
-    const multibody::JointForce joint =
-        multibody::evaluate(owner_.model_.rows[row].law, x, v, owner_.bristle_interval_, owner_.bristle_of(row));
+    const multibody::JointLaw& law = multibody::law_of(owner_.model_, row);
+    const double h = owner_.bristle_interval_, bending = owner_.bristle_of(row);
+    const multibody::JointForce joint = owner_.is_ball(row)
+                                            ? multibody::evaluate_part(law, v, speed_of(row), h, bending)
+                                            : multibody::evaluate(law, x, v, h, bending);
     return {joint.force, 0, joint.d_x, joint.d_v};
   }
 
  private:
+  // of a ball, in the stage before
+  [[nodiscard]] double speed_of(std::size_t row) const noexcept {
+    return multibody::ball_speed(owner_.model_, row, owner_.stage_speed_);
+  }
+
   MechanicsSubsystem& owner_;
+  mutable double held_speed_ = 0;  // rad/s, of the ball whose parts are carried
 };
 
 MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
@@ -95,6 +113,8 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
   micro_steps_ = static_cast<int>(std::ceil(H_.seconds() / substeps_ / kMicroStep - 1e-9));
   micro_steps_ = std::max(1, micro_steps_);
   active_.reserve(model_.rows.size());
+  stage_speed_.resize(model_.rows.size());
+  for (std::size_t row = 0; row < model_.rows.size(); ++row) has_balls_ = has_balls_ || is_ball(row);
   const std::size_t rows = model_.rows.size();
   matrix_.resize(rows * rows);
   right_.resize(rows * (ports_.size() + 1));
@@ -163,7 +183,7 @@ bool MechanicsSubsystem::select_rows(double h) noexcept {
   const std::span<const double> x = multibody::row_positions(workspace_);
   const std::span<const double> v = multibody::row_speeds(workspace_);
   for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
-    const multibody::JointLaw& law = model_.rows[row].law;
+    const multibody::JointLaw& law = multibody::law_of(model_, row);
     const double reach = kLimitLookAhead * h * std::fabs(v[row]);
     const bool near_limit =
         law.limit_stiffness > 0 && (x[row] - reach <= law.limit_min || x[row] + reach >= law.limit_max);
@@ -261,7 +281,8 @@ void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
   // bristles follow the true way as well: what sticks stays where it is
   for (std::size_t k = 0; k < active_.size() && !state_.bristles.empty(); ++k) {
     const std::size_t row = active_[k];
-    if (multibody::has_bristles(model_.rows[row].law)) {
+    // a ball has no coordinate to tell by
+    if (multibody::has_bristles(model_.rows[row].law) && !is_ball(row)) {
       state_.bristles[row] += workspace_.row_x[row] - dynamics_.x()[k];
     }
   }
@@ -391,12 +412,13 @@ void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noex
   for (std::size_t row = m; row < rows; ++row) {
     row_force_[row] = 0;
     if (row_is_active_[row] == 0) continue;
-    const double x = workspace_.row_x[row], v = workspace_.row_v[row];
+    const double v = workspace_.row_v[row];
     // now, and after H at the present speed: bristles bend on the way
-    const multibody::JointLaw& own = model_.rows[row].law;
-    const multibody::JointForce law = multibody::evaluate(own, x, v, 0, bristle_of(row));
-    const multibody::JointForce bent =
-        multibody::has_bristles(own) ? multibody::evaluate(own, x, v, H, bristle_of(row)) : law;
+    const auto after = [&](double time) {
+      return multibody::joint_force(model_, row, workspace_.row_x, workspace_.row_v, time, bristle_of(row));
+    };
+    const multibody::JointForce law = after(0);
+    const multibody::JointForce bent = multibody::has_bristles(multibody::law_of(model_, row)) ? after(H) : law;
     row_force_[row] = law.force;
     joint_mean_[row] = 0.5 * (law.force + bent.force) + 0.5 * H * law.d_x * v;
     joint_slope_[row] = std::max(0.0, -(bent.d_v + H * law.d_x));

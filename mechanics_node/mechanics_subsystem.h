@@ -77,6 +77,9 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] double bristle_of(std::size_t row) const noexcept {
     return state_.bristles.empty() ? 0.0 : state_.bristles[row];
   }
+  [[nodiscard]] bool is_ball(std::size_t row) const noexcept {
+    return model_.rows[row].kind == multibody::RowKind::ball;
+  }
   [[nodiscard]] double ratio_of(std::size_t row) const noexcept {
     return row < ports_.size() ? ports_[row].ratio : 1.0;
   }
@@ -93,8 +96,10 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   multibody::Dynamics mechanism_;
   multibody::State last_good_;
   multibody::Workspace workspace_;
-  double bristle_interval_ = 0;  // s, of the port problem's stages
-  bool is_evaluated_ = false;    // workspace_ belongs to state_ and model_
+  double bristle_interval_ = 0;      // s, of the port problem's stages
+  std::vector<double> stage_speed_;  // by row, in the stage before
+  bool has_balls_ = false;           // some row is a spherical joint's
+  bool is_evaluated_ = false;        // workspace_ belongs to state_ and model_
   coupling::Level level_;
   SimDuration H_;
   int substeps_ = 1;

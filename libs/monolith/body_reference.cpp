@@ -8,8 +8,8 @@
 #include "monolith/dae_solver.h"
 #include "multibody/body_attitude.h"
 #include "multibody/body_passes.h"
-#include "multibody/joint_law.h"
 #include "multibody/passes.h"
+#include "multibody/rows.h"
 
 namespace slew::monolith {
 namespace {
@@ -117,7 +117,11 @@ class BodyEquations final : public AlgebraicEquation {
   void find_row_forces() noexcept {
     for (std::size_t k = 0; k < forces_.size(); ++k) {
       const multibody::BodyRow row = multibody::body_row(model_, body_, joints_, model_.rows[k], ws_);
-      forces_[k] = multibody::evaluate(model_.rows[k].law, row.x, row.v, 0, bristle(k)).force;
+      ws_.row_x[k] = row.x;
+      ws_.row_v[k] = row.v;
+    }
+    for (std::size_t k = 0; k < forces_.size(); ++k) {
+      forces_[k] = multibody::joint_force(model_, k, ws_.row_x, ws_.row_v, 0, bristle(k)).force;
     }
   }
   [[nodiscard]] double bristle(std::size_t row) const noexcept {
@@ -126,8 +130,7 @@ class BodyEquations final : public AlgebraicEquation {
   [[nodiscard]] std::span<const double> bristle_rates() noexcept {
     bristle_rates_.resize(joints_.bristles.size());
     for (std::size_t k = 0; k < bristle_rates_.size(); ++k) {
-      const double v = multibody::body_row(model_, body_, joints_, model_.rows[k], ws_).v;
-      bristle_rates_[k] = multibody::bristle_rate(model_.rows[k].law, v, bristle(k));
+      bristle_rates_[k] = multibody::joint_bristle_rate(model_, k, ws_.row_v, bristle(k));
     }
     return bristle_rates_;
   }

@@ -7,9 +7,9 @@
 #include "core/check.h"
 #include "monolith/body_reference.h"
 #include "multibody/dynamics.h"
-#include "multibody/joint_law.h"
 #include "multibody/loops.h"
 #include "multibody/passes.h"
+#include "multibody/rows.h"
 
 namespace slew::monolith {
 namespace {
@@ -35,11 +35,11 @@ class MechanicsEquations final : public DifferentialEquation {
     multibody::evaluate(model_, state_, ws_);
     for (std::size_t k = 0; k < forces_.size(); ++k) {
       const double z = state_.bristles.empty() ? 0.0 : state_.bristles[k];
-      forces_[k] = multibody::evaluate(model_.rows[k].law, ws_.row_x[k], ws_.row_v[k], 0, z).force;
+      forces_[k] = multibody::joint_force(model_, k, ws_.row_x, ws_.row_v, 0, z).force;
     }
     const std::size_t coordinates = state_.q.size(), speeds = state_.u.size();
     for (std::size_t k = 0; k < state_.bristles.size(); ++k) {
-      f[coordinates + speeds + k] = multibody::bristle_rate(model_.rows[k].law, ws_.row_v[k], state_.bristles[k]);
+      f[coordinates + speeds + k] = multibody::joint_bristle_rate(model_, k, ws_.row_v, state_.bristles[k]);
     }
     // with the solver's own quaternions, whose length the rates keep
     multibody::coordinate_rates(model_, ws_, {y, coordinates}, state_.u, {f, coordinates});

@@ -5,9 +5,9 @@
 
 #include "core/check.h"
 #include "coupling/static_forces.h"
-#include "multibody/joint_law.h"
 #include "multibody/parameters.h"
 #include "multibody/passes.h"
+#include "multibody/rows.h"
 #include "scene/ports.h"
 
 namespace slew::monolith {
@@ -106,7 +106,7 @@ Status SceneEquations::find_static_forces(std::span<double> F) {
   for (std::size_t i = 0; i < m; ++i) {
     double a = workspace_.row_a_free[i];
     for (std::size_t r = m; r < rows; ++r) {
-      a += W[i * rows + r] * multibody::evaluate(model_.rows[r].law, workspace_.row_x[r], workspace_.row_v[r]).force;
+      a += W[i * rows + r] * multibody::joint_force(model_, r, workspace_.row_x, workspace_.row_v, 0, 0).force;
     }
     a_free[i] = ports_[i].ratio * a;
     for (std::size_t j = 0; j < m; ++j) matrix[i * m + j] = ports_[i].ratio * W[i * rows + j] * ports_[j].ratio;
@@ -212,7 +212,7 @@ void SceneEquations::evaluate_ports() noexcept {
     row_force_[i] = port.ratio * now.line_force;
   }
   for (std::size_t r = ports_.size(); r < model_.rows.size(); ++r) {
-    row_force_[r] = multibody::evaluate(model_.rows[r].law, workspace_.row_x[r], workspace_.row_v[r]).force;
+    row_force_[r] = multibody::joint_force(model_, r, workspace_.row_x, workspace_.row_v, 0, 0).force;
   }
 }
 

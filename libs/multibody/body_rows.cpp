@@ -81,6 +81,11 @@ BodyRow body_row(const Model& model, const BodyModel& body, const State& joints,
       result.bias = bias_of_angle(element, angle, ws);
       return result;
     }
+    case RowKind::ball: {
+      const Joint& joint = model.joints[at(row.element)];
+      const RowValue turn = turn_of_ball(model, row, ws);
+      return {model.bodies[at(joint.body1)].link, model.bodies[at(joint.body2)].link, turn.G, 0, turn.rate, turn.bias};
+    }
     case RowKind::joint:
       return joint_row(model, body, joints, row, ws);
   }

@@ -45,13 +45,19 @@ Row angle_row(const Model& model, std::size_t angle) {
 }
 
 Row joint_row(const JointDef& joint_def, std::size_t joint, int number, Model& model) {
-  const JointAxisDef def = axis_of(joint_def, number);
-  Row row{
-      .kind = RowKind::joint, .element = static_cast<int>(joint), .link = model.joints[joint].link, .number = number};
+  const bool is_ball = joint_def.type == JointType::spherical;
+  const JointAxisDef def = axis_of(joint_def, is_ball ? 0 : number);
+  Row row{.kind = is_ball ? RowKind::ball : RowKind::joint,
+          .element = static_cast<int>(joint),
+          .link = model.joints[joint].link,
+          .number = number};
   // a universal joint that the tree walks backwards has its coordinates in the other order
   row.place = joint_def.type == JointType::universal && model.joints[joint].is_reversed ? 1 - number : number;
   row.first_path = static_cast<int>(model.paths.size());
-  if (row.link > 0) {
+  if (is_ball) {
+    const Joint& ball = model.joints[joint];
+    add_path(model, model.bodies[at(ball.body1)].link, model.bodies[at(ball.body2)].link);
+  } else if (row.link > 0) {
     model.paths.push_back({.link = row.link, .sign = 1});
   } else {
     const Cut& cut = model.cuts[at(model.joints[joint].cut)];
@@ -96,7 +102,7 @@ void add_row(const MechanicsDef& mechanics, const std::string& name, Model& mode
     if (model.angles[i].name == name) row = angle_row(model, i);
   }
   for (std::size_t i = 0; i < mechanics.joints.size(); ++i) {
-    for (int number = 0; number < coordinate_count(mechanics.joints[i].type); ++number) {
+    for (int number = 0; number < row_count(mechanics.joints[i].type); ++number) {
       if (row_label(mechanics.joints[i], number) == name) row = joint_row(mechanics.joints[i], i, number, model);
     }
   }
@@ -111,8 +117,8 @@ void add_row(const MechanicsDef& mechanics, const std::string& name, Model& mode
 std::vector<std::string> joint_rows(const MechanicsDef& mechanics) {
   std::vector<std::string> names;
   for (const JointDef& joint : mechanics.joints) {
-    for (int number = 0; number < coordinate_count(joint.type); ++number) {
-      if (has_row(axis_of(joint, number))) names.push_back(row_label(joint, number));
+    for (int number = 0; number < row_count(joint.type); ++number) {
+      if (has_row(joint, number)) names.push_back(row_label(joint, number));
     }
   }
   return names;
@@ -140,8 +146,7 @@ void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> r
       if (force.name == name) is_known = true, is_rigid = is_merged(force.body1, force.body2);
     }
     for (const JointDef& joint : mechanics.joints) {
-      for (int number = 0; number < coordinate_count(joint.type); ++number)
-        is_known |= row_label(joint, number) == name;
+      for (int number = 0; number < row_count(joint.type); ++number) is_known |= row_label(joint, number) == name;
     }
     if (!is_known) {
       problems.push_back({name,

@@ -143,6 +143,13 @@ void apply_row_forces(const Model& model, Workspace& ws) noexcept {
       case RowKind::angle:
         turn(model.angles[at(row.element)], ws.angles[at(row.element)].n * force, ws);
         break;
+      case RowKind::ball: {
+        const Joint& joint = model.joints[at(row.element)];
+        const Vec3 torque = turn_of_ball(model, row, ws).G.w2 * force;
+        ws.inertia[at(model.bodies[at(joint.body2)].link)].n -= torque;
+        ws.inertia[at(model.bodies[at(joint.body1)].link)].n += torque;
+        break;
+      }
       case RowKind::joint:
         if (row.link == 0) {
           push_cut(model, row, force, ws);

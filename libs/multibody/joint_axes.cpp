@@ -59,7 +59,17 @@ bool has_row(const JointAxisDef& axis) noexcept {
   return has_limits(axis) || axis.coulomb_friction > 0 || axis.viscous_friction > 0;
 }
 
+int row_count(JointType type) noexcept {
+  return type == JointType::spherical ? 3 : coordinate_count(type);
+}
+
+bool has_row(const JointDef& joint, int number) noexcept {
+  return has_row(axis_of(joint, joint.type == JointType::spherical ? 0 : number));
+}
+
 std::string row_label(const JointDef& joint, int number) {
+  constexpr const char* kAxes[] = {".x", ".y", ".z"};
+  if (joint.type == JointType::spherical) return joint.name + kAxes[number];
   const std::string_view suffix = suffix_of(joint.type, number);
   return suffix.empty() ? joint.name : joint.name + "." + std::string(suffix.substr(1));
 }

@@ -26,7 +26,12 @@ namespace slew::multibody {
 // Whether the axis has friction or limits, so that the mechanism has a row for it.
 [[nodiscard]] bool has_row(const JointAxisDef& axis) noexcept;
 
-// Name of the row: the joint's, and for a coordinate with a suffix "Joint.2", "Joint.angle".
+// Rows of friction and limits: one a coordinate; of a spherical joint three, about the axes of frame 1, for its
+// friction.
+[[nodiscard]] int row_count(JointType type) noexcept;
+[[nodiscard]] bool has_row(const JointDef& joint, int number) noexcept;
+
+// Name of the row: the joint's, and for a coordinate with a suffix "Joint.2", "Joint.angle"; of a ball "Joint.x".
 [[nodiscard]] std::string row_label(const JointDef& joint, int number);
 
 }  // namespace slew::multibody

@@ -127,7 +127,12 @@ constexpr Field kInitialTranslation = field<&JointDef::initial_translation>(
     "initial_velocity",
     {.dimension = velocity, .doc = "velocity of point 2 seen from body 1 at the start, body 1 axes"});
 
-constexpr Field kSphericalFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2, kInitialRotation};
+// all but the limits
+constexpr auto friction_rows(const std::array<Field, 10>& all) {
+  return std::array<Field, 6>{all[4], all[5], all[6], all[7], all[8], all[9]};
+}
+constexpr auto kSphericalFields =
+    joined(kFrames, std::array<Field, 1>{kInitialRotation}, friction_rows(axis_rows<0>(kRotation, kPlain)));
 
 constexpr Field kFixedFields[] = {kBody1, kPoint1, kOrientation1, kBody2, kPoint2, kOrientation2};
 

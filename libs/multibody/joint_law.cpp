@@ -1,5 +1,6 @@
 #include "multibody/joint_law.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "contact/friction_law.h"
@@ -35,7 +36,54 @@ contact::FrictionForce bristle_force(const JointLaw& law, double v, double h, do
   return contact::evaluate(bristles_of(law), sliding_at(v), h, {math::Vec3(z, 0, 0)});
 }
 
+// g of (4)
+double steady_force(const JointLaw& law, double s) noexcept {
+  const double over = s / law.friction_speed;
+  return law.coulomb * (1 + (law.breakaway_ratio - 1) * std::exp(-over * over));
+}
+
+// (5) over h with s held: z = keep z_0 + gain v, F_b = (1 - beta) sigma_0 z + damping v
+struct HeldBristles {
+  double keep = 0, gain = 0, beta = 0, damping = 0;
+};
+
+HeldBristles held_bristles(const JointLaw& law, double s, double h) noexcept {
+  const double g = steady_force(law, s);
+  const double path = law.bristle_stiffness * s * h / g;
+  HeldBristles held;
+  held.keep = std::exp(-path);
+  // (1 - keep) g / (sigma_0 s)
+  held.gain = path > 0 ? h * -std::expm1(-path) / path : h;
+  held.damping = s > 0 ? std::min(law.bristle_damping, g / s) : law.bristle_damping;
+  held.beta = held.damping * s / g;
+  return held;
+}
+
 }  // namespace
+
+JointForce evaluate_part(const JointLaw& law, double v, double s, double h, double z) noexcept {
+  if (!(law.coulomb > 0)) return {-law.viscous * v, 0, -law.viscous};
+  if (!has_bristles(law)) {
+    const double slope = s > 0 ? std::tanh(s / law.friction_speed) / s : 1 / law.friction_speed;
+    const double d = law.coulomb * slope + law.viscous;
+    return {-d * v, 0, -d};
+  }
+  const HeldBristles held = held_bristles(law, s, h);
+  const double spring = (1 - held.beta) * law.bristle_stiffness;
+  const double d = spring * held.gain + held.damping + law.viscous;
+  return {-spring * held.keep * z - d * v, 0, -d};
+}
+
+double bent_part(const JointLaw& law, double v, double s, double h, double z) noexcept {
+  if (!(law.coulomb > 0)) return 0;
+  const HeldBristles held = held_bristles(law, s, h);
+  return held.keep * z + held.gain * v;
+}
+
+double bristle_rate_part(const JointLaw& law, double v, double s, double z) noexcept {
+  if (!has_bristles(law) || !(law.coulomb > 0)) return 0;
+  return v - law.bristle_stiffness * s * z / steady_force(law, s);
+}
 
 JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
   JointForce result;

@@ -1,4 +1,4 @@
-// Friction and limits along one coordinate of a joint, as a force law along that coordinate.
+// Friction and limits along one coordinate of a joint, as a force law along that coordinate; friction of a ball.
 //
 //   F     = -F_c tanh(v / v_c) - d v + F_min - F_max                                               (1)
 //   F_min = max(0, k (x_min - x) - c v) while x < x_min, else 0                                    (2)
@@ -8,6 +8,10 @@
 // update of the bending z over a sub-step h, and with the breakaway force F_s = r F_c:
 //   g(v) = F_c + (F_s - F_c) exp(-(v/v_c)^2),  z' = v - sigma_0 |v| z/g,  F_b = sigma_0 z + sigma_1e z'    (4)
 // They hold a joint at rest under any load below F_s.
+//
+// A joint that turns about a point has one friction for all directions: (1) and (4) with the speed s = |w| of the joint
+// in the place of |v| and along each of three axes by its share v/s,
+//   F = -F_c tanh(s / v_c) v/s - d v,  or  -F_b,  z' = v - sigma_0 s z/g(s)                        (5)
 //
 // x [rad or m] coordinate, v its speed, F [N m or N] acts along +x. F_c Coulomb friction smoothed over the speed v_c,
 // d viscous friction, k and c spring and damper of the limits, which push only. Limits reach slopes of 1e4 1/s, so the
@@ -47,6 +51,12 @@ struct JointForce {
 
 // Of either law, at the end of h [s] at the speed v that began with the bending z [rad or m]; h = 0: at the instant.
 [[nodiscard]] JointForce evaluate(const JointLaw& law, double x, double v, double h, double z) noexcept;
+
+// One of the three parts of (5) at the part v of the speed. s is held: the law is linear in v, and stays implicit where
+// it is steep. Without limits.
+[[nodiscard]] JointForce evaluate_part(const JointLaw& law, double v, double s, double h, double z) noexcept;
+[[nodiscard]] double bent_part(const JointLaw& law, double v, double s, double h, double z) noexcept;
+[[nodiscard]] double bristle_rate_part(const JointLaw& law, double v, double s, double z) noexcept;
 
 // The bending after h at the speed v.
 [[nodiscard]] double bent(const JointLaw& law, double v, double h, double z) noexcept;

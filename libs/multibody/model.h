@@ -189,14 +189,19 @@ struct Cut : Constraint {
   std::vector<int> left_out;             // their places in the order of rows_of()
 };
 
-enum class RowKind : std::uint8_t { length, angle, joint };
+enum class RowKind : std::uint8_t {
+  length,
+  angle,
+  joint,
+  ball  // about one axis of a spherical joint's frame 1; three in a row, the first of which has the law
+};
 
 // A scalar generalised coordinate through which a partner or a joint's law acts.
 struct Row {
   RowKind kind = RowKind::joint;
-  int element = 0;     // LineElement, AngleElement or Joint
+  int element = 0;     // LineElement, AngleElement or Joint (joint, ball)
   int link = 0;        // of a joint row; 0: the joint is cut
-  int number = 0;      // of a joint row: which coordinate of the joint
+  int number = 0;      // of a joint row: which coordinate of the joint; of a ball's: which axis
   int place = 0;       // of a joint row: that coordinate's among the link's
   int first_path = 0;  // entries of Model::paths
   int path_end = 0;

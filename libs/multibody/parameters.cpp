@@ -93,7 +93,9 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
   }
   for (std::size_t i = 0; i < model.rows.size(); ++i) {
     const Row& row = model.rows[i];
-    if (row.kind != RowKind::joint || model.joints[at(row.element)].name != element) continue;
+    const bool is_ball = row.kind == RowKind::ball && row.number == 0 && !key.starts_with("limit_");
+    const bool has_law = row.kind == RowKind::joint || is_ball;
+    if (!has_law || model.joints[at(row.element)].name != element) continue;
     const std::string_view suffix = suffix_of(model.joints[at(row.element)].type, row.number);
     if (!key.ends_with(suffix)) continue;
     const int member = member_index(kJointMembers, key.substr(0, key.size() - suffix.size()));
@@ -105,8 +107,10 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
 }
 
 std::size_t parameter_count(const Model& model) noexcept {
-  const auto joint_rows = static_cast<std::size_t>(
-      std::count_if(model.rows.begin(), model.rows.end(), [](const Row& row) { return row.kind == RowKind::joint; }));
+  const auto joint_rows =
+      static_cast<std::size_t>(std::count_if(model.rows.begin(), model.rows.end(), [](const Row& row) {
+        return row.kind == RowKind::joint || row.kind == RowKind::ball;
+      }));
   const std::size_t moving_bodies = model.bodies.size() - 1;  // [0] is Ground
   return kGravityKeys.size() + moving_bodies + model.lines.size() * kLineMembers.size() +
          model.angles.size() * kAngleMembers.size() + joint_rows * kJointMembers.size() + value_count(model.elements);

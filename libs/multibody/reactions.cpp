@@ -101,9 +101,10 @@ class ReactionSum {
   void subtract_rows(std::span<const double> row_forces, std::span<JointReaction> reactions) noexcept {
     for (std::size_t k = 0; k < row_forces.size(); ++k) {
       const Row& row = model_.rows[k];
-      if (row.kind == RowKind::joint && row.link == 0) {
+      if ((row.kind == RowKind::joint || row.kind == RowKind::ball) && row.link == 0) {
         RowGradient wrench;
-        add(coordinate_of_cut(model_, row, ws_).G, row_forces[k], wrench);
+        add(row.kind == RowKind::ball ? turn_of_ball(model_, row, ws_).G : coordinate_of_cut(model_, row, ws_).G,
+            row_forces[k], wrench);
         transmit(model_.cuts[at(model_.joints[at(row.element)].cut)], wrench, reactions);
         continue;
       }

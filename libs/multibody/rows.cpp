@@ -1,6 +1,7 @@
 #include "multibody/rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "core/reductions.h"
@@ -64,7 +65,9 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
     J[at(model.links[at(row.link)].u + row.place)] = 1;
     return;
   }
-  const RowValue cut = row.kind == RowKind::joint ? coordinate_of_cut(model, row, ws) : RowValue{};
+  const RowValue cut = row.kind == RowKind::joint  ? coordinate_of_cut(model, row, ws)
+                       : row.kind == RowKind::ball ? turn_of_ball(model, row, ws)
+                                                   : RowValue{};
   for (int i = row.first_path; i < row.path_end; ++i) {
     const PathEntry& entry = model.paths[at(i)];
     const LinkMotion& m = ws.motion[at(entry.link)];
@@ -79,6 +82,8 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
       const Vec3 arm = ws.motion[at(entry.sign < 0 ? joint.link1 : joint.link2)].p - m.p;
       wrench.force = entry.sign < 0 ? cut.G.v1 : cut.G.v2;
       wrench.torque = (entry.sign < 0 ? cut.G.w1 : cut.G.w2) + cross(arm, wrench.force);
+    } else if (row.kind == RowKind::ball) {
+      wrench.torque = entry.sign < 0 ? cut.G.w1 : cut.G.w2;
     } else {
       wrench.torque = ws.angles[at(row.element)].n * entry.sign;
     }
@@ -103,6 +108,15 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
       ws.row_x[k] = angle.angle;
       ws.row_v[k] = angle.rate;
       bias = bias_of_angle(model.angles[at(row.element)], angle, ws);
+      break;
+    }
+    case RowKind::ball: {
+      const RowValue turn = turn_of_ball(model, row, ws);
+      const Joint& joint = model.joints[at(row.element)];
+      ws.row_x[k] = 0;
+      ws.row_v[k] = turn.rate;
+      bias = acceleration_of(turn, ws.motion[at(model.bodies[at(joint.body1)].link)],
+                             ws.motion[at(model.bodies[at(joint.body2)].link)]);
       break;
     }
     case RowKind::joint: {
@@ -140,6 +154,43 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
 }
 
 }  // namespace
+
+const JointLaw& law_of(const Model& model, std::size_t row) noexcept {
+  const Row& own = model.rows[row];
+  return model.rows[own.kind == RowKind::ball ? row - at(own.number) : row].law;
+}
+
+double ball_speed(const Model& model, std::size_t row, std::span<const double> v) noexcept {
+  const double* parts = v.data() + row - at(model.rows[row].number);
+  return std::sqrt(parts[0] * parts[0] + parts[1] * parts[1] + parts[2] * parts[2]);
+}
+
+JointForce joint_force(const Model& model, std::size_t row, std::span<const double> x, std::span<const double> v,
+                       double h, double z) noexcept {
+  const JointLaw& law = law_of(model, row);
+  if (model.rows[row].kind == RowKind::ball) return evaluate_part(law, v[row], ball_speed(model, row, v), h, z);
+  return evaluate(law, x[row], v[row], h, z);
+}
+
+double joint_bristle_rate(const Model& model, std::size_t row, std::span<const double> v, double z) noexcept {
+  const JointLaw& law = law_of(model, row);
+  if (model.rows[row].kind == RowKind::ball) return bristle_rate_part(law, v[row], ball_speed(model, row, v), z);
+  return bristle_rate(law, v[row], z);
+}
+
+RowValue turn_of_ball(const Model& model, const Row& row, const Workspace& ws) noexcept {
+  const Joint& joint = model.joints[at(row.element)];
+  const Body &body1 = model.bodies[at(joint.body1)], &body2 = model.bodies[at(joint.body2)];
+  const LinkMotion &link1 = ws.motion[at(body1.link)], &link2 = ws.motion[at(body2.link)];
+  const Vec3 axis = link1.R * (body1.R_LB * joint.R_B1.c[row.number]);
+  const Vec3 w = link2.w - link1.w;
+  RowValue turn;
+  turn.rate = dot(axis, w);
+  turn.bias = dot(cross(link1.w, axis), w);
+  turn.G.w1 = -axis;
+  turn.G.w2 = axis;
+  return turn;
+}
 
 RowValue coordinate_of_cut(const Model& model, const Row& row, const Workspace& ws) noexcept {
   const Constraint& joint = cut_of(model, row);

@@ -51,7 +51,8 @@ class Validator {
     check_names();
     for (const BodyDef& body : m_.bodies) check_inertia(body);
     for (const JointDef& joint : m_.joints) {
-      for (int number = 0; number < coordinate_count(joint.type); ++number) check_axis(joint, number);
+      const int axes = joint.type == JointType::spherical ? 1 : coordinate_count(joint.type);
+      for (int number = 0; number < axes; ++number) check_axis(joint, number);
     }
     for (const TranslationalForceDef& force : m_.translational_forces) check_line(force), check_tables(force);
     for (const RotationalForceDef& force : m_.rotational_forces) check_angle(force), check_tables(force);

@@ -118,6 +118,7 @@ std::vector<ElementVariable> variables(const Model& model) {
       names.add(joint.name + ".position" + suffix, is_angle(joint.type, number) ? angle : length);
       names.add(joint.name + ".velocity" + suffix, is_angle(joint.type, number) ? angular_velocity : velocity);
     }
+    if (joint.type == JointType::spherical) names.add_triple(joint.name + ".torque", torque);
     for (int number = 0; number < count; ++number) {
       if (!is_angle(joint.type, number)) {
         names.add(joint.name + ".force", force);
@@ -190,8 +191,9 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
       out.put(value.g);
       out.put(value.rate);
     }
-    for (int number = 0; number < count; ++number) {
-      out.put(row_force_on(model, RowKind::joint, i, row_forces, number));
+    const RowKind kind = joint.type == JointType::spherical ? RowKind::ball : RowKind::joint;
+    for (int number = 0; number < row_count(joint.type); ++number) {
+      out.put(row_force_on(model, kind, i, row_forces, number));
     }
   }
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
