@@ -1,5 +1,5 @@
-// Rows along every coordinate of the joints of random trees: with J the unit vector of its speed, W is what M^-1 has
-// there, whatever the formulation.
+// Rows along every coordinate of the joints of random trees, and about the axes of balls: with J the unit vector of the
+// coordinate's speed, or the axis in the speeds of the ball, W is what J M^-1 J^T has there, whatever the formulation.
 #include <gtest/gtest.h>
 
 #include "multibody/formulation.h"
@@ -15,6 +15,32 @@ using namespace testing;
 
 constexpr Formulation kFormulations[] = {Formulation::recursive, Formulation::lagrange, Formulation::augmented};
 
+// a row's speed v = J u, and J' u
+struct Direction {
+  Vector J;
+  double bias = 0;
+};
+
+Direction direction_of(const Model& model, const Row& row, const Workspace& ws) {
+  Direction direction{Vector::Zero(static_cast<Eigen::Index>(ws.udot.size()))};
+  const Link& link = model.links[static_cast<std::size_t>(row.link)];
+  if (row.kind != RowKind::ball) {
+    direction.J[link.u + row.place] = 1;
+    return direction;
+  }
+  const Joint& joint = model.joints[static_cast<std::size_t>(row.element)];
+  const Body &one = model.bodies[static_cast<std::size_t>(joint.body1)],
+             &two = model.bodies[static_cast<std::size_t>(joint.body2)];
+  const LinkMotion &link1 = ws.motion[static_cast<std::size_t>(one.link)],
+                   &link2 = ws.motion[static_cast<std::size_t>(two.link)];
+  const math::Vec3 axis = link1.R * (one.R_LB * (joint.R_B1.c[row.number]));
+  // the speeds of a ball are those of the link seen from its parent, in Ground axes
+  const double sign = two.link == row.link ? 1 : -1;
+  for (int k = 0; k < 3; ++k) direction.J[link.u + k] = sign * axis[k];
+  direction.bias = dot(cross(link1.w, axis), link2.w - link1.w);
+  return direction;
+}
+
 class CoordinateRows : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(CoordinateRows, SeeTheInverseOfTheMassMatrix) {
@@ -22,7 +48,7 @@ TEST_P(CoordinateRows, SeeTheInverseOfTheMassMatrix) {
       random_tree(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9, .two_coordinates = true});
   std::vector<std::string> rows;
   for (const JointDef& joint : tree.def.joints) {
-    for (int number = 0; number < coordinate_count(joint.type); ++number) rows.push_back(row_label(joint, number));
+    for (int number = 0; number < row_count(joint.type); ++number) rows.push_back(row_label(joint, number));
   }
   if (rows.empty()) GTEST_SKIP() << "no joint has a coordinate";
   for (const Formulation formulation : kFormulations) {
@@ -39,16 +65,16 @@ TEST_P(CoordinateRows, SeeTheInverseOfTheMassMatrix) {
     const double scale = 1 + static_cast<double>(mobility.cwiseAbs().maxCoeff());
     const double a_scale = 1 + static_cast<double>(udot.cwiseAbs().maxCoeff());
     const std::size_t count = rows.size();
+    std::vector<Direction> directions;
+    for (const Row& row : mechanism.model.rows) directions.push_back(direction_of(mechanism.model, row, mechanism.ws));
     for (std::size_t k = 0; k < count; ++k) {
-      const Row& row = mechanism.model.rows[k];
-      const Link& link = mechanism.model.links[static_cast<std::size_t>(row.link)];
-      const Eigen::Index own = link.u + row.place;
-      EXPECT_NEAR(mechanism.ws.row_a_free[k], static_cast<double>(udot[own]), 1e-8 * a_scale) << rows[k];
-      EXPECT_NEAR(mechanism.ws.row_v[k], static_cast<double>(u[own]), 1e-9 * a_scale) << rows[k];
+      const Vector& J = directions[k].J;
+      EXPECT_NEAR(mechanism.ws.row_a_free[k], static_cast<double>(J.dot(udot)) + directions[k].bias, 1e-8 * a_scale)
+          << rows[k];
+      EXPECT_NEAR(mechanism.ws.row_v[k], static_cast<double>(J.dot(u)), 1e-9 * a_scale) << rows[k];
+      const Vector response = mobility * J;
       for (std::size_t l = 0; l < count; ++l) {
-        const Row& other = mechanism.model.rows[l];
-        const Eigen::Index column = mechanism.model.links[static_cast<std::size_t>(other.link)].u + other.place;
-        EXPECT_NEAR(mechanism.ws.row_W[k * count + l], static_cast<double>(mobility(own, column)), 1e-8 * scale)
+        EXPECT_NEAR(mechanism.ws.row_W[k * count + l], static_cast<double>(directions[l].J.dot(response)), 1e-8 * scale)
             << rows[k] << " " << rows[l];
       }
     }
