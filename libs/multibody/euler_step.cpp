@@ -3,10 +3,10 @@
 
 #include "multibody/contact_passes.h"
 #include "multibody/dynamics.h"
+#include "multibody/integrators.h"
 #include "multibody/joint_directions.h"
 #include "multibody/loops.h"
 #include "multibody/passes.h"
-#include "multibody/stage_passes.h"
 
 namespace slew::multibody {
 

@@ -123,7 +123,8 @@ Dynamics::Dynamics(Formulation formulation, const Model& model, const State& sta
   const bool has_rule = is_implicit(rule.integrator) || rule.integrator == Integrator::semi_implicit_euler;
   switch (formulation) {
     case Formulation::recursive:
-      if (has_rule) stages_ = std::make_unique<Stages>(model, rule, joint);
+      is_euler_ = rule.integrator == Integrator::semi_implicit_euler;
+      if (is_implicit(rule.integrator)) stages_ = std::make_unique<Stages>(model, rule, joint);
       break;
     case Formulation::lagrange:
       bodies_ = std::make_unique<Bodies>(model, start, rule);
@@ -180,6 +181,7 @@ bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, dou
 
 bool Dynamics::take_substep(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                             std::span<const double> slope) noexcept {
+  if (is_euler_) return advance_by_euler(model, state, ws, h, mean);
   if (stages_ != nullptr) return advance_by_rule(model, state, ws, h, mean, slope);
   if (bodies_ != nullptr) {
     Bodies& b = *bodies_;

@@ -68,7 +68,8 @@ class Dynamics {
   struct Stages;
   std::unique_ptr<Bodies> bodies_;    // lagrange
   std::unique_ptr<HeldBodies> held_;  // augmented, penalty
-  std::unique_ptr<Stages> stages_;    // integrators beside rk4
+  std::unique_ptr<Stages> stages_;    // integrators beside rk4, but for the next
+  bool is_euler_ = false;             // semi-implicit Euler in joint coordinates, which needs nothing of its own
   bool is_regular_ = true;            // of the last evaluation
 };
 

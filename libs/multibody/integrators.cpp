@@ -284,9 +284,6 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
              BodyWorkspace& bws, StageWorkspace& stages, double h, std::span<const double> mean,
              std::span<const double> slope) noexcept {
   stages.iterations = 0;
-  if (rule.integrator == Integrator::semi_implicit_euler && moving.bodies == nullptr) {
-    return advance_by_euler(model, moving.joints, ws, h, mean);
-  }
   const StageContext at{model, body, moving, ws, bws, stages};
   const RowForces forces{h, mean, slope};
   stages.is_near_singular = false;

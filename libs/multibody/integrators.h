@@ -87,8 +87,14 @@ struct StageWorkspace {
 // The body model with a coupling for every force element, whose stiffness becomes part of (4). Allocates.
 [[nodiscard]] BodyModel build_stiff_body_model(const Model& model);
 
-// One sub-step of h [s] with a rule other than rk4, after evaluate() of the formulation. bws: of the stiff body model.
-// False: a matrix was singular, the iteration did not settle, or the joints were not closed.
+// (1) in joint coordinates, after evaluate(); row_forces: their mean over h, one per row.
+// False: the loops could not be closed.
+[[nodiscard]] bool advance_by_euler(const Model& model, State& state, Workspace& ws, double h,
+                                    std::span<const double> row_forces) noexcept;
+
+// One sub-step of h [s] with a rule other than rk4 and than (1) in joint coordinates, after evaluate() of the
+// formulation. bws: of the stiff body model. False: a matrix was singular, the iteration did not settle, or the joints
+// were not closed.
 [[nodiscard]] bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Moving moving,
                            Workspace& ws, BodyWorkspace& bws, StageWorkspace& stages, double h,
                            std::span<const double> mean, std::span<const double> slope) noexcept;

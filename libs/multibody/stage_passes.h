@@ -48,9 +48,4 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept;
 // delta of bws.solution in the speeds that are integrated.
 void read_step(const StageContext& at, std::span<double> step) noexcept;
 
-// (1) in joint coordinates, after evaluate(); row_forces: their mean over h, one per row.
-// False: the loops could not be closed.
-[[nodiscard]] bool advance_by_euler(const Model& model, State& state, Workspace& ws, double h,
-                                    std::span<const double> row_forces) noexcept;
-
 }  // namespace slew::multibody
