@@ -52,7 +52,7 @@ Areas areas_of(const Polygon& polygon) noexcept {
     moment += (to_last + to_this) * (norm(twice) / 3);
   }
   const double whole = norm(sum);
-  if (!(whole > kSpot)) return areas;
+  if (!(whole > 0)) return areas;
   const Vec3 centroid = polygon[0] + moment * (1 / whole);
   areas.fill(0);
   for (std::size_t i = 0; i < n; ++i) {
@@ -61,6 +61,9 @@ Areas areas_of(const Polygon& polygon) noexcept {
     areas[i] += quarter;
     areas[next] += quarter;
   }
+  // none stands for nothing: it may be the only one that is inside
+  constexpr double kLeastShare = 1e-9;
+  for (std::size_t i = 0; i < n; ++i) areas[i] = std::max(areas[i], kLeastShare * whole);
   return areas;
 }
 

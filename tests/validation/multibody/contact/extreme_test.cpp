@@ -60,6 +60,28 @@ TEST_P(Stack, OfTenBoxesStandsAtTheDepthOfItsWeight) {
   EXPECT_LT(speed, 1e-6);
 }
 
+// equal boxes have their corners on each other's sides: rounding makes four points of them or eight, which must not
+// push
+TEST_P(Stack, OfTenBoxesStandsWhenOneIsALittleOff) {
+  MechanicsDef def =
+      stack(std::vector<double>(10, 1.0), {.stiffness = 1e6, .restitution = 0.3, .smallest_impact_speed = 0.1});
+  constexpr double kOff = 1e-5;
+  def.bodies[6].position[0] = def.joints[6].point1[0] = kOff;
+  Motion motion(def, GetParam());
+  motion.run(0.6, 1e-3);
+  EXPECT_TRUE(motion.is_sound);
+  double way = 0, speed = 0;
+  for (int i = 0; i < 10; ++i) {
+    const BodyPose pose = motion.pose("Box" + std::to_string(i));
+    way = std::max(way, std::hypot(pose.position[0] - (i == 6 ? kOff : 0), pose.position[2]));
+    speed = std::max(speed, std::hypot(pose.velocity[0], pose.velocity[2]));
+  }
+  RecordProperty("way_1e_9_m", std::to_string(1e9 * way));
+  RecordProperty("speed_1e_9", std::to_string(1e9 * speed));
+  EXPECT_LT(way, 0.1 * kOff);
+  EXPECT_LT(speed, kOff);  // per second
+}
+
 TEST_P(Stack, OfAHeavyBoxOnALightOneStands) {
   // the light box: damping a N / v_min / m = 1.6e5 1/s
   MechanicsDef def = stack({1.0, 1e4}, {.stiffness = 1e8, .restitution = 0.9, .smallest_impact_speed = 0.1});
