@@ -71,7 +71,7 @@ std::string quantity_text(double si_value, std::string_view si_unit) {
 }
 
 std::string chosen_text(double si_value, std::string_view si_unit) {
-  if (std::isinf(si_value)) return "unlimited";
+  if (std::isinf(si_value)) return "none";
   const auto in = [&](const DisplayUnit& unit) { return with_unit(few_digits(si_value * unit.factor), unit.unit); };
   std::string shortest = in(display_unit(si_unit));
   const bool is_zero = !(std::fabs(si_value) > 0);  // short in every unit

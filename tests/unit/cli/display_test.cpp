@@ -32,7 +32,7 @@ TEST(Display, WritesAChosenValueAsAPersonWould) {
   EXPECT_EQ(chosen_text(0, "rad"), "0 deg");
   EXPECT_EQ(chosen_text(0, "rad/s"), "0 deg/s");
   EXPECT_EQ(chosen_text(-0.0, "1"), "0");
-  EXPECT_EQ(chosen_text(std::numeric_limits<double>::infinity(), "rad"), "unlimited");
+  EXPECT_EQ(chosen_text(std::numeric_limits<double>::infinity(), "rad"), "none");
 }
 
 TEST(Display, CountsInTheRightNumber) {
