@@ -67,6 +67,13 @@ void add_locked(const CoupledMass& mass, const CoupledMotion& m, ArticulatedIner
   I.f += m.F1 + m.F2;
 }
 
+// A - a b^T
+void subtract_outer(Mat3& A, Vec3 a, Vec3 b) noexcept {
+  A.c[0].lanes = math::subtract_product(A.c[0].lanes, a.lanes, math::broadcast<0>(b));
+  A.c[1].lanes = math::subtract_product(A.c[1].lanes, a.lanes, math::broadcast<1>(b));
+  A.c[2].lanes = math::subtract_product(A.c[2].lanes, a.lanes, math::broadcast<2>(b));
+}
+
 // moves inertia and bias wrench from the child's origin to the parent's, r apart, and adds them there
 void add_to_parent(const ArticulatedInertia& I, Vec3 r, ArticulatedInertia& parent) noexcept {
   const Mat3 M_r = times_skew(I.M, r);
@@ -104,9 +111,9 @@ void factorize_axis(const Model& model, Workspace& ws, std::size_t i, Wrench U, 
   ArticulatedInertia I = ws.inertia[i];
   for (int k = link.first_coupled; k < link.coupled_end; ++k) add_locked(model.coupled[at(k)], ws.coupled[at(k)], I);
   const Vec3 n_d = U.n * factor.d_inv, f_d = U.f * factor.d_inv;
-  I.J -= outer(U.n, n_d);
-  I.K -= outer(U.f, n_d);
-  I.M -= outer(U.f, f_d);
+  subtract_outer(I.J, U.n, n_d);
+  subtract_outer(I.K, U.f, n_d);
+  subtract_outer(I.M, U.f, f_d);
   I.n += n_d * residual;
   I.f += f_d * residual;
   add_to_parent(I, ws.motion[i].r, ws.inertia[at(link.parent)]);
