@@ -221,6 +221,38 @@ void take_euler(const StageContext& at, double h) noexcept {
   place(at, h);
 }
 
+// (5)
+bool is_followed(const StageContext& at, double h) noexcept {
+  const StageWorkspace& s = at.stages;
+  const std::span<const double> u = at.u();
+  for (const std::size_t j : s.turning) {
+    const double error = h * h / 12 * std::fabs(s.rate[j] - s.rate_0[j]);
+    const double turn = 0.5 * h * std::fabs(s.u_0[j] + u[j]);
+    if (!(std::min(error, turn) <= kLargestTurnError)) return false;
+  }
+  return true;
+}
+
+// the angular velocities among a joint's, the first of which is u
+void add_turning(LinkJoint joint, std::size_t u, std::vector<std::size_t>& turning) {
+  const auto add = [&](std::size_t first, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) turning.push_back(u + first + k);
+  };
+  switch (joint) {
+    case LinkJoint::prismatic:
+      return;
+    case LinkJoint::revolute:
+    case LinkJoint::cylindrical:
+      return add(0, 1);
+    case LinkJoint::universal:
+      return add(0, 2);
+    case LinkJoint::spherical:
+      return add(0, 3);
+    case LinkJoint::floating:
+      return add(3, 3);
+  }
+}
+
 // back onto the joints
 bool close(const StageContext& at) noexcept {
   State& joints = at.moving.joints;
@@ -278,6 +310,14 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
   for (const LineElement& line : model.lines) has_stops = has_stops || line.law.end_spring > 0;
   for (const AngleElement& angle : model.angles) has_stops = has_stops || angle.law.end_spring > 0;
   row_force.resize(model.rows.size());
+  for (std::size_t i = 1; i < links; ++i) {
+    const Link& link = model.links[i];
+    if (is_body) {
+      add_turning(LinkJoint::floating, 6 * (i - 1), turning);
+    } else {
+      add_turning(link.joint, static_cast<std::size_t>(link.u), turning);
+    }
+  }
 }
 
 bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Moving moving, Workspace& ws,
@@ -317,7 +357,7 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
     if (moving.bodies == nullptr) update_motion(model, moving.joints.q, moving.joints.u, ws);
     accept_contacts(model, h, moving.joints, ws);
   }
-  return is_closed && has_settled;
+  return is_closed && has_settled && (!is_implicit(rule.integrator) || is_followed(at, h));
 }
 
 }  // namespace slew::multibody
