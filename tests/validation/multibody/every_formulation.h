@@ -48,6 +48,14 @@ class EveryFormulation : public ::testing::TestWithParam<Formulation> {
     def.formulation = GetParam();
     return Formulated(def, rows);
   }
+  // Numbers for `penalty`, which the others do not have: a larger factor for smaller errors, a slower pull where rates
+  // count (docs/models/multibody_penalty.md).
+  [[nodiscard]] static MechanicsDef tuned(MechanicsDef def, double factor, double frequency) {
+    if (!is(Formulation::penalty)) return def;
+    def.penalty_factor = factor;
+    def.penalty_frequency = frequency;
+    return def;
+  }
   [[nodiscard]] static bool is(Formulation formulation) { return GetParam() == formulation; }
   // second order against fourth
   [[nodiscard]] static int order() { return is(Formulation::augmented) ? 2 : 4; }
