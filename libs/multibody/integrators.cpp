@@ -318,6 +318,10 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
       add_turning(link.joint, static_cast<std::size_t>(link.u), turning);
     }
   }
+  // what is prescribed follows its law, whatever the step
+  for (const Drive& drive : model.drives) {
+    if (!is_body && drive.u >= 0) std::erase(turning, static_cast<std::size_t>(drive.u));
+  }
 }
 
 bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Moving moving, Workspace& ws,

@@ -77,7 +77,7 @@ struct StageWorkspace {
   std::vector<double> fixed, base;              // u* and d of (2), by u
   std::vector<double> algorithmic;              // A of (3), by u
   std::vector<double> step, last_step;          // by u
-  std::vector<std::size_t> turning;             // of u, those that are angular velocities
+  std::vector<std::size_t> turning;             // of u, free angular velocities
   std::vector<math::Vec3> turn;                 // d of the quaternions of joint coordinates, by link
   std::vector<math::Vec3> turn_0, turn_rate_0;  // angular velocity and acceleration at the start, by link
   std::vector<math::Vec3> algorithmic_turn;     // A of the same

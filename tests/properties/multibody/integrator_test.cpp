@@ -291,6 +291,21 @@ INSTANTIATE_TEST_SUITE_P(In, LightLinks,
                                                               Integrator::sdirk2)),
                          kName);
 
+// its law says where it is: nothing for the step to follow
+TEST(PrescribedMotion, IsNotDividedByWhatItAccelerates) {
+  MechanicsDef def = pendulum();
+  def.integrator = Integrator::trapezoidal;
+  MotionDef motion{.name = "Swing", .shape = MotionShape::harmonic, .joint = "Pin"};
+  motion.amplitude = 1;
+  motion.frequency = 3;
+  def.motions = {motion};
+  Formulated driven(def);
+  for (int i = 0; i < 20; ++i) {
+    driven.run(20e-3, 20e-3);
+    EXPECT_EQ(driven.dynamics.parts(), 1);
+  }
+}
+
 // What positions are corrected by is missing in the speeds, or energy grows with every step.
 TEST(SemiImplicitEuler, KeepsTheEnergyOfALoopBoundedInBodyCoordinates) {
   MechanicsDef def = slider_crank();
