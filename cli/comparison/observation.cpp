@@ -169,7 +169,7 @@ Observation observe_run(const scene::Scene& scene, std::span<const std::string> 
       run.failure = played.session().failure();
       if (run.failure.empty()) run.failure = "the state";
       run.failed_at = played.time().seconds();
-      return run;
+      break;
     }
     look();
   }

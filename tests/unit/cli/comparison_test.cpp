@@ -110,6 +110,28 @@ TEST_F(Compare, JointsStayClosedAndEnergyIsKeptInEveryRow) {
   EXPECT_GT(result.rows[1].gap.position, 0);
 }
 
+TEST_F(Compare, ARunThatFailsFailsAlikeEveryTime) {
+  // 10 rad a step: Runge-Kutta takes every swing four hundredfold
+  write(R"(
+bodies:
+  Mass: {mass: 1 kg, inertia: [1, 1, 1]}
+joints:
+  Slide: {type: prismatic, body1: Ground, body2: Mass}
+forces:
+  Spring: {type: bushing, body1: Ground, body2: Mass, stiffness: [0, 0, 1.56e6]}
+mechanics: {gravity: [0, 0, 1]}
+session: {duration: 2 s, step: 8 ms}
+)");
+  wish.formulations = {"recursive"};
+  wish.steps = {"8ms"};
+  wish.reference_step = "1ms";
+  const Comparison result = run();
+  ASSERT_EQ(result.rows.size(), 1U);
+  EXPECT_FALSE(result.rows[0].is_stable());
+  EXPECT_NE(result.rows[0].failure, "");
+  EXPECT_TRUE(result.rows[0].cost.is_repeatable);
+}
+
 // what this version knows is what the field tables list, and what cannot run says why
 TEST_F(Compare, EveryFormulationThatTheFieldTableListsHasARow) {
   write(kDoublePendulum);
