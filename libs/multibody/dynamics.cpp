@@ -16,7 +16,10 @@ namespace {
 
 // everything up to and including the backward pass
 void prepare(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
-  update_motion(model, q, u, ws);
+  if (!ws.loops.is_shown || !are_shown(model, q, u, ws)) {
+    update_motion(model, q, u, ws);
+    evaluate_cuts(model, ws);
+  }
   std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
   apply_all(model, q, ws);
 }
@@ -32,7 +35,6 @@ void forward_dynamics(const Model& model, std::span<const double> q, std::span<c
   }
   factorize(model, ws);
   if (!model.cuts.empty()) {
-    evaluate_cuts(model, ws);
     factorize_cuts(model, ws);
     close_loops(model, ws);
   }

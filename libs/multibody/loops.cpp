@@ -37,20 +37,30 @@ void add_rows(const LoopWorkspace& loops, std::span<double> residual) noexcept {
   }
 }
 
-// change in the space of the speeds that takes away what the rows show
-template <typename Value>
-void find_step(const Model& model, Workspace& ws, Value value) noexcept {
+// loops.step = M^-1 J^T W^-1 of what loops.multipliers hold
+void find_step(const Model& model, Workspace& ws) noexcept {
   LoopWorkspace& loops = ws.loops;
-  for (std::size_t k = 0; k < loops.rows.size(); ++k) loops.multipliers[k] = -value(loops.rows[k]);
   loops.factor.solve(loops.multipliers);
   std::fill(ws.residual.begin(), ws.residual.end(), 0.0);
   add_rows(loops, ws.residual);
   solve_forward(model, ws, ws.residual, loops.step);
 }
 
+// change in the space of the speeds that takes away what the rows show
+template <typename Value>
+void find_step(const Model& model, Workspace& ws, Value value) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  for (std::size_t k = 0; k < loops.rows.size(); ++k) loops.multipliers[k] = -value(loops.rows[k]);
+  find_step(model, ws);
+}
+
 void show_rows(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   update_motion(model, q, u, ws);
   evaluate_cuts(model, ws);
+  LoopWorkspace& loops = ws.loops;
+  loops.is_shown = ws.drives.empty();
+  std::copy(q.begin(), q.end(), loops.shown_q.begin());
+  std::copy(u.begin(), u.end(), loops.shown_u.begin());
 }
 
 template <typename Value>
@@ -89,6 +99,13 @@ void renew_matrix(const Model& model, std::span<const double> q, std::span<const
   factorize(model, ws);
   evaluate_cuts(model, ws);
   factorize_cuts(model, ws);
+}
+
+bool are_shown(const Model& model, std::span<const double> q, std::span<const double> u, const Workspace& ws) noexcept {
+  const LoopWorkspace& loops = ws.loops;
+  const Vec3 change = ws.motion[0].a + model.gravity;
+  return loops.is_shown && change[0] == 0 && change[1] == 0 && change[2] == 0 &&
+         std::equal(q.begin(), q.end(), loops.shown_q.begin()) && std::equal(u.begin(), u.end(), loops.shown_u.begin());
 }
 
 void evaluate_cuts(const Model& model, Workspace& ws) noexcept {
@@ -166,23 +183,38 @@ bool project(const Model& model, std::span<double> q, std::span<double> u, Works
 
 namespace {
 
-// what a small displacement or a change of the speeds, which solve_forward() has just found, makes of a row
+// what a small displacement, which solve_forward() has just found, makes of a row
 double change_of(const RowValue& row, const Cut& cut, const Workspace& ws) noexcept {
   const std::size_t link1 = at(cut.link1), link2 = at(cut.link2);
   return dot(row.G.v1, ws.delta_a[link1]) + dot(row.G.w1, ws.delta_alpha[link1]) + dot(row.G.v2, ws.delta_a[link2]) +
          dot(row.G.w2, ws.delta_alpha[link2]);
 }
 
-void shift(const Model& model, double RowValue::*member, double times, Workspace& ws) noexcept {
+void shift(const Model& model, Workspace& ws) noexcept {
+  ws.loops.is_shown = false;
   for (const Cut& cut : model.cuts) {
     for (std::size_t i = 0; i < cut.rows.size(); ++i) {
       RowValue& row = ws.loops.rows[at(cut.first_row) + i];
-      row.*member += times * change_of(row, cut, ws);
+      row.g += change_of(row, cut, ws);
     }
   }
 }
 
 }  // namespace
+
+void aim(const Model& model, double h, std::span<double> u, Workspace& ws) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  for (const Cut& cut : model.cuts) {
+    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+      const std::size_t k = at(cut.first_row) + i;
+      const RowValue& row = loops.rows[k];
+      const double b = acceleration_of(row, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]);
+      loops.multipliers[k] = 0.5 * h * b - row.rate - row.g / h;
+    }
+  }
+  find_step(model, ws);
+  for (std::size_t j = 0; j < u.size(); ++j) u[j] += loops.step[j];
+}
 
 bool project_step(const Model& model, double h, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {
   constexpr int kMostQuickCorrections = 4;
@@ -190,29 +222,21 @@ bool project_step(const Model& model, double h, std::span<double> q, std::span<d
   constexpr double kSmall = 1e-5;
   if (is_near_singular(ws)) return project(model, q, u, ws);
   show_rows(model, q, u, ws);
-  const Extent extent = extent_of(ws);
+  const double closed = kClosedByEuler * extent_of(ws).length;
   const auto value = [](const RowValue& row) { return row.g; };
-  const auto rate = [](const RowValue& row) { return row.rate; };
-  int left = kMostQuickCorrections;
-  for (; left > 0; --left) {
+  for (int left = kMostQuickCorrections; left > 0; --left) {
     const double open = largest(ws.loops, value);
-    if (open <= kClosedByEuler * extent.length) break;
+    if (open <= closed) return true;
     find_step(model, ws, value);
     displace(model, ws, ws.loops.step, q);
     for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j] / h;
     if (open <= kSmall) {
-      shift(model, &RowValue::g, 1, ws);
-      shift(model, &RowValue::rate, 1 / h, ws);
+      shift(model, ws);
     } else {
       show_rows(model, q, u, ws);
     }
   }
-  for (; left > 0 && !(largest(ws.loops, rate) <= kClosedByEuler * extent.speed); --left) {
-    find_step(model, ws, rate);
-    for (std::size_t j = 0; j < u.size(); ++j) u[j] += ws.loops.step[j];
-    shift(model, &RowValue::rate, 1, ws);
-  }
-  return left > 0 || project(model, q, u, ws);
+  return project(model, q, u, ws);
 }
 
 Extent extent_of(const Workspace& ws) noexcept {

@@ -18,6 +18,11 @@ namespace slew::multibody {
 // Values of the rows of all cuts, from the motion.
 void evaluate_cuts(const Model& model, Workspace& ws) noexcept;
 
+// Whether the motion and the rows' values are those of q and u already, to the bit. A projection leaves them so where
+// its last look found nothing to correct: the next step's start need not make them again. Never with prescribed motion.
+[[nodiscard]] bool are_shown(const Model& model, std::span<const double> q, std::span<const double> u,
+                             const Workspace& ws) noexcept;
+
 // W and its factors; needs the rows' values and factorize().
 inline constexpr double kDependent = 1e-12;  // pivot, of the row's mobility
 inline constexpr double kNearSingular = 1e-2;
@@ -39,12 +44,17 @@ void renew_matrix(const Model& model, std::span<const double> q, std::span<const
 inline constexpr double kClosed = 1e-11;  // m, 1; per second; of the mechanism's size and speed where these exceed 1
 [[nodiscard]] bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept;
 
-// The same for an impulse step of h [s], to kClosedByEuler and with the factors of its start: what the positions were
-// corrected by, over h, was missing in the speeds. Then the step is symplectic with the joints closed (SHAKE), and
-// energy stays bounded. Speeds go along the rows as they stood before the last correction of the positions, which is
-// far below the step's own error; ws.motion is left there. Near a singular position, where corrections say little about
-// forces, as project().
-inline constexpr double kClosedByEuler = 1e-9;  // as kClosed
+// For a step of semi-implicit Euler, u_1 = u_0 + h u', q_1 = q_0 + h u_1: adds to u_1 what closes the joints at q_1 up
+// to h^3, where J u' + b = 0 alone would leave them open by -h^2 b / 2 (SHAKE),
+//   M^-1 J^T W^-1 (h b / 2 - J u_0 - g_0 / h)                                                           (3)
+// Then no joint does work over the step, and the speeds are those of its middle: at its end J u = h b / 2. With what
+// project() would make of them the joints do work of one sign, and a mechanism left alone runs away. Rows, motion and
+// factors are those of the start; not near a singular position.
+void aim(const Model& model, double h, std::span<double> u, Workspace& ws) noexcept;
+
+// Takes what such a step left open above kClosedByEuler out of q, and over h out of u, with the factors of its start.
+// Near a singular position, where corrections say little about forces, as project().
+inline constexpr double kClosedByEuler = 1e-9;  // m, 1; of the mechanism's size where it exceeds 1
 [[nodiscard]] bool project_step(const Model& model, double h, std::span<double> q, std::span<double> u,
                                 Workspace& ws) noexcept;
 

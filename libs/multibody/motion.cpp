@@ -153,6 +153,7 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
 }  // namespace
 
 void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
+  ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
   for (std::size_t i = 1; i < model.links.size(); ++i) move_link(model, i, q, u, ws);
 }
@@ -219,6 +220,7 @@ void displace(const Model& model, const Workspace& ws, std::span<const double> s
 
 void move_from(const Model& model, std::span<const double> start, const Displacement& way, std::span<const double> u,
                std::span<double> q, Workspace& ws) noexcept {
+  ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];

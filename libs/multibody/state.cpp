@@ -33,6 +33,8 @@ Workspace::Workspace(const Model& model)
   loops.W.assign(cut_rows * cut_rows, 0.0);
   loops.multipliers.assign(cut_rows, 0.0);
   loops.step.assign(nu, 0.0);
+  loops.shown_q.assign(nq, 0.0);
+  loops.shown_u.assign(nu, 0.0);
   loops.factor = math::Semidefinite(static_cast<int>(cut_rows));
   std::size_t redundant = 0;
   for (const Cut& cut : model.cuts) redundant += cut.redundant.size();

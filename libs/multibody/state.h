@@ -88,6 +88,8 @@ struct LoopWorkspace {
   std::vector<double> multipliers;     // by row: the force that closes it, -lambda [N or N m]
   std::vector<double> step;            // by u
   math::Semidefinite factor;
+  std::vector<double> shown_q, shown_u;  // coordinates that the motion and the rows' values were last made of,
+  bool is_shown = false;                 // if they still are: see are_shown() of loops.h
 };
 
 struct Workspace {
