@@ -1,0 +1,155 @@
+#include "flex/beam_element.h"
+
+namespace slew::flex {
+
+using math::Mat3;
+
+namespace {
+
+// freedoms of one plane: displacement and turn of node 1, of node 2
+using Plane = std::array<double, 4>;
+
+// where the planes' freedoms are among the element's twelve, and the sign of the turn (-ry in the x-z plane)
+constexpr std::array<int, 4> kPlaneY = {1, 5, 7, 11}, kPlaneZ = {2, 4, 8, 10};
+constexpr std::array<double, 4> kTurnY = {1, 1, 1, 1}, kTurnZ = {1, -1, 1, -1};
+
+// (2)
+Plane displacement(double xi, double l, double phi) noexcept {
+  const double x2 = xi * xi, x3 = x2 * xi, s = 1 / (1 + phi);
+  return {s * (1 - 3 * x2 + 2 * x3 + phi * (1 - xi)), s * l * (xi - 2 * x2 + x3 + phi / 2 * (xi - x2)),
+          s * (3 * x2 - 2 * x3 + phi * xi), s * l * (-x2 + x3 - phi / 2 * (xi - x2))};
+}
+
+// d(2)/dx
+Plane slope(double xi, double l, double phi) noexcept {
+  const double x2 = xi * xi, s = 1 / (1 + phi);
+  return {s / l * (-6 * xi + 6 * x2 - phi), s * (1 - 4 * xi + 3 * x2 + phi / 2 * (1 - 2 * xi)),
+          s / l * (6 * xi - 6 * x2 + phi), s * (-2 * xi + 3 * x2 - phi / 2 * (1 - 2 * xi))};
+}
+
+// (3)
+Plane turn(double xi, double l, double phi) noexcept {
+  const double x2 = xi * xi, s = 1 / (1 + phi);
+  return {s * 6 / l * (x2 - xi), s * (1 - 4 * xi + 3 * x2 + phi * (1 - xi)), s * 6 / l * (xi - x2),
+          s * (-2 * xi + 3 * x2 + phi * xi)};
+}
+
+// d(3)/dx
+Plane curvature(double xi, double l, double phi) noexcept {
+  const double s = 1 / ((1 + phi) * l);
+  return {s * 6 / l * (2 * xi - 1), s * (-4 + 6 * xi - phi), s * 6 / l * (1 - 2 * xi), s * (-2 + 6 * xi + phi)};
+}
+
+template <typename Target>
+void put(Target&& row, const Plane& values, const std::array<int, 4>& where, const std::array<double, 4>& sign,
+         double factor = 1) {
+  for (std::size_t i = 0; i < 4; ++i) row(where[i]) = factor * sign[i] * values[i];
+}
+
+Eigen::Matrix3d matrix_of(const Mat3& a) {
+  Eigen::Matrix3d out;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out(i, j) = a(i, j);
+  }
+  return out;
+}
+
+// columns per local freedom become columns per freedom in body axes
+template <int Rows>
+Eigen::Matrix<double, Rows, 12> per_body_freedom(const Eigen::Matrix<double, Rows, 12>& local, const Mat3& axes) {
+  const Eigen::Matrix3d to_local = matrix_of(axes).transpose();
+  Eigen::Matrix<double, Rows, 12> out;
+  for (int block = 0; block < 12; block += 3) {
+    out.template middleCols<3>(block) = (local.template middleCols<3>(block) * to_local).eval();
+  }
+  return out;
+}
+
+Matrix3x12 in_body_axes(const Matrix3x12& local, const Mat3& axes) {
+  return matrix_of(axes) * per_body_freedom<3>(local, axes);
+}
+
+// stiffness of one plane, E I and its shear number
+void add_bending(Matrix12& K, double EI, double l, double phi, const std::array<int, 4>& where,
+                 const std::array<double, 4>& sign) {
+  const double a = EI / (l * l * l * (1 + phi));
+  const double k[4][4] = {{12, 6 * l, -12, 6 * l},
+                          {6 * l, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l},
+                          {-12, -6 * l, 12, -6 * l},
+                          {6 * l, (2 - phi) * l * l, -6 * l, (4 + phi) * l * l}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) K(where[i], where[j]) = a * sign[i] * sign[j] * k[i][j];
+  }
+}
+
+void add_bar(Matrix12& K, double stiffness, int at) {
+  K(at, at) = K(at + 6, at + 6) = stiffness;
+  K(at, at + 6) = K(at + 6, at) = -stiffness;
+}
+
+}  // namespace
+
+double shear_number(double bending, double shear_factor, double shear_modulus, double area, double length) noexcept {
+  return shear_factor > 0 ? 12 * bending / (shear_factor * shear_modulus * area * length * length) : 0.0;
+}
+
+ElementField field_at(const BeamElement& element, double xi, RotaryInertia rotary) {
+  const double l = element.length;
+  const Plane v = displacement(xi, l, element.phi_y), rz = turn(xi, l, element.phi_y);
+  const Plane w = displacement(xi, l, element.phi_z), ry = turn(xi, l, element.phi_z);
+  Matrix3x12 axis = Matrix3x12::Zero(), per_y = Matrix3x12::Zero(), per_z = Matrix3x12::Zero();
+  axis(0, 0) = 1 - xi;
+  axis(0, 6) = xi;
+  put(axis.row(1), v, kPlaneY, kTurnY);
+  put(axis.row(2), w, kPlaneZ, kTurnZ);
+  // (4): rx moves along z per y, along -y per z
+  per_y(2, 3) = 1 - xi;
+  per_y(2, 9) = xi;
+  per_z(1, 3) = xi - 1;
+  per_z(1, 9) = -xi;
+  if (rotary == RotaryInertia::with) {
+    put(per_y.row(0), rz, kPlaneY, kTurnY, -1);
+    put(per_z.row(0), ry, kPlaneZ, kTurnZ, -1);  // turn() gives -ry
+  }
+  return {in_body_axes(axis, element.axes), in_body_axes(per_y, element.axes), in_body_axes(per_z, element.axes)};
+}
+
+Matrix3x12 slope_at(const BeamElement& element, double xi) {
+  Matrix3x12 local = Matrix3x12::Zero();
+  put(local.row(1), slope(xi, element.length, element.phi_y), kPlaneY, kTurnY);
+  put(local.row(2), slope(xi, element.length, element.phi_z), kPlaneZ, kTurnZ);
+  return in_body_axes(local, element.axes);
+}
+
+ElementStrain strain_at(const BeamElement& element, double xi) {
+  const double l = element.length;
+  Row12 stretch = Row12::Zero(), twist = Row12::Zero(), bend_y = Row12::Zero(), bend_z = Row12::Zero();
+  stretch(0) = twist(3) = -1 / l;
+  stretch(6) = twist(9) = 1 / l;
+  put(bend_z, curvature(xi, l, element.phi_y), kPlaneY, kTurnY);
+  put(bend_y, curvature(xi, l, element.phi_z), kPlaneZ, kTurnZ, -1);  // of ry, not -ry
+  return {per_body_freedom<1>(stretch, element.axes), per_body_freedom<1>(twist, element.axes),
+          per_body_freedom<1>(bend_y, element.axes), per_body_freedom<1>(bend_z, element.axes)};
+}
+
+Matrix12 stiffness_of(const BeamElement& element) {
+  const Section& s = element.section;
+  const double l = element.length, E = element.youngs_modulus;
+  Matrix12 local = Matrix12::Zero();
+  add_bar(local, E * s.area / l, 0);
+  add_bar(local, element.shear_modulus * s.torsion_constant / l, 3);
+  add_bending(local, E * s.second_moment_z, l, element.phi_y, kPlaneY, kTurnY);
+  add_bending(local, E * s.second_moment_y, l, element.phi_z, kPlaneZ, kTurnZ);
+  // T^T K T, T turning body axes into local ones
+  const Eigen::Matrix3d R = matrix_of(element.axes);
+  Matrix12 K;
+  for (int i = 0; i < 12; i += 3) {
+    for (int j = 0; j < 12; j += 3) {
+      K.block<3, 3>(i, j) = (R * local.block<3, 3>(i, j) * R.transpose()).eval();
+    }
+  }
+  const Matrix12 mirrored = K.transpose();
+  return 0.5 * (K + mirrored);
+}
+
+}  // namespace slew::flex
