@@ -27,9 +27,9 @@ enum class Attachment : int { clamped, free };
 
 struct CraigBamptonDef {
   Attachment attachment = Attachment::clamped;
-  std::vector<int> clamped_nodes;    // ids; empty: the first node. Free: must be empty
-  std::vector<int> interface_nodes;  // ids; empty: the last node; free: the first and the last
-  int fixed_interface_modes = 10;    // number of phi^N, 0 or more
+  std::vector<int> clamped_nodes = {};    // ids; empty: the first node. Free: must be empty
+  std::vector<int> interface_nodes = {};  // ids; empty: the last node; free: the first and the last
+  int fixed_interface_modes = 10;         // number of phi^N, 0 or more
   EigenMethod method = EigenMethod::automatic;
 };
 

@@ -16,7 +16,7 @@ namespace slew::flex {
 enum class GeometricStiffening : int { none, straight_beam };
 
 struct ReductionDef {
-  CraigBamptonDef modes;
+  CraigBamptonDef modes = {};
   GeometricStiffening stiffening = GeometricStiffening::none;
 };
 

@@ -56,10 +56,10 @@ struct SectionDef {
   double diameter = 0;  // outer, of tube and solid circle [m]
   // shape given: the numbers and points themselves; its shear factors default to 0
   double area = 0, second_moment_y = 0, second_moment_z = 0, torsion_constant = 0;
-  std::vector<SectionPoint> points;
+  std::vector<SectionPoint> points = {};
   Shear shear = Shear::timoshenko;
   // instead of Cowper's [1], > 0
-  std::optional<double> shear_factor_y, shear_factor_z;
+  std::optional<double> shear_factor_y = {}, shear_factor_z = {};
 };
 
 // Appends what is wrong, under owner.
