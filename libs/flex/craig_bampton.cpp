@@ -185,12 +185,8 @@ Modes free_modes(const FeModel& model, const ReducedMatrices& reduced, CraigBamp
     throw InputError(model.name +
                      ": a free body of six reduced freedoms has rigid motions only; expected more interface "
                      "nodes or fixed-interface modes");
-  double shift = 0;
-  for (Index i = 0; i < reduced.K.rows(); ++i) {
-    const double ratio = reduced.K(i, i) / reduced.M(i, i);
-    shift = i == 0 ? ratio : std::min(shift, ratio);
-  }
-  shift = all_modes(reduced.K, reduced.M, 1e-3 * shift).lambda[6];
+  // a rough one first: interfaces may have directions without any stiffness, so no single ratio will do
+  const double shift = all_modes(reduced.K, reduced.M, 1e-3 * reduced.K.trace() / reduced.M.trace()).lambda[6];
   Modes modes = all_modes(reduced.K, reduced.M, shift);
   const double limit = kRigid * modes.lambda[6];
   const auto rigid = std::count_if(modes.lambda.begin(), modes.lambda.end(), [&](double x) { return x < limit; });

@@ -44,7 +44,7 @@ RigidMass rigid_mass(const FeModel& model) {
   RigidMass out;
   out.mass = (sum(0, 0) + sum(1, 1) + sum(2, 2)) / 3;
   // upper right block: -s0~
-  out.first = Vec3(sum(1, 5) - sum(2, 4), sum(2, 3) - sum(0, 5), sum(0, 4) - sum(1, 3)) * -0.5;
+  out.first = Vec3(sum(1, 5) - sum(2, 4), sum(2, 3) - sum(0, 5), sum(0, 4) - sum(1, 3)) * 0.5;
   Mat3 inertia;
   for (int j = 0; j < 3; ++j) {
     inertia.c[j] = Vec3(0.5 * (sum(3, 3 + j) + sum(3 + j, 3)), 0.5 * (sum(4, 3 + j) + sum(3 + j, 4)),

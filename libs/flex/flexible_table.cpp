@@ -85,6 +85,9 @@ const std::vector<std::string_view>& FlexibleTable::next() {
 
 void FlexibleTable::end() {
   if (next_row()) lines_.refuse(fmt::format("there are more rows than {}", rows_), "the number that the header says");
+  if (!lines_.is_ended())
+    refuse_file(lines_.file(), lines_.number(), "the last line has no end", "a file that ends with its last row",
+                "it may have been cut; write the set again");
 }
 
 void FlexibleTable::expect_whole(std::size_t column, long value, const char* what) const {

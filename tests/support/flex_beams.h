@@ -5,6 +5,7 @@
 #include <string>
 
 #include "flex/beam.h"
+#include "flex/input_error.h"
 #include "flex/reduction.h"
 
 namespace slew::flex::testing {
@@ -46,6 +47,17 @@ inline ReductionDef with_modes(int count, Attachment attachment = Attachment::cl
   def.modes.attachment = attachment;
   def.modes.fixed_interface_modes = count;
   return def;
+}
+
+// text of the error that the call throws; empty when it throws none
+template <typename Call>
+std::string error_of(Call call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 inline double hertz(double omega) {

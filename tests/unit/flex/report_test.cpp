@@ -1,0 +1,80 @@
+// The report's figures and its text, and the picture of mode shapes.
+#include <gtest/gtest.h>
+
+#include "flex/mode_shape_plot.h"
+#include "flex/reduction_report.h"
+#include "tests/support/flex_beams.h"
+
+namespace slew::flex {
+namespace {
+
+using namespace testing;
+
+TEST(ReductionReport, FiguresAreThoseOfTheBody) {
+  const FeModel model = build_beam(jib_boom());
+  const ReductionDef def = with_modes(10);
+  const std::vector<int> kept = {1, 2};
+  const ReductionReport report = report_reduction(model, def, reduce(model, def), kept);
+  EXPECT_EQ(report.freedoms, 120);
+  EXPECT_EQ(report.held_freedoms, 6);
+  EXPECT_EQ(report.source.boundary_freedoms, 6);
+  EXPECT_EQ(report.source.interior_freedoms, 108);
+  ASSERT_EQ(report.modes.size(), 16u);
+  double all = 0;
+  for (const ModeFigures& mode : report.modes) {
+    EXPECT_EQ(mode.is_kept, mode.ordinal <= 2);
+    EXPECT_GE(mode.relative_error, -1e-10) << "a reduced model is never softer";
+    all += mode.effective_mass[1];
+  }
+  EXPECT_LT(report.modes[0].relative_error, 2e-5);
+  // first bending mode of a uniform cantilever: 61.3 % of the mass
+  EXPECT_NEAR(report.kept_effective_mass[1] / report.full_mass.mass, 0.613, 0.003);
+  EXPECT_LT(all, report.full_mass.mass);
+  EXPECT_GT(all, 0.9 * report.full_mass.mass);
+  EXPECT_NEAR(report.reduced_mass.mass, report.full_mass.mass, 1e-10);
+}
+
+TEST(ReductionReport, EffectiveMassesOfAllModesAreTheMassThatMoves) {
+  const FeModel model = build_beam(jib_boom(5));
+  const ReductionDef def = with_modes(18);
+  const ReductionReport report = report_reduction(model, def, reduce(model, def), {});
+  // all modes there are: C^T C = rows of the held model, R^T M M_ff^-1 M R: below the mass by the held part only
+  for (const double mass : report.kept_effective_mass) {
+    EXPECT_GT(mass, 0.85 * report.full_mass.mass);
+    EXPECT_LT(mass, report.full_mass.mass);
+  }
+}
+
+TEST(ReductionReport, TextTellsWhatIsKeptAndReached) {
+  const FeModel model = build_beam(jib_boom());
+  const ReductionDef def = with_modes(4);
+  const std::vector<int> kept = {1, 2};
+  const std::string text = text_of(report_reduction(model, def, reduce(model, def), kept));
+  for (const char* part :
+       {"Truck_JibBoom: beam of 20 nodes and 19 elements", "body frame clamped at node 1",
+        "6 held, 6 of interfaces, 108 inside", "10 modes from 6 of the interfaces and 4 inside; 2 kept", "   1 kept",
+        "   3 dropped", "static compliance of node 20 with node 1 held", "effective mass"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST(ModeShapePlot, HasAPanelForEveryModeAndNoLooseEnds) {
+  const Reduction r = reduce(build_beam(jib_boom()), with_modes(4));
+  const std::vector<int> modes = {1, 2, 3};
+  const std::string svg = mode_shape_svg(r, modes);
+  const auto count = [&](const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(count("class='box'"), 3u);
+  EXPECT_EQ(count("<polyline class='moved'"), 6u);
+  EXPECT_EQ(count("<polyline class='rest'"), 6u);
+  EXPECT_EQ(count("<svg"), 1u);
+  EXPECT_EQ(count("nan"), 0u);
+  EXPECT_NE(svg.find("Mode 1: 8.1"), std::string::npos);
+  EXPECT_NE(error_of([&] { (void)mode_shape_svg(r, std::vector<int>{99}); }).find("there is no mode 99"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace slew::flex
