@@ -141,8 +141,11 @@ FixedInterface fixed_interface_modes(const FeModel& model, const Partition& p, c
     out.Phi.row(p.interior[i]) = modes.vectors.row(static_cast<Index>(i));
   separate_repeated(model, out.lambda, out.Phi);
   choose_signs(model, out.Phi);
-  out.lambda.resize(count);
-  out.Phi.conservativeResize(Eigen::NoChange, static_cast<Index>(count));
+  // a group of one frequency stays whole: half of a pair would stiffen one plane of a square section only
+  std::size_t kept = count;
+  while (kept > 0 && kept < out.lambda.size() && out.lambda[kept] == out.lambda[kept - 1]) ++kept;
+  out.lambda.resize(kept);
+  out.Phi.conservativeResize(Eigen::NoChange, static_cast<Index>(kept));
   return out;
 }
 

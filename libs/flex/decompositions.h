@@ -16,7 +16,7 @@ namespace slew::flex {
 
 enum class EigenMethod : int { automatic, dense, lanczos };
 
-// freedoms up to which `automatic` solves dense: about a second, and a tenth of that is saved by Lanczos beyond
+// freedoms up to which `automatic` solves dense: about a tenth of a second; Lanczos is faster beyond
 inline constexpr int kDenseFreedoms = 500;
 
 // Ascending lambda [1/s2]; vectors in columns, v^T M v = 1.

@@ -18,10 +18,11 @@ constexpr double kHead = 30;         // px of a panel's caption
 constexpr double kLeft = 44;         // px left of a plot, for the plane's name
 constexpr double kAmplitude = 0.36;  // of a plane's height
 
-// what is drawn of the body: middle of its nodes and half of its length
+// what is drawn of the body: middle of its nodes, half of its length, and along which axis it is longest
 struct Frame {
   Vec3 middle;
   double half = 0;
+  int along = 0;
 };
 
 Frame frame_of(const ReducedBody& body) {
@@ -33,7 +34,8 @@ Frame frame_of(const ReducedBody& body) {
     }
   }
   const Vec3 size = high - low;
-  return {(low + high) * 0.5, std::max({size[0], size[1], size[2]}) / 2};
+  const int along = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
+  return {(low + high) * 0.5, size[along] / 2, along};
 }
 
 std::string escaped(const std::string& text) {
@@ -51,29 +53,67 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+// What a mode is drawn by: displacements, or where none moves the turn about one axis as a height.
+struct Kind {
+  double largest = 0;    // of what is drawn
+  int turns_about = -1;  // axis, or -1: displacements
+  std::string words;
+};
+
+// along which axis the mode moves most, or that it turns about one
+Kind kind_of(const ReducedBody& body, std::size_t mode, double size) {
+  Vec3 moved, turned;
+  double largest = 0, largest_turn = 0;
+  for (const ReducedNode& node : body.nodes) {
+    for (int a = 0; a < 3; ++a) {
+      moved.lanes[a] += node.phi[mode][a] * node.phi[mode][a];
+      turned.lanes[a] += node.psi[mode][a] * node.psi[mode][a];
+    }
+    largest = std::max(largest, norm(node.phi[mode]));
+    largest_turn = std::max(largest_turn, norm(node.psi[mode]));
+  }
+  const auto strongest = [](Vec3 v) { return v[0] >= v[1] && v[0] >= v[2] ? 0 : v[1] >= v[2] ? 1 : 2; };
+  const double sum = moved[0] + moved[1] + moved[2], turning = (turned[0] + turned[1] + turned[2]) * size * size;
+  const int axis = strongest(turned);
+  if (sum < 1e-12 * turning) return {largest_turn, axis, fmt::format("turns about {}", "xyz"[axis])};
+  return {largest, -1, fmt::format("moves along {}", "xyz"[strongest(moved)])};
+}
+
 class Plane {
  public:
-  // px: middle of the plane, half of its width, its height; across: 1 for y, 2 for z
+  // px: middle of the plane, half of its width, its height; across: the axis that points up
   Plane(const Frame& frame, double x, double y, double half_width, double height, int across)
       : frame_(frame), x_(x), y_(y), scale_(half_width / frame.half), height_(height), across_(across) {}
 
-  void draw(std::string& svg, const ReducedBody& body, std::size_t mode, double largest) const {
-    const auto out = std::back_inserter(svg);
-    fmt::format_to(out, "<text x='{:.1f}' y='{:.1f}' class='axis' text-anchor='end'>{}</text>\n",
-                   x_ - scale_ * frame_.half - 12, y_ + 4, across_ == 1 ? "x-y" : "x-z");
-    line(svg, body, mode, 0, "rest");
-    line(svg, body, mode, largest > 0 ? kAmplitude * height_ / (scale_ * largest) : 0, "moved");
+  void draw(std::string& svg, const ReducedBody& body, std::size_t mode, const Kind& kind) const {
+    const std::string axes = fmt::format("{}-{}", "xyz"[frame_.along], "xyz"[across_]);
+    label(svg, x_ - scale_ * frame_.half - 12, y_ + 4, "end", kind.turns_about < 0 ? axes : "turn");
+    line(svg, body, mode, 0, kind, "rest");
+    line(svg, body, mode, kind.largest > 0 ? kAmplitude * height_ / kind.largest : 0, kind, "moved");
+    for (const ReducedNode* node : {&body.nodes.front(), &body.nodes.back()}) {
+      const Vec3 p = node->position - frame_.middle;
+      label(svg, x_ + scale_ * p[frame_.along], y_ - scale_ * p[across_] + 16, "middle", std::to_string(node->id));
+    }
   }
 
  private:
-  void line(std::string& svg, const ReducedBody& body, std::size_t mode, double amplitude, const char* style) const {
-    const auto out = std::back_inserter(svg);
-    fmt::format_to(out, "<polyline class='{}' points='", style);
+  static void label(std::string& svg, double x, double y, const char* anchor, const std::string& text) {
+    fmt::format_to(std::back_inserter(svg), "<text x='{:.1f}' y='{:.1f}' class='axis' text-anchor='{}'>{}</text>\n", x,
+                   y, anchor, text);
+  }
+
+  // amplitude: px per unit of the mode
+  void line(std::string& svg, const ReducedBody& body, std::size_t mode, double amplitude, const Kind& kind,
+            const char* style) const {
+    fmt::format_to(std::back_inserter(svg), "<polyline class='{}' points='", style);
     std::string dots;
     for (const ReducedNode& node : body.nodes) {
-      const Vec3 p = node.position - frame_.middle + node.phi[mode] * amplitude;
-      const double x = x_ + scale_ * p.x(), y = y_ - scale_ * p[across_];
-      fmt::format_to(out, "{:.1f},{:.1f} ", x, y);
+      const Vec3 p = node.position - frame_.middle;
+      const Vec3 u = kind.turns_about < 0 ? node.phi[mode] : Vec3();
+      const double up = kind.turns_about < 0 ? u[across_] : node.psi[mode][kind.turns_about];
+      const double x = x_ + scale_ * p[frame_.along] + amplitude * u[frame_.along];
+      const double y = y_ - scale_ * p[across_] - amplitude * up;
+      fmt::format_to(std::back_inserter(svg), "{:.1f},{:.1f} ", x, y);
       fmt::format_to(std::back_inserter(dots), "<circle class='{}-dot' cx='{:.1f}' cy='{:.1f}' r='{}'/>\n", style, x, y,
                      amplitude == 0 ? 1.2 : 1.8);
     }
@@ -90,28 +130,6 @@ const char* kStyle =
     ".sub{font-size:12px;fill:#666}.caption{font-size:13px;font-weight:bold}.axis{font-size:11px;fill:#666}"
     ".box{fill:#fff;stroke:#ccc}.rest{fill:none;stroke:#999;stroke-width:1;stroke-dasharray:4 3}.rest-dot{fill:#999}"
     ".moved{fill:none;stroke:#0b62a4;stroke-width:2}.moved-dot{fill:#0b62a4}</style>\n";
-
-struct Kind {
-  double largest;  // translation [1/sqrt(kg)]
-  std::string word;
-};
-
-// along which axis the mode moves most, or that it turns about one
-Kind kind_of(const ReducedBody& body, std::size_t mode, double size) {
-  Vec3 moved, turned;
-  double largest = 0;
-  for (const ReducedNode& node : body.nodes) {
-    for (int a = 0; a < 3; ++a) {
-      moved.lanes[a] += node.phi[mode][a] * node.phi[mode][a];
-      turned.lanes[a] += node.psi[mode][a] * node.psi[mode][a];
-    }
-    largest = std::max(largest, norm(node.phi[mode]));
-  }
-  const auto strongest = [](Vec3 v) { return v[0] >= v[1] && v[0] >= v[2] ? 0 : v[1] >= v[2] ? 1 : 2; };
-  const double sum = moved[0] + moved[1] + moved[2], turning = (turned[0] + turned[1] + turned[2]) * size * size;
-  if (sum < 1e-12 * turning) return {0, fmt::format("turns about {}", "xyz"[strongest(turned)])};
-  return {largest, fmt::format("moves along {}", "xyz"[strongest(moved)])};
-}
 
 }  // namespace
 
@@ -139,11 +157,13 @@ std::string mode_shape_svg(const Reduction& reduction, std::span<const int> ordi
                    "<rect class='box' x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'/>\n"
                    "<text x='{:.1f}' y='{:.1f}' class='caption'>Mode {}: {:.4g} Hz, {}</text>\n",
                    left, top, options.panel_width, options.panel_height, left + 12, top + 20, mode + 1,
-                   body.omega[mode] / (2 * M_PI), kind.word);
+                   body.omega[mode] / (2 * M_PI), kind.words);
     const double plane_height = (options.panel_height - kHead) / 2, half = (options.panel_width - kLeft - 36) / 2;
-    for (int across = 1; across <= 2; ++across) {
-      const double middle = top + kHead + (across - 0.5) * plane_height;
-      Plane(frame, left + kLeft + 8 + half, middle, half, plane_height, across).draw(svg, body, mode, kind.largest);
+    // a turn has one height, drawn once
+    for (int plane = 0; plane < (kind.turns_about < 0 ? 2 : 1); ++plane) {
+      const int across = plane == 0 ? (frame.along == 1 ? 2 : 1) : (frame.along == 0 ? 2 : 0);
+      const double middle = top + kHead + (plane + 0.5) * plane_height;
+      Plane(frame, left + kLeft + 8 + half, middle, half, plane_height, across).draw(svg, body, mode, kind);
     }
   }
   return svg + "</svg>\n";

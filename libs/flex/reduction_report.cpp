@@ -105,9 +105,12 @@ void add_modes(ReductionReport& report, const FeModel& model, const ReductionDef
   }
 }
 
-std::string vector_text(Vec3 v) {
-  // no -0
-  return fmt::format("{:.6g}, {:.6g}, {:.6g}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+// values below this share of their scale are rounding, printed as 0
+constexpr double kRounding = 1e-12;
+
+std::string vector_text(Vec3 v, double scale, const char* form = "{:.6g}, {:.6g}, {:.6g}") {
+  const auto clean = [&](double x) { return std::abs(x) > kRounding * scale ? x : 0.0; };
+  return fmt::format(fmt::runtime(form), clean(v.x()), clean(v.y()), clean(v.z()));
 }
 
 Vec3 centre_of(const RigidMass& m) {
@@ -125,13 +128,14 @@ void add_mass_text(std::string& text, const ReductionReport& report) {
   };
   const RigidMass &a = report.full_mass, &b = report.reduced_mass;
   const Mat3 I = central_inertia(a), J = central_inertia(b);
+  const double whole = I(0, 0) + I(1, 1) + I(2, 2), size = norm(centre_of(a)) + std::sqrt(whole / a.mass);
   line("", "whole model", "reduced body");
   line("mass [kg]", fmt::format("{:.9g}", a.mass), fmt::format("{:.9g}", b.mass));
-  line("centre [m]", vector_text(centre_of(a)), vector_text(centre_of(b)));
-  line("inertia about it xx yy zz [kg m2]", vector_text({I(0, 0), I(1, 1), I(2, 2)}),
-       vector_text({J(0, 0), J(1, 1), J(2, 2)}));
-  line("inertia about it xy xz yz [kg m2]", vector_text({I(0, 1), I(0, 2), I(1, 2)}),
-       vector_text({J(0, 1), J(0, 2), J(1, 2)}));
+  line("centre [m]", vector_text(centre_of(a), size), vector_text(centre_of(b), size));
+  line("inertia about it xx yy zz [kg m2]", vector_text({I(0, 0), I(1, 1), I(2, 2)}, whole),
+       vector_text({J(0, 0), J(1, 1), J(2, 2)}, whole));
+  line("inertia about it xy xz yz [kg m2]", vector_text({I(0, 1), I(0, 2), I(1, 2)}, whole),
+       vector_text({J(0, 1), J(0, 2), J(1, 2)}, whole));
 }
 
 void add_mode_text(std::string& text, const ReductionReport& report) {
@@ -140,9 +144,10 @@ void add_mode_text(std::string& text, const ReductionReport& report) {
                  "\n  mode          whole model [Hz]  reduced [Hz]  relative error   effective mass x, y, z [kg]\n");
   for (const ModeFigures& mode : report.modes) {
     const auto& m = mode.effective_mass;
-    fmt::format_to(out, "  {:>4} {:<8}{:>17.6g}{:>14.6g}{:>16.2e}   {:.4g}, {:.4g}, {:.4g}\n", mode.ordinal,
+    fmt::format_to(out, "  {:>4} {:<8}{:>17.6g}{:>14.6g}{:>16.2e}   {}\n", mode.ordinal,
                    mode.is_kept ? "kept" : "dropped", mode.full / (2 * M_PI), mode.reduced / (2 * M_PI),
-                   mode.relative_error, m[0], m[1], m[2]);
+                   mode.relative_error,
+                   vector_text({m[0], m[1], m[2]}, report.full_mass.mass, "{:.4g}, {:.4g}, {:.4g}"));
   }
   const double mass = report.full_mass.mass;
   const double* kept = report.kept_effective_mass;
