@@ -149,20 +149,23 @@ FixedInterface fixed_interface_modes(const FeModel& model, const Partition& p, c
   return out;
 }
 
+// (1): Phi^C; the first to need a stiff inside
+MatrixXd constraint_modes(const FeModel& model, const Partition& p) {
+  return -solve_positive(block_of(model.K, p.interior, p.interior), MatrixXd(block_of(model.K, p.interior, p.boundary)),
+                         model.name +
+                             ": the inside is not held by the interface nodes; expected a stiffness matrix without "
+                             "mechanisms; look for joints, loose parts and a wrong order of nodes");
+}
+
 // (1), (2)
 struct ReducedMatrices {
   MatrixXd Phi, K, M;
 };
 
-ReducedMatrices reduce_matrices(const FeModel& model, const Partition& p, const FixedInterface& fixed) {
+ReducedMatrices reduce_matrices(const FeModel& model, const Partition& p, const MatrixXd& constraint,
+                                const FixedInterface& fixed) {
   const auto nb = static_cast<Index>(p.boundary.size());
   const auto nn = static_cast<Index>(fixed.lambda.size());
-  const SparseMatrix K_IB = block_of(model.K, p.interior, p.boundary);
-  const MatrixXd constraint =
-      -solve_positive(block_of(model.K, p.interior, p.interior), MatrixXd(K_IB),
-                      model.name +
-                          ": the inside is not held by the interface nodes; expected a stiffness matrix without "
-                          "mechanisms; look for joints, loose parts and a wrong order of nodes");
   ReducedMatrices out;
   out.Phi = MatrixXd::Zero(model.freedoms(), nb + nn);
   for (Index j = 0; j < nb; ++j) {
@@ -172,7 +175,7 @@ ReducedMatrices reduce_matrices(const FeModel& model, const Partition& p, const 
   }
   out.Phi.rightCols(nn) = fixed.Phi;
   out.K = MatrixXd::Zero(nb + nn, nb + nn);
-  const SparseMatrix K_BI = K_IB.transpose();
+  const SparseMatrix K_BI = block_of(model.K, p.boundary, p.interior);
   MatrixXd K_BB = MatrixXd(block_of(model.K, p.boundary, p.boundary)) + K_BI * constraint;
   out.K.topLeftCorner(nb, nb) = 0.5 * (K_BB + K_BB.transpose());
   for (Index k = 0; k < nn; ++k) out.K(nb + k, nb + k) = fixed.lambda[static_cast<std::size_t>(k)];
@@ -217,8 +220,9 @@ void remove_rigid_share(const FeModel& model, MatrixXd& Phi) {
 CraigBampton craig_bampton(const FeModel& model, const CraigBamptonDef& def) {
   CraigBampton out;
   const Partition p = partition(model, def, out);
+  const MatrixXd constraint = constraint_modes(model, p);
   const FixedInterface fixed = fixed_interface_modes(model, p, def);
-  const ReducedMatrices reduced = reduce_matrices(model, p, fixed);
+  const ReducedMatrices reduced = reduce_matrices(model, p, constraint, fixed);
   Modes modes =
       def.attachment == Attachment::free ? free_modes(model, reduced, out) : all_modes(reduced.K, reduced.M, 0);
   out.Phi = reduced.Phi * modes.vectors;

@@ -139,7 +139,14 @@ Modes lanczos_modes(const SparseMatrix<double>& K, const SparseMatrix<double>& M
   Modes found;
   found.vectors.resize(M.rows(), 0);
   for (int i = 0; i < kSearches; ++i) {
-    append(found, search(factor, M, found, count, shift));
+    try {
+      append(found, search(factor, M, found, count, shift));
+    } catch (const std::exception& error) {
+      throw InputError(
+          fmt::format("the iteration for {} modes of {} freedoms failed: {}; expected a well-conditioned "
+                      "model; ask for fewer modes or solve dense",
+                      count, M.rows(), error.what()));
+    }
     found = sorted(found, static_cast<int>(found.lambda.size()));
     if (static_cast<int>(found.lambda.size()) < count) continue;
     // complete when as many modes are below the last one asked for as have been found there

@@ -115,6 +115,8 @@ class Shortener {
       : model_(model), Phi_(Phi), body_(body), chain_(chain_of(model)), pairs_(body.modes() * body.modes()) {}
 
   void run(std::span<const int> clamped_nodes) {
+    if (clamped_nodes.size() > 1)
+      refuse(model_, "it is clamped at several nodes, which keep their distance and pull instead of shortening");
     at_node_.assign(model_.nodes.size(), std::vector<double>(pairs_));
     integrate_nodes();
     reference_.assign(pairs_, 0);

@@ -17,8 +17,8 @@
 
 namespace slew::flex {
 
-// Fills G, H and the nodes' g. clamped_nodes: ids, the first is where (1) begins; empty: free body.
-// Throws InputError when the model is no straight chain of beam elements.
+// Fills G, H and the nodes' g. clamped_nodes: the id where (1) begins; empty: free body.
+// Throws InputError when the model is no straight chain of beam elements, or clamped at several nodes.
 void add_foreshortening(const FeModel& model, const Eigen::MatrixXd& Phi, std::span<const int> clamped_nodes,
                         ReducedBody& body);
 

@@ -27,6 +27,8 @@ constexpr double kRigid = 1e-6;
 constexpr double kOneMass = 1e-6;
 // a pivot of K + shift M over its diagonal below this is not positive
 constexpr double kIndefinite = -1e-12;
+// added to the diagonal of M before its signs are counted: more than rounding leaves of a zero
+constexpr double kLift = 1e-9;
 // a box thinner than this share of its length says nothing about density
 constexpr double kFlat = 1e-3;
 // kg/m3 over the box around the nodes: below a balloon of foil, above the densest metal
@@ -228,6 +230,19 @@ void check_mass(const FeModel& model) {
   check_density(model, rigid.mass);
 }
 
+// a negative mass in any motion; rows without mass are given some
+void check_mass_definite(const FeModel& model) {
+  SparseMatrix lifted = model.M;
+  for (int i = 0; i < model.freedoms(); ++i) {
+    const double own = model.M.coeff(i, i);
+    lifted.coeffRef(i, i) += own > 0 ? kLift * own : 1;
+  }
+  const Pivots pivots = pivots_of(lifted);
+  if (pivots.negative > 0)
+    refuse(model.name, fmt::format("{} motions have negative mass", pivots.negative), "a semidefinite mass matrix",
+           "check the signs of its elements off the diagonal");
+}
+
 // no motion without stiffness but the six, and none with negative stiffness or mass
 void check_definite(const FeModel& model) {
   // between zero and the first elastic mode of most meshes: the stiffest motions are 1e7 to 1e10 above it
@@ -241,6 +256,7 @@ void check_definite(const FeModel& model) {
                "check the export");
     }
   }
+  check_mass_definite(model);
   const SparseMatrix shifted = model.K + shift * model.M;
   const Pivots pivots = pivots_of(shifted);
   if (pivots.negative > 0 || pivots.smallest < kIndefinite)

@@ -160,6 +160,28 @@ TEST_F(Import, ScaledMassesAndLengthsOfOneDirectionAreRefused) {
   EXPECT_NE(error(tonnes, model_.K, model_.nodes).find("expected 0.01 to 25000 kg/m3"), std::string::npos);
 }
 
+TEST_F(Import, NegativeMassOfAMotionIsRefused) {
+  SparseMatrix M = model_.M;
+  // the same total, but the first two nodes swing against each other with less than nothing
+  for (int a = 0; a < 3; ++a) {
+    const double more = 2 * M.coeff(a, a);
+    M.coeffRef(a, a) -= more;
+    M.coeffRef(6 + a, 6 + a) -= more;
+    M.coeffRef(a, 6 + a) += more;
+    M.coeffRef(6 + a, a) += more;
+  }
+  EXPECT_NE(error(M, model_.K, model_.nodes).find("the mass matrix has -"), std::string::npos);
+  M = model_.M;
+  const double more = 2 * M.coeff(0, 0);
+  for (int a = 0; a < 3; ++a) {
+    M.coeffRef(a, 6 + a) += more;
+    M.coeffRef(6 + a, a) += more;
+    M.coeffRef(12 + a, 12 + a) += more;
+  }
+  EXPECT_NE(error(M, model_.K, model_.nodes).find("motions have negative mass; expected a semidefinite mass matrix"),
+            std::string::npos);
+}
+
 TEST_F(Import, TwoLoosePiecesAreRefused) {
   const int n = model_.freedoms();
   std::vector<Eigen::Triplet<double>> mass, stiffness;

@@ -136,6 +136,14 @@ TEST(Foreshortening, ClampInsideTheBeamShortensBothHalves) {
   }
 }
 
+TEST(Foreshortening, BeamClampedAtBothEndsIsRefused) {
+  ReductionDef def = stiffened(8);
+  def.modes.clamped_nodes = {1, 11};
+  def.modes.interface_nodes = {6};
+  EXPECT_NE(error_of([&] { (void)reduce(build_beam(strip(11)), def); }).find("it is clamped at several nodes"),
+            std::string::npos);
+}
+
 TEST(Foreshortening, FreeBodyShortensAboutItsMeanMass) {
   const Reduction r = reduce(build_beam(strip(20, {1, 2, 2}, {-1, 0.5, 0})), stiffened(8, Attachment::free));
   for (const Vec3& G : r.body.G) EXPECT_LT(norm(G), 1e-12);
