@@ -51,9 +51,10 @@ struct BeamDef {
   RotaryInertia rotary_inertia = RotaryInertia::with;  // none: mass consistent only, for comparison with Euler's beam
 };
 
-// Nodes 1 to count at equal distances on a line.
+// Nodes with the ids 1 to count at equal distances on a line [m, body frame]. Pre-condition: count >= 2.
 [[nodiscard]] std::vector<BeamNodeDef> line_of_nodes(Triple start, Triple end, int count);
 
+// What is wrong, all of it where one fault does not hide another; empty: build_beam() takes it.
 [[nodiscard]] Problems check_beam(const BeamDef& def);
 
 // Throws InputError with all problems. Allocates.

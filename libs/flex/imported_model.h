@@ -7,7 +7,7 @@
 // Checked, each with what was found and expected: square matrices of one size, that of the nodes' freedoms together;
 // symmetry; no negative stiffness or mass; K R = 0 for the six rigid motions R of the table, and no other motion
 // without stiffness; one mass in x, y and z; a radius of gyration within the extent of the nodes. These find matrices
-// in mm, t or with supports, and nodes in another order than the rows. Card: docs/models/flex_integrals.md.
+// in mm, t or with supports, and nodes in another order than the rows. Card: docs/models/flex_craig_bampton.md.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct ImportDef {
   std::filesystem::path mass, stiffness, nodes;
 };
 
-// Throws InputError. Allocates; factorises K once.
+// Throws InputError. Allocates; factorises both matrices.
 [[nodiscard]] FeModel import_model(const ImportDef& def);
 
 // The same from matrices in memory; rows as `nodes` in their order, whose `first` is not read. Throws InputError.
