@@ -68,18 +68,19 @@ NodeMasses node_masses(const FeModel& model) {
   double largest = 0, largest_deviation = 0;
   std::vector<Mat3> blocks(model.nodes.size());
   std::vector<std::uint8_t> is_touched(model.nodes.size());
+  std::vector<std::size_t> touched;
   for (std::size_t j = 0; j < model.nodes.size(); ++j) {
     for (int b = 0; b < 3; ++b) {
       for (SparseMatrix::InnerIterator it(model.M, model.nodes[j].first + b); it; ++it) {
         const auto i = static_cast<std::size_t>(node_of[static_cast<std::size_t>(it.row())]);
         const auto a = static_cast<int>(it.row()) - model.nodes[i].first;
         if (a >= 3) continue;
+        if (is_touched[i] == 0) touched.push_back(i);
         is_touched[i] = 1;
         blocks[i].c[b].lanes[a] += it.value();
       }
     }
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      if (is_touched[i] == 0) continue;
+    for (const std::size_t i : touched) {
       const double mass = (blocks[i](0, 0) + blocks[i](1, 1) + blocks[i](2, 2)) / 3;
       for (int b = 0; b < 3; ++b) {
         for (int a = 0; a < 3; ++a)
@@ -90,6 +91,7 @@ NodeMasses node_masses(const FeModel& model) {
       blocks[i] = Mat3();
       is_touched[i] = 0;
     }
+    touched.clear();
   }
   out.deviation = largest > 0 ? largest_deviation / largest : 0;
   return out;
