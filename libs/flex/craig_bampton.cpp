@@ -218,6 +218,7 @@ void remove_rigid_share(const FeModel& model, MatrixXd& Phi) {
 }  // namespace
 
 CraigBampton craig_bampton(const FeModel& model, const CraigBamptonDef& def) {
+  fix_product_blocks();
   CraigBampton out;
   const Partition p = partition(model, def, out);
   const MatrixXd constraint = constraint_modes(model, p);

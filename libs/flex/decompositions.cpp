@@ -189,8 +189,13 @@ Modes dense_modes(const MatrixXd& K, const MatrixXd& M, double shift, int count)
 
 }  // namespace
 
+void fix_product_blocks() noexcept {
+  Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
+}
+
 Modes lowest_modes(const SparseMatrix<double>& K, const SparseMatrix<double>& M, int count, double shift,
                    EigenMethod method) {
+  fix_product_blocks();
   const int n = static_cast<int>(K.rows());
   const int wanted = std::min(count, n);
   if (wanted == 0) return {{}, MatrixXd(n, 0)};
@@ -201,6 +206,7 @@ Modes lowest_modes(const SparseMatrix<double>& K, const SparseMatrix<double>& M,
 }
 
 Modes all_modes(const MatrixXd& K, const MatrixXd& M, double shift) {
+  fix_product_blocks();
   return dense_modes(K, M, shift, static_cast<int>(K.rows()));
 }
 

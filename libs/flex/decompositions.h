@@ -5,7 +5,8 @@
 //   M v = mu (K + sigma M) v                                                                                (1)
 // Lanczos finds one mode of each frequency that occurs several times. So the modes below a bound are counted by the
 // signs of the pivots of K - bound M (Sylvester), and what is missing is searched for across those found. Everything
-// lives in memory that Eigen allocates, so that the bits do not depend on where it lies.
+// lives in memory that Eigen allocates, and Eigen is told fixed cache sizes, so that the bits depend neither on where
+// numbers lie nor on the processor's caches.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +19,9 @@ enum class EigenMethod : int { automatic, dense, lanczos };
 
 // freedoms up to which `automatic` solves dense: about a tenth of a second; Lanczos is faster beyond
 inline constexpr int kDenseFreedoms = 500;
+
+// Eigen's products are cut into blocks by these sizes, not by the machine's. Called by what multiplies large matrices.
+void fix_product_blocks() noexcept;
 
 // Ascending lambda [1/s2]; vectors in columns, v^T M v = 1.
 struct Modes {
