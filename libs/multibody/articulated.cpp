@@ -252,10 +252,15 @@ void factorize_floating(const Model& model, Workspace& ws, std::size_t i) noexce
   store(ws.residual, link.u + 3, n - factor.U_ang * f);
 }
 
+void eliminate_parts(const Model& model, std::size_t i, Workspace& ws) noexcept {
+  for (int k = model.links[i].first_part; k < model.links[i].part_end; ++k) eliminate_modes(model, at(k), ws);
+}
+
 }  // namespace
 
 void factorize(const Model& model, Workspace& ws) noexcept {
   for (std::size_t i = model.links.size() - 1; i > 0; --i) {
+    eliminate_parts(model, i, ws);
     switch (model.links[i].joint) {
       case LinkJoint::revolute:
         factorize_revolute(model, ws, i);
@@ -273,8 +278,13 @@ void factorize(const Model& model, Workspace& ws) noexcept {
       case LinkJoint::cylindrical:
         factorize_pair(model, ws, i);
         break;
+      case LinkJoint::node:
+        add_to_parent(ws.inertia[i], ws.motion[i].r, ws.inertia[at(model.links[i].parent)]);
+        add_node(model, i, ws);
+        break;
     }
   }
+  eliminate_parts(model, 0, ws);
 }
 
 }  // namespace slew::multibody

@@ -22,6 +22,7 @@ void put(Vec3 a, double* x) noexcept {
 
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
                    std::span<double> udot) noexcept {
+  for (int k = 0; k < model.links[0].part_end; ++k) solve_modes(model, at(k), ws, residual, udot);
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
     const JointFactor& factor = ws.factor[i];
@@ -62,9 +63,13 @@ void solve_forward(const Model& model, Workspace& ws, std::span<const double> re
         a += S.slide[0] * rate[0] + S.slide[1] * rate[1];
         break;
       }
+      case LinkJoint::node:
+        break;
     }
     ws.delta_alpha[i] = alpha;
     ws.delta_a[i] = a;
+    if (link.joint == LinkJoint::node) follow_node(model, i, udot, ws);
+    for (int k = link.first_part; k < link.part_end; ++k) solve_modes(model, at(k), ws, residual, udot);
   }
 }
 
@@ -124,6 +129,32 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
       f += factor.U_lin * turn;
       break;
     }
+    case LinkJoint::node:
+      break;
+  }
+}
+
+// One row through the modes of a link: residual holds minus what the nodes gave them.
+void pass_modes(const Model& model, const Workspace& ws, const Link& link, const double* tau, double* residual,
+                double* rate, Vec3& n, Vec3& f) noexcept {
+  for (int k = link.first_part; k < link.part_end; ++k) {
+    const FlexiblePart& part = model.parts[at(k)];
+    const PartMotion& motion = ws.parts[at(k)];
+    const std::size_t u = at(part.u);
+    for (std::size_t j = 0; j < part.modes; ++j) {
+      if (tau != nullptr) residual[u + j] += tau[u + j];
+      n += motion.X_ang[j] * residual[u + j];
+      f += motion.X_lin[j] * residual[u + j];
+    }
+    solve_mass(motion, {residual + u, part.modes}, {rate + u, part.modes});
+  }
+}
+
+void pass_node(const Model& model, const Workspace& ws, const Link& link, double* residual, Vec3 n, Vec3 f) noexcept {
+  const NodeMotion& motion = ws.nodes[at(link.node)];
+  const FlexiblePart& part = model.parts[at(model.nodes[at(link.node)].part)];
+  for (std::size_t j = 0; j < part.modes; ++j) {
+    residual[at(part.u) + j] -= dot(motion.Psi[j], n) + dot(motion.Phi[j], f);
   }
 }
 
@@ -137,6 +168,10 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
     const std::size_t u = at(link.u);
     for (std::size_t k = 0; k < rows.count; ++k) {
       Vec3 n = ws.pass_n[k * links + at(i)], f = ws.pass_f[k * links + at(i)];
+      if (link.part_end > link.first_part) {
+        pass_modes(model, ws, link, rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
+      }
+      if (link.joint == LinkJoint::node) pass_node(model, ws, link, rows.residual + k * speeds, n, f);
       pass_link(link, m, factor, rows.tau == nullptr ? nullptr : rows.tau + u, rows.residual + k * speeds + u,
                 rows.rate + k * speeds + u, n, f);
       if (link.parent == 0) continue;
@@ -144,11 +179,19 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
       ws.pass_f[k * links + at(link.parent)] += f;
     }
   }
+  if (model.links[0].part_end == 0) return;
+  for (std::size_t k = 0; k < rows.count; ++k) {
+    Vec3 n, f;
+    pass_modes(model, ws, model.links[0], rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
+  }
 }
 
-void clear_passes(Workspace& ws, std::span<const int> supports, std::size_t rows, std::size_t links) noexcept {
+void clear_passes(const Model& model, Workspace& ws, std::span<const int> supports, std::size_t rows,
+                  double* residual) noexcept {
+  const std::size_t links = model.links.size(), speeds = ws.udot.size();
   for (std::size_t k = 0; k < rows; ++k) {
     for (const int i : supports) ws.pass_n[k * links + at(i)] = ws.pass_f[k * links + at(i)] = Vec3();
+    for_each_mode(model, [&](std::size_t, std::size_t u) { residual[k * speeds + u] = 0; });
   }
 }
 
@@ -156,14 +199,14 @@ void clear_passes(Workspace& ws, std::span<const int> supports, std::size_t rows
 
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, std::span<const double> tau,
                     std::span<double> residual, std::span<double> rate) noexcept {
-  clear_passes(ws, supports, 1, model.links.size());
+  clear_passes(model, ws, supports, 1, residual.data());
   pass_back(model, ws, supports, {1, tau.data(), residual.data(), rate.data()});
 }
 
 void solve_backward(const Model& model, Workspace& ws, std::span<const int> supports, int link1, int link2,
                     std::span<const RowValue> rows, std::span<double> residual, std::span<double> rate) noexcept {
   const std::size_t links = model.links.size();
-  clear_passes(ws, supports, rows.size(), links);
+  clear_passes(model, ws, supports, rows.size(), residual.data());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const RowGradient& G = rows[k].G;
     ws.pass_n[k * links + at(link1)] -= G.w1;

@@ -31,7 +31,8 @@ void put(Vec3 a, double* x) noexcept {
 
 BodyModel build_body_model(const Model& model) {
   constexpr JointType kTypes[] = {JointType::revolute, JointType::prismatic, JointType::spherical,
-                                  JointType::floating, JointType::universal, JointType::cylindrical};
+                                  JointType::floating, JointType::universal, JointType::cylindrical,
+                                  JointType::node};
   BodyModel body;
   body.links = static_cast<int>(model.links.size());
   body.joints.resize(model.links.size());
@@ -191,6 +192,8 @@ void find_joint_coordinates(const Model& model, const Workspace& ws, State& stat
         put(child.w - (link.joint == LinkJoint::spherical ? parent.w : Vec3()), u);
         break;
       }
+      case LinkJoint::node:
+        break;
     }
   }
 }

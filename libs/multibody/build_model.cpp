@@ -10,6 +10,8 @@
 #include "multibody/build_rows.h"
 #include "multibody/constraint.h"
 #include "multibody/elements/build_elements.h"
+#include "multibody/flexible/build_parts.h"
+#include "multibody/flexible/expand_nodes.h"
 #include "multibody/model.h"
 #include "multibody/motions/build_drives.h"
 #include "multibody/start_pose.h"
@@ -32,7 +34,9 @@ const Mat3 kReverseCross = {Vec3(0, -1, 0), Vec3(-1, 0, 0), Vec3(0, 0, -1)};
 
 class Builder {
  public:
-  explicit Builder(const MechanicsDef& def) : def_(def) {}
+  explicit Builder(const MechanicsDef& def)
+      : expanded_(def.flexible_bodies.empty() ? MechanicsDef() : with_nodes(def)),
+        def_(def.flexible_bodies.empty() ? def : expanded_) {}
 
   Model run(std::span<const std::string> rows, AssemblyReport& report) {
     Problems problems;
@@ -45,6 +49,7 @@ class Builder {
     add_bodies();
     model_.drives = declared_drives(def_);
     add_joints();
+    add_parts(def_, model_);
     for (const int joint : cut_joints(def_, tree_)) add_cut(joint);
     add_forces(def_, link_pose_, model_);
     add_dummies(def_, model_);
@@ -245,7 +250,11 @@ class Builder {
     std::vector<double>& u = model_.start_u;
     const auto& [frame1, frame2] = frames;
     Pose child = {frame2.R, frame1.p};
-    if (const int count = coordinate_count(def.type); count > 0) {
+    if (def.type == JointType::node) {
+      link.joint = LinkJoint::node;
+      link.node = static_cast<int>(model_.nodes.size());
+      model_.nodes.push_back(build_node(def_, def, model_.bodies[at(edge.parent)]));
+    } else if (const int count = coordinate_count(def.type); count > 0) {
       link.joint = link_joint(def.type);
       const std::array<double, 2> start = coordinates_of(def, edge, frames);
       q.insert(q.end(), start.begin(), start.begin() + count);
@@ -276,6 +285,7 @@ class Builder {
     link_pose_.push_back(child);
   }
 
+  const MechanicsDef expanded_;
   const MechanicsDef& def_;
   Model model_;
   std::vector<Pose> poses_;

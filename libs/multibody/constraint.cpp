@@ -144,6 +144,7 @@ std::vector<ConstraintRow> rows_of(JointType type, const Mat3& R_12, Vec3 p_12) 
     case JointType::revolute:
       return joined(point, {parallel[0], parallel[1]});
     case JointType::fixed:
+    case JointType::node:
       return joined(point, {parallel[0], parallel[1], perpendicular(kX, kY)});
     case JointType::cylindrical:
       return joined(parallel, {in_plane(kX), in_plane(kY)});

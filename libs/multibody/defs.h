@@ -17,6 +17,7 @@
 #include "core/field.h"
 #include "multibody/contact_defs.h"
 #include "multibody/elements/element_defs.h"
+#include "multibody/flexible/flexible_def.h"
 #include "multibody/motions/motion_defs.h"
 #include "multibody/not_given.h"
 
@@ -55,6 +56,7 @@ enum class JointType : int {
   spherical_spherical,  // massless link with a ball at either end
   revolute_spherical,   // massless link: hinge about z of frame 1, ball at point 2
   revolute_revolute,    // massless link: hinge about z of either frame
+  node,                 // not of a scene: body 2 is a node of the flexible body 1
 };
 
 // Friction and limits along one coordinate of a joint: joint_law.h.
@@ -205,6 +207,7 @@ struct MechanicsDef {
   std::vector<PartDummyDef> part_dummies;
   std::vector<ConstraintDummyDef> constraint_dummies;
   std::vector<MotionDef> motions;
+  std::vector<FlexibleBodyDef> flexible_bodies;
 };
 
 }  // namespace slew::multibody

@@ -8,6 +8,7 @@ namespace slew::multibody {
 namespace {
 
 std::string name_of(JointType type) {
+  if (type == JointType::node) return "node";
   return std::string(sections()[1].types[static_cast<std::size_t>(type)].name);
 }
 

@@ -54,6 +54,11 @@ Energy energy(const Model& model, const Workspace& ws) noexcept {
     sum.kinetic += 0.5 * link.mass * dot(m.v, m.v) + dot(m.v, cross(m.w, h)) + 0.5 * dot(w_L, link.I_L * w_L);
     sum.potential -= dot(model.gravity, m.p * link.mass + h);
   }
+  for (std::size_t k = 0; k < model.parts.size(); ++k) {
+    const PartEnergy part = energy_of(model.parts[k], ws.parts[k], ws.motion[at(model.parts[k].link)], model.gravity);
+    sum.kinetic += part.kinetic;
+    sum.potential += part.potential;
+  }
   for (const CoupledMass& mass : model.coupled) {
     const CoupledPoints c = coupled_points(model, ws, mass);
     sum.kinetic +=
@@ -82,6 +87,12 @@ Momentum momentum(const Model& model, const Workspace& ws) noexcept {
     const Vec3 p = m.v * link.mass + cross(m.w, h);
     linear += p;
     angular += cross(m.p, p) + cross(h, m.v) + m.R * (link.I_L * transpose_multiply(m.R, m.w));
+  }
+  for (std::size_t k = 0; k < model.parts.size(); ++k) {
+    const LinkMotion& frame = ws.motion[at(model.parts[k].link)];
+    const PartMomentum part = momentum_of(ws.parts[k], frame);
+    linear += part.linear;
+    angular += part.angular + cross(frame.p, part.linear);
   }
   for (const CoupledMass& mass : model.coupled) {
     const CoupledPoints c = coupled_points(model, ws, mass);

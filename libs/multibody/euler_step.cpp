@@ -57,8 +57,18 @@ void move_on(const Model& model, double h, std::span<const double> u, std::span<
         w[i] = load(u, link.u + 3);
         add_turn(q, qi + 3, w[i] * h);
         break;
+      case LinkJoint::node: {
+        const FlexibleNode& node = model.nodes[static_cast<std::size_t>(link.node)];
+        const std::size_t first = static_cast<std::size_t>(model.parts[static_cast<std::size_t>(node.part)].u);
+        w[i] = w_parent;
+        for (std::size_t k = 0; k < node.turn.size(); ++k) {
+          w[i] += ws.nodes[static_cast<std::size_t>(link.node)].Psi[k] * u[first + k];
+        }
+        break;
+      }
     }
   }
+  for_each_mode(model, [&](std::size_t q_k, std::size_t u_k) { q[q_k] += h * u[u_k]; });
 }
 
 }  // namespace

@@ -240,6 +240,7 @@ void add_turning(LinkJoint joint, std::size_t u, std::vector<std::size_t>& turni
   };
   switch (joint) {
     case LinkJoint::prismatic:
+    case LinkJoint::node:
       return;
     case LinkJoint::revolute:
     case LinkJoint::cylindrical:

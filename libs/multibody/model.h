@@ -9,6 +9,8 @@
 //   floating   q: position, quaternion of the link in Ground u: velocity of the link's origin, angular velocity
 //   universal  q: angles about z of frame 1 and of frame 2   u: their rates
 //   cylindrical q: angle, displacement                       u: their rates
+//   node       none: it moves with its parent and the parent's modes (flexible/flexible_part.h)
+// After those of the joints come the modal coordinates and speeds of the flexible parts.
 // The joint's type is an enum, its kernels are picked by a switch in each pass: no virtual call per joint.
 //
 // A Model does not change while a step runs; parameters that a scene declares live change between steps through
@@ -27,6 +29,7 @@
 #include "multibody/contact_elements.h"
 #include "multibody/defs.h"
 #include "multibody/elements/element_set.h"
+#include "multibody/flexible/flexible_part.h"
 #include "multibody/joint_law.h"
 #include "multibody/motions/drive.h"
 
@@ -35,7 +38,7 @@ namespace slew::multibody {
 inline constexpr int kMaxRows = 32;
 inline constexpr int kMaxJointRows = 6;
 
-enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating, universal, cylindrical };
+enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating, universal, cylindrical, node };
 
 [[nodiscard]] constexpr int speed_count(LinkJoint joint) noexcept {
   switch (joint) {
@@ -47,6 +50,8 @@ enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating, 
       return 2;
     case LinkJoint::spherical:
       return 3;
+    case LinkJoint::node:
+      return 0;
     case LinkJoint::floating:
       break;
   }
@@ -65,6 +70,9 @@ struct Link {
   int u = 0;              // first entry in State::u
   int first_coupled = 0;  // CoupledMass entries of this link's joint: [first_coupled, coupled_end)
   int coupled_end = 0;
+  int node = -1;        // Model::nodes, of a link with LinkJoint::node
+  int first_part = 0;   // flexible parts whose frame this link is: [first_part, part_end) of Model::parts
+  int part_end = 0;
   bool is_driven = false;
   std::array<int, 2> drive = {-1, -1};  // Model::drives, by coordinate; -1: free
 };
@@ -230,6 +238,8 @@ struct Model {
   double max_substep = 1e-3;  // s
   PenaltyNumbers penalty;
   std::vector<Link> links;  // [0] is Ground
+  std::vector<FlexiblePart> parts;  // by link
+  std::vector<FlexibleNode> nodes;
   std::vector<LumpedMass> lumped;
   std::vector<CoupledMass> coupled;  // by child link
   std::vector<CoupledMass> welded;   // within one link: lumped into it, but carried by both bodies of their line
@@ -263,6 +273,16 @@ struct Model {
   }
   [[nodiscard]] int row_count() const noexcept { return static_cast<int>(rows.size()); }
 };
+
+// visit(place in State::q, place in State::u) for every modal coordinate.
+template <typename Visit>
+void for_each_mode(const Model& model, Visit visit) noexcept {
+  for (const FlexiblePart& part : model.parts) {
+    for (std::size_t k = 0; k < part.modes; ++k) {
+      visit(static_cast<std::size_t>(part.q) + k, static_cast<std::size_t>(part.u) + k);
+    }
+  }
+}
 
 // Labels of the joints' coordinates that need a row because they have friction or limits, in the scene's order.
 [[nodiscard]] std::vector<std::string> joint_rows(const MechanicsDef& mechanics);

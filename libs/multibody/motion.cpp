@@ -121,6 +121,16 @@ void add_prescribed(const Link& link, const Workspace& ws, LinkMotion& m) noexce
   m.a += S.slide[0] * acceleration(0) + S.slide[1] * acceleration(1);
 }
 
+// shape and inertia of the flexible parts whose frame a link is
+void see_parts(const Model& model, std::size_t i, std::span<const double> q, std::span<const double> u,
+               Workspace& ws) noexcept {
+  for (int k = model.links[i].first_part; k < model.links[i].part_end; ++k) {
+    const FlexiblePart& part = model.parts[static_cast<std::size_t>(k)];
+    see_part(part, q.subspan(static_cast<std::size_t>(part.q), part.modes),
+             u.subspan(static_cast<std::size_t>(part.u), part.modes), ws.motion[i], ws.parts[static_cast<std::size_t>(k)]);
+  }
+}
+
 void move_link(const Model& model, std::size_t i, std::span<const double> q, std::span<const double> u,
                Workspace& ws) noexcept {
   const Link& link = model.links[i];
@@ -146,8 +156,15 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
     case LinkJoint::cylindrical:
       move_cylindrical(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
       break;
+    case LinkJoint::node: {
+      const auto node = static_cast<std::size_t>(link.node);
+      const FlexibleNode& place = model.nodes[node];
+      move_node(place, parent, ws.parts[static_cast<std::size_t>(place.part)], ws.nodes[node], m);
+      break;
+    }
   }
   if (link.is_driven) add_prescribed(link, ws, m);
+  see_parts(model, i, q, u, ws);
 }
 
 }  // namespace
@@ -155,6 +172,7 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
 void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
+  see_parts(model, 0, q, u, ws);
   for (std::size_t i = 1; i < model.links.size(); ++i) move_link(model, i, q, u, ws);
 }
 
@@ -164,6 +182,7 @@ void coordinate_rates(const Model& model, const Workspace& ws, std::span<const d
     const Link& link = model.links[i];
     auto qi = static_cast<std::size_t>(link.q);
     const auto ui = static_cast<std::size_t>(link.u);
+    if (link.joint == LinkJoint::node) continue;
     if (link.joint != LinkJoint::spherical && link.joint != LinkJoint::floating) {
       qdot[qi] = u[ui];
       if (speed_count(link.joint) == 2) qdot[qi + 1] = u[ui + 1];
@@ -179,6 +198,7 @@ void coordinate_rates(const Model& model, const Workspace& ws, std::span<const d
     qdot[qi + 2] = rate.y;
     qdot[qi + 3] = rate.z;
   }
+  for_each_mode(model, [&](std::size_t q_k, std::size_t u_k) { qdot[q_k] = u[u_k]; });
 }
 
 namespace {
@@ -214,14 +234,21 @@ void displace(const Model& model, const Workspace& ws, std::span<const double> s
       case LinkJoint::prismatic:
         q[qi] += step[ui];
         break;
+      case LinkJoint::node:
+        break;
     }
   }
+  for_each_mode(model, [&](std::size_t q_k, std::size_t u_k) { q[q_k] += step[u_k]; });
 }
 
 void move_from(const Model& model, std::span<const double> start, const Displacement& way, std::span<const double> u,
                std::span<double> q, Workspace& ws) noexcept {
   ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
+  for_each_mode(model, [&](std::size_t q_k, std::size_t u_k) {
+    q[q_k] = start[q_k] + way.base[u_k] + way.scale * u[u_k];
+  });
+  see_parts(model, 0, q, u, ws);
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
     const auto ui = static_cast<std::size_t>(link.u);

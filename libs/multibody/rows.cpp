@@ -27,7 +27,8 @@ struct UnitWrench {
   Vec3 force, torque;  // torque about the link's origin
 };
 
-void write_entries(const Link& link, const LinkMotion& m, const UnitWrench& wrench, std::span<double> J) noexcept {
+void write_entries(const Model& model, const Workspace& ws, const Link& link, const LinkMotion& m,
+                   const UnitWrench& wrench, std::span<double> J) noexcept {
   const std::size_t u = at(link.u);
   switch (link.joint) {
     case LinkJoint::revolute:
@@ -53,6 +54,14 @@ void write_entries(const Link& link, const LinkMotion& m, const UnitWrench& wren
       }
       break;
     }
+    case LinkJoint::node: {
+      const FlexiblePart& part = model.parts[at(model.nodes[at(link.node)].part)];
+      const NodeMotion& node = ws.nodes[at(link.node)];
+      for (std::size_t k = 0; k < part.modes; ++k) {
+        J[at(part.u) + k] += dot(node.Psi[k], wrench.torque) + dot(node.Phi[k], wrench.force);
+      }
+      break;
+    }
   }
 }
 
@@ -68,6 +77,8 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
   const RowValue cut = row.kind == RowKind::joint  ? coordinate_of_cut(model, row, ws)
                        : row.kind == RowKind::ball ? turn_of_ball(model, row, ws)
                                                    : RowValue{};
+  // two nodes of one part on the way
+  for_each_mode(model, [&](std::size_t, std::size_t u) { J[u] = 0; });
   for (int i = row.first_path; i < row.path_end; ++i) {
     const PathEntry& entry = model.paths[at(i)];
     const LinkMotion& m = ws.motion[at(entry.link)];
@@ -87,7 +98,7 @@ void write_jacobian(const Model& model, const Workspace& ws, const Row& row, std
     } else {
       wrench.torque = ws.angles[at(row.element)].n * entry.sign;
     }
-    write_entries(model.links[at(entry.link)], m, wrench, J);
+    write_entries(model, ws, model.links[at(entry.link)], m, wrench, J);
   }
 }
 

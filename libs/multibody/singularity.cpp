@@ -27,6 +27,8 @@ bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
     case LinkJoint::universal:
     case LinkJoint::cylindrical:
       break;
+    case LinkJoint::node:
+      return false;
   }
   // the largest element of the inverse against the size of the inertia
   double largest = 0;

@@ -63,6 +63,8 @@ void add_joint_accelerations(const Model& model, std::span<const double> rate, W
         a += S.slide[0] * first + S.slide[1] * second;
         break;
       }
+      case LinkJoint::node:
+        break;
     }
     ws.delta_alpha[i] = alpha;
     ws.delta_a[i] = a;
@@ -161,6 +163,8 @@ void read_step(const StageContext& at, std::span<double> step) noexcept {
       case LinkJoint::cylindrical:
         x[0] = dot(m.axis, w);
         x[1] = dot(m.axis, v);
+        break;
+      case LinkJoint::node:
         break;
     }
   }

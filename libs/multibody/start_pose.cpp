@@ -75,6 +75,7 @@ Pose nearest_frame(JointType type, const JointFrames& frames) noexcept {
     case JointType::prismatic:
       return {frame1.R, on_axis};
     case JointType::fixed:
+    case JointType::node:
       return frame1;
     case JointType::spherical:
       return {frame2.R, frame1.p};

@@ -18,6 +18,8 @@ Workspace::Workspace(const Model& model)
       pass_f(model.links.size() * kMaxJointRows),
       body_n(model.bodies.size()),
       body_f(model.bodies.size()) {
+  for (const FlexiblePart& part : model.parts) parts.emplace_back(part.modes);
+  for (const FlexibleNode& node : model.nodes) nodes.emplace_back(node.shift.size());
   const auto nq = model.start_q.size(), nu = model.start_u.size(), rows = model.rows.size();
   for (auto* by_u : {&tau, &residual, &udot, &u_stage, &u_sum, &udot_free, &residual_free}) by_u->assign(nu, 0.0);
   for (auto* by_q : {&q_stage, &qdot, &q_sum}) by_q->assign(nq, 0.0);

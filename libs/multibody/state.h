@@ -9,6 +9,7 @@
 #include "core/state_hash.h"
 #include "math/semidefinite.h"
 #include "multibody/contact_workspace.h"
+#include "multibody/flexible/flexible_part.h"
 #include "multibody/link_motion.h"
 #include "multibody/model.h"
 
@@ -100,6 +101,8 @@ struct Workspace {
   std::vector<LinkMotion> motion;
   std::vector<ArticulatedInertia> inertia;
   std::vector<JointFactor> factor;
+  std::vector<PartMotion> parts;
+  std::vector<NodeMotion> nodes;
   std::vector<CoupledMotion> coupled;
   std::vector<LineMotion> lines;
   std::vector<AngleMotion> angles;

@@ -52,20 +52,23 @@ bool is_driven(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
 
 // joints are taken into the tree by classes, within a class in the order of the file
 int class_of(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
-  if (joint.type == JointType::fixed) return 0;
+  if (joint.type == JointType::fixed || joint.type == JointType::node) return 0;
   if (joint.type == JointType::floating) return 3;
   return needs_coordinates(joint) || is_driven(mechanics, joint) ? 1 : 2;
 }
 
-std::vector<bool> choose_tree(const MechanicsDef& mechanics) {
+// is_barred, by joint: must be cut
+std::vector<bool> choose_tree(const MechanicsDef& mechanics, const std::vector<bool>& is_barred) {
   std::vector<bool> is_in_tree(mechanics.joints.size(), false);
   Groups groups(mechanics.bodies.size() + 1);
   for (int choice = 0; choice < 4; ++choice) {
     for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
       const JointDef& joint = mechanics.joints[j];
       const auto [body1, body2] = bodies_of(mechanics, joint);
-      if (body1 == kNoBody || body2 == kNoBody || !has_coordinates(joint.type) || class_of(mechanics, joint) != choice)
+      const bool is_of_tree = has_coordinates(joint.type) || joint.type == JointType::node;
+      if (body1 == kNoBody || body2 == kNoBody || !is_of_tree || is_barred[j] || class_of(mechanics, joint) != choice) {
         continue;
+      }
       is_in_tree[j] = groups.connect(body1, body2);
     }
   }
@@ -126,11 +129,13 @@ bool has_coordinates(JointType type) noexcept {
   return type <= JointType::cylindrical;
 }
 
-std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems) {
-  check_floating(mechanics, problems);
-  const std::vector<bool> is_in_tree = choose_tree(mechanics);
+namespace {
+
+std::vector<TreeEdge> walk_tree(const MechanicsDef& mechanics, const std::vector<bool>& is_barred,
+                                std::vector<bool>& is_reached) {
+  const std::vector<bool> is_in_tree = choose_tree(mechanics, is_barred);
   std::vector<TreeEdge> tree;
-  std::vector<bool> is_reached(mechanics.bodies.size() + 1, false);
+  is_reached.assign(mechanics.bodies.size() + 1, false);
   is_reached[kGround] = true;
   // breadth first from Ground, joints in the order of the file
   std::vector<int> frontier = {kGround};
@@ -158,6 +163,30 @@ std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problem
     tree.push_back({kNoJoint, kGround, static_cast<int>(body), false});
     frontier.push_back(static_cast<int>(body));
     walk();
+  }
+  return tree;
+}
+
+// The joint by which the tree enters a flexible body at a node, whose frame it cannot find from there; kNoJoint: none.
+int entry_at_a_node(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree) {
+  for (const TreeEdge& edge : tree) {
+    const bool is_node = edge.joint != kNoJoint && mechanics.joints[at(edge.joint)].type == JointType::node;
+    if (!is_node || !edge.is_reversed) continue;
+    const auto entry = std::find_if(tree.begin(), tree.end(), [&](const TreeEdge& e) { return e.child == edge.parent; });
+    if (entry != tree.end()) return entry->joint;
+  }
+  return kNoJoint;
+}
+
+}  // namespace
+
+std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems) {
+  check_floating(mechanics, problems);
+  std::vector<bool> is_barred(mechanics.joints.size(), false), is_reached;
+  std::vector<TreeEdge> tree = walk_tree(mechanics, is_barred, is_reached);
+  for (int entry = entry_at_a_node(mechanics, tree); entry != kNoJoint; entry = entry_at_a_node(mechanics, tree)) {
+    is_barred[at(entry)] = true;
+    tree = walk_tree(mechanics, is_barred, is_reached);
   }
   report_unreached(mechanics, is_reached, problems);
   return tree;

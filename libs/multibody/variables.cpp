@@ -87,6 +87,10 @@ std::string_view joint_of(const Model& model, int state_index) noexcept {
   const int coordinates = model.coordinate_count();
   const bool is_coordinate = state_index < coordinates;
   int moved = 0;
+  for (const FlexiblePart& part : model.parts) {
+    const int index = is_coordinate ? state_index - part.q : state_index - coordinates - part.u;
+    if (index >= 0 && index < static_cast<int>(part.modes)) return part.name;
+  }
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const int first = is_coordinate ? model.links[i].q : model.links[i].u + coordinates;
     if (first <= state_index) moved = static_cast<int>(i);

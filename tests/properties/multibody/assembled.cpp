@@ -63,7 +63,8 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
   for (std::size_t placed = 0; placed < def_.bodies.size();) {
     for (std::size_t j = 0; j < def_.joints.size(); ++j) {
       const JointDef& joint = def_.joints[j];
-      if (model_.joints[j].link == 0 && joint.type != JointType::fixed) continue;  // not in the tree
+      const Joint& known = model_.joints[j];
+      if (known.link == 0 && joint.type != JointType::fixed) continue;  // not in the tree
       const auto b1 = static_cast<std::size_t>(index(joint.body1)), b2 = static_cast<std::size_t>(index(joint.body2));
       if (is_placed[b1] == is_placed[b2]) continue;
       const bool is_forward = is_placed[b1];
@@ -77,7 +78,7 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
       const Vector3& p_P = is_forward ? p1 : p2;
       const Vector3& p_C = is_forward ? p2 : p1;
       const Real sign = is_forward ? 1 : -1;
-      const Link& link = model_.links[static_cast<std::size_t>(model_.joints[j].link)];
+      const Link& link = model_.links[static_cast<std::size_t>(known.link)];
       const Matrix3 frame = parent.R * R_P;
       const Vector3 axis = frame.col(2);
       Vector3 point = parent.p + parent.R * p_P;
@@ -132,6 +133,10 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
           child.Jp.middleCols(link.u, 3) = Matrix3::Identity();
           child.Jw.middleCols(link.u + 3, 3) = Matrix3::Identity();
           break;
+        case JointType::node:
+          place_node(joint, parent, q, child);
+          point = child.p;
+          break;
         default:
           throw std::logic_error("the tree has no such joint");
       }
@@ -146,9 +151,73 @@ std::vector<BodyMotion> Assembled::motion(const Vector& q) const {
   return bodies;
 }
 
+const FlexiblePart& Assembled::part_of(const std::string& body) const {
+  for (const FlexiblePart& part : model_.parts) {
+    if (part.name == body) return part;
+  }
+  throw std::runtime_error("not flexible: " + body);
+}
+
+void Assembled::place_node(const JointDef& joint, const BodyMotion& frame, const Vector& q, BodyMotion& node) const {
+  const FlexiblePart& part = part_of(joint.body1);
+  for (const FlexibleBodyDef& def : def_.flexible_bodies) {
+    for (const ModalNode& n : def.modes->nodes) {
+      if (def.body != joint.body1 || node_name(def.body, n.id) != joint.name) continue;
+      const auto sum = [&](const std::vector<math::Vec3>& shapes, const Vector& at) {
+        Vector3 result = Vector3::Zero();
+        for (std::size_t k = 0; k < shapes.size(); ++k) {
+          result += vec(shapes[k].array()) * at[part.q + static_cast<Eigen::Index>(k)];
+        }
+        return result;
+      };
+      const auto turned = [&](const Vector& at) {
+        const Vector3 theta = sum(n.turn, at);
+        const Real angle = theta.norm();
+        return angle == 0 ? Matrix3(Matrix3::Identity()) : Eigen::AngleAxis<Real>(angle, theta / angle).matrix();
+      };
+      const Vector3 arm = frame.R * (vec(n.position.array()) + sum(n.shift, q));
+      const Matrix3 turn = turned(q);
+      node.R = frame.R * turn;
+      node.p = frame.p + arm;
+      node.Jw = frame.Jw;
+      node.Jp = point_jacobian(frame, arm);
+      for (std::size_t k = 0; k < part.modes; ++k) {
+        const Eigen::Index u = part.u + static_cast<Eigen::Index>(k);
+        const Vector e = Vector::Unit(q.size(), part.q + static_cast<Eigen::Index>(k));
+        const Matrix3 spin = derivative_at_zero([&](Real t) { return Matrix3(turned(q + t * e)); }) * turn.transpose();
+        node.Jw.col(u) += frame.R * Vector3(spin(2, 1), spin(0, 2), spin(1, 0));
+        node.Jp.col(u) += frame.R * vec(n.shift[k].array());
+      }
+      return;
+    }
+  }
+}
+
+void Assembled::add_points(const std::vector<BodyMotion>& bodies, const Vector& q, std::vector<Mass>& list) const {
+  for (const auto& [name, points] : points_) {
+    const FlexiblePart& part = part_of(name);
+    const BodyMotion& frame = body(bodies, name);
+    for (const MassPoint& point : points) {
+      Vector3 x = vec(point.x.array());
+      for (std::size_t k = 0; k < part.modes; ++k) {
+        x += vec(point.phi[k].array()) * q[part.q + static_cast<Eigen::Index>(k)];
+      }
+      Mass mass{point.mass, Matrix3::Zero(), point_jacobian(frame, frame.R * x), frame.Jw, frame.p + frame.R * x};
+      for (std::size_t k = 0; k < part.modes; ++k) {
+        mass.Jv.col(part.u + static_cast<Eigen::Index>(k)) += frame.R * vec(point.phi[k].array());
+      }
+      list.push_back(mass);
+    }
+  }
+}
+
 Vector Assembled::coordinate_rates(const Vector& q, const Vector& u) const {
   Vector rates = Vector::Zero(q.size());
   const std::vector<BodyMotion> bodies = motion(q);
+  for (const FlexiblePart& part : model_.parts) {
+    const auto modes = static_cast<Eigen::Index>(part.modes);
+    rates.segment(part.q, modes) = u.segment(part.u, modes);
+  }
   for (std::size_t j = 0; j < def_.joints.size(); ++j) {
     const Joint& joint = model_.joints[j];
     const Link& link = model_.links[static_cast<std::size_t>(joint.link)];
@@ -173,7 +242,8 @@ Vector Assembled::coordinate_rates(const Vector& q, const Vector& u) const {
   return rates;
 }
 
-std::vector<Assembled::Mass> Assembled::masses(const std::vector<BodyMotion>& bodies) const {
+std::vector<Assembled::Mass> Assembled::masses(const Vector& q) const {
+  const std::vector<BodyMotion> bodies = motion(q);
   std::vector<Mass> list;
   const auto add = [&list](const BodyMotion& on, Real mass, const Vector3& center, const Matrix3& inertia) {
     list.push_back(
@@ -181,6 +251,7 @@ std::vector<Assembled::Mass> Assembled::masses(const std::vector<BodyMotion>& bo
   };
   for (std::size_t i = 0; i < def_.bodies.size(); ++i) {
     const BodyDef& def = def_.bodies[i];
+    if (points_.contains(def.name)) continue;
     Matrix3 I;
     I << def.inertia[0], def.products[0], def.products[1], def.products[0], def.inertia[1], def.products[2],
         def.products[1], def.products[2], def.inertia[2];
@@ -196,6 +267,7 @@ std::vector<Assembled::Mass> Assembled::masses(const std::vector<BodyMotion>& bo
     add(body(bodies, def.relative_to), def.mass, vec(def.position) + R * vec(def.center_of_mass), I);
   }
   add_force_dummies(bodies, list);
+  add_points(bodies, q, list);
   return list;
 }
 
@@ -223,7 +295,7 @@ void Assembled::add_force_dummies(const std::vector<BodyMotion>& bodies, std::ve
 Matrix Assembled::mass_matrix(const Vector& q) const {
   const int n = model_.speed_count();
   Matrix M = Matrix::Zero(n, n);
-  for (const Mass& m : masses(motion(q))) {
+  for (const Mass& m : masses(q)) {
     M += m.mass * m.Jv.transpose() * m.Jv + m.Jw.transpose() * m.inertia * m.Jw;
   }
   return M;
@@ -231,17 +303,17 @@ Matrix Assembled::mass_matrix(const Vector& q) const {
 
 Real Assembled::potential(const Vector& q) const {
   Real sum = 0;
-  for (const Mass& m : masses(motion(q))) sum -= m.mass * vec(def_.gravity).dot(m.center);
+  for (const Mass& m : masses(q)) sum -= m.mass * vec(def_.gravity).dot(m.center);
   return sum;
 }
 
 Vector Assembled::forces(const Vector& q, const Vector& u) const {
   const Vector rates = coordinate_rates(q, u);
-  const std::vector<Mass> now = masses(motion(q));
+  const std::vector<Mass> now = masses(q);
   Vector result = element_forces(q, u);
   // velocities of all masses along the motion with u held
   const auto velocities = [&](Real t) {
-    const std::vector<Mass> then = masses(motion(q + t * rates));
+    const std::vector<Mass> then = masses(q + t * rates);
     Vector v(6 * static_cast<Eigen::Index>(then.size()));
     for (std::size_t i = 0; i < then.size(); ++i) {
       const auto k = 6 * static_cast<Eigen::Index>(i);
@@ -264,6 +336,18 @@ Vector Assembled::forces(const Vector& q, const Vector& u) const {
 Vector Assembled::element_forces(const Vector& q, const Vector& u) const {
   const std::vector<BodyMotion> bodies = motion(q);
   Vector result = Vector::Zero(u.size());
+  for (const FlexibleBodyDef& def : def_.flexible_bodies) {
+    const FlexiblePart& part = part_of(def.body);
+    const auto n = static_cast<Eigen::Index>(part.modes);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      for (Eigen::Index l = 0; l < n; ++l) {
+        result[part.u + k] -= def.modes->stiffness[static_cast<std::size_t>(k * n + l)] * q[part.q + l];
+      }
+      const std::size_t own = static_cast<std::size_t>(k * n + k);
+      const Real omega = std::sqrt(Real(def.modes->stiffness[own]) * def.modes->mass_matrix[own]);
+      result[part.u + k] -= 2 * Real(def.relative_damping[0]) * omega * u[part.u + k];
+    }
+  }
   for (const TranslationalForceDef& force : def_.translational_forces) {
     const Real x = row_value(force.name, q);
     const Vector J = row_jacobian(force.name, q);

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "multibody/defs.h"
+#include "multibody/flexible/expand_nodes.h"
 #include "multibody/model.h"
+#include "tests/properties/multibody/random_modes.h"
 
 namespace slew::multibody::testing {
 
@@ -28,7 +30,9 @@ struct BodyMotion {
 class Assembled {
  public:
   // model: only where each joint's coordinates lie in q and u is taken from it
-  Assembled(const MechanicsDef& def, const Model& model) : def_(def), model_(model) {}
+  // points: what the flexible bodies are made of
+  Assembled(const MechanicsDef& def, const Model& model, MassPoints points = {})
+      : def_(def.flexible_bodies.empty() ? def : with_nodes(def)), model_(model), points_(std::move(points)) {}
 
   [[nodiscard]] std::vector<BodyMotion> motion(const Vector& q) const;
   [[nodiscard]] Vector coordinate_rates(const Vector& q, const Vector& u) const;
@@ -58,13 +62,18 @@ class Assembled {
     Columns Jv, Jw;
     Vector3 center = Vector3::Zero();
   };
-  [[nodiscard]] std::vector<Mass> masses(const std::vector<BodyMotion>& bodies) const;
+  [[nodiscard]] std::vector<Mass> masses(const Vector& q) const;
   void add_force_dummies(const std::vector<BodyMotion>& bodies, std::vector<Mass>& list) const;
   [[nodiscard]] const BodyMotion& body(const std::vector<BodyMotion>& bodies, const std::string& name) const;
   [[nodiscard]] Vector element_forces(const Vector& q, const Vector& u) const;
 
-  const MechanicsDef& def_;
+  void place_node(const JointDef& joint, const BodyMotion& frame, const Vector& q, BodyMotion& node) const;
+  void add_points(const std::vector<BodyMotion>& bodies, const Vector& q, std::vector<Mass>& list) const;
+  [[nodiscard]] const FlexiblePart& part_of(const std::string& body) const;
+
+  const MechanicsDef def_;
   const Model& model_;
+  MassPoints points_;
 };
 
 // Derivative at 0 of a smooth function of one variable, to about 1e-14: central differences of order 8.

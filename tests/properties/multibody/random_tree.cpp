@@ -84,6 +84,12 @@ class Generator {
     tree_.def.joints.push_back(joint);
     if (joint.type == JointType::revolute || joint.type == JointType::prismatic) tree_.rows.push_back(joint.name);
     add_mass(name, child);
+    if (options_.with_modes && pick(2) == 0) {
+      FlexibleBodyDef flexible{.body = name};
+      flexible.modes = std::make_shared<ModalBody>(random_modes(random_, Vec3(p_C), tree_.points[name]));
+      flexible.relative_damping = {number(0, 0.1)};
+      tree_.def.flexible_bodies.push_back(flexible);
+    }
     add_line(i, name, parent_name, joint.type);
   }
 
@@ -190,6 +196,7 @@ State random_state(unsigned seed, const Model& model) {
       state.q[k + 3] = q.z;
     }
   }
+  for_each_mode(model, [&](std::size_t q, std::size_t) { state.q[q] = 0.5 * number(random); });
   for (double& u : state.u) u = 2 * number(random);
   return state;
 }

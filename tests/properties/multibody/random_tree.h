@@ -7,6 +7,7 @@
 
 #include "multibody/defs.h"
 #include "multibody/state.h"
+#include "tests/properties/multibody/random_modes.h"
 
 namespace slew::multibody::testing {
 
@@ -19,11 +20,13 @@ struct TreeOptions {
   bool lines_to_ground = true;   // forces between bodies and Ground as well
   bool two_coordinates = false;  // universal and cylindrical joints as well
   bool floating_root = false;    // the first body floats, no other joint reaches Ground
+  bool with_modes = false;       // some bodies are flexible
 };
 
 struct RandomTree {
   MechanicsDef def;
   std::vector<std::string> rows;  // forces and joints with one coordinate
+  MassPoints points{};            // of the flexible bodies
 };
 
 [[nodiscard]] RandomTree random_tree(unsigned seed, const TreeOptions& options);

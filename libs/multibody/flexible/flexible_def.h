@@ -1,0 +1,23 @@
+// What a scene says about flexible bodies.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "multibody/flexible/modal_body.h"
+
+namespace slew::multibody {
+
+// Makes a body of the scene flexible. Its mass and inertia are then those of the modes' source. Points of the body at
+// which something is attached ride on the node that is nearest, with the distance between as a rigid arm; a node can be
+// named as if it were a body: "Truck_JibBoom.Node20", its frame at the node, its axes those of the body.
+struct FlexibleBodyDef {
+  std::string body{};                        // of the scene
+  std::shared_ptr<const ModalBody> modes{};  // selected
+  std::vector<double>
+      relative_damping{};       // zeta by mode: 2 zeta omega on the normalised mode; one for all, or empty: 0
+  std::vector<double> start{};  // q by mode; empty: as the body hangs at rest at the start
+};
+
+}  // namespace slew::multibody

@@ -1,0 +1,202 @@
+// Shape, inertia and energy of a flexible part: equations (1) to (6) of flexible_part.h.
+#include <cstddef>
+
+#include "multibody/flexible/flexible_part.h"
+#include "multibody/state.h"
+
+namespace slew::multibody {
+
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+// int a x b of int a b^T
+Vec3 axial(const Mat3& W) noexcept {
+  return {W(1, 2) - W(2, 1), W(2, 0) - W(0, 2), W(0, 1) - W(1, 0)};
+}
+
+// tr W - W
+Mat3 inertia_of(const Mat3& W) noexcept {
+  const double trace = W(0, 0) + W(1, 1) + W(2, 2);
+  return Mat3::diagonal(trace, trace, trace) - W;
+}
+
+// sin(x)/x, (1 - cos x)/x^2 and (x - sin x)/x^3 by y = x^2, and the derivatives of the last two by y
+struct TurnFactors {
+  double sine = 0, a = 0, b = 0, da = 0, db = 0;
+};
+
+TurnFactors turn_factors(double y) noexcept {
+  constexpr int kTerms = 12;  // to the last bit up to half a turn
+  TurnFactors f;
+  // power: (-y)^k, of k y^(k-1) the same with one factor less; factorial: (2k+1)!
+  double power = 1, before = 0, factorial = 1;
+  for (int k = 0; k < kTerms; ++k) {
+    const double even = factorial * (2 * k + 2), odd = even * (2 * k + 3);
+    f.sine += power / factorial;
+    f.a += power / even;
+    f.b += power / odd;
+    f.da -= k * before / even;
+    f.db -= k * before / odd;
+    before = power;
+    power *= -y;
+    factorial = odd;
+  }
+  return f;
+}
+
+}  // namespace
+
+PartMotion::PartMotion(std::size_t modes)
+    : q(modes),
+      u(modes),
+      b(modes),
+      c(modes),
+      bias(modes),
+      B_lin(modes),
+      B_ang(modes),
+      E(modes * modes),
+      X_lin(modes),
+      X_ang(modes),
+      scratch(modes) {}
+
+void see_part(const FlexiblePart& part, std::span<const double> q, std::span<const double> u, const LinkMotion& frame,
+              PartMotion& motion) noexcept {
+  const std::size_t n = part.modes;
+  Vec3 s;
+  Mat3 W;
+  for (std::size_t k = 0; k < n; ++k) {
+    motion.q[k] = q[k];
+    motion.u[k] = u[k];
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    Vec3 b = part.C[k];
+    Mat3 moment = part.Z[k], half = part.Z[k];
+    for (std::size_t l = 0; l < n; ++l) {
+      moment += part.Y[l * n + k] * q[l];
+      half += part.Y[l * n + k] * (0.5 * q[l]);
+      if (!part.is_shortening()) continue;
+      b += part.G[k * n + l] * q[l];
+      moment += part.H[k * n + l] * q[l];
+      half += part.H[k * n + l] * (0.5 * q[l]);
+    }
+    motion.b[k] = frame.R * b;
+    motion.c[k] = frame.R * axial(moment);
+    s += (part.C[k] + b) * (0.5 * q[k]);
+    W += (half + transpose(half)) * q[k];
+  }
+  motion.s_L = s;
+  motion.J_L = inertia_of(W);
+}
+
+void move_node(const FlexibleNode& node, const LinkMotion& frame, const PartMotion& part, NodeMotion& motion,
+               LinkMotion& m) noexcept {
+  const std::size_t n = part.q.size();
+  Vec3 x = node.x, theta, theta_dot, v, curl;  // curl: (g u) u
+  for (std::size_t k = 0; k < n; ++k) {
+    Vec3 shift = node.shift[k], mean = shift;
+    for (std::size_t l = 0; l < n && !node.shortening.empty(); ++l) {
+      const Vec3 g = node.shortening[k * n + l];
+      shift += g * part.q[l];
+      mean += g * (0.5 * part.q[l]);
+      curl += g * (part.u[k] * part.u[l]);
+    }
+    x += mean * part.q[k];
+    v += shift * part.u[k];
+    motion.Phi[k] = frame.R * shift;
+    theta += node.turn[k] * part.q[k];
+    theta_dot += node.turn[k] * part.u[k];
+  }
+  const TurnFactors f = turn_factors(dot(theta, theta));
+  const auto tangent = [&](Vec3 t) { return t + cross(theta, t) * f.a + cross(theta, cross(theta, t)) * f.b; };
+  for (std::size_t k = 0; k < n; ++k) motion.Psi[k] = frame.R * tangent(node.turn[k]);
+  const Mat3 turn = math::skew(theta);
+  const Vec3 across = cross(theta, theta_dot);
+  const double y_dot = 2 * dot(theta, theta_dot);
+  const Vec3 tangent_dot =
+      across * (f.da * y_dot) + cross(theta, across) * (f.db * y_dot) + cross(theta_dot, across) * f.b;
+
+  m.R = frame.R * (Mat3::identity() + turn * f.sine + turn * turn * f.a) * node.R;
+  m.axis = m.R.c[2];
+  m.r = frame.R * x;
+  m.p = frame.p + m.r;
+  const Vec3 slide = frame.R * v, spin = frame.R * tangent(theta_dot), v_rel = cross(frame.w, m.r);
+  m.w = frame.w + spin;
+  m.v = frame.v + v_rel + slide;
+  m.alpha = frame.alpha + cross(frame.w, spin) + frame.R * tangent_dot;
+  m.a = frame.a + cross(frame.alpha, m.r) + cross(frame.w, v_rel) + cross(frame.w, slide) * 2 + frame.R * curl;
+}
+
+void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& motion,
+              ArticulatedInertia& inertia) noexcept {
+  const std::size_t n = part.modes;
+  const Vec3 w = transpose_multiply(frame.R, frame.w);
+  Vec3 flow, spin, curl_lin, curl_ang;  // b u, c u in Ground; (G u) u, ax(H u u) in the link's axes
+  Mat3 W_dot;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double u = motion.u[k];
+    flow += motion.b[k] * u;
+    spin += motion.c[k] * u;
+    Mat3 W_k = part.Z[k];  // half of dW/dq_k is its symmetric part
+    Vec3 coriolis;
+    double force = 0;
+    for (std::size_t l = 0; l < n; ++l) {
+      W_k += part.Y[k * n + l] * motion.q[l];
+      coriolis += axial(part.Y[l * n + k]) * motion.u[l];
+      force += part.stiffness[k * n + l] * motion.q[l] + part.damping[k * n + l] * motion.u[l];
+      if (!part.is_shortening()) continue;
+      W_k += part.H[k * n + l] * motion.q[l];
+      curl_lin += part.G[k * n + l] * (u * motion.u[l]);
+      curl_ang += axial(part.H[k * n + l]) * (u * motion.u[l]);
+    }
+    W_k += transpose(W_k);
+    W_dot += W_k * u;
+    const double trace = W_k(0, 0) + W_k(1, 1) + W_k(2, 2);
+    const double centrifugal = 0.5 * (trace * dot(w, w) - dot(w, W_k * w));
+    motion.bias[k] =
+        dot(motion.b[k], frame.a) + dot(motion.c[k], frame.alpha) + 2 * dot(w, coriolis) - centrifugal + force;
+    motion.B_lin[k] = motion.b[k];
+    motion.B_ang[k] = motion.c[k];
+  }
+  motion.E = part.mass_matrix;
+
+  const Vec3 s = frame.R * motion.s_L;
+  const Mat3 J = frame.R * motion.J_L * transpose(frame.R);
+  inertia.J += J;
+  inertia.K -= math::skew(s);
+  inertia.f +=
+      cross(frame.alpha, s) + cross(frame.w, cross(frame.w, s)) + cross(frame.w, flow) * 2 + frame.R * curl_lin;
+  inertia.n += J * frame.alpha + cross(s, frame.a) + cross(frame.w, J * frame.w + spin) +
+               frame.R * (inertia_of(W_dot) * w + curl_ang);
+}
+
+PartMomentum momentum_of(const PartMotion& motion, const LinkMotion& frame) noexcept {
+  const Vec3 s = frame.R * motion.s_L;
+  PartMomentum sum{cross(frame.w, s),
+                   cross(s, frame.v) + frame.R * (motion.J_L * transpose_multiply(frame.R, frame.w))};
+  for (std::size_t k = 0; k < motion.u.size(); ++k) {
+    sum.linear += motion.b[k] * motion.u[k];
+    sum.angular += motion.c[k] * motion.u[k];
+  }
+  return sum;
+}
+
+PartEnergy energy_of(const FlexiblePart& part, const PartMotion& motion, const LinkMotion& frame,
+                     Vec3 gravity) noexcept {
+  const std::size_t n = part.modes;
+  const Vec3 s = frame.R * motion.s_L, w = transpose_multiply(frame.R, frame.w);
+  PartEnergy energy;
+  energy.kinetic = dot(frame.v, cross(frame.w, s)) + 0.5 * dot(w, motion.J_L * w);
+  energy.potential = -dot(gravity, s);
+  for (std::size_t k = 0; k < n; ++k) {
+    energy.kinetic += motion.u[k] * (dot(frame.v, motion.b[k]) + dot(frame.w, motion.c[k]));
+    for (std::size_t l = 0; l < n; ++l) {
+      energy.kinetic += 0.5 * part.mass_matrix[k * n + l] * motion.u[k] * motion.u[l];
+      energy.potential += 0.5 * part.stiffness[k * n + l] * motion.q[k] * motion.q[l];
+    }
+  }
+  return energy;
+}
+
+}  // namespace slew::multibody
