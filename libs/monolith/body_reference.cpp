@@ -40,7 +40,7 @@ class BodyEquations final : public AlgebraicEquation {
     DaeVariables v;
     SLEW_CHECK(multibody::evaluate(model_, body_, bodies_, joints_, ws_, bws_));
     find_row_forces();
-    multibody::accelerations(model_, bws_, forces_, udot_);
+    multibody::accelerations(model_, body_, bws_, forces_, udot_);
     const auto append = [&](std::span<const double> values, std::span<const double> rates, VariableKind kind) {
       v.start.insert(v.start.end(), values.begin(), values.end());
       v.start_rate.insert(v.start_rate.end(), rates.begin(), rates.end());
@@ -76,16 +76,17 @@ class BodyEquations final : public AlgebraicEquation {
       ws_.motion[i].alpha += math::Vec3(rate[3], rate[4], rate[5]);
     }
     multibody::update_inertia(model_, ws_);
+    multibody::add_modal_accelerations(model_, {y_rate + q + 6 * bodies_.links(), u - 6 * bodies_.links()}, ws_);
     multibody::update_coupled(model_, ws_);
     multibody::apply_elements(model_, ws_);
-    multibody::evaluate_joints(body_, ws_, bws_);
+    multibody::evaluate_joints(model_, body_, ws_, bws_);
     multibody::put_bias(model_, body_, ws_, bws_);
     find_row_forces();
     for (std::size_t k = 0; k < forces_.size(); ++k) {
       multibody::add_row(multibody::body_row(model_, body_, joints_, model_.rows[k], ws_), forces_[k], bws_.ldl,
                          bws_.solution);
     }
-    multibody::read_bodies(bws_.ldl, bws_.solution, {r + q, u});
+    multibody::read_bodies(body_, bws_.ldl, bws_.solution, {r + q, u});
     for (std::size_t j = 0; j < u; ++j) r[q + j] = -r[q + j];
     add_multipliers(lambda, {r + q, u});
     // coordinates follow the speeds and what mu adds to them
@@ -107,7 +108,7 @@ class BodyEquations final : public AlgebraicEquation {
     std::copy_n(y, bodies_.q.size(), bodies_.q.begin());
     std::copy_n(y + bodies_.q.size(), bodies_.u.size(), bodies_.u.begin());
     std::copy_n(y + bodies_.q.size() + bodies_.u.size(), joints_.bristles.size(), joints_.bristles.begin());
-    multibody::normalize_attitudes(bodies_.q);
+    multibody::normalize_attitudes(bodies_);
     multibody::update_body_motion(model_, bodies_, ws_);
     multibody::find_joint_coordinates(model_, ws_, joints_);
     return joints_;

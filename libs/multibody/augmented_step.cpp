@@ -90,16 +90,17 @@ class Trapezoid {
   void close_speeds() noexcept {
     const double closed = kClosedRate * extent_of(ws_).speed;
     double before = 0;
-    for (int i = 0; i < kMostCorrections; ++i) {
+    for (int round = 0; round < kMostCorrections; ++round) {
       std::fill(pws_.correction.begin(), pws_.correction.end(), 0.0);
       double largest = 0;
-      for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t first) {
-        const double rate =
-            along(constraint, pws_.rows[row].G, pws_.stage.u) - prescribed_rate(constraint, row - first, ws_.drives);
+      for_each_row([&](std::size_t i, std::size_t row) {
+        const std::size_t place = row - at(body_.first_row[i]);
+        const double rate = along(present_row(body_, pws_, i, row), pws_.stage.u) -
+                            prescribed_rate(body_.constraints[i], place, ws_.drives);
         largest = std::max(largest, std::fabs(rate));
-        subtract_row(constraint, pws_.factored[row], body_.alpha[row] * rate, pws_.correction);
+        subtract_row(factored_row(body_, pws_, i, row), body_.alpha[row] * rate, pws_.correction);
       });
-      if (largest <= closed || (i > 0 && largest > kStalled * before)) return;
+      if (largest <= closed || (round > 0 && largest > kStalled * before)) return;
       before = largest;
       pws_.ldl.solve(pws_.correction);
       for (std::size_t k = 0; k < pws_.stage.u.size(); ++k) pws_.stage.u[k] += pws_.correction[k];
@@ -111,7 +112,7 @@ class Trapezoid {
   void for_each_row(Visit visit) noexcept {
     for (std::size_t i = 0; i < body_.constraints.size(); ++i) {
       for (std::size_t row = at(body_.first_row[i]); row < at(body_.first_row[i + 1]); ++row) {
-        visit(body_.constraints[i], row, at(body_.first_row[i]));
+        visit(i, row);
       }
     }
   }
@@ -127,6 +128,10 @@ class Trapezoid {
       for (std::size_t k = 0; k < 3; ++k) pws_.stage.q[7 * (link - 1) + k] = start_.q[7 * (link - 1) + k] + d[k];
       put_attitude(turned({d[3], d[4], d[5]}, attitude_at(start_.q, link)), pws_.stage.q, link);
     }
+    const std::size_t links = model_.links.size() - 1;
+    for (std::size_t k = 6 * links; k < pws_.displacement.size(); ++k) {
+      pws_.stage.q[k + links] = start_.q[k + links] + pws_.displacement[k];
+    }
     see(model_, body_, pws_.stage, pws_.stage_joints, ws_, pws_);
   }
 
@@ -136,19 +141,21 @@ class Trapezoid {
     put_free_forces(model_, ws_, pws_.correction);
     add_row_forces(model_, body_, pws_.stage_joints, ws_, pws_.row_force, pws_.ldl, pws_.correction);
     subtract_mass(model_, ws_, pws_.end_udot, pws_.correction);
-    for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t) {
-      subtract_row(constraint, pws_.rows[row].G, pws_.multipliers[row], pws_.correction);
+    for_each_row([&](std::size_t i, std::size_t row) {
+      subtract_row(present_row(body_, pws_, i, row), pws_.multipliers[row], pws_.correction);
     });
     for (double& x : pws_.correction) x *= quarter;
-    for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t) {
-      subtract_row(constraint, pws_.factored[row], body_.alpha[row] * pws_.rows[row].g, pws_.correction);
+    for_each_row([&](std::size_t i, std::size_t row) {
+      subtract_row(factored_row(body_, pws_, i, row), body_.alpha[row] * pws_.rows[row].g, pws_.correction);
     });
     pws_.ldl.solve(pws_.correction);
-    for_each_row([&](const Constraint& constraint, std::size_t row, std::size_t) {
-      const double missed = pws_.rows[row].g + along(constraint, pws_.factored[row], pws_.correction);
+    for_each_row([&](std::size_t i, std::size_t row) {
+      const double missed = pws_.rows[row].g + along(factored_row(body_, pws_, i, row), pws_.correction);
       pws_.multipliers[row] += body_.alpha[row] / quarter * missed;
     });
-    for (std::size_t i = 0; i < pws_.displacement.size(); i += 6) {
+    const std::size_t links = 6 * (model_.links.size() - 1);
+    for (std::size_t i = links; i < pws_.displacement.size(); ++i) pws_.displacement[i] += pws_.correction[i];
+    for (std::size_t i = 0; i < links; i += 6) {
       double* d = pws_.displacement.data() + i;
       const double* delta = pws_.correction.data() + i;
       for (std::size_t k = 0; k < 3; ++k) d[k] += delta[k];
@@ -182,7 +189,7 @@ bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyStat
   step.close_speeds();
   state.q.swap(pws.stage.q);
   state.u.swap(pws.stage.u);
-  normalize_attitudes(state.q);
+  normalize_attitudes(state);
   joints.time += h;
   see(model, body, state, joints, ws, pws);
   accept_contacts(model, h, joints, ws);

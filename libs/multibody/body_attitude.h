@@ -23,20 +23,22 @@ inline void put_attitude(const math::Quaternion& attitude, std::span<double> q, 
   q[k + 3] = attitude.z;
 }
 
-inline void normalize_attitudes(std::span<double> q) noexcept {
-  for (std::size_t link = 1; link <= q.size() / 7; ++link) {
-    put_attitude(math::normalized(attitude_at(q, link)), q, link);
+inline void normalize_attitudes(BodyState& state) noexcept {
+  for (std::size_t link = 1; link <= state.links(); ++link) {
+    put_attitude(math::normalized(attitude_at(state.q, link)), state.q, link);
   }
 }
 
 // q' of a state
 inline void find_rates(const BodyState& state, std::span<double> qdot) noexcept {
-  for (std::size_t link = 1; link <= state.u.size() / 6; ++link) {
+  const std::size_t links = state.links();
+  for (std::size_t link = 1; link <= links; ++link) {
     const std::size_t u = 6 * (link - 1);
     std::copy_n(state.u.data() + u, 3, qdot.data() + 7 * (link - 1));
     const math::Vec3 w(state.u[u + 3], state.u[u + 4], state.u[u + 5]);
     put_attitude(math::derivative(attitude_at(state.q, link), w), qdot, link);
   }
+  std::copy(state.u.begin() + static_cast<std::ptrdiff_t>(6 * links), state.u.end(), qdot.data() + 7 * links);
 }
 
 // y = x + scale rate

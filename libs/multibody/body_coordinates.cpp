@@ -41,8 +41,10 @@ BodyModel build_body_model(const Model& model) {
     Constraint& joint = body.joints[i];
     joint.link1 = link.parent;
     joint.link2 = static_cast<int>(i);
-    joint.R_L1 = link.R_PJ;
-    joint.p_L1 = link.p_PJ;
+    joint.node = link.node;
+    // a node's place is itself the frame
+    joint.R_L1 = link.node < 0 ? link.R_PJ : Mat3::identity();
+    joint.p_L1 = link.node < 0 ? link.p_PJ : Vec3();
     joint.R_L2 = Mat3::identity();
     const JointType type = kTypes[static_cast<std::size_t>(link.joint)];
     joint.rows = rows_of(type, Mat3::identity(), Vec3());
@@ -65,6 +67,7 @@ BodyModel build_body_model(const Model& model) {
       if (link > 0) body.pattern.couplings.emplace_back(node, link - 1);
     }
   }
+  body.modal = add_modal_blocks(model, math::BlockKind::regular, body.pattern);
   return body;
 }
 
@@ -73,6 +76,8 @@ BodyWorkspace::BodyWorkspace(const Model& model, const BodyModel& body) : ldl(bo
   for (const Constraint& joint : body.joints) {
     first_row.push_back(row);
     row += static_cast<int>(joint.rows.size());
+    first_modal.push_back(static_cast<int>(modal.size()));
+    if (joint.node >= 0) modal.resize(modal.size() + joint.rows.size() * model.nodes[at(joint.node)].shift.size());
   }
   rows.resize(at(row));
   int cut_row = 0;
@@ -84,14 +89,14 @@ BodyWorkspace::BodyWorkspace(const Model& model, const BodyModel& body) : ldl(bo
   solution.resize(at(ldl.rows()));
   free.resize(at(ldl.rows()));
   responses.resize(model.rows.size() * at(ldl.rows()));
-  const std::size_t links = model.links.size() - 1;
+  const std::size_t links = model.links.size() - 1, modes = mode_count(model);
   for (BodyState* copy : {&stage, &sum}) {
-    copy->q.resize(7 * links);
-    copy->u.resize(6 * links);
+    copy->q.resize(7 * links + modes);
+    copy->u.resize(6 * links + modes);
   }
   stage_joints = {model.start_q, model.start_u};
-  qdot.resize(7 * links);
-  udot.resize(6 * links);
+  qdot.resize(7 * links + modes);
+  udot.resize(6 * links + modes);
   row_force.resize(model.rows.size());
 }
 
@@ -108,6 +113,10 @@ BodyState body_state(const Model& model, const State& state) {
       for (const double x : part.array()) body.u.push_back(x);
     }
   }
+  for_each_mode(model, [&](std::size_t q, std::size_t u) {
+    body.q.push_back(state.q[q]);
+    body.u.push_back(state.u[u]);
+  });
   return body;
 }
 
@@ -127,6 +136,9 @@ void update_body_motion(const Model& model, const BodyState& state, Workspace& w
     m.alpha = Vec3();
     m.a = ws.motion[0].a;
   }
+  if (model.parts.empty()) return;
+  const std::size_t links = model.links.size() - 1;
+  see_parts(model, std::span(state.q).subspan(7 * links), std::span(state.u).subspan(6 * links), ws);
 }
 
 namespace {
@@ -195,6 +207,11 @@ void find_joint_coordinates(const Model& model, const Workspace& ws, State& stat
       case LinkJoint::node:
         break;
     }
+  }
+  for (std::size_t k = 0; k < model.parts.size(); ++k) {
+    const FlexiblePart& part = model.parts[k];
+    std::copy(ws.parts[k].q.begin(), ws.parts[k].q.end(), state.q.begin() + part.q);
+    std::copy(ws.parts[k].u.begin(), ws.parts[k].u.end(), state.u.begin() + part.u);
   }
 }
 

@@ -12,7 +12,8 @@
 // (3) is the mass-orthogonal projection of Bayo and Ledesma 1996 with exact multipliers.
 //
 // Layout of the state: link i has q at 7 (i - 1): position and quaternion w x y z of the link in Ground; u at 6 (i -
-// 1): velocity of the link's origin, angular velocity, both in Ground axes. One node of math::BlockLdl holds a link and
+// 1): velocity of the link's origin, angular velocity, both in Ground axes. The modes of flexible parts come after all
+// links (flexible/body_modes.h), with nodes of their own in the matrix. One node of math::BlockLdl holds a link and
 // its joint towards Ground, a closing node the rows of a joint that is cut: the cost is linear in the number of links,
 // but for the fill along loops. Nothing here allocates but the builders.
 #pragma once
@@ -23,6 +24,7 @@
 
 #include "math/block_ldl.h"
 #include "multibody/constraint.h"
+#include "multibody/flexible/body_modes.h"
 #include "multibody/state.h"
 
 namespace slew::multibody {
@@ -30,7 +32,8 @@ namespace slew::multibody {
 struct BodyModel {
   int links = 0;                   // Ground included
   std::vector<Constraint> joints;  // by link, [0] is empty and link1 the parent; then those that are cut
-  math::BlockPattern pattern;      // node i - 1: of joints[i]; of the tree: link i and the rows of its joint
+  math::BlockPattern pattern;      // node i - 1: of joints[i]; of the tree: link i and the rows of its joint; modes
+  std::vector<ModalBlock> modal;   // nodes of the modes
 
   // First row of a joint among those of its node.
   [[nodiscard]] int row_offset(std::size_t joint) const noexcept { return static_cast<int>(joint) < links ? 6 : 0; }
@@ -38,6 +41,8 @@ struct BodyModel {
 
 struct BodyState {
   std::vector<double> q, u;
+  // 7 n + m and 6 n + m of them
+  [[nodiscard]] std::size_t links() const noexcept { return q.size() - u.size(); }
 };
 
 struct BodyWorkspace {
@@ -46,6 +51,8 @@ struct BodyWorkspace {
   math::BlockLdl ldl;
   std::vector<RowValue> rows;     // of all joints, by first_row
   std::vector<int> first_row;     // by joint
+  std::vector<double> modal;      // of the rows of nodes' joints: m_k of body_modes.h
+  std::vector<int> first_modal;   // by joint
   std::vector<double> solution;   // u' and the multipliers, by ldl.first_row()
   std::vector<double> free;       // the same without row forces
   std::vector<double> responses;  // by row of the model: the same for its unit force alone
@@ -70,7 +77,7 @@ void find_joint_coordinates(const Model& model, const Workspace& ws, State& join
 
 // After evaluate(): accelerations of all links for the given row forces, laid out as BodyState::u; the multipliers stay
 // in bws.solution.
-void accelerations(const Model& model, BodyWorkspace& bws, std::span<const double> row_forces,
+void accelerations(const Model& model, const BodyModel& body, BodyWorkspace& bws, std::span<const double> row_forces,
                    std::span<double> udot) noexcept;
 
 // One step of h [s] with the fourth-order Runge-Kutta method and (3), after evaluate() and with the rows' forces as

@@ -36,6 +36,10 @@ void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, Bo
     put(-ws.inertia[i].f, x);
     put(-ws.inertia[i].n, x + 3);
   }
+  for (const ModalBlock& block : body.modal) {
+    double* x = bws.solution.data() + bws.ldl.first_row(block.node);
+    for (std::size_t k = 0; k < block.count; ++k) x[k] = -ws.parts[block.part].bias[block.first + k];
+  }
   put_rows(body, bws, [](const RowValue& row) { return row.bias; });
   for (std::size_t i = 0; i < model.coupled.size(); ++i) {
     const LineElement& line = model.lines[at(model.coupled[i].line)];
@@ -51,10 +55,14 @@ void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, Bo
   }
 }
 
-void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept {
+void evaluate_joints(const Model& model, const BodyModel& body, Workspace& ws, BodyWorkspace& bws) noexcept {
   for (std::size_t i = 1; i < body.joints.size(); ++i) {
     const Constraint& joint = body.joints[i];
     const std::span<RowValue> rows(bws.rows.data() + bws.first_row[i], joint.rows.size());
+    if (joint.node >= 0) {
+      evaluate_node(model, joint, ws, rows, std::span(bws.modal).subspan(at(bws.first_modal[i])));
+      continue;
+    }
     evaluate(joint, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)], ws.drives, rows);
   }
 }
@@ -68,7 +76,7 @@ void apply_all(const Model& model, const BodyState& state, State& joints, Worksp
 bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
              BodyWorkspace& bws) noexcept {
   apply_all(model, state, joints, ws);
-  evaluate_joints(body, ws, bws);
+  evaluate_joints(model, body, ws, bws);
   fill_matrix(model, body, ws, bws);
   const bool is_regular = bws.ldl.factorize(kDependent);
   put_bias(model, body, ws, bws);
@@ -106,13 +114,18 @@ bool evaluate(const Model& model, const BodyModel& body, const BodyState& state,
   return is_regular;
 }
 
-void read_bodies(const math::BlockLdl& ldl, std::span<const double> solution, std::span<double> u) noexcept {
-  for (std::size_t i = 0; i < u.size() / 6; ++i) {
+void read_bodies(const BodyModel& body, const math::BlockLdl& ldl, std::span<const double> solution,
+                 std::span<double> u) noexcept {
+  const std::size_t links = at(body.links) - 1;
+  for (std::size_t i = 0; i < links; ++i) {
     std::copy_n(solution.data() + ldl.first_row(static_cast<int>(i)), 6, u.data() + 6 * i);
+  }
+  for (const ModalBlock& block : body.modal) {
+    std::copy_n(solution.data() + ldl.first_row(block.node), block.count, u.data() + 6 * links + block.place);
   }
 }
 
-void accelerations(const Model& model, BodyWorkspace& bws, std::span<const double> row_forces,
+void accelerations(const Model& model, const BodyModel& body, BodyWorkspace& bws, std::span<const double> row_forces,
                    std::span<double> udot) noexcept {
   bws.solution = bws.free;
   const std::size_t size = bws.solution.size();
@@ -120,7 +133,7 @@ void accelerations(const Model& model, BodyWorkspace& bws, std::span<const doubl
     const double* response = bws.responses.data() + k * size;
     for (std::size_t i = 0; i < size; ++i) bws.solution[i] += response[i] * row_forces[k];
   }
-  read_bodies(bws.ldl, bws.solution, udot);
+  read_bodies(body, bws.ldl, bws.solution, udot);
 }
 
 }  // namespace slew::multibody

@@ -25,6 +25,9 @@ class Filling {
     add_masses(model_, ws_, matrix);
     for (std::size_t link = 1; link < model_.links.size(); ++link) add_joint(static_cast<int>(link));
     for (std::size_t i = model_.links.size(); i < body_.joints.size(); ++i) add_cut(i);
+    add_modal_masses(
+        model_, ws_, body_.modal, [this](int link) { return node_size(link); }, bws_.ldl);
+    for (const ModalBlock& block : body_.modal) add_modal_rows(block);
   }
 
  private:
@@ -34,7 +37,7 @@ class Filling {
   void add_joint(int link) noexcept {
     const Constraint& joint = body_.joints[at(link)];
     const int size = node_size(link), parent = joint.link1;
-    std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> own{}, outer{};
+    ModalWide own{}, outer{};
     const int columns = parent > 0 ? node_size(parent) : 0;
     for (int k = 0; k < rows(link); ++k) {
       const RowGradient& G = bws_.rows[at(bws_.first_row[at(link)] + k)].G;
@@ -51,13 +54,29 @@ class Filling {
     if (parent > 0 && rows(link) > 0) bws_.ldl.add_coupling(link - 1, parent - 1, {outer.data(), at(size * columns)});
   }
 
+  // the rows of nodes that ride on modes
+  void add_modal_rows(const ModalBlock& block) noexcept {
+    const FlexiblePart& part = model_.parts[block.part];
+    for (int link = 1; link < body_.links; ++link) {
+      const int node = body_.joints[at(link)].node;
+      if (node < 0 || at(model_.nodes[at(node)].part) != block.part) continue;
+      const std::size_t columns = at(node_size(link));
+      ModalWide wide{};
+      for (int row = 0; row < rows(link); ++row) {
+        const double* m = bws_.modal.data() + bws_.first_modal[at(link)] + at(row) * part.modes + block.first;
+        for (std::size_t k = 0; k < block.count; ++k) wide[k * columns + at(kBody + row)] = m[k];
+      }
+      bws_.ldl.add_coupling(block.node, link - 1, {wide.data(), block.count * columns});
+    }
+  }
+
   void add_cut(std::size_t index) noexcept {
     const Constraint& joint = body_.joints[index];
     const int rows = static_cast<int>(joint.rows.size());
     for (const int link : {joint.link1, joint.link2}) {
       if (link == 0) continue;
       const int columns = node_size(link);
-      std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> block{};
+      ModalWide block{};
       for (int k = 0; k < rows; ++k) {
         const RowGradient& G = bws_.rows[at(bws_.first_row[index] + k)].G;
         const Vec3 v = link == joint.link1 ? G.v1 : G.v2, w = link == joint.link1 ? G.w1 : G.w2;
@@ -81,7 +100,7 @@ class Filling {
 void BodyMatrix::add(int row_link, int column_link, const SpatialBlock& block) noexcept {
   const auto node_size = [this](int link) { return kBody + static_cast<int>(body_.joints[at(link)].rows.size()); };
   const int columns = node_size(column_link);
-  std::array<double, static_cast<std::size_t>(math::kMaxBlock) * math::kMaxBlock> wide{};
+  ModalWide wide{};
   for (int r = 0; r < kBody; ++r) {
     for (int c = 0; c < kBody; ++c) wide[at(r * columns + c)] = block[at(r * kBody + c)];
   }

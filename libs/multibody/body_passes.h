@@ -16,7 +16,7 @@ void update_body_motion(const Model& model, const BodyState& state, Workspace& w
 void apply_all(const Model& model, const BodyState& state, State& joints, Workspace& ws) noexcept;
 
 // Rows of all joints, from the motion.
-void evaluate_joints(const BodyModel& body, const Workspace& ws, BodyWorkspace& bws) noexcept;
+void evaluate_joints(const Model& model, const BodyModel& body, Workspace& ws, BodyWorkspace& bws) noexcept;
 
 // Minus what the joints' rows show, into the right-hand side bws.solution.
 template <typename Value>
@@ -53,7 +53,8 @@ struct BodyRow {
 void add_row(const BodyRow& row, double force, const math::BlockLdl& ldl, std::span<double> x) noexcept;
 [[nodiscard]] double along(const BodyRow& row, const math::BlockLdl& ldl, std::span<const double> x) noexcept;
 
-// Velocities or accelerations of the links in a solution, laid out as BodyState::u.
-void read_bodies(const math::BlockLdl& ldl, std::span<const double> solution, std::span<double> u) noexcept;
+// Velocities or accelerations of links and modes in a solution, laid out as BodyState::u.
+void read_bodies(const BodyModel& body, const math::BlockLdl& ldl, std::span<const double> solution,
+                 std::span<double> u) noexcept;
 
 }  // namespace slew::multibody

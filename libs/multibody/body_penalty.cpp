@@ -70,20 +70,34 @@ PenaltyModel build_penalty_model(const Model& model, Formulation formulation, st
   body.first_row.push_back(static_cast<int>(body.alpha.size()));
   body.pattern.nodes.resize(model.links.size() - 1, {kBody, math::BlockKind::definite});
   body.pattern.couplings = coupled_links(model, body.constraints);
+  body.modal = add_modal_blocks(model, math::BlockKind::definite, body.pattern);
+  std::size_t first = 0;
+  for (const Constraint& constraint : body.constraints) {
+    PenaltyModel::ModalRows& rows = body.modal_rows.emplace_back();
+    if (constraint.node < 0) continue;
+    const auto part = static_cast<std::size_t>(model.nodes[static_cast<std::size_t>(constraint.node)].part);
+    rows = {first, kBody * (model.links.size() - 1) + modal_place(model, part), model.parts[part].modes};
+    first += constraint.rows.size() * rows.modes;
+  }
   return body;
 }
 
 PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body) : ldl(body.pattern) {
-  const std::size_t links = model.links.size() - 1, speeds = 6 * links, row_count = body.alpha.size();
+  const std::size_t links = model.links.size() - 1, modes = mode_count(model), speeds = 6 * links + modes;
+  const std::size_t row_count = body.alpha.size();
   rows.resize(row_count);
   factored.resize(row_count);
+  for (std::size_t i = 0; i < body.constraints.size(); ++i) {
+    modal.resize(modal.size() + body.constraints[i].rows.size() * body.modal_rows[i].modes);
+  }
+  factored_modal = modal;
   for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target}) by_row->resize(row_count);
   for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement}) by_u->resize(speeds);
   responses.resize(model.rows.size() * speeds);
   response_multipliers.resize(model.rows.size() * row_count);
-  qdot.resize(7 * links);
+  qdot.resize(7 * links + modes);
   for (BodyState* copy : {&stage, &sum}) {
-    copy->q.resize(7 * links);
+    copy->q.resize(7 * links + modes);
     copy->u.resize(speeds);
   }
   stage_joints = {model.start_q, model.start_u};

@@ -54,7 +54,13 @@ struct PenaltyModel {
   std::vector<Constraint> constraints;
   std::vector<int> first_row;  // by constraint, and the number of rows at the end
   std::vector<double> alpha;   // by row [kg or kg m2]
-  math::BlockPattern pattern;  // node i - 1: link i
+  math::BlockPattern pattern;  // node i - 1: link i; then modes
+  std::vector<ModalBlock> modal;
+  // by constraint: of a node's joint, where m_k of its rows begin, and the modes among the speeds
+  struct ModalRows {
+    std::size_t first = 0, place = 0, modes = 0;
+  };
+  std::vector<ModalRows> modal_rows;
 };
 
 struct PenaltyWorkspace {
@@ -63,6 +69,7 @@ struct PenaltyWorkspace {
   math::BlockLdl ldl;
   std::vector<RowValue> rows;                              // of all constraints, by first_row
   std::vector<RowGradient> factored;                       // G in the factors
+  std::vector<double> modal, factored_modal;               // the same of m_k
   std::vector<double> target;                              // by row: what (2) or (3) asks of G u', with the sign of b
   std::vector<double> force, correction;                   // by u
   std::vector<double> free, free_multipliers;              // without row forces

@@ -39,7 +39,7 @@ template <typename Work, typename Find>
   state.q.swap(work.sum.q);
   state.u.swap(work.sum.u);
   joints.time += h;
-  normalize_attitudes(state.q);
+  normalize_attitudes(state);
   return is_sound;
 }
 

@@ -20,13 +20,18 @@ bool find_accelerations(const Model& model, const BodyModel& body, const BodySta
     add_row(body_row(model, body, bws.stage_joints, model.rows[k], ws), forces[k], bws.ldl, bws.solution);
   }
   bws.ldl.solve(bws.solution);
-  read_bodies(bws.ldl, bws.solution, bws.udot);
+  read_bodies(body, bws.ldl, bws.solution, bws.udot);
   return is_regular;
 }
 
-// moves every link by the small displacement in bws.solution
-void displace(BodyState& state, const BodyWorkspace& bws) noexcept {
-  for (std::size_t link = 1; link <= state.u.size() / 6; ++link) {
+// moves every link and mode by the small displacement in bws.solution
+void displace(const BodyModel& body, BodyState& state, const BodyWorkspace& bws) noexcept {
+  const std::size_t links = state.links();
+  for (const ModalBlock& block : body.modal) {
+    const double* delta = bws.solution.data() + bws.ldl.first_row(block.node);
+    for (std::size_t k = 0; k < block.count; ++k) state.q[7 * links + block.place + k] += delta[k];
+  }
+  for (std::size_t link = 1; link <= links; ++link) {
     const double* delta = bws.solution.data() + bws.ldl.first_row(static_cast<int>(link) - 1);
     for (std::size_t k = 0; k < 3; ++k) state.q[7 * (link - 1) + k] += delta[k];
     const math::Quaternion half{1, 0.5 * delta[3], 0.5 * delta[4], 0.5 * delta[5]};
@@ -34,13 +39,16 @@ void displace(BodyState& state, const BodyWorkspace& bws) noexcept {
   }
 }
 
-// adds a share of the links' parts of a solution to speeds
-void add_bodies(const math::BlockLdl& ldl, std::span<const double> solution, double share,
+// adds a share of what a solution says of links and modes to speeds
+void add_bodies(const BodyModel& body, const math::BlockLdl& ldl, std::span<const double> solution, double share,
                 std::span<double> u) noexcept {
-  for (std::size_t link = 0; link < u.size() / 6; ++link) {
-    const double* delta = solution.data() + ldl.first_row(static_cast<int>(link));
-    for (std::size_t k = 0; k < 6; ++k) u[6 * link + k] += share * delta[k];
-  }
+  const std::size_t links = static_cast<std::size_t>(body.links) - 1;
+  const auto add = [&](int node, std::size_t count, std::size_t place) {
+    const double* delta = solution.data() + ldl.first_row(node);
+    for (std::size_t k = 0; k < count; ++k) u[place + k] += share * delta[k];
+  };
+  for (std::size_t link = 0; link < links; ++link) add(static_cast<int>(link), 6, 6 * link);
+  for (const ModalBlock& block : body.modal) add(block.node, block.count, 6 * links + block.place);
 }
 
 // the displacement or change of speed that takes away what the joints' rows show
@@ -62,16 +70,16 @@ bool project(const Model& model, const BodyModel& body, BodyState& state, State&
   Drift left = drift(bws);
   for (int i = 0; i < kMostCorrections && left.position > closed; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.g; });
-    displace(state, bws);
+    displace(body, state, bws);
     update_body_motion(model, state, ws);
-    evaluate_joints(body, ws, bws);
+    evaluate_joints(model, body, ws, bws);
     left = drift(bws);
   }
   for (int i = 0; i < kMostCorrections && left.rate > steady; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.rate; });
-    add_bodies(bws.ldl, bws.solution, 1, state.u);
+    add_bodies(body, bws.ldl, bws.solution, 1, state.u);
     update_body_motion(model, state, ws);
-    evaluate_joints(body, ws, bws);
+    evaluate_joints(model, body, ws, bws);
     left = drift(bws);
   }
   find_joint_coordinates(model, ws, joints);
@@ -83,11 +91,11 @@ bool project_step(const Model& model, const BodyModel& body, double h, BodyState
   update_body_motion(model, state, ws);
   const double closed = kClosed * extent_of(ws).length;
   for (int i = 0; i < kMostCorrections && bws.ldl.smallest_pivot() >= kNearSingular; ++i) {
-    evaluate_joints(body, ws, bws);
+    evaluate_joints(model, body, ws, bws);
     if (!(drift(bws).position > closed)) break;
     solve_violation(body, bws, [](const RowValue& row) { return row.g; });
-    displace(state, bws);
-    add_bodies(bws.ldl, bws.solution, 1 / h, state.u);
+    displace(body, state, bws);
+    add_bodies(body, bws.ldl, bws.solution, 1 / h, state.u);
     update_body_motion(model, state, ws);
   }
   return project(model, body, state, joints, ws, bws);
@@ -96,7 +104,7 @@ bool project_step(const Model& model, const BodyModel& body, double h, BodyState
 bool advance(const Model& model, const BodyModel& body, BodyState& state, State& joints, Workspace& ws,
              BodyWorkspace& bws, double h, std::span<const double> mean, std::span<const double> slope) noexcept {
   for (std::size_t k = 0; k < mean.size(); ++k) bws.row_force[k] = mean[k] - 0.5 * h * slope[k];
-  accelerations(model, bws, bws.row_force, bws.udot);
+  accelerations(model, body, bws, bws.row_force, bws.udot);
   const bool is_regular = step_by_runge_kutta(model, state, joints, ws, bws, h, mean, slope, [&](BodyState& stage) {
     const bool is_near_singular = bws.ldl.smallest_pivot() < kNearSingular;
     const bool is_closed = !is_near_singular || project(model, body, stage, bws.stage_joints, ws, bws);

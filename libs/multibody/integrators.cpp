@@ -113,7 +113,7 @@ void take_start(const StageContext& at) noexcept {
   const std::span<const double> q = at.q(), u = at.u();
   std::copy(q.begin(), q.end(), s.q_0.begin());
   std::copy(u.begin(), u.end(), s.u_0.begin());
-  if (at.moving.bodies != nullptr) return accelerations(at.model, at.bws, s.row_force, s.rate_0);
+  if (at.moving.bodies != nullptr) return accelerations(at.model, at.body, at.bws, s.row_force, s.rate_0);
   accelerations(at.model, at.ws, s.row_force, s.rate_0);
   for (std::size_t i = 1; i < s.turn.size(); ++i) {
     s.turn_0[i] = at.ws.motion[i].w;
@@ -302,8 +302,9 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
   multipliers.resize(rows);
   const std::size_t links = model.links.size();
   const bool is_body = coordinates == Coordinates::body;
-  q_0.resize(is_body ? 7 * (links - 1) : model.start_q.size());
-  const std::size_t speeds = is_body ? 6 * (links - 1) : model.start_u.size();
+  const std::size_t modes = mode_count(model);
+  q_0.resize(is_body ? 7 * (links - 1) + modes : model.start_q.size());
+  const std::size_t speeds = is_body ? 6 * (links - 1) + modes : model.start_u.size();
   for (auto* by_u : {&u_0, &rate_0, &rate, &fixed, &base, &algorithmic, &step, &last_step}) by_u->resize(speeds);
   for (auto* by_link : {&turn, &turn_0, &turn_rate_0, &algorithmic_turn}) by_link->resize(is_body ? 0 : links);
   for (auto* by_element : {&stops, &stops_0}) by_element->resize(stop_count(model));

@@ -70,8 +70,8 @@ struct Link {
   int u = 0;              // first entry in State::u
   int first_coupled = 0;  // CoupledMass entries of this link's joint: [first_coupled, coupled_end)
   int coupled_end = 0;
-  int node = -1;        // Model::nodes, of a link with LinkJoint::node
-  int first_part = 0;   // flexible parts whose frame this link is: [first_part, part_end) of Model::parts
+  int node = -1;       // Model::nodes, of a link with LinkJoint::node
+  int first_part = 0;  // flexible parts whose frame this link is: [first_part, part_end) of Model::parts
   int part_end = 0;
   bool is_driven = false;
   std::array<int, 2> drive = {-1, -1};  // Model::drives, by coordinate; -1: free
@@ -185,6 +185,7 @@ struct Constraint {
   math::Mat3 R_L1, R_L2;  // frames in their links
   math::Vec3 p_L1, p_L2;  // m
   std::vector<ConstraintRow> rows;
+  int node = -1;  // Model::nodes: frame 1 rides on the modes there
 };
 
 // A joint outside of the tree: of its rows those that are independent of the tree and of the cuts before it.
@@ -237,7 +238,7 @@ struct Model {
   math::Vec3 gravity;         // m/s2, Ground axes
   double max_substep = 1e-3;  // s
   PenaltyNumbers penalty;
-  std::vector<Link> links;  // [0] is Ground
+  std::vector<Link> links;          // [0] is Ground
   std::vector<FlexiblePart> parts;  // by link
   std::vector<FlexibleNode> nodes;
   std::vector<LumpedMass> lumped;

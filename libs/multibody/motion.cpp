@@ -127,7 +127,8 @@ void see_parts(const Model& model, std::size_t i, std::span<const double> q, std
   for (int k = model.links[i].first_part; k < model.links[i].part_end; ++k) {
     const FlexiblePart& part = model.parts[static_cast<std::size_t>(k)];
     see_part(part, q.subspan(static_cast<std::size_t>(part.q), part.modes),
-             u.subspan(static_cast<std::size_t>(part.u), part.modes), ws.motion[i], ws.parts[static_cast<std::size_t>(k)]);
+             u.subspan(static_cast<std::size_t>(part.u), part.modes), ws.motion[i],
+             ws.parts[static_cast<std::size_t>(k)]);
   }
 }
 
@@ -245,9 +246,8 @@ void move_from(const Model& model, std::span<const double> start, const Displace
                std::span<double> q, Workspace& ws) noexcept {
   ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
-  for_each_mode(model, [&](std::size_t q_k, std::size_t u_k) {
-    q[q_k] = start[q_k] + way.base[u_k] + way.scale * u[u_k];
-  });
+  for_each_mode(model,
+                [&](std::size_t q_k, std::size_t u_k) { q[q_k] = start[q_k] + way.base[u_k] + way.scale * u[u_k]; });
   see_parts(model, 0, q, u, ws);
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];

@@ -59,6 +59,40 @@ class PenaltyMatrix final : public LinkMatrix {
   math::BlockLdl& ldl_;
 };
 
+// the squares of a node's rows along its modes, and their products with the links
+void add_modal_rows(const Model& model, const PenaltyModel& body, std::size_t index, PenaltyWorkspace& pws) noexcept {
+  const Constraint& constraint = body.constraints[index];
+  const auto part = at(model.nodes[at(constraint.node)].part);
+  for (std::size_t row = at(body.first_row[index]); row < at(body.first_row[index + 1]); ++row) {
+    const HeldRow held = factored_row(body, pws, index, row);
+    const auto one = spatial(held.G.v1, held.G.w1), two = spatial(held.G.v2, held.G.w2);
+    const double alpha = body.alpha[row];
+    for (const ModalBlock& block : body.modal) {
+      if (block.part != part) continue;
+      const auto add = [&](int node, std::span<const double> other) {
+        ModalWide wide;
+        for (std::size_t k = 0; k < block.count; ++k) {
+          for (std::size_t c = 0; c < other.size(); ++c) {
+            wide[k * other.size() + c] = alpha * (held.modal[block.first + k] * other[c]);
+          }
+        }
+        const std::span<const double> used(wide.data(), block.count * other.size());
+        if (node == block.node) {
+          pws.ldl.add_diagonal(node, used);
+        } else {
+          pws.ldl.add_coupling(block.node, node, used);
+        }
+      };
+      for (const ModalBlock& other : body.modal) {
+        if (other.part == part && other.node <= block.node)
+          add(other.node, held.modal.subspan(other.first, other.count));
+      }
+      if (held.link1 > 0) add(held.link1 - 1, one);
+      if (held.link2 > 0) add(held.link2 - 1, two);
+    }
+  }
+}
+
 // of the link's own weight and inertia at its centre of mass, and of the multipliers: light links between heavy ones
 // are strings
 void add_pulls(const Model& model, const PenaltyModel& body, const Workspace& ws, const PenaltyWorkspace& pws,
@@ -87,11 +121,13 @@ void add_pulls(const Model& model, const PenaltyModel& body, const Workspace& ws
 
 }  // namespace
 
-bool factorize(const Model& model, const PenaltyModel& body, const Workspace& ws, PenaltyWorkspace& pws,
-               double h) noexcept {
+bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, PenaltyWorkspace& pws, double h) noexcept {
   pws.ldl.clear();
   PenaltyMatrix matrix(pws.ldl);
   add_masses(model, ws, matrix);
+  add_modal_masses(
+      model, ws, body.modal, [](int) { return kLinkSpeeds; }, pws.ldl);
+  pws.factored_modal = pws.modal;
   for (std::size_t i = 0; i < body.constraints.size(); ++i) {
     const Constraint& constraint = body.constraints[i];
     RowBlocks blocks;
@@ -100,11 +136,13 @@ bool factorize(const Model& model, const PenaltyModel& body, const Workspace& ws
       blocks.add(pws.factored[row], body.alpha[row]);
     }
     blocks.put(constraint.link1, constraint.link2, pws.ldl);
+    if (constraint.node >= 0) add_modal_rows(model, body, i, pws);
   }
   if (h > 0) {
     const ChangeWeights weights{.position = 0.25 * h * h, .rate = 0.5 * h};
     // contacts are resolved by parts of the sub-step instead (contact_rate.h)
     add_stiffness(model, ws, weights, matrix);
+    add_modal_stiffness(model, body.modal, weights, ws, pws.ldl);
     add_pulls(model, body, ws, pws, weights.position, matrix);
   }
   return pws.ldl.factorize(0);  // there are no closing nodes

@@ -14,16 +14,28 @@ void see(const Model& model, const PenaltyModel& body, const BodyState& state, S
 
 // The matrix (1), for h > 0 with the elements' C and K, and its factors; after see(). False when it is singular to
 // working precision.
-[[nodiscard]] bool factorize(const Model& model, const PenaltyModel& body, const Workspace& ws, PenaltyWorkspace& pws,
+[[nodiscard]] bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, PenaltyWorkspace& pws,
                              double h) noexcept;
 
 // y = Q without row forces; y -= M x.
 void put_free_forces(const Model& model, const Workspace& ws, std::span<double> y) noexcept;
 void subtract_mass(const Model& model, const Workspace& ws, std::span<const double> x, std::span<double> y) noexcept;
 
+// One row's gradient over the speeds: of two links, and of modes. row: among all rows.
+struct HeldRow {
+  int link1 = 0, link2 = 0;
+  const RowGradient& G;
+  std::span<const double> modal;
+  std::size_t place = 0;  // of the first of these modes among the speeds
+};
+[[nodiscard]] HeldRow present_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std::size_t constraint,
+                                  std::size_t row) noexcept;
+[[nodiscard]] HeldRow factored_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std::size_t constraint,
+                                   std::size_t row) noexcept;
+
 // y -= G^T mu for one row, and G x.
-void subtract_row(const Constraint& constraint, const RowGradient& G, double mu, std::span<double> y) noexcept;
-[[nodiscard]] double along(const Constraint& constraint, const RowGradient& G, std::span<const double> x) noexcept;
+void subtract_row(const HeldRow& row, double mu, std::span<double> y) noexcept;
+[[nodiscard]] double along(const HeldRow& row, std::span<const double> x) noexcept;
 
 // see(), then the matrix at h = 0, with force and target of (2) or (3) in pws. False when the matrix is singular.
 [[nodiscard]] bool prepare(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints,

@@ -49,6 +49,25 @@ double largest_of(std::span<const double> x) noexcept {
   return largest;
 }
 
+// of the modes of a part, with each other and with their frame
+void subtract_modal_mass(const Model& model, const Workspace& ws, std::size_t index, std::span<const double> x,
+                         std::span<double> y) noexcept {
+  const FlexiblePart& part = model.parts[index];
+  const PartMotion& motion = ws.parts[index];
+  const std::size_t place = kLinkSpeeds * (model.links.size() - 1) + modal_place(model, index);
+  const bool is_moving = part.link > 0;
+  const Vec3 a = is_moving ? vector_at(link_at(x, part.link)) : Vec3();
+  const Vec3 alpha = is_moving ? vector_at(link_at(x, part.link) + 3) : Vec3();
+  for (std::size_t k = 0; k < part.modes; ++k) {
+    double force = dot(motion.b[k], a) + dot(motion.c[k], alpha);
+    for (std::size_t l = 0; l < part.modes; ++l) force += part.mass_matrix[k * part.modes + l] * x[place + l];
+    y[place + k] -= force;
+    if (!is_moving) continue;
+    subtract(motion.b[k] * x[place + k], link_at(y, part.link));
+    subtract(motion.c[k] * x[place + k], link_at(y, part.link) + 3);
+  }
+}
+
 // a force on a point of a link
 void subtract_force(int link, Vec3 s, Vec3 force, std::span<double> y) noexcept {
   if (link == 0) return;
@@ -64,6 +83,10 @@ void see(const Model& model, const PenaltyModel& body, const BodyState& state, S
   for (std::size_t i = 0; i < body.constraints.size(); ++i) {
     const Constraint& constraint = body.constraints[i];
     const std::span<RowValue> rows(pws.rows.data() + body.first_row[i], constraint.rows.size());
+    if (constraint.node >= 0) {
+      evaluate_node(model, constraint, ws, rows, std::span(pws.modal).subspan(body.modal_rows[i].first));
+      continue;
+    }
     evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], ws.drives, rows);
   }
 }
@@ -74,6 +97,10 @@ void put_free_forces(const Model& model, const Workspace& ws, std::span<double> 
     double* at_link = link_at(y, static_cast<int>(i));
     subtract(ws.inertia[i].f, at_link);
     subtract(ws.inertia[i].n, at_link + 3);
+  }
+  for (std::size_t index = 0; index < model.parts.size(); ++index) {
+    double* x = y.data() + kLinkSpeeds * (model.links.size() - 1) + modal_place(model, index);
+    for (std::size_t k = 0; k < model.parts[index].modes; ++k) x[k] = -ws.parts[index].bias[k];
   }
   for (std::size_t i = 0; i < model.coupled.size(); ++i) {
     const LineElement& line = model.lines[at(model.coupled[i].line)];
@@ -91,6 +118,7 @@ void subtract_mass(const Model& model, const Workspace& ws, std::span<const doub
     subtract(I.K * alpha + I.M * a, at_link);
     subtract(I.J * alpha + transpose_multiply(I.K, a), at_link + 3);
   }
+  for (std::size_t index = 0; index < model.parts.size(); ++index) subtract_modal_mass(model, ws, index, x, y);
   for (std::size_t i = 0; i < model.coupled.size(); ++i) {
     const LineElement& line = model.lines[at(model.coupled[i].line)];
     const LineMotion& m = ws.lines[at(model.coupled[i].line)];
@@ -106,27 +134,51 @@ void subtract_mass(const Model& model, const Workspace& ws, std::span<const doub
   }
 }
 
-void subtract_row(const Constraint& constraint, const RowGradient& G, double mu, std::span<double> y) noexcept {
-  if (constraint.link1 > 0) {
-    subtract(G.v1 * mu, link_at(y, constraint.link1));
-    subtract(G.w1 * mu, link_at(y, constraint.link1) + 3);
-  }
-  if (constraint.link2 > 0) {
-    subtract(G.v2 * mu, link_at(y, constraint.link2));
-    subtract(G.w2 * mu, link_at(y, constraint.link2) + 3);
-  }
+namespace {
+
+HeldRow row_of(const PenaltyModel& body, std::size_t constraint, std::size_t row, const RowGradient& G,
+               std::span<const double> modal) noexcept {
+  const Constraint& joint = body.constraints[constraint];
+  const PenaltyModel::ModalRows& modes = body.modal_rows[constraint];
+  const std::size_t first = modes.first + (row - at(body.first_row[constraint])) * modes.modes;
+  return {joint.link1, joint.link2, G, modal.subspan(first, modes.modes), modes.place};
 }
 
-double along(const Constraint& constraint, const RowGradient& G, std::span<const double> x) noexcept {
+}  // namespace
+
+HeldRow present_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std::size_t constraint,
+                    std::size_t row) noexcept {
+  return row_of(body, constraint, row, pws.rows[row].G, pws.modal);
+}
+
+HeldRow factored_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std::size_t constraint,
+                     std::size_t row) noexcept {
+  return row_of(body, constraint, row, pws.factored[row], pws.factored_modal);
+}
+
+void subtract_row(const HeldRow& row, double mu, std::span<double> y) noexcept {
+  if (row.link1 > 0) {
+    subtract(row.G.v1 * mu, link_at(y, row.link1));
+    subtract(row.G.w1 * mu, link_at(y, row.link1) + 3);
+  }
+  if (row.link2 > 0) {
+    subtract(row.G.v2 * mu, link_at(y, row.link2));
+    subtract(row.G.w2 * mu, link_at(y, row.link2) + 3);
+  }
+  for (std::size_t k = 0; k < row.modal.size(); ++k) y[row.place + k] -= row.modal[k] * mu;
+}
+
+double along(const HeldRow& row, std::span<const double> x) noexcept {
   double sum = 0;
-  if (constraint.link1 > 0) {
-    const double* one = link_at(x, constraint.link1);
-    sum += dot(G.v1, vector_at(one)) + dot(G.w1, vector_at(one + 3));
+  if (row.link1 > 0) {
+    const double* one = link_at(x, row.link1);
+    sum += dot(row.G.v1, vector_at(one)) + dot(row.G.w1, vector_at(one + 3));
   }
-  if (constraint.link2 > 0) {
-    const double* two = link_at(x, constraint.link2);
-    sum += dot(G.v2, vector_at(two)) + dot(G.w2, vector_at(two + 3));
+  if (row.link2 > 0) {
+    const double* two = link_at(x, row.link2);
+    sum += dot(row.G.v2, vector_at(two)) + dot(row.G.w2, vector_at(two + 3));
   }
+  for (std::size_t k = 0; k < row.modal.size(); ++k) sum += row.modal[k] * x[row.place + k];
   return sum;
 }
 
@@ -142,12 +194,11 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
     std::copy(force.begin(), force.end(), pws.correction.begin());
     if (round > 0) subtract_mass(model, ws, x, pws.correction);
     for (std::size_t i = 0; i < body.constraints.size(); ++i) {
-      const Constraint& constraint = body.constraints[i];
       for (std::size_t row = at(body.first_row[i]); row < at(body.first_row[i + 1]); ++row) {
-        const RowGradient& G = pws.factored[row];
-        const double missed = body.alpha[row] * (along(constraint, G, x) + target[row]);
+        const HeldRow held = factored_row(body, pws, i, row);
+        const double missed = body.alpha[row] * (along(held, x) + target[row]);
         if (is_exact && round > 0) multipliers[row] += missed;
-        subtract_row(constraint, G, multipliers[row] + missed, pws.correction);
+        subtract_row(held, multipliers[row] + missed, pws.correction);
       }
     }
     pws.ldl.solve(pws.correction);
@@ -161,7 +212,7 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
   }
   for (std::size_t i = 0; i < body.constraints.size(); ++i) {
     for (std::size_t row = at(body.first_row[i]); row < at(body.first_row[i + 1]); ++row) {
-      multipliers[row] += body.alpha[row] * (along(body.constraints[i], pws.factored[row], x) + target[row]);
+      multipliers[row] += body.alpha[row] * (along(factored_row(body, pws, i, row), x) + target[row]);
     }
   }
   return share <= kSettled;

@@ -50,6 +50,15 @@ class ReactionSum {
     add(part.owner, center, acceleration(part.link, center) * part.mass, I * alpha + cross(m.w, I * m.w));
   }
 
+  void add_modes(std::size_t index) noexcept {
+    const FlexiblePart& part = model_.parts[index];
+    const LinkMotion& m = ws_.motion[at(part.link)];
+    const std::span<const double> udot(ws_.udot.data() + part.u, part.modes);
+    const PartWrench wrench =
+        wrench_of(ws_.parts[index], udot, m.alpha + ws_.delta_alpha[at(part.link)], m.a + ws_.delta_a[at(part.link)]);
+    add(part.body, m.p, wrench.f, wrench.n);
+  }
+
   void add_coupled(const CoupledMass& mass) noexcept {
     const LineElement& element = model_.lines[at(mass.line)];
     const LineMotion& line = ws_.lines[at(mass.line)];
@@ -249,6 +258,7 @@ void joint_reactions(const Model& model, const State& state, Workspace& ws, std:
   for (const LumpedMass& part : model.lumped) {
     if (part.owner >= 0) sum.add_inertia(part);
   }
+  for (std::size_t k = 0; k < model.parts.size(); ++k) sum.add_modes(k);
   for (const CoupledMass& mass : model.coupled) sum.add_coupled(mass);
   for (const CoupledMass& mass : model.welded) sum.add_coupled(mass);
   sum.subtract_elements();

@@ -31,7 +31,9 @@ void add_pulls(const StageContext& at, double weight, LinkMatrix& matrix) noexce
       F1 -= G.v1 * multipliers[k];
       F2 -= G.v2 * multipliers[k];
     }
-    add_pull(joint.link1, at.ws.motion[at_index(joint.link1)].R * joint.p_L1, F1, weight, matrix);
+    const LinkMotion& link1 = at.ws.motion[at_index(joint.link1)];
+    const Vec3 s1 = joint.node < 0 ? link1.R * joint.p_L1 : at.ws.motion[at_index(joint.link2)].p - link1.p;
+    add_pull(joint.link1, s1, F1, weight, matrix);
     add_pull(joint.link2, at.ws.motion[at_index(joint.link2)].R * joint.p_L2, F2, weight, matrix);
   }
 }
@@ -88,6 +90,7 @@ bool factorize_stage(const StageContext& at, const Stage& stage) noexcept {
   const ChangeWeights weights{.position = stage.tau * stage.sigma, .rate = stage.tau};
   add_stiffness(at.model, at.ws, weights, matrix);
   add_contact_stiffness(at.model, at.ws, weights, matrix);
+  add_modal_stiffness(at.model, at.body.modal, weights, at.ws, at.bws.ldl);
   if (at.stages.has_multipliers) add_pulls(at, weights.position, matrix);
   return at.bws.ldl.factorize(kDependent);
 }

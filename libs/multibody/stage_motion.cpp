@@ -31,6 +31,11 @@ void place_bodies(const StageContext& at, double sigma) noexcept {
     state.q[q + 5] = turned.y;
     state.q[q + 6] = turned.z;
   }
+  const std::size_t links = at.model.links.size() - 1;
+  for (std::size_t k = 0; k < state.u.size() - 6 * links; ++k) {
+    const std::size_t q = 7 * links + k, u = 6 * links + k;
+    state.q[q] = s.q_0[q] + s.base[u] + sigma * state.u[u];
+  }
   update_body_motion(at.model, state, at.ws);
   find_joint_coordinates(at.model, at.ws, at.moving.joints);
 }
@@ -63,8 +68,15 @@ void add_joint_accelerations(const Model& model, std::span<const double> rate, W
         a += S.slide[0] * first + S.slide[1] * second;
         break;
       }
-      case LinkJoint::node:
+      case LinkJoint::node: {
+        const auto node = at_index(link.node);
+        const auto first = at_index(model.parts[at_index(model.nodes[node].part)].u);
+        for (std::size_t k = 0; k < ws.nodes[node].Phi.size(); ++k) {
+          alpha += ws.nodes[node].Psi[k] * rate[first + k];
+          a += ws.nodes[node].Phi[k] * rate[first + k];
+        }
         break;
+      }
     }
     ws.delta_alpha[i] = alpha;
     ws.delta_a[i] = a;
@@ -95,6 +107,17 @@ void add_accelerations(const StageContext& at, std::span<const double> rate) noe
   add_joint_accelerations(at.model, rate, at.ws);
 }
 
+namespace {
+
+// of all modes, in the stage
+std::span<const double> modal_rate(const StageContext& at) noexcept {
+  const std::size_t first =
+      at.moving.bodies != nullptr ? 6 * at.moving.bodies->links() : at_index(at.model.parts.front().u);
+  return std::span<const double>(at.stages.rate).subspan(first);
+}
+
+}  // namespace
+
 void find_residual(const StageContext& at, const Stage& stage) noexcept {
   StageWorkspace& s = at.stages;
   const std::span<const double> u = at.u();
@@ -105,10 +128,11 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
   update_contacts(at.model, at.ws);
   add_accelerations(at, s.rate);
   update_inertia(at.model, at.ws);
+  if (!at.model.parts.empty()) add_modal_accelerations(at.model, modal_rate(at), at.ws);
   update_coupled(at.model, at.ws);
   apply_elements(at.model, at.ws);
   apply_contacts(at.model, at.ws);
-  evaluate_joints(at.body, at.ws, at.bws);
+  evaluate_joints(at.model, at.body, at.ws, at.bws);
   put_bias(at.model, at.body, at.ws, at.bws);
   // rows of joints with the accelerations, where put_bias() left them out
   for (std::size_t i = 1; i < at.body.joints.size(); ++i) {
@@ -117,6 +141,12 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
     for (std::size_t k = 0; k < joint.rows.size(); ++k) {
       const RowValue& row = at.bws.rows[at_index(at.bws.first_row[i]) + k];
       x[k] = -acceleration_of(row, at.ws.motion[at_index(joint.link1)], at.ws.motion[at_index(joint.link2)]);
+      if (joint.node < 0) continue;
+      const auto part = at_index(at.model.nodes[at_index(joint.node)].part);
+      const std::size_t modes = at.model.parts[part].modes;
+      const double* m = at.bws.modal.data() + at_index(at.bws.first_modal[i]) + k * modes;
+      const double* rate = modal_rate(at).data() + modal_place(at.model, part);
+      for (std::size_t j = 0; j < modes; ++j) x[k] -= m[j] * rate[j];
     }
   }
   for (std::size_t k = 0; k < at.model.rows.size(); ++k) {
@@ -128,7 +158,7 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
 }
 
 void read_step(const StageContext& at, std::span<double> step) noexcept {
-  if (at.moving.bodies != nullptr) return read_bodies(at.bws.ldl, at.bws.solution, step);
+  if (at.moving.bodies != nullptr) return read_bodies(at.body, at.bws.ldl, at.bws.solution, step);
   const auto velocity = [&at](int link) {
     return link == 0 ? Vec3() : load(at.bws.solution, at.bws.ldl.first_row(link - 1));
   };
@@ -167,6 +197,10 @@ void read_step(const StageContext& at, std::span<double> step) noexcept {
       case LinkJoint::node:
         break;
     }
+  }
+  for (const ModalBlock& block : at.body.modal) {
+    std::copy_n(at.bws.solution.data() + at.bws.ldl.first_row(block.node), block.count,
+                step.data() + at.model.parts.front().u + block.place);
   }
 }
 

@@ -172,7 +172,8 @@ int entry_at_a_node(const MechanicsDef& mechanics, const std::vector<TreeEdge>& 
   for (const TreeEdge& edge : tree) {
     const bool is_node = edge.joint != kNoJoint && mechanics.joints[at(edge.joint)].type == JointType::node;
     if (!is_node || !edge.is_reversed) continue;
-    const auto entry = std::find_if(tree.begin(), tree.end(), [&](const TreeEdge& e) { return e.child == edge.parent; });
+    const auto entry =
+        std::find_if(tree.begin(), tree.end(), [&](const TreeEdge& e) { return e.child == edge.parent; });
     if (entry != tree.end()) return entry->joint;
   }
   return kNoJoint;

@@ -57,8 +57,11 @@ struct FlexibleNode {
 struct PartMotion {
   explicit PartMotion(std::size_t modes);
   std::vector<double> q, u;
-  math::Vec3 s_L;                        // kg m
-  math::Mat3 J_L;                        // kg m2
+  math::Vec3 s_L;  // kg m
+  math::Mat3 J_L;  // kg m2
+  math::Vec3 s;    // the same in Ground axes
+  math::Mat3 J;
+  math::Vec3 f, n;                       // of (4), (5), what speeds alone make [N, N m]
   std::vector<math::Vec3> b, c;          // of (4), (5)
   std::vector<double> bias;              // right side of (6) with u' = 0
   std::vector<math::Vec3> B_lin, B_ang;  // of (7)
@@ -105,6 +108,13 @@ void solve_mass(const PartMotion& motion, std::span<const double> right, std::sp
 struct PartEnergy {
   double kinetic = 0, potential = 0;  // J, beyond those of the undeformed body
 };
+// (4), (5) beyond those of the undeformed body, for accelerations of modes (empty: zero) and frame, after add_part().
+struct PartWrench {
+  math::Vec3 f, n;  // N; N m about the frame's origin
+};
+[[nodiscard]] PartWrench wrench_of(const PartMotion& motion, std::span<const double> udot, math::Vec3 alpha,
+                                   math::Vec3 a) noexcept;
+
 struct PartMomentum {
   math::Vec3 linear, angular;  // kg m/s; kg m2/s about the frame's origin; the same
 };

@@ -161,14 +161,24 @@ void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& mot
   }
   motion.E = part.mass_matrix;
 
-  const Vec3 s = frame.R * motion.s_L;
-  const Mat3 J = frame.R * motion.J_L * transpose(frame.R);
-  inertia.J += J;
-  inertia.K -= math::skew(s);
-  inertia.f +=
-      cross(frame.alpha, s) + cross(frame.w, cross(frame.w, s)) + cross(frame.w, flow) * 2 + frame.R * curl_lin;
-  inertia.n += J * frame.alpha + cross(s, frame.a) + cross(frame.w, J * frame.w + spin) +
-               frame.R * (inertia_of(W_dot) * w + curl_ang);
+  motion.s = frame.R * motion.s_L;
+  motion.J = frame.R * motion.J_L * transpose(frame.R);
+  motion.f = cross(frame.w, cross(frame.w, motion.s)) + cross(frame.w, flow) * 2 + frame.R * curl_lin;
+  motion.n = cross(frame.w, motion.J * frame.w + spin) + frame.R * (inertia_of(W_dot) * w + curl_ang);
+  inertia.J += motion.J;
+  inertia.K -= math::skew(motion.s);
+  const PartWrench bias = wrench_of(motion, {}, frame.alpha, frame.a);
+  inertia.f += bias.f;
+  inertia.n += bias.n;
+}
+
+PartWrench wrench_of(const PartMotion& motion, std::span<const double> udot, Vec3 alpha, Vec3 a) noexcept {
+  PartWrench wrench{motion.f + cross(alpha, motion.s), motion.n + motion.J * alpha + cross(motion.s, a)};
+  for (std::size_t k = 0; k < udot.size(); ++k) {
+    wrench.f += motion.b[k] * udot[k];
+    wrench.n += motion.c[k] * udot[k];
+  }
+  return wrench;
 }
 
 PartMomentum momentum_of(const PartMotion& motion, const LinkMotion& frame) noexcept {

@@ -27,14 +27,16 @@ Real difference(const Vector& a, const Vector& b) {
 class RandomTrees : public ::testing::TestWithParam<unsigned> {
  protected:
   RandomTree tree(const TreeOptions& options) const { return random_tree(GetParam(), options); }
-  TreeOptions options() const { return {.bodies = 1 + static_cast<int>(GetParam()) % 9, .two_coordinates = true}; }
+  TreeOptions options() const {
+    return with_modes_of(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9, .two_coordinates = true});
+  }
 };
 
 TEST_P(RandomTrees, AccelerateAsTheAssembledEquationsSay) {
   const RandomTree random = tree(options());
   Mechanism mechanism(random.def, random.rows);
   if (mechanism.model.degrees_of_freedom() == 0) GTEST_SKIP() << "all joints are fixed";
-  const Assembled reference(random.def, mechanism.model);
+  const Assembled reference(random.def, mechanism.model, random.points);
   const State state = random_state(GetParam(), mechanism.model);
   evaluate(mechanism.model, state, mechanism.ws);
   const Vector q = to_vector(state.q), u = to_vector(state.u);
@@ -46,7 +48,7 @@ TEST_P(RandomTrees, RowsAgreeWithTheAssembledEquations) {
   Mechanism mechanism(random.def, random.rows);
   const auto rows = static_cast<Eigen::Index>(random.rows.size());
   if (rows == 0) GTEST_SKIP() << "nothing to act on";
-  const Assembled reference(random.def, mechanism.model);
+  const Assembled reference(random.def, mechanism.model, random.points);
   const State state = random_state(GetParam(), mechanism.model);
   evaluate(mechanism.model, state, mechanism.ws);
   const Vector q = to_vector(state.q), u = to_vector(state.u);
@@ -98,7 +100,7 @@ TEST_P(RandomTrees, ObeyLagrangesEquations) {
   o.with_forces = false;
   const RandomTree random = tree(o);
   Mechanism mechanism(random.def, {});
-  const Assembled reference(random.def, mechanism.model);
+  const Assembled reference(random.def, mechanism.model, random.points);
   const State state = random_state(GetParam(), mechanism.model);
   const Vector q = to_vector(state.q), u = to_vector(state.u);
   Vector rest = derivative_at_zero([&](Real t) { return Vector(reference.mass_matrix(q + t * u) * u); });
@@ -115,6 +117,7 @@ TEST_P(RandomTrees, ObeyLagrangesEquations) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomTrees, ::testing::Range(1u, 25u));
+INSTANTIATE_TEST_SUITE_P(WithModes, RandomTrees, ::testing::Range(kFirstWithModes, kFirstWithModes + 40));
 
 }  // namespace
 }  // namespace slew::multibody

@@ -304,6 +304,13 @@ Matrix Assembled::mass_matrix(const Vector& q) const {
 Real Assembled::potential(const Vector& q) const {
   Real sum = 0;
   for (const Mass& m : masses(q)) sum -= m.mass * vec(def_.gravity).dot(m.center);
+  for (const FlexibleBodyDef& def : def_.flexible_bodies) {
+    const FlexiblePart& part = part_of(def.body);
+    for (std::size_t k = 0; k < part.modes * part.modes; ++k) {
+      const auto row = static_cast<Eigen::Index>(k / part.modes), column = static_cast<Eigen::Index>(k % part.modes);
+      sum += Real(def.modes->stiffness[k]) * q[part.q + row] * q[part.q + column] / 2;
+    }
+  }
   return sum;
 }
 

@@ -52,7 +52,7 @@ class Assembled {
   [[nodiscard]] Matrix cut_jacobian(std::size_t j, const Vector& q) const;
   [[nodiscard]] Vector cut_bias(std::size_t j, const Vector& q, const Vector& u) const;
 
-  [[nodiscard]] Real potential(const Vector& q) const;  // gravity only
+  [[nodiscard]] Real potential(const Vector& q) const;  // gravity and modes
 
  private:
   // one moving mass: m J_v^T J_v, with rotational inertia about it as J_w^T I J_w

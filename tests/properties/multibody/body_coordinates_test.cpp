@@ -52,6 +52,7 @@ class Both {
       for (const double x : a.array()) result.push_back(x);
       for (const double x : (m.alpha + recursive.ws.delta_alpha[i]).array()) result.push_back(x);
     }
+    for_each_mode(recursive.model, [&](std::size_t, std::size_t u) { result.push_back(udot[u]); });
     return result;
   }
 
@@ -65,7 +66,8 @@ class Both {
 class BodyCoordinates : public ::testing::TestWithParam<unsigned> {
  protected:
   BodyCoordinates()
-      : both(random_tree(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9, .two_coordinates = true})) {}
+      : both(random_tree(GetParam(), with_modes_of(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9,
+                                                                .two_coordinates = true}))) {}
   void SetUp() override {
     if (both.recursive.model.degrees_of_freedom() == 0) GTEST_SKIP() << "all joints are fixed";
     state = random_state(GetParam(), both.recursive.model);
@@ -93,8 +95,8 @@ TEST_P(BodyCoordinates, GiveTheJointCoordinatesBack) {
 TEST_P(BodyCoordinates, AccelerateAsTheRecursionDoes) {
   std::vector<double> forces(both.recursive.model.rows.size());
   for (std::size_t k = 0; k < forces.size(); ++k) forces[k] = 3 - 2.0 * static_cast<double>(k);
-  std::vector<double> udot(6 * (both.recursive.model.links.size() - 1));
-  accelerations(both.recursive.model, both.bws, forces, udot);
+  std::vector<double> udot(both.bws.udot.size());
+  accelerations(both.recursive.model, both.body, both.bws, forces, udot);
   EXPECT_LT(difference(udot, both.link_accelerations(forces)), kTolerance);
 }
 
@@ -137,6 +139,9 @@ TEST_P(BodyCoordinates, ComeBackToTheirJointsFromFarOff) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, BodyCoordinates, ::testing::Range(1u, 41u));
+INSTANTIATE_TEST_SUITE_P(WithModes, BodyCoordinates, ::testing::Range(kFirstWithModes, kFirstWithModes + 20));
+INSTANTIATE_TEST_SUITE_P(WithShortening, BodyCoordinates,
+                         ::testing::Range(kFirstWithShortening, kFirstWithShortening + 20));
 
 }  // namespace
 }  // namespace slew::multibody

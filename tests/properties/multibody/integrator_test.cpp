@@ -57,6 +57,18 @@ MechanicsDef tumbling() {
   return def;
 }
 
+// the first two of them flexible
+MechanicsDef flexible_links() {
+  MechanicsDef def = tumbling();
+  std::mt19937 random(7);
+  for (const char* name : {"A", "B"}) {
+    std::vector<MassPoint> points;
+    const auto modes = std::make_shared<ModalBody>(random_modes(random, math::Vec3(), points));
+    def.flexible_bodies.push_back({.body = name, .modes = modes, .relative_damping = {0.02}});
+  }
+  return def;
+}
+
 std::vector<double> state_after(const Subject& subject, Formulation formulation, Integrator integrator, double step) {
   MechanicsDef def = subject.def;
   def.formulation = formulation;
@@ -102,6 +114,9 @@ TEST_P(Integrators, HaveTheirOrderOnAPendulum) {
 }
 TEST_P(Integrators, HaveTheirOrderOnLinksWithBalls) {
   expect_order({"balls", tumbling(), 0.5, 5e-3});
+}
+TEST_P(Integrators, HaveTheirOrderOnFlexibleLinks) {
+  expect_order({"flexible", flexible_links(), 0.2, 4e-3});
 }
 TEST_P(Integrators, HaveTheirOrderOnAFourBarThroughTheFlatPosition) {
   expect_order({"four_bar", four_bars(1), 1, 20e-3});

@@ -23,6 +23,9 @@ double distance(const Triple& a, const Triple& b) {
 
 class Invariants : public ::testing::TestWithParam<unsigned> {
  protected:
+  static RandomTree tree_of(const TreeOptions& options) {
+    return random_tree(GetParam(), with_modes_of(GetParam(), options));
+  }
   static Mechanism moving(const RandomTree& tree, const std::vector<std::string>& rows = {}) {
     Mechanism mechanism(tree.def, rows);
     mechanism.state = random_state(GetParam(), mechanism.model);
@@ -35,8 +38,8 @@ class Invariants : public ::testing::TestWithParam<unsigned> {
 
 TEST_P(Invariants, FloatingMechanismsKeepTheirMomentum) {
   // inner springs, dampers and cylinders with mass; nothing from outside
-  Mechanism mechanism = moving(
-      random_tree(GetParam(), {.bodies = 5, .with_gravity = false, .lines_to_ground = false, .floating_root = true}));
+  Mechanism mechanism =
+      moving(tree_of({.bodies = 5, .with_gravity = false, .lines_to_ground = false, .floating_root = true}));
   const Momentum before = momentum(mechanism.model, mechanism.ws);
   mechanism.run(0.5, 2e-4);
   const Momentum after = momentum(mechanism.model, mechanism.ws);
@@ -47,17 +50,19 @@ TEST_P(Invariants, FloatingMechanismsKeepTheirMomentum) {
 RandomTree without_dampers(RandomTree tree) {
   for (auto& force : tree.def.translational_forces) force.damping_constant = force.end_damping_constant = 0;
   for (auto& force : tree.def.rotational_forces) force.damping_constant = 0;
+  for (auto& body : tree.def.flexible_bodies) body.relative_damping = {0};
   // a rotational spring has no energy where its angle is not defined; lines and gravity suffice here
   tree.def.rotational_forces.clear();
   return tree;
 }
 
 TEST_P(Invariants, EnergyIsKeptWithoutDampers) {
-  Mechanism mechanism = moving(without_dampers(random_tree(GetParam(), {.bodies = 5})));
+  Mechanism mechanism = moving(without_dampers(tree_of({.bodies = 5})));
   const double before = mechanism.total_energy();
   double scale = std::abs(before), drift = 0;
   for (int i = 0; i < 1000; ++i) {
-    mechanism.run(2e-4, 2e-4);
+    // modes are faster
+    mechanism.run(2e-4, GetParam() < kFirstWithModes ? 2e-4 : 4e-5);
     scale = std::max(scale, energy(mechanism.model, mechanism.ws).kinetic);
     drift = std::max(drift, std::abs(mechanism.total_energy() - before));
   }
@@ -65,7 +70,7 @@ TEST_P(Invariants, EnergyIsKeptWithoutDampers) {
 }
 
 TEST_P(Invariants, DampersOnlyTakeEnergy) {
-  RandomTree tree = random_tree(GetParam(), {.bodies = 5, .with_gravity = false});
+  RandomTree tree = tree_of({.bodies = 5, .with_gravity = false});
   for (auto& force : tree.def.translational_forces) force.spring_constant = force.end_spring_constant = 0;
   for (auto& force : tree.def.rotational_forces) force.spring_constant = 0;
   Mechanism mechanism = moving(tree);
@@ -78,7 +83,7 @@ TEST_P(Invariants, DampersOnlyTakeEnergy) {
 }
 
 TEST_P(Invariants, RowForcesDoTheWorkThatTheEnergyGains) {
-  RandomTree tree = without_dampers(random_tree(GetParam(), {.bodies = 4}));
+  RandomTree tree = without_dampers(tree_of({.bodies = 4}));
   std::erase_if(tree.rows, [](const std::string& row) { return row[0] == 'R'; });
   Mechanism mechanism = moving(tree, tree.rows);
   const std::size_t rows = tree.rows.size();
@@ -100,7 +105,7 @@ TEST_P(Invariants, RowForcesDoTheWorkThatTheEnergyGains) {
 }
 
 TEST_P(Invariants, TurnedAndMovedScenesMoveAlike) {
-  const RandomTree tree = random_tree(GetParam(), {.bodies = 6, .only_one_coordinate = true});
+  const RandomTree tree = tree_of({.bodies = 6, .only_one_coordinate = true});
   RandomTree turned = tree;
   // everything hangs on one body that a fixed joint holds somewhere else
   const Triple place = {100, -50, 20}, angles = {0.4, 1.1, -0.7};
@@ -133,6 +138,13 @@ TEST_P(Invariants, TurnedAndMovedScenesMoveAlike) {
     other.state.q[static_cast<std::size_t>(to.q)] = plain.state.q[static_cast<std::size_t>(from.q)];
     other.state.u[static_cast<std::size_t>(to.u)] = plain.state.u[static_cast<std::size_t>(from.u)];
   }
+  for (std::size_t k = 0; k < plain.model.parts.size(); ++k) {
+    const FlexiblePart &from = plain.model.parts[k], &to = other.model.parts[k];
+    for (std::size_t j = 0; j < from.modes; ++j) {
+      other.state.q[static_cast<std::size_t>(to.q) + j] = plain.state.q[static_cast<std::size_t>(from.q) + j];
+      other.state.u[static_cast<std::size_t>(to.u) + j] = plain.state.u[static_cast<std::size_t>(from.u) + j];
+    }
+  }
   evaluate(plain.model, plain.state, plain.ws);
   evaluate(other.model, other.state, other.ws);
   const auto compare = [](std::span<const double> a, std::span<const double> b) {
@@ -147,7 +159,7 @@ TEST_P(Invariants, TurnedAndMovedScenesMoveAlike) {
 }
 
 TEST_P(Invariants, ReactionsOnGroundChangeTheMomentum) {
-  const RandomTree tree = random_tree(GetParam(), {.bodies = 5, .with_forces = false, .lines_to_ground = false});
+  const RandomTree tree = tree_of({.bodies = 5, .with_forces = false, .lines_to_ground = false});
   Mechanism mechanism = moving(tree);
   std::vector<JointReaction> reactions(mechanism.model.joints.size());
   joint_reactions(mechanism.model, mechanism.state, mechanism.ws, {}, reactions);
@@ -187,7 +199,7 @@ TEST_P(Invariants, ReactionsOnGroundChangeTheMomentum) {
 }
 
 TEST_P(Invariants, ReactionsDoNoWorkThroughTheFreeDirections) {
-  const RandomTree tree = random_tree(GetParam(), {.bodies = 6});
+  const RandomTree tree = tree_of({.bodies = 6});
   Mechanism mechanism = moving(tree);
   std::vector<JointReaction> reactions(mechanism.model.joints.size());
   joint_reactions(mechanism.model, mechanism.state, mechanism.ws, {}, reactions);
@@ -212,6 +224,8 @@ TEST_P(Invariants, ReactionsDoNoWorkThroughTheFreeDirections) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Invariants, ::testing::Range(1u, 17u));
+INSTANTIATE_TEST_SUITE_P(WithModes, Invariants, ::testing::Range(kFirstWithModes, kFirstWithModes + 16));
+INSTANTIATE_TEST_SUITE_P(WithShortening, Invariants, ::testing::Range(kFirstWithShortening, kFirstWithShortening + 16));
 
 // final state of the actuated crane with forces that are linear in time over the whole run
 std::vector<double> crane_after(double h) {

@@ -36,7 +36,7 @@ double coordinate_difference(const State& a, const State& b) {
 class Penalties : public ::testing::TestWithParam<unsigned> {
  protected:
   Penalties()
-      : tree(random_tree(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9})),
+      : tree(random_tree(GetParam(), with_modes_of(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9}))),
         recursive(tree.def, tree.rows) {}
   void SetUp() override {
     if (recursive.model.degrees_of_freedom() == 0) GTEST_SKIP() << "all joints are fixed";
@@ -59,10 +59,11 @@ class Penalties : public ::testing::TestWithParam<unsigned> {
       for (const double x : a.array()) result.push_back(x);
       for (const double x : (m.alpha + recursive.ws.delta_alpha[i]).array()) result.push_back(x);
     }
+    for_each_mode(recursive.model, [&](std::size_t, std::size_t u) { result.push_back(udot[u]); });
     return result;
   }
   double acceleration_error(Held& held) {
-    std::vector<double> udot(6 * (recursive.model.links.size() - 1));
+    std::vector<double> udot(held.pws.udot.size());
     EXPECT_TRUE(held.see());
     accelerations(held.model, held.pws, mean, udot);
     return difference(udot, link_accelerations());
@@ -190,6 +191,8 @@ TEST_P(SmoothPenalties, PlainOpensItsJointsByAShareOfItsFactor) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Penalties, ::testing::Range(1u, 41u));
+INSTANTIATE_TEST_SUITE_P(WithModes, Penalties, ::testing::Range(kFirstWithModes, kFirstWithModes + 20));
+INSTANTIATE_TEST_SUITE_P(WithShortening, Penalties, ::testing::Range(kFirstWithShortening, kFirstWithShortening + 10));
 INSTANTIATE_TEST_SUITE_P(Seeds, SmoothPenalties, ::testing::Range(1u, 41u));
 
 }  // namespace

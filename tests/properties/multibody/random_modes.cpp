@@ -55,4 +55,26 @@ ModalBody random_modes(std::mt19937& random, Vec3 root, std::vector<MassPoint>& 
   return body;
 }
 
+void shorten(std::mt19937& random, const std::vector<MassPoint>& points, ModalBody& body) {
+  const auto number = [&random] { return std::uniform_real_distribution<double>(-0.03, 0.03)(random); };
+  const std::size_t n = body.modes();
+  body.G.resize(n * n);
+  body.H.resize(n * n);
+  for (ModalNode& node : body.nodes) node.shortening.resize(n * n);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t l = 0; l <= k; ++l) {
+      for (const MassPoint& point : points) {
+        const Vec3 g = Vec3(number(), number(), number()) * point.mass;
+        body.G[k * n + l] += g;
+        body.H[k * n + l] += outer(point.x, g);
+      }
+      body.G[l * n + k] = body.G[k * n + l];
+      body.H[l * n + k] = body.H[k * n + l];
+      for (std::size_t i = 1; i < body.nodes.size(); ++i) {
+        body.nodes[i].shortening[k * n + l] = body.nodes[i].shortening[l * n + k] = Vec3(number(), number(), number());
+      }
+    }
+  }
+}
+
 }  // namespace slew::multibody::testing

@@ -25,4 +25,7 @@ using MassPoints = std::map<std::string, std::vector<MassPoint>>;
 // Random points and modes; node 1 at `root`, which the frame is clamped to, and three more.
 [[nodiscard]] ModalBody random_modes(std::mt19937& random, math::Vec3 root, std::vector<MassPoint>& points);
 
+// Random g of (1) in points and nodes.
+void shorten(std::mt19937& random, const std::vector<MassPoint>& points, ModalBody& body);
+
 }  // namespace slew::multibody::testing

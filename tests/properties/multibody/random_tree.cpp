@@ -86,8 +86,10 @@ class Generator {
     add_mass(name, child);
     if (options_.with_modes && pick(2) == 0) {
       FlexibleBodyDef flexible{.body = name};
-      flexible.modes = std::make_shared<ModalBody>(random_modes(random_, Vec3(p_C), tree_.points[name]));
-      flexible.relative_damping = {number(0, 0.1)};
+      ModalBody modes = random_modes(random_, Vec3(p_C), tree_.points[name]);
+      if (options_.with_shortening) shorten(random_, tree_.points[name], modes);
+      flexible.modes = std::make_shared<ModalBody>(modes);
+      flexible.relative_damping = {options_.with_forces ? number(0, 0.1) : 0};
       tree_.def.flexible_bodies.push_back(flexible);
     }
     add_line(i, name, parent_name, joint.type);

@@ -21,7 +21,19 @@ struct TreeOptions {
   bool two_coordinates = false;  // universal and cylindrical joints as well
   bool floating_root = false;    // the first body floats, no other joint reaches Ground
   bool with_modes = false;       // some bodies are flexible
+  bool with_shortening = false;  // and stiffen by bending
 };
+
+// Seeds from here on have flexible bodies in the tests of trees, then those with geometric stiffening.
+inline constexpr unsigned kFirstWithModes = 101, kFirstWithShortening = 201;
+
+// The same options with flexible bodies for such a seed.
+[[nodiscard]] inline TreeOptions with_modes_of(unsigned seed, TreeOptions options) {
+  options.with_modes = seed >= kFirstWithModes;
+  options.with_shortening = seed >= kFirstWithShortening;
+  if (options.with_modes) options.with_dummies = false;
+  return options;
+}
 
 struct RandomTree {
   MechanicsDef def;
