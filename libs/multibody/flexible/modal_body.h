@@ -34,14 +34,14 @@ struct ModalBody {
   double mass = 0;                  // kg
   math::Vec3 first_moment;          // s_0 [kg m]
   math::Mat3 second_moment;         // W_0 [kg m2]
-  std::vector<double> mass_matrix;  // int phi_k . phi_l, by pair
-  std::vector<double> stiffness;    // K, by pair [1/s2 for modes of unit mass]
-  std::vector<math::Vec3> C;        // by mode
-  std::vector<math::Mat3> Z;        // by mode
-  std::vector<math::Mat3> Y;        // by pair
-  std::vector<math::Vec3> G;        // by pair; empty: none
-  std::vector<math::Mat3> H;        // by pair; empty: none
-  std::vector<ModalNode> nodes;
+  std::vector<double> mass_matrix{};  // int phi_k . phi_l, by pair
+  std::vector<double> stiffness{};    // K, by pair [1/s2 for modes of unit mass]
+  std::vector<math::Vec3> C{};        // by mode
+  std::vector<math::Mat3> Z{};        // by mode
+  std::vector<math::Mat3> Y{};        // by pair
+  std::vector<math::Vec3> G{};        // by pair; empty: none
+  std::vector<math::Mat3> H{};        // by pair; empty: none
+  std::vector<ModalNode> nodes{};
   int root = -1;  // node that the frame is clamped to; -1: the modes are those of the free body
 
   [[nodiscard]] std::size_t modes() const noexcept { return C.size(); }
