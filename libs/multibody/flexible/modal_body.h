@@ -30,10 +30,10 @@ struct ModalNode {
 
 // Pairs k, l at k * modes + l.
 struct ModalBody {
-  std::string source{};             // for messages: files or a description
-  double mass = 0;                  // kg
-  math::Vec3 first_moment;          // s_0 [kg m]
-  math::Mat3 second_moment;         // W_0 [kg m2]
+  std::string source{};               // for messages: files or a description
+  double mass = 0;                    // kg
+  math::Vec3 first_moment;            // s_0 [kg m]
+  math::Mat3 second_moment;           // W_0 [kg m2]
   std::vector<double> mass_matrix{};  // int phi_k . phi_l, by pair
   std::vector<double> stiffness{};    // K, by pair [1/s2 for modes of unit mass]
   std::vector<math::Vec3> C{};        // by mode

@@ -73,7 +73,7 @@ class Joints : public testing::TestWithParam<Kind> {
         p_12 = Vec3(0, 0, amount(2));
         break;
       case JointType::fixed:
-    case JointType::node:
+      case JointType::node:
         R_12 = Mat3::identity();
         p_12 = Vec3();
         break;

@@ -16,8 +16,7 @@ MechanicsDef pendulum() {
   def.joints = {{.name = "Pin", .body2 = "Rod"}};
   flex::SectionDef section{.shape = flex::SectionShape::solid_rectangle, .width = 0.01, .height = 0.02};
   section.shear_factor_y = section.shear_factor_z = 5.0 / 6;
-  const flex::BeamDef beam =
-      flex::testing::straight(section, flex::testing::steel(7e10, 2700), {1, 0, 0}, 21);
+  const flex::BeamDef beam = flex::testing::straight(section, flex::testing::steel(7e10, 2700), {1, 0, 0}, 21);
   const auto all = slew::testing::modes_of(beam, flex::testing::with_modes(12), {});
   std::vector<int> kept;
   for (std::size_t k = 0; k < all->modes() && kept.size() < 3; ++k) {
@@ -25,7 +24,8 @@ MechanicsDef pendulum() {
       kept.push_back(static_cast<int>(k) + 1);
     }
   }
-  def.flexible_bodies = {{.body = "Rod", .modes = slew::testing::modes_of(beam, flex::testing::with_modes(12), kept), .start = {0, 0, 0}}};
+  def.flexible_bodies = {
+      {.body = "Rod", .modes = slew::testing::modes_of(beam, flex::testing::with_modes(12), kept), .start = {0, 0, 0}}};
   def.static_dummies = {{.name = "Tip", .relative_to = "Rod", .position = {1, 0, 0}},
                         {.name = "Middle", .relative_to = "Rod", .position = {0.5, 0, 0}}};
   return def;
