@@ -252,15 +252,16 @@ void factorize_floating(const Model& model, Workspace& ws, std::size_t i) noexce
   store(ws.residual, link.u + 3, n - factor.U_ang * f);
 }
 
-void eliminate_parts(const Model& model, std::size_t i, Workspace& ws) noexcept {
+[[gnu::noinline]] void eliminate_parts(const Model& model, std::size_t i, Workspace& ws) noexcept {
   for (int k = model.links[i].first_part; k < model.links[i].part_end; ++k) eliminate_modes(model, at(k), ws);
 }
 
 }  // namespace
 
 void factorize(const Model& model, Workspace& ws) noexcept {
+  const bool has_modes = !model.parts.empty();
   for (std::size_t i = model.links.size() - 1; i > 0; --i) {
-    eliminate_parts(model, i, ws);
+    if (has_modes) eliminate_parts(model, i, ws);
     switch (model.links[i].joint) {
       case LinkJoint::revolute:
         factorize_revolute(model, ws, i);
@@ -284,7 +285,7 @@ void factorize(const Model& model, Workspace& ws) noexcept {
         break;
     }
   }
-  eliminate_parts(model, 0, ws);
+  if (has_modes) eliminate_parts(model, 0, ws);
 }
 
 }  // namespace slew::multibody

@@ -22,6 +22,7 @@ void put(Vec3 a, double* x) noexcept {
 
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
                    std::span<double> udot) noexcept {
+  const bool has_modes = !model.parts.empty();
   for (int k = 0; k < model.links[0].part_end; ++k) solve_modes(model, at(k), ws, residual, udot);
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
@@ -68,6 +69,7 @@ void solve_forward(const Model& model, Workspace& ws, std::span<const double> re
     }
     ws.delta_alpha[i] = alpha;
     ws.delta_a[i] = a;
+    if (!has_modes) continue;
     if (link.joint == LinkJoint::node) follow_node(model, i, udot, ws);
     for (int k = link.first_part; k < link.part_end; ++k) solve_modes(model, at(k), ws, residual, udot);
   }
@@ -135,8 +137,8 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
 }
 
 // One row through the modes of a link: residual holds minus what the nodes gave them.
-void pass_modes(const Model& model, const Workspace& ws, const Link& link, const double* tau, double* residual,
-                double* rate, Vec3& n, Vec3& f) noexcept {
+[[gnu::noinline]] void pass_modes(const Model& model, const Workspace& ws, const Link& link, const double* tau,
+                                  double* residual, double* rate, Vec3& n, Vec3& f) noexcept {
   for (int k = link.first_part; k < link.part_end; ++k) {
     const FlexiblePart& part = model.parts[at(k)];
     const PartMotion& motion = ws.parts[at(k)];
@@ -150,7 +152,8 @@ void pass_modes(const Model& model, const Workspace& ws, const Link& link, const
   }
 }
 
-void pass_node(const Model& model, const Workspace& ws, const Link& link, double* residual, Vec3 n, Vec3 f) noexcept {
+[[gnu::noinline]] void pass_node(const Model& model, const Workspace& ws, const Link& link, double* residual, Vec3 n,
+                                 Vec3 f) noexcept {
   const NodeMotion& motion = ws.nodes[at(link.node)];
   const FlexiblePart& part = model.parts[at(model.nodes[at(link.node)].part)];
   for (std::size_t j = 0; j < part.modes; ++j) {
@@ -161,6 +164,7 @@ void pass_node(const Model& model, const Workspace& ws, const Link& link, double
 // ws.pass_n, ws.pass_f hold minus the wrenches on the links
 void pass_back(const Model& model, Workspace& ws, std::span<const int> supports, const Rows& rows) noexcept {
   const std::size_t links = model.links.size(), speeds = ws.udot.size();
+  const bool has_modes = !model.parts.empty();
   for (const int i : supports) {
     const Link& link = model.links[at(i)];
     const LinkMotion& m = ws.motion[at(i)];
@@ -168,10 +172,10 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
     const std::size_t u = at(link.u);
     for (std::size_t k = 0; k < rows.count; ++k) {
       Vec3 n = ws.pass_n[k * links + at(i)], f = ws.pass_f[k * links + at(i)];
-      if (link.part_end > link.first_part) {
+      if (has_modes && link.part_end > link.first_part) {
         pass_modes(model, ws, link, rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
       }
-      if (link.joint == LinkJoint::node) pass_node(model, ws, link, rows.residual + k * speeds, n, f);
+      if (has_modes && link.joint == LinkJoint::node) pass_node(model, ws, link, rows.residual + k * speeds, n, f);
       pass_link(link, m, factor, rows.tau == nullptr ? nullptr : rows.tau + u, rows.residual + k * speeds + u,
                 rows.rate + k * speeds + u, n, f);
       if (link.parent == 0) continue;

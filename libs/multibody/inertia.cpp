@@ -15,9 +15,12 @@ std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
-void add_parts(const Model& model, std::size_t i, Workspace& ws) noexcept {
-  for (int k = model.links[i].first_part; k < model.links[i].part_end; ++k) {
-    add_part(model.parts[at(k)], ws.motion[i], ws.parts[at(k)], ws.inertia[i]);
+[[gnu::noinline]] void add_parts(const Model& model, Workspace& ws) noexcept {
+  // Ground's own takes what its nodes pass on, which nothing reads
+  ws.inertia[0] = ArticulatedInertia();
+  for (std::size_t k = 0; k < model.parts.size(); ++k) {
+    const auto link = at(model.parts[k].link);
+    add_part(model.parts[k], ws.motion[link], ws.parts[k], ws.inertia[link]);
   }
 }
 
@@ -28,10 +31,6 @@ void add_parts(const Model& model, std::size_t i, Workspace& ws) noexcept {
 //   f = m a + alpha x h + w x (w x h)                                                              (2)
 void update_inertia(const Model& model, Workspace& ws) noexcept {
   ws.inertia[0].n = ws.inertia[0].f = Vec3();
-  if (model.links[0].part_end > 0) {
-    ws.inertia[0] = ArticulatedInertia();
-    add_parts(model, 0, ws);
-  }
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
     const LinkMotion& m = ws.motion[i];
@@ -42,8 +41,8 @@ void update_inertia(const Model& model, Workspace& ws) noexcept {
     body.M = Mat3::diagonal(link.mass, link.mass, link.mass);
     body.n = body.J * m.alpha + cross(h, m.a) + cross(m.w, body.J * m.w);
     body.f = m.a * link.mass + cross(m.alpha, h) + cross(m.w, cross(m.w, h));
-    if (link.part_end > link.first_part) add_parts(model, i, ws);
   }
+  if (!model.parts.empty()) add_parts(model, ws);
 }
 
 // Cylinder and piston on the line between P1 and P2 (docs/models/multibody_b2bf_dummy.md). With d = P1 - P2,

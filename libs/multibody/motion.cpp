@@ -121,6 +121,14 @@ void add_prescribed(const Link& link, const Workspace& ws, LinkMotion& m) noexce
   m.a += S.slide[0] * acceleration(0) + S.slide[1] * acceleration(1);
 }
 
+// out of line: rigid scenes do not come here
+[[gnu::noinline]] void move_to_node(const Model& model, const Link& link, const LinkMotion& parent, Workspace& ws,
+                                    LinkMotion& m) noexcept {
+  const auto node = static_cast<std::size_t>(link.node);
+  const FlexibleNode& place = model.nodes[node];
+  move_node(place, parent, ws.parts[static_cast<std::size_t>(place.part)], ws.nodes[node], m);
+}
+
 // shape and inertia of the flexible parts whose frame a link is
 void see_parts(const Model& model, std::size_t i, std::span<const double> q, std::span<const double> u,
                Workspace& ws) noexcept {
@@ -157,15 +165,11 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
     case LinkJoint::cylindrical:
       move_cylindrical(link, parent, q.subspan(qi, 2), u.subspan(ui, 2), m);
       break;
-    case LinkJoint::node: {
-      const auto node = static_cast<std::size_t>(link.node);
-      const FlexibleNode& place = model.nodes[node];
-      move_node(place, parent, ws.parts[static_cast<std::size_t>(place.part)], ws.nodes[node], m);
+    case LinkJoint::node:
+      move_to_node(model, link, parent, ws, m);
       break;
-    }
   }
   if (link.is_driven) add_prescribed(link, ws, m);
-  see_parts(model, i, q, u, ws);
 }
 
 }  // namespace
@@ -173,8 +177,16 @@ void move_link(const Model& model, std::size_t i, std::span<const double> q, std
 void update_motion(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   ws.loops.is_shown = false;
   ws.motion[0].a = -model.gravity;
+  // what is rigid does not pay for modes
+  if (model.parts.empty()) {
+    for (std::size_t i = 1; i < model.links.size(); ++i) move_link(model, i, q, u, ws);
+    return;
+  }
   see_parts(model, 0, q, u, ws);
-  for (std::size_t i = 1; i < model.links.size(); ++i) move_link(model, i, q, u, ws);
+  for (std::size_t i = 1; i < model.links.size(); ++i) {
+    move_link(model, i, q, u, ws);
+    see_parts(model, i, q, u, ws);
+  }
 }
 
 void coordinate_rates(const Model& model, const Workspace& ws, std::span<const double> q, std::span<const double> u,
@@ -274,6 +286,7 @@ void move_from(const Model& model, std::span<const double> start, const Displace
       q[qi + 3] = turned.z;
     }
     move_link(model, i, q, u, ws);
+    if (!model.parts.empty()) see_parts(model, i, q, u, ws);
   }
 }
 
