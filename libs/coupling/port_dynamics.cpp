@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 #include "core/reductions.h"
@@ -15,19 +16,21 @@ constexpr double kGamma = 0.29289321881345247560;
 
 // a piecewise linear law needs one iteration per kink that is crossed; more means that the step is too long for it
 constexpr int kMaxIterations = 40;
-// from here on the Newton step is halved, which ends the cycles that kinks can cause
-constexpr int kDampedAfter = 12;
+// from here on the speed with the widest step is kept between its last two values with steps to either side, which ends
+// the cycles that narrow steep parts of a law can cause, such as friction about rest
+constexpr int kBracketedAfter = 12;
 // speeds are converged below this fraction of the speed scale: well under any physical resolution, above round-off
 constexpr double kRelativeTolerance = 1e-12;
 constexpr double kAbsoluteTolerance = 1e-15;
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
   SLEW_CHECK(capacity <= kMaxRows);
-  for (std::vector<double>* values :
-       {&x_, &v_,     &z_,      &a_free_,  &x_base_, &v_base_,  &z_base_,   &x_stage_, &v_stage_, &z_stage_,
-        &f_, &slope_, &f_mean_, &f_slope_, &work_,   &impulse_, &residual_, &k_x_,     &k_v_,     &k_z_}) {
+  for (std::vector<double>* values : {&x_,        &v_,       &z_,    &a_free_, &x_base_, &v_base_,  &z_base_, &x_stage_,
+                                      &v_stage_,  &z_stage_, &f_,    &slope_,  &f_mean_, &f_slope_, &work_,   &impulse_,
+                                      &residual_, &low_,     &high_, &k_x_,    &k_v_,    &k_z_}) {
     values->assign(capacity, 0.0);
   }
   W_.assign(capacity * capacity, 0.0);
@@ -51,6 +54,23 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
     f_[i] = law.force;
     slope_[i] = law.d_v + weight * law.d_x - law.d_z * (weight * p.K * shrink + p.D);
   }
+}
+
+// the stage speed after a Newton step that must not leave the bracket; without one, or where it proves wrong because
+// other rows moved, half of the step
+double PortDynamics::bracketed(std::size_t row, double step) noexcept {
+  const double v = v_stage_[row];
+  double& low = low_[row];
+  double& high = high_[row];
+  (step > 0 ? low : high) = v;
+  if (low > high) {
+    low = -kUnbounded;
+    high = kUnbounded;
+    return v + 0.5 * step;
+  }
+  const double next = v + step;
+  if (low < next && next < high) return next;
+  return 0.5 * (low + high);
 }
 
 // v = v_base + weight (a_free + W f(v)) for the stage speeds
@@ -81,8 +101,18 @@ bool PortDynamics::solve_stage(double weight, const RowLaws& laws, PortStep& rep
       if (!(largest <= report.residual)) report.residual = largest;
       return has_converged;
     }
-    const double damping = iteration < kDampedAfter ? 1.0 : 0.5;
-    for (std::size_t i = 0; i < m; ++i) v_stage_[i] += damping * residual_[i];
+    if (iteration == kBracketedAfter) {
+      std::fill(low_.begin(), low_.end(), -kUnbounded);
+      std::fill(high_.begin(), high_.end(), kUnbounded);
+    }
+    std::size_t widest = 0;
+    for (std::size_t i = 1; i < m; ++i) {
+      if (std::fabs(residual_[i]) > std::fabs(residual_[widest])) widest = i;
+    }
+    for (std::size_t i = 0; i < m; ++i) {
+      const bool is_bracketed = iteration >= kBracketedAfter && i == widest;
+      v_stage_[i] = is_bracketed ? bracketed(i, residual_[i]) : v_stage_[i] + residual_[i];
+    }
   }
 }
 

@@ -86,6 +86,7 @@ class PortDynamics {
  private:
   bool solve_stage(double weight, const RowLaws& laws, PortStep& report) noexcept;
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
+  double bracketed(std::size_t row, double step) noexcept;
 
   std::size_t capacity_;
   std::size_t rows_;
@@ -95,6 +96,7 @@ class PortDynamics {
   std::vector<double> x_stage_, v_stage_, z_stage_;  // stage values
   std::vector<double> f_, slope_, f_mean_, f_slope_, work_, impulse_;
   std::vector<double> residual_, A_;
+  std::vector<double> low_, high_;       // speeds of the stage between which the iteration's answer lies
   std::vector<double> k_x_, k_v_, k_z_;  // slopes of the first stage
 };
 
