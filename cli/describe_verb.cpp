@@ -42,6 +42,7 @@ struct Description {
   std::size_t bodies = 0, joints = 0, links = 0, rows = 0;
   int degrees_of_freedom = 0;
   std::vector<std::string> motions;   // "Body_Pillar (revolute, 1)"
+  std::vector<std::string> flexible;  // "Boom: 2 modes ..."
   std::vector<std::string> driven;    // "Crank_Drive (Crank_Pin, angle)": prescribed motions
   std::vector<std::string> closed;    // "Coupler (revolute_revolute, 1 row)": joints outside of the tree
   std::vector<std::string> merged;    // "Pole with Pillar"
@@ -70,6 +71,7 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   const multibody::Description m =
       multibody::describe(multibody::build_model(scene.mechanics, scene::row_names(scene)));
   d.links = m.links.size();
+  d.flexible = m.flexible;
   d.rows = static_cast<std::size_t>(m.rows);
   d.degrees_of_freedom = m.degrees_of_freedom;
   describe_cuts(m, d);
@@ -80,6 +82,13 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   }
   for (const std::string& body : m.fixed_to_ground) d.merged.push_back(body + " with Ground");
   for (const multibody::LinkDescription& link : m.links) {
+    if (link.joint_type == "node") {
+      --d.links;
+      for (std::size_t i = 1; i < link.bodies.size(); ++i) {
+        d.merged.push_back(link.bodies[i] + " with " + link.bodies[0]);
+      }
+      continue;
+    }
     const std::string& moved = link.joint.empty() ? link.bodies.at(0) : link.joint;
     d.motions.push_back(fmt::format("{} ({}, {})", moved, link.joint_type, link.degrees_of_freedom));
     for (std::size_t i = 1; i < link.bodies.size(); ++i) d.merged.push_back(link.bodies[i] + " with " + link.bodies[0]);
@@ -91,7 +100,11 @@ void describe_bodies(const scene::Scene& scene, Description& d) {
     const auto& meshes = scene.mesh_inertias;
     const auto mesh = std::find_if(meshes.begin(), meshes.end(),
                                    [&](const scene::MeshInertia& one) { return one.body == body.name; });
-    d.body_numbers.push_back({body, mesh == meshes.end() ? std::nullopt : std::optional(*mesh)});
+    multibody::BodyDef numbers = body;
+    for (const multibody::FlexibleBodyDef& flexible : scene.mechanics.flexible_bodies) {
+      if (flexible.body == body.name) multibody::take_mass(*flexible.modes, numbers);
+    }
+    d.body_numbers.push_back({numbers, mesh == meshes.end() ? std::nullopt : std::optional(*mesh)});
   }
 }
 
@@ -111,11 +124,12 @@ void describe_nodes(const scene::Scene& scene, Description& d) {
                      scene.has_hydraulics() ? counted(scene.hydraulics.volumes.size(), "volume", "volumes") + ", " +
                                                   counted(d.components, "component", "components")
                                             : "no volumes"});
-  d.nodes.push_back({"flex", false, "no flexible bodies"});
+  d.nodes.push_back(
+      {"flex", false, d.flexible.empty() ? "no flexible bodies" : "the mechanics holds the modes and their stiffness"});
   d.nodes.push_back({"recorder", true, "unless --no-record is given"});
   if (!scene.has_mechanics()) d.left_out.emplace_back("mechanics: no bodies, no process, no states");
   if (!scene.has_hydraulics()) d.left_out.emplace_back("hydraulics: no volumes, no process, no states");
-  d.left_out.emplace_back("flexible bodies: none, no flex_node, no modal states");
+  if (d.flexible.empty()) d.left_out.emplace_back("flexible bodies: none, no flex_node, no modal states");
   if (d.contacts.empty()) d.left_out.emplace_back("contact: no collision pairs, no collision detection");
   if (scene.ports.empty()) d.left_out.emplace_back("coupling: no actuator drives a force, no ports");
 }
@@ -179,6 +193,7 @@ nlohmann::json to_json(const Description& d) {
             {"links", d.links},
             {"motions", d.motions},
             {"driven", d.driven},
+            {"flexible", d.flexible},
             {"closed", d.closed},
             {"merged", d.merged},
             {"contacts", d.contacts},
@@ -221,6 +236,7 @@ void print(const Description& d) {
                              counted(static_cast<std::uint64_t>(d.hydraulic_states), "state", "states") + " in all"})},
       {"ports", joined(d.ports)},
       {"inputs", joined(d.inputs)}};
+  for (const std::string& body : d.flexible) rows.push_back({"flexible", body});
   if (!d.driven.empty()) rows.push_back({"driven", joined(d.driven)});
   if (!d.closed.empty()) rows.push_back({"closed by rows", joined(d.closed)});
   for (const BodyNumbers& body : d.body_numbers) {

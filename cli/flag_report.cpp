@@ -23,7 +23,7 @@ struct Meaning {
   const char* remedy;
 };
 
-constexpr std::array<Meaning, 5> kMeanings = {{
+constexpr std::array<Meaning, 6> kMeanings = {{
     {StepFlag::not_converged, "an iteration reached its limit and its residual was accepted", "choose a smaller step"},
     {StepFlag::step_budget, "the sub-step budget was used up and the error of the last one accepted",
      "raise hydraulics.substep_budget or the tolerances"},
@@ -31,6 +31,8 @@ constexpr std::array<Meaning, 5> kMeanings = {{
     {StepFlag::coupling_creates_energy, "the coupling created energy, so the run may be unstable",
      "choose session.coupling: two or a smaller step"},
     {StepFlag::cavitating, "a volume cavitated", "look at the pressures near zero"},
+    {StepFlag::large_deflection, "a flexible body was bent by more than a tenth of its length",
+     "its theory is one of small deflections: take segments, or doubt the numbers"},
 }};
 
 struct Seen {

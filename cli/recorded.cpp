@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli_support/failure.h"
@@ -67,6 +69,25 @@ bool was_paused(const std::map<std::uint64_t, bool>& paused_since, std::uint64_t
   return false;
 }
 
+// Files that belonged to the scene, as the recorder listed them.
+std::vector<scene::Asset> manifest_of(const Reader& reader) {
+  std::vector<scene::Asset> assets;
+  const auto list = nlohmann::json::parse(attachment_text(reader, "manifest.json"), nullptr, false);
+  if (!list.is_array()) {
+    throw cli_support::Failure(ExitCode::bad_input, "the recording's list of files cannot be read; it is damaged");
+  }
+  for (const nlohmann::json& entry : list) {
+    scene::Asset& asset = assets.emplace_back();
+    asset.name = entry.value("name", "");
+    asset.size = entry.value("size", std::uint64_t{0});
+    const std::string sum = entry.value("sha256", "");
+    for (std::size_t i = 0; i < asset.sha256.size() && 2 * i + 1 < sum.size(); ++i) {
+      std::from_chars(sum.data() + 2 * i, sum.data() + 2 * i + 2, asset.sha256[i], 16);
+    }
+  }
+  return assets;
+}
+
 }  // namespace
 
 std::unique_ptr<Reader> open_recording(const std::string& path) {
@@ -78,6 +99,44 @@ std::unique_ptr<Reader> open_recording(const std::string& path) {
   const std::string damage = reader->damage_text();
   if (!damage.empty()) std::fprintf(stderr, "warning: %s\n", damage.c_str());
   return reader;
+}
+
+scene::Scene recorded_scene(const Reader& reader, const std::string& assets) {
+  const std::string text = attachment_text(reader, "scene.yaml"), name = reader.identity().scene;
+  scene::Scene plain = scene::load_text(text, name);
+  if (!plain.has_flexible_bodies()) return plain;
+  const Status status = scene::check_assets(manifest_of(reader), assets);
+  if (!status.is_ok()) {
+    throw cli_support::Failure(ExitCode::bad_input, "the scene's files are not in '" + assets + "' as they were: " +
+                                                        status.text.substr(0, status.text.find("; this node")) +
+                                                        "; nothing was computed; name their folder with --assets");
+  }
+  return scene::load_text(text, name, {}, assets);
+}
+
+std::string recorded_assets(const std::string& recording) {
+  std::filesystem::path file = recording;
+  std::error_code error;
+  if (!std::filesystem::is_directory(file, error)) file = file.parent_path();
+  return (file / "assets").string();
+}
+
+void keep_assets(const scene::Scene& scene, const std::string& folder, const std::string& recording) {
+  if (scene.assets.empty()) return;
+  const std::filesystem::path kept = recorded_assets(recording);
+  std::error_code error;
+  for (const scene::Asset& asset : scene.assets) {
+    const std::filesystem::path to = kept / asset.name;
+    std::filesystem::create_directories(to.parent_path(), error);
+    if (!error) {
+      std::filesystem::copy_file(std::filesystem::path(folder) / asset.name, to,
+                                 std::filesystem::copy_options::overwrite_existing, error);
+    }
+    if (!error) continue;
+    throw cli_support::Failure(ExitCode::storage, "the scene's files were not all copied to " + kept.string() + ": " +
+                                                      asset.name + ": " + error.message() +
+                                                      "; the recording is complete; replay it with --assets " + folder);
+  }
 }
 
 SessionView view_recording(const Reader& reader, Values values) {

@@ -11,6 +11,7 @@
 #include "cli/plotting/series.h"
 #include "cli/session_view.h"
 #include "recording/reader.h"
+#include "scene/scene.h"
 
 namespace slew::cli {
 
@@ -37,6 +38,16 @@ struct TickSpan {
   StepIndex steps = 0;
 };
 [[nodiscard]] TickSpan tick_span(const recording::Reader& reader);
+
+// The scene of a recording, with the files of its flexible bodies from the folder, which must be those of the
+// recording. Throws Failure, LoadError.
+[[nodiscard]] scene::Scene recorded_scene(const recording::Reader& reader, const std::string& assets);
+
+// Folder beside a recording in which the files of its scene are kept: those of flexible bodies, of which a session's
+// text has only the names.
+[[nodiscard]] std::string recorded_assets(const std::string& recording);
+// Copies the scene's files there; nothing when it has none. Throws Failure.
+void keep_assets(const scene::Scene& scene, const std::string& folder, const std::string& recording);
 
 // Text of an attachment. Throws Failure.
 [[nodiscard]] std::string attachment_text(const recording::Reader& reader, const std::string& name);

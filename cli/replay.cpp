@@ -29,11 +29,8 @@ constexpr std::size_t kMostWaiting = 4096;
 
 class Replay {
  public:
-  Replay(const recording::Reader& reader, OnDifference on_difference)
-      : reader_(reader),
-        on_difference_(on_difference),
-        scene_(scene::load_text(attachment_text(reader, "scene.yaml"), reader.identity().scene)),
-        session_(scene_) {
+  Replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets)
+      : reader_(reader), on_difference_(on_difference), scene_(recorded_scene(reader, assets)), session_(scene_) {
     set_floating_point_mode();
     if (scene_.session.step_duration() != reader.identity().communication_step) {
       throw Failure(ExitCode::bad_input, "the recording's step is not its scene's; it cannot be replayed");
@@ -216,8 +213,8 @@ class Replay {
 
 }  // namespace
 
-ReplayResult replay(const recording::Reader& reader, OnDifference on_difference) {
-  return Replay(reader, on_difference).run();
+ReplayResult replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets) {
+  return Replay(reader, on_difference, assets).run();
 }
 
 }  // namespace slew::cli

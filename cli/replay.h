@@ -30,6 +30,8 @@ struct ReplayResult {
 };
 
 // Throws Failure when the recording lacks its scene or its ticks.
-[[nodiscard]] ReplayResult replay(const recording::Reader& reader, OnDifference on_difference);
+// assets: folder of the files that belong to the scene; those that the recording's manifest names must be there alike.
+[[nodiscard]] ReplayResult replay(const recording::Reader& reader, OnDifference on_difference,
+                                  const std::string& assets);
 
 }  // namespace slew::cli

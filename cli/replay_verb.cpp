@@ -17,6 +17,7 @@ namespace {
 
 struct Options {
   std::string recording;
+  std::string assets;
   bool is_verifying = false;
   bool is_json = false;
 };
@@ -30,7 +31,8 @@ nlohmann::json to_json(const ReplayResult& result) {
 ExitCode run(const Options& options) {
   node::install_signal_handlers();
   const auto reader = open_recording(options.recording);
-  const ReplayResult result = replay(*reader, options.is_verifying ? OnDifference::stop : OnDifference::count);
+  const ReplayResult result = replay(*reader, options.is_verifying ? OnDifference::stop : OnDifference::count,
+                                     options.assets.empty() ? recorded_assets(options.recording) : options.assets);
   if (const int stop = node::stop_requested.load(); stop != 0) return static_cast<ExitCode>(stop);
   if (options.is_json) {
     fmt::print("{}\n", to_json(result).dump(2));
@@ -67,6 +69,9 @@ void add_replay(CLI::App& program, Action& action) {
   verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
   verb->add_flag("--verify", options->is_verifying,
                  "stop at the first step whose state differs, or at a gap, with exit code 1");
+  verb->add_option("--assets", options->assets,
+                   "folder with the scene's files; without it the copies that lie beside the recording")
+      ->type_name("FOLDER");
   verb->add_flag("--json", options->is_json, "for machines");
   verb->footer(
       "Without --verify differences are counted and told, and the exit code is 0.\n\n"

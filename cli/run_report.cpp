@@ -118,7 +118,7 @@ std::string write_plots(const scene::Scene& scene, const std::string& recording)
   return path.string();
 }
 
-RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
+RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, const std::string& assets) {
   RunReport report;
   report.code = outcome.code;
   report.messages = without_echoes(outcome.messages);
@@ -148,6 +148,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene) {
       if (report.steps > 0) {
         report.notes = explain_stalls(*reader, scene);
         for (std::string& flagged : explain_flags(*reader)) report.notes.push_back(std::move(flagged));
+        keep_assets(scene, assets, outcome.recording);
         report.plots = write_plots(scene, outcome.recording);
       }
     } catch (const cli_support::Failure& failure) {

@@ -49,8 +49,9 @@ struct RunReport {
   std::string recording;              // path
 };
 
-// Collects the report, from the recording where there is one, and writes the scene's plots beside it.
-[[nodiscard]] RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene);
+// Collects the report, from the recording where there is one, and writes the scene's plots and copies of its files
+// beside it. assets: folder of the files.
+[[nodiscard]] RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, const std::string& assets);
 
 // For people; the path of the recording is the last line. Of a session that failed before its first step: why, and
 // nothing else.

@@ -26,7 +26,7 @@ ExitCode run(RunOptions options) {
     for (const std::string& message : without_echoes(outcome.messages)) std::fprintf(stderr, "%s\n", message.c_str());
     return outcome.code;
   }
-  const RunReport report = make_report(outcome, scene);
+  const RunReport report = make_report(outcome, scene, options.assets());
   if (options.is_json) {
     fmt::print("{}\n", to_json_text(report));
     for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());

@@ -119,8 +119,9 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
   matrix_.resize(rows * rows);
   right_.resize(rows * (ports_.size() + 1));
   coupling::resize(published_, ports_.size());
-  for (std::size_t i = 1; i < model_.bodies.size(); ++i) {
-    if (model_.bodies[i].link > 0) payload_ = static_cast<int>(i);
+  for (std::size_t i = 1; i <= def_.bodies.size(); ++i) {
+    const bool is_rigid = def_.bodies[i - 1].type == multibody::BodyType::rigid;
+    if (is_rigid && model_.bodies[i].link > 0) payload_ = static_cast<int>(i);
   }
   list_variables();
 }
@@ -348,6 +349,9 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   publish(out);
   for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
     if (multibody::touches_limit(model_.rows[row].law, workspace_.row_x[row])) report.raise(StepFlag::limit_hit);
+  }
+  for (std::size_t part = 0; part < model_.parts.size(); ++part) {
+    if (multibody::is_bent_far(model_, part, state_.q)) report.raise(StepFlag::large_deflection);
   }
   return report;
 }

@@ -26,7 +26,7 @@ node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets)
                                                                      node::BuiltSubsystem& built) -> Status {
     if (Status status = check_session_assets(session, assets); !status.is_ok()) return status;
     try {
-      *scene = scene::load_text(session.scene_text, "scene of session '" + session.name + "'");
+      *scene = scene::load_text(session.scene_text, "scene of session '" + session.name + "'", {}, assets);
       built.subsystem = make(*scene);
       built.variables_every = static_cast<std::uint32_t>(scene->recording.every);
       built.published_variables = published_variables(*scene, *built.subsystem);

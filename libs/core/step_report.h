@@ -15,7 +15,8 @@ enum class StepFlag : std::uint32_t {
   non_finite = 1u << 6,     // the state became NaN or infinite: latched, outputs are the last good ones
   coupling_creates_energy = 1u << 7,
   cavitating = 1u << 8,
-  relief_open = 1u << 9
+  relief_open = 1u << 9,
+  large_deflection = 1u << 10  // a flexible body is bent beyond what its theory is good for
 };
 
 struct StepReport {

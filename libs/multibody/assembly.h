@@ -26,6 +26,7 @@ struct AssemblyReport {
   std::vector<Row> open;        // rows that the start does not fit, worse than kFrameTolerance
   std::vector<Row> held_twice;  // rows that prescribed motions and loops already imply
   std::vector<Speed> speeds;    // given by the scene, but the loops do not allow them
+  bool is_settled = true;       // false: flexible bodies find no rest under the start's load
 };
 
 // Rows of a cut joint that the tree and the cuts before it imply are taken out of the model: planar loops in space,

@@ -12,6 +12,7 @@
 #include "multibody/elements/build_elements.h"
 #include "multibody/flexible/build_parts.h"
 #include "multibody/flexible/expand_nodes.h"
+#include "multibody/flexible/start_modes.h"
 #include "multibody/model.h"
 #include "multibody/motions/build_drives.h"
 #include "multibody/start_pose.h"
@@ -59,7 +60,10 @@ class Builder {
     model_.contact = build_contacts(def_, model_);
     for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
     for (Cut& cut : model_.cuts) add_supports(model_, cut);
+    // loops would be open by what their bodies sag
+    const bool is_settled = !model_.cuts.empty() || settle_modes(model_);
     report = assemble(model_);
+    report.is_settled = is_settled;
     return std::move(model_);
   }
 

@@ -28,8 +28,13 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 enum class InertiaPoint : int { center_of_mass, body_origin };
 
+// In the order of the body types of field_tables.h.
+enum class BodyType : int { rigid, flexible };
+
+// One struct for both types; each type's field table lists the members that it has.
 struct BodyDef {
   std::string name{};
+  BodyType type = BodyType::rigid;
   std::string relative_to = "Ground";  // body that the pose refers to
   Triple position{};                   // m, origin in relative_to's frame
   Triple orientation{};                // rad, Euler z-x'-z''
@@ -38,6 +43,12 @@ struct BodyDef {
   Triple inertia{};                    // kg m2, Ixx Iyy Izz in body axes; 0 0 0 is a point mass
   Triple products{};                   // kg m2, the tensor's elements Ixy Ixz Iyz (that is -integral x y dm, ...)
   InertiaPoint inertia_about = InertiaPoint::center_of_mass;
+  // Of a flexible body: files and what is taken of them. What they hold stands in MechanicsDef::flexible_bodies.
+  std::string flex_model{};                  // first part of the files' names; empty: the scene's name
+  std::string flex_file_prefix{};            // second part
+  std::string flex_modes{};                  // ordinals, "1;2", or "none"; empty: all
+  double flex_frequency_limit = kUnlimited;  // Hz
+  std::string relative_damping{};            // zeta by mode, "0.005;0.005", or one for all; empty: 0
 };
 
 // Those after cylindrical have no coordinates of their own (topology.h): their rows are in constraint.h.
@@ -207,7 +218,7 @@ struct MechanicsDef {
   std::vector<PartDummyDef> part_dummies;
   std::vector<ConstraintDummyDef> constraint_dummies;
   std::vector<MotionDef> motions;
-  std::vector<FlexibleBodyDef> flexible_bodies;
+  std::vector<FlexibleBodyDef> flexible_bodies;  // of the bodies of that type, once their files were read
 };
 
 }  // namespace slew::multibody

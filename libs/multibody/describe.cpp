@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "multibody/constraint.h"
@@ -12,12 +16,31 @@ std::string name_of(JointType type) {
   return std::string(sections()[1].types[static_cast<std::size_t>(type)].name);
 }
 
+std::string describe(const Model& model, const FlexiblePart& part) {
+  const auto omega = [&](std::size_t k) {
+    const std::size_t own = k * part.modes + k;
+    return std::sqrt(part.stiffness[own] / part.mass_matrix[own]);
+  };
+  std::string nodes;
+  for (const Joint& joint : model.joints) {
+    const bool is_its_own = joint.type == JointType::node && joint.name.starts_with(part.name + ".");
+    if (is_its_own) nodes += (nodes.empty() ? "" : ", ") + joint.name;
+  }
+  if (part.modes == 0) return fmt::format("{}: no mode of '{}', rigid", part.name, part.source->source);
+  return fmt::format("{}: {} of '{}', {:.4g} to {:.4g} rad/s by themselves; nodes in use: {}", part.name,
+                     part.modes == 1 ? "1 mode" : fmt::format("{} modes", part.modes), part.source->source, omega(0),
+                     omega(part.modes - 1), nodes.empty() ? "none" : nodes);
+}
+
 }  // namespace
 
 Description describe(const Model& model) {
   Description text;
-  text.bodies = static_cast<int>(model.bodies.size()) - 1;
-  text.joints = static_cast<int>(model.joints.size());
+  // nodes are links of their own, but no bodies or joints of the scene
+  const int nodes = static_cast<int>(std::count_if(model.joints.begin(), model.joints.end(),
+                                                   [](const Joint& j) { return j.type == JointType::node; }));
+  text.bodies = static_cast<int>(model.bodies.size()) - 1 - nodes;
+  text.joints = static_cast<int>(model.joints.size()) - nodes;
   text.degrees_of_freedom = model.degrees_of_freedom();
   text.rows = model.row_count();
   if (model.contact != nullptr) {
@@ -41,6 +64,7 @@ Description describe(const Model& model) {
     text.driven.push_back(drive.name + " (" + joint + (drive.is_angle ? ", angle)" : ", displacement)"));
     if (drive.link > 0) --text.links[static_cast<std::size_t>(drive.link) - 1].degrees_of_freedom;
   }
+  for (const FlexiblePart& part : model.parts) text.flexible.push_back(describe(model, part));
   for (const Cut& cut : model.cuts) {
     const Joint& joint = model.joints[static_cast<std::size_t>(cut.joint)];
     CutDescription& entry = text.cuts.emplace_back();

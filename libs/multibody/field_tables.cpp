@@ -70,11 +70,17 @@ constexpr Field kMechanicsFields[] = {
                 "least 1 m/s, 1 rad/s)"}),
 };
 
+constexpr Field kRelativeTo = field<&BodyDef::relative_to>(
+    "relative_to", {.reference = "body", .doc = "body that position and orientation refer to"});
+constexpr Field kPosition =
+    field<&BodyDef::position>("position", {.dimension = length, .doc = "origin of the body's frame"});
+constexpr Field kOrientation =
+    field<&BodyDef::orientation>("orientation", {.dimension = angle, .doc = "successive Euler rotations z, x', z''"});
+
 constexpr Field kBodyFields[] = {
-    field<&BodyDef::relative_to>("relative_to",
-                                 {.reference = "body", .doc = "body that position and orientation refer to"}),
-    field<&BodyDef::position>("position", {.dimension = length, .doc = "origin of the body's frame"}),
-    field<&BodyDef::orientation>("orientation", {.dimension = angle, .doc = "successive Euler rotations z, x', z''"}),
+    kRelativeTo,
+    kPosition,
+    kOrientation,
     field<&BodyDef::mass>("mass", {.dimension = mass,
                                    .range = kPositive,
                                    .presence = Presence::required,
@@ -92,6 +98,26 @@ constexpr Field kBodyFields[] = {
         {.dimension = inertia, .doc = "the tensor's elements Ixy, Ixz, Iyz (minus the integral of x y dm)"}),
     field<&BodyDef::inertia_about>("inertia_about",
                                    {.choices = kInertiaPoints, .doc = "point that inertia and products refer to"}),
+};
+
+constexpr Field kFlexibleBodyFields[] = {
+    kRelativeTo,
+    kPosition,
+    kOrientation,
+    field<&BodyDef::flex_model>("flex_model",
+                                {.doc = "model in the names Model_Prefix_Matrix.dat of its flexible files; without it "
+                                        "the scene's name"}),
+    field<&BodyDef::flex_file_prefix>(
+        "flex_file_prefix",
+        {.presence = Presence::required, .doc = "prefix in the names of the files, which lie beside the scene"}),
+    field<&BodyDef::flex_modes>(
+        "flex_modes",
+        {.doc = "modes that are taken, as '1;2', or none: rigid, with the files' mass; without it all of the files"}),
+    field<&BodyDef::flex_frequency_limit>(
+        "flex_frequency_limit",
+        {.dimension = Dimension::frequency, .range = kPositive, .doc = "modes above it are left out"}),
+    field<&BodyDef::relative_damping>(
+        "relative_damping", {.doc = "damping over critical damping by mode, as '0.005;0.005', or one for all; 0"}),
 };
 
 template <typename Def>
@@ -212,7 +238,18 @@ void* append_to(MechanicsDef& mechanics, std::string_view element) {
   return &def;
 }
 
-constexpr ElementType kBodyTypes[] = {{"", "body", "rigid body", kBodyFields, append_to<&MechanicsDef::bodies>}};
+void* append_flexible(MechanicsDef& mechanics, std::string_view element) {
+  BodyDef& body = mechanics.bodies.emplace_back();
+  body.name = element;
+  body.type = BodyType::flexible;
+  return &body;
+}
+
+// in the order of BodyType
+constexpr ElementType kBodyTypes[] = {
+    {"rigid", "body", "rigid body", kBodyFields, append_to<&MechanicsDef::bodies>, true},
+    {"flexible", "body", "flexible body of a reduced finite element model", kFlexibleBodyFields, append_flexible},
+};
 
 constexpr ElementType kForceTypes[] = {
     {"translational", "force", "spring-damper between two points, or a cylinder's line of force",

@@ -11,7 +11,7 @@ namespace slew::multibody {
 
 // A type of element that a section of the scene may hold.
 struct ElementType {
-  std::string_view name;  // value of the key `type`; empty where the section has one type only (bodies)
+  std::string_view name;  // value of the key `type`; empty where the section has one type only
   std::string_view kind;  // what references call it (Field::reference): "body", "joint", "force", "dummy"
   std::string_view doc;   // one line
   std::span<const Field> fields;
@@ -19,6 +19,8 @@ struct ElementType {
   // Appends a Def of this type with its defaults and the given name; returns its address for Field::member, which
   // holds until the next append to the same MechanicsDef.
   void* (*append)(MechanicsDef& mechanics, std::string_view element);
+
+  bool is_default = false;  // whether it is meant where the key `type` is missing
 };
 
 struct Section {

@@ -62,6 +62,9 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
 void append_contact_variables(const Model& model, std::vector<ElementVariable>& variables);
 std::size_t read_contact_variables(const Model& model, const Workspace& ws, std::span<double> values) noexcept;
 
+// Whether a flexible part is bent by more than a tenth of its length at coordinates q: beyond small deflections.
+[[nodiscard]] bool is_bent_far(const Model& model, std::size_t part, std::span<const double> q) noexcept;
+
 // What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
 // scene, in the order and form of JointReaction; then "Motion.torque" or "Motion.force", and "Motion.power", for each
 // prescribed motion. Allocates.
@@ -101,6 +104,7 @@ struct Description {
   std::vector<LinkDescription> links;
   std::vector<CutDescription> cuts;
   std::vector<std::string> driven;           // "Crank_Drive (Crank_Pin, angle)": prescribed motions
+  std::vector<std::string> flexible;         // "Boom: 2 modes of 51.29 to 51.29 rad/s, nodes Boom.Node20 in use"
   std::vector<std::string> fixed_to_ground;  // bodies that do not move
   std::vector<std::string> pairs;            // of shapes, that are tested
   std::vector<std::string> pairs_at_rest;    // whose shapes cannot move against each other

@@ -81,7 +81,10 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
   const std::string_view element = path.substr(0, dot), key = path.substr(dot + 1);
   if (element == "mechanics") return find_gravity(key);
   if (const int body = find_body(model, element); body > 0) {
-    if (key != "mass") return std::nullopt;
+    // mass and inertia of a flexible body are those of its modes
+    const bool is_flexible = std::any_of(model.parts.begin(), model.parts.end(),
+                                         [body](const FlexiblePart& part) { return part.body == body; });
+    if (key != "mass" || is_flexible) return std::nullopt;
     return Parameter{ParameterKind::body_mass, body, 0};
   }
   for (std::size_t i = 0; i < model.lines.size(); ++i) {

@@ -26,7 +26,7 @@ class StartRules {
 
   // what the joint holds must agree at the start, or nearly
   void check_frames(const JointDef& joint) {
-    if (joint.type == JointType::floating) return;
+    if (joint.type == JointType::floating || joint.type == JointType::node) return;
     const JointFrames frames = joint_frames(joint, pose_of(joint.body1), pose_of(joint.body2));
     check_link(joint, math::norm(frames.frame2.p - frames.frame1.p));
     check_limits(joint, frames);

@@ -7,6 +7,7 @@
 
 #include "multibody/assembly.h"
 #include "multibody/body_inertia.h"
+#include "multibody/flexible/deflection.h"
 #include "multibody/observe.h"
 #include "multibody/topology.h"
 #include "multibody/validate.h"
@@ -20,15 +21,37 @@ namespace {
 // a body's mass may lie outside of its points, but hardly by more than this
 constexpr double kLargestGyration = 3;
 
+void find_start_deflections(const Model& model, Problems& warnings) {
+  for (const FlexiblePart& part : model.parts) {
+    if (!model.cuts.empty() && !part.is_start_given) {
+      warnings.push_back({part.name + ".flex_modes",
+                          "the body starts undeformed and swings: in a mechanism with loops no rest is looked for",
+                          "nothing to do, or damping that ends it", ""});
+    }
+    const std::span<const double> q(model.start_q.data() + part.q, part.modes);
+    const LargestDeflection largest = largest_deflection(*part.source, part.watched, q);
+    const double share = largest.size / part.length;
+    if (!(share > kSmallDeflection)) continue;
+    warnings.push_back(
+        {part.name + ".flex_modes",
+         fmt::format("node {} is {:.3g} m off at the start, {:.0f} % of the body's length: the theory is "
+                     "one of small deflections",
+                     largest.node, largest.size, 100 * share),
+         fmt::format("deflections below {:.0f} %", 100 * kSmallDeflection), ""});
+  }
+}
+
 }  // namespace
 
 void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
   const Model model = build_model(mechanics);
   Workspace ws(model);
-  observe(model, start_state(model), ws);
+  State state = start_state(model);
+  for_each_mode(model, [&](std::size_t q, std::size_t) { state.q[q] = 0; });
+  observe(model, state, ws);
   Problems ignored;
   const std::vector<Pose> wanted = start_poses(mechanics, ignored);
-  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+  for (std::size_t b = 1; b < wanted.size(); ++b) {
     const BodyPose found = body_pose(model, ws, static_cast<int>(b));
     const double shift = math::norm(Vec3(found.position) - wanted[b].p);
     const auto [w, x, y, z] = found.orientation;
@@ -40,6 +63,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
                      shift, turn),
          "poses that fit the joints", ""});
   }
+  find_start_deflections(model, warnings);
   for (const CutDescription& cut : describe(model).cuts) {
     for (const std::string& row : cut.redundant) {
       warnings.push_back({cut.joint, row + " is redundant: other joints hold it already",
@@ -50,6 +74,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
 
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
   for (const BodyDef& body : mechanics.bodies) {
+    if (body.type == BodyType::flexible) continue;
     double extent = 0;
     const auto see = [&](const std::string& owner, const Triple& point) {
       if (owner == body.name) extent = std::max(extent, math::norm(Vec3(point) - Vec3(body.center_of_mass)));

@@ -14,6 +14,8 @@
 #include "multibody/dynamics.h"
 #include "multibody/elements/validate_elements.h"
 #include "multibody/field_tables.h"
+#include "multibody/flexible/expand_nodes.h"
+#include "multibody/flexible/validate_flexible.h"
 #include "multibody/integrators.h"
 #include "multibody/joint_axes.h"
 #include "multibody/motions/motion_fields.h"
@@ -43,13 +45,17 @@ double rounded_down(double x) {
 
 class Validator {
  public:
-  Validator(const MechanicsDef& mechanics, Problems& problems) : m_(mechanics), problems_(problems) {}
+  // expanded: with_nodes() of the given mechanics, or this itself
+  Validator(const MechanicsDef& given, const MechanicsDef& expanded, Problems& problems)
+      : given_(given), m_(expanded), problems_(problems) {}
 
   void run() {
     check_section();
     check_ranges();
     check_names();
-    for (const BodyDef& body : m_.bodies) check_inertia(body);
+    for (const BodyDef& body : given_.bodies) {
+      if (body.type == BodyType::rigid) check_inertia(body);
+    }
     for (const JointDef& joint : m_.joints) {
       const int axes = joint.type == JointType::spherical ? 1 : coordinate_count(joint.type);
       for (int number = 0; number < axes; ++number) check_axis(joint, number);
@@ -70,8 +76,9 @@ class Validator {
       check_motion_starts(m_, poses, problems_);
     }
     if (problems_.empty()) validate_contacts(m_, problems_);
-    if (problems_.empty()) find_singular_joints(m_, problems_);
+    if (problems_.empty()) find_singular_joints(given_, problems_);
     if (problems_.empty()) check_loops();
+    if (problems_.empty()) check_mode_speeds(given_, problems_);
   }
 
  private:
@@ -114,8 +121,8 @@ class Validator {
     };
     const auto first = [](const auto&) { return std::size_t{0}; };
     const auto second = [](const auto&) { return std::size_t{1}; };
-    check_all(m_.bodies, 0, first);
-    check_all(m_.joints, 1, [](const JointDef& joint) { return static_cast<std::size_t>(joint.type); });
+    check_all(given_.bodies, 0, [](const BodyDef& body) { return static_cast<std::size_t>(body.type); });
+    check_all(given_.joints, 1, [](const JointDef& joint) { return static_cast<std::size_t>(joint.type); });
     check_all(m_.translational_forces, 2, first);
     check_all(m_.rotational_forces, 2, second);
     check_all(m_.force_dummies, 3, first);
@@ -152,7 +159,8 @@ class Validator {
 
   static bool is_open_ended(std::string_view key) {
     return key.starts_with("limit_m") || key == "max_length" || key == "min_angle" || key == "max_angle" ||
-           key == "unit" || key == "offset" || key == "from" || key.starts_with("initial_");
+           key == "unit" || key == "offset" || key == "from" || key == "flex_frequency_limit" ||
+           key.starts_with("initial_");
   }
 
   void report_range(const std::string& owner, const Field& row, double value) {
@@ -168,8 +176,9 @@ class Validator {
     const auto reference = [this](const std::string& owner, std::string_view key, const std::string& body) {
       if (multibody::find_body(m_, body) != kNoBody) return;
       references_hold_ = false;
+      const std::string nodes = nodes_beside(given_, body);
       add(fmt::format("{}.{}", owner, key), fmt::format("there is no body '{}'", body),
-          "the name of a body, or Ground");
+          nodes.empty() ? "the name of a body, or Ground" : nodes);
     };
     for (const BodyDef& body : m_.bodies) reference(body.name, "relative_to", body.relative_to);
     const auto two_bodies = [this, &reference](const auto& def) {
@@ -192,8 +201,8 @@ class Validator {
     const auto collect = [&names](const auto& defs) {
       for (const auto& def : defs) names.push_back(def.name);
     };
-    collect(m_.bodies);
-    collect(m_.joints);
+    collect(given_.bodies);
+    collect(given_.joints);
     collect(m_.translational_forces);
     collect(m_.rotational_forces);
     collect(m_.force_dummies);
@@ -322,7 +331,11 @@ class Validator {
   // loops that cannot be closed, and speeds that they do not allow
   void check_loops() {
     AssemblyReport report;
-    const Model model = build_model(m_, {}, report);
+    const Model model = build_model(given_, {}, report);
+    if (!report.is_settled) {
+      add(model.parts.front().name, "no rest is found for the flexible bodies under the load of the start",
+          "a load below the buckling load, or a start of its own");
+    }
     for (const AssemblyReport::Row& row : report.held_twice) {
       add(model.joints[static_cast<std::size_t>(row.joint)].name,
           fmt::format("the prescribed motions hold what this joint holds: {}", row.what),
@@ -343,6 +356,7 @@ class Validator {
     }
   }
 
+  const MechanicsDef& given_;
   const MechanicsDef& m_;
   Problems& problems_;
   bool references_hold_ = true;
@@ -352,7 +366,11 @@ class Validator {
 
 void validate(const MechanicsDef& mechanics, Problems& problems) {
   Problems own;
-  Validator(mechanics, own).run();
+  if (mechanics.flexible_bodies.empty()) {
+    if (check_flexible_bodies(mechanics, own)) Validator(mechanics, mechanics, own).run();
+  } else if (check_flexible_bodies(mechanics, own)) {
+    Validator(mechanics, with_nodes(mechanics), own).run();
+  }
   problems.insert(problems.end(), own.begin(), own.end());
 }
 

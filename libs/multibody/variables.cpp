@@ -3,6 +3,7 @@
 
 #include "multibody/constraint.h"
 #include "multibody/element_law.h"
+#include "multibody/flexible/deflection.h"
 #include "multibody/joint_axes.h"
 #include "multibody/motions/drive_variables.h"
 #include "multibody/observe.h"
@@ -17,6 +18,19 @@ namespace {
 
 std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
+}
+
+std::span<const double> modes_of(const FlexiblePart& part, std::span<const double> q) noexcept {
+  return q.subspan(at(part.q), part.modes);
+}
+
+// 1/2 q^T K q
+double strain_energy(const FlexiblePart& part, std::span<const double> q) noexcept {
+  double sum = 0;
+  for (std::size_t k = 0; k < part.modes; ++k) {
+    for (std::size_t l = 0; l < part.modes; ++l) sum += 0.5 * q[k] * part.stiffness[k * part.modes + l] * q[l];
+  }
+  return sum;
 }
 
 constexpr std::array<const char*, 3> kAxes = {".x", ".y", ".z"};
@@ -70,6 +84,12 @@ struct Values : VariableSink {
 
 }  // namespace
 
+bool is_bent_far(const Model& model, std::size_t part, std::span<const double> q) noexcept {
+  const FlexiblePart& flexible = model.parts[part];
+  const LargestDeflection largest = largest_deflection(*flexible.source, flexible.watched, modes_of(flexible, q));
+  return largest.size > kSmallDeflection * flexible.length;
+}
+
 BodyPose body_pose(const Model& model, const Workspace& ws, int body) noexcept {
   const Body& b = model.bodies[at(body)];
   const LinkMotion& m = ws.motion[at(b.link)];
@@ -114,6 +134,15 @@ std::vector<ElementVariable> variables(const Model& model) {
     names.add_triple(body + ".center_of_mass", length);
     names.add_triple(body + ".velocity", velocity);
     names.add_triple(body + ".angular_velocity", angular_velocity);
+  }
+  for (const FlexiblePart& part : model.parts) {
+    names.add_triple(part.name + ".deflection", length);
+    names.add(part.name + ".largest_deflection", length);
+    names.add(part.name + ".strain_energy", Dimension::energy);
+    for (std::size_t k = 1; k <= part.modes; ++k) {
+      names.add(part.name + ".modal_coordinate_" + std::to_string(k), none);
+      names.add(part.name + ".modal_velocity_" + std::to_string(k), none);
+    }
   }
   for (const Joint& joint : model.joints) {
     const int count = coordinate_count(joint.type);
@@ -186,6 +215,16 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
     out.put(pose.center_of_mass);
     out.put(pose.velocity);
     out.put(pose.angular_velocity);
+  }
+  for (const FlexiblePart& part : model.parts) {
+    const std::span<const double> q = modes_of(part, state.q), u(state.u.data() + part.u, part.modes);
+    out.put(deflection(part.source->nodes.back(), q).array());
+    out.put(largest_deflection(*part.source, part.watched, q).size);
+    out.put(strain_energy(part, q));
+    for (std::size_t k = 0; k < part.modes; ++k) {
+      out.put(q[k]);
+      out.put(u[k]);
+    }
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];

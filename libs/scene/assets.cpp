@@ -51,6 +51,12 @@ Measured measure(const std::string& name, const std::string& path) {
 
 }  // namespace
 
+std::optional<Asset> measure_asset(const std::string& name, const std::string& path, std::string& fault) {
+  Measured measured = measure(name, path);
+  fault = measured.problem;
+  return std::move(measured.asset);
+}
+
 bool is_inside_folder(const std::string& name) {
   const std::filesystem::path path(name);
   if (path.is_absolute()) return false;

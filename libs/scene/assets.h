@@ -1,6 +1,7 @@
 // Files that belong to a scene: size and SHA-256, so that a node on another machine can tell that its copy differs.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "scene/diagnostic.h"
@@ -14,6 +15,9 @@ inline constexpr std::size_t kMaxAssets = 256;
 
 // Names stay inside the scene's folder, so that they mean the same on every machine.
 [[nodiscard]] bool is_inside_folder(const std::string& name);
+
+// Size and hash of a file; empty with the reason in `fault`, as what the file is or does.
+[[nodiscard]] std::optional<Asset> measure_asset(const std::string& name, const std::string& path, std::string& fault);
 
 // Reads the section `assets: [file, ...]`; with surroundings every file is measured.
 void read_assets(const Node& section, const Surroundings& surroundings, Scene& scene, Report& report);

@@ -13,6 +13,9 @@ namespace slew::scene {
 struct Surroundings {
   bool has_folder = false;
   std::string folder;  // empty: the working directory
+  // The same for the files of flexible bodies, which nodes read as well.
+  bool has_flexible_files = has_folder;
+  std::string flexible_folder = folder;
 
   [[nodiscard]] std::string path_of(const std::string& file) const;
 };

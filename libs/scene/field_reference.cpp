@@ -86,10 +86,11 @@ std::string field_reference() {
     for (const ElementTable& table : element_tables()) {
       if (table.section != section) continue;
       void* def = table.append(defaults, "Name");
-      const std::string heading =
-          table.type.empty() ? std::string(table.doc) : fmt::format("`type: {}`: {}", table.type, table.doc);
+      const std::string heading = table.type.empty() ? std::string(table.doc)
+                                                     : fmt::format("`type: {}`{}: {}", table.type,
+                                                                   table.is_default ? " (or no type)" : "", table.doc);
       text += fmt::format("\n{}.\n\n{}", heading, table_of(table.fields, def));
-      if (section != "bodies") continue;
+      if (section != "bodies" || !table.is_default) continue;
       MeshInertiaDef from_mesh;
       text += fmt::format("\n`inertia: {}`: mass, centre of mass and inertia of the solid in a closed mesh.\n\n{}",
                           kFromMesh, table_of(mesh_inertia_fields(), &from_mesh));

@@ -84,13 +84,13 @@ Json property(const Field& field) {
   return schema;
 }
 
-Json object_of(std::span<const Field> fields, std::string_view doc, std::string_view type) {
+Json object_of(std::span<const Field> fields, std::string_view doc, std::string_view type, bool is_default = false) {
   Json schema = {{"type", "object"}, {"description", std::string(doc)}, {"additionalProperties", false}};
   Json required = Json::array();
   Json& properties = schema["properties"] = Json::object();
   if (!type.empty()) {
     properties["type"] = {{"const", std::string(type)}};
-    required.push_back("type");
+    if (!is_default) required.push_back("type");
   }
   for (const Field& field : fields) {
     properties[std::string(field.key)] = property(field);
@@ -104,7 +104,7 @@ Json object_of(std::span<const Field> fields, std::string_view doc, std::string_
 Json mesh_body(const ElementTable& table) {
   std::vector<Field> fields = fields_beside_mesh(table.fields);
   fields.insert(fields.end(), mesh_inertia_fields().begin(), mesh_inertia_fields().end());
-  Json schema = object_of(fields, "rigid body, inertia from a closed mesh", "");
+  Json schema = object_of(fields, "rigid body, inertia from a closed mesh", table.type, table.is_default);
   schema["properties"]["inertia"] = {{"const", std::string(kFromMesh)}};
   schema["required"].push_back("inertia");
   schema["oneOf"] = {{{"required", {"density"}}}, {{"required", {"mass"}}}};
@@ -115,8 +115,8 @@ Json elements_of(std::string_view section) {
   Json types = Json::array();
   for (const ElementTable& table : element_tables()) {
     if (table.section != section) continue;
-    types.push_back(object_of(table.fields, table.doc, table.type));
-    if (section == "bodies") types.push_back(mesh_body(table));
+    types.push_back(object_of(table.fields, table.doc, table.type, table.is_default));
+    if (section == "bodies" && table.is_default) types.push_back(mesh_body(table));
   }
   Json element = types.size() == 1 ? types[0] : Json{{"oneOf", types}};
   return {{"type", "object"},

@@ -12,6 +12,7 @@
 #include "scene/canonical.h"
 #include "scene/expand.h"
 #include "scene/field_reader.h"
+#include "scene/flexible_bodies.h"
 #include "scene/mesh_assets.h"
 #include "scene/mesh_inertia.h"
 #include "scene/names.h"
@@ -53,6 +54,7 @@ class SceneReader {
     if (mechanics_is_sound && hydraulics_is_sound) {
       check_problems([&](Problems& errors, Problems&) {
         make_ports(scene_, errors);
+        if (lacks_flexible_files()) return;
         if (errors.empty()) multibody::validate_rows(scene_.mechanics, row_names(scene_), errors);
         if (errors.empty() && !scene_.ports.empty()) check_start(scene_, errors);
       });
@@ -167,9 +169,34 @@ class SceneReader {
       read_mesh_body(element, table->fields, surroundings_, *static_cast<multibody::BodyDef*>(def), scene_, context_);
       return;
     }
+    if (section == "bodies" && !table->is_default) return read_flexible_body(element, *table, def);
     const bool has_type = !table->type.empty();
     read_fields(element.value, table->fields, def, element.key, element.mark,
                 has_type ? std::span<const std::string_view>(kTypeKey) : std::span<const std::string_view>(), context_);
+  }
+
+  // The keys of a rigid body may stay, so that one line makes it flexible and back. They are read, and what differs
+  // from the files is warned about (flexible_bodies.h); those of a mesh are passed over.
+  void read_flexible_body(const Node::Entry& element, const ElementTable& table, void* def) {
+    std::vector<Field> fields(table.fields.begin(), table.fields.end());
+    std::vector<std::string_view> other_keys = {"type"};
+    const bool has_mesh = takes_from_mesh(element.value);
+    for (const ElementTable& rigid : element_tables()) {
+      if (rigid.section != "bodies" || !rigid.is_default) continue;
+      for (Field field : rigid.fields) {
+        if (std::any_of(fields.begin(), fields.end(), [&](const Field& own) { return own.key == field.key; })) continue;
+        field.presence = Presence::optional;
+        if (has_mesh) {
+          other_keys.push_back(field.key);
+        } else {
+          fields.push_back(field);
+        }
+      }
+    }
+    if (has_mesh) {
+      for (const Field& field : mesh_inertia_fields()) other_keys.push_back(field.key);
+    }
+    read_fields(element.value, fields, def, element.key, element.mark, other_keys, context_);
   }
 
   // The table of the element's type; null after a complaint.
@@ -178,7 +205,7 @@ class SceneReader {
     const Node::Entry* type = element.value.find("type");
     for (const ElementTable& table : element_tables()) {
       if (table.section != section) continue;
-      if (table.type.empty() ||
+      if (table.type.empty() || (type == nullptr && table.is_default) ||
           (type != nullptr && type->value.kind == Node::Kind::scalar && type->value.text == table.type))
         return &table;
       types.push_back(table.type);
@@ -208,6 +235,8 @@ class SceneReader {
     if (report_.size() > problems || !has_sound_names_) return false;
     check_problems([&](Problems& errors, Problems& warnings) {
       read_meshes(surroundings_, scene_.mechanics, errors);
+      read_flexible_bodies(surroundings_, scene_, errors, warnings);
+      if (lacks_flexible_files()) return;
       if (errors.empty()) multibody::validate(scene_.mechanics, errors);
       if (errors.empty()) check_motion_ends(errors);
       if (errors.empty()) {
@@ -217,6 +246,10 @@ class SceneReader {
       }
     });
     return report_.size() == problems;
+  }
+
+  [[nodiscard]] bool lacks_flexible_files() const {
+    return scene_.has_flexible_bodies() && !surroundings_.has_flexible_files;
   }
 
   // a table that refuses to be left lasts as long as the session, where that ends
@@ -346,13 +379,17 @@ Scene load_file(const std::string& path, const Overrides& overrides) {
   });
 }
 
-Scene load_text(std::string text, const std::string& name, const Overrides& overrides) {
+Scene load_text(std::string text, const std::string& name, const Overrides& overrides,
+                const std::optional<std::string>& flexible_files) {
   return guarded(name, [&] {
     Report report;
     const std::optional<SourceText> source = check_source(std::move(text), report.add_source(name), report);
     std::optional<Node> root = source ? parse_yaml(*source, report) : std::nullopt;
     if (!root) report.fail(kMaxReportedProblems);
-    return read_tree(std::move(*root), {}, name, overrides, report);
+    Surroundings surroundings;
+    surroundings.has_flexible_files = flexible_files.has_value();
+    surroundings.flexible_folder = flexible_files.value_or("");
+    return read_tree(std::move(*root), std::move(surroundings), name, overrides, report);
   });
 }
 

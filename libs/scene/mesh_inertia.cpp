@@ -89,7 +89,7 @@ class MeshBodyReader {
     for (const Node::Entry& entry : element_.value.entries) {
       if (is_mesh_key(entry.key)) of_mesh.entries.push_back(entry);
     }
-    std::vector<std::string_view> other_keys = {kInertiaKey};
+    std::vector<std::string_view> other_keys = {"type", kInertiaKey};
     other_keys.insert(other_keys.end(), std::begin(kDerivedKeys), std::end(kDerivedKeys));
     for (const Field& row : kFields) other_keys.push_back(row.key);
     read_fields(of_body, fields_beside_mesh(body_fields), &body, element_.key, element_.mark, other_keys, context_);

@@ -40,6 +40,13 @@ bool is_one_of(std::string_view kind, std::string_view kinds) {
   return kinds == kind;
 }
 
+bool is_flexible(const Node& body) {
+  const Node::Entry* type = body.find("type");
+  return type != nullptr && type->value.kind == Node::Kind::scalar && type->value.text == "flexible";
+}
+
+constexpr std::string_view kNode = ".Node";
+
 std::string with_article(std::string_view kind) {
   return (kind == "input" ? "an " : "a ") + std::string(kind);
 }
@@ -61,6 +68,7 @@ void NameTable::declare_all(const Node& root, Report& report) {
       } else if (is_reserved(name)) {
         report.add(element.mark, name, {"the name is reserved", "another name", ""});
       }
+      if (section == "bodies" && is_flexible(element.value)) flexible_.insert(name);
       const auto [first, is_new] = names_.emplace(name, Declared{kind_of_section(section), element.mark});
       if (!is_new) {
         report.add(element.mark, name,
@@ -90,6 +98,10 @@ void NameTable::resolve(const std::vector<Reference>& references, Report& report
 
 std::string_view NameTable::kind_of(std::string_view name) const {
   if (name == multibody::kGroundName) return "body";
+  if (const std::size_t dot = name.find(kNode); dot != std::string_view::npos) {
+    // whether there is such a node is seen when its files are read
+    return flexible_.contains(name.substr(0, dot)) ? "body" : "";
+  }
   const auto found = names_.find(name);
   return found == names_.end() ? std::string_view() : found->second.kind;
 }

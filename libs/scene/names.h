@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,7 @@ class NameTable {
     Mark mark;
   };
   std::map<std::string, Declared, std::less<>> names_;
+  std::set<std::string, std::less<>> flexible_;  // bodies whose nodes are bodies as well: "Boom.Node20"
 };
 
 // True when a pattern with * (any characters) and ? (one character) fits the whole text.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -66,6 +67,7 @@ struct Scene {
   std::string expanded_text;
 
   [[nodiscard]] bool has_mechanics() const noexcept { return !mechanics.bodies.empty(); }
+  [[nodiscard]] bool has_flexible_bodies() const noexcept { return !mechanics.flexible_bodies.empty(); }
   [[nodiscard]] bool has_hydraulics() const noexcept { return !hydraulics.volumes.empty(); }
 };
 
@@ -78,8 +80,11 @@ inline constexpr std::size_t kMaxReportedProblems = 20;
 [[nodiscard]] Scene load_file(const std::string& path, const Overrides& overrides = {});
 
 // Reads a scene from memory; `name` stands for the file in messages. Includes and script files are not allowed there,
-// and assets keep their names only (size 0): see check_assets. Throws LoadError, nothing else.
-[[nodiscard]] Scene load_text(std::string text, const std::string& name, const Overrides& overrides = {});
+// and assets keep their names only (size 0): see check_assets. flexible_files: folder of the files of flexible bodies;
+// without it such bodies are not filled and the mechanics is not checked: nothing can be built of it. Throws LoadError,
+// nothing else.
+[[nodiscard]] Scene load_text(std::string text, const std::string& name, const Overrides& overrides = {},
+                              const std::optional<std::string>& flexible_files = std::nullopt);
 
 // Compares the files in a folder with a session's manifest; the error names every file that is missing or differs.
 [[nodiscard]] Status check_assets(std::span<const Asset> manifest, const std::string& folder);

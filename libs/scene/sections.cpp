@@ -19,9 +19,9 @@ void add_mechanics(std::vector<ElementTable>& tables) {
                         .kind = type.kind,
                         .doc = type.doc,
                         .fields = type.fields,
-                        .append = [append = type.append](Scene& scene, const std::string& name) {
-                          return append(scene.mechanics, name);
-                        }});
+                        .append = [append = type.append](
+                                      Scene& scene, const std::string& name) { return append(scene.mechanics, name); },
+                        .is_default = type.is_default});
     }
   }
 }
@@ -119,7 +119,7 @@ const ElementTable& table_of(std::string_view section, std::string_view type) {
 }
 
 ElementRef ref(const ElementTable& table, std::string_view name, void* def) {
-  return {name, table.section, table.type, table.kind, table.fields, def};
+  return {name, table.section, table.is_default ? std::string_view() : table.type, table.kind, table.fields, def};
 }
 
 template <typename Defs>
@@ -130,7 +130,10 @@ void collect(std::vector<ElementRef>& refs, const ElementTable& table, Defs& def
 void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& mechanics) {
   // in the order of JointType
   const std::span<const multibody::ElementType> joint_types = multibody::joint_types();
-  collect(refs, table_of("bodies", ""), mechanics.bodies);
+  for (multibody::BodyDef& body : mechanics.bodies) {
+    const bool is_rigid = body.type == multibody::BodyType::rigid;
+    refs.push_back(ref(table_of("bodies", is_rigid ? "rigid" : "flexible"), body.name, &body));
+  }
   for (multibody::JointDef& joint : mechanics.joints) {
     refs.push_back(ref(table_of("joints", joint_types[static_cast<std::size_t>(joint.type)].name), joint.name, &joint));
   }

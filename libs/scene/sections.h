@@ -23,6 +23,7 @@ struct ElementTable {
   std::string_view doc;
   std::span<const Field> fields;
   std::function<void*(Scene&, const std::string&)> append;  // a Def with its defaults; the address is for Field::member
+  bool is_default = false;                                  // meant where `type:` is missing
 };
 
 // A section that is one map of fields.
@@ -37,7 +38,7 @@ struct SingleTable {
 struct ElementRef {
   std::string_view name;
   std::string_view section;
-  std::string_view type;
+  std::string_view type;  // empty where it need not be said
   std::string_view kind;
   std::span<const Field> fields;
   void* def = nullptr;

@@ -44,7 +44,8 @@ std::string cut(const std::string& name) {
 std::map<std::string_view, std::string> defaults_of(const ElementRef& element) {
   std::map<std::string_view, std::string> texts;
   for (const ElementTable& table : scene::element_tables()) {
-    if (table.section != element.section || table.type != element.type) continue;
+    if (table.section != element.section) continue;
+    if (table.type != element.type && !(table.is_default && element.type.empty())) continue;
     scene::Scene scratch;
     void* def = table.append(scratch, std::string(element.name));
     for (const Field& field : table.fields) texts[field.key] = scene::value_text(field, def);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "multibody/flexible/deflection.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/topology.h"
 
@@ -53,6 +54,10 @@ FlexiblePart part_of(const FlexibleBodyDef& def, const Body& body) {
   part.name = def.body;
   part.link = body.link;
   part.modes = modes.modes();
+  part.is_start_given = !def.start.empty();
+  part.source = def.modes;
+  part.watched = widest_nodes(modes);
+  part.length = length_of(modes);
   part.C = turned(R, modes.C);
   part.G = turned(R, modes.G);
   part.Z = turned(R, modes.Z, body.p_LB, part.C);

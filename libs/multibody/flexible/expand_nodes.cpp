@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <set>
+#include <vector>
 
 namespace slew::multibody {
 
@@ -16,7 +17,9 @@ class Expander {
   explicit Expander(const MechanicsDef& mechanics) : def_(mechanics) {}
 
   MechanicsDef run() {
-    for (const FlexibleBodyDef& flexible : def_.flexible_bodies) take_mass(flexible);
+    for (const FlexibleBodyDef& flexible : def_.flexible_bodies) {
+      take_mass(*flexible.modes, *find(def_.bodies, flexible.body));
+    }
     // bodies first that something is placed at, so that their order is that of the file
     for (JointDef& joint : def_.joints) attach(joint.body1, joint.point1), attach(joint.body2, joint.point2);
     for (TranslationalForceDef& force : def_.translational_forces) {
@@ -34,6 +37,8 @@ class Expander {
     }
     for (TyreDummyDef& tyre : def_.tyre_dummies) attach(tyre.relative_to, tyre.position);
     for (PartDummyDef& dummy : def_.part_dummies) attach(dummy.carried_by);
+    def_.bodies.insert(def_.bodies.end(), nodes_.begin(), nodes_.end());
+    def_.joints.insert(def_.joints.end(), holds_.begin(), holds_.end());
     return std::move(def_);
   }
 
@@ -44,28 +49,17 @@ class Expander {
     return found == bodies.end() ? nullptr : &*found;
   }
 
-  void take_mass(const FlexibleBodyDef& flexible) {
-    BodyDef& body = *find(def_.bodies, flexible.body);
-    const ModalBody& modes = *flexible.modes;
-    const Mat3& W = modes.second_moment;
-    body.mass = modes.mass;
-    body.center_of_mass = (modes.first_moment * (1 / modes.mass)).array();
-    body.inertia_about = InertiaPoint::body_origin;
-    body.inertia = {W(1, 1) + W(2, 2), W(0, 0) + W(2, 2), W(0, 0) + W(1, 1)};
-    body.products = {-W(0, 1), -W(0, 2), -W(1, 2)};
-  }
-
   // the body of a node, made where it is new
   std::string use(const FlexibleBodyDef& flexible, std::size_t index) {
     const ModalNode& node = flexible.modes->nodes[index];
     std::string name = node_name(flexible.body, node.id);
     if (!used_.insert(name).second) return name;
-    def_.bodies.push_back({.name = name, .relative_to = flexible.body, .position = node.position.array()});
-    def_.joints.push_back({.name = name,
-                           .type = JointType::node,
-                           .body1 = flexible.body,
-                           .point1 = node.position.array(),
-                           .body2 = name});
+    nodes_.push_back({.name = name, .relative_to = flexible.body, .position = node.position.array()});
+    holds_.push_back({.name = name,
+                      .type = JointType::node,
+                      .body1 = flexible.body,
+                      .point1 = node.position.array(),
+                      .body2 = name});
     return name;
   }
 
@@ -105,10 +99,21 @@ class Expander {
   void attach(ConnectorFrames& frames) { attach(frames.body1, frames.point1), attach(frames.body2, frames.point2); }
 
   MechanicsDef def_;
+  std::vector<BodyDef> nodes_;  // and the joints that hold them, in the order of their first use
+  std::vector<JointDef> holds_;
   std::set<std::string> used_;
 };
 
 }  // namespace
+
+void take_mass(const ModalBody& modes, BodyDef& body) noexcept {
+  const Mat3& W = modes.second_moment;
+  body.mass = modes.mass;
+  body.center_of_mass = (modes.first_moment * (1 / modes.mass)).array();
+  body.inertia_about = InertiaPoint::body_origin;
+  body.inertia = {W(1, 1) + W(2, 2), W(0, 0) + W(2, 2), W(0, 0) + W(1, 1)};
+  body.products = {-W(0, 1), -W(0, 2), -W(1, 2)};
+}
 
 std::string node_name(const std::string& body, std::int64_t id) {
   return body + ".Node" + std::to_string(id);

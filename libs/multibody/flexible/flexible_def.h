@@ -17,7 +17,12 @@ struct FlexibleBodyDef {
   std::shared_ptr<const ModalBody> modes{};  // selected
   std::vector<double>
       relative_damping{};       // zeta by mode: 2 zeta omega on the normalised mode; one for all, or empty: 0
-  std::vector<double> start{};  // q by mode; empty: as the body hangs at rest at the start
+  std::vector<double> start{};  // q by mode; empty: as it rests in the start's pose, in a mechanism with loops zero
 };
+
+struct BodyDef;
+
+// Mass, centre of mass and inertia of the undeformed body.
+void take_mass(const ModalBody& modes, BodyDef& body) noexcept;
 
 }  // namespace slew::multibody

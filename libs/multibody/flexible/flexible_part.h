@@ -22,11 +22,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "math/rotation.h"
+#include "multibody/flexible/modal_body.h"
 
 namespace slew::multibody {
 
@@ -37,6 +39,10 @@ struct FlexiblePart {
   int link = 0;        // its frame
   int q = 0, u = 0;    // first modal coordinate in State::q and State::u
   std::size_t modes = 0;
+  bool is_start_given = false;
+  std::shared_ptr<const ModalBody> source{};  // the body before it was turned into the link's axes
+  std::vector<std::size_t> watched{};         // nodes of it that move most in one of the modes, and the last one
+  double length = 0;                          // m, length_of() it
   std::vector<math::Vec3> C, G;
   std::vector<math::Mat3> Z, Y, H;
   std::vector<double> mass_matrix, stiffness, damping;

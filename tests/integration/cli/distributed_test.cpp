@@ -40,21 +40,24 @@ class Distributed : public ::testing::Test {
   WorkFolder work_;
 };
 
-TEST_F(Distributed, CraneHasTheSameHashesAsInOneProcess) {
-  const CommandResult apart = slewring(
-      {"run", scene_file("truck_crane.yaml"), "--pace", "free", "--duration", "2", "--json", "--out", "apart"});
-  ASSERT_EQ(apart.code, 0) << apart.err;
-  const CommandResult together = run("slewring",
-                                     {"run", scene_file("truck_crane.yaml"), "--pace", "free", "--duration", "2",
-                                      "--in-process", "--json", "--out", "together"},
-                                     work_.path());
-  ASSERT_EQ(together.code, 0) << together.err;
-  const SampleHashes hashes = sample_hashes(only_recording_below(work_.path() / "apart"));
-  EXPECT_EQ(hashes.size(), 2u * 2001 + 1);
-  EXPECT_EQ(hashes, sample_hashes(only_recording_below(work_.path() / "together")));
-  const nlohmann::json report = nlohmann::json::parse(apart.out);
-  EXPECT_EQ(report.at("lost"), "none");
-  EXPECT_EQ(report.at("nodes").size(), 4u);
+TEST_F(Distributed, CranesHaveTheSameHashesAsInOneProcess) {
+  for (const std::string name : {"truck_crane", "truck_crane_flexible"}) {
+    const std::string scene = scene_file(name + ".yaml");
+    const CommandResult apart =
+        slewring({"run", scene, "--pace", "free", "--duration", "2", "--json", "--out", name + "_apart"});
+    ASSERT_EQ(apart.code, 0) << apart.err;
+    const CommandResult together =
+        run("slewring",
+            {"run", scene, "--pace", "free", "--duration", "2", "--in-process", "--json", "--out", name + "_together"},
+            work_.path());
+    ASSERT_EQ(together.code, 0) << together.err;
+    const SampleHashes hashes = sample_hashes(only_recording_below(work_.path() / (name + "_apart")));
+    EXPECT_EQ(hashes.size(), 2u * 2001 + 1);
+    EXPECT_EQ(hashes, sample_hashes(only_recording_below(work_.path() / (name + "_together")))) << name;
+    const nlohmann::json report = nlohmann::json::parse(apart.out);
+    EXPECT_EQ(report.at("lost"), "none");
+    EXPECT_EQ(report.at("nodes").size(), 4u);
+  }
 }
 
 TEST_F(Distributed, OfTwoRunsOfOneNameStartedTogetherOneStays) {

@@ -88,6 +88,25 @@ TEST_F(InProcess, TheScriptsParameterChangesAreReplayed) {
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
 }
 
+TEST_F(InProcess, AFlexibleCraneIsReplayedFromTheFilesBesideItsRecording) {
+  const CommandResult run = run_scene("truck_crane_flexible.yaml", {"--duration", "1"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const std::string recording = work_.recording().string();
+  const CommandResult replayed = slewring({"replay", recording, "--verify"});
+  EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+  // without the files, and with another one
+  const std::filesystem::path assets = work_.recording().parent_path() / "assets";
+  std::ofstream(assets / "truck_crane_beam_hard_Stiffness.dat") << "other";
+  const CommandResult other = slewring({"replay", recording, "--verify"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("truck_crane_beam_hard_Stiffness.dat"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("--assets"), std::string::npos) << other.err;
+  const std::string scenes = std::filesystem::path(scene_file("truck_crane_flexible.yaml")).parent_path().string();
+  const CommandResult named = slewring({"replay", recording, "--verify", "--assets", scenes});
+  EXPECT_EQ(named.code, 0) << named.out << named.err;
+}
+
 TEST_F(InProcess, ReplayStopsAtTheEndOfACutRecording) {
   ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "2"}).code, 0);
   const std::filesystem::path recording = work_.recording();

@@ -64,7 +64,11 @@ MechanicsDef flexible_links() {
   for (const char* name : {"A", "B"}) {
     std::vector<MassPoint> points;
     const auto modes = std::make_shared<ModalBody>(random_modes(random, math::Vec3(), points));
-    def.flexible_bodies.push_back({.body = name, .modes = modes, .relative_damping = {0.02}});
+    for (BodyDef& body : def.bodies) {
+      if (body.name == name) body.type = BodyType::flexible;
+    }
+    def.flexible_bodies.push_back(
+        {.body = name, .modes = modes, .relative_damping = {0.02}, .start = std::vector<double>(modes->modes())});
   }
   return def;
 }

@@ -89,6 +89,8 @@ class Generator {
       ModalBody modes = random_modes(random_, Vec3(p_C), tree_.points[name]);
       if (options_.with_shortening) shorten(random_, tree_.points[name], modes);
       flexible.modes = std::make_shared<ModalBody>(modes);
+      flexible.start.assign(modes.modes(), 0.0);
+      tree_.def.bodies.back().type = BodyType::flexible;
       flexible.relative_damping = {options_.with_forces ? number(0, 0.1) : 0};
       tree_.def.flexible_bodies.push_back(flexible);
     }

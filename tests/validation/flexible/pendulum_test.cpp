@@ -12,7 +12,7 @@ class FlexiblePendulum : public EveryFormulation {};
 
 MechanicsDef pendulum() {
   MechanicsDef def;
-  def.bodies = {{.name = "Rod", .mass = 1, .inertia = {1, 1, 1}}};
+  def.bodies = {{.name = "Rod", .type = BodyType::flexible, .mass = 1, .inertia = {1, 1, 1}}};
   def.joints = {{.name = "Pin", .body2 = "Rod"}};
   flex::SectionDef section{.shape = flex::SectionShape::solid_rectangle, .width = 0.01, .height = 0.02};
   section.shear_factor_y = section.shear_factor_z = 5.0 / 6;

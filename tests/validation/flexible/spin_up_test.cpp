@@ -34,7 +34,7 @@ Table hub_angle(double speed) {
 MechanicsDef spinning(double speed, flex::GeometricStiffening stiffening) {
   MechanicsDef def;
   def.gravity = {0, 0, 0};
-  def.bodies = {{.name = "Beam", .mass = 12, .inertia = {1, 100, 100}}};
+  def.bodies = {{.name = "Beam", .type = BodyType::flexible, .mass = 12, .inertia = {1, 100, 100}}};
   def.joints = {{.name = "Hub", .body2 = "Beam"}};
   def.motions = {{.name = "SpinUp", .joint = "Hub", .points = hub_angle(speed)}};
   flex::ReductionDef reduction = flex::testing::with_modes(12);

@@ -1,0 +1,35 @@
+// How far flexible bodies bend.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "multibody/flexible/modal_body.h"
+
+namespace slew::multibody {
+
+// phi q + 1/2 g q q of a node [m], body frame. q: by mode. No allocation.
+[[nodiscard]] math::Vec3 deflection(const ModalNode& node, std::span<const double> q) noexcept;
+// psi q, the rotation vector [rad]
+[[nodiscard]] math::Vec3 rotation(const ModalNode& node, std::span<const double> q) noexcept;
+
+// Beyond it small-deflection theory is off by more than a percent.
+inline constexpr double kSmallDeflection = 0.1;  // of the body's length
+
+// Nodes that move most in one of the modes, and the last node: so few that their number is the modes', not the nodes'.
+[[nodiscard]] std::vector<std::size_t> widest_nodes(const ModalBody& body);
+
+// Largest distance between two nodes [m].
+[[nodiscard]] double length_of(const ModalBody& body) noexcept;
+
+struct LargestDeflection {
+  std::int64_t node = 0;  // id
+  double size = 0;        // m
+};
+// Of some nodes. No allocation.
+[[nodiscard]] LargestDeflection largest_deflection(const ModalBody& body, std::span<const std::size_t> nodes,
+                                                   std::span<const double> q) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,99 @@
+#include "multibody/flexible/start_modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "math/small_cholesky.h"
+#include "multibody/observe.h"
+#include "multibody/state.h"
+
+namespace slew::multibody {
+namespace {
+
+constexpr int kMostCorrections = 200;
+constexpr double kSettled = 1e-11;  // correction, of the largest modal coordinate
+constexpr double kProbe = 1e-4;     // step of the differences, of the scale of the modes
+
+class Settling {
+ public:
+  explicit Settling(Model& model) : model_(model), ws_(model), state_(start_state(model)) {}
+
+  bool run() {
+    std::fill(state_.u.begin(), state_.u.end(), 0.0);
+    double before = 0;
+    for (int i = 0; i < kMostCorrections; ++i) {
+      const double change = correct();
+      if (!std::isfinite(change)) return false;
+      if (change <= kSettled) return keep();
+      // differences of a potential end in its rounding
+      if (i > 1 && change >= before && change < 1e3 * kSettled) return keep();
+      before = change;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] double potential() {
+    observe(model_, state_, ws_);
+    return energy(model_, ws_).potential;
+  }
+
+  // one step of (1) for all bodies; the largest change over the largest coordinate
+  double correct() {
+    double scale = 0;
+    for_each_mode(model_, [&](std::size_t q, std::size_t) { scale = std::max(scale, std::fabs(state_.q[q])); });
+    const double probe = kProbe * (scale > 0 ? scale : 1);
+    double largest = 0;
+    std::vector<std::vector<double>> steps(model_.parts.size());
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const FlexiblePart& part = model_.parts[i];
+      if (part.is_start_given) continue;
+      std::vector<double>& step = steps[i];
+      step.resize(part.modes);
+      for (std::size_t k = 0; k < part.modes; ++k) {
+        double& q = state_.q[static_cast<std::size_t>(part.q) + k];
+        const double held = q;
+        q = held + probe;
+        const double above = potential();
+        q = held - probe;
+        const double below = potential();
+        q = held;
+        step[k] = -(above - below) / (2 * probe);
+      }
+      std::vector<double> factor = part.stiffness;
+      const int modes = static_cast<int>(part.modes);
+      if (!math::factorize_cholesky(factor.data(), modes)) return std::numeric_limits<double>::quiet_NaN();
+      math::substitute_forward(factor.data(), modes, step.data());
+      math::substitute_backward(factor.data(), modes, step.data());
+    }
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      for (std::size_t k = 0; k < steps[i].size(); ++k) {
+        double& q = state_.q[static_cast<std::size_t>(model_.parts[i].q) + k];
+        q += steps[i][k];
+        largest = std::max(largest, std::fabs(steps[i][k]));
+        scale = std::max(scale, std::fabs(q));
+      }
+    }
+    return scale > 0 ? largest / scale : 0;
+  }
+
+  bool keep() {
+    for_each_mode(model_, [&](std::size_t q, std::size_t) { model_.start_q[q] = state_.q[q]; });
+    return true;
+  }
+
+  Model& model_;
+  Workspace ws_;
+  State state_;
+};
+
+}  // namespace
+
+bool settle_modes(Model& model) {
+  return model.parts.empty() || Settling(model).run();
+}
+
+}  // namespace slew::multibody

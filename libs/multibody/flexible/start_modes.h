@@ -1,0 +1,14 @@
+// Modal coordinates at the start. Internal to the library.
+#pragma once
+
+#include "multibody/model.h"
+
+namespace slew::multibody {
+
+// Puts flexible bodies whose start the scene leaves open to rest in the pose that the joints have at the start: modal
+// coordinates at which gravity and the springs of the mechanism, all joints held, balance the modes,
+//   q <- q - K^-1 dV/dq,   V the potential energy                                                       (1)
+// Row forces and loads are not in it. False: (1) does not settle, as beyond a buckling load; the modes start at zero.
+[[nodiscard]] bool settle_modes(Model& model);
+
+}  // namespace slew::multibody

@@ -1,0 +1,182 @@
+#include "scene/flexible_bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "flex/flexible_files.h"
+#include "flex/input_error.h"
+#include "multibody/flexible/deflection.h"
+#include "scene/assets.h"
+#include "scene/modal_body.h"
+
+namespace slew::scene {
+namespace {
+
+using multibody::BodyDef;
+using multibody::FlexibleBodyDef;
+
+// "0.005;0.005"; nothing for what is no list of numbers
+std::optional<std::vector<double>> number_list(const std::string& text) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(';', begin), text.size());
+    const std::size_t first = text.find_first_not_of(' ', begin), last = text.find_last_not_of(' ', end - 1);
+    if (first >= end) return std::nullopt;
+    double& number = numbers.emplace_back();
+    const auto [rest, error] = std::from_chars(text.data() + first, text.data() + last + 1, number);
+    if (error != std::errc() || rest != text.data() + last + 1 || !std::isfinite(number)) return std::nullopt;
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+struct Wanted {
+  bool all = false;
+  std::vector<int> ordinals{};
+};
+
+class FlexibleReader {
+ public:
+  FlexibleReader(const Surroundings& surroundings, Scene& scene, Problems& problems, Problems& warnings)
+      : surroundings_(surroundings), scene_(scene), problems_(problems), warnings_(warnings) {}
+
+  void read(const BodyDef& body) {
+    FlexibleBodyDef flexible{.body = body.name};
+    if (const auto damping = number_list(body.relative_damping)) {
+      flexible.relative_damping = *damping;
+    } else {
+      complain(body, "relative_damping", "'" + body.relative_damping + "' is no list of numbers",
+               "numbers between semicolons, such as '0.005;0.005'");
+    }
+    const std::optional<Wanted> modes = modes_of(body);
+    if (surroundings_.has_flexible_files) {
+      const flex::FlexibleFileSet files{surroundings_.flexible_folder,
+                                        body.flex_model.empty() ? scene_.name : body.flex_model, body.flex_file_prefix};
+      const flex::Reduction* reduction = reduction_of(body, files);
+      if (reduction != nullptr && modes) take(body, files, *reduction, *modes, flexible);
+    }
+    scene_.mechanics.flexible_bodies.push_back(std::move(flexible));
+  }
+
+ private:
+  void complain(const BodyDef& body, const char* key, std::string what, std::string expected) {
+    problems_.push_back({fmt::format("{}.{}", body.name, key), std::move(what), std::move(expected), ""});
+  }
+
+  std::optional<Wanted> modes_of(const BodyDef& body) {
+    if (body.flex_modes.empty()) return Wanted{.all = true};
+    if (body.flex_modes == "none") return Wanted{};
+    try {
+      return Wanted{.ordinals = flex::mode_list(body.flex_modes)};
+    } catch (const flex::InputError& error) {
+      complain(body, "flex_modes", error.what(), "ordinals between semicolons, such as '1;2', or none");
+      return std::nullopt;
+    }
+  }
+
+  // null after a complaint
+  const flex::Reduction* reduction_of(const BodyDef& body, const flex::FlexibleFileSet& files) {
+    const auto known = sets_.find({files.model, files.prefix});
+    if (known != sets_.end()) return known->second.get();
+    auto& set = sets_[{files.model, files.prefix}];
+    try {
+      set = std::make_unique<flex::Reduction>(flex::read_flexible_files(files));
+    } catch (const std::exception& error) {
+      complain(body, "flex_file_prefix", error.what(), "a set of flexible files beside the scene: slewring flex build");
+      return nullptr;
+    }
+    for (const std::string& matrix : flex::flexible_matrices()) add_asset(body, files, matrix);
+    return set.get();
+  }
+
+  void add_asset(const BodyDef& body, const flex::FlexibleFileSet& files, const std::string& matrix) {
+    const std::string path = flex::flexible_file(files, matrix).string();
+    const std::string name = flex::flexible_file(files, matrix).filename().string();
+    const auto known = std::find_if(scene_.assets.begin(), scene_.assets.end(),
+                                    [&](const Asset& asset) { return asset.name == name; });
+    if (known != scene_.assets.end()) return;
+    std::string fault;
+    if (std::optional<Asset> asset = measure_asset(name, path, fault)) {
+      scene_.assets.push_back(std::move(*asset));
+    } else {
+      complain(body, "flex_file_prefix", "'" + name + "' " + fault, "");
+    }
+    if (scene_.assets.size() > kMaxAssets) {
+      complain(body, "flex_file_prefix", fmt::format("the scene has {} files", scene_.assets.size()),
+               fmt::format("at most {}", kMaxAssets));
+    }
+  }
+
+  void take(const BodyDef& body, const flex::FlexibleFileSet& files, const flex::Reduction& all, const Wanted& wanted,
+            FlexibleBodyDef& flexible) {
+    const double highest = 2 * std::numbers::pi * body.flex_frequency_limit;
+    std::vector<int> kept;
+    for (const int ordinal : flex::modes_up_to(all.body, highest)) {
+      const bool is_wanted =
+          wanted.all || std::find(wanted.ordinals.begin(), wanted.ordinals.end(), ordinal) != wanted.ordinals.end();
+      if (is_wanted) kept.push_back(ordinal);
+    }
+    try {
+      static_cast<void>(flex::places_of(wanted.ordinals, all.body.modes()));  // throws for unknown ones
+      if (kept.empty() && (wanted.all || !wanted.ordinals.empty())) {
+        complain(body, "flex_frequency_limit",
+                 fmt::format("no mode is left below {:.4g} Hz", body.flex_frequency_limit),
+                 fmt::format("at least {:.4g} Hz", all.body.omega.front() / (2 * std::numbers::pi)));
+        return;
+      }
+      const flex::Reduction chosen = flex::select(all, kept);
+      flexible.modes = std::make_shared<const multibody::ModalBody>(
+          modal_body(chosen, fmt::format("{}_{}", files.model, files.prefix)));
+      compare_mass(body, *flexible.modes);
+    } catch (const flex::InputError& error) {
+      complain(body, "flex_modes", error.what(), fmt::format("ordinals from 1 to {}", all.body.modes()));
+    }
+  }
+
+  // what the body had while it was rigid
+  void compare_mass(const BodyDef& body, const multibody::ModalBody& modes) {
+    constexpr double kAlike = 0.01;
+    if (body.mass == 0) return;
+    BodyDef of_files;
+    multibody::take_mass(modes, of_files);
+    if (std::fabs(body.mass - of_files.mass) > kAlike * of_files.mass) {
+      warnings_.push_back(
+          {body.name + ".mass",
+           fmt::format("{:.6g} kg has no effect: the flexible files say {:.6g} kg", body.mass, of_files.mass),
+           "no mass, or that of the files", ""});
+    }
+    const double off = norm(math::Vec3(body.center_of_mass) - math::Vec3(of_files.center_of_mass));
+    if (off > kAlike * multibody::length_of(modes)) {
+      const auto [x, y, z] = of_files.center_of_mass;
+      warnings_.push_back({body.name + ".center_of_mass",
+                           fmt::format("it has no effect: the flexible files say [{:.6g}, {:.6g}, {:.6g}] m", x, y, z),
+                           "no center_of_mass, or that of the files", ""});
+    }
+  }
+
+  const Surroundings& surroundings_;
+  Scene& scene_;
+  Problems& problems_;
+  Problems& warnings_;
+  std::map<std::pair<std::string, std::string>, std::unique_ptr<flex::Reduction>> sets_;
+};
+
+}  // namespace
+
+void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Problems& problems, Problems& warnings) {
+  FlexibleReader reader(surroundings, scene, problems, warnings);
+  for (const BodyDef& body : scene.mechanics.bodies) {
+    if (body.type == multibody::BodyType::flexible) reader.read(body);
+  }
+}
+
+}  // namespace slew::scene

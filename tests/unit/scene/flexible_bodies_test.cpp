@@ -1,0 +1,163 @@
+// Flexible bodies of a scene: their files, what is taken of them, and every way in which they do not fit.
+#include "scene/flexible_bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "flex/flexible_files.h"
+#include "scene_text.h"
+#include "support/flex_beams.h"
+#include "temporary_folder.h"
+
+namespace slew::scene {
+namespace {
+
+constexpr const char* kBoom = R"(scene: crane
+bodies:
+  Boom:
+    type: flexible
+    flex_file_prefix: beam_hard
+    flex_modes: "1;2"
+    relative_damping: "0.005;0.01"
+  Load: {relative_to: Boom, position: [-6.5 m, 0.02904 m, 0.1507 m], mass: 500 kg, inertia: [10, 10, 10]}
+joints:
+  Root: {type: revolute, body2: Boom}
+  Hook: {type: fixed, body1: Boom, point1: [-6.5 m, 0.02904 m, 0.1507 m], body2: Load}
+)";
+
+class FlexibleScene : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const flex::Reduction reduction =
+        flex::reduce(flex::build_beam(flex::testing::jib_boom()), flex::testing::with_modes(4));
+    flex::write_flexible_files({folder_.path(), "crane", "beam_hard"}, reduction);
+  }
+
+  [[nodiscard]] Scene load(const std::string& text = kBoom, const Overrides& overrides = {}) const {
+    return load_file(folder_.write("scene.yaml", text), overrides);
+  }
+  [[nodiscard]] std::string problems(const std::string& text, const Overrides& overrides = {}) const {
+    try {
+      (void)load(text, overrides);
+    } catch (const LoadError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  static std::string with(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  }
+  static void expect_part(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(FlexibleScene, FourLinesMakeABodyFlexible) {
+  const Scene scene = load();
+  ASSERT_EQ(scene.mechanics.flexible_bodies.size(), 1U);
+  const multibody::FlexibleBodyDef& boom = scene.mechanics.flexible_bodies[0];
+  EXPECT_EQ(boom.body, "Boom");
+  EXPECT_EQ(boom.modes->modes(), 2U);
+  EXPECT_EQ(boom.relative_damping, (std::vector<double>{0.005, 0.01}));
+  EXPECT_NEAR(boom.modes->mass, 127.56, 0.01);
+  EXPECT_EQ(scene.assets.size(), flex::flexible_matrices().size());
+  EXPECT_EQ(scene.assets[0].name, "crane_beam_hard_Source.dat");
+  EXPECT_GT(scene.assets[0].size, 0U);
+  EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+}
+
+TEST_F(FlexibleScene, TheTextReadsBackWithTheFilesAndWithout) {
+  const Scene scene = load();
+  const Scene again = load_text(scene.expanded_text, "again", {}, folder_.path());
+  EXPECT_EQ(again.expanded_text, scene.expanded_text);
+  EXPECT_EQ(again.mechanics.flexible_bodies[0].modes->stiffness, scene.mechanics.flexible_bodies[0].modes->stiffness);
+  const Scene plain = load_text(scene.expanded_text, "again");
+  EXPECT_EQ(plain.expanded_text, scene.expanded_text);
+  EXPECT_TRUE(plain.has_flexible_bodies());
+  EXPECT_EQ(plain.mechanics.flexible_bodies[0].modes, nullptr);
+}
+
+TEST_F(FlexibleScene, ModesAreTakenByListByFrequencyOrNotAtAll) {
+  const std::string line = "    flex_modes: \"1;2\"\n", damping = "    relative_damping: \"0.005;0.01\"\n";
+  const std::string plain = with(kBoom, damping, "");
+  const std::string implicit = "mechanics: {integrator: trapezoidal}\n";
+  const auto modes = [&](const std::string& instead) {
+    return load(with(plain, line, instead) + implicit).mechanics.flexible_bodies[0].modes->modes();
+  };
+  EXPECT_EQ(modes(line), 2U);
+  EXPECT_GE(modes(""), 10U);
+  EXPECT_EQ(modes("    flex_frequency_limit: 20 Hz\n"), 2U);
+  EXPECT_EQ(modes("    flex_modes: none\n"), 0U);
+}
+
+TEST_F(FlexibleScene, ANodeIsNamedAsIfItWereABody) {
+  const std::string named = with(kBoom, "body1: Boom, point1: [-6.5 m, 0.02904 m, 0.1507 m]", "body1: Boom.Node20");
+  EXPECT_EQ(problems(named), "");
+  expect_part(problems(with(named, "Node20", "Node21")),
+              "there is no body 'Boom.Node21'; expected Boom.Node1 to "
+              "Boom.Node20, 20 nodes");
+  expect_part(problems(with(named, "Boom.Node20", "Load.Node20")), "no body 'Load.Node20'");
+}
+
+TEST_F(FlexibleScene, TheModelIsTheSceneUnlessItIsSaid) {
+  expect_part(problems(with(kBoom, "scene: crane", "scene: other")), "other_beam_hard_Source.dat");
+  EXPECT_EQ(problems(with(with(kBoom, "scene: crane", "scene: other"), "    flex_file",
+                          "    flex_model: crane\n    flex_file")),
+            "");
+}
+
+TEST_F(FlexibleScene, RigidKeysMayStayAndAreComparedWithTheFiles) {
+  const auto warnings = [&](const std::string& keys) {
+    return load(with(kBoom, "    flex_modes", keys + "    flex_modes")).warnings;
+  };
+  EXPECT_TRUE(
+      warnings("    mass: 127.5618 kg\n    center_of_mass: [-3.25 m, 0.029 m, 0.15 m]\n    inertia: [1, 2, 2]\n")
+          .empty());
+  const auto other = warnings("    mass: 500 kg\n    center_of_mass: [0, 0, 0]\n");
+  ASSERT_EQ(other.size(), 2U);
+  expect_part(other[0], "Boom.mass: 500 kg has no effect: the flexible files say 127.56");
+  expect_part(other[1], "Boom.center_of_mass: it has no effect: the flexible files say [-3.25");
+}
+
+TEST_F(FlexibleScene, RigidIsTheTypeThatNeedNotBeSaid) {
+  const std::string said = with(kPendulum, "{mass", "{type: rigid, mass");
+  EXPECT_EQ(load_text(said, "test").expanded_text, load_text(kPendulum, "test").expanded_text);
+  expect_part(problems_of(with(kPendulum, "{mass", "{type: flexibel, mass")), "did you mean 'flexible'");
+}
+
+TEST_F(FlexibleScene, WhatDoesNotFitIsToldByKey) {
+  const auto fault = [&](const std::string& from, const std::string& to) { return problems(with(kBoom, from, to)); };
+  expect_part(fault("beam_hard", "beam_soft"), "Boom.flex_file_prefix: ");
+  expect_part(fault("beam_hard", "beam_soft"), "slewring flex build");
+  expect_part(fault("    flex_file_prefix: beam_hard\n", ""), "the key 'flex_file_prefix' is missing");
+  expect_part(fault("\"1;2\"", "\"1;99\""), "Boom.flex_modes: ");
+  expect_part(fault("\"1;2\"", "\"1;two\""), "Boom.flex_modes: ");
+  expect_part(fault("\"0.005;0.01\"", "\"0.005;0.01;0.02\""), "Boom.relative_damping: holds 3 numbers for 2 modes");
+  expect_part(fault("\"0.005;0.01\"", "\"0.005;x\""), "'0.005;x' is no list of numbers");
+  expect_part(fault("\"0.005;0.01\"", "\"-1\""), "Boom.relative_damping: -1 is out of range");
+  expect_part(fault("    flex_modes: \"1;2\"\n", "    flex_frequency_limit: 1 Hz\n"), "no mode is left below 1 Hz");
+  expect_part(fault("    flex_modes", "    flex_mode: 1\n    flex_modes"), "did you mean 'flex_modes'");
+}
+
+TEST_F(FlexibleScene, AFileThatIsDamagedIsNamed) {
+  const std::string file = folder_.path() + "/crane_beam_hard_Modes.dat";
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  expect_part(problems(kBoom), "crane_beam_hard_Modes.dat");
+}
+
+TEST_F(FlexibleScene, AManifestTellsThatAFileIsAnother) {
+  const Scene scene = load();
+  EXPECT_TRUE(check_assets(scene.assets, folder_.path()).is_ok());
+  folder_.write("crane_beam_hard_Frequencies.dat", "other");
+  const Status status = check_assets(scene.assets, folder_.path());
+  EXPECT_EQ(status.code, ExitCode::bad_input);
+  expect_part(status.text, "crane_beam_hard_Frequencies.dat");
+}
+
+}  // namespace
+}  // namespace slew::scene

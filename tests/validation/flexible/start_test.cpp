@@ -1,0 +1,164 @@
+// Flexible bodies at the start: static deflection against beam theory, bodies without modes, modes that are too fast.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "multibody/flexible/deflection.h"
+#include "tests/validation/flexible/flexible_def.h"
+#include "tests/validation/multibody/every_formulation.h"
+
+namespace slew::multibody {
+namespace {
+
+using namespace testing;
+
+constexpr double kLength = 6.5;  // m
+constexpr double kGravity = 9.81;
+
+// the jib boom, held level at its root, with a load at its tip
+MechanicsDef level_boom(double load, double youngs_modulus, const std::vector<int>& kept) {
+  MechanicsDef def;
+  def.bodies = {{.name = "Boom", .type = BodyType::flexible},
+                {.name = "Load",
+                 .relative_to = "Boom",
+                 .position = {-kLength, 0.02904, 0.1507},
+                 .mass = load,
+                 .inertia = {1, 1, 1}}};
+  def.joints = {{.name = "Root", .type = JointType::fixed, .body2 = "Boom"},
+                {.name = "Hook",
+                 .type = JointType::fixed,
+                 .body1 = "Boom",
+                 .point1 = {-kLength, 0.02904, 0.1507},
+                 .body2 = "Load"}};
+  const flex::BeamDef beam = flex::testing::jib_boom(20, youngs_modulus);
+  def.flexible_bodies = {{.body = "Boom", .modes = slew::testing::modes_of(beam, flex::testing::with_modes(10), kept)}};
+  return def;
+}
+
+// tip of a Timoshenko cantilever under its own weight and a load, small deflections
+double sag(double load, double youngs_modulus) {
+  const flex::BeamDef beam = flex::testing::jib_boom(20, youngs_modulus);
+  const flex::Section section = flex::make_section(beam.sections[0], beam.materials[0].poisson_ratio);
+  const double E = beam.materials[0].youngs_modulus, G = E / (2 * (1 + beam.materials[0].poisson_ratio));
+  const double P = load * kGravity, w = beam.materials[0].density * section.area * kGravity, L = kLength;
+  const double EI = E * section.second_moment_z, kGA = section.shear_factor_y * G * section.area;
+  return P * L * L * L / (3 * EI) + P * L / kGA + w * std::pow(L, 4) / (8 * EI) + w * L * L / (2 * kGA);
+}
+
+// modes that bend in the plane of gravity, the first `count` of them, beside as many across it
+std::vector<int> lowest(int count) {
+  std::vector<int> kept;
+  for (int k = 1; k <= 2 * count; ++k) kept.push_back(k);
+  return kept;
+}
+
+TEST(FlexibleStart, SagsAsBeamTheorySays) {
+  for (const double youngs_modulus : {2e11, 2e10}) {
+    for (const double load : {500.0, 1500.0}) {
+      const double exact = sag(load, youngs_modulus);
+      for (const auto& [modes, tolerance] : {std::pair(1, 0.04), {2, 0.01}}) {
+        Mechanism boom(level_boom(load, youngs_modulus, lowest(modes)));
+        const double y = boom.value("Boom.deflection.y");
+        EXPECT_NEAR(y, -exact, tolerance * exact) << load << " kg, E " << youngs_modulus << ", " << modes << " a plane";
+        RecordProperty("sag_" + std::to_string(modes) + "_" + std::to_string(static_cast<int>(load)),
+                       std::to_string(-y / exact));
+      }
+    }
+  }
+}
+
+class FlexibleStarts : public EveryFormulation {};
+
+TEST_P(FlexibleStarts, StandStill) {
+  Formulated boom = start(level_boom(500, 2e11, lowest(2)));
+  const double before = boom.value("Boom.deflection.y");
+  boom.run(0.5, 2.5e-4);
+  EXPECT_NEAR(boom.value("Boom.deflection.y"), before, 1e-7 * std::fabs(before));
+}
+
+// A body without modes is the rigid body of the beam's mass; so is one whose nodes carry others.
+TEST_P(FlexibleStarts, BodiesWithoutModesAreRigid) {
+  MechanicsDef flexible = level_boom(300, 2e11, {1, 2});
+  flexible.joints[0].type = JointType::revolute;
+  flexible.joints[1].type = JointType::spherical;
+  flexible.joints[1].point1[1] -= 0.2;
+  flexible.bodies[1].position[1] -= 0.2;
+  flexible.bodies[1].center_of_mass = {0, -0.6, 0.1};
+  flexible.flexible_bodies[0].modes = std::make_shared<ModalBody>(scene::modal_body(
+      flex::select(flex::reduce(flex::build_beam(flex::testing::jib_boom()), flex::testing::with_modes(10)), {}),
+      "none"));
+  MechanicsDef rigid = flexible;
+  take_mass(*flexible.flexible_bodies[0].modes, rigid.bodies[0]);
+  rigid.bodies[0].type = BodyType::rigid;
+  rigid.flexible_bodies.clear();
+  Formulated one = start(flexible), other = start(rigid);
+  for (int i = 0; i < 20; ++i) {
+    one.run(0.1, 1e-3);
+    other.run(0.1, 1e-3);
+    for (const char* variable : {"Root.position", "Load.position.x", "Load.position.y", "Load.position.z",
+                                 "Load.velocity.x", "Load.velocity.y", "Load.velocity.z"}) {
+      // a node's six rows are only as closed as penalty closes rows
+      const double size = std::fmax(1, std::fabs(one.value(variable)));
+      EXPECT_NEAR(one.value(variable), other.value(variable), (is(Formulation::penalty) ? 1e-8 : 1e-9) * size)
+          << variable << " at " << 0.1 * (i + 1);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(In, FlexibleStarts, kEveryFormulation, kFormulationName);
+
+TEST(FlexibleStart, TooFastModesAreRefusedByName) {
+  const MechanicsDef def = level_boom(500, 2e11, {});
+  Problems problems;
+  validate(def, problems);
+  ASSERT_EQ(problems.size(), 1U) << text_of(problems);
+  EXPECT_EQ(problems[0].path, "Boom.flex_modes");
+  EXPECT_NE(problems[0].what.find("which rk4 cannot follow in sub-steps of 0.001 s"), std::string::npos);
+  MechanicsDef implicit = def;
+  implicit.integrator = Integrator::trapezoidal;
+  problems.clear();
+  validate(implicit, problems);
+  EXPECT_TRUE(problems.empty()) << text_of(problems);
+}
+
+// what is just below the bound stays bounded, what is just above it does not
+TEST(FlexibleStart, TheBoundOfTheSubstepIsWhereRungeKuttaEnds) {
+  MechanicsDef def = level_boom(0.1, 2e11, lowest(2));
+  def.flexible_bodies[0].start = {1e-3, 1e-3, 1e-3, 1e-3};
+  def.max_substep = 1;
+  Problems problems;
+  validate(def, problems);
+  ASSERT_EQ(problems.size(), 1U);
+  const std::string& text = problems[0].expected;
+  const double longest = std::stod(text.substr(text.find("at most ") + 8));
+  const auto largest_after = [&](double h) {
+    MechanicsDef chosen = def;
+    chosen.max_substep = h;
+    const Model model = build_model(chosen);
+    Workspace ws(model);
+    State state = start_state(model);
+    for (int i = 0; i < 2000; ++i) (void)advance_free(model, state, ws, h);
+    double largest = 0;
+    for (const double q : state.q) largest = std::fmax(largest, std::fabs(q));
+    return largest;
+  };
+  EXPECT_LT(largest_after(0.98 * longest), 1);
+  EXPECT_FALSE(largest_after(1.03 * longest) < 1e3);
+}
+
+TEST(FlexibleStart, LargeDeflectionsAreWarnedOf) {
+  Problems warnings;
+  find_start_changes(level_boom(1500, 2e11, lowest(1)), warnings);
+  EXPECT_TRUE(warnings.empty()) << text_of(warnings);
+  const MechanicsDef soft = level_boom(1500, 2e10, lowest(1));
+  find_start_changes(soft, warnings);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].what.find("node 20 is"), std::string::npos) << warnings[0].what;
+  const Model model = build_model(soft);
+  EXPECT_TRUE(is_bent_far(model, 0, model.start_q));
+  EXPECT_FALSE(is_bent_far(model, 0, std::vector<double>(model.start_q.size())));
+}
+
+}  // namespace
+}  // namespace slew::multibody
