@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <optional>
 
 #include "flex/flexible_table.h"
 #include "flex/input_error.h"
@@ -72,9 +73,10 @@ std::string ids_of(const std::vector<int>& ids) {
   return ids.empty() ? "-" : fmt::format("{}", fmt::join(ids, " "));
 }
 
-Rows source_rows(const Source& s, std::size_t modes) {
+Rows source_rows(const FlexibleFileSet& set, const Source& s, std::size_t modes) {
   Rows rows;
   const auto add = [&](const std::string& key, const std::string& value) { rows.word(key).word(value).end(); };
+  add("files", set.model + ' ' + set.prefix);
   add("model", one_line(s.model));
   add("made_of", one_line(s.made_of));
   add("attachment", s.attachment == Attachment::clamped ? "clamped" : "free");
@@ -175,17 +177,51 @@ std::uint64_t digest(std::uint64_t hash, const std::string& text) noexcept {
   return hash;
 }
 
-void check_names(const FlexibleFileSet& set) {
+void check_name(const char* what, const std::string& name) {
   const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
   };
-  const auto is_name = [&](char c) { return is_letter(c) || c == '_'; };
-  if (set.model.empty() || !std::all_of(set.model.begin(), set.model.end(), is_name))
+  if (name.empty() || !std::all_of(name.begin(), name.end(), is_letter))
     throw InputError(
-        fmt::format("the model's name '{}' cannot be part of a file's; expected letters, digits, _ - .", set.model));
-  if (set.prefix.empty() || !std::all_of(set.prefix.begin(), set.prefix.end(), is_letter))
-    throw InputError(
-        fmt::format("the prefix '{}' cannot be part of a file's name; expected letters, digits, - .", set.prefix));
+        fmt::format("the {} '{}' cannot be part of a file's name; expected letters, digits, _ - .", what, name));
+}
+
+// What stands at the files' places may be replaced: files, and of no other model.
+void check_places(const FlexibleFileSet& set) {
+  for (const std::string& matrix : flexible_matrices()) {
+    const auto file = flexible_file(set, matrix);
+    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+      refuse_file(file, 0, "this is no file", "a file, or none", "nothing was written; take another folder or prefix");
+  }
+  const auto source = flexible_file(set, "Source");
+  std::optional<FileOwner> owner;
+  try {
+    if (std::filesystem::exists(source)) owner = owner_of(source);
+  } catch (const InputError&) {
+    return;  // a damaged set is nobody's
+  }
+  if (owner && owner->shadows(set.model, set.prefix))
+    refuse_file(source, 0, fmt::format("this is of model '{}', prefix '{}'", owner->model, owner->prefix),
+                fmt::format("model '{}', prefix '{}'", set.model, set.prefix),
+                "nothing was written; take another prefix or folder");
+}
+
+std::filesystem::path beside(const std::filesystem::path& file) {
+  return file.string() + ".new";
+}
+
+// The files under the names of beside(), all or none.
+void write_beside(const FlexibleFileSet& set, const std::vector<std::string>& texts) {
+  try {
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      write_text(beside(flexible_file(set, flexible_matrices()[i])), texts[i]);
+  } catch (const InputError&) {
+    std::error_code ignored;
+    for (const std::string& matrix : flexible_matrices())
+      std::filesystem::remove(beside(flexible_file(set, matrix)), ignored);
+    throw;
+  }
 }
 
 }  // namespace
@@ -201,9 +237,11 @@ std::filesystem::path flexible_file(const FlexibleFileSet& set, const std::strin
 }
 
 void write_flexible_files(const FlexibleFileSet& set, const Reduction& reduction) {
-  check_names(set);
+  check_name("model's name", set.model);
+  check_name("prefix", set.prefix);
+  check_places(set);
   const ReducedBody& body = reduction.body;
-  const std::vector<Rows> rows = {source_rows(reduction.source, body.modes()),
+  const std::vector<Rows> rows = {source_rows(set, reduction.source, body.modes()),
                                   node_rows(body),
                                   frequency_rows(body),
                                   mode_rows(body),
@@ -213,12 +251,20 @@ void write_flexible_files(const FlexibleFileSet& set, const Reduction& reduction
                                   recovery_rows(reduction.recovery)};
   std::uint64_t hash = 14695981039346656037u;
   for (const Rows& part : rows) hash = digest(hash, part.text());
+  std::vector<std::string> texts;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const TableForm form = form_of(flexible_matrices()[i], body.modes());
     const std::string header =
         fmt::format("{} {} {} rows={} columns={} set={:016x} units={}\n# {}\n", kFormatName, kFormatVersion, form.what,
                     rows[i].count(), form.columns, hash, form.units, form.names);
-    write_text(flexible_file(set, form.what), header + rows[i].text());
+    texts.push_back(header + rows[i].text());
+  }
+  write_beside(set, texts);
+  for (const std::string& matrix : flexible_matrices()) {
+    const auto file = flexible_file(set, matrix);
+    std::error_code error;
+    std::filesystem::rename(beside(file), file, error);
+    if (error) refuse_file(file, 0, "the file cannot be replaced", "a folder that takes it", "write the set again");
   }
 }
 

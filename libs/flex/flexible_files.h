@@ -4,7 +4,8 @@
 //   slewring-flexible 1 Frequencies rows=14 columns=2 set=8c1f0a... units=1,rad/s
 // then lines that begin with # (names of the columns), then its rows. 17 significant digits: what is read has the bits
 // of what was written. `set` is one number in all files of a set, made of all their contents, so that files of two sets
-// are not mixed; it is not compared with the contents again, so that a set may be edited. The format:
+// are not mixed; it is not compared with the contents again, so that a set may be edited. Model and prefix may hold
+// '_', so two pairs can share their files' names (a, b_c and a_b, c): Source tells whose they are. The format:
 // docs/flexible-files.md. Source of the naming: the flexible-body tutorial thesis (2017), chapter 3.2; the contents are
 // ours.
 #pragma once
@@ -20,7 +21,7 @@ namespace slew::flex {
 struct FlexibleFileSet {
   std::filesystem::path folder;
   std::string model;   // letters, digits, '_', '-', '.'
-  std::string prefix;  // the same without '_'
+  std::string prefix;  // the same
 };
 
 // folder/Model_Prefix_Matrix.dat
@@ -28,12 +29,19 @@ struct FlexibleFileSet {
 // Of every set: the eight names of matrices, in the order in which they are written.
 [[nodiscard]] const std::vector<std::string>& flexible_matrices();
 
-// Throws InputError: bad names, or a file that cannot be written. The folder must exist.
+// The set whose files begin with `stem`, folder/Model_Prefix, by what its Source says; where Source does not say it,
+// the prefix is what stands behind the last '_'. Throws InputError when there is no such Source or it cannot be read.
+[[nodiscard]] FlexibleFileSet find_flexible_files(const std::filesystem::path& stem);
+
+// Writes new files beside the old ones and puts them in their places when all are whole: what fails before that leaves
+// the old set as it was, an end in between two sets that reading refuses. The folder must exist.
+// Throws InputError: bad names, a place that is taken by another model's set or by what is no file, a file that cannot
+// be written.
 void write_flexible_files(const FlexibleFileSet& set, const Reduction& reduction);
 
-// Throws InputError naming file and line: a file that is missing or of another set, format or version, rows or columns
-// that are not as many as said or as the other files have, words that are no finite numbers, unknown nodes, frequencies
-// that are not positive and ascending, a stiffness that is not symmetric.
+// Throws InputError naming file and line: a file that is missing or of another set, model, format or version, rows or
+// columns that are not as many as said or as the other files have, words that are no finite numbers, unknown nodes,
+// frequencies that are not positive and ascending, a stiffness that is not symmetric.
 [[nodiscard]] Reduction read_flexible_files(const FlexibleFileSet& set);
 
 }  // namespace slew::flex

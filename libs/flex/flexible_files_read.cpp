@@ -81,6 +81,11 @@ class Reader {
     FlexibleTable table = open("Source");
     const auto keys = read_keys(table);
     const auto file = table.at().file();
+    const std::optional<FileOwner> owner = owner_of(file);
+    if (owner && owner->shadows(files_.model, files_.prefix))
+      refuse_file(file, 0, fmt::format("the files are of model '{}', prefix '{}'", owner->model, owner->prefix),
+                  fmt::format("model '{}', prefix '{}'", files_.model, files_.prefix),
+                  "name the files' own, or build the set with another prefix");
     const auto text = [&](const char* key) {
       const auto at = keys.find(key);
       if (at == keys.end())
@@ -281,6 +286,19 @@ class Reader {
 };
 
 }  // namespace
+
+FlexibleFileSet find_flexible_files(const std::filesystem::path& stem) {
+  const auto source = std::filesystem::path(stem.string() + "_Source.dat");
+  if (!std::filesystem::exists(source))
+    refuse_file(source, 0, "the file is missing", "the 8 files of a set", "name a set as FOLDER/Model_Prefix");
+  const std::string name = stem.filename().string();
+  const std::optional<FileOwner> owner = owner_of(source);
+  if (owner && owner->model + '_' + owner->prefix == name) return {stem.parent_path(), owner->model, owner->prefix};
+  const std::size_t cut = name.rfind('_');
+  if (cut == std::string::npos)
+    refuse_file(source, 0, fmt::format("'{}' is not Model_Prefix", name), "a '_' between the two");
+  return {stem.parent_path(), name.substr(0, cut), name.substr(cut + 1)};
+}
 
 Reduction read_flexible_files(const FlexibleFileSet& set) {
   return Reader(set).run();

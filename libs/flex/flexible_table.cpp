@@ -34,6 +34,15 @@ TableForm form_of(const std::string& what, std::size_t modes) {
   return {what, 5 + 2 * modes, "1 1 m m 1 Pa/m/kg^1/2", "element node y z has_shear, normal by mode, shear by mode"};
 }
 
+std::optional<FileOwner> owner_of(const std::filesystem::path& source) {
+  FlexibleTable table(source, "Source");
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto& words = table.next();
+    if (words.size() == 3 && words[0] == "files") return FileOwner{std::string(words[1]), std::string(words[2])};
+  }
+  return std::nullopt;
+}
+
 FlexibleTable::FlexibleTable(const std::filesystem::path& file, const std::string& what) : lines_(file), what_(what) {
   if (!lines_.next())
     refuse_file(file, 0, "the file is empty", fmt::format("a header that begins with {}", kFormatName));

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,18 @@ struct TableForm {
 };
 
 [[nodiscard]] TableForm form_of(const std::string& what, std::size_t modes);
+
+// Whose files these are: the row `files` of Source.
+struct FileOwner {
+  std::string model, prefix;
+  // Another pair whose files have the same names.
+  [[nodiscard]] bool shadows(const std::string& its_model, const std::string& its_prefix) const {
+    return model != its_model && model + '_' + prefix == its_model + '_' + its_prefix;
+  }
+};
+
+// Empty where Source has no such row. Throws InputError when the file is no Source of this format.
+[[nodiscard]] std::optional<FileOwner> owner_of(const std::filesystem::path& source);
 
 // Reads row after row; throws InputError at the first that is not as the header or the form say.
 class FlexibleTable {

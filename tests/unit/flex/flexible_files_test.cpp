@@ -77,13 +77,13 @@ void expect_same(const Reduction& a, const Reduction& b) {
 
 TEST(FlexibleFiles, WhatIsReadHasTheBitsOfWhatWasWritten) {
   const TemporaryFolder folder("flex_files");
-  const FlexibleFileSet set{folder.path(), "Truck_JibBoom", "Flex1"};
+  const FlexibleFileSet set{folder.path(), "Truck_JibBoom", "beam_hard"};
   ReductionDef free = with_modes(3, Attachment::free);
   const FeModel model = build_beam(jib_boom(6));
   const std::vector<int> two = {1, 4};
   for (const Reduction& reduction : {small_reduction(), reduce(model, free), select(small_reduction(), two)}) {
     write_flexible_files(set, reduction);
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "Truck_JibBoom_Flex1_Frequencies.dat"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "Truck_JibBoom_beam_hard_Frequencies.dat"));
     expect_same(read_flexible_files(set), reduction);
   }
 }
@@ -182,13 +182,60 @@ TEST_F(FaultyFiles, EveryCutIsNoticed) {
   }
 }
 
+TEST_F(FaultyFiles, ModelsThatShareTheirFilesNamesAreToldApart) {
+  const Reduction r = small_reduction();
+  const FlexibleFileSet own{folder_.path(), "a", "b_c"}, other{folder_.path(), "a_b", "c"};
+  write_flexible_files(own, r);
+  const std::string before = folder_.read("a_b_c_Source.dat");
+  const std::string written = error_of([&] { write_flexible_files(other, r); });
+  EXPECT_NE(written.find("this is of model 'a', prefix 'b_c'; expected model 'a_b', prefix 'c'; nothing was written"),
+            std::string::npos)
+      << written;
+  EXPECT_EQ(folder_.read("a_b_c_Source.dat"), before);
+  const std::string read = error_of([&] { (void)read_flexible_files(other); });
+  EXPECT_NE(read.find("the files are of model 'a', prefix 'b_c'; expected model 'a_b', prefix 'c'"), std::string::npos)
+      << read;
+  EXPECT_EQ(find_flexible_files(folder_.path() / "a_b_c").prefix, "b_c");
+  expect_same(read_flexible_files(find_flexible_files(folder_.path() / "a_b_c")), r);
+}
+
+TEST_F(FaultyFiles, ASetIsFoundByTheBeginningOfItsFiles) {
+  EXPECT_EQ(find_flexible_files(folder_.path() / "M_F").model, "M");
+  // a set that does not say whose it is, and one whose files were renamed
+  EXPECT_EQ(changed("Source", "\nfiles M F\n", "\nremark M F\n"), "");
+  EXPECT_EQ(find_flexible_files(folder_.path() / "M_F").prefix, "F");
+  for (const std::string& matrix : flexible_matrices())
+    std::filesystem::rename(folder_.path() / ("M_F_" + matrix + ".dat"), folder_.path() / ("N_G_" + matrix + ".dat"));
+  EXPECT_EQ(find_flexible_files(folder_.path() / "N_G").prefix, "G");
+  EXPECT_EQ(error_of([&] { (void)read_flexible_files({folder_.path(), "N", "G"}); }), "");
+  EXPECT_NE(
+      error_of([&] { (void)find_flexible_files(folder_.path() / "M_F"); }).find("M_F_Source.dat: the file is missing"),
+      std::string::npos);
+}
+
+TEST_F(FaultyFiles, AWriteThatFailsLeavesTheOldSet) {
+  std::vector<std::string> before;
+  for (const std::string& matrix : flexible_matrices()) before.push_back(folder_.read("M_F_" + matrix + ".dat"));
+  const Reduction other = reduce(build_beam(jib_boom(5)), with_modes(2));
+  // in the way of the sixth file
+  std::filesystem::create_directory(folder_.path() / "M_F_Stiffness.dat.new");
+  EXPECT_NE(error_of([&] { write_flexible_files(set_, other); }).find("cannot be written"), std::string::npos);
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) files += entry.is_regular_file();
+  EXPECT_EQ(files, flexible_matrices().size());
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_EQ(folder_.read("M_F_" + flexible_matrices()[i] + ".dat"), before[i]);
+  EXPECT_EQ(error(), "");
+}
+
 TEST_F(FaultyFiles, NamesThatNoFileCanHaveAreRefused) {
   const Reduction r = small_reduction();
   const auto text = [&](const std::string& model, const std::string& prefix) {
     return error_of([&] { write_flexible_files({folder_.path(), model, prefix}, r); });
   };
   EXPECT_NE(text("a/b", "F").find("the model's name 'a/b'"), std::string::npos);
-  EXPECT_NE(text("M", "F_1").find("the prefix 'F_1'"), std::string::npos);
+  EXPECT_NE(text("M", "F/1").find("the prefix 'F/1'"), std::string::npos);
+  EXPECT_NE(text("M", "").find("the prefix ''"), std::string::npos);
   EXPECT_NE(error_of([&] {
               write_flexible_files({folder_.path() / "nowhere", "M", "F"}, r);
             }).find("cannot be written"),
