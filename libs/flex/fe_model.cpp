@@ -64,4 +64,13 @@ Mat3 second_moment_of(const Mat3& inertia) noexcept {
   return Mat3::diagonal(half, half, half) - inertia;
 }
 
+math::Vec3 centre_of(const RigidMass& mass) noexcept {
+  return mass.first * (1 / mass.mass);
+}
+
+math::Mat3 central_inertia(const RigidMass& mass) noexcept {
+  const math::Vec3 c = centre_of(mass);
+  return inertia_of(mass.second - outer(c, c) * mass.mass);
+}
+
 }  // namespace slew::flex

@@ -67,6 +67,9 @@ struct RigidMass {
 // From R^T M R with the rigid motions R: what the matrices say, whatever else is known.
 [[nodiscard]] RigidMass rigid_mass(const FeModel& model);
 
+[[nodiscard]] math::Vec3 centre_of(const RigidMass& mass) noexcept;        // m
+[[nodiscard]] math::Mat3 central_inertia(const RigidMass& mass) noexcept;  // about it [kg m2]
+
 // Tensor of inertia tr(W) 1 - W of a second moment W, and back.
 [[nodiscard]] math::Mat3 inertia_of(const math::Mat3& second_moment) noexcept;
 [[nodiscard]] math::Mat3 second_moment_of(const math::Mat3& inertia) noexcept;

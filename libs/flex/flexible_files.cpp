@@ -178,11 +178,7 @@ std::uint64_t digest(std::uint64_t hash, const std::string& text) noexcept {
 }
 
 void check_name(const char* what, const std::string& name) {
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-           c == '.';
-  };
-  if (name.empty() || !std::all_of(name.begin(), name.end(), is_letter))
+  if (!is_flexible_name(name))
     throw InputError(
         fmt::format("the {} '{}' cannot be part of a file's name; expected letters, digits, _ - .", what, name));
 }
@@ -226,6 +222,13 @@ void write_beside(const FlexibleFileSet& set, const std::vector<std::string>& te
 
 }  // namespace
 
+bool is_flexible_name(std::string_view name) noexcept {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
+  });
+}
+
 const std::vector<std::string>& flexible_matrices() {
   static const std::vector<std::string> names = {"Source",  "Nodes",     "Frequencies",    "Modes",
                                                  "Inertia", "Stiffness", "Foreshortening", "Recovery"};
@@ -264,7 +267,9 @@ void write_flexible_files(const FlexibleFileSet& set, const Reduction& reduction
     const auto file = flexible_file(set, matrix);
     std::error_code error;
     std::filesystem::rename(beside(file), file, error);
-    if (error) refuse_file(file, 0, "the file cannot be replaced", "a folder that takes it", "write the set again");
+    if (error)
+      throw OutputError(
+          fmt::format("{}: the file cannot be replaced ({}); write the set again", file.string(), error.message()));
   }
 }
 

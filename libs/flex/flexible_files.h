@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flex/reduction.h"
@@ -24,6 +25,8 @@ struct FlexibleFileSet {
   std::string prefix;  // the same
 };
 
+// Letters, digits, '_', '-', '.', one or more.
+[[nodiscard]] bool is_flexible_name(std::string_view name) noexcept;
 // folder/Model_Prefix_Matrix.dat
 [[nodiscard]] std::filesystem::path flexible_file(const FlexibleFileSet& set, const std::string& matrix);
 // Of every set: the eight names of matrices, in the order in which they are written.
@@ -35,8 +38,8 @@ struct FlexibleFileSet {
 
 // Writes new files beside the old ones and puts them in their places when all are whole: what fails before that leaves
 // the old set as it was, an end in between two sets that reading refuses. The folder must exist.
-// Throws InputError: bad names, a place that is taken by another model's set or by what is no file, a file that cannot
-// be written.
+// Throws InputError: bad names, a place that is taken by another model's set or by what is no file; OutputError: a file
+// that cannot be written.
 void write_flexible_files(const FlexibleFileSet& set, const Reduction& reduction);
 
 // Throws InputError naming file and line: a file that is missing or of another set, model, format or version, rows or

@@ -17,6 +17,12 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A file cannot be written: not what was asked for is at fault, but the place.
+class OutputError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 // Throws every problem, one a line (path: what; expected ...); returns when there is none.
 void refuse_if_any(const Problems& problems);
 

@@ -23,7 +23,9 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
-  if (!out) refuse_file(file, 0, "the file cannot be written", "a folder that takes it", "check rights and free space");
+  if (!out)
+    throw OutputError(file.string() +
+                      ": the file cannot be written; expected a folder that takes it; check rights and free space");
 }
 
 TextLines::TextLines(std::filesystem::path file) : file_(std::move(file)), text_(read_text(file_)) {}

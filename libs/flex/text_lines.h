@@ -11,7 +11,7 @@ namespace slew::flex {
 
 // The whole file. Throws InputError when it cannot be read.
 [[nodiscard]] std::string read_text(const std::filesystem::path& file);
-// Throws InputError when it cannot be written whole.
+// Throws OutputError when it cannot be written whole.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
 class TextLines {
