@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/sections.h"
+#include "scene/setting.h"
 #include "scene/source.h"
 #include "scene/suggestion.h"
 
@@ -73,24 +74,6 @@ void erase(Node& map, std::string_view key) {
 
 // ---- overrides
 
-void move_all_marks(Node& node, const Mark& mark) {
-  node.mark = mark;
-  for (Node& item : node.items) move_all_marks(item, mark);
-  for (Node::Entry& entry : node.entries) {
-    entry.mark = mark;
-    move_all_marks(entry.value, mark);
-  }
-}
-
-void set_key(Node& map, const std::string& key, Node value, const Mark& mark) {
-  if (Node::Entry* found = map.find(key)) {
-    found->mark = mark;
-    found->value = std::move(value);
-  } else {
-    map.entries.push_back({key, mark, std::move(value)});
-  }
-}
-
 bool is_single_section(std::string_view name) {
   return name == "script" || std::any_of(single_tables().begin(), single_tables().end(),
                                          [&](const SingleTable& table) { return table.section == name; });
@@ -126,34 +109,24 @@ std::string closest_owner(const Node& root, const std::string& name) {
   return closest(name, names);
 }
 
+constexpr const char* kSetting = "Element.key=value, such as 'Bag.mass=1500kg'";
+
 void apply_override(Node& root, const std::string& text, Report& report) {
-  const Mark mark{report.add_source("--set " + text, Report::Lines::none), 0, 0};
-  const std::size_t equals = text.find('=');
-  const std::string path = text.substr(0, equals);
-  const std::size_t dot = path.find('.');
-  if (equals == std::string::npos || dot == std::string::npos || dot == 0 || dot + 1 == path.size()) {
-    report.add(mark, "", {"is not a setting", "Element.key=value, such as 'Bag.mass=1500kg'", ""});
+  std::optional<Setting> setting = parse_setting(text, kSetting, report);
+  if (!setting) return;
+  const std::size_t dot = setting->path.find('.');
+  if (dot == std::string::npos) {
+    report.add(setting->mark, "", {"is not a setting", kSetting, ""});
     return;
   }
-  const std::string owner_name = path.substr(0, dot);
-  const std::string key = path.substr(dot + 1);
-  Node* owner = owner_of(root, owner_name, mark);
+  const std::string owner_name = setting->path.substr(0, dot);
+  Node* owner = owner_of(root, owner_name, setting->mark);
   if (owner == nullptr) {
-    report.add(mark, "", {"no element or section '" + owner_name + "'", "", closest_owner(root, owner_name)});
+    report.add(setting->mark, "", {"no element or section '" + owner_name + "'", "", closest_owner(root, owner_name)});
     return;
   }
   if (owner->kind != Node::Kind::map) return;  // reported when the section is read
-  if (text.find_first_not_of(" \t", equals + 1) == std::string::npos) {
-    report.add(mark, "", {"has no value", "Element.key=value, such as 'Bag.mass=1500kg'", ""});
-    return;
-  }
-  // read as the value of a key, so that brackets and quotes mean what they mean in a file
-  const std::optional<SourceText> source = check_source("value: " + text.substr(equals + 1), mark.source, report);
-  std::optional<Node> map = source ? parse_yaml(*source, report) : std::nullopt;
-  if (!map) return;
-  Node& value = map->entries.front().value;
-  move_all_marks(value, mark);
-  set_key(*owner, key, std::move(value), mark);
+  set_key(*owner, setting->path.substr(dot + 1), std::move(setting->value), setting->mark);
 }
 
 }  // namespace

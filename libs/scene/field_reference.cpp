@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "flex/field_tables.h"
 #include "scene/canonical.h"
 #include "scene/field_reader.h"
 #include "scene/mesh_inertia.h"
@@ -101,6 +102,32 @@ std::string field_reference() {
   text +=
       fmt::format("\n### script\n\n{}\nAn entry of `parameters` (with `value`, in the parameter's dimension):\n\n{}\n",
                   table_of(script_fields(), &script), table_of(script_change_fields(), &change));
+  return text;
+}
+
+std::string flexible_field_reference() {
+  std::string text;
+  const auto add = [&](const std::string& heading, std::string_view doc, std::span<const Field> fields, void* def) {
+    text += fmt::format("\n### {}\n\n{}.\n\n{}", heading, doc, table_of(fields, def));
+  };
+  flex::FlexibleBodyDef body;
+  flex::NamedMaterial material;
+  flex::StressPointDef point;
+  flex::ElementChainDef element;
+  flex::BeamNodeDef node;
+  add("At the top", "One of line, nodes and matrices says where the body is", flex::body_fields(), &body);
+  add("materials", "By name", flex::material_fields(), &material);
+  text += "\n### sections\n\nBy name.\n";
+  for (const flex::SectionType& type : flex::section_types()) {
+    flex::NamedSection section;
+    text += fmt::format("\n`shape: {}`: {}.\n\n{}", type.name, type.doc, table_of(type.fields, &section));
+  }
+  add("stress_points", "A list in a given section", flex::stress_point_fields(), &point);
+  add("line", "Nodes 1, 2, ... at equal distances", flex::line_fields(), &body.line);
+  add("nodes", "By number: [x, y, z]; the first is the root, the last the tip", {&flex::node_field(), 1}, &node);
+  add("elements", "A list; without it a chain through the nodes", flex::element_fields(), &element);
+  add("matrices", "Files of another finite element code", flex::matrix_file_fields(), &body.matrices);
+  add("reduction", "How the body is reduced", flex::reduction_fields(), &body.reduction);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "flex/field_tables.h"
 #include "scene/defs.h"
 #include "scene/field_reader.h"
 #include "scene/mesh_inertia.h"
@@ -136,7 +137,46 @@ Json script() {
   return schema;
 }
 
+Json named(Json element) {
+  return {{"type", "object"}, {"additionalProperties", std::move(element)}};
+}
+
+Json flexible_section() {
+  Json shapes = Json::array();
+  for (const flex::SectionType& type : flex::section_types()) {
+    Json schema = object_of(type.fields, type.doc, "");
+    schema["properties"]["shape"] = {{"const", std::string(type.name)}};
+    schema["required"].push_back("shape");
+    if (type.shape == flex::SectionShape::given)
+      schema["properties"]["stress_points"] =
+          list_of(object_of(flex::stress_point_fields(), "where stress is asked for", ""), 0);
+    shapes.push_back(std::move(schema));
+  }
+  return {{"oneOf", std::move(shapes)}};
+}
+
 }  // namespace
+
+std::string flexible_json_schema() {
+  Json schema = object_of(flex::body_fields(), "a flexible body", "");
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = "Slewring flexible body";
+  const Json text = {{"type", "string"}};
+  Json& properties = schema["properties"];
+  properties["include"] = {{"anyOf", {text, list_of(text, 0)}}, {"description", "files that this one is laid over"}};
+  properties["materials"] = named(object_of(flex::material_fields(), "material", ""));
+  properties["sections"] = named(flexible_section());
+  properties["line"] = object_of(flex::line_fields(), "nodes 1, 2, ... at equal distances", "");
+  properties["nodes"] = {{"type", "object"},
+                         {"propertyNames", {{"pattern", "^[0-9]+$"}}},
+                         {"additionalProperties", property(flex::node_field())}};
+  properties["elements"] = list_of(object_of(flex::element_fields(), "elements in a row", ""), 0);
+  properties["matrices"] = object_of(flex::matrix_file_fields(), "files of another finite element code", "");
+  properties["reduction"] = object_of(flex::reduction_fields(), "how the body is reduced", "");
+  // with an include the names may stand there
+  schema.erase("required");
+  return schema.dump(2) + "\n";
+}
 
 std::string json_schema() {
   const Json text = {{"type", "string"}};

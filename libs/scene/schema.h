@@ -13,6 +13,10 @@ namespace slew::scene {
 // Markdown: one table for each section and type, all fields with dimension, range, default and doc.
 [[nodiscard]] std::string field_reference();
 
+// The same of descriptions of flexible bodies (flexible_model.h).
+[[nodiscard]] std::string flexible_json_schema();
+[[nodiscard]] std::string flexible_field_reference();
+
 // The document with its part between the two markers replaced by field_reference(); empty when the markers are missing.
 inline constexpr std::string_view kReferenceBegin = "<!-- fields: begin, written by scene_format -->\n";
 inline constexpr std::string_view kReferenceEnd = "<!-- fields: end -->\n";

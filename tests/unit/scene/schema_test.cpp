@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
 #include "build_paths.h"
+#include "flex/field_tables.h"
 #include "scene/mesh_inertia.h"
 #include "scene/sections.h"
 
@@ -73,6 +77,24 @@ TEST(FormatDocument, IsCurrent) {
 
 TEST(FormatDocument, WithoutMarkersIsNotTouched) {
   EXPECT_EQ(with_field_reference("text"), "");
+}
+
+TEST(Schema, OfFlexibleBodiesHasTheirFieldsAndShapes) {
+  const auto schema = nlohmann::json::parse(flexible_json_schema());
+  const auto& properties = schema.at("properties");
+  for (const flex::SectionType& type : flex::section_types()) {
+    const auto& shapes = properties.at("sections").at("additionalProperties").at("oneOf");
+    const auto found = std::find_if(shapes.begin(), shapes.end(), [&](const auto& shape) {
+      return shape.at("properties").at("shape").at("const") == type.name;
+    });
+    ASSERT_NE(found, shapes.end()) << type.name;
+    for (const Field& field : type.fields) EXPECT_TRUE(found->at("properties").contains(field.key)) << field.key;
+  }
+  for (const Field& field : flex::reduction_fields()) {
+    EXPECT_TRUE(properties.at("reduction").at("properties").contains(field.key)) << field.key;
+    EXPECT_NE(flexible_field_reference().find(fmt::format("| `{}` |", field.key)), std::string::npos) << field.key;
+  }
+  EXPECT_EQ(properties.at("elements").at("items").at("required").at(0), "through");
 }
 
 }  // namespace
