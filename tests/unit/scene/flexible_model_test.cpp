@@ -52,8 +52,8 @@ TEST(FlexibleModel, ALineOfNodesIsTheBeamOfItsDefs) {
   expect_same(read.model.M, model.M);
   EXPECT_EQ(read.model.name, "truck_crane");
   EXPECT_EQ(read.def.prefix, "beam_hard");
-  EXPECT_EQ(read.reduction.modes.clamped_nodes, std::vector<int>{1});
-  EXPECT_EQ(read.reduction.modes.interface_nodes, std::vector<int>{20});
+  EXPECT_EQ(read.reduction.modes.attachment, flex::Attachment::clamped);
+  EXPECT_EQ(read.reduction.modes.fixed_interface_modes, 6);
 }
 
 TEST(FlexibleModel, AnIncludedDescriptionIsLaidUnder) {
