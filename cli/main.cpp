@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   cli::add_import(app, action);
   cli::add_variables(app, action);
   cli::add_schema(app, action);
+  cli::add_flex(app, action);
   cli::add_sessions(app, action);
   cli::add_watch(app, action);
   cli::add_param(app, action);

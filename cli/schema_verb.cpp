@@ -1,4 +1,4 @@
-// `slewring schema`: the scene format for editors and programs.
+// `slewring schema`: the formats of scenes and of flexible bodies for editors and programs.
 #include <fmt/format.h>
 
 #include "cli/verbs.h"
@@ -8,12 +8,18 @@ namespace slew::cli {
 
 void add_schema(CLI::App& program, Action& action) {
   CLI::App* verb = program.add_subcommand("schema", "print the JSON Schema of scene files");
-  const auto is_table = std::make_shared<bool>(false);  // lives as long as the command line's callbacks
+  // they live as long as the command line's callbacks
+  const auto is_table = std::make_shared<bool>(false), is_flexible = std::make_shared<bool>(false);
   verb->add_flag("--table", *is_table, "as tables for people (Markdown): fields, dimensions, ranges, defaults");
+  verb->add_flag("--flexible", *is_flexible, "of descriptions of flexible bodies instead");
   verb->footer("Example:\n  slewring schema > slewring.schema.json");
-  verb->callback([&action, is_table] {
-    action = [is_table] {
-      fmt::print("{}\n", *is_table ? scene::field_reference() : scene::json_schema());
+  verb->callback([&action, is_table, is_flexible] {
+    action = [is_table, is_flexible] {
+      if (*is_flexible) {
+        fmt::print("{}\n", *is_table ? scene::flexible_field_reference() : scene::flexible_json_schema());
+      } else {
+        fmt::print("{}\n", *is_table ? scene::field_reference() : scene::json_schema());
+      }
       return ExitCode::ok;
     };
   });

@@ -19,6 +19,7 @@ void add_control(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_describe(CLI::App& program, Action& action);
 void add_import(CLI::App& program, Action& action);
+void add_flex(CLI::App& program, Action& action);
 void add_variables(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);

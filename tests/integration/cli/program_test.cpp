@@ -27,6 +27,9 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
                                                        {"describe"},
                                                        {"import"},
                                                        {"import", "urdf"},
+                                                       {"flex"},
+                                                       {"flex", "build"},
+                                                       {"flex", "report"},
                                                        {"variables"},
                                                        {"schema"},
                                                        {"sessions"},
@@ -248,6 +251,9 @@ TEST_F(Program, SchemaIsJson) {
   const nlohmann::json schema = nlohmann::json::parse(slewring({"schema"}).out);
   EXPECT_TRUE(schema.contains("$schema"));
   EXPECT_TRUE(schema.at("properties").contains("bodies"));
+  const nlohmann::json flexible = nlohmann::json::parse(slewring({"schema", "--flexible"}).out);
+  EXPECT_TRUE(flexible.at("properties").contains("materials"));
+  EXPECT_TRUE(contains(slewring({"schema", "--flexible", "--table"}).out, "`youngs_modulus`"));
 }
 
 TEST_F(Program, DoctorJudgesThisMachine) {

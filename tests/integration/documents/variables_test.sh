@@ -8,7 +8,8 @@ set -euo pipefail
 source=$1 slewring=$2
 page=$source/docs/variables.md
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-scenes=("$source"/scenes/*.yaml "$source"/scenes/*/*.yaml "$here/every_type.yaml")
+# without the descriptions of flexible bodies, which have a prefix
+mapfile -t scenes < <(grep -L '^prefix:' "$source"/scenes/*.yaml "$source"/scenes/*/*.yaml "$here/every_type.yaml")
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 

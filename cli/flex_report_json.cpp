@@ -1,0 +1,89 @@
+#include "cli/flex_report_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace slew::cli {
+namespace {
+
+using nlohmann::json;
+
+json list(math::Vec3 v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+json to_json(const flex::RigidMass& mass) {
+  const math::Mat3 inertia = flex::central_inertia(mass);
+  return {{"mass", mass.mass},
+          {"centre", list(flex::centre_of(mass))},
+          {"inertia", {inertia(0, 0), inertia(1, 1), inertia(2, 2)}},
+          {"products", {inertia(0, 1), inertia(0, 2), inertia(1, 2)}}};
+}
+
+json to_json(const flex::Source& source) {
+  return {{"model", source.model},
+          {"made_of", source.made_of},
+          {"attachment", source.attachment == flex::Attachment::clamped ? "clamped" : "free"},
+          {"clamped_nodes", source.clamped_nodes},
+          {"interface_nodes", source.interface_nodes},
+          {"nodes", source.nodes},
+          {"elements", source.elements},
+          {"boundary_freedoms", source.boundary_freedoms},
+          {"interior_freedoms", source.interior_freedoms},
+          {"fixed_interface_modes", source.fixed_interface_modes},
+          {"stiffening", source.stiffening == flex::GeometricStiffening::straight_beam ? "straight_beam" : "none"}};
+}
+
+json to_json(const flex::ModeFigures& mode, bool has_model) {
+  json out = {{"mode", mode.ordinal},      {"kept", mode.is_kept},
+              {"full_hz", nullptr},        {"reduced_hz", mode.reduced / (2 * M_PI)},
+              {"relative_error", nullptr}, {"effective_mass", mode.effective_mass}};
+  if (!has_model) return out;
+  out["full_hz"] = mode.full / (2 * M_PI);
+  out["relative_error"] = mode.relative_error;
+  return out;
+}
+
+}  // namespace
+
+json to_json(const flex::ReductionReport& report) {
+  json modes = json::array(), directions = json::array();
+  for (const flex::ModeFigures& mode : report.modes) modes.push_back(to_json(mode, report.has_model));
+  for (const flex::ComplianceFigures& c : report.compliance) {
+    directions.push_back({{"direction", std::string(1, c.direction)},
+                          {report.has_model ? "full" : "all_modes", c.full},
+                          {"kept", c.kept},
+                          {"share", c.share()}});
+  }
+  json out = {
+      {"has_model", report.has_model},
+      {"source", to_json(report.source)},
+      {"freedoms", nullptr},
+      {"held_freedoms", nullptr},
+      {"full_mass", nullptr},
+      {"reduced_mass", to_json(report.reduced_mass)},
+      {"modes", modes},
+      {"kept_effective_mass", report.kept_effective_mass},
+      {"compliance", {{"tip", report.tip}, {"reference_nodes", report.reference_nodes}, {"directions", directions}}}};
+  if (!report.has_model) return out;
+  out["freedoms"] = report.freedoms;
+  out["held_freedoms"] = report.held_freedoms;
+  out["full_mass"] = to_json(report.full_mass);
+  return out;
+}
+
+json to_json(const flex::AttachmentComparison& comparison) {
+  json rows = json::array();
+  for (const flex::AttachmentShares& row : comparison.rows) {
+    json one = {{"modes", row.modes}, {"clamped", nullptr}, {"free", nullptr}};
+    if (row.clamped) one["clamped"] = *row.clamped;
+    if (row.free) one["free"] = *row.free;
+    rows.push_back(one);
+  }
+  return {{"tip", comparison.tip},
+          {"reference_nodes", comparison.reference_nodes},
+          {"rows", rows},
+          {"obstacle", comparison.obstacle}};
+}
+
+}  // namespace slew::cli
