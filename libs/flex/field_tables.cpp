@@ -14,7 +14,7 @@ constexpr std::string_view kBeamKeys[] = {"materials", "sections", "material",  
 
 constexpr Range kPoisson{.min = -1, .max = 0.5};
 constexpr Range kNodeCount{.min = 2, .max = 10000, .min_is_open = false, .max_is_open = false};
-constexpr Range kModeCount{.min = 0, .max = 10000, .min_is_open = false, .max_is_open = false};
+constexpr Range kModeCount{.min = 0, .max = 1000, .min_is_open = false, .max_is_open = false};
 
 constexpr Field kBodyFields[] = {
     field<&FlexibleBodyDef::model>(

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "flex/flexible_files.h"
+#include "flex/foreshortening.h"
 #include "flex/imported_model.h"
 #include "flex/input_error.h"
 
@@ -240,6 +241,11 @@ Problems check_reduction(const FlexibleBodyDef& def, const FeModel& model) {
                           "interfaces that move",
                           {}});
     if (!clamped.contains(node.id) && !interfaces.contains(node.id)) inside += node.freedoms;
+  }
+  if (reduction.stiffening == GeometricStiffening::straight_beam) {
+    const std::string obstacle = obstacle_to_foreshortening(model, is_clamped ? clamped.size() : 0);
+    if (!obstacle.empty())
+      problems.push_back({"reduction.stiffening", obstacle, "one straight chain of beam elements, or none", {}});
   }
   if (reduction.fixed_interface_modes > inside)
     problems.push_back({"reduction.fixed_interface_modes",

@@ -44,25 +44,27 @@ struct Chain {
       "ones");
 }
 
+constexpr const char* kSeveralClamps =
+    "it is clamped at several nodes, which keep their distance and pull instead of shortening";
+
 double along(const FeModel& model, Vec3 e, std::size_t node) {
   return dot(model.nodes[node].position - model.nodes.front().position, e);
 }
 
-Chain chain_of(const FeModel& model) {
-  if (!model.is_beam()) refuse(model, "the model is of imported matrices, which do not tell the slopes inside");
+// Fills the chain; the text says why there is none, else it is empty.
+std::string find_chain(const FeModel& model, Chain& chain) {
+  if (!model.is_beam()) return "the model is of imported matrices, which do not tell the slopes inside";
   Vec3 farthest;
   for (const FeNode& node : model.nodes) {
     const Vec3 d = node.position - model.nodes.front().position;
     if (norm(d) > norm(farthest)) farthest = d;
   }
   const double size = norm(farthest);
-  Chain chain;
   chain.e = farthest * (1 / size);
   for (const FeNode& node : model.nodes) {
     const Vec3 d = node.position - model.nodes.front().position;
     const double off = norm(cross(d, chain.e));
-    if (off > kStraight * size)
-      refuse(model, fmt::format("node {} is {:.3g} m off the line of the beam", node.id, off));
+    if (off > kStraight * size) return fmt::format("node {} is {:.3g} m off the line of the beam", node.id, off);
   }
   for (std::size_t i = 0; i < model.elements.size(); ++i) chain.elements.push_back(i);
   const auto low = [&](std::size_t i) {
@@ -75,8 +77,15 @@ Chain chain_of(const FeModel& model) {
     const BeamElement &before = model.elements[chain.elements[i - 1]], &here = model.elements[chain.elements[i]];
     const std::size_t end = dot(before.axes.c[0], chain.e) > 0 ? before.node2 : before.node1;
     const std::size_t begin = dot(here.axes.c[0], chain.e) > 0 ? here.node1 : here.node2;
-    if (end != begin) refuse(model, fmt::format("elements {} and {} do not follow each other", before.id, here.id));
+    if (end != begin) return fmt::format("elements {} and {} do not follow each other", before.id, here.id);
   }
+  return {};
+}
+
+Chain chain_of(const FeModel& model) {
+  Chain chain;
+  const std::string obstacle = find_chain(model, chain);
+  if (!obstacle.empty()) refuse(model, obstacle);
   return chain;
 }
 
@@ -115,8 +124,7 @@ class Shortener {
       : model_(model), Phi_(Phi), body_(body), chain_(chain_of(model)), pairs_(body.modes() * body.modes()) {}
 
   void run(std::span<const int> clamped_nodes) {
-    if (clamped_nodes.size() > 1)
-      refuse(model_, "it is clamped at several nodes, which keep their distance and pull instead of shortening");
+    if (clamped_nodes.size() > 1) refuse(model_, kSeveralClamps);
     at_node_.assign(model_.nodes.size(), std::vector<double>(pairs_));
     integrate_nodes();
     reference_.assign(pairs_, 0);
@@ -178,6 +186,11 @@ class Shortener {
 };
 
 }  // namespace
+
+std::string obstacle_to_foreshortening(const FeModel& model, std::size_t clamped_nodes) {
+  Chain chain;
+  return clamped_nodes > 1 ? kSeveralClamps : find_chain(model, chain);
+}
 
 void add_foreshortening(const FeModel& model, const MatrixXd& Phi, std::span<const int> clamped_nodes,
                         ReducedBody& body) {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "flex/fe_model.h"
 #include "flex/reduced_body.h"
@@ -21,5 +22,8 @@ namespace slew::flex {
 // Throws InputError when the model is no straight chain of beam elements, or clamped at several nodes.
 void add_foreshortening(const FeModel& model, const Eigen::MatrixXd& Phi, std::span<const int> clamped_nodes,
                         ReducedBody& body);
+
+// Why add_foreshortening() would refuse the model clamped at so many nodes; empty: it does not.
+[[nodiscard]] std::string obstacle_to_foreshortening(const FeModel& model, std::size_t clamped_nodes);
 
 }  // namespace slew::flex

@@ -201,7 +201,7 @@ TEST_F(Flex, ErrorsNameTheirPlaceAndHaveTheirCodes) {
       {{}, 2, "A subcommand is required"},
       {{"build", "bad.yaml"}, 2, "bad.yaml:2:8: line.nods: unknown key; did you mean 'nodes'?"},
       {{"report", "far.yaml"}, 2, "far.yaml:2:28: reduction.clamped_nodes: there is no node 77"},
-      {{"build", "bent.yaml"}, 2, "bent.yaml: m: geometric stiffening was asked for"},
+      {{"build", "bent.yaml"}, 2, "bent.yaml:5:25: reduction.stiffening: node 2 is "},
       {{"build", "nowhere.yaml"}, 2, "nowhere.yaml: cannot be read"},
       {{"build", kBoom, "--output", "nowhere"}, 2, "there is no folder 'nowhere'; nothing was written"},
       {{"build", kBoom, "--prefix", "a/b"}, 2, "'a/b' cannot be part of a file's name"},

@@ -292,6 +292,9 @@ TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
        "f:6:28: reduction.clamped_nodes: node 4 is clamped and an interface; expected interfaces that move"},
       {kBeam + "reduction: {fixed_interface_modes: 13}\n",
        "f:6:36: reduction.fixed_interface_modes: 13 is out of range; expected 0 to 12, the freedoms inside"},
+      {kBeam + "reduction: {clamped_nodes: [1, 2], fixed_interface_modes: 1, stiffening: straight_beam}\n",
+       "f:6:74: reduction.stiffening: it is clamped at several nodes, which keep their distance and pull instead of "
+       "shortening; expected one straight chain of beam elements, or none"},
       {kBeam + "reduction: {modes: 3}\n",
        "f:6:13: reduction.modes: unknown key; expected attachment, clamped_nodes, interface_nodes, "
        "fixed_interface_modes, stiffening or eigen_method"},

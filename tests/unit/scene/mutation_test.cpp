@@ -1,5 +1,5 @@
 // Scenes damaged at random are refused with a LoadError or read; nothing else happens. A scene that is read has a
-// canonical text that reads back to itself.
+// canonical text that reads back to itself. Descriptions of flexible bodies alike.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "build_paths.h"
+#include "scene/flexible_model.h"
 #include "scene/scene.h"
 #include "tests/support/nightly.h"
 
@@ -62,6 +63,26 @@ TEST_P(DamagedScene, IsRefusedOrReadAndNothingElse) {
     try {
       const Scene scene = load_text(text, "damaged");
       EXPECT_EQ(load_text(scene.expanded_text, "again").expanded_text, scene.expanded_text) << text;
+    } catch (const LoadError& error) {
+      EXPECT_FALSE(error.diagnostics().empty()) << text;
+    }
+  }
+}
+
+TEST(DamagedDescription, IsRefusedOrReadAndNothingElse) {
+  const std::string sound =
+      "model: m\nprefix: p\nmaterials: {S: {youngs_modulus: 2e11, density: 7700 kg/m3}}\nsections:\n"
+      "  R: {shape: given, area: 1e-3, second_moment_y: 1e-7, second_moment_z: 1e-7, torsion_constant: 1e-8,\n"
+      "      stress_points: [{y: 1 mm, z: 2 mm}]}\n  B: {shape: tube, diameter: 60 mm, wall: 3 mm}\n"
+      "section: R\nnodes: {1: [0, 0, 0], 2: [1, 0, 0], 3: [2, 0, 0]}\nelements:\n"
+      "  - {through: [1, 2]}\n  - {through: [2, 3], section: B}\n"
+      "reduction: {clamped_nodes: [1], interface_nodes: [3], fixed_interface_modes: 2, stiffening: straight_beam}\n";
+  std::mt19937 random(20172);
+  for (int i = 0; i < 10 * kScenes; ++i) {
+    const std::string text = damaged(sound, random);
+    try {
+      const FlexibleModel read = load_flexible_text(text, "damaged");
+      EXPECT_GT(flex::rigid_mass(read.model).mass, 0) << text;
     } catch (const LoadError& error) {
       EXPECT_FALSE(error.diagnostics().empty()) << text;
     }
