@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -112,11 +113,29 @@ Json mesh_body(const ElementTable& table) {
   return schema;
 }
 
+// A flexible body may keep the keys of the rigid one, without effect.
+Json flexible_body(const ElementTable& table) {
+  std::vector<Field> fields(table.fields.begin(), table.fields.end());
+  for (const ElementTable& rigid : element_tables()) {
+    if (rigid.section != table.section || !rigid.is_default) continue;
+    for (Field field : rigid.fields) {
+      const auto has_key = [&](const Field& own) { return own.key == field.key; };
+      if (std::any_of(table.fields.begin(), table.fields.end(), has_key)) continue;
+      field.presence = Presence::optional;
+      field.change = Change::restart;
+      fields.push_back(field);
+    }
+  }
+  return object_of(fields, table.doc, table.type);
+}
+
 Json elements_of(std::string_view section) {
   Json types = Json::array();
   for (const ElementTable& table : element_tables()) {
     if (table.section != section) continue;
-    types.push_back(object_of(table.fields, table.doc, table.type, table.is_default));
+    const bool is_flexible = section == "bodies" && !table.is_default;
+    types.push_back(is_flexible ? flexible_body(table)
+                                : object_of(table.fields, table.doc, table.type, table.is_default));
     if (section == "bodies" && table.is_default) types.push_back(mesh_body(table));
   }
   Json element = types.size() == 1 ? types[0] : Json{{"oneOf", types}};

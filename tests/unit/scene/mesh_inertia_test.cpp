@@ -301,10 +301,11 @@ TEST_F(FromMesh, WhatTheMeshAnswersIsNotAskedFor) {
 
 // a mesh without `inertia: from_mesh` is a slip that must not pass
 TEST_F(FromMesh, AMeshBesideGivenInertiaIsAnUnknownKey) {
-  EXPECT_EQ(problems_of("bodies:\n  Part: {mass: 1, inertia: [1, 1, 1], mesh: part.stl}\n"
-                        "joints:\n  Free: {type: floating, body2: Part}\n"),
-            "test:2:39: Part.mesh: unknown key; expected relative_to, position, orientation, mass, center_of_mass, "
-            "inertia, products or inertia_about");
+  EXPECT_EQ(
+      problems_of("bodies:\n  Part: {mass: 1, inertia: [1, 1, 1], mesh: part.stl}\n"
+                  "joints:\n  Free: {type: floating, body2: Part}\n"),
+      "test:2:39: Part.mesh: unknown key; expected type, relative_to, position, orientation, mass, center_of_mass, "
+      "inertia, products or inertia_about");
 }
 
 }  // namespace

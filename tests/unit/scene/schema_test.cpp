@@ -47,8 +47,9 @@ TEST(Schema, HasEveryFieldOfEveryTable) {
 TEST(Schema, SaysWhichFieldsAreLive) {
   const auto schema = nlohmann::json::parse(json_schema());
   const auto& bodies = schema["properties"]["bodies"]["additionalProperties"]["oneOf"];
-  ASSERT_EQ(bodies.size(), 2u);
-  for (const auto& body : bodies) EXPECT_TRUE(body["properties"]["mass"]["x-live"].get<bool>());
+  ASSERT_EQ(bodies.size(), 3u);
+  for (const std::size_t rigid : {0u, 1u}) EXPECT_TRUE(bodies[rigid]["properties"]["mass"]["x-live"].get<bool>());
+  EXPECT_FALSE(bodies[2]["properties"]["mass"].contains("x-live"));
 }
 
 TEST(Schema, HasTheFieldsOfABodyFromAMesh) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "multibody/flexible/deflection.h"
@@ -100,7 +101,7 @@ TEST_P(FlexibleStarts, BodiesWithoutModesAreRigid) {
                                  "Load.velocity.x", "Load.velocity.y", "Load.velocity.z"}) {
       // a node's six rows are only as closed as penalty closes rows
       const double size = std::fmax(1, std::fabs(one.value(variable)));
-      EXPECT_NEAR(one.value(variable), other.value(variable), (is(Formulation::penalty) ? 1e-8 : 1e-9) * size)
+      EXPECT_NEAR(one.value(variable), other.value(variable), (is(Formulation::penalty) ? 1e-6 : 1e-9) * size)
           << variable << " at " << 0.1 * (i + 1);
     }
   }
@@ -140,7 +141,10 @@ TEST(FlexibleStart, TheBoundOfTheSubstepIsWhereRungeKuttaEnds) {
     State state = start_state(model);
     for (int i = 0; i < 2000; ++i) (void)advance_free(model, state, ws, h);
     double largest = 0;
-    for (const double q : state.q) largest = std::fmax(largest, std::fabs(q));
+    for (const double q : state.q) {
+      if (!std::isfinite(q)) return std::numeric_limits<double>::infinity();
+      largest = std::fmax(largest, std::fabs(q));
+    }
     return largest;
   };
   EXPECT_LT(largest_after(0.98 * longest), 1);
