@@ -32,7 +32,7 @@ constexpr std::array<Meaning, 6> kMeanings = {{
      "choose session.coupling: two or a smaller step"},
     {StepFlag::cavitating, "a volume cavitated", "look at the pressures near zero"},
     {StepFlag::large_deflection, "a flexible body was bent by more than a tenth of its length",
-     "its theory is one of small deflections: take segments, or doubt the numbers"},
+     "its theory is one of small deflections: take the numbers for estimates"},
 }};
 
 struct Seen {
