@@ -49,9 +49,13 @@ class Validator {
   Validator(const MechanicsDef& given, const MechanicsDef& expanded, Problems& problems)
       : given_(given), m_(expanded), problems_(problems) {}
 
-  void run() {
+  void check_numbers() {
     check_section();
     check_ranges();
+  }
+
+  void run() {
+    check_numbers();
     check_names();
     for (const BodyDef& body : given_.bodies) {
       if (body.type == BodyType::rigid) check_inertia(body);
@@ -366,9 +370,11 @@ class Validator {
 
 void validate(const MechanicsDef& mechanics, Problems& problems) {
   Problems own;
-  if (mechanics.flexible_bodies.empty()) {
-    if (check_flexible_bodies(mechanics, own)) Validator(mechanics, mechanics, own).run();
-  } else if (check_flexible_bodies(mechanics, own)) {
+  if (!check_flexible_bodies(mechanics, own)) {
+    Validator(mechanics, mechanics, own).check_numbers();
+  } else if (mechanics.flexible_bodies.empty()) {
+    Validator(mechanics, mechanics, own).run();
+  } else {
     Validator(mechanics, with_nodes(mechanics), own).run();
   }
   problems.insert(problems.end(), own.begin(), own.end());

@@ -335,7 +335,8 @@ TEST(FieldTables, AppendGivesANamedDefOfTheSection) {
   for (const Section& section : sections()) {
     for (const ElementType& type : section.types) EXPECT_NE(type.append(def, std::string(type.name)), nullptr);
   }
-  EXPECT_EQ(def.bodies.size(), 1u);
+  ASSERT_EQ(def.bodies.size(), 2u);
+  EXPECT_EQ(def.bodies[1].type, BodyType::flexible);
   ASSERT_EQ(def.joints.size(), 13u);
   EXPECT_EQ(def.joints[1].name, "prismatic");
   EXPECT_EQ(def.joints[1].type, JointType::prismatic);
