@@ -26,7 +26,8 @@ const FlexibleBodyDef* flexible_part_of(const MechanicsDef& mechanics, const std
 // what does not fit a list of one number by mode
 void check_count(const FlexibleBodyDef& def, const char* key, std::size_t count, bool may_be_one, Problems& problems) {
   const std::size_t modes = def.modes->modes();
-  if (count == 0 || count == modes || (may_be_one && count == 1)) return;
+  // without modes they wait for the modes to come back
+  if (count == 0 || modes == 0 || count == modes || (may_be_one && count == 1)) return;
   problems.push_back({def.body + "." + key, fmt::format("holds {} numbers for {} modes", count, modes),
                       fmt::format("{} numbers{}", modes, may_be_one ? ", or one for all" : ""), ""});
 }

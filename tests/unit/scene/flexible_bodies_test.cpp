@@ -95,6 +95,10 @@ TEST_F(FlexibleScene, ModesAreTakenByListByFrequencyOrNotAtAll) {
   EXPECT_EQ(modes("    flex_modes: none\n"), 0U);
 }
 
+TEST_F(FlexibleScene, OneSettingFreezesTheModes) {
+  EXPECT_EQ(load(kBoom, {"Boom.flex_modes=none"}).mechanics.flexible_bodies[0].modes->modes(), 0U);
+}
+
 TEST_F(FlexibleScene, ANodeIsNamedAsIfItWereABody) {
   const std::string named = with(kBoom, "body1: Boom, point1: [-6.5 m, 0.02904 m, 0.1507 m]", "body1: Boom.Node20");
   EXPECT_EQ(problems(named), "");
