@@ -55,7 +55,10 @@ struct Subject {
     time(kSteps, euler_times, [&] {
       euler.evaluate(model, moving, ws);
       is_right = euler.advance(model, moving, ws, kStep, {}, {}) && is_right;
-      for (const RowValue& row : ws.loops.rows) open = std::max(open, std::fabs(row.g));
+      for (const RowValue& row : ws.loops.rows) {
+        open = std::max(open, std::fabs(row.g));
+        opening = std::max(opening, std::fabs(row.rate));
+      }
     });
     copy_state(start, moving);
     time(kSteps, rk4_times, [&] { is_right = advance_free(model, moving, ws, kStep) && is_right; });
@@ -73,7 +76,7 @@ struct Subject {
   State start, moving;
   Dynamics euler;
   std::vector<double> dynamics_times{}, euler_times{}, rk4_times{};
-  double open = 0;  // m, largest of the loops after the steps of Euler's method
+  double open = 0, opening = 0;  // m, m/s, largest of the loops after the steps of Euler's method
   bool is_right = true;
 };
 
@@ -120,12 +123,12 @@ int main() {
     for (Subject& subject : subjects) subject.run();
   }
   fmt::print(
-      "| | speeds | forward dynamics [ns] | Euler step [ns] | loops open by [m] | RK4 step [ns] "
-      "|\n|---|---|---|---|---|---|\n");
+      "| | speeds | forward dynamics [ns] | Euler step [ns] | loops open by [m] | at [m/s] | RK4 step "
+      "[ns] |\n|---|---|---|---|---|---|---|\n");
   bool is_right = true;
   for (const Subject& s : subjects) {
-    fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.1g} | {:.0f} |\n", s.name, s.model.speed_count(),
-               median(s.dynamics_times), median(s.euler_times), s.open, median(s.rk4_times));
+    fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.1g} | {:.1g} | {:.0f} |\n", s.name, s.model.speed_count(),
+               median(s.dynamics_times), median(s.euler_times), s.open, s.opening, median(s.rk4_times));
     is_right = is_right && s.is_right;
   }
   fmt::print("\n| chain5, 10 s | steps per ms | energy error [J] | [us per ms] |\n|---|---|---|---|\n");

@@ -37,6 +37,7 @@ Joint joint_of(LinkJoint joint) {
     case LinkJoint::floating:
       return Joint::floating;
     case LinkJoint::cylindrical:
+    case LinkJoint::node:
       break;
   }
   throw std::invalid_argument("a joint that no case has");

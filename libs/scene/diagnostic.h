@@ -6,6 +6,7 @@
 #pragma once
 
 #include <compare>
+#include <exception>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -81,5 +82,17 @@ class Report {
   std::vector<Source> sources_;
   std::vector<Entry> entries_;
 };
+
+// Calls load(), which reads the file. What goes wrong outside it (no unit database, no memory) is told in the same way.
+template <typename Load>
+auto guarded(const std::string& file, const Load& load) {
+  try {
+    return load();
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw LoadError({{.file = file, .path = "", .what = error.what(), .expected = "", .suggestion = ""}}, 0);
+  }
+}
 
 }  // namespace slew::scene

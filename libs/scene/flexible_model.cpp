@@ -291,18 +291,6 @@ FlexibleModel read_tree(Node root, Surroundings surroundings, const Overrides& o
   return model;
 }
 
-// What goes wrong outside the file (no unit database, no memory) is told in the same way.
-template <typename Load>
-FlexibleModel guarded(const std::string& file, const Load& load) {
-  try {
-    return load();
-  } catch (const LoadError&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw LoadError({{.file = file, .path = "", .what = error.what(), .expected = "", .suggestion = ""}}, 0);
-  }
-}
-
 }  // namespace
 
 FlexibleModel load_flexible_file(const std::string& path, const Overrides& overrides) {

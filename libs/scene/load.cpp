@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -352,18 +351,6 @@ Scene read_tree(Node root, Surroundings surroundings, const std::string& name, c
   if (!report.is_clean()) report.fail(kMaxReportedProblems);
   scene.expanded_text = canonical_text(scene);
   return scene;
-}
-
-// What goes wrong outside the scene (no unit database, no memory) is told in the same way.
-template <typename Load>
-Scene guarded(const std::string& file, const Load& load) {
-  try {
-    return load();
-  } catch (const LoadError&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw LoadError({{.file = file, .path = "", .what = error.what(), .expected = "", .suggestion = ""}}, 0);
-  }
 }
 
 }  // namespace

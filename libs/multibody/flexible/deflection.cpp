@@ -18,12 +18,6 @@ Vec3 deflection(const ModalNode& node, std::span<const double> q) noexcept {
   return sum;
 }
 
-Vec3 rotation(const ModalNode& node, std::span<const double> q) noexcept {
-  Vec3 sum;
-  for (std::size_t k = 0; k < q.size(); ++k) sum += node.turn[k] * q[k];
-  return sum;
-}
-
 std::vector<std::size_t> widest_nodes(const ModalBody& body) {
   if (body.nodes.empty()) return {};
   std::vector<std::size_t> widest = {body.nodes.size() - 1};

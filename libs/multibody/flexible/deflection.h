@@ -12,8 +12,6 @@ namespace slew::multibody {
 
 // phi q + 1/2 g q q of a node [m], body frame. q: by mode. No allocation.
 [[nodiscard]] math::Vec3 deflection(const ModalNode& node, std::span<const double> q) noexcept;
-// psi q, the rotation vector [rad]
-[[nodiscard]] math::Vec3 rotation(const ModalNode& node, std::span<const double> q) noexcept;
 
 // Beyond it small-deflection theory is off by more than a percent.
 inline constexpr double kSmallDeflection = 0.1;  // of the body's length
