@@ -74,6 +74,7 @@ class Rows {
         add_plane(d_[2]);
         return add_second_hinge();
       case JointType::floating:
+      case JointType::node:
         break;
     }
   }
