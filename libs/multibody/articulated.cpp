@@ -259,9 +259,8 @@ void factorize_floating(const Model& model, Workspace& ws, std::size_t i) noexce
 }  // namespace
 
 void factorize(const Model& model, Workspace& ws) noexcept {
-  const bool has_modes = !model.parts.empty();
   for (std::size_t i = model.links.size() - 1; i > 0; --i) {
-    if (has_modes) eliminate_parts(model, i, ws);
+    if (model.links[i].has_parts()) eliminate_parts(model, i, ws);
     switch (model.links[i].joint) {
       case LinkJoint::revolute:
         factorize_revolute(model, ws, i);
@@ -285,7 +284,7 @@ void factorize(const Model& model, Workspace& ws) noexcept {
         break;
     }
   }
-  if (has_modes) eliminate_parts(model, 0, ws);
+  if (model.links[0].has_parts()) eliminate_parts(model, 0, ws);
 }
 
 }  // namespace slew::multibody

@@ -143,8 +143,17 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
     const FlexiblePart& part = model.parts[at(k)];
     const PartMotion& motion = ws.parts[at(k)];
     const std::size_t u = at(part.u);
+    bool is_pushed = false;
     for (std::size_t j = 0; j < part.modes; ++j) {
       if (tau != nullptr) residual[u + j] += tau[u + j];
+      is_pushed = is_pushed || residual[u + j] != 0;
+    }
+    // most rows end on this side of the modes
+    if (!is_pushed) {
+      for (std::size_t j = 0; j < part.modes; ++j) rate[u + j] = 0;
+      continue;
+    }
+    for (std::size_t j = 0; j < part.modes; ++j) {
       n += motion.X_ang[j] * residual[u + j];
       f += motion.X_lin[j] * residual[u + j];
     }
@@ -172,7 +181,7 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
     const std::size_t u = at(link.u);
     for (std::size_t k = 0; k < rows.count; ++k) {
       Vec3 n = ws.pass_n[k * links + at(i)], f = ws.pass_f[k * links + at(i)];
-      if (has_modes && link.part_end > link.first_part) {
+      if (link.has_parts()) {
         pass_modes(model, ws, link, rows.tau, rows.residual + k * speeds, rows.rate + k * speeds, n, f);
       }
       if (has_modes && link.joint == LinkJoint::node) pass_node(model, ws, link, rows.residual + k * speeds, n, f);

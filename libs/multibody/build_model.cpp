@@ -105,7 +105,7 @@ class Builder {
       child.parent = edge.parent;
       child.joint = edge.joint;
       if (edge.joint != kNoJoint) model_.joints[at(edge.joint)].is_reversed = edge.is_reversed;
-      if (def.type == JointType::fixed) {
+      if (merges(def_, def)) {
         child.link = model_.bodies[at(edge.parent)].link;
       } else {
         child.link = add_link(def, edge);

@@ -75,6 +75,7 @@ struct Link {
   int part_end = 0;
   bool is_driven = false;
   std::array<int, 2> drive = {-1, -1};  // Model::drives, by coordinate; -1: free
+  [[nodiscard]] bool has_parts() const noexcept { return part_end > first_part; }
 };
 
 // Something with a mass that is fixed to a link: a body, a static dummy, a force dummy between merged bodies.

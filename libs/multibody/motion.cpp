@@ -129,9 +129,9 @@ void add_prescribed(const Link& link, const Workspace& ws, LinkMotion& m) noexce
   move_node(place, parent, ws.parts[static_cast<std::size_t>(place.part)], ws.nodes[node], m);
 }
 
-// shape and inertia of the flexible parts whose frame a link is
-void see_parts(const Model& model, std::size_t i, std::span<const double> q, std::span<const double> u,
-               Workspace& ws) noexcept {
+// shape and inertia of the flexible parts whose frame a link is; out of line, since few links have some
+[[gnu::noinline]] void see_parts(const Model& model, std::size_t i, std::span<const double> q,
+                                 std::span<const double> u, Workspace& ws) noexcept {
   for (int k = model.links[i].first_part; k < model.links[i].part_end; ++k) {
     const FlexiblePart& part = model.parts[static_cast<std::size_t>(k)];
     see_part(part, q.subspan(static_cast<std::size_t>(part.q), part.modes),
@@ -185,7 +185,7 @@ void update_motion(const Model& model, std::span<const double> q, std::span<cons
   see_parts(model, 0, q, u, ws);
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     move_link(model, i, q, u, ws);
-    see_parts(model, i, q, u, ws);
+    if (model.links[i].has_parts()) see_parts(model, i, q, u, ws);
   }
 }
 
@@ -286,7 +286,7 @@ void move_from(const Model& model, std::span<const double> start, const Displace
       q[qi + 3] = turned.z;
     }
     move_link(model, i, q, u, ws);
-    if (!model.parts.empty()) see_parts(model, i, q, u, ws);
+    if (link.has_parts()) see_parts(model, i, q, u, ws);
   }
 }
 

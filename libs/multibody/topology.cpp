@@ -16,6 +16,13 @@ std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
+// a flexible body with modes, at a node of which the joint is
+bool rides_on_modes(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
+  return joint.type == JointType::node &&
+         std::any_of(mechanics.flexible_bodies.begin(), mechanics.flexible_bodies.end(),
+                     [&](const FlexibleBodyDef& body) { return body.body == joint.body1 && body.modes->modes() > 0; });
+}
+
 std::pair<int, int> bodies_of(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
   return {find_body(mechanics, joint.body1), find_body(mechanics, joint.body2)};
 }
@@ -125,6 +132,10 @@ std::string_view body_name(const MechanicsDef& mechanics, int body) noexcept {
   return body == kGround ? kGroundName : std::string_view(mechanics.bodies[static_cast<std::size_t>(body) - 1].name);
 }
 
+bool merges(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
+  return joint.type == JointType::fixed || (joint.type == JointType::node && !rides_on_modes(mechanics, joint));
+}
+
 bool has_coordinates(JointType type) noexcept {
   return type <= JointType::cylindrical;
 }
@@ -170,7 +181,7 @@ std::vector<TreeEdge> walk_tree(const MechanicsDef& mechanics, const std::vector
 // The joint by which the tree enters a flexible body at a node, whose frame it cannot find from there; kNoJoint: none.
 int entry_at_a_node(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree) {
   for (const TreeEdge& edge : tree) {
-    const bool is_node = edge.joint != kNoJoint && mechanics.joints[at(edge.joint)].type == JointType::node;
+    const bool is_node = edge.joint != kNoJoint && rides_on_modes(mechanics, mechanics.joints[at(edge.joint)]);
     if (!is_node || !edge.is_reversed) continue;
     const auto entry =
         std::find_if(tree.begin(), tree.end(), [&](const TreeEdge& e) { return e.child == edge.parent; });
@@ -247,7 +258,7 @@ std::vector<int> merged_into(const MechanicsDef& mechanics, const std::vector<Tr
   std::vector<int> merged(mechanics.bodies.size() + 1);
   for (std::size_t b = 0; b < merged.size(); ++b) merged[b] = static_cast<int>(b);
   for (const TreeEdge& edge : tree) {
-    if (edge.joint == kNoJoint || mechanics.joints[at(edge.joint)].type != JointType::fixed) continue;
+    if (edge.joint == kNoJoint || !merges(mechanics, mechanics.joints[at(edge.joint)])) continue;
     merged[static_cast<std::size_t>(edge.child)] = merged[static_cast<std::size_t>(edge.parent)];
   }
   return merged;

@@ -47,6 +47,9 @@ struct TreeEdge {
 // that others hold are not among them: they leave everything free.
 [[nodiscard]] std::vector<int> cut_joints(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree);
 
+// Whether a joint makes two bodies one: fixed ones, and nodes of bodies without modes.
+[[nodiscard]] bool merges(const MechanicsDef& mechanics, const JointDef& joint) noexcept;
+
 // Whether a joint's motion can be described by coordinates of its own.
 [[nodiscard]] bool has_coordinates(JointType type) noexcept;
 

@@ -47,6 +47,13 @@ std::vector<double> damping_of(const FlexibleBodyDef& def) {
   return damping;
 }
 
+bool is_diagonal(const std::vector<double>& pairs, std::size_t n) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i % (n + 1) != 0 && pairs[i] != 0) return false;
+  }
+  return true;
+}
+
 FlexiblePart part_of(const FlexibleBodyDef& def, const Body& body) {
   const ModalBody& modes = *def.modes;
   const Mat3& R = body.R_LB;
@@ -66,6 +73,9 @@ FlexiblePart part_of(const FlexibleBodyDef& def, const Body& body) {
   part.mass_matrix = modes.mass_matrix;
   part.stiffness = modes.stiffness;
   part.damping = damping_of(def);
+  part.is_diagonal = is_diagonal(part.stiffness, part.modes) && is_diagonal(part.damping, part.modes);
+  for (const Mat3& Y : part.Y) part.Y_cross.push_back(axial(Y));
+  for (const Mat3& H : part.H) part.H_cross.push_back(axial(H));
   return part;
 }
 
@@ -106,6 +116,11 @@ void add_parts(const MechanicsDef& mechanics, Model& model) {
       model.start_is_given.push_back(0);
     }
     Link& link = model.links[at(part.link)];
+    // without modes it is its link, and nothing of it is computed
+    if (part.modes == 0) {
+      model.parts.push_back(std::move(part));
+      continue;
+    }
     if (link.part_end == link.first_part) link.first_part = static_cast<int>(k);
     link.part_end = static_cast<int>(k) + 1;
     model.parts.push_back(std::move(part));

@@ -32,6 +32,11 @@
 
 namespace slew::multibody {
 
+// int a x b of int a b^T
+[[nodiscard]] inline math::Vec3 axial(const math::Mat3& W) noexcept {
+  return {W(1, 2) - W(2, 1), W(2, 0) - W(0, 2), W(0, 1) - W(1, 0)};
+}
+
 // Pairs k, l at k * modes + l; vectors and matrices in the axes of the link, moments about its origin.
 struct FlexiblePart {
   std::string name{};  // of the body
@@ -45,7 +50,9 @@ struct FlexiblePart {
   double length = 0;                          // m, length_of() it
   std::vector<math::Vec3> C, G;
   std::vector<math::Mat3> Z, Y, H;
+  std::vector<math::Vec3> Y_cross, H_cross;  // ax(Y), ax(H) by pair
   std::vector<double> mass_matrix, stiffness, damping;
+  bool is_diagonal = false;  // stiffness and damping, as modes of the whole body have them
   [[nodiscard]] bool is_shortening() const noexcept { return !G.empty(); }
 };
 
@@ -69,11 +76,11 @@ struct PartMotion {
   math::Mat3 J;
   math::Vec3 f, n;                       // of (4), (5), what speeds alone make [N, N m]
   std::vector<math::Vec3> b, c;          // of (4), (5)
+  std::vector<math::Mat3> W_q;           // dW/dq_k, in the axes of the frame's link
   std::vector<double> bias;              // right side of (6) with u' = 0
   std::vector<math::Vec3> B_lin, B_ang;  // of (7)
   std::vector<double> E;                 // then its Cholesky factor (small_cholesky.h)
   std::vector<math::Vec3> X_lin, X_ang;  // E^-1 B^T, by mode
-  std::vector<double> scratch;
 };
 
 struct NodeMotion {

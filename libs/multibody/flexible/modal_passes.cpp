@@ -15,6 +15,21 @@ std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
 }
 
+// X = E^-1 B with the factor C of E = C C^T, for all components of B at once
+void substitute(const std::vector<double>& C, const std::vector<Vec3>& B, std::vector<Vec3>& X) noexcept {
+  const std::size_t n = B.size();
+  for (std::size_t r = 0; r < n; ++r) {
+    Vec3 sum = B[r];
+    for (std::size_t k = 0; k < r; ++k) sum -= X[k] * C[r * n + k];
+    X[r] = Vec3(sum.lanes / C[r * n + r]);
+  }
+  for (std::size_t r = n; r-- > 0;) {
+    Vec3 sum = X[r];
+    for (std::size_t k = r + 1; k < n; ++k) sum -= X[k] * C[k * n + r];
+    X[r] = Vec3(sum.lanes / C[r * n + r]);
+  }
+}
+
 }  // namespace
 
 void add_node(const Model& model, std::size_t link, Workspace& ws) noexcept {
@@ -44,13 +59,8 @@ void eliminate_modes(const Model& model, std::size_t index, Workspace& ws) noexc
   const int size = static_cast<int>(n);
   // what is singular shows as accelerations that are not finite
   if (!math::factorize_cholesky(motion.E.data(), size)) motion.E[0] = 0;
-  for (int axis = 0; axis < 6; ++axis) {
-    double* x = motion.scratch.data();
-    for (std::size_t k = 0; k < n; ++k) x[k] = axis < 3 ? motion.B_ang[k][axis] : motion.B_lin[k][axis - 3];
-    math::substitute_forward(motion.E.data(), size, x);
-    math::substitute_backward(motion.E.data(), size, x);
-    for (std::size_t k = 0; k < n; ++k) (axis < 3 ? motion.X_ang : motion.X_lin)[k].lanes[axis % 3] = x[k];
-  }
+  substitute(motion.E, motion.B_ang, motion.X_ang);
+  substitute(motion.E, motion.B_lin, motion.X_lin);
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t u = at(part.u) + k;
     ws.residual[u] = ws.tau[u] - motion.bias[k];

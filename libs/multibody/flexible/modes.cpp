@@ -11,11 +11,6 @@ using math::Vec3;
 
 namespace {
 
-// int a x b of int a b^T
-Vec3 axial(const Mat3& W) noexcept {
-  return {W(1, 2) - W(2, 1), W(2, 0) - W(0, 2), W(0, 1) - W(1, 0)};
-}
-
 // tr W - W
 Mat3 inertia_of(const Mat3& W) noexcept {
   const double trace = W(0, 0) + W(1, 1) + W(2, 2);
@@ -27,23 +22,42 @@ struct TurnFactors {
   double sine = 0, a = 0, b = 0, da = 0, db = 0;
 };
 
-TurnFactors turn_factors(double y) noexcept {
-  constexpr int kTerms = 12;  // to the last bit up to half a turn
-  TurnFactors f;
-  // power: (-y)^k, of k y^(k-1) the same with one factor less; factorial: (2k+1)!
-  double power = 1, before = 0, factorial = 1;
-  for (int k = 0; k < kTerms; ++k) {
-    const double even = factorial * (2 * k + 2), odd = even * (2 * k + 3);
-    f.sine += power / factorial;
-    f.a += power / even;
-    f.b += power / odd;
-    f.da -= k * before / even;
-    f.db -= k * before / odd;
-    before = power;
-    power *= -y;
-    factorial = odd;
+// (-1)^k/(2k+1)!, /(2k+2)!, /(2k+3)! of the power y^k
+struct TurnSeries {
+  static constexpr int kTerms = 12;  // to the last bit up to half a turn
+  static constexpr int kFew = 6;     // to the last bit up to kSmall
+  static constexpr double kSmall = 2e-2;
+  double sine[kTerms]{}, a[kTerms]{}, b[kTerms]{};
+
+  constexpr TurnSeries() {
+    double factorial = 1, sign = 1;
+    for (int k = 0; k < kTerms; ++k) {
+      const double even = factorial * (2 * k + 2), odd = even * (2 * k + 3);
+      sine[k] = sign / factorial;
+      a[k] = sign / even;
+      b[k] = sign / odd;
+      factorial = odd;
+      sign = -sign;
+    }
+  }
+};
+
+template <int Terms>
+TurnFactors sum_of(const TurnSeries& series, double y) noexcept {
+  TurnFactors f{series.sine[Terms - 1], series.a[Terms - 1], series.b[Terms - 1], 0, 0};
+  for (int k = Terms - 2; k >= 0; --k) {
+    f.da = f.da * y + f.a;
+    f.db = f.db * y + f.b;
+    f.sine = f.sine * y + series.sine[k];
+    f.a = f.a * y + series.a[k];
+    f.b = f.b * y + series.b[k];
   }
   return f;
+}
+
+TurnFactors turn_factors(double y) noexcept {
+  constexpr TurnSeries kSeries;
+  return y < TurnSeries::kSmall ? sum_of<TurnSeries::kFew>(kSeries, y) : sum_of<TurnSeries::kTerms>(kSeries, y);
 }
 
 }  // namespace
@@ -53,41 +67,39 @@ PartMotion::PartMotion(std::size_t modes)
       u(modes),
       b(modes),
       c(modes),
+      W_q(modes),
       bias(modes),
       B_lin(modes),
       B_ang(modes),
       E(modes * modes),
       X_lin(modes),
-      X_ang(modes),
-      scratch(modes) {}
+      X_ang(modes) {}
 
 void see_part(const FlexiblePart& part, std::span<const double> q, std::span<const double> u, const LinkMotion& frame,
               PartMotion& motion) noexcept {
   const std::size_t n = part.modes;
   Vec3 s;
-  Mat3 W;
+  Mat3 half;  // of W less W_0, but for its transpose
   for (std::size_t k = 0; k < n; ++k) {
     motion.q[k] = q[k];
     motion.u[k] = u[k];
   }
   for (std::size_t k = 0; k < n; ++k) {
     Vec3 b = part.C[k];
-    Mat3 moment = part.Z[k], half = part.Z[k];
-    for (std::size_t l = 0; l < n; ++l) {
-      moment += part.Y[l * n + k] * q[l];
-      half += part.Y[l * n + k] * (0.5 * q[l]);
-      if (!part.is_shortening()) continue;
+    Mat3 moment = part.Z[k];
+    for (std::size_t l = 0; l < n; ++l) moment += part.Y[l * n + k] * q[l];
+    for (std::size_t l = 0; l < n && part.is_shortening(); ++l) {
       b += part.G[k * n + l] * q[l];
       moment += part.H[k * n + l] * q[l];
-      half += part.H[k * n + l] * (0.5 * q[l]);
     }
     motion.b[k] = frame.R * b;
     motion.c[k] = frame.R * axial(moment);
+    motion.W_q[k] = moment + transpose(moment);
     s += (part.C[k] + b) * (0.5 * q[k]);
-    W += (half + transpose(half)) * q[k];
+    half += (part.Z[k] + moment) * (0.5 * q[k]);
   }
   motion.s_L = s;
-  motion.J_L = inertia_of(W);
+  motion.J_L = inertia_of(half + transpose(half));
 }
 
 void move_node(const FlexibleNode& node, const LinkMotion& frame, const PartMotion& part, NodeMotion& motion,
@@ -95,33 +107,33 @@ void move_node(const FlexibleNode& node, const LinkMotion& frame, const PartMoti
   const std::size_t n = part.q.size();
   Vec3 x = node.x, theta, theta_dot, v, curl;  // curl: (g u) u
   for (std::size_t k = 0; k < n; ++k) {
-    Vec3 shift = node.shift[k], mean = shift;
+    Vec3 shift = node.shift[k];
     for (std::size_t l = 0; l < n && !node.shortening.empty(); ++l) {
       const Vec3 g = node.shortening[k * n + l];
       shift += g * part.q[l];
-      mean += g * (0.5 * part.q[l]);
       curl += g * (part.u[k] * part.u[l]);
     }
-    x += mean * part.q[k];
+    x += (node.shift[k] + shift) * (0.5 * part.q[k]);
     v += shift * part.u[k];
     motion.Phi[k] = frame.R * shift;
     theta += node.turn[k] * part.q[k];
     theta_dot += node.turn[k] * part.u[k];
   }
-  const TurnFactors f = turn_factors(dot(theta, theta));
-  const auto tangent = [&](Vec3 t) { return t + cross(theta, t) * f.a + cross(theta, cross(theta, t)) * f.b; };
-  for (std::size_t k = 0; k < n; ++k) motion.Psi[k] = frame.R * tangent(node.turn[k]);
-  const Mat3 turn = math::skew(theta);
+  const double y = dot(theta, theta);
+  const TurnFactors f = turn_factors(y);
+  const Mat3 turn = math::skew(theta), turn_2 = outer(theta, theta) - Mat3::diagonal(y, y, y);
+  const Mat3 tangent = frame.R * (Mat3::identity() + turn * f.a + turn_2 * f.b);
+  for (std::size_t k = 0; k < n; ++k) motion.Psi[k] = tangent * node.turn[k];
   const Vec3 across = cross(theta, theta_dot);
   const double y_dot = 2 * dot(theta, theta_dot);
   const Vec3 tangent_dot =
       across * (f.da * y_dot) + cross(theta, across) * (f.db * y_dot) + cross(theta_dot, across) * f.b;
 
-  m.R = frame.R * (Mat3::identity() + turn * f.sine + turn * turn * f.a) * node.R;
+  m.R = frame.R * (Mat3::identity() + turn * f.sine + turn_2 * f.a) * node.R;
   m.axis = m.R.c[2];
   m.r = frame.R * x;
   m.p = frame.p + m.r;
-  const Vec3 slide = frame.R * v, spin = frame.R * tangent(theta_dot), v_rel = cross(frame.w, m.r);
+  const Vec3 slide = frame.R * v, spin = tangent * theta_dot, v_rel = cross(frame.w, m.r);
   m.w = frame.w + spin;
   m.v = frame.v + v_rel + slide;
   m.alpha = frame.alpha + cross(frame.w, spin) + frame.R * tangent_dot;
@@ -131,6 +143,7 @@ void move_node(const FlexibleNode& node, const LinkMotion& frame, const PartMoti
 void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& motion,
               ArticulatedInertia& inertia) noexcept {
   const std::size_t n = part.modes;
+  if (n == 0) return;  // as motion was made: nothing beyond the undeformed body
   const Vec3 w = transpose_multiply(frame.R, frame.w);
   Vec3 flow, spin, curl_lin, curl_ang;  // b u, c u in Ground; (G u) u, ax(H u u) in the link's axes
   Mat3 W_dot;
@@ -138,19 +151,17 @@ void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& mot
     const double u = motion.u[k];
     flow += motion.b[k] * u;
     spin += motion.c[k] * u;
-    Mat3 W_k = part.Z[k];  // half of dW/dq_k is its symmetric part
+    const Mat3& W_k = motion.W_q[k];
     Vec3 coriolis;
-    double force = 0;
-    for (std::size_t l = 0; l < n; ++l) {
-      W_k += part.Y[k * n + l] * motion.q[l];
-      coriolis += axial(part.Y[l * n + k]) * motion.u[l];
-      force += part.stiffness[k * n + l] * motion.q[l] + part.damping[k * n + l] * motion.u[l];
-      if (!part.is_shortening()) continue;
-      W_k += part.H[k * n + l] * motion.q[l];
-      curl_lin += part.G[k * n + l] * (u * motion.u[l]);
-      curl_ang += axial(part.H[k * n + l]) * (u * motion.u[l]);
+    double force = part.stiffness[k * n + k] * motion.q[k] + part.damping[k * n + k] * u;
+    for (std::size_t l = 0; l < n; ++l) coriolis += part.Y_cross[l * n + k] * motion.u[l];
+    for (std::size_t l = 0; l < n && !part.is_diagonal; ++l) {
+      if (l != k) force += part.stiffness[k * n + l] * motion.q[l] + part.damping[k * n + l] * motion.u[l];
     }
-    W_k += transpose(W_k);
+    for (std::size_t l = 0; l < n && part.is_shortening(); ++l) {
+      curl_lin += part.G[k * n + l] * (u * motion.u[l]);
+      curl_ang += part.H_cross[k * n + l] * (u * motion.u[l]);
+    }
     W_dot += W_k * u;
     const double trace = W_k(0, 0) + W_k(1, 1) + W_k(2, 2);
     const double centrifugal = 0.5 * (trace * dot(w, w) - dot(w, W_k * w));
