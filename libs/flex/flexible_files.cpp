@@ -171,6 +171,19 @@ Rows recovery_rows(const Recovery& recovery) {
   return rows;
 }
 
+Rows element_rows(const std::vector<UniformElement>& elements) {
+  Rows rows;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const UniformElement& e = elements[i];
+    rows.whole(i + 1).word(std::to_string(e.node1)).word(std::to_string(e.node2));
+    for (const double number :
+         {e.axial, e.torsion, e.bend_y, e.bend_z, e.shear_y, e.shear_z, e.mass, e.rotary_y, e.rotary_z})
+      rows.number(number);
+    rows.vector(e.y).end();
+  }
+  return rows;
+}
+
 // Fowler, Noll & Vo, FNV-1a
 std::uint64_t digest(std::uint64_t hash, const std::string& text) noexcept {
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
@@ -230,8 +243,8 @@ bool is_flexible_name(std::string_view name) noexcept {
 }
 
 const std::vector<std::string>& flexible_matrices() {
-  static const std::vector<std::string> names = {"Source",  "Nodes",     "Frequencies",    "Modes",
-                                                 "Inertia", "Stiffness", "Foreshortening", "Recovery"};
+  static const std::vector<std::string> names = {"Source",    "Nodes",          "Frequencies", "Modes",   "Inertia",
+                                                 "Stiffness", "Foreshortening", "Recovery",    "Elements"};
   return names;
 }
 
@@ -251,7 +264,8 @@ void write_flexible_files(const FlexibleFileSet& set, const Reduction& reduction
                                   inertia_rows(body),
                                   stiffness_rows(body),
                                   foreshortening_rows(body),
-                                  recovery_rows(reduction.recovery)};
+                                  recovery_rows(reduction.recovery),
+                                  element_rows(reduction.elements)};
   std::uint64_t hash = 14695981039346656037u;
   for (const Rows& part : rows) hash = digest(hash, part.text());
   std::vector<std::string> texts;

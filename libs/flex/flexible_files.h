@@ -1,7 +1,8 @@
 // Reduced bodies as sets of text files, Model_Prefix_Matrix.dat.
 //
-// Source, Nodes, Frequencies, Modes, Inertia, Stiffness, Foreshortening and Recovery. Each begins with one line
-//   slewring-flexible 1 Frequencies rows=14 columns=2 set=8c1f0a... units=1,rad/s
+// Source, Nodes, Frequencies, Modes, Inertia, Stiffness, Foreshortening, Recovery and Elements. Each begins with one
+// line
+//   slewring-flexible 2 Frequencies rows=14 columns=2 set=8c1f0a... units=1,rad/s
 // then lines that begin with # (names of the columns), then its rows. 17 significant digits: what is read has the bits
 // of what was written. `set` is one number in all files of a set, made of all their contents, so that files of two sets
 // are not mixed; it is not compared with the contents again, so that a set may be edited. Model and prefix may hold
@@ -29,7 +30,7 @@ struct FlexibleFileSet {
 [[nodiscard]] bool is_flexible_name(std::string_view name) noexcept;
 // folder/Model_Prefix_Matrix.dat
 [[nodiscard]] std::filesystem::path flexible_file(const FlexibleFileSet& set, const std::string& matrix);
-// Of every set: the eight names of matrices, in the order in which they are written.
+// Of every set: the nine names of matrices, in the order in which they are written.
 [[nodiscard]] const std::vector<std::string>& flexible_matrices();
 
 // The set whose files begin with `stem`, folder/Model_Prefix, by what its Source says; where Source does not say it,

@@ -49,6 +49,7 @@ class Reader {
     read_stiffness();
     read_foreshortening();
     read_recovery();
+    read_elements();
     return std::move(out_);
   }
 
@@ -279,6 +280,40 @@ class Reader {
     table.end();
   }
 
+  void read_elements() {
+    constexpr double kUnit = 1e-9;
+    FlexibleTable table = open("Elements");
+    table.expect_rows(static_cast<std::size_t>(out_.source.elements), "as Source says");
+    for (int i = 0; i < out_.source.elements; ++i) {
+      const auto& words = table.next();
+      table.expect_whole(0, i + 1, "element");
+      const int node1 = static_cast<int>(table.at().whole_of(words[1], 0));
+      const int node2 = static_cast<int>(table.at().whole_of(words[2], 0));
+      const auto place = [&](int id) {
+        const auto at = std::find_if(out_.body.nodes.begin(), out_.body.nodes.end(),
+                                     [id](const ReducedNode& node) { return node.id == id; });
+        if (at == out_.body.nodes.end())
+          table.at().refuse(fmt::format("node {}", id), "one of this body",
+                            "the files do not belong together; write the set again");
+        return at->position;
+      };
+      const Vec3 along = place(node2) - place(node1), y = vector_at(table, 12);
+      if (!(norm(along) > 0)) table.at().refuse("an element without length", "two nodes at different places");
+      for (std::size_t k = 3; k < 12; ++k) {
+        const bool may_be_zero = k == 7 || k == 8 || k > 9;  // rigid in shear, without rotary inertia
+        if (table.number(k) < 0 || (table.number(k) == 0 && !may_be_zero))
+          table.at().refuse(fmt::format("{} in column {}", table.number(k), k + 1),
+                            may_be_zero ? "a number >= 0" : "a number > 0");
+      }
+      if (std::abs(norm(y) - 1) > kUnit || std::abs(dot(y, along)) > kUnit * norm(along))
+        table.at().refuse(fmt::format("y axis {} {} {}", y.x(), y.y(), y.z()), "a unit vector across the element");
+      out_.elements.push_back({node1, node2, table.number(3), table.number(4), table.number(5), table.number(6),
+                               table.number(7), table.number(8), table.number(9), table.number(10), table.number(11),
+                               y});
+    }
+    table.end();
+  }
+
   FlexibleFileSet files_;
   std::string label_;
   std::size_t modes_ = 0;
@@ -290,7 +325,7 @@ class Reader {
 FlexibleFileSet find_flexible_files(const std::filesystem::path& stem) {
   const auto source = std::filesystem::path(stem.string() + "_Source.dat");
   if (!std::filesystem::exists(source))
-    refuse_file(source, 0, "the file is missing", "the 8 files of a set", "name a set as FOLDER/Model_Prefix");
+    refuse_file(source, 0, "the file is missing", "the 9 files of a set", "name a set as FOLDER/Model_Prefix");
   const std::string name = stem.filename().string();
   const std::optional<FileOwner> owner = owner_of(source);
   if (owner && owner->model + '_' + owner->prefix == name) return {stem.parent_path(), owner->model, owner->prefix};

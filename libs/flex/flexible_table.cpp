@@ -31,6 +31,9 @@ TableForm form_of(const std::string& what, std::size_t modes) {
   if (what == "Stiffness") return {what, modes, "1/s2", "modes by modes"};
   if (what == "Foreshortening")
     return {what, 13, "G:1/m H:1 g:1/kg/m", "what node k l xx xy xz yx yy yz zx zy zz (vectors: x y z and zeros)"};
+  if (what == "Elements")
+    return {what, 15, "1 1 1 N N.m2 N.m2 N.m2 N N kg/m kg.m kg.m 1 1 1",
+            "element node1 node2 EA GJ EIy EIz kGAy kGAz rhoA rhoIy rhoIz y_x y_y y_z (kGA 0: rigid in shear)"};
   return {what, 5 + 2 * modes, "1 1 m m 1 Pa/m/kg^1/2", "element node y z has_shear, normal by mode, shear by mode"};
 }
 

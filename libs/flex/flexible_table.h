@@ -13,7 +13,7 @@
 namespace slew::flex {
 
 inline constexpr std::string_view kFormatName = "slewring-flexible";
-inline constexpr int kFormatVersion = 1;
+inline constexpr int kFormatVersion = 2;
 
 struct TableForm {
   std::string what;

@@ -59,11 +59,12 @@ Reduction reduce(const FeModel& model, const ReductionDef& def) {
   if (def.stiffening == GeometricStiffening::straight_beam)
     add_foreshortening(model, modes.Phi, modes.clamped_nodes, out.body);
   out.recovery = make_recovery(model, modes.Phi);
+  out.elements = uniform_elements(model);
   return out;
 }
 
 Reduction select(const Reduction& reduction, std::span<const int> ordinals) {
-  return {reduction.source, select(reduction.body, ordinals), select(reduction.recovery, ordinals)};
+  return {reduction.source, select(reduction.body, ordinals), select(reduction.recovery, ordinals), reduction.elements};
 }
 
 }  // namespace slew::flex

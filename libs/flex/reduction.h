@@ -9,6 +9,7 @@
 #include "flex/integrals.h"
 #include "flex/recovery.h"
 #include "flex/reduced_body.h"
+#include "flex/uniform_element.h"
 
 namespace slew::flex {
 
@@ -40,6 +41,7 @@ struct Reduction {
   Source source;
   ReducedBody body;
   Recovery recovery;
+  std::vector<UniformElement> elements;  // of beams, whichever modes are kept
 };
 
 // All modes of the reduction: those of the interfaces and of the inside. Throws InputError as craig_bampton() and

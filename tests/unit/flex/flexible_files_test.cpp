@@ -117,7 +117,7 @@ class FaultyFiles : public ::testing::Test {
 TEST_F(FaultyFiles, MissingFileIsNamed) {
   std::filesystem::remove(folder_.path() / "M_F_Inertia.dat");
   EXPECT_EQ(error(),
-            "M_F_Inertia.dat: the file is missing; expected the 8 files M_F_*.dat of a set; copy the whole set, or "
+            "M_F_Inertia.dat: the file is missing; expected the 9 files M_F_*.dat of a set; copy the whole set, or "
             "write it again");
 }
 
@@ -131,9 +131,9 @@ TEST_F(FaultyFiles, FilesOfTwoSetsAreRefused) {
 
 TEST_F(FaultyFiles, HeadersAreChecked) {
   EXPECT_NE(
-      changed("Nodes", "slewring-flexible 1", "something").find("M_F_Nodes.dat:1: the first line is 'something Nodes"),
+      changed("Nodes", "slewring-flexible 2", "something").find("M_F_Nodes.dat:1: the first line is 'something Nodes"),
       std::string::npos);
-  EXPECT_NE(changed("Nodes", "slewring-flexible 1", "slewring-flexible 2").find("the format has version 2; expected 1"),
+  EXPECT_NE(changed("Nodes", "slewring-flexible 2", "slewring-flexible 1").find("the format has version 1; expected 2"),
             std::string::npos);
   EXPECT_NE(changed("Nodes", " Nodes ", " Modes ").find("M_F_Nodes.dat:1: the file holds Modes; expected Nodes"),
             std::string::npos);
@@ -146,6 +146,10 @@ TEST_F(FaultyFiles, HeadersAreChecked) {
 }
 
 TEST_F(FaultyFiles, RowsAreChecked) {
+  EXPECT_NE(changed("Elements", "\n2 2 3", "\n2 2 33").find("node 33; expected one of this body"), std::string::npos);
+  EXPECT_NE(changed("Elements", "\n2 2 3", "\n2 2 2").find("an element without length"), std::string::npos);
+  EXPECT_NE(changed("Elements", "\n2 2 3 ", "\n2 2 3 -").find("in column 4; expected a number > 0"), std::string::npos);
+  EXPECT_NE(changed("Elements", "rows=3", "rows=2").find("expected 3, as Source says"), std::string::npos);
   EXPECT_NE(changed("Frequencies", "\n2 ", "\n2 nan\n#")
                 .find("M_F_Frequencies.dat:4: nan is not finite; expected a finite number"),
             std::string::npos);
