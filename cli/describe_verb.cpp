@@ -104,6 +104,9 @@ void describe_bodies(const scene::Scene& scene, Description& d) {
     for (const multibody::FlexibleBodyDef& flexible : scene.mechanics.flexible_bodies) {
       if (flexible.body == body.name) multibody::take_mass(*flexible.modes, numbers);
     }
+    for (const multibody::SegmentedBodyDef& segmented : scene.mechanics.segmented_bodies) {
+      if (segmented.body == body.name) multibody::take_mass(*segmented.chain, numbers);
+    }
     d.body_numbers.push_back({numbers, mesh == meshes.end() ? std::nullopt : std::optional(*mesh)});
   }
 }

@@ -353,6 +353,9 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   for (std::size_t part = 0; part < model_.parts.size(); ++part) {
     if (multibody::is_bent_far(model_, part, state_.q)) report.raise(StepFlag::large_deflection);
   }
+  for (const multibody::SegmentedPart& part : model_.segmented) {
+    if (multibody::is_bent_far(model_, part, workspace_)) report.raise(StepFlag::large_deflection);
+  }
   return report;
 }
 

@@ -36,8 +36,7 @@ const Mat3 kReverseCross = {Vec3(0, -1, 0), Vec3(-1, 0, 0), Vec3(0, 0, -1)};
 class Builder {
  public:
   explicit Builder(const MechanicsDef& def)
-      : expanded_(def.flexible_bodies.empty() ? MechanicsDef() : with_nodes(def)),
-        def_(def.flexible_bodies.empty() ? def : expanded_) {}
+      : expanded_(has_parts(def) ? with_nodes(def) : MechanicsDef()), def_(has_parts(def) ? expanded_ : def) {}
 
   Model run(std::span<const std::string> rows, AssemblyReport& report) {
     Problems problems;
@@ -55,13 +54,16 @@ class Builder {
     add_forces(def_, link_pose_, model_);
     add_dummies(def_, model_);
     add_elements(def_, poses_, model_);
+    add_segments(def_, model_);
     for (const std::string& row : rows) add_row(def_, row, model_);
     mark_used_elements(model_);
     model_.contact = build_contacts(def_, model_);
     for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
     for (Cut& cut : model_.cuts) add_supports(model_, cut);
     // loops would be open by what their bodies sag
-    const bool is_settled = !model_.cuts.empty() || settle_modes(model_);
+    const bool has_loops = !model_.cuts.empty();
+    if (has_loops) straighten_segments(model_, model_.start_q, model_.start_u);
+    const bool is_settled = has_loops || (settle_segments(model_) && settle_modes(model_));
     report = assemble(model_);
     report.is_settled = is_settled;
     return std::move(model_);

@@ -18,6 +18,7 @@
 #include "multibody/contact_defs.h"
 #include "multibody/elements/element_defs.h"
 #include "multibody/flexible/flexible_def.h"
+#include "multibody/flexible/segmented_def.h"
 #include "multibody/motions/motion_defs.h"
 #include "multibody/not_given.h"
 
@@ -29,9 +30,9 @@ inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 enum class InertiaPoint : int { center_of_mass, body_origin };
 
 // In the order of the body types of field_tables.h.
-enum class BodyType : int { rigid, flexible };
+enum class BodyType : int { rigid, flexible, segmented };
 
-// One struct for both types; each type's field table lists the members that it has.
+// One struct for all types; each type's field table lists the members that it has.
 struct BodyDef {
   std::string name{};
   BodyType type = BodyType::rigid;
@@ -43,12 +44,14 @@ struct BodyDef {
   Triple inertia{};                    // kg m2, Ixx Iyy Izz in body axes; 0 0 0 is a point mass
   Triple products{};                   // kg m2, the tensor's elements Ixy Ixz Iyz (that is -integral x y dm, ...)
   InertiaPoint inertia_about = InertiaPoint::center_of_mass;
-  // Of a flexible body: files and what is taken of them. What they hold stands in MechanicsDef::flexible_bodies.
+  // Of a flexible or segmented body: files and what is taken of them. What they hold stands in
+  // MechanicsDef::flexible_bodies and segmented_bodies.
   std::string flex_model{};                  // first part of the files' names; empty: the scene's name
   std::string flex_file_prefix{};            // second part
   std::string flex_modes{};                  // ordinals, "1;2", or "none"; empty: all
   double flex_frequency_limit = kUnlimited;  // Hz
   std::string relative_damping{};            // zeta by mode, "0.005;0.005", or one for all; empty: 0
+  std::int64_t segments = 20;                // connectors of a segmented body
 };
 
 // Those after cylindrical have no coordinates of their own (topology.h): their rows are in constraint.h.
@@ -218,7 +221,8 @@ struct MechanicsDef {
   std::vector<PartDummyDef> part_dummies;
   std::vector<ConstraintDummyDef> constraint_dummies;
   std::vector<MotionDef> motions;
-  std::vector<FlexibleBodyDef> flexible_bodies;  // of the bodies of that type, once their files were read
+  std::vector<FlexibleBodyDef> flexible_bodies;    // of the bodies of that type, once their files were read
+  std::vector<SegmentedBodyDef> segmented_bodies;  // the same of segmented bodies
 };
 
 }  // namespace slew::multibody

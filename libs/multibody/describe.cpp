@@ -32,6 +32,20 @@ std::string describe(const Model& model, const FlexiblePart& part) {
                      omega(part.modes - 1), nodes.empty() ? "none" : nodes);
 }
 
+std::string describe(const SegmentedPart& part) {
+  const SegmentChain& chain = *part.source;
+  const std::size_t n = chain.connectors.size();
+  return fmt::format("{}: {} of '{}', {:.4g} m each, {} lumps", part.name,
+                     n == 1 ? "1 segment" : fmt::format("{} segments", n), chain.source, chain.connectors[0].length,
+                     chain.lumps.size());
+}
+
+// Lumps and nodes of segmented bodies: bodies and joints that the scene does not have.
+bool is_of_segments(const Model& model, const std::string& name) {
+  return std::any_of(model.segmented.begin(), model.segmented.end(),
+                     [&](const SegmentedPart& part) { return name.starts_with(part.name + "."); });
+}
+
 }  // namespace
 
 Description describe(const Model& model) {
@@ -39,8 +53,12 @@ Description describe(const Model& model) {
   // nodes are links of their own, but no bodies or joints of the scene
   const int nodes = static_cast<int>(std::count_if(model.joints.begin(), model.joints.end(),
                                                    [](const Joint& j) { return j.type == JointType::node; }));
-  text.bodies = static_cast<int>(model.bodies.size()) - 1 - nodes;
-  text.joints = static_cast<int>(model.joints.size()) - nodes;
+  const auto lumps = static_cast<int>(std::count_if(
+      model.bodies.begin(), model.bodies.end(), [&](const Body& body) { return is_of_segments(model, body.name); }));
+  const auto holds = static_cast<int>(std::count_if(
+      model.joints.begin(), model.joints.end(), [&](const Joint& joint) { return is_of_segments(model, joint.name); }));
+  text.bodies = static_cast<int>(model.bodies.size()) - 1 - nodes - lumps;
+  text.joints = static_cast<int>(model.joints.size()) - nodes - holds;
   text.degrees_of_freedom = model.degrees_of_freedom();
   text.rows = model.row_count();
   if (model.contact != nullptr) {
@@ -65,6 +83,7 @@ Description describe(const Model& model) {
     if (drive.link > 0) --text.links[static_cast<std::size_t>(drive.link) - 1].degrees_of_freedom;
   }
   for (const FlexiblePart& part : model.parts) text.flexible.push_back(describe(model, part));
+  for (const SegmentedPart& part : model.segmented) text.flexible.push_back(describe(part));
   for (const Cut& cut : model.cuts) {
     const Joint& joint = model.joints[static_cast<std::size_t>(cut.joint)];
     CutDescription& entry = text.cuts.emplace_back();

@@ -120,6 +120,22 @@ constexpr Field kFlexibleBodyFields[] = {
         "relative_damping", {.doc = "damping over critical damping by mode, as '0.005;0.005', or one for all; 0"}),
 };
 
+constexpr Field kSegmentedBodyFields[] = {
+    kRelativeTo,
+    kPosition,
+    kOrientation,
+    field<&BodyDef::flex_model>("flex_model",
+                                {.doc = "model in the names Model_Prefix_Matrix.dat of its flexible files; without it "
+                                        "the scene's name"}),
+    field<&BodyDef::flex_file_prefix>(
+        "flex_file_prefix",
+        {.presence = Presence::required, .doc = "prefix in the names of the files, which lie beside the scene"}),
+    field<&BodyDef::segments>("segments", {.range = {1, 200, false, false},
+                                           .doc = "elastic connectors of equal length, between one more rigid lumps"}),
+    field<&BodyDef::relative_damping>("relative_damping",
+                                      {.doc = "damping over critical damping of the files' first mode, one number; 0"}),
+};
+
 template <typename Def>
 constexpr Field spring_table_row(Dimension argument, Dimension value, std::string_view doc) {
   return field<&Def::spring_table>("spring_table", {.dimension = argument, .value_dimension = value, .doc = doc});
@@ -238,17 +254,21 @@ void* append_to(MechanicsDef& mechanics, std::string_view element) {
   return &def;
 }
 
-void* append_flexible(MechanicsDef& mechanics, std::string_view element) {
+template <BodyType Type>
+void* append_body(MechanicsDef& mechanics, std::string_view element) {
   BodyDef& body = mechanics.bodies.emplace_back();
   body.name = element;
-  body.type = BodyType::flexible;
+  body.type = Type;
   return &body;
 }
 
 // in the order of BodyType
 constexpr ElementType kBodyTypes[] = {
     {"rigid", "body", "rigid body", kBodyFields, append_to<&MechanicsDef::bodies>, true},
-    {"flexible", "body", "flexible body of a reduced finite element model", kFlexibleBodyFields, append_flexible},
+    {"flexible", "body", "flexible body of a reduced finite element model", kFlexibleBodyFields,
+     append_body<BodyType::flexible>},
+    {"segmented", "body", "body of rigid lumps with elastic beams between them, from the same files",
+     kSegmentedBodyFields, append_body<BodyType::segmented>},
 };
 
 constexpr ElementType kForceTypes[] = {

@@ -30,6 +30,7 @@
 #include "multibody/defs.h"
 #include "multibody/elements/element_set.h"
 #include "multibody/flexible/flexible_part.h"
+#include "multibody/flexible/segmented_part.h"
 #include "multibody/joint_law.h"
 #include "multibody/motions/drive.h"
 
@@ -242,6 +243,7 @@ struct Model {
   std::vector<Link> links;          // [0] is Ground
   std::vector<FlexiblePart> parts;  // by link
   std::vector<FlexibleNode> nodes;
+  std::vector<SegmentedPart> segmented;  // in the order of the scene
   std::vector<LumpedMass> lumped;
   std::vector<CoupledMass> coupled;  // by child link
   std::vector<CoupledMass> welded;   // within one link: lumped into it, but carried by both bodies of their line

@@ -64,6 +64,8 @@ std::size_t read_contact_variables(const Model& model, const Workspace& ws, std:
 
 // Whether a flexible part is bent by more than a tenth of its length at coordinates q: beyond small deflections.
 [[nodiscard]] bool is_bent_far(const Model& model, std::size_t part, std::span<const double> q) noexcept;
+// Whether two neighbours of a segmented body are turned by more than kLargestBend against each other.
+[[nodiscard]] bool is_bent_far(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
 
 // What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
 // scene, in the order and form of JointReaction; then "Motion.torque" or "Motion.force", and "Motion.power", for each

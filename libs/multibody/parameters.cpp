@@ -83,7 +83,9 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
   if (const int body = find_body(model, element); body > 0) {
     // mass and inertia of a flexible body are those of its modes
     const bool is_flexible = std::any_of(model.parts.begin(), model.parts.end(),
-                                         [body](const FlexiblePart& part) { return part.body == body; });
+                                         [body](const FlexiblePart& part) { return part.body == body; }) ||
+                             std::any_of(model.segmented.begin(), model.segmented.end(),
+                                         [&](const SegmentedPart& part) { return part.name == element; });
     if (key != "mass" || is_flexible) return std::nullopt;
     return Parameter{ParameterKind::body_mass, body, 0};
   }

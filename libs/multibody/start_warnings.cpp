@@ -41,6 +41,28 @@ void find_start_deflections(const Model& model, Problems& warnings) {
   }
 }
 
+void find_start_bends(const Model& model, Problems& warnings) {
+  Workspace ws(model);
+  observe(model, start_state(model), ws);
+  for (const SegmentedPart& part : model.segmented) {
+    if (!part.is_free || (!model.cuts.empty() && part.start == SegmentStart::at_rest)) {
+      warnings.push_back({part.name + ".segments",
+                          part.is_free ? "the body starts undeformed and swings: in a mechanism with loops no rest is "
+                                         "looked for"
+                                       : "the body starts undeformed and swings: no rest is looked for where joints "
+                                         "hold more of it than its root",
+                          "nothing to do, or damping that ends it", ""});
+    }
+    const LargestBend bend = largest_bend(model, part, ws);
+    if (!(bend.angle > kLargestBend)) continue;
+    warnings.push_back({part.name + ".segments",
+                        fmt::format("segments are turned by {:.3g} rad against each other at the start, at connector "
+                                    "{} of {}: a connector is good for small turns",
+                                    bend.angle, bend.connector + 1, part.source->connectors.size()),
+                        fmt::format("so many segments that none turns by more than {} rad", kLargestBend), ""});
+  }
+}
+
 }  // namespace
 
 void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
@@ -48,6 +70,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
   Workspace ws(model);
   State state = start_state(model);
   for_each_mode(model, [&](std::size_t q, std::size_t) { state.q[q] = 0; });
+  straighten_segments(model, state.q, state.u);
   observe(model, state, ws);
   Problems ignored;
   const std::vector<Pose> wanted = start_poses(mechanics, ignored);
@@ -64,6 +87,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
          "poses that fit the joints", ""});
   }
   find_start_deflections(model, warnings);
+  find_start_bends(model, warnings);
   for (const CutDescription& cut : describe(model).cuts) {
     for (const std::string& row : cut.redundant) {
       warnings.push_back({cut.joint, row + " is redundant: other joints hold it already",
@@ -74,7 +98,7 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
 
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
   for (const BodyDef& body : mechanics.bodies) {
-    if (body.type == BodyType::flexible) continue;
+    if (body.type != BodyType::rigid) continue;
     double extent = 0;
     const auto see = [&](const std::string& owner, const Triple& point) {
       if (owner == body.name) extent = std::max(extent, math::norm(Vec3(point) - Vec3(body.center_of_mass)));

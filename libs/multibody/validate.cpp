@@ -83,6 +83,7 @@ class Validator {
     if (problems_.empty()) find_singular_joints(given_, problems_);
     if (problems_.empty()) check_loops();
     if (problems_.empty()) check_mode_speeds(given_, problems_);
+    if (problems_.empty()) check_segment_speeds(given_, problems_);
   }
 
  private:
@@ -337,7 +338,8 @@ class Validator {
     AssemblyReport report;
     const Model model = build_model(given_, {}, report);
     if (!report.is_settled) {
-      add(model.parts.front().name, "no rest is found for the flexible bodies under the load of the start",
+      add(model.segmented.empty() ? model.parts.front().name : model.segmented.front().name,
+          "no rest is found for the flexible bodies under the load of the start",
           "a load below the buckling load, or a start of its own");
     }
     for (const AssemblyReport::Row& row : report.held_twice) {
@@ -372,7 +374,7 @@ void validate(const MechanicsDef& mechanics, Problems& problems) {
   Problems own;
   if (!check_flexible_bodies(mechanics, own)) {
     Validator(mechanics, mechanics, own).check_numbers();
-  } else if (mechanics.flexible_bodies.empty()) {
+  } else if (!has_parts(mechanics)) {
     Validator(mechanics, mechanics, own).run();
   } else {
     Validator(mechanics, with_nodes(mechanics), own).run();

@@ -90,6 +90,10 @@ bool is_bent_far(const Model& model, std::size_t part, std::span<const double> q
   return largest.size > kSmallDeflection * flexible.length;
 }
 
+bool is_bent_far(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept {
+  return largest_bend(model, part, ws).angle > kLargestBend;
+}
+
 BodyPose body_pose(const Model& model, const Workspace& ws, int body) noexcept {
   const Body& b = model.bodies[at(body)];
   const LinkMotion& m = ws.motion[at(b.link)];
@@ -143,6 +147,11 @@ std::vector<ElementVariable> variables(const Model& model) {
       names.add(part.name + ".modal_coordinate_" + std::to_string(k), none);
       names.add(part.name + ".modal_velocity_" + std::to_string(k), none);
     }
+  }
+  for (const SegmentedPart& part : model.segmented) {
+    names.add_triple(part.name + ".deflection", length);
+    names.add(part.name + ".largest_deflection", length);
+    names.add(part.name + ".strain_energy", Dimension::energy);
   }
   for (const Joint& joint : model.joints) {
     const int count = coordinate_count(joint.type);
@@ -225,6 +234,11 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
       out.put(q[k]);
       out.put(u[k]);
     }
+  }
+  for (const SegmentedPart& part : model.segmented) {
+    out.put(tip_deflection(model, part, ws).array());
+    out.put(largest_deflection(model, part, ws).size);
+    out.put(strain_energy(model, part, ws));
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];

@@ -131,8 +131,8 @@ void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& m
   // in the order of JointType
   const std::span<const multibody::ElementType> joint_types = multibody::joint_types();
   for (multibody::BodyDef& body : mechanics.bodies) {
-    const bool is_rigid = body.type == multibody::BodyType::rigid;
-    refs.push_back(ref(table_of("bodies", is_rigid ? "rigid" : "flexible"), body.name, &body));
+    const multibody::ElementType& type = multibody::sections()[0].types[static_cast<std::size_t>(body.type)];
+    refs.push_back(ref(table_of("bodies", type.name), body.name, &body));
   }
   for (multibody::JointDef& joint : mechanics.joints) {
     refs.push_back(ref(table_of("joints", joint_types[static_cast<std::size_t>(joint.type)].name), joint.name, &joint));

@@ -1,4 +1,4 @@
-// Nodes of flexible bodies as bodies of their own. Internal to the library.
+// Nodes of flexible bodies and lumps of segmented ones as bodies of their own. Internal to the library.
 #pragma once
 
 #include <string>
@@ -10,10 +10,21 @@ namespace slew::multibody {
 // "Truck_JibBoom.Node20".
 [[nodiscard]] std::string node_name(const std::string& body, std::int64_t id);
 
+// "Truck_JibBoom.Segment3"; of the root lump the body itself.
+[[nodiscard]] std::string lump_name(const SegmentedBodyDef& segmented, std::size_t lump);
+
 // The same mechanics with, for every node of a flexible body at which something is attached, a massless body and a
 // joint of the type `node` that holds it; whatever referred to the flexible body at a point refers to the nearest node
 // then, and what names a node to that. What is attached at the root stays with the body. Flexible bodies have the mass
-// and the inertia of their modes' source. Allocates.
+// and the inertia of their modes' source.
+// Segmented bodies become rigid ones, their root lumps, and their other lumps are bodies, free of Ground where no joint
+// of the scene holds them; what refers to such a body at a point refers to the nearest lump then, and nodes that are
+// used are massless bodies fixed to the lump that holds them. Beams are not in it: add_segments(). Allocates.
 [[nodiscard]] MechanicsDef with_nodes(const MechanicsDef& mechanics);
+
+// Whether with_nodes() changes anything.
+[[nodiscard]] inline bool has_parts(const MechanicsDef& mechanics) noexcept {
+  return !mechanics.flexible_bodies.empty() || !mechanics.segmented_bodies.empty();
+}
 
 }  // namespace slew::multibody

@@ -11,6 +11,7 @@
 #include "multibody/dynamics.h"
 #include "multibody/field_tables.h"
 #include "multibody/flexible/expand_nodes.h"
+#include "multibody/flexible/segment_speeds.h"
 #include "multibody/integrators.h"
 #include "multibody/passes.h"
 
@@ -39,6 +40,49 @@ void check(const FlexibleBodyDef& def, Problems& problems) {
     if (zeta >= 0 && std::isfinite(zeta)) continue;
     problems.push_back({def.body + ".relative_damping", fmt::format("{} is out of range", zeta), "numbers >= 0", ""});
   }
+}
+
+const SegmentedBodyDef* chain_of(const MechanicsDef& mechanics, const std::string& body) {
+  const auto found = std::find_if(mechanics.segmented_bodies.begin(), mechanics.segmented_bodies.end(),
+                                  [&](const SegmentedBodyDef& segmented) { return segmented.body == body; });
+  return found == mechanics.segmented_bodies.end() ? nullptr : &*found;
+}
+
+void check_chains(const MechanicsDef& mechanics, Problems& problems) {
+  for (const BodyDef& body : mechanics.bodies) {
+    if (body.type != BodyType::segmented) continue;
+    const SegmentedBodyDef* segmented = chain_of(mechanics, body.name);
+    if (segmented == nullptr || segmented->chain == nullptr) {
+      problems.push_back({body.name + ".flex_file_prefix", "the flexible files were not read",
+                          "a scene that is read with the folder of its files", ""});
+    } else if (!(segmented->relative_damping >= 0) || !std::isfinite(segmented->relative_damping)) {
+      problems.push_back({body.name + ".relative_damping",
+                          fmt::format("{} is out of range", segmented->relative_damping), "a number >= 0", ""});
+    }
+  }
+  for (const SegmentedBodyDef& segmented : mechanics.segmented_bodies) {
+    const auto body = std::find_if(mechanics.bodies.begin(), mechanics.bodies.end(),
+                                   [&](const BodyDef& candidate) { return candidate.name == segmented.body; });
+    if (body != mechanics.bodies.end() && body->type == BodyType::segmented) continue;
+    problems.push_back(
+        {segmented.body, "segments are given, but this is no segmented body", "a body of type segmented", ""});
+  }
+}
+
+// where the explicit rules end on the imaginary and on the real axis (Hairer and Wanner, IV.2)
+struct LongestStep {
+  double seconds = 0;
+  bool is_swing = true;  // because of the frequency, not of the decay
+};
+LongestStep longest_step(Integrator rule, double omega, double decay) {
+  const bool is_rk4 = rule == Integrator::rk4;
+  const double swing = (is_rk4 ? 2.828 : 2.0) / omega;
+  const double fading = decay > 0 ? (is_rk4 ? 2.785 : 2.0) / decay : std::numeric_limits<double>::infinity();
+  return {std::min(swing, fading), swing <= fading};
+}
+
+bool is_explicit(Integrator rule) {
+  return rule == Integrator::rk4 || rule == Integrator::semi_implicit_euler;
 }
 
 // Largest eigenvalue of M^-1 A, M^-1 that of the mechanism in the modal coordinates and A a matrix of each body, and
@@ -88,6 +132,7 @@ Fastest fastest_mode(const Model& model, Workspace& ws, Matrix matrix_of) {
 
 bool check_flexible_bodies(const MechanicsDef& mechanics, Problems& problems) {
   const std::size_t before = problems.size();
+  check_chains(mechanics, problems);
   for (const BodyDef& body : mechanics.bodies) {
     if (body.type != BodyType::flexible) continue;
     const FlexibleBodyDef* flexible = flexible_part_of(mechanics, body.name);
@@ -109,7 +154,14 @@ bool check_flexible_bodies(const MechanicsDef& mechanics, Problems& problems) {
 
 std::string nodes_beside(const MechanicsDef& mechanics, const std::string& name) {
   const FlexibleBodyDef* flexible = flexible_part_of(mechanics, name.substr(0, name.find('.')));
-  if (flexible == nullptr || name.find('.') == std::string::npos) return "";
+  const SegmentedBodyDef* segmented = chain_of(mechanics, name.substr(0, name.find('.')));
+  if (name.find('.') == std::string::npos) return "";
+  if (segmented != nullptr) {
+    const std::vector<SegmentNode>& all = segmented->chain->nodes;
+    return fmt::format("{} to {}, {} nodes", node_name(segmented->body, all.front().id),
+                       node_name(segmented->body, all.back().id), all.size());
+  }
+  if (flexible == nullptr) return "";
   const std::vector<ModalNode>& nodes = flexible->modes->nodes;
   return fmt::format("{} to {}, {} nodes", node_name(flexible->body, nodes.front().id),
                      node_name(flexible->body, nodes.back().id), nodes.size());
@@ -117,22 +169,16 @@ std::string nodes_beside(const MechanicsDef& mechanics, const std::string& name)
 
 void check_mode_speeds(const MechanicsDef& mechanics, Problems& problems) {
   const StepRule rule = step_rule(mechanics);
-  const bool is_explicit = rule.integrator == Integrator::rk4 || rule.integrator == Integrator::semi_implicit_euler;
-  if (!is_explicit || mechanics.flexible_bodies.empty()) return;
+  if (!is_explicit(rule.integrator) || mechanics.flexible_bodies.empty()) return;
   const Model model = build_model(mechanics);
   Workspace ws(model);
   evaluate(model, start_state(model), ws);
   const auto stiffness = [](const FlexiblePart& part) -> const std::vector<double>& { return part.stiffness; };
   const auto damping = [](const FlexiblePart& part) -> const std::vector<double>& { return part.damping; };
   const Fastest swing = fastest_mode(model, ws, stiffness), decay = fastest_mode(model, ws, damping);
-  // where the rules end on the imaginary and on the real axis (Hairer and Wanner, IV.2)
-  const bool is_rk4 = rule.integrator == Integrator::rk4;
   const double omega = std::sqrt(swing.value);
-  const double longest =
-      std::min((is_rk4 ? 2.828 : 2.0) / omega,
-               decay.value > 0 ? (is_rk4 ? 2.785 : 2.0) / decay.value : std::numeric_limits<double>::infinity());
+  const auto [longest, is_swing] = longest_step(rule.integrator, omega, decay.value);
   if (mechanics.max_substep <= longest) return;
-  const bool is_swing = (is_rk4 ? 2.828 : 2.0) / omega <= longest;
   const std::string& body = model.parts[is_swing ? swing.part : decay.part].name;
   problems.push_back(
       {body + ".flex_modes",
@@ -145,6 +191,26 @@ void check_mode_speeds(const MechanicsDef& mechanics, Problems& problems) {
        fmt::format("fewer modes, mechanics.max_substep of at most {:.3g} s, or an implicit mechanics.integrator such "
                    "as trapezoidal",
                    longest),
+       ""});
+}
+
+void check_segment_speeds(const MechanicsDef& mechanics, Problems& problems) {
+  const StepRule rule = step_rule(mechanics);
+  if (!is_explicit(rule.integrator) || mechanics.segmented_bodies.empty()) return;
+  const Model model = build_model(mechanics);
+  const FastestSegments fastest = fastest_segments(model);
+  const auto [longest, is_swing] = longest_step(rule.integrator, fastest.omega, fastest.decay);
+  if (mechanics.max_substep <= longest) return;
+  problems.push_back(
+      {model.segmented[fastest.part].name + ".segments",
+       fmt::format("their fastest motion {} with {:.4g} {} in the mechanism, which {} cannot follow in sub-steps of "
+                   "{:.4g} s",
+                   is_swing ? "swings" : "decays", is_swing ? fastest.omega : fastest.decay, is_swing ? "rad/s" : "1/s",
+                   key_of(rule.integrator), mechanics.max_substep),
+       fmt::format(
+           "fewer segments, mechanics.max_substep of at most {:.3g} s, or an implicit mechanics.integrator such "
+           "as trapezoidal",
+           longest),
        ""});
 }
 

@@ -1,0 +1,59 @@
+// A body of finite segments in the mechanism: links that move freely of each other, and the beams between them.
+//
+// The lumps' links are floating ones, with the pose in Ground as coordinates, but for the root's and for those that
+// joints of the scene hold; all that bends is in the elements (elements/beam.h), so that no pass knows of segments.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "multibody/flexible/deflection.h"
+#include "multibody/flexible/segmented_def.h"
+
+namespace slew::multibody {
+
+struct Model;
+struct Workspace;
+
+struct SegmentedPart {
+  std::string name;                            // of the body
+  std::vector<int> bodies{};                   // Model::bodies, by lump
+  std::size_t first_beam = 0;                  // ElementSet::beams, one for each connector
+  bool is_free = false;                        // no joint holds a lump but the root: its start can be looked for
+  SegmentStart start = SegmentStart::at_rest;  // as the scene wants it
+  std::shared_ptr<const SegmentChain> source{};
+};
+
+// Beyond it eq. 29 of a connector is off by half a percent (theta^2/8).
+inline constexpr double kLargestBend = 0.2;  // rad
+
+// Of the lumps and nodes against where they would be on a rigid body that moves with the root [m], root's frame.
+// After a motion in ws. None of these allocates.
+[[nodiscard]] math::Vec3 tip_deflection(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
+[[nodiscard]] LargestDeflection largest_deflection(const Model& model, const SegmentedPart& part,
+                                                   const Workspace& ws) noexcept;
+[[nodiscard]] double strain_energy(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
+
+struct LargestBend {
+  std::size_t connector = 0;
+  double angle = 0;  // rad, between its ends
+};
+[[nodiscard]] LargestBend largest_bend(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
+
+// Appends the parts and their beams; the bodies are those of with_nodes().
+void add_segments(const struct MechanicsDef& mechanics, Model& model);
+
+// Puts the lumps where the root carries them, undeformed, at its speed: into q and u. Pre-condition: start_q of the
+// joints stands.
+void straighten_segments(const Model& model, std::span<double> q, std::span<double> u);
+
+// Puts chains at rest in the pose that the joints have at the start: Newton's method in the connectors' relative
+// coordinates x for
+//   R_1^T sum F = 0,   R_1^T sum M = 0     of all that acts beyond each connector, about its far end           (1)
+// with gravity, springs, constant loads and the beams themselves, all joints held; row forces are not in it. False: no
+// rest is found, as beyond a buckling load; the chains stay straight.
+[[nodiscard]] bool settle_segments(Model& model);
+
+}  // namespace slew::multibody
