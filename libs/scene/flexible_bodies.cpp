@@ -12,17 +12,20 @@
 #include <optional>
 #include <utility>
 
+#include "flex/finite_segments.h"
 #include "flex/flexible_files.h"
 #include "flex/input_error.h"
 #include "multibody/flexible/deflection.h"
 #include "scene/assets.h"
 #include "scene/modal_body.h"
+#include "scene/segment_chain.h"
 
 namespace slew::scene {
 namespace {
 
 using multibody::BodyDef;
 using multibody::FlexibleBodyDef;
+using multibody::SegmentedBodyDef;
 
 // "0.005;0.005"; nothing for what is no list of numbers
 std::optional<std::vector<double>> number_list(const std::string& text) {
@@ -59,15 +62,54 @@ class FlexibleReader {
     }
     const std::optional<Wanted> modes = modes_of(body);
     if (surroundings_.has_flexible_files) {
-      const flex::FlexibleFileSet files{surroundings_.flexible_folder,
-                                        body.flex_model.empty() ? scene_.name : body.flex_model, body.flex_file_prefix};
+      const flex::FlexibleFileSet files = files_of(body);
       const flex::Reduction* reduction = reduction_of(body, files);
       if (reduction != nullptr && modes) take(body, files, *reduction, *modes, flexible);
     }
     scene_.mechanics.flexible_bodies.push_back(std::move(flexible));
   }
 
+  void read_segmented(const BodyDef& body) {
+    SegmentedBodyDef segmented{.body = body.name};
+    const auto damping = number_list(body.relative_damping);
+    if (damping && damping->size() <= 1) {
+      segmented.relative_damping = damping->empty() ? 0 : damping->front();
+    } else {
+      complain(body, "relative_damping",
+               "'" + body.relative_damping + "' is not one number: the beams between segments are damped alike",
+               "one number, of the files' first mode");
+    }
+    if (surroundings_.has_flexible_files) {
+      const flex::FlexibleFileSet files = files_of(body);
+      const flex::Reduction* reduction = reduction_of(body, files);
+      if (reduction != nullptr) cut(body, files, *reduction, segmented);
+    }
+    scene_.mechanics.segmented_bodies.push_back(std::move(segmented));
+  }
+
  private:
+  [[nodiscard]] flex::FlexibleFileSet files_of(const BodyDef& body) const {
+    return {surroundings_.flexible_folder, body.flex_model.empty() ? scene_.name : body.flex_model,
+            body.flex_file_prefix};
+  }
+
+  void cut(const BodyDef& body, const flex::FlexibleFileSet& files, const flex::Reduction& reduction,
+           SegmentedBodyDef& segmented) {
+    try {
+      segmented.chain = std::make_shared<const multibody::SegmentChain>(
+          segment_chain(reduction, static_cast<int>(body.segments), fmt::format("{}_{}", files.model, files.prefix)));
+    } catch (const flex::InputError& error) {
+      complain(body, "flex_file_prefix", error.what(), "files of a straight beam, or type flexible");
+      return;
+    }
+    const auto& nodes = segmented.chain->nodes;
+    double length = 0;
+    for (const auto& node : nodes) length = std::max(length, norm(node.position - nodes.front().position));
+    BodyDef of_files;
+    multibody::take_mass(*segmented.chain, of_files);
+    compare_mass(body, of_files, length);
+  }
+
   void complain(const BodyDef& body, const char* key, std::string what, std::string expected) {
     problems_.push_back({fmt::format("{}.{}", body.name, key), std::move(what), std::move(expected), ""});
   }
@@ -136,18 +178,18 @@ class FlexibleReader {
       const flex::Reduction chosen = flex::select(all, kept);
       flexible.modes = std::make_shared<const multibody::ModalBody>(
           modal_body(chosen, fmt::format("{}_{}", files.model, files.prefix)));
-      compare_mass(body, *flexible.modes);
+      BodyDef of_files;
+      multibody::take_mass(*flexible.modes, of_files);
+      compare_mass(body, of_files, multibody::length_of(*flexible.modes));
     } catch (const flex::InputError& error) {
       complain(body, "flex_modes", error.what(), fmt::format("ordinals from 1 to {}", all.body.modes()));
     }
   }
 
   // what the body had while it was rigid
-  void compare_mass(const BodyDef& body, const multibody::ModalBody& modes) {
+  void compare_mass(const BodyDef& body, const BodyDef& of_files, double length) {
     constexpr double kAlike = 0.01;
     if (body.mass == 0) return;
-    BodyDef of_files;
-    multibody::take_mass(modes, of_files);
     if (std::fabs(body.mass - of_files.mass) > kAlike * of_files.mass) {
       warnings_.push_back(
           {body.name + ".mass",
@@ -155,7 +197,7 @@ class FlexibleReader {
            "no mass, or that of the files", ""});
     }
     const double off = norm(math::Vec3(body.center_of_mass) - math::Vec3(of_files.center_of_mass));
-    if (off > kAlike * multibody::length_of(modes)) {
+    if (off > kAlike * length) {
       const auto [x, y, z] = of_files.center_of_mass;
       warnings_.push_back({body.name + ".center_of_mass",
                            fmt::format("it has no effect: the flexible files say [{:.6g}, {:.6g}, {:.6g}] m", x, y, z),
@@ -176,6 +218,7 @@ void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Proble
   FlexibleReader reader(surroundings, scene, problems, warnings);
   for (const BodyDef& body : scene.mechanics.bodies) {
     if (body.type == multibody::BodyType::flexible) reader.read(body);
+    if (body.type == multibody::BodyType::segmented) reader.read_segmented(body);
   }
 }
 

@@ -192,10 +192,29 @@ class SceneReader {
         }
       }
     }
+    refuse_other_way(element, table, other_keys);
     if (has_mesh) {
       for (const Field& field : mesh_inertia_fields()) other_keys.push_back(field.key);
     }
     read_fields(element.value, fields, def, element.key, element.mark, other_keys, context_);
+  }
+
+  // keys of modes in a body of segments, and the other way round
+  void refuse_other_way(const Node::Entry& element, const ElementTable& table,
+                        std::vector<std::string_view>& passed_over) {
+    const bool is_segmented = table.type == "segmented";
+    static constexpr std::string_view kOfModes[] = {"flex_modes", "flex_frequency_limit"}, kOfSegments[] = {"segments"};
+    for (const std::string_view key :
+         is_segmented ? std::span(kOfModes) : std::span<const std::string_view>(kOfSegments)) {
+      const Node::Entry* found = element.value.find(key);
+      if (found == nullptr) continue;
+      passed_over.push_back(key);
+      report_.add(found->mark, element.key + "." + std::string(key),
+                  is_segmented ? Complaint{"a segmented body has no modes: it bends by the beams between its segments",
+                                           "no such key, or type flexible", ""}
+                               : Complaint{"a flexible body has no segments: it bends by the modes of its files",
+                                           "no such key, or type segmented", ""});
+    }
   }
 
   // The table of the element's type; null after a complaint.

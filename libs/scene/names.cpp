@@ -42,7 +42,8 @@ bool is_one_of(std::string_view kind, std::string_view kinds) {
 
 bool is_flexible(const Node& body) {
   const Node::Entry* type = body.find("type");
-  return type != nullptr && type->value.kind == Node::Kind::scalar && type->value.text == "flexible";
+  return type != nullptr && type->value.kind == Node::Kind::scalar &&
+         (type->value.text == "flexible" || type->value.text == "segmented");
 }
 
 constexpr std::string_view kNode = ".Node";

@@ -67,7 +67,10 @@ struct Scene {
   std::string expanded_text;
 
   [[nodiscard]] bool has_mechanics() const noexcept { return !mechanics.bodies.empty(); }
-  [[nodiscard]] bool has_flexible_bodies() const noexcept { return !mechanics.flexible_bodies.empty(); }
+  // By modes or by segments: then its flexible files are needed.
+  [[nodiscard]] bool has_flexible_bodies() const noexcept {
+    return !mechanics.flexible_bodies.empty() || !mechanics.segmented_bodies.empty();
+  }
   [[nodiscard]] bool has_hydraulics() const noexcept { return !hydraulics.volumes.empty(); }
 };
 

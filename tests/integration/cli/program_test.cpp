@@ -142,8 +142,9 @@ TEST_F(Program, CheckTellsEveryProblemWithItsPlace) {
 }
 
 TEST_F(Program, CheckAcceptsTheScenesOfTheRepository) {
-  for (const char* scene : {"first_steps.yaml", "truck_crane.yaml", "truck_crane_flexible.yaml",
-                            "truck_crane_flexible_soft.yaml", "four_bar.yaml", "slider_crank.yaml"}) {
+  for (const char* scene :
+       {"first_steps.yaml", "truck_crane.yaml", "truck_crane_flexible.yaml", "truck_crane_flexible_soft.yaml",
+        "truck_crane_segmented.yaml", "four_bar.yaml", "slider_crank.yaml"}) {
     const CommandResult result = slewring({"check", scene_file(scene)});
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_TRUE(contains(result.out, "ok")) << result.out;

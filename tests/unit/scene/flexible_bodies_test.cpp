@@ -148,6 +148,58 @@ TEST_F(FlexibleScene, WhatDoesNotFitIsToldByKey) {
   expect_part(fault("    flex_modes", "    flex_mods: 1\n    flex_modes"), "did you mean 'flex_modes'");
 }
 
+// the same body, files and joints
+std::string in_segments(const std::string& keys) {
+  std::string text = kBoom;
+  const std::string from = "    type: flexible\n", modes = "    flex_modes: \"1;2\"\n    relative_damping: \"0.005;0.01\"\n";
+  text.replace(text.find(modes), modes.size(), keys);
+  return text.replace(text.find(from), from.size(), "    type: segmented\n") +
+         "mechanics: {integrator: trapezoidal}\n";
+}
+
+TEST_F(FlexibleScene, TheTypeAloneMakesSegmentsOfIt) {
+  const Scene scene = load(in_segments("    relative_damping: 0.01\n"));
+  EXPECT_TRUE(scene.mechanics.flexible_bodies.empty());
+  ASSERT_EQ(scene.mechanics.segmented_bodies.size(), 1U);
+  const multibody::SegmentedBodyDef& boom = scene.mechanics.segmented_bodies[0];
+  EXPECT_EQ(boom.chain->connectors.size(), 20U);
+  EXPECT_EQ(boom.chain->source, "crane_beam_hard");
+  EXPECT_EQ(boom.relative_damping, 0.01);
+  EXPECT_NEAR(boom.chain->first_frequency, 51.29, 0.01);
+  EXPECT_EQ(scene.assets.size(), flex::flexible_matrices().size());
+  EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+  EXPECT_EQ(load(in_segments("    segments: 7\n")).mechanics.segmented_bodies[0].chain->connectors.size(), 7U);
+  EXPECT_TRUE(scene.has_flexible_bodies());
+  const Scene plain = load_text(scene.expanded_text, "again");
+  EXPECT_EQ(plain.expanded_text, scene.expanded_text);
+  EXPECT_EQ(plain.mechanics.segmented_bodies[0].chain, nullptr);
+}
+
+TEST_F(FlexibleScene, NodesOfSegmentsAreNamedAsThoseOfModes) {
+  const std::string named = with(in_segments(""), "body1: Boom, point1: [-6.5 m, 0.02904 m, 0.1507 m]", "body1: Boom.Node20");
+  EXPECT_EQ(problems(named), "");
+  expect_part(problems(with(named, "Node20", "Node21")),
+              "there is no body 'Boom.Node21'; expected Boom.Node1 to Boom.Node20, 20 nodes");
+}
+
+TEST_F(FlexibleScene, KeysOfTheOtherWayAreRefused) {
+  expect_part(problems(in_segments("    flex_modes: 1\n")), "Boom.flex_modes: a segmented body has no modes");
+  expect_part(problems(in_segments("    flex_frequency_limit: 9 Hz\n")), "a segmented body has no modes");
+  expect_part(problems(with(kBoom, "    flex_modes", "    segments: 3\n    flex_modes")),
+              "Boom.segments: a flexible body has no segments");
+  expect_part(problems(in_segments("    relative_damping: \"0.005;0.005\"\n")), "is not one number");
+  expect_part(problems(in_segments("    relative_damping: -1\n")), "Boom.relative_damping: -1 is out of range");
+  expect_part(problems(in_segments("    segments: 0\n")), "Boom.segments: '0' is out of range; expected 1 to 200");
+}
+
+TEST_F(FlexibleScene, SegmentsTakeStraightBeamsOnly) {
+  flex::BeamDef bent = flex::testing::jib_boom();
+  bent.nodes[10].position[1] += 0.1;
+  flex::write_flexible_files({folder_.path(), "crane", "beam_hard"},
+                             flex::reduce(flex::build_beam(bent), flex::testing::with_modes(4)));
+  expect_part(problems(in_segments("")), "Boom.flex_file_prefix: node 11 is off the line");
+}
+
 TEST_F(FlexibleScene, AFileThatIsDamagedIsNamed) {
   const std::string file = folder_.path() + "/crane_beam_hard_Modes.dat";
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
