@@ -19,6 +19,8 @@ namespace {
 
 constexpr int kMostCorrections = 60;
 constexpr int kMostHalvings = 12;
+constexpr int kPatience = 3;        // corrections by compliance that need not shrink
+constexpr double kShrinks = 0.5;    // more slowly: Newton's method
 constexpr double kSettled = 1e-12;  // largest correction: m over the connector's length, rad
 constexpr double kRounding = 1e-8;  // below it corrections that do not shrink any more are rounding
 constexpr double kProbe = 1e-7;     // step of the differences, the same
@@ -154,9 +156,15 @@ class Settling {
     set_time(model_, 0, ws_);
     std::vector<double> x(chains_.count()), r(x.size());
     double merit = residual(x, r), before = 0;
+    bool is_newton = false;
     for (int i = 0; i < kMostCorrections; ++i) {
-      std::vector<double> step = correction(x, r);
-      const double change = size_of(step);
+      std::vector<double> step = is_newton ? correction(x, r) : compliance(r);
+      double change = size_of(step);
+      if (!is_newton && i >= kPatience && !(change < kShrinks * before)) {
+        is_newton = true;
+        step = correction(x, r);
+        change = size_of(step);
+      }
       if (!std::isfinite(change)) return false;
       merit = go(step, merit, x, r);
       if (change <= kSettled || (i > 0 && change < kRounding && change >= before)) return keep(x);
@@ -207,6 +215,24 @@ class Settling {
     };
     put(line.link1, ws_.lines[at(mass.line)].P1, ws_.coupled[index].F1);
     put(line.link2, ws_.lines[at(mass.line)].P2, ws_.coupled[index].F2);
+  }
+
+  // (2)
+  std::vector<double> compliance(const std::vector<double>& r) const {
+    std::vector<double> step;
+    chains_.for_each([&](const Beam& beam, double) {
+      const BeamStiffness& K = beam.K;
+      const double* at_beam = r.data() + step.size();
+      const double in_xy = K.k22 * K.k66 - K.k26 * K.k26, in_xz = K.k33 * K.k55 - K.k35 * K.k35;
+      const double x[] = {at_beam[0] / K.k11,
+                          (K.k66 * at_beam[1] - K.k26 * at_beam[5]) / in_xy,
+                          (K.k55 * at_beam[2] - K.k35 * at_beam[4]) / in_xz,
+                          at_beam[3] / K.k44,
+                          (K.k33 * at_beam[4] - K.k35 * at_beam[2]) / in_xz,
+                          (K.k22 * at_beam[5] - K.k26 * at_beam[1]) / in_xy};
+      for (const double change : x) step.push_back(-change);
+    });
+    return step;
   }
 
   std::vector<double> correction(const std::vector<double>& x, const std::vector<double>& r) {

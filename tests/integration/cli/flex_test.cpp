@@ -83,7 +83,7 @@ TEST_F(Flex, BuildGoesBesideTheDescriptionAndSaysWhatItReplaces) {
       flex({"build", file.string(), "--model", "m", "--prefix", "p_1", "--set", "line.nodes=10", "--json"});
   ASSERT_EQ(again.code, 0) << again.err;
   const nlohmann::json json = nlohmann::json::parse(again.out);
-  EXPECT_EQ(json.at("replaced"), 8);
+  EXPECT_EQ(json.at("replaced"), 9);
   EXPECT_EQ(json.at("nodes"), 10);
   EXPECT_EQ(json.at("files").size(), 9u);
   EXPECT_NE(text_of(work_.path() / "m_p_1_Frequencies.dat"), frequencies);

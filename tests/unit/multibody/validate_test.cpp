@@ -335,8 +335,9 @@ TEST(FieldTables, AppendGivesANamedDefOfTheSection) {
   for (const Section& section : sections()) {
     for (const ElementType& type : section.types) EXPECT_NE(type.append(def, std::string(type.name)), nullptr);
   }
-  ASSERT_EQ(def.bodies.size(), 2u);
+  ASSERT_EQ(def.bodies.size(), 3u);
   EXPECT_EQ(def.bodies[1].type, BodyType::flexible);
+  EXPECT_EQ(def.bodies[2].type, BodyType::segmented);
   ASSERT_EQ(def.joints.size(), 13u);
   EXPECT_EQ(def.joints[1].name, "prismatic");
   EXPECT_EQ(def.joints[1].type, JointType::prismatic);
