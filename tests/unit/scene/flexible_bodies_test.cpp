@@ -151,10 +151,10 @@ TEST_F(FlexibleScene, WhatDoesNotFitIsToldByKey) {
 // the same body, files and joints
 std::string in_segments(const std::string& keys) {
   std::string text = kBoom;
-  const std::string from = "    type: flexible\n", modes = "    flex_modes: \"1;2\"\n    relative_damping: \"0.005;0.01\"\n";
+  const std::string from = "    type: flexible\n",
+                    modes = "    flex_modes: \"1;2\"\n    relative_damping: \"0.005;0.01\"\n";
   text.replace(text.find(modes), modes.size(), keys);
-  return text.replace(text.find(from), from.size(), "    type: segmented\n") +
-         "mechanics: {integrator: trapezoidal}\n";
+  return text.replace(text.find(from), from.size(), "    type: segmented\n") + "mechanics: {integrator: trapezoidal}\n";
 }
 
 TEST_F(FlexibleScene, TheTypeAloneMakesSegmentsOfIt) {
@@ -176,7 +176,8 @@ TEST_F(FlexibleScene, TheTypeAloneMakesSegmentsOfIt) {
 }
 
 TEST_F(FlexibleScene, NodesOfSegmentsAreNamedAsThoseOfModes) {
-  const std::string named = with(in_segments(""), "body1: Boom, point1: [-6.5 m, 0.02904 m, 0.1507 m]", "body1: Boom.Node20");
+  const std::string named =
+      with(in_segments(""), "body1: Boom, point1: [-6.5 m, 0.02904 m, 0.1507 m]", "body1: Boom.Node20");
   EXPECT_EQ(problems(named), "");
   expect_part(problems(with(named, "Node20", "Node21")),
               "there is no body 'Boom.Node21'; expected Boom.Node1 to Boom.Node20, 20 nodes");
