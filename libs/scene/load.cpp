@@ -203,17 +203,16 @@ class SceneReader {
   void refuse_other_way(const Node::Entry& element, const ElementTable& table,
                         std::vector<std::string_view>& passed_over) {
     const bool is_segmented = table.type == "segmented";
-    static constexpr std::string_view kOfModes[] = {"flex_modes", "flex_frequency_limit"}, kOfSegments[] = {"segments"};
-    for (const std::string_view key :
-         is_segmented ? std::span(kOfModes) : std::span<const std::string_view>(kOfSegments)) {
+    const Complaint complaint =
+        is_segmented ? Complaint{"a segmented body has no modes: it bends by the beams between its segments",
+                                 "no such key, or type flexible", ""}
+                     : Complaint{"a flexible body has no segments: it bends by the modes of its files",
+                                 "no such key, or type segmented", ""};
+    for (const std::string_view key : {"flex_modes", "flex_frequency_limit", "segments"}) {
       const Node::Entry* found = element.value.find(key);
-      if (found == nullptr) continue;
+      if (found == nullptr || is_segmented == (key == "segments")) continue;
       passed_over.push_back(key);
-      report_.add(found->mark, element.key + "." + std::string(key),
-                  is_segmented ? Complaint{"a segmented body has no modes: it bends by the beams between its segments",
-                                           "no such key, or type flexible", ""}
-                               : Complaint{"a flexible body has no segments: it bends by the modes of its files",
-                                           "no such key, or type segmented", ""});
+      report_.add(found->mark, element.key + "." + std::string(key), complaint);
     }
   }
 
