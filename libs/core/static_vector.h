@@ -1,4 +1,5 @@
-// Sequence with inline storage and a fixed capacity: no heap in wire messages and step loops.
+// Sequence with inline storage and a fixed capacity: no heap in wire messages and step loops. A copy moves the elements,
+// not the capacity.
 #pragma once
 
 #include <array>
@@ -17,6 +18,13 @@ class StaticVector {
   constexpr StaticVector(std::initializer_list<T> values) {
     for (const T& value : values) push_back(value);
   }
+  constexpr StaticVector(const StaticVector& other) noexcept { *this = other; }
+  constexpr StaticVector& operator=(const StaticVector& other) noexcept {
+    size_ = other.size_;
+    for (std::size_t i = 0; i < size_; ++i) values_[i] = other.values_[i];
+    return *this;
+  }
+  constexpr ~StaticVector() = default;
 
   [[nodiscard]] static constexpr std::size_t capacity() noexcept { return Capacity; }
   [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }
