@@ -24,15 +24,6 @@ std::span<const double> modes_of(const FlexiblePart& part, std::span<const doubl
   return q.subspan(at(part.q), part.modes);
 }
 
-// 1/2 q^T K q
-double strain_energy(const FlexiblePart& part, std::span<const double> q) noexcept {
-  double sum = 0;
-  for (std::size_t k = 0; k < part.modes; ++k) {
-    for (std::size_t l = 0; l < part.modes; ++l) sum += 0.5 * q[k] * part.stiffness[k * part.modes + l] * q[l];
-  }
-  return sum;
-}
-
 constexpr std::array<const char*, 3> kAxes = {".x", ".y", ".z"};
 
 // value and rate of a joint's coordinate
@@ -142,7 +133,6 @@ std::vector<ElementVariable> variables(const Model& model) {
   for (const FlexiblePart& part : model.parts) {
     names.add_triple(part.name + ".deflection", length);
     names.add(part.name + ".largest_deflection", length);
-    names.add(part.name + ".strain_energy", Dimension::energy);
     for (std::size_t k = 1; k <= part.modes; ++k) {
       names.add(part.name + ".modal_coordinate_" + std::to_string(k), none);
       names.add(part.name + ".modal_velocity_" + std::to_string(k), none);
@@ -229,7 +219,6 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
     const std::span<const double> q = modes_of(part, state.q), u(state.u.data() + part.u, part.modes);
     out.put(deflection(part.source->nodes.back(), q).array());
     out.put(largest_deflection(*part.source, part.watched, q).size);
-    out.put(strain_energy(part, q));
     for (std::size_t k = 0; k < part.modes; ++k) {
       out.put(q[k]);
       out.put(u[k]);

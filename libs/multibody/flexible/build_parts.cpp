@@ -1,10 +1,10 @@
 #include "multibody/flexible/build_parts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "multibody/flexible/deflection.h"
+#include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/topology.h"
 
@@ -34,26 +34,6 @@ std::vector<Mat3> turned(const Mat3& R, const std::vector<Mat3>& moments, Vec3 p
   return result;
 }
 
-// relative damping zeta of the modes: 2 zeta omega on a mode of unit mass (table 23 as in the errata)
-std::vector<double> damping_of(const FlexibleBodyDef& def) {
-  const ModalBody& modes = *def.modes;
-  const std::size_t n = modes.modes();
-  std::vector<double> damping(n * n);
-  for (std::size_t k = 0; k < n && !def.relative_damping.empty(); ++k) {
-    const double zeta = def.relative_damping[std::min(k, def.relative_damping.size() - 1)];
-    const std::size_t own = k * n + k;
-    damping[own] = 2 * zeta * std::sqrt(modes.stiffness[own] * modes.mass_matrix[own]);
-  }
-  return damping;
-}
-
-bool is_diagonal(const std::vector<double>& pairs, std::size_t n) {
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (i % (n + 1) != 0 && pairs[i] != 0) return false;
-  }
-  return true;
-}
-
 FlexiblePart part_of(const FlexibleBodyDef& def, const Body& body) {
   const ModalBody& modes = *def.modes;
   const Mat3& R = body.R_LB;
@@ -72,8 +52,9 @@ FlexiblePart part_of(const FlexibleBodyDef& def, const Body& body) {
   part.H = turned(R, modes.H, body.p_LB, part.G);
   part.mass_matrix = modes.mass_matrix;
   part.stiffness = modes.stiffness;
-  part.damping = damping_of(def);
-  part.is_diagonal = is_diagonal(part.stiffness, part.modes) && is_diagonal(part.damping, part.modes);
+  part.damping = modal_damping(modes, def.relative_damping);
+  part.preload.resize(part.modes);
+  part.is_diagonal = has_diagonal_law(part);
   for (const Mat3& Y : part.Y) part.Y_cross.push_back(axial(Y));
   for (const Mat3& H : part.H) part.H_cross.push_back(axial(H));
   return part;

@@ -12,7 +12,7 @@
 // the frame and a, alpha, w its motion,
 //   f   = m a + alpha x s + b u' + w x (w x s) + 2 w x (b u) + (G u) u                                  (4)
 //   n   = s x a + J alpha + c u' + w x (J w) + (dJ/dt) w + w x (c u) + ax(H u u)                         (5)
-//   0   = b . a + c . alpha + M u' + 2 w . ax(Y_lk) u_l - 1/2 w . (dJ/dq_k) w + K q + D u                (6)
+//   0   = b . a + c . alpha + M u' + 2 w . ax(Y_lk) u_l - 1/2 w . (dJ/dq_k) w + K q + D u - Q_0          (6)
 // so that energy and momentum of (3) are kept whatever the truncation of (3). Equations 34 to 36 of the flexible-body
 // tutorial thesis (2017), -A u~ G as in the errata; quadratic terms as Shabana, chapter 5.
 //
@@ -52,7 +52,8 @@ struct FlexiblePart {
   std::vector<math::Mat3> Z, Y, H;
   std::vector<math::Vec3> Y_cross, H_cross;  // ax(Y), ax(H) by pair
   std::vector<double> mass_matrix, stiffness, damping;
-  bool is_diagonal = false;  // stiffness and damping, as modes of the whole body have them
+  std::vector<double> preload;  // elastic force at q = 0, u = 0, by mode; 0 unless a partner states it
+  bool is_diagonal = false;     // stiffness and damping, as modes of the whole body have them
   [[nodiscard]] bool is_shortening() const noexcept { return !G.empty(); }
 };
 

@@ -153,7 +153,7 @@ void add_part(const FlexiblePart& part, const LinkMotion& frame, PartMotion& mot
     spin += motion.c[k] * u;
     const Mat3& W_k = motion.W_q[k];
     Vec3 coriolis;
-    double force = part.stiffness[k * n + k] * motion.q[k] + part.damping[k * n + k] * u;
+    double force = part.stiffness[k * n + k] * motion.q[k] + part.damping[k * n + k] * u - part.preload[k];
     for (std::size_t l = 0; l < n; ++l) coriolis += part.Y_cross[l * n + k] * motion.u[l];
     for (std::size_t l = 0; l < n && !part.is_diagonal; ++l) {
       if (l != k) force += part.stiffness[k * n + l] * motion.q[l] + part.damping[k * n + l] * motion.u[l];
@@ -216,6 +216,7 @@ PartEnergy energy_of(const FlexiblePart& part, const PartMotion& motion, const L
       energy.kinetic += 0.5 * part.mass_matrix[k * n + l] * motion.u[k] * motion.u[l];
       energy.potential += 0.5 * part.stiffness[k * n + l] * motion.q[k] * motion.q[l];
     }
+    energy.potential -= part.preload[k] * motion.q[k];
   }
   return energy;
 }

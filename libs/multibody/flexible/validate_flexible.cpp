@@ -10,6 +10,7 @@
 
 #include "multibody/dynamics.h"
 #include "multibody/field_tables.h"
+#include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/flexible/segment_speeds.h"
 #include "multibody/integrators.h"
@@ -168,9 +169,14 @@ std::string nodes_beside(const MechanicsDef& mechanics, const std::string& name)
 }
 
 void check_mode_speeds(const MechanicsDef& mechanics, Problems& problems) {
+  if (is_explicit(step_rule(mechanics).integrator) && !mechanics.flexible_bodies.empty()) {
+    check_mode_speeds(mechanics, build_model(mechanics), problems);
+  }
+}
+
+void check_mode_speeds(const MechanicsDef& mechanics, const Model& model, Problems& problems) {
   const StepRule rule = step_rule(mechanics);
-  if (!is_explicit(rule.integrator) || mechanics.flexible_bodies.empty()) return;
-  const Model model = build_model(mechanics);
+  if (!is_explicit(rule.integrator)) return;
   Workspace ws(model);
   evaluate(model, start_state(model), ws);
   const auto stiffness = [](const FlexiblePart& part) -> const std::vector<double>& { return part.stiffness; };

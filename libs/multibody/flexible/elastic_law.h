@@ -1,0 +1,43 @@
+// The elastic forces of a flexible body's modes: those of its files, or what a partner states.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/problem.h"
+#include "core/status.h"
+#include "multibody/defs.h"
+#include "multibody/flexible/flexible_def.h"
+
+namespace slew::multibody {
+
+struct FlexiblePart;
+struct Model;
+
+// Q - K (q - q_ref) - D (u - u_ref). Q, q_ref, u_ref: by mode; K, D: by pair of modes, symmetric.
+struct ElasticLaw {
+  std::span<const double> Q, q_ref, u_ref;
+  std::span<const double> K, D;
+};
+
+// D of the relative damping zeta of the modes: 2 zeta omega on a mode of unit mass (table 23 as in the errata).
+// Pre-condition: zeta are as many as modes, or one, or none. Allocates.
+[[nodiscard]] std::vector<double> modal_damping(const ModalBody& modes, std::span<const double> zeta);
+
+// Whether stiffness and damping couple no modes, as those of the whole body do not.
+[[nodiscard]] bool has_diagonal_law(const FlexiblePart& part) noexcept;
+
+// Puts the law in place of the part's own. Pre-condition: its sizes are the part's. No allocation.
+void set_elastic_law(Model& model, std::size_t part, const ElasticLaw& law) noexcept;
+
+// Whether a law can be the part's: sizes, finite numbers, K and D symmetric, K positive definite, D without negative
+// damping on its diagonal. Error bad_input: what is wrong.
+[[nodiscard]] Status check_elastic_law(const Model& model, std::size_t part, const ElasticLaw& law);
+
+// Modes that the mechanics' explicit integrator cannot follow in its sub-steps, with the model's elastic laws at its
+// start. Allocates.
+void check_mode_speeds(const MechanicsDef& mechanics, const Model& model, Problems& problems);
+
+}  // namespace slew::multibody
