@@ -19,8 +19,9 @@ TopicSet topics_written(Role role) noexcept {
               Topic::variables, Topic::controller_lease, Topic::control_reply, Topic::health,
               Topic::resend};
     case Role::mechanics:
-      return {Topic::node_status, Topic::mechanism, Topic::variable_directory,
-              Topic::variables,   Topic::health,    Topic::resend};
+      return {Topic::node_status,        Topic::mechanism, Topic::flexible,
+              Topic::variable_directory, Topic::variables, Topic::health,
+              Topic::resend};
     case Role::hydraulics:
       return {Topic::node_status, Topic::actuators, Topic::variable_directory,
               Topic::variables,   Topic::health,    Topic::resend};
@@ -30,7 +31,8 @@ TopicSet topics_written(Role role) noexcept {
     case Role::controller:
       return {Topic::controller_input, Topic::control_request};
     case Role::flex:
-      return {};
+      return {Topic::node_status, Topic::elastic, Topic::variable_directory,
+              Topic::variables,   Topic::health,  Topic::resend};
   }
   return {};
 }
@@ -38,10 +40,12 @@ TopicSet topics_written(Role role) noexcept {
 TopicSet topics_read(Role role) noexcept {
   switch (role) {
     case Role::io:
-      return {Topic::session,          Topic::node_status,     Topic::mechanism, Topic::actuators,
-              Topic::controller_input, Topic::control_request, Topic::health,    Topic::resend};
+      return {Topic::session, Topic::node_status,      Topic::mechanism,       Topic::actuators,
+              Topic::elastic, Topic::controller_input, Topic::control_request, Topic::health,
+              Topic::resend};
     case Role::mechanics:
-      return {Topic::session, Topic::node_status, Topic::tick, Topic::actuators, Topic::health, Topic::resend};
+      return {Topic::session, Topic::node_status, Topic::tick,  Topic::actuators,
+              Topic::elastic, Topic::health,      Topic::resend};
     case Role::hydraulics:
       return {Topic::session, Topic::node_status, Topic::tick, Topic::mechanism, Topic::health, Topic::resend};
     case Role::recorder:
@@ -52,7 +56,7 @@ TopicSet topics_read(Role role) noexcept {
               Topic::variables, Topic::controller_lease, Topic::control_reply,
               Topic::health};
     case Role::flex:
-      return {};
+      return {Topic::session, Topic::node_status, Topic::tick, Topic::flexible, Topic::health, Topic::resend};
   }
   return {};
 }

@@ -1,4 +1,5 @@
-// What mechanics and hydraulics tell each other once per communication step (coupling study, sections 8 and 10).
+// What mechanics, hydraulics and flexible bodies tell each other once per communication step (coupling study, sections
+// 5, 8 and 10).
 //
 // A port is one actuator: x is its stroke [m] (piston position), F the pressure force that pushes the stroke open [N].
 // Sample n holds at t_n = n H; it is published after step n-1 and used for step n. Arrays are in port order.
@@ -55,6 +56,42 @@ struct ActuatorSample {
   PortArray Q_A, Q_B;        // flows into the A and B volumes from the circuit [m3/s]
   std::uint32_t flags = 0;   // StepFlag bits of the finished step
   bool operator==(const ActuatorSample&) const = default;
+};
+
+inline constexpr std::size_t kMaxFlexibleBodies = 32;  // with modes
+inline constexpr std::size_t kMaxModes = 128;          // of all of them together
+inline constexpr std::size_t kMaxModePairs = 2048;     // sum of the squares of their modes
+
+using BodyArray = StaticVector<double, kMaxFlexibleBodies>;
+using FrameArray = StaticVector<double, kMaxFlexibleBodies * 13>;
+using ModeArray = StaticVector<double, kMaxModes>;      // body after body, in the scene's order
+using ModePairs = StaticVector<double, kMaxModePairs>;  // body after body, m x m, row-major
+
+// Mechanics to flexible bodies: scheme A1 of the study, in which the mechanics owns the modal coordinates.
+struct FlexibleSample {
+  ModeArray q;       // modal coordinates [m sqrt(kg)]
+  ModeArray u;       // their rates
+  FrameArray frame;  // by body: position [m], quaternion (w, x, y, z), velocity [m/s], angular velocity [rad/s] in Ground
+  bool operator==(const FlexibleSample&) const = default;
+};
+
+// Flexible bodies to mechanics: the elastic force of the modes, damping included, near the place (q_ref, u_ref),
+//   Q - K (q - q_ref) - D (u - u_ref)
+struct ElasticSample {
+  ModeArray Q;      // [m sqrt(kg)/s2]
+  ModePairs K;      // stiffness, symmetric, positive definite [1/s2]
+  ModePairs D;      // damping [1/s]
+  ModeArray q_ref;  // [m sqrt(kg)]
+  ModeArray u_ref;
+  BodyArray strain_energy;   // at the mechanics' coordinates [J]
+  bool is_constant = false;  // K, D and the place hold for the whole session
+  bool operator==(const ElasticSample&) const = default;
+};
+
+// How a session's flexible bodies take part.
+enum class ElasticExchange : int {
+  once,       // their elastic forces are linear: stated at the start, nobody waits for them any more
+  every_step  // stated anew at every step, about the mechanics' coordinates of that step
 };
 
 void resize(MechanismSample& sample, std::size_t ports);

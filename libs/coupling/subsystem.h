@@ -23,12 +23,16 @@ namespace slew::coupling {
 struct PartnerSamples {
   const MechanismSample* mechanism = nullptr;
   const ActuatorSample* actuators = nullptr;
+  const FlexibleSample* flexible = nullptr;
+  const ElasticSample* elastic = nullptr;
 };
 
-// The sample that this subsystem publishes; the half that is not its own stays empty.
+// The sample that this subsystem publishes; what is not its own stays empty.
 struct OwnSample {
   MechanismSample mechanism;
   ActuatorSample actuators;
+  FlexibleSample flexible;
+  ElasticSample elastic;
 };
 
 // A parameter change of a tick: the value is reached after `over`, linearly, beginning with this step.

@@ -14,8 +14,6 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-constexpr Role kAllRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex, Role::recorder};
-
 bool is_over(NodeState state) {
   return state == NodeState::ended || state == NodeState::fault;
 }
@@ -49,6 +47,8 @@ Topic main_topic(Role role) {
       return Topic::mechanism;
     case Role::hydraulics:
       return Topic::actuators;
+    case Role::flex:
+      return Topic::elastic;
     default:
       return Topic::node_status;
   }
@@ -64,9 +64,12 @@ std::uint32_t writers_of(Topic topic) noexcept {
     case Topic::control_reply:
       return bit(Role::io);
     case Topic::mechanism:
+    case Topic::flexible:
       return bit(Role::mechanics);
     case Topic::actuators:
       return bit(Role::hydraulics);
+    case Topic::elastic:
+      return bit(Role::flex);
     case Topic::variable_directory:
     case Topic::variables:
       return bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex);
@@ -80,8 +83,12 @@ std::uint32_t readers_of(Topic topic) noexcept {
     case Topic::tick:
       return bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex) | bit(Role::recorder);
     case Topic::mechanism:
-      return bit(Role::io) | bit(Role::hydraulics) | bit(Role::flex) | bit(Role::recorder);
+      return bit(Role::io) | bit(Role::hydraulics) | bit(Role::recorder);
     case Topic::actuators:
+      return bit(Role::io) | bit(Role::mechanics) | bit(Role::recorder);
+    case Topic::flexible:
+      return bit(Role::flex) | bit(Role::recorder);
+    case Topic::elastic:
       return bit(Role::io) | bit(Role::mechanics) | bit(Role::recorder);
     case Topic::variables:
       return bit(Role::recorder);
@@ -320,7 +327,7 @@ void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now
 }
 
 PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
-  for (const Role role : kAllRoles) {
+  for (const Role role : wire::kNodeRoles) {
     if (role == role_ || !requires_role(role)) continue;
     Peer& peer = peers_[static_cast<std::size_t>(role)];
     if (!peer.is_known || peer.is_lost || peer.status.state >= NodeState::ended) continue;
@@ -346,7 +353,7 @@ PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
 }
 
 std::optional<Role> SessionMember::silent_peer() const noexcept {
-  for (const Role role : kAllRoles) {
+  for (const Role role : wire::kNodeRoles) {
     const Peer& peer = this->peer(role);
     if (requires_role(role) && peer.is_silent && !peer.is_lost && !is_over(peer.status.state)) return role;
   }
@@ -366,7 +373,7 @@ std::string SessionMember::silence_text(Role role) const {
 }
 
 bool SessionMember::all_required(NodeState at_least) const noexcept {
-  for (const Role role : kAllRoles) {
+  for (const Role role : wire::kNodeRoles) {
     if (role == role_ || !requires_role(role)) continue;
     const Peer& peer = peers_[static_cast<std::size_t>(role)];
     // nobody waits for the end of one that is gone or never came
@@ -389,6 +396,8 @@ void SessionMember::heard(const wire::Header& from, Topic topic, std::int64_t no
 }
 
 bool SessionMember::must_read(Role reader, Topic topic) const noexcept {
+  const bool is_of_flexible_bodies = topic == Topic::flexible || topic == Topic::elastic;
+  if (is_of_flexible_bodies && !requires_role(Role::flex)) return false;
   return reader != role_ && requires_role(reader) && (readers_of(topic) & bit(reader)) != 0;
 }
 
@@ -399,7 +408,7 @@ bool SessionMember::has_heard_me(Role reader, Topic topic) const noexcept {
 }
 
 bool SessionMember::is_heard_on(Topic topic) const noexcept {
-  return std::all_of(std::begin(kAllRoles), std::end(kAllRoles),
+  return std::all_of(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
                      [&](Role reader) { return !must_read(reader, topic) || has_heard_me(reader, topic); });
 }
 
@@ -425,14 +434,14 @@ std::string SessionMember::found_writers(Topic topic) {
 
 std::string SessionMember::missing_join_text() {
   std::string text;
-  for (const Role role : kAllRoles) {
+  for (const Role role : wire::kNodeRoles) {
     if (role != role_ && requires_role(role) && !peer(role).is_known) {
       text += (text.empty() ? "" : "; ") + std::string("no ") + std::string(to_text(role)) +
               " node has been heard in session '" + session_.name + "'" + found_writers(main_topic(role));
     }
   }
   for (const Topic topic : step_topics_) {
-    for (const Role reader : kAllRoles) {
+    for (const Role reader : wire::kNodeRoles) {
       if (!peer(reader).is_known || !must_read(reader, topic) || has_heard_me(reader, topic)) continue;
       text += (text.empty() ? "" : "; ") + describe_peer(reader) + " has not heard topic '" +
               std::string(to_text(topic)) + "' of " + std::string(to_text(role_));

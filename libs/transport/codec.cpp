@@ -287,6 +287,12 @@ bool encode(const wire::MechanismMessage& message, ByteBuffer& buffer) {
 bool encode(const wire::ActuatorMessage& message, ByteBuffer& buffer) {
   return encode_message(message, buffer);
 }
+bool encode(const wire::FlexibleMessage& message, ByteBuffer& buffer) {
+  return encode_message(message, buffer);
+}
+bool encode(const wire::ElasticMessage& message, ByteBuffer& buffer) {
+  return encode_message(message, buffer);
+}
 bool encode(const wire::VariableDirectory& message, ByteBuffer& buffer) {
   return encode_message(message, buffer);
 }
@@ -325,6 +331,12 @@ bool decode(Bytes bytes, wire::MechanismMessage& message) {
   return decode_message(bytes, message);
 }
 bool decode(Bytes bytes, wire::ActuatorMessage& message) {
+  return decode_message(bytes, message);
+}
+bool decode(Bytes bytes, wire::FlexibleMessage& message) {
+  return decode_message(bytes, message);
+}
+bool decode(Bytes bytes, wire::ElasticMessage& message) {
   return decode_message(bytes, message);
 }
 bool decode(Bytes bytes, wire::VariableDirectory& message) {

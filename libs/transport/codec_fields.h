@@ -117,6 +117,26 @@ void fields(A& a, typename A::template Of<wire::ActuatorMessage>& m) {
 }
 
 template <typename A>
+void fields(A& a, typename A::template Of<coupling::FlexibleSample>& m) {
+  a(m.q, m.u, m.frame);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::FlexibleMessage>& m) {
+  a(m.header, m.sample);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<coupling::ElasticSample>& m) {
+  a(m.Q, m.K, m.D, m.q_ref, m.u_ref, m.strain_energy, m.is_constant);
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::ElasticMessage>& m) {
+  a(m.header, m.state, m.sample);
+}
+
+template <typename A>
 void fields(A& a, typename A::template Of<wire::Command>& m) {
   a(m.request, name(m.path), m.value, m.over_ns);
 }

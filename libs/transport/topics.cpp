@@ -14,6 +14,8 @@ constexpr std::array<TopicTraits, wire::kTopics> kTraits = {{
     {wire::Topic::tick, "slewring/tick", "slewring::Tick", kStepDepth, 0},
     {wire::Topic::mechanism, "slewring/mechanism", "slewring::MechanismMessage", kStepDepth, 0},
     {wire::Topic::actuators, "slewring/actuators", "slewring::ActuatorMessage", kStepDepth, 0},
+    {wire::Topic::flexible, "slewring/flexible", "slewring::FlexibleMessage", kStepDepth, 0},
+    {wire::Topic::elastic, "slewring/elastic", "slewring::ElasticMessage", kStepDepth, 0},
     {wire::Topic::variable_directory, "slewring/variable_directory", "slewring::VariableDirectory", kDialogueDepth, 64},
     {wire::Topic::variables, "slewring/variables", "slewring::VariableBlock", kStepDepth, 0},
     {wire::Topic::controller_input, "slewring/controller_input", "slewring::ControllerInput", kStepDepth, 0},

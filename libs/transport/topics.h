@@ -58,6 +58,10 @@ inline constexpr wire::Topic kTopicOf<wire::MechanismMessage> = wire::Topic::mec
 template <>
 inline constexpr wire::Topic kTopicOf<wire::ActuatorMessage> = wire::Topic::actuators;
 template <>
+inline constexpr wire::Topic kTopicOf<wire::FlexibleMessage> = wire::Topic::flexible;
+template <>
+inline constexpr wire::Topic kTopicOf<wire::ElasticMessage> = wire::Topic::elastic;
+template <>
 inline constexpr wire::Topic kTopicOf<wire::VariableDirectory> = wire::Topic::variable_directory;
 template <>
 inline constexpr wire::Topic kTopicOf<wire::VariableBlock> = wire::Topic::variables;

@@ -17,7 +17,7 @@
 
 namespace slew::wire {
 
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 3;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
@@ -33,6 +33,9 @@ using SessionId = std::array<std::uint8_t, 16>;
 
 enum class Role : std::uint8_t { io, mechanics, hydraulics, flex, recorder, observer, controller };
 inline constexpr std::size_t kRoles = 5;  // roles that can be required: io .. recorder
+
+inline constexpr Role kNodeRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex, Role::recorder};
+inline constexpr Role kPhysicsRoles[] = {Role::mechanics, Role::hydraulics, Role::flex};
 
 [[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept {
   return 1u << static_cast<unsigned>(role);
@@ -75,6 +78,19 @@ struct ActuatorMessage {
   SampleState state;
   coupling::ActuatorSample sample;
   bool operator==(const ActuatorMessage&) const = default;
+};
+
+struct FlexibleMessage {
+  Header header;
+  coupling::FlexibleSample sample;
+  bool operator==(const FlexibleMessage&) const = default;
+};
+
+struct ElasticMessage {
+  Header header;
+  SampleState state;
+  coupling::ElasticSample sample;
+  bool operator==(const ElasticMessage&) const = default;
 };
 
 enum class TickFlag : std::uint32_t { end = 1u << 0, fault = 1u << 1 };
@@ -255,6 +271,8 @@ enum class Topic : std::uint8_t {
   tick,
   mechanism,
   actuators,
+  flexible,
+  elastic,
   variable_directory,
   variables,
   controller_input,

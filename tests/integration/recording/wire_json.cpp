@@ -129,6 +129,23 @@ json to_json(const wire::ActuatorMessage& m) {
   return {{"header", header_of(m.header)}, {"state", state_of(m.state)}, {"sample", sample}};
 }
 
+json to_json(const wire::FlexibleMessage& m) {
+  const json sample = {{"q", list_of(m.sample.q)}, {"u", list_of(m.sample.u)}, {"frame", list_of(m.sample.frame)}};
+  return {{"header", header_of(m.header)}, {"sample", sample}};
+}
+
+json to_json(const wire::ElasticMessage& m) {
+  const coupling::ElasticSample& s = m.sample;
+  const json sample = {{"Q", list_of(s.Q)},
+                       {"K", list_of(s.K)},
+                       {"D", list_of(s.D)},
+                       {"q_ref", list_of(s.q_ref)},
+                       {"u_ref", list_of(s.u_ref)},
+                       {"strain_energy", list_of(s.strain_energy)},
+                       {"is_constant", s.is_constant}};
+  return {{"header", header_of(m.header)}, {"state", state_of(m.state)}, {"sample", sample}};
+}
+
 json to_json(const wire::VariableDirectory& m) {
   json entries = json::array();
   for (const wire::VariableEntry& e : m.entries) entries.push_back({{"name", e.name}, {"unit", e.unit}});

@@ -14,6 +14,8 @@ namespace slew::recording {
 [[nodiscard]] nlohmann::json to_json(const wire::Tick& m);
 [[nodiscard]] nlohmann::json to_json(const wire::MechanismMessage& m);
 [[nodiscard]] nlohmann::json to_json(const wire::ActuatorMessage& m);
+[[nodiscard]] nlohmann::json to_json(const wire::FlexibleMessage& m);
+[[nodiscard]] nlohmann::json to_json(const wire::ElasticMessage& m);
 [[nodiscard]] nlohmann::json to_json(const wire::VariableDirectory& m);
 [[nodiscard]] nlohmann::json to_json(const wire::VariableBlock& m);
 [[nodiscard]] nlohmann::json to_json(const wire::ControllerInput& m);

@@ -203,6 +203,24 @@ void write_step(KnownRecording& recording, StepIndex step) {
   }
   recording.write(actuators, step);
 
+  wire::FlexibleMessage flexible;
+  flexible.header = header_at(step, wire::Role::mechanics);
+  fill(flexible.sample.q, n % 5, ++seed);
+  fill(flexible.sample.u, n % 5, ++seed);
+  fill(flexible.sample.frame, 13 * (n % 3), ++seed);
+  recording.write(flexible, step);
+
+  wire::ElasticMessage elastic;
+  elastic.header = header_at(step, wire::Role::flex);
+  elastic.state = state_at(step);
+  elastic.sample.is_constant = step % 2 == 0;
+  for (coupling::ModeArray* list : {&elastic.sample.Q, &elastic.sample.q_ref, &elastic.sample.u_ref}) {
+    fill(*list, n % 5, ++seed);
+  }
+  for (coupling::ModePairs* list : {&elastic.sample.K, &elastic.sample.D}) fill(*list, (n % 5) * (n % 5), ++seed);
+  fill(elastic.sample.strain_energy, n % 3, ++seed);
+  recording.write(elastic, step);
+
   wire::VariableBlock block;
   block.header = header_at(step, wire::Role::mechanics);
   block.first = 3;

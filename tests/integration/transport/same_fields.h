@@ -69,6 +69,24 @@ inline bool same(const slewring_ActuatorMessage& a, const wire::ActuatorMessage&
   return same(a.header, b.header) && same(a.state, b.state) && same(a.sample, b.sample);
 }
 
+inline bool same(const slewring_FlexibleSample& a, const coupling::FlexibleSample& b) {
+  return same_numbers(a.q, b.q) && same_numbers(a.u, b.u) && same_numbers(a.frame, b.frame);
+}
+
+inline bool same(const slewring_FlexibleMessage& a, const wire::FlexibleMessage& b) {
+  return same(a.header, b.header) && same(a.sample, b.sample);
+}
+
+inline bool same(const slewring_ElasticSample& a, const coupling::ElasticSample& b) {
+  return same_numbers(a.Q, b.Q) && same_numbers(a.K, b.K) && same_numbers(a.D, b.D) && same_numbers(a.q_ref, b.q_ref) &&
+         same_numbers(a.u_ref, b.u_ref) && same_numbers(a.strain_energy, b.strain_energy) &&
+         a.is_constant == b.is_constant;
+}
+
+inline bool same(const slewring_ElasticMessage& a, const wire::ElasticMessage& b) {
+  return same(a.header, b.header) && same(a.state, b.state) && same(a.sample, b.sample);
+}
+
 inline bool same(const slewring_Command& a, const wire::Command& b) {
   return a.request == b.request && a.path == b.path && a.value == b.value && a.over_ns == b.over_ns;
 }

@@ -17,10 +17,11 @@ using testing::random_message;
 template <typename M>
 class EveryMessage : public ::testing::Test {};
 
-using Messages = ::testing::Types<wire::SessionDescription, wire::NodeStatus, wire::Tick, wire::MechanismMessage,
-                                  wire::ActuatorMessage, wire::VariableDirectory, wire::VariableBlock,
-                                  wire::ControllerInput, wire::ControllerLease, wire::ControlRequest,
-                                  wire::ControlReply, wire::Health, wire::ResendRequest>;
+using Messages =
+    ::testing::Types<wire::SessionDescription, wire::NodeStatus, wire::Tick, wire::MechanismMessage,
+                     wire::ActuatorMessage, wire::FlexibleMessage, wire::ElasticMessage, wire::VariableDirectory,
+                     wire::VariableBlock, wire::ControllerInput, wire::ControllerLease, wire::ControlRequest,
+                     wire::ControlReply, wire::Health, wire::ResendRequest>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, ComesBackAsItWasSent) {
