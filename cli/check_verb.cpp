@@ -38,7 +38,7 @@ nlohmann::json to_json(const scene::LoadError& error) {
 // A name that only the built models can know: what is plotted and recorded must exist.
 void check_variables(const scene::Scene& scene, const DirectSession& session) {
   std::vector<std::string> names;
-  for (const Role role : {Role::mechanics, Role::hydraulics}) {
+  for (const Role role : wire::kPhysicsRoles) {
     if (session.subsystem(role) == nullptr) continue;
     for (const ElementVariable& variable : session.subsystem(role)->variables()) names.push_back(variable.name);
   }

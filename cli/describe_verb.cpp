@@ -127,12 +127,16 @@ void describe_nodes(const scene::Scene& scene, Description& d) {
                      scene.has_hydraulics() ? counted(scene.hydraulics.volumes.size(), "volume", "volumes") + ", " +
                                                   counted(d.components, "component", "components")
                                             : "no volumes"});
-  d.nodes.push_back(
-      {"flex", false, d.flexible.empty() ? "no flexible bodies" : "the mechanics holds the modes and their stiffness"});
+  const bool is_stated_once = scene.session.flexible == coupling::ElasticExchange::once;
+  d.nodes.push_back({"flex", scene.has_modes(),
+                     !scene.has_modes()
+                         ? "no flexible bodies with modes"
+                         : counted(scene.flexible_bodies.size(), "body", "bodies") +
+                               (is_stated_once ? ", elastic forces stated once" : ", elastic forces at every step")});
   d.nodes.push_back({"recorder", true, "unless --no-record is given"});
   if (!scene.has_mechanics()) d.left_out.emplace_back("mechanics: no bodies, no process, no states");
   if (!scene.has_hydraulics()) d.left_out.emplace_back("hydraulics: no volumes, no process, no states");
-  if (d.flexible.empty()) d.left_out.emplace_back("flexible bodies: none, no flex_node, no modal states");
+  if (!scene.has_modes()) d.left_out.emplace_back("flexible bodies: none with modes, no flex_node, no modal states");
   if (d.contacts.empty()) d.left_out.emplace_back("contact: no collision pairs, no collision detection");
   if (scene.ports.empty()) d.left_out.emplace_back("coupling: no actuator drives a force, no ports");
 }

@@ -1,5 +1,6 @@
 #include "cli/direct_session.h"
 
+#include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 
@@ -11,11 +12,15 @@ using wire::Role;
 std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scene& scene) {
   if (role == Role::mechanics && scene.has_mechanics()) return mechanics::make_mechanics_subsystem(scene);
   if (role == Role::hydraulics && scene.has_hydraulics()) return hydraulic_node::make_hydraulics_subsystem(scene);
+  if (role == Role::flex && scene.has_modes()) return flexible::make_flex_subsystem(scene);
   return nullptr;
 }
 
 DirectSession::DirectSession(const scene::Scene& scene)
-    : mechanics_(make_subsystem(Role::mechanics, scene)), hydraulics_(make_subsystem(Role::hydraulics, scene)) {}
+    : mechanics_(make_subsystem(Role::mechanics, scene)), hydraulics_(make_subsystem(Role::hydraulics, scene)),
+      flex_(make_subsystem(Role::flex, scene)),
+      elastic_exchange_(scene.session.flexible),
+      flexible_every_(scene.flexible_every()) {}
 
 Status DirectSession::start() {
   mechanics_report_ = hydraulics_report_ = {};
@@ -34,12 +39,21 @@ Status DirectSession::start() {
   if (mechanics_ == nullptr) return Status::ok();
   PartnerSamples partners;
   if (hydraulics_ != nullptr) partners.actuators = &hydraulics_sample_.actuators;
-  return mechanics_->start(partners, mechanics_sample_);
+  if (flex_ != nullptr) {
+    static_cast<void>(flex_->first_sample(flex_sample_));
+    partners.elastic = &flex_sample_.elastic;
+  }
+  if (Status status = mechanics_->start(partners, mechanics_sample_); !status.is_ok()) return status;
+  if (flex_ == nullptr) return Status::ok();
+  partners = {};
+  partners.flexible = &mechanics_sample_.flexible;
+  return flex_->start(partners, flex_sample_);
 }
 
 void DirectSession::reset() {
   if (mechanics_ != nullptr) mechanics_->reset();
   if (hydraulics_ != nullptr) hydraulics_->reset();
+  if (flex_ != nullptr) flex_->reset();
 }
 
 void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
@@ -54,6 +68,8 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
   if (mechanics_ != nullptr) {
     PartnerSamples partners;
     if (hydraulics_ != nullptr) partners.actuators = &hydraulics_sample_.actuators;
+    const bool is_stated_anew = elastic_exchange_ == coupling::ElasticExchange::every_step;
+    if (flex_ != nullptr && is_stated_anew) partners.elastic = &flex_sample_.elastic;
     mechanics_report_ = advance(*mechanics_, partners, mechanics_next_);
   }
   const std::int64_t middle_ns = monotonic_ns();
@@ -66,10 +82,25 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
   hydraulics_ns_ = monotonic_ns() - middle_ns;
   mechanics_sample_ = mechanics_next_;
   hydraulics_sample_ = hydraulics_next_;
+  // a flex node's sample is that of the mechanics' new one
+  if (flex_ != nullptr && has_sample(Role::flex, n + 1)) {
+    PartnerSamples partners;
+    partners.flexible = &mechanics_sample_.flexible;
+    static_cast<void>(advance(*flex_, partners, flex_sample_));
+  }
 }
 
 const coupling::Subsystem* DirectSession::subsystem(Role role) const noexcept {
-  return role == Role::mechanics ? mechanics_.get() : role == Role::hydraulics ? hydraulics_.get() : nullptr;
+  switch (role) {
+    case Role::mechanics:
+      return mechanics_.get();
+    case Role::hydraulics:
+      return hydraulics_.get();
+    case Role::flex:
+      return flex_.get();
+    default:
+      return nullptr;
+  }
 }
 
 std::uint64_t DirectSession::state_hash(Role role) const noexcept {

@@ -31,6 +31,10 @@ class DirectSession {
   [[nodiscard]] const coupling::Subsystem* subsystem(wire::Role role) const noexcept;
   // Hash of the role's state now, 0 when the scene has no such role.
   [[nodiscard]] std::uint64_t state_hash(wire::Role role) const noexcept;
+  // Whether the role has a sample of this step.
+  [[nodiscard]] bool has_sample(wire::Role role, StepIndex step) const noexcept {
+    return role != wire::Role::flex || step % flexible_every_ == 0;
+  }
   // Mechanics' hash at its INIT sample.
   [[nodiscard]] std::uint64_t init_hash() const noexcept { return init_hash_; }
   // What the role's part of the last step reported, and how long it took [ns of the wall clock].
@@ -42,8 +46,12 @@ class DirectSession {
  private:
   std::unique_ptr<coupling::Subsystem> mechanics_;
   std::unique_ptr<coupling::Subsystem> hydraulics_;
+  std::unique_ptr<coupling::Subsystem> flex_;
+  coupling::ElasticExchange elastic_exchange_;
+  StepIndex flexible_every_;  // steps between two samples for and of flexible bodies
   coupling::OwnSample mechanics_sample_;  // at t_n
   coupling::OwnSample hydraulics_sample_;
+  coupling::OwnSample flex_sample_;
   coupling::OwnSample mechanics_next_;
   coupling::OwnSample hydraulics_next_;
   StepReport mechanics_report_;

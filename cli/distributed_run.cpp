@@ -90,7 +90,7 @@ class Supervisor {
     std::vector<std::string> arguments;
     if (role == Role::io) arguments = cli_support::scene_arguments(options_.scene);
     arguments.insert(arguments.end(), {"--session", options_.session.session});
-    if (role == Role::mechanics || role == Role::hydraulics) {
+    if (role == Role::mechanics || role == Role::hydraulics || role == Role::flex) {
       arguments.insert(arguments.end(), {"--assets", options_.assets()});
     }
     // nodes of this run follow its own io and no other of its name
@@ -107,7 +107,7 @@ class Supervisor {
 
   void start_others() {
     are_others_started_ = true;
-    for (const Role role : {Role::mechanics, Role::hydraulics, Role::recorder}) {
+    for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
       if (is_ours(role)) start(role);
     }
     if (keyboard_) status_.say(keyboard_->levers().help());

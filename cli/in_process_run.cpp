@@ -35,7 +35,7 @@ class InProcessRun {
     roles_ = config.required_roles;
     io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
     nodes_.push_back(io_.get());
-    for (const Role role : {Role::mechanics, Role::hydraulics}) add_physics(role);
+    for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
     observer_ = std::make_unique<Observer>(cli_support::open_carrier(Role::observer, bus_), options.session.session);
     if (options.scene.input == "keyboard") keyboard_.emplace(scene);

@@ -41,7 +41,7 @@ int become_node(int argc, char** argv) {
 void add_node(CLI::App& program, Action& action) {
   CLI::App* verb = program.add_subcommand("node", "run one node of a session, here or on this machine's part of it");
   verb->footer(
-      "Roles: io SCENE (owner of the session), mechanics, hydraulics, recorder; flex refuses in this version.\n"
+      "Roles: io SCENE (owner of the session), mechanics, hydraulics, flex (flexible bodies), recorder.\n"
       "'slewring node ROLE --help' lists the options of a role.\n\n"
       "Example:\n  slewring node hydraulics --session truck_crane --interface eth0 --peer 192.168.1.10");
   verb->callback([&action] {

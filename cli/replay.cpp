@@ -40,7 +40,7 @@ class Replay {
   ReplayResult run() {
     start_epoch();
     recording::MessageFilter filter;
-    for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators}) {
+    for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic}) {
       filter.topics.emplace_back(node::to_text(topic));
     }
     const Status status = reader_.for_each(filter, [this](const recording::RecordedMessage& message) {
@@ -65,6 +65,8 @@ class Replay {
     if (message.channel->topic == node::to_text(Topic::tick)) return take_tick(message.payload);
     if (message.channel->topic == node::to_text(Topic::mechanism)) {
       if (transport::decode(message.payload, mechanism_)) take_sample(mechanism_.header, mechanism_.state.state_hash);
+    } else if (message.channel->topic == node::to_text(Topic::elastic)) {
+      if (transport::decode(message.payload, elastic_)) take_sample(elastic_.header, elastic_.state.state_hash);
     } else if (transport::decode(message.payload, actuators_)) {
       take_sample(actuators_.header, actuators_.state.state_hash);
     }
@@ -145,11 +147,12 @@ class Replay {
   }
 
   void keep_hashes() {
-    for (const Role role : {Role::mechanics, Role::hydraulics}) {
+    for (const Role role : wire::kPhysicsRoles) {
       if (session_.subsystem(role) == nullptr) continue;
       Hashes& of_role = hashes_[index(role)];
       of_role.computed.push_back(session_.state_hash(role));
-      of_role.is_compared.push_back(false);
+      // a step that has no sample has nothing to compare
+      of_role.is_compared.push_back(!session_.has_sample(role, static_cast<StepIndex>(of_role.is_compared.size())));
     }
   }
 
@@ -192,7 +195,7 @@ class Replay {
     has_stopped_ = true;
   }
 
-  static std::size_t index(Role role) { return role == Role::mechanics ? 0 : 1; }
+  static std::size_t index(Role role) { return role == Role::mechanics ? 0 : role == Role::hydraulics ? 1 : 2; }
 
   const recording::Reader& reader_;
   OnDifference on_difference_;
@@ -203,12 +206,13 @@ class Replay {
   std::uint32_t epoch_ = 0;
   StepIndex next_ = 0;  // step that the next tick starts
   std::uint64_t init_hash_ = 0;
-  std::array<Hashes, 2> hashes_;  // mechanics, hydraulics
+  std::array<Hashes, std::size(wire::kPhysicsRoles)> hashes_;
   std::map<StepIndex, wire::Tick> waiting_ticks_;
   std::map<std::pair<StepIndex, Role>, std::uint64_t> waiting_samples_;
   wire::Tick tick_;
   wire::MechanismMessage mechanism_;
   wire::ActuatorMessage actuators_;
+  wire::ElasticMessage elastic_;
 };
 
 }  // namespace

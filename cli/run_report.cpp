@@ -35,7 +35,7 @@ std::string lamp_of(double eta, double net) {
 }
 
 void report_nodes(const SessionView& view, RunReport& report) {
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::recorder}) {
+  for (const Role role : wire::kNodeRoles) {
     if (!view.has_session() || (view.session().required_roles & bit(role)) == 0) continue;
     const NodeView& node = view.node(role);
     report.nodes.push_back({std::string(node::to_text(role)), node.times, node.health.resends_asked,

@@ -47,7 +47,7 @@ void add_run(CLI::App& program, Action& action) {
   verb->add_option("--remote", options->remote, "roles that are started elsewhere, separated by commas")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"io", "mechanics", "hydraulics", "recorder"}))
+      ->check(CLI::IsMember({"io", "mechanics", "hydraulics", "flex", "recorder"}))
       ->type_name("ROLE")
       ->group("Session");
   verb->add_flag("--in-process", options->is_in_process, "all nodes in this process, on one thread")->group("Session");

@@ -181,9 +181,9 @@ const wire::ControllerLease* SessionView::lease(const std::string& controller, c
 
 bool SessionView::has_whole_directory() const noexcept {
   if (!session_) return false;
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
+  for (const Role role : wire::kNodeRoles) {
     const auto index = static_cast<std::size_t>(role);
-    if ((session_->required_roles & bit(role)) == 0) continue;
+    if (role == Role::recorder || (session_->required_roles & bit(role)) == 0) continue;
     if (variables_[index].empty() || named_[index] < variables_[index].size()) return false;
   }
   return true;

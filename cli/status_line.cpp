@@ -112,7 +112,7 @@ void StatusText::measure(const SessionView& view, std::int64_t now_ns) {
 
 std::string StatusText::nodes_text(const SessionView& view) {
   std::string nodes;
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::recorder}) {
+  for (const Role role : wire::kNodeRoles) {
     if ((view.session().required_roles & bit(role)) == 0) continue;
     const wire::NodeState state = view.node(role).status.state;
     const bool is_usual = view.node(role).is_known && (state == wire::NodeState::running ||

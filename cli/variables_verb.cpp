@@ -33,10 +33,10 @@ std::vector<Named> of_scene(const std::string& file) {
   for (const scene::InputDef& input : scene.inputs) {
     for (const char* quantity : {".raw", ".control", ".age"}) all.push_back({input.name + quantity, "1", "io"});
   }
-  for (const Role role : {Role::mechanics, Role::hydraulics}) {
+  for (const Role role : wire::kPhysicsRoles) {
     const auto subsystem = make_subsystem(role, scene);
     if (subsystem == nullptr) continue;
-    const char* owner = role == Role::mechanics ? "mechanics" : "hydraulics";
+    const std::string owner(node::to_text(role));
     for (const ElementVariable& variable : subsystem->variables()) {
       all.push_back({variable.name, std::string(info(variable.dimension).si_unit), owner});
     }

@@ -1,22 +1,40 @@
-// The program flex_node: refuses, because in this version the mechanics holds flexible bodies itself.
-#include "cli_support/failure.h"
+// The program flex_node: the flexible bodies of a session's scene as a process of its own.
+#include "cli_support/carrier.h"
 #include "cli_support/node_program.h"
+#include "cli_support/subsystem_factory.h"
+#include "flex_node/flex_subsystem.h"
+#include "node/physics_node.h"
+
+namespace {
+
+using namespace slew;
+
+std::optional<ExitCode> run(const cli_support::NodeOptions& options) {
+  cli_support::apply_real_time(options, "flex_node");
+  const auto carrier = cli_support::open_carrier(wire::Role::flex, options.session);
+  node::PhysicsNode node(
+      wire::Role::flex, *carrier,
+      cli_support::subsystem_factory([](const scene::Scene& scene) { return flexible::make_flex_subsystem(scene); },
+                                     options.assets),
+      options.join());
+  return cli_support::run_node(node);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  using namespace slew;
   CLI::App app(
-      "Flexible bodies of a Slewring session. In this version the mechanics holds them itself: the program refuses.",
+      "Flexible bodies of a Slewring session: elastic forces, deflection of every node, stress, strain energy. Takes "
+      "the scene from the session, the flexible files from --assets.",
       "flex_node");
-  app.footer("Example:\n  flex_node --session truck_crane");
+  app.footer(
+      "Example, on the machine that computes the flexible bodies:\n"
+      "  flex_node --session truck_crane_flexible --assets scenes --interface eth0 --peer 192.168.1.20");
   cli_support::NodeOptions options;
   cli_support::add_physics_node_options(app, options);
   cli_support::add_version(app);
   int exit_code = 0;
   if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("flex_node", []() -> ExitCode {
-    throw cli_support::Failure(
-        ExitCode::bad_input,
-        "this version has no flex node: the mechanics holds flexible bodies itself; it ends; start "
-        "the session without it");
-  });
+  return cli_support::guarded("flex_node",
+                              [&] { return cli_support::run_until_in_session([&] { return run(options); }); });
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/check.h"
+#include "node/sample_exchange.h"
 
 namespace slew::io {
 namespace {
@@ -82,11 +83,7 @@ void IoNode::update_health() noexcept {
   h.slip_ns = slip_ns_;
   h.refused = member_.refusals().refused();
   h.is_waiting = stage_ == Stage::ticking && !partners_allow(n_);
-  const bool waits_for_mechanics = member_.requires_role(Role::mechanics) && mechanics_at_ < n_ - config_.window + 1;
-  const bool waits_for_hydraulics = member_.requires_role(Role::hydraulics) && hydraulics_at_ < n_ - config_.window + 1;
-  h.waiting_for = static_cast<std::uint8_t>(waits_for_mechanics    ? Role::mechanics
-                                            : waits_for_hydraulics ? Role::hydraulics
-                                                                   : Role::recorder);
+  h.waiting_for = static_cast<std::uint8_t>(holds_back(n_).value_or(Role::recorder));
   h.waiting_step = n_;
   h.has_session.store(stage_ != Stage::checking_name, std::memory_order_release);
 }
@@ -109,6 +106,7 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
       return member_.on_health(message.bytes, now_ns);
     case Topic::mechanism:
     case Topic::actuators:
+    case Topic::elastic:
       return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::controller_input:
       return receive_controller(message.bytes, now_ns);
@@ -162,7 +160,7 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
     ++member_.refusals().too_far_ahead;
     return;
   }
-  StepIndex& at = topic == Topic::mechanism ? mechanics_at_ : hydraulics_at_;
+  StepIndex& at = topic == Topic::mechanism ? mechanics_at_ : topic == Topic::actuators ? hydraulics_at_ : flex_at_;
   // samples come in order from one writer; one that was lost and asked for again may close a gap
   if (header.step == at + 1) {
     at = header.step;
@@ -400,10 +398,23 @@ bool IoNode::advance_join(std::int64_t now_ns) {
   return false;
 }
 
-bool IoNode::partners_allow(StepIndex n) const noexcept {
+// the last sample that a flex node must have published before tick n
+StepIndex IoNode::needed_of_flex(StepIndex n) const noexcept {
+  const StepIndex oldest = n - node::kFollowerWindow;
+  return oldest < 0 ? kJoinStep : oldest - oldest % static_cast<StepIndex>(config_.flexible_every);
+}
+
+// the first role whose samples are missing for tick n
+std::optional<Role> IoNode::holds_back(StepIndex n) const noexcept {
   const StepIndex needed = n - config_.window + 1;
-  if (member_.requires_role(Role::mechanics) && mechanics_at_ < needed) return false;
-  if (member_.requires_role(Role::hydraulics) && hydraulics_at_ < needed) return false;
+  if (member_.requires_role(Role::mechanics) && mechanics_at_ < needed) return Role::mechanics;
+  if (member_.requires_role(Role::hydraulics) && hydraulics_at_ < needed) return Role::hydraulics;
+  if (member_.requires_role(Role::flex) && flex_at_ < needed_of_flex(n)) return Role::flex;
+  return std::nullopt;
+}
+
+bool IoNode::partners_allow(StepIndex n) const noexcept {
+  if (holds_back(n)) return false;
   if (config_.pace == wire::Pace::free && member_.requires_role(Role::recorder)) {
     const node::Peer& recorder = member_.peer(Role::recorder);
     if (recorder.status.header.epoch == member_.epoch() && recorder.status.recorded_step < n - kRecorderWindow) {
@@ -463,18 +474,20 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
 void IoNode::ask_for_missing(std::int64_t now_ns) {
   if (!resend_.is_due(now_ns)) return;
   resend_.asked(now_ns);
-  const auto ask = [&](Role role, Topic topic, StepIndex at) {
-    if (!member_.requires_role(role) || at >= n_ - config_.window + 1) return;
+  const auto ask = [&](Role role, Topic topic, StepIndex at, StepIndex needed) {
+    if (!member_.requires_role(role) || at >= needed) return;
     wire::ResendRequest request;
     request.header = member_.header(Phase::running, at + 1);
     request.role = role;
     request.topic = static_cast<std::uint8_t>(topic);
-    request.last_step = n_ - config_.window + 1;
+    request.last_step = needed;
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
   };
-  ask(Role::mechanics, Topic::mechanism, mechanics_at_);
-  ask(Role::hydraulics, Topic::actuators, hydraulics_at_);
+  const StepIndex needed = n_ - config_.window + 1;
+  ask(Role::mechanics, Topic::mechanism, mechanics_at_, needed);
+  ask(Role::hydraulics, Topic::actuators, hydraulics_at_, needed);
+  ask(Role::flex, Topic::elastic, flex_at_, needed_of_flex(n_));
 }
 
 void IoNode::issue_tick(std::int64_t now_ns) {
@@ -540,7 +553,7 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   single_steps_ = 0;
   sent_.clear();
   n_ = 0;
-  mechanics_at_ = hydraulics_at_ = kJoinStep;
+  mechanics_at_ = hydraulics_at_ = flex_at_ = kJoinStep;
   tick_ = wire::Tick{};
   tick_.header = member_.header(Phase::init, kJoinStep);
   send_tick(kJoinStep);

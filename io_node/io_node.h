@@ -55,6 +55,7 @@ struct IoConfig {
   std::function<ParameterVerdict(const std::string& path, double value)> judge_parameter;
   std::vector<LiveParameter> parameters;  // those that may change while the session runs
   std::uint32_t variables_every = 10;
+  std::uint32_t flexible_every = 1;            // steps between two samples of flexible bodies
   SimDuration name_check = milliseconds(300);  // listens so long for a holder of the name; 0 in one process
   SimDuration join_timeout = node::kJoinTimeout;
   bool starts_paused = false;
@@ -97,6 +98,8 @@ class IoNode final : public node::Node {
   bool advance_ending(std::int64_t now_ns);
 
   [[nodiscard]] bool is_withheld() const noexcept { return is_paused_ && single_steps_ == 0; }
+  [[nodiscard]] StepIndex needed_of_flex(StepIndex n) const noexcept;
+  [[nodiscard]] std::optional<wire::Role> holds_back(StepIndex n) const noexcept;
   [[nodiscard]] bool partners_allow(StepIndex n) const noexcept;
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept;
   void ask_for_missing(std::int64_t now_ns);
@@ -127,6 +130,7 @@ class IoNode final : public node::Node {
   StepIndex n_ = 0;                     // next tick
   StepIndex mechanics_at_ = kJoinStep;  // highest sample seen without a gap
   StepIndex hydraulics_at_ = kJoinStep;
+  StepIndex flex_at_ = kJoinStep;
   std::vector<wire::Command> waiting_commands_;
   bool is_paused_ = false;
   StepIndex single_steps_ = 0;  // ticks still to issue while paused

@@ -27,6 +27,7 @@ std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noe
   std::uint32_t roles = bit(wire::Role::io);
   if (scene.has_mechanics()) roles |= bit(wire::Role::mechanics);
   if (scene.has_hydraulics()) roles |= bit(wire::Role::hydraulics);
+  if (scene.has_modes()) roles |= bit(wire::Role::flex);
   if (recording == Recording::required) roles |= bit(wire::Role::recorder);
   return roles;
 }
@@ -66,6 +67,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
     return ParameterVerdict{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
   };
   config.variables_every = static_cast<std::uint32_t>(scene.recording.every);
+  config.flexible_every = scene.flexible_every();
   return config;
 }
 

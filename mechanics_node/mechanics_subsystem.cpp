@@ -89,6 +89,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       workspace_(model_),
       level_(scene.session.coupling),
       H_(scene.session.step_duration()),
+      modal_(scene, model_),
       row_is_active_(model_.rows.size(), 1),
       laws_(std::make_unique<Laws>(*this)),
       dynamics_(model_.rows.size()),
@@ -118,7 +119,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
   const std::size_t rows = model_.rows.size();
   matrix_.resize(rows * rows);
   right_.resize(rows * (ports_.size() + 1));
-  coupling::resize(published_, ports_.size());
+  coupling::resize(published_.mechanism, ports_.size());
   for (std::size_t i = 1; i <= def_.bodies.size(); ++i) {
     const bool is_rigid = def_.bodies[i - 1].type == multibody::BodyType::rigid;
     if (is_rigid && model_.bodies[i].link > 0) payload_ = static_cast<int>(i);
@@ -142,7 +143,7 @@ void MechanicsSubsystem::reset() {
   has_failed_ = false;
   failure_ = StepReport{};
   for (Port& port : ports_) port.F = port.friction = port.stop = port.static_force = 0;
-  coupling::resize(published_, ports_.size());
+  coupling::resize(published_.mechanism, ports_.size());
 }
 
 void MechanicsSubsystem::evaluate() noexcept {
@@ -157,7 +158,7 @@ bool MechanicsSubsystem::first_sample(coupling::OwnSample& sample) noexcept {
   evaluate();
   // nothing has been done yet: no work, no impulse, whatever the sample held before a reset
   coupling::resize(sample.mechanism, ports_.size());
-  publish(sample.mechanism);
+  publish(sample);
   return true;
 }
 
@@ -171,8 +172,13 @@ Status MechanicsSubsystem::start(const coupling::PartnerSamples& partners, coupl
     }
     for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].F = partners.actuators->F[i];
   }
+  if (partners.elastic != nullptr) {
+    if (Status status = modal_.begin(def_, *partners.elastic, model_); !status.is_ok()) return status;
+    heavier_ = model_;
+    is_evaluated_ = false;
+  }
   coupling::resize(sample.mechanism, ports_.size());
-  publish(sample.mechanism);
+  publish(sample);
   return Status::ok();
 }
 
@@ -299,10 +305,17 @@ void MechanicsSubsystem::put_signals(std::span<const double> controls) noexcept 
   }
 }
 
+// where the flex node states them step by step; what does not fit leaves those of the step before
+void MechanicsSubsystem::take_elastic_forces(const coupling::ElasticSample* sample, StepReport& report) noexcept {
+  if (sample == nullptr || modal_.is_empty()) return;
+  if (!modal_.apply(*sample, model_) || !modal_.apply(*sample, heavier_)) report.raise(StepFlag::clamp_active);
+  is_evaluated_ = false;
+}
+
 StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners,
                                     std::span<const double> controls, coupling::OwnSample& sample) noexcept {
   if (has_failed_) {
-    sample.mechanism = published_;
+    sample = published_;
     return failure_;
   }
   if (!ramps_.empty()) {
@@ -314,6 +327,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   }
   put_signals(controls);
   StepReport report;
+  take_elastic_forces(partners.elastic, report);
   const double h = H_.seconds() / substeps_;
   coupling::MechanismSample& out = sample.mechanism;
   coupling::resize(out, ports_.size());
@@ -336,7 +350,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     failure_ = report;
     multibody::copy_state(last_good_, state_);
     is_evaluated_ = false;
-    out = published_;
+    sample = published_;
     return report;
   }
   multibody::copy_state(state_, last_good_);
@@ -346,7 +360,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     out.v_mean[i] = (x - begin[i]) / H_.seconds();
     if (ports_[i].law.touches_stop(x)) report.raise(StepFlag::limit_hit);
   }
-  publish(out);
+  publish(sample);
   for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
     if (multibody::touches_limit(model_.rows[row].law, workspace_.row_x[row])) report.raise(StepFlag::limit_hit);
   }
@@ -384,7 +398,8 @@ std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noe
 // ---- publishing -----------------------------------------------------------------------------------------------
 
 // Work, impulse and mean speed are the finished step's and stay as they are.
-void MechanicsSubsystem::publish(coupling::MechanismSample& sample) noexcept {
+void MechanicsSubsystem::publish(coupling::OwnSample& own) noexcept {
+  coupling::MechanismSample& sample = own.mechanism;
   evaluate();
   // variables show every element, a step moves only those that carry a force or a row
   multibody::observe(model_, state_, workspace_);
@@ -403,7 +418,8 @@ void MechanicsSubsystem::publish(coupling::MechanismSample& sample) noexcept {
   condense_joints(sample);
   update_line_forces(sample);
   find_static_forces(sample);
-  published_ = sample;
+  modal_.read(model_, state_, workspace_, own.flexible);
+  published_ = own;
 }
 
 // Joint laws behind the ports, implicit over H: with f_r = f_m - S H a_r, S = -(dF/dv + H dF/dx), and f_m the mean
@@ -500,6 +516,7 @@ std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
   StateHash hash;
   multibody::add_to_hash(model_, state_, hash);
   mechanism_.add_to_hash(hash);
+  modal_.add_to(model_, hash);
   ramps_.add_to(hash);
   for (const Port& port : ports_) hash.add(port.F);
   for (const char is_active : row_is_active_) hash.add(is_active);
@@ -570,7 +587,7 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
   slopes.resize(ports_.size());
   find_payload_slopes(slopes.span());
   for (std::size_t i = 0; i < ports_.size(); ++i) {
-    values[k++] = published_.F_line[i];
+    values[k++] = published_.mechanism.F_line[i];
     values[k++] = ports_[i].friction;
     values[k++] = ports_[i].stop;
     values[k++] = ports_[i].static_force;

@@ -15,6 +15,7 @@
 #include "coupling/parameter_ramps.h"
 #include "coupling/port_dynamics.h"
 #include "coupling/subsystem.h"
+#include "mechanics_node/modal_exchange.h"
 #include "multibody/dynamics.h"
 #include "multibody/formulation.h"
 #include "multibody/observe.h"
@@ -66,7 +67,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] coupling::PortStep advance(double h, const coupling::ActuatorSample* partner,
                                            bool is_first_substep) noexcept;
   void finish_substep(const coupling::ActuatorSample* partner, coupling::MechanismSample& sample) noexcept;
-  void publish(coupling::MechanismSample& sample) noexcept;
+  void publish(coupling::OwnSample& own) noexcept;
+  void take_elastic_forces(const coupling::ElasticSample* sample, StepReport& report) noexcept;
   void condense_joints(coupling::MechanismSample& sample) noexcept;
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
   void find_static_forces(const coupling::MechanismSample& sample) noexcept;
@@ -106,6 +108,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   int micro_steps_ = 1;
   std::vector<Port> ports_;
   std::vector<OperatedLoad> operated_;
+  ModalExchange modal_;
   std::vector<char> row_is_active_;
   std::vector<std::size_t> active_;  // rows of the port problem, ascending
   std::unique_ptr<Laws> laws_;
@@ -125,7 +128,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   mutable std::vector<multibody::JointReaction> reactions_;  // by joint of the scene
   bool has_failed_ = false;
   StepReport failure_;
-  coupling::MechanismSample published_;
+  coupling::OwnSample published_;
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene);

@@ -134,6 +134,8 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
     case Topic::tick:
     case Topic::mechanism:
     case Topic::actuators:
+    case Topic::flexible:
+    case Topic::elastic:
     case Topic::variables:
       return receive_stepped(message, now_ns);
     case Topic::node_status: {
@@ -282,6 +284,8 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
                                std::int64_t now_ns) {
   if (writer_ == nullptr) return;
   if (message.topic == Topic::variables) return record_variables(message, header, streams);
+  const bool is_of_flexible_bodies = message.topic == Topic::flexible || message.topic == Topic::elastic;
+  if (is_of_flexible_bodies) return record_block(message, header, {message.topic, header.role, 0}, streams);
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
   StreamGaps& stream = streams.steps.try_emplace({message.topic, header.role}).first->second;
   switch (stream.arrived(header.step)) {
@@ -326,7 +330,8 @@ void RecorderNode::begin_streams() {
   }
 }
 
-// Blocks come every k-th step from step 0 on. They are not asked for again: what is missing is counted.
+// Blocks of variables, and the samples of and for flexible bodies, come every k-th step from step 0 on. They are not asked
+// for again: what is missing is counted.
 void RecorderNode::record_variables(const transport::Received& message, const wire::Header& header,
                                     EpochStreams& streams) {
   wire::VariableBlock block;
@@ -334,15 +339,20 @@ void RecorderNode::record_variables(const transport::Received& message, const wi
     ++member_.refusals().undecodable;
     return;
   }
-  BlockStream& stream = streams.variables[{header.role, block.first}];
+  record_block(message, header, {message.topic, header.role, block.first}, streams);
+}
+
+void RecorderNode::record_block(const transport::Received& message, const wire::Header& header,
+                                const BlockSource& source, EpochStreams& streams) {
+  BlockStream& stream = streams.blocks[source];
   if (header.step <= stream.newest) {
     ++counts_[static_cast<std::size_t>(message.topic)].duplicates;
     return;
   }
   stream.newest = header.step;
   ++stream.arrived;
-  block_every_ = std::gcd(block_every_, header.step);
-  write(message, header.epoch, header.step, (static_cast<std::uint32_t>(header.role) << 16) | block.first);
+  every(message.topic) = std::gcd(every(message.topic), header.step);
+  write(message, header.epoch, header.step, (static_cast<std::uint32_t>(header.role) << 16) | source.first);
 }
 
 // a fast node's first messages after a reset may overtake io's tick that began it
@@ -400,11 +410,12 @@ StepIndex RecorderNode::final_step(Role writer, StepIndex newest) const noexcept
 }
 
 // step of a writer's last variable block; io's last tick says END and has none
-StepIndex RecorderNode::last_block(Role writer, StepIndex newest) const noexcept {
-  if (block_every_ == 0) return newest;
-  const StepIndex final = final_step(writer, newest);
-  const StepIndex last = writer == Role::io && final > newest ? final - 1 : final;
-  return last < 0 ? newest : last - last % block_every_;
+StepIndex RecorderNode::last_block(const BlockSource& source, StepIndex newest) const noexcept {
+  const StepIndex every = block_every_[static_cast<std::size_t>(source.topic)];
+  if (every == 0) return newest;
+  const StepIndex final = final_step(source.writer, newest);
+  const StepIndex last = source.writer == Role::io && final > newest ? final - 1 : final;
+  return last < 0 ? newest : last - last % every;
 }
 
 bool RecorderNode::is_ending() const noexcept {
@@ -419,9 +430,9 @@ bool RecorderNode::has_everything() const noexcept {
                        const auto& [key, stream] = entry;
                        return stream.next() > final_step(key.second, stream.newest());
                      }) &&
-         std::all_of(streams_.variables.begin(), streams_.variables.end(), [&](const auto& entry) {
-           const auto& [key, stream] = entry;
-           return stream.newest >= last_block(key.first, stream.newest);
+         std::all_of(streams_.blocks.begin(), streams_.blocks.end(), [&](const auto& entry) {
+           const auto& [source, stream] = entry;
+           return stream.newest >= last_block(source, stream.newest);
          });
 }
 
@@ -519,10 +530,11 @@ void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
     stream.close_at(is_present ? final_step(key.second, stream.newest()) : stream.newest());
     counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
   }
-  for (const auto& [key, stream] : streams.variables) {
-    const StepIndex last = is_present ? last_block(key.first, stream.newest) : stream.newest;
-    const auto expected = block_every_ == 0 ? stream.arrived : static_cast<std::uint64_t>(last / block_every_) + 1;
-    counts_[static_cast<std::size_t>(Topic::variables)].lost += expected - std::min(expected, stream.arrived);
+  for (const auto& [source, stream] : streams.blocks) {
+    const StepIndex last = is_present ? last_block(source, stream.newest) : stream.newest;
+    const StepIndex step = every(source.topic);
+    const auto expected = step == 0 ? stream.arrived : static_cast<std::uint64_t>(last / step) + 1;
+    counts_[static_cast<std::size_t>(source.topic)].lost += expected - std::min(expected, stream.arrived);
   }
   streams = {};
 }

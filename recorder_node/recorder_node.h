@@ -24,7 +24,15 @@ struct RecorderConfig {
   node::JoinOptions join;
 };
 
-// One writer's variable blocks of one place in its list.
+// A writer's messages that come every k-th step: blocks of variables of one place in its list, samples of or for
+// flexible bodies.
+struct BlockSource {
+  wire::Topic topic = wire::Topic::variables;
+  wire::Role writer = wire::Role::io;
+  std::uint32_t first = 0;  // of a block, its first variable
+  auto operator<=>(const BlockSource&) const = default;
+};
+
 struct BlockStream {
   StepIndex newest = kJoinStep;
   std::uint64_t arrived = 0;
@@ -32,8 +40,8 @@ struct BlockStream {
 
 // What has come of one epoch, by writer.
 struct EpochStreams {
-  std::map<std::pair<wire::Topic, wire::Role>, StreamGaps> steps;         // ticks and samples
-  std::map<std::pair<wire::Role, std::uint32_t>, BlockStream> variables;  // by writer and first variable
+  std::map<std::pair<wire::Topic, wire::Role>, StreamGaps> steps;  // ticks and samples
+  std::map<BlockSource, BlockStream> blocks;
 };
 
 // How the session ended, for the recording's summary.
@@ -76,6 +84,9 @@ class RecorderNode final : public node::Node {
   void record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
                    std::int64_t now_ns);
   void record_variables(const transport::Received& message, const wire::Header& header, EpochStreams& streams);
+  void record_block(const transport::Received& message, const wire::Header& header, const BlockSource& source,
+                    EpochStreams& streams);
+  [[nodiscard]] StepIndex& every(wire::Topic topic) noexcept { return block_every_[static_cast<std::size_t>(topic)]; }
   void keep_for_next_epoch(const transport::Received& message);
   Status create(const wire::SessionDescription& session);
   Status add_attachments(const wire::SessionDescription& session);
@@ -84,7 +95,7 @@ class RecorderNode final : public node::Node {
   void begin_streams();
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
   [[nodiscard]] StepIndex final_step(wire::Role writer, StepIndex newest) const noexcept;
-  [[nodiscard]] StepIndex last_block(wire::Role writer, StepIndex newest) const noexcept;
+  [[nodiscard]] StepIndex last_block(const BlockSource& source, StepIndex newest) const noexcept;
   [[nodiscard]] std::uint64_t lost() const noexcept;
   [[nodiscard]] bool is_ending() const noexcept;
   [[nodiscard]] bool has_everything() const noexcept;
@@ -107,7 +118,8 @@ class RecorderNode final : public node::Node {
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;
   EpochStreams former_;        // of the epoch before: its last messages may come after the tick that ended it
-  StepIndex block_every_ = 0;  // steps between two variable blocks, as the blocks that came say; 0: unknown yet
+  // steps between two blocks of a topic, as those that came say; 0: unknown yet
+  std::array<StepIndex, wire::kTopics> block_every_{};
   StepIndex reported_step_ = kJoinStep;
   StepIndex last_step_ = kJoinStep;  // up to which every stream was complete at the end
   std::int64_t reported_ns_ = 0;

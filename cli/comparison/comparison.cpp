@@ -112,7 +112,7 @@ class Comparer {
     const DirectSession session(base_);
     std::vector<std::string> names;
     std::vector<std::string> units;
-    for (const Role role : {Role::mechanics, Role::hydraulics}) {
+    for (const Role role : wire::kPhysicsRoles) {
       if (session.subsystem(role) == nullptr) continue;
       for (const ElementVariable& variable : session.subsystem(role)->variables()) {
         names.push_back(variable.name);

@@ -1,6 +1,8 @@
 #include "cli_support/subsystem_factory.h"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 
 #include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
@@ -14,9 +16,17 @@ Status check_session_assets(const wire::SessionDescription& session, const std::
 }
 
 std::vector<std::uint32_t> published_variables(const scene::Scene& scene, const coupling::Subsystem& subsystem) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, kept;
   for (const ElementVariable& variable : subsystem.variables()) names.push_back(variable.name);
-  return matching(scene.recording.variables, names);
+  std::vector<std::uint32_t> published = matching(scene.recording.variables, names);
+  // what there is much of has to be asked for by more than "everything"
+  std::copy_if(scene.recording.variables.begin(), scene.recording.variables.end(), std::back_inserter(kept),
+               [](const std::string& pattern) { return pattern != "*"; });
+  const std::vector<std::uint32_t> asked_for = matching(kept, names);
+  std::erase_if(published, [&](std::uint32_t i) {
+    return subsystem.variables()[i].is_detail && !std::binary_search(asked_for.begin(), asked_for.end(), i);
+  });
+  return published;
 }
 
 node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets) {
@@ -29,6 +39,7 @@ node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets)
       *scene = scene::load_text(session.scene_text, "scene of session '" + session.name + "'", {}, assets);
       built.subsystem = make(*scene);
       built.variables_every = static_cast<std::uint32_t>(scene->recording.every);
+      built.flexible = {scene->session.flexible, scene->flexible_every()};
       built.published_variables = published_variables(*scene, *built.subsystem);
       return Status::ok();
     } catch (const scene::LoadError& error) {

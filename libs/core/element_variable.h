@@ -11,6 +11,7 @@ namespace slew {
 struct ElementVariable {
   std::string name;
   Dimension dimension = Dimension::none;
+  bool is_detail = false;  // one of very many: a scene publishes it when a pattern other than "*" fits
 };
 
 }  // namespace slew

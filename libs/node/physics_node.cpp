@@ -12,23 +12,24 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// ticks come up to the window (64 at most) ahead, samples one step ahead
-constexpr std::size_t kRingDepth = 128;
+// variables are read by the recorder only; the sample topics are what the partners need
+std::vector<Topic> topics_of(Role role) {
+  const std::span<const Topic> samples = SampleExchange::topics_written(role);
+  std::vector<Topic> topics(samples.begin(), samples.end());
+  topics.push_back(Topic::variables);
+  return topics;
+}
 
-// variables are read by the recorder only; the sample topic is what the partner needs
-constexpr Topic kMechanicsTopics[] = {Topic::mechanism, Topic::variables};
-constexpr Topic kHydraulicsTopics[] = {Topic::actuators, Topic::variables};
+bool is_end(const wire::Tick& tick) {
+  return (tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0;
+}
 
-std::span<const Topic> topics_of(Role role) {
-  return role == Role::mechanics ? std::span<const Topic>(kMechanicsTopics) : std::span<const Topic>(kHydraulicsTopics);
+bool is_fault(const wire::Tick& tick) {
+  return (tick.flags & static_cast<std::uint32_t>(wire::TickFlag::fault)) != 0;
 }
 
 // io knows all roles: it is given the time to say which one is missing
 constexpr SimDuration kOwnerFirst = milliseconds(1000);
-
-Topic sample_topic(Role role) {
-  return role == Role::mechanics ? Topic::mechanism : Topic::actuators;
-}
 
 }  // namespace
 
@@ -38,18 +39,7 @@ PhysicsNode::PhysicsNode(Role role, transport::Transport& transport, SubsystemFa
       session_timeout_(join.session_timeout),
       join_timeout_(join.join_timeout),
       ticks_(kRingDepth),
-      mechanisms_(kRingDepth),
-      actuators_(kRingDepth) {
-  SLEW_CHECK(role == Role::mechanics || role == Role::hydraulics);
-}
-
-Role PhysicsNode::partner() const noexcept {
-  return member_.role() == Role::mechanics ? Role::hydraulics : Role::mechanics;
-}
-
-bool PhysicsNode::has_partner() const noexcept {
-  return member_.requires_role(partner());
-}
+      samples_(role) {}
 
 bool PhysicsNode::poll(std::int64_t now_ns) {
   bool any = false;
@@ -89,9 +79,12 @@ void PhysicsNode::update_health() noexcept {
   h.step = n_;
   h.epoch = member_.epoch();
   h.refused = member_.refusals().refused();
-  const bool waits_for_tick = ticks_.find(n_) == nullptr;
+  Role missing = Role::io;
+  if (is_follower() || ticks_.find(n_) != nullptr) {
+    samples_.for_each_missing(n_, [&](Role role, Topic, StepIndex) { missing = role; });
+  }
   h.is_waiting = stage_ == Stage::stepping && resend_.is_overdue();
-  h.waiting_for = static_cast<std::uint8_t>(waits_for_tick ? Role::io : partner());
+  h.waiting_for = static_cast<std::uint8_t>(missing);
   h.waiting_step = n_;
   h.has_session.store(member_.has_session(), std::memory_order_release);
 }
@@ -113,6 +106,8 @@ void PhysicsNode::receive(const transport::Received& message, std::int64_t now_n
       return receive_tick(message.bytes, now_ns);
     case Topic::mechanism:
     case Topic::actuators:
+    case Topic::flexible:
+    case Topic::elastic:
       return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::resend:
       return receive_resend(message.bytes);
@@ -160,6 +155,7 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     return;
   }
   variable_values_.resize(built_.subsystem->variables().size());
+  samples_.configure(member_, built_.flexible);
   member_.set_state(NodeState::joining);
   stage_ = Stage::joining;
 }
@@ -174,11 +170,28 @@ void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t no
   if (member_.begins_next_epoch(header)) return restart(header.epoch);
   if (!member_.fits(header, Topic::tick)) return;
   member_.heard(header, Topic::tick, now_ns);
-  if (header.phase == Phase::running) keep(bytes, header.step, ticks_);
+  if (header.phase != Phase::running) return;
+  if (is_follower()) return receive_last_tick(bytes);
+  if (header.step >= n_ + static_cast<StepIndex>(kRingDepth)) {
+    ++member_.refusals().too_far_ahead;
+  } else if (header.step < n_ || ticks_.find(header.step) != nullptr) {
+    ++member_.refusals().duplicate;
+  } else if (!transport::decode(bytes, ticks_.put(header.step))) {
+    ticks_.remove(header.step);
+    ++member_.refusals().undecodable;
+  }
+}
+
+void PhysicsNode::receive_last_tick(std::span<const std::byte> bytes) {
+  if (!transport::decode(bytes, last_tick_)) {
+    ++member_.refusals().undecodable;
+  } else if (is_end(last_tick_)) {
+    last_step_ = last_tick_.header.step;
+    is_ended_by_fault_ = is_fault(last_tick_);
+  }
 }
 
 void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::int64_t now_ns) {
-  if (topic == sample_topic(member_.role())) return;
   wire::Header header;
   if (!transport::decode_header(bytes, header)) {
     ++member_.refusals().undecodable;
@@ -186,27 +199,7 @@ void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, 
   }
   if (!member_.fits(header, topic)) return;
   member_.heard(header, topic, now_ns);
-  if (header.phase == Phase::init && topic == Topic::mechanism) {
-    has_mechanism_init_ = transport::decode(bytes, mechanism_init_);
-    if (!has_mechanism_init_) ++member_.refusals().undecodable;
-  } else if (header.phase == Phase::running && topic == Topic::mechanism) {
-    keep(bytes, header.step, mechanisms_);
-  } else if (header.phase == Phase::running) {
-    keep(bytes, header.step, actuators_);
-  }
-}
-
-// puts a message of a step that is still to be done into its ring, once
-template <typename Message>
-void PhysicsNode::keep(std::span<const std::byte> bytes, StepIndex step, StepRing<Message>& ring) {
-  if (step >= n_ + static_cast<StepIndex>(kRingDepth)) {
-    ++member_.refusals().too_far_ahead;
-  } else if (step < n_ || ring.find(step) != nullptr) {
-    ++member_.refusals().duplicate;
-  } else if (!transport::decode(bytes, ring.put(step))) {
-    ring.remove(step);
-    ++member_.refusals().undecodable;
-  }
+  samples_.receive(bytes, header, topic, n_, member_.refusals());
 }
 
 void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
@@ -216,14 +209,7 @@ void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
     return;
   }
   if (request.role != member_.role() || !member_.fits(request.header, Topic::resend)) return;
-  if (request.topic != static_cast<std::uint8_t>(sample_topic(member_.role()))) return;
-  const StepIndex last = std::min(request.last_step, request.header.step + static_cast<StepIndex>(sent_.depth()));
-  for (StepIndex step = request.header.step; step <= last; ++step) {
-    const std::span<const std::byte> sent = sent_.find(step);
-    if (sent.empty()) continue;
-    member_.send(sample_topic(member_.role()), sent);
-    ++health().resends_answered;
-  }
+  health().resends_answered += samples_.answer(member_, request);
 }
 
 // ---- doing ----------------------------------------------------------------------------------------------------
@@ -245,7 +231,8 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
       return advance_init(now_ns);
     case Stage::stepping: {
       bool any = false;
-      while (stage_ == Stage::stepping && member_.send_failure().is_ok() && advance_step(now_ns)) any = true;
+      const auto go_on = [&] { return is_follower() ? follow(now_ns) : advance_step(now_ns); };
+      while (stage_ == Stage::stepping && member_.send_failure().is_ok() && go_on()) any = true;
       if (!any) ask_for_missing(now_ns);
       return any;
     }
@@ -271,13 +258,8 @@ bool PhysicsNode::advance_join(std::int64_t now_ns) {
     return true;
   }
   if (member_.probe_is_due(now_ns)) {
-    // step -1 on every topic of this role that somebody has not heard yet
-    mechanism_out_.header = actuators_out_.header = block_.header = member_.header(Phase::join, kJoinStep);
-    if (member_.role() == Role::mechanics) {
-      member_.publish(Topic::mechanism, mechanism_out_);
-    } else {
-      member_.publish(Topic::actuators, actuators_out_);
-    }
+    samples_.probe(member_);
+    block_.header = member_.header(Phase::join, kJoinStep);
     if (!member_.is_heard_on(Topic::variables)) member_.publish(Topic::variables, block_);
   }
   return false;
@@ -288,22 +270,13 @@ bool PhysicsNode::advance_init(std::int64_t now_ns) {
   bool any = false;
   if (!first_sample_sent_) {
     first_sample_sent_ = true;
-    if (subsystem.first_sample(own_) && has_partner()) publish_sample(Phase::init, kJoinStep, StepReport{});
+    if (subsystem.first_sample(own_) && samples_.has_partner()) publish_sample(Phase::init, kJoinStep, StepReport{});
     any = true;
   }
-  // hydraulics starts from the mechanics' INIT, mechanics from the hydraulics' sample 0
   coupling::PartnerSamples partners;
-  if (has_partner()) {
-    if (member_.role() == Role::mechanics) {
-      const wire::ActuatorMessage* sample = actuators_.find(0);
-      partners.actuators = sample != nullptr ? &sample->sample : nullptr;
-    } else if (has_mechanism_init_) {
-      partners.mechanism = &mechanism_init_.sample;
-    }
-    if (partners.actuators == nullptr && partners.mechanism == nullptr) {
-      ask_for_missing(now_ns);
-      return any;
-    }
+  if (!samples_.find_start(partners)) {
+    ask_for_missing(now_ns);
+    return any;
   }
   const Status started = subsystem.start(partners, own_);
   if (!started.is_ok()) {
@@ -317,20 +290,20 @@ bool PhysicsNode::advance_init(std::int64_t now_ns) {
   member_.set_state(NodeState::ready);
   member_.mark_status_changed();
   stage_ = Stage::stepping;
-  resend_.restart(now_ns);
+  if (is_follower()) {
+    expect_next(now_ns);
+  } else {
+    resend_.restart(now_ns);
+  }
   return true;
 }
 
-coupling::PartnerSamples PhysicsNode::partners_at(StepIndex step) const noexcept {
-  coupling::PartnerSamples partners;
-  if (member_.role() == Role::mechanics) {
-    const wire::ActuatorMessage* message = actuators_.find(step);
-    partners.actuators = message != nullptr ? &message->sample : nullptr;
-  } else {
-    const wire::MechanismMessage* message = mechanisms_.find(step);
-    partners.mechanism = message != nullptr ? &message->sample : nullptr;
-  }
-  return partners;
+// In `real` pace the next tick is due a step later. Nobody waits for a follower: it never asks before its sample would be
+// there in that pace.
+void PhysicsNode::expect_next(std::int64_t now_ns) noexcept {
+  const std::int64_t stride_ns = std::min(samples_.stride() * member_.session().step_ns, kResendAtMost.ns);
+  const bool has_time = is_follower() || member_.session().pace == wire::Pace::real;
+  resend_.restart(has_time ? now_ns + stride_ns : now_ns);
 }
 
 void PhysicsNode::apply_commands(const wire::Tick& tick) {
@@ -342,21 +315,40 @@ void PhysicsNode::apply_commands(const wire::Tick& tick) {
 bool PhysicsNode::advance_step(std::int64_t now_ns) {
   const wire::Tick* tick = ticks_.find(n_);
   if (tick == nullptr) return false;
-  if ((tick->flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) {
+  if (is_end(*tick)) {
     // after a fault io's status says why, see watch()
-    is_ended_by_fault_ = (tick->flags & static_cast<std::uint32_t>(wire::TickFlag::fault)) != 0;
+    is_ended_by_fault_ = is_fault(*tick);
     if (!is_ended_by_fault_) leave(ExitCode::ok, "", now_ns);
     return !is_ended_by_fault_;
   }
-  const coupling::PartnerSamples partners = partners_at(n_);
-  if (has_partner() && partners.mechanism == nullptr && partners.actuators == nullptr) return false;
-  if (member_.state() != NodeState::running) member_.set_state(NodeState::running);
-
+  coupling::PartnerSamples partners;
+  if (!samples_.find(n_, partners)) return false;
   apply_commands(*tick);
+  compute(partners, tick->controls.span(), now_ns);
+  return true;
+}
+
+// A follower's next sample is that of the step whose sample of the mechanics it needs.
+bool PhysicsNode::follow(std::int64_t now_ns) {
+  const StepIndex next = n_ + samples_.stride();
+  if (last_step_ != kNoStep && next > last_step_) {
+    // after a fault io's status says why, see watch()
+    if (!is_ended_by_fault_) leave(ExitCode::ok, "", now_ns);
+    return !is_ended_by_fault_;
+  }
+  coupling::PartnerSamples partners;
+  if (!samples_.find(next, partners)) return false;
+  compute(partners, {}, now_ns);
+  return true;
+}
+
+void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<const double> controls,
+                          std::int64_t now_ns) {
+  if (member_.state() != NodeState::running) member_.set_state(NodeState::running);
   const std::int64_t begin_ns = monotonic_ns();
-  const StepReport report = built_.subsystem->step(n_, partners, tick->controls.span(), own_);
+  const StepReport report = built_.subsystem->step(n_, partners, controls, own_);
   const std::int64_t spent_ns = monotonic_ns() - begin_ns;
-  ++n_;
+  n_ += samples_.stride();
   publish_sample(Phase::running, n_, report);
   if (n_ % built_.variables_every == 0) publish_variables(n_);
 
@@ -365,8 +357,7 @@ bool PhysicsNode::advance_step(std::int64_t now_ns) {
   h.step_time_sum_ns += spent_ns;
   if (spent_ns > h.step_time_max_ns) h.step_time_max_ns = spent_ns;
   member_.set_step(n_);
-  // in `real` pace the next tick is due a step later
-  resend_.restart(member_.session().pace == wire::Pace::real ? now_ns + member_.session().step_ns : now_ns);
+  expect_next(now_ns);
   if (report.has_failed()) {
     leave(ExitCode::diverged,
           "diverged in step " + std::to_string(n_ - 1) + ": " +
@@ -375,7 +366,6 @@ bool PhysicsNode::advance_step(std::int64_t now_ns) {
               "happened just before in a plot",
           now_ns);
   }
-  return true;
 }
 
 bool PhysicsNode::advance_leaving(std::int64_t now_ns) {
@@ -390,12 +380,10 @@ void PhysicsNode::restart(std::uint32_t epoch) {
   member_.set_epoch(epoch);
   built_.subsystem->reset();
   ticks_.clear();
-  mechanisms_.clear();
-  actuators_.clear();
-  sent_.clear();
+  samples_.clear();
   n_ = 0;
+  last_step_ = kNoStep;
   first_sample_sent_ = false;
-  has_mechanism_init_ = false;
   member_.set_step(kJoinStep);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
@@ -418,26 +406,12 @@ void PhysicsNode::leave(ExitCode code, const std::string& reason, std::int64_t n
 void PhysicsNode::publish_sample(Phase phase, StepIndex step, const StepReport& report) {
   wire::SampleState state;
   state.level = built_.subsystem->level();
-  state.used_step = step - 1;
+  state.used_step = is_follower() ? step : step - 1;
   state.state_hash = built_.subsystem->state_hash();
   state.flags = report.flags;
   state.offender = report.offender;
   state.substeps = report.substeps;
-  bool is_encoded = false;
-  if (member_.role() == Role::mechanics) {
-    mechanism_out_.header = member_.header(phase, step);
-    mechanism_out_.state = state;
-    mechanism_out_.sample = own_.mechanism;
-    is_encoded = transport::encode(mechanism_out_, buffer_);
-  } else {
-    actuators_out_.header = member_.header(phase, step);
-    actuators_out_.state = state;
-    actuators_out_.sample = own_.actuators;
-    is_encoded = transport::encode(actuators_out_, buffer_);
-  }
-  SLEW_CHECK(is_encoded);
-  sent_.keep(step, buffer_);
-  member_.send(sample_topic(member_.role()), buffer_);
+  samples_.publish(member_, phase, step, state, own_);
 }
 
 void PhysicsNode::publish_variables(StepIndex step) {
@@ -475,11 +449,11 @@ void PhysicsNode::publish_directory() {
 
 // ---- waiting --------------------------------------------------------------------------------------------------
 
-// io has not sent the next tick yet: the session does not tick, or it is paused
-bool PhysicsNode::is_tick_withheld() const noexcept {
+// io has not sent this tick yet: the session does not tick, or it is paused
+bool PhysicsNode::is_withheld(StepIndex tick) const noexcept {
   const wire::NodeStatus& io = member_.peer(Role::io).status;
   if (io.header.epoch != member_.epoch()) return false;
-  const bool is_paused = io.state == NodeState::holding && io.reason.empty() && io.header.step <= n_;
+  const bool is_paused = io.state == NodeState::holding && io.reason.empty() && io.header.step <= tick;
   return io.state < NodeState::running || is_paused;
 }
 
@@ -495,16 +469,13 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
     ++health().resends_asked;
   };
   resend_.asked(now_ns);
-  if (stage_ == Stage::initialising) {
-    if (member_.role() == Role::hydraulics) ask(Role::mechanics, Topic::mechanism, kJoinStep);
-    if (member_.role() == Role::mechanics) ask(Role::hydraulics, Topic::actuators, 0);
+  if (stage_ == Stage::initialising) return samples_.for_each_missing_at_start(ask);
+  if (is_follower()) {
+    if (!is_withheld(n_ + samples_.stride() - 1)) samples_.for_each_missing(n_ + samples_.stride(), ask);
     return;
   }
-  if (ticks_.find(n_) == nullptr && !is_tick_withheld()) ask(Role::io, Topic::tick, n_);
-  const coupling::PartnerSamples partners = partners_at(n_);
-  if (has_partner() && partners.mechanism == nullptr && partners.actuators == nullptr) {
-    ask(partner(), sample_topic(partner()), n_);
-  }
+  if (ticks_.find(n_) == nullptr && !is_withheld(n_)) ask(Role::io, Topic::tick, n_);
+  samples_.for_each_missing(n_, ask);
 }
 
 void PhysicsNode::watch(std::int64_t now_ns) {

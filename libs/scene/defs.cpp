@@ -25,6 +25,7 @@ constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_
 
 constexpr std::string_view kPaces[] = {"real", "free"};
 constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
+constexpr std::string_view kElasticExchanges[] = {"once", "every_step"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
 constexpr std::string_view kInterpolations[] = {"linear", "step"};
 
@@ -42,6 +43,13 @@ constexpr Field kSessionFields[] = {
         "coupling",
         {.choices = kLevels,
          .doc = "how much of the partner's behaviour a node uses inside a step; this version has hold, two"}),
+    field<&SessionDef::flexible>(
+        "flexible",
+        {.choices = kElasticExchanges,
+         .doc =
+             "when the flex node states the elastic forces of the modes. once: at the start, they are linear and "
+             "nobody "
+             "waits for it any more; every_step: anew about each step's modal coordinates, and the mechanics waits"}),
     field<&SessionDef::window>(
         "window", {.range = kWindowRange,
                    .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace"}),

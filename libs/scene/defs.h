@@ -11,6 +11,7 @@
 #include "core/problem.h"
 #include "core/time.h"
 #include "coupling/level.h"
+#include "coupling/samples.h"
 
 namespace slew::scene {
 
@@ -22,6 +23,7 @@ struct SessionDef {
   double duration = 20;                             // s; 0: until it is stopped
   Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
   coupling::Level coupling = coupling::Level::two;  // linear and tlm are refused in this version
+  coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
   std::int64_t window = 0;                          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free
   double controller_timeout = 0.5;                  // s of silence after which a controller's channel goes to neutral
 

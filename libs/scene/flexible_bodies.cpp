@@ -12,10 +12,12 @@
 #include <optional>
 #include <utility>
 
+#include "coupling/samples.h"
 #include "flex/finite_segments.h"
 #include "flex/flexible_files.h"
 #include "flex/input_error.h"
 #include "multibody/flexible/deflection.h"
+#include "multibody/flexible/elastic_law.h"
 #include "scene/assets.h"
 #include "scene/modal_body.h"
 #include "scene/segment_chain.h"
@@ -181,9 +183,15 @@ class FlexibleReader {
       BodyDef of_files;
       multibody::take_mass(*flexible.modes, of_files);
       compare_mass(body, of_files, multibody::length_of(*flexible.modes));
+      if (chosen.body.modes() > 0) add_model(flexible, chosen);
     } catch (const flex::InputError& error) {
       complain(body, "flex_modes", error.what(), fmt::format("ordinals from 1 to {}", all.body.modes()));
     }
+  }
+
+  void add_model(const FlexibleBodyDef& flexible, const flex::Reduction& chosen) {
+    scene_.flexible_bodies.push_back({flexible.body, std::make_shared<const flex::Reduction>(chosen), chosen.body.K,
+                                      multibody::modal_damping(*flexible.modes, flexible.relative_damping)});
   }
 
   // what the body had while it was rigid
@@ -212,6 +220,24 @@ class FlexibleReader {
   std::map<std::pair<std::string, std::string>, std::unique_ptr<flex::Reduction>> sets_;
 };
 
+// what a sample of the modes holds
+void check_caps(const Scene& scene, Problems& problems) {
+  std::size_t modes = 0, pairs = 0;
+  for (const FlexibleBody& model : scene.flexible_bodies) {
+    modes += model.reduction->body.modes();
+    pairs += model.stiffness.size();
+  }
+  const auto check = [&](std::size_t count, std::size_t most, const char* what) {
+    if (count <= most) return;
+    problems.push_back({scene.flexible_bodies.back().body + ".flex_modes",
+                        fmt::format("the scene's flexible bodies have {} {}", count, what),
+                        fmt::format("at most {}", most), ""});
+  };
+  check(scene.flexible_bodies.size(), coupling::kMaxFlexibleBodies, "bodies with modes");
+  check(modes, coupling::kMaxModes, "modes");
+  check(pairs, coupling::kMaxModePairs, "pairs of modes, the squares of their numbers of modes together");
+}
+
 }  // namespace
 
 void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Problems& problems, Problems& warnings) {
@@ -220,6 +246,18 @@ void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Proble
     if (body.type == multibody::BodyType::flexible) reader.read(body);
     if (body.type == multibody::BodyType::segmented) reader.read_segmented(body);
   }
+  check_caps(scene, problems);
+}
+
+bool Scene::has_modes() const noexcept {
+  return std::any_of(mechanics.bodies.begin(), mechanics.bodies.end(), [](const BodyDef& body) {
+    return body.type == multibody::BodyType::flexible && body.flex_modes != "none";
+  });
+}
+
+std::uint32_t Scene::flexible_every() const noexcept {
+  const bool is_stated_once = session.flexible == coupling::ElasticExchange::once;
+  return is_stated_once ? static_cast<std::uint32_t>(recording.every) : 1;
 }
 
 }  // namespace slew::scene

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,10 @@
 #include "multibody/defs.h"
 #include "scene/defs.h"
 #include "scene/diagnostic.h"
+
+namespace slew::flex {
+struct Reduction;
+}
 
 namespace slew::scene {
 
@@ -48,6 +53,13 @@ struct MeshInertia {
   double density = 0;  // kg/m3
 };
 
+// A body that bends, as the flex node knows it: what it was made of, and the elastic forces of its modes.
+struct FlexibleBody {
+  std::string body;
+  std::shared_ptr<const flex::Reduction> reduction;  // with the modes that the body takes
+  std::vector<double> stiffness, damping;            // by pair of modes
+};
+
 struct Scene {
   std::string name;
   std::string description;
@@ -60,6 +72,7 @@ struct Scene {
   std::vector<PlotDef> plots;
   std::vector<PortDef> ports;  // one per actuator, in component order
   std::vector<std::string> warnings;
+  std::vector<FlexibleBody> flexible_bodies;  // with modes, in the bodies' order; none in a scene without files
   std::vector<Asset> assets;
   std::vector<MeshInertia> mesh_inertias;  // of the files that were read; none in a scene from its expanded text
 
@@ -67,6 +80,10 @@ struct Scene {
   std::string expanded_text;
 
   [[nodiscard]] bool has_mechanics() const noexcept { return !mechanics.bodies.empty(); }
+  // Some body keeps modes, so that a flex node takes part.
+  [[nodiscard]] bool has_modes() const noexcept;
+  // Steps between two samples for and of flexible bodies.
+  [[nodiscard]] std::uint32_t flexible_every() const noexcept;
   // By modes or by segments: then its flexible files are needed.
   [[nodiscard]] bool has_flexible_bodies() const noexcept {
     return !mechanics.flexible_bodies.empty() || !mechanics.segmented_bodies.empty();

@@ -123,12 +123,6 @@ TEST_F(Program, UsageErrorsSayWhatWhereAndWhatToDoAndExitWith2) {
   }
 }
 
-TEST_F(Program, FlexNodeRefusesByName) {
-  const CommandResult result = slewring({"node", "flex", "--session", "s"});
-  EXPECT_EQ(result.code, 2);
-  EXPECT_TRUE(contains(result.err, "this version has no flex node: the mechanics holds flexible bodies itself"));
-}
-
 TEST_F(Program, CheckTellsEveryProblemWithItsPlace) {
   std::ofstream(work_.path() / "bad.yaml") << "bodies:\n  Rod: {mas: 2 kg, mass: -1 kg}\n";
   const CommandResult result = slewring({"check", "bad.yaml"});

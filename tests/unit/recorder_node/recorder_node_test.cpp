@@ -175,6 +175,29 @@ TEST_F(Recorder, WaitsForTheLastVariableBlock) {
   EXPECT_EQ(summary("variables.lost"), "0");
 }
 
+// samples of and for flexible bodies come every k-th step, as blocks do
+TEST_F(Recorder, CountsSamplesOfFlexibleBodiesThatNeverCame) {
+  played.session.required_roles |= bit(Role::flex);
+  played.say_status(Role::flex, NodeState::joining);
+  join();
+  for (const StepIndex step : {0, 10, 20, 50}) {
+    wire::FlexibleMessage flexible;
+    flexible.header = played.header(Role::mechanics, step);
+    played.say(Topic::flexible, flexible);
+    wire::ElasticMessage elastic;
+    elastic.header = played.header(Role::flex, step);
+    if (step != 20) played.say(Topic::elastic, elastic);
+  }
+  say_steps(0, 59);
+  played.say_status(Role::flex, NodeState::ended, 50);
+  say_end(59);
+  poll(2000 * kMs);
+  EXPECT_EQ(summary("flexible.recorded"), "4");
+  EXPECT_EQ(summary("flexible.lost"), "2");
+  EXPECT_EQ(summary("elastic.recorded"), "3");
+  EXPECT_EQ(summary("elastic.lost"), "3");
+}
+
 TEST_F(Recorder, RecordsWhatComesAfterTheResetThatEndedItsEpoch) {
   join();
   for (StepIndex step = 0; step <= 9; ++step) played.say_tick(step);

@@ -1,0 +1,168 @@
+#include "flex_node/flex_subsystem.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/state_hash.h"
+
+namespace slew::flexible {
+
+using coupling::ElasticExchange;
+using coupling::ElasticSample;
+using coupling::ModeArray;
+
+FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
+    : level_(scene.session.coupling), exchange_(scene.session.flexible) {
+  std::size_t points = 0;
+  for (const scene::FlexibleBody& model : scene.flexible_bodies) {
+    const std::size_t modes = model.reduction->body.modes();
+    bodies_.push_back({model.body, model.reduction, constant_.Q.size(), modes, constant_.K.size()});
+    for (std::size_t k = 0; k < modes; ++k) {
+      for (ModeArray* zero : {&constant_.Q, &constant_.q_ref, &constant_.u_ref, &q_, &u_}) zero->push_back(0);
+    }
+    for (const double k : model.stiffness) constant_.K.push_back(k);
+    for (const double d : model.damping) constant_.D.push_back(d);
+    constant_.strain_energy.push_back(0);
+    points = std::max(points, model.reduction->recovery.points.size());
+    list_variables(bodies_.back());
+  }
+  constant_.is_constant = exchange_ == ElasticExchange::once;
+  published_ = constant_;
+  normal_.resize(points);
+  shear_.resize(points);
+}
+
+void FlexSubsystem::list_variables(const Body& body) {
+  const auto add = [&](const std::string& quantity, Dimension dimension, bool is_detail = false) {
+    variables_.push_back({body.name + "." + quantity, dimension, is_detail});
+  };
+  add("strain_energy", Dimension::energy);
+  const std::vector<flex::StressPoint>& points = body.model->recovery.points;
+  if (!points.empty()) {
+    add("largest_stress", Dimension::pressure);
+    add("largest_stress_element", Dimension::none);
+  }
+  for (const flex::ReducedNode& node : body.model->body.nodes) {
+    for (const char axis : {'x', 'y', 'z'}) add(fmt::format("Node{}.deflection.{}", node.id, axis), Dimension::length);
+  }
+  int number = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool is_same_end = i > 0 && points[i - 1].element == points[i].element && points[i - 1].node == points[i].node;
+    number = is_same_end ? number + 1 : 1;
+    const std::string point = fmt::format("Element{}.Node{}.Point{}", points[i].element, points[i].node, number);
+    add(point + ".normal_stress", Dimension::pressure, true);
+    if (points[i].has_shear) add(point + ".shear_stress", Dimension::pressure, true);
+  }
+}
+
+bool FlexSubsystem::first_sample(coupling::OwnSample& sample) noexcept {
+  sample.elastic = constant_;
+  return true;
+}
+
+Status FlexSubsystem::start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) {
+  const std::size_t modes = q_.size();
+  if (partners.flexible == nullptr || partners.flexible->q.size() != modes || partners.flexible->u.size() != modes) {
+    return Status::error(ExitCode::failed,
+                         fmt::format("mechanics states {} modal coordinates, the flexible bodies have {}: the nodes run "
+                                     "different scenes; start them with the same one",
+                                     partners.flexible != nullptr ? partners.flexible->q.size() : 0, modes));
+  }
+  see(*partners.flexible, sample.elastic);
+  return Status::ok();
+}
+
+// Elastic forces about the mechanics' coordinates, (1), and the strain energy there.
+void FlexSubsystem::see(const coupling::FlexibleSample& mechanics, ElasticSample& sample) noexcept {
+  q_ = mechanics.q;
+  u_ = mechanics.u;
+  published_ = constant_;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    Body& body = bodies_[b];
+    body.strain_energy = flex::strain_energy(body.model->body, modes_of(body));
+    published_.strain_energy[b] = body.strain_energy;
+    if (constant_.is_constant) continue;
+    for (std::size_t k = 0; k < body.modes; ++k) {
+      double force = 0;
+      for (std::size_t l = 0; l < body.modes; ++l) {
+        const std::size_t pair = body.first_pair + k * body.modes + l, mode = body.first_mode + l;
+        force -= constant_.K[pair] * q_[mode] + constant_.D[pair] * u_[mode];
+      }
+      published_.Q[body.first_mode + k] = force;
+    }
+  }
+  if (!constant_.is_constant) {
+    published_.q_ref = q_;
+    published_.u_ref = u_;
+  }
+  sample = published_;
+}
+
+StepReport FlexSubsystem::step(StepIndex, const coupling::PartnerSamples& partners, std::span<const double>,
+                               coupling::OwnSample& sample) noexcept {
+  see(*partners.flexible, sample.elastic);
+  return {};
+}
+
+// damping, modes and files need a restart
+bool FlexSubsystem::change_parameter(StepIndex, const coupling::ParameterChange&) noexcept {
+  return false;
+}
+
+void FlexSubsystem::reset() {
+  for (ModeArray* values : {&q_, &u_}) std::fill(values->begin(), values->end(), 0.0);
+  for (Body& body : bodies_) body.strain_energy = 0;
+  published_ = constant_;
+}
+
+// what was published is all there is
+std::uint64_t FlexSubsystem::state_hash() const noexcept {
+  StateHash hash;
+  for (const auto values : {published_.Q.span(), published_.q_ref.span(), published_.u_ref.span(), published_.K.span(),
+                            published_.D.span(), published_.strain_energy.span(), q_.span(), u_.span()}) {
+    for (const double value : values) hash.add(value);
+  }
+  return hash.digest();
+}
+
+void FlexSubsystem::read_variables(std::span<double> values) const noexcept {
+  std::size_t at = 0;
+  for (const Body& body : bodies_) {
+    const std::span<const double> q = modes_of(body);
+    const flex::Recovery& recovery = body.model->recovery;
+    const std::size_t points = recovery.points.size();
+    const std::span<double> normal = std::span(normal_).first(points), shear = std::span(shear_).first(points);
+    flex::stresses(recovery, q, normal, shear);
+    values[at++] = body.strain_energy;
+    if (points > 0) {
+      // von Mises
+      std::size_t worst = 0;
+      double largest = 0;
+      for (std::size_t i = 0; i < points; ++i) {
+        const double square = normal[i] * normal[i] + 3 * shear[i] * shear[i];
+        if (square > largest) largest = square, worst = i;
+      }
+      values[at++] = std::sqrt(largest);
+      values[at++] = recovery.points[worst].element;
+    }
+    for (const flex::ReducedNode& node : body.model->body.nodes) {
+      for (const double d : flex::deflection(node, q).array()) values[at++] = d;
+    }
+    for (std::size_t i = 0; i < points; ++i) {
+      values[at++] = normal[i];
+      if (recovery.points[i].has_shear) values[at++] = shear[i];
+    }
+  }
+}
+
+std::string_view FlexSubsystem::offender_name(std::int32_t) const noexcept {
+  return "a flexible body";
+}
+
+std::unique_ptr<coupling::Subsystem> make_flex_subsystem(const scene::Scene& scene) {
+  return std::make_unique<FlexSubsystem>(scene);
+}
+
+}  // namespace slew::flexible

@@ -1,0 +1,65 @@
+// The flexible bodies of a scene as a Subsystem: their elastic forces, and what the modal coordinates of the mechanics
+// mean for deflection, stress and strain energy (coupling study, section 5, scheme A1).
+//
+// The mechanics owns the modal coordinates and integrates them with the coupled mass matrix; this side states
+//   Q - K (q - q_ref) - D (u - u_ref)                                                                  (1)
+// once, about q_ref = 0, or at every step about the mechanics' coordinates of that step (scene: session.flexible). It has
+// no state: a step only looks at the mechanics' sample of the step's end.
+// Not covered: stress by modes that the body does not take; loads and accelerations are not used for it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "coupling/subsystem.h"
+#include "flex/reduction.h"
+#include "scene/scene.h"
+
+namespace slew::flexible {
+
+class FlexSubsystem final : public coupling::Subsystem {
+ public:
+  // Pre-condition: a validated scene whose flexible files were read.
+  explicit FlexSubsystem(const scene::Scene& scene);
+
+  [[nodiscard]] bool first_sample(coupling::OwnSample& sample) noexcept override;
+  Status start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) override;
+  StepReport step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double> controls,
+                  coupling::OwnSample& sample) noexcept override;
+  bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
+  void reset() override;
+  [[nodiscard]] std::uint64_t state_hash() const noexcept override;
+  [[nodiscard]] coupling::Level level() const noexcept override { return level_; }
+  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
+  void read_variables(std::span<double> values) const noexcept override;
+  [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
+
+ private:
+  struct Body {
+    std::string name;
+    std::shared_ptr<const flex::Reduction> model;
+    std::size_t first_mode = 0, modes = 0;
+    std::size_t first_pair = 0;
+    double strain_energy = 0;  // J
+  };
+
+  [[nodiscard]] std::span<const double> modes_of(const Body& body) const noexcept {
+    return q_.span().subspan(body.first_mode, body.modes);
+  }
+  void see(const coupling::FlexibleSample& mechanics, coupling::ElasticSample& sample) noexcept;
+  void list_variables(const Body& body);
+
+  coupling::Level level_;
+  coupling::ElasticExchange exchange_;
+  std::vector<Body> bodies_;  // in the order of the samples
+  coupling::ElasticSample constant_;
+  coupling::ElasticSample published_;
+  coupling::ModeArray q_, u_;
+  std::vector<ElementVariable> variables_;
+  mutable std::vector<double> normal_, shear_;  // Pa, by point: scratch of read_variables()
+};
+
+[[nodiscard]] std::unique_ptr<coupling::Subsystem> make_flex_subsystem(const scene::Scene& scene);
+
+}  // namespace slew::flexible

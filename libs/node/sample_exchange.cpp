@@ -1,0 +1,163 @@
+#include "node/sample_exchange.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+
+namespace slew::node {
+namespace {
+
+using wire::Phase;
+using wire::Role;
+using wire::Topic;
+
+// what the partners need comes before what serves the eye
+constexpr Topic kMechanicsSamples[] = {Topic::mechanism, Topic::flexible};
+constexpr Topic kHydraulicsSamples[] = {Topic::actuators};
+constexpr Topic kFlexSamples[] = {Topic::elastic};
+
+template <typename Message, typename Sample>
+bool take(const Inbox<Message>& inbox, const Message* found, const Sample*& sample) noexcept {
+  if (!inbox.is_needed) return true;
+  sample = found != nullptr ? &found->sample : nullptr;
+  return found != nullptr;
+}
+
+template <typename Message, typename Sample>
+bool take_step(const Inbox<Message>& inbox, StepIndex step, const Sample*& sample) noexcept {
+  return !inbox.is_needed_each_step || take(inbox, inbox.find(step), sample);
+}
+
+}  // namespace
+
+SampleExchange::SampleExchange(Role own) : own_(own) {
+  SLEW_CHECK(!topics_written(own).empty());
+  for (const Topic topic : topics_written(own)) outboxes_.push_back({topic, SentCache()});
+}
+
+std::span<const Topic> SampleExchange::topics_written(Role role) noexcept {
+  switch (role) {
+    case Role::mechanics:
+      return kMechanicsSamples;
+    case Role::hydraulics:
+      return kHydraulicsSamples;
+    case Role::flex:
+      return kFlexSamples;
+    default:
+      return {};
+  }
+}
+
+bool SampleExchange::is_sample(Topic topic) noexcept {
+  return topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::flexible || topic == Topic::elastic;
+}
+
+void SampleExchange::configure(const SessionMember& member, const FlexibleTraffic& flexible) {
+  const bool is_stated_once = flexible.exchange == coupling::ElasticExchange::once;
+  has_flexible_ = member.requires_role(Role::flex);
+  flexible_every_ = is_stated_once ? std::max<StepIndex>(1, flexible.every) : 1;
+  if (own_ == Role::mechanics && member.requires_role(Role::hydraulics)) actuators_.need(1);
+  if (own_ == Role::mechanics && has_flexible_) elastic_.need(1);
+  elastic_.is_needed_each_step = !is_stated_once;
+  if (own_ == Role::hydraulics && member.requires_role(Role::mechanics)) mechanism_.need(1);
+  if (own_ == Role::flex) flexible_.need(flexible_every_);
+}
+
+void SampleExchange::clear() noexcept {
+  actuators_.clear();
+  elastic_.clear();
+  mechanism_.clear();
+  flexible_.clear();
+  for (Outbox& outbox : outboxes_) outbox.sent.clear();
+}
+
+bool SampleExchange::has_partner() const noexcept {
+  return actuators_.is_needed || elastic_.is_needed || mechanism_.is_needed || flexible_.is_needed;
+}
+
+// ---- receiving ------------------------------------------------------------------------------------------------
+
+void SampleExchange::receive(std::span<const std::byte> bytes, const wire::Header& header, Topic topic, StepIndex n,
+                             Refusals& refusals) {
+  const auto into = [&](auto& inbox) {
+    if (inbox.topic != topic || !inbox.is_needed) return;
+    if (header.phase == Phase::init) inbox.keep_init(bytes, refusals);
+    if (header.phase == Phase::running && inbox.is_needed_each_step) inbox.keep(bytes, header.step, n, refusals);
+  };
+  into(actuators_);
+  into(elastic_);
+  into(mechanism_);
+  into(flexible_);
+}
+
+bool SampleExchange::find_start(coupling::PartnerSamples& partners) const noexcept {
+  return take(actuators_, actuators_.find(0), partners.actuators) && take(elastic_, elastic_.init(), partners.elastic) &&
+         take(mechanism_, mechanism_.init(), partners.mechanism) &&
+         take(flexible_, flexible_.find(0), partners.flexible);
+}
+
+bool SampleExchange::find(StepIndex step, coupling::PartnerSamples& partners) const noexcept {
+  return take_step(actuators_, step, partners.actuators) && take_step(elastic_, step, partners.elastic) &&
+         take_step(mechanism_, step, partners.mechanism) && take_step(flexible_, step, partners.flexible);
+}
+
+// ---- sending --------------------------------------------------------------------------------------------------
+
+void SampleExchange::probe(SessionMember& member) {
+  const wire::Header header = member.header(Phase::join, kJoinStep);
+  mechanism_out_.header = actuators_out_.header = flexible_out_.header = elastic_out_.header = header;
+  for (const Outbox& outbox : outboxes_) {
+    if (member.is_heard_on(outbox.topic)) continue;
+    if (outbox.topic == Topic::mechanism) member.publish(outbox.topic, mechanism_out_);
+    if (outbox.topic == Topic::actuators) member.publish(outbox.topic, actuators_out_);
+    if (outbox.topic == Topic::flexible) member.publish(outbox.topic, flexible_out_);
+    if (outbox.topic == Topic::elastic) member.publish(outbox.topic, elastic_out_);
+  }
+}
+
+template <typename Message>
+void SampleExchange::send(SessionMember& member, Outbox& outbox, StepIndex step, const Message& message) {
+  const bool is_encoded = transport::encode(message, buffer_);
+  SLEW_CHECK(is_encoded);
+  outbox.sent.keep(step, buffer_);
+  member.send(outbox.topic, buffer_);
+}
+
+void SampleExchange::publish(SessionMember& member, Phase phase, StepIndex step, const wire::SampleState& state,
+                             const coupling::OwnSample& own) {
+  const auto fill = [&](auto& message, const auto& sample) -> auto& {
+    message.header = member.header(phase, step);
+    message.sample = sample;
+    return message;
+  };
+  if (own_ == Role::mechanics) {
+    mechanism_out_.state = state;
+    send(member, outboxes_[0], step, fill(mechanism_out_, own.mechanism));
+    const bool is_due = has_flexible_ && phase == Phase::running && step % flexible_every_ == 0;
+    if (is_due) send(member, outboxes_[1], step, fill(flexible_out_, own.flexible));
+  } else if (own_ == Role::hydraulics) {
+    actuators_out_.state = state;
+    send(member, outboxes_[0], step, fill(actuators_out_, own.actuators));
+  } else {
+    elastic_out_.state = state;
+    send(member, outboxes_[0], step, fill(elastic_out_, own.elastic));
+  }
+}
+
+std::size_t SampleExchange::answer(SessionMember& member, const wire::ResendRequest& request) {
+  std::size_t answers = 0;
+  for (const Outbox& outbox : outboxes_) {
+    if (request.topic != static_cast<std::uint8_t>(outbox.topic)) continue;
+    const StepIndex last =
+        std::min(request.last_step, request.header.step + static_cast<StepIndex>(outbox.sent.depth()));
+    for (StepIndex step = request.header.step; step <= last; ++step) {
+      const std::span<const std::byte> sent = outbox.sent.find(step);
+      if (sent.empty()) continue;
+      member.send(outbox.topic, sent);
+      ++answers;
+    }
+  }
+  return answers;
+}
+
+}  // namespace slew::node

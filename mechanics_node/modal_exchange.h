@@ -1,0 +1,49 @@
+// The mechanics' side of flexible bodies in a session: where they are, for the flex node, and the elastic forces that it
+// states for their modes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/state_hash.h"
+#include "core/status.h"
+#include "coupling/samples.h"
+#include "multibody/dynamics.h"
+#include "multibody/flexible/elastic_law.h"
+#include "scene/scene.h"
+
+namespace slew::mechanics {
+
+class ModalExchange {
+ public:
+  // Pre-condition: the model is that of the scene's mechanics.
+  ModalExchange(const scene::Scene& scene, const multibody::Model& model);
+
+  [[nodiscard]] bool is_empty() const noexcept { return bodies_.empty(); }
+
+  // Where the bodies are.
+  void read(const multibody::Model& model, const multibody::State& state, const multibody::Workspace& ws,
+            coupling::FlexibleSample& sample) const noexcept;
+
+  // Takes the elastic forces of a session's start. Error: they cannot be those of the model's bodies, or its integrator
+  // cannot follow them; the model is as it was then.
+  Status begin(const multibody::MechanicsDef& mechanics, const coupling::ElasticSample& sample,
+               multibody::Model& model);
+  // Those of a step. Pre-condition: begin() took a sample. Sizes that are others now leave the model as it is: false.
+  [[nodiscard]] bool apply(const coupling::ElasticSample& sample, multibody::Model& model) const noexcept;
+
+  void add_to(const multibody::Model& model, StateHash& hash) const noexcept;
+
+ private:
+  struct Body {
+    std::size_t part = 0;  // of the model
+    std::size_t first_mode = 0, modes = 0, first_pair = 0;
+  };
+  [[nodiscard]] multibody::ElasticLaw law_of(const coupling::ElasticSample& sample, const Body& body) const noexcept;
+  [[nodiscard]] bool has_sizes(const coupling::ElasticSample& sample) const noexcept;
+
+  std::vector<Body> bodies_;  // in the order of the samples
+  std::size_t modes_ = 0, pairs_ = 0;
+};
+
+}  // namespace slew::mechanics

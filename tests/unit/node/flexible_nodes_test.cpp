@@ -1,0 +1,258 @@
+// Mechanics and flex node in a session with flexible bodies: who waits for whom, and when.
+#include <gtest/gtest.h>
+
+#include "node/physics_node.h"
+#include "tests/support/played_session.h"
+
+namespace slew::node {
+namespace {
+
+using coupling::ElasticExchange;
+using testing::kMs;
+using testing::PlayedSession;
+using wire::NodeState;
+using wire::Phase;
+using wire::Role;
+using wire::TickFlag;
+using wire::Topic;
+
+constexpr std::uint32_t kEvery = 10;
+
+class WithFlexibleBodies : public ::testing::Test {
+ protected:
+  [[nodiscard]] static SubsystemFactory built_for(ElasticExchange exchange) {
+    return [exchange](const wire::SessionDescription&, BuiltSubsystem& built) {
+      built.subsystem = std::make_unique<testing::StillSubsystem>();
+      built.flexible = {exchange, exchange == ElasticExchange::once ? kEvery : 1};
+      return Status::ok();
+    };
+  }
+  void say_elastic(StepIndex step, Phase phase = Phase::running) {
+    wire::ElasticMessage message;
+    message.header = played.header(Role::flex, step, phase);
+    played.say(Topic::elastic, message);
+  }
+  void say_flexible(StepIndex step) {
+    wire::FlexibleMessage message;
+    message.header = played.header(Role::mechanics, step);
+    played.say(Topic::flexible, message);
+  }
+  template <typename Message>
+  std::vector<StepIndex> steps_of(Topic topic) {
+    std::vector<StepIndex> steps;
+    for (const Message& message : played.said<Message>(topic)) steps.push_back(message.header.step);
+    return steps;
+  }
+  static void poll(PhysicsNode& node, std::int64_t now_ns) { node.poll(now_ns); }
+
+  PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::flex)};
+};
+
+class Mechanics : public WithFlexibleBodies {
+ protected:
+  void get_ready(ElasticExchange exchange) {
+    node = std::make_unique<PhysicsNode>(Role::mechanics, played.carrier(), built_for(exchange));
+    played.say(Topic::session, played.session);
+    poll(0);
+    const wire::Header own = node->member().header(Phase::join, kJoinStep);
+    played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism});
+    played.say_heard(Role::flex, NodeState::joining, own, {Topic::flexible});
+    poll(kMs);
+    poll(kMs);
+    ASSERT_EQ(node->member().state(), NodeState::initialising);
+    say_elastic(kJoinStep, Phase::init);
+    poll(kMs);
+    ASSERT_EQ(node->member().state(), NodeState::ready);
+    played.say_status(Role::flex, NodeState::ready, 0);
+    played.say_status(Role::io, NodeState::running, 0);
+    poll(0);
+    played.forget();
+  }
+  void poll(std::int64_t after_ns) { node->poll(now_ns += after_ns); }
+
+  std::unique_ptr<PhysicsNode> node;
+  std::int64_t now_ns = 1000 * kMs;
+};
+
+TEST_F(Mechanics, StartsWithTheElasticForcesOfTheFlexNode) {
+  node = std::make_unique<PhysicsNode>(Role::mechanics, played.carrier(), built_for(ElasticExchange::once));
+  played.say(Topic::session, played.session);
+  poll(0);
+  const wire::Header own = node->member().header(Phase::join, kJoinStep);
+  played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism});
+  // the mechanics' state must be heard as well
+  played.say_heard(Role::flex, NodeState::joining, own, {});
+  poll(kMs);
+  poll(kMs);
+  EXPECT_EQ(node->member().state(), NodeState::joining);
+  played.say_heard(Role::flex, NodeState::joining, own, {Topic::flexible});
+  poll(kMs);
+  poll(kMs);
+  EXPECT_EQ(node->member().state(), NodeState::initialising);
+  played.forget();
+  poll(4 * kMs);
+  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].role, Role::flex);
+  EXPECT_EQ(asked[0].topic, static_cast<std::uint8_t>(Topic::elastic));
+  EXPECT_EQ(asked[0].header.step, kJoinStep);
+}
+
+TEST_F(Mechanics, WaitsForNobodyWhenTheyAreStatedOnce) {
+  get_ready(ElasticExchange::once);
+  for (StepIndex step = 0; step < 25; ++step) {
+    played.say_tick(step);
+    poll(kMs);
+  }
+  EXPECT_EQ(steps_of<wire::MechanismMessage>(Topic::mechanism).size(), 25u);
+  EXPECT_EQ(steps_of<wire::FlexibleMessage>(Topic::flexible), (std::vector<StepIndex>{10, 20}));
+  // samples that come all the same are not kept, and nothing is wrong with them
+  say_elastic(20);
+  poll(kMs);
+  EXPECT_EQ(node->member().refusals().refused(), 0u);
+}
+
+TEST_F(Mechanics, WaitsForTheFlexNodeWhenTheyAreStatedEveryStep) {
+  get_ready(ElasticExchange::every_step);
+  played.say_tick(0);
+  poll(kMs);
+  EXPECT_TRUE(steps_of<wire::MechanismMessage>(Topic::mechanism).empty());
+  say_elastic(0);
+  poll(kMs);
+  EXPECT_EQ(steps_of<wire::MechanismMessage>(Topic::mechanism), std::vector<StepIndex>{1});
+  EXPECT_EQ(steps_of<wire::FlexibleMessage>(Topic::flexible), std::vector<StepIndex>{1});
+  // it says whom it waits for, and asks
+  played.say_tick(1);
+  poll(10 * kMs);
+  poll(kMs);
+  EXPECT_TRUE(node->health().is_waiting.load());
+  EXPECT_EQ(static_cast<Role>(node->health().waiting_for.load()), Role::flex);
+  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+  ASSERT_FALSE(asked.empty());
+  EXPECT_EQ(asked.back().role, Role::flex);
+}
+
+TEST_F(Mechanics, SendsTheStateOfItsModesAgainWhenAsked) {
+  get_ready(ElasticExchange::once);
+  for (StepIndex step = 0; step < 25; ++step) played.say_tick(step);
+  poll(kMs);
+  played.forget();
+  wire::ResendRequest request;
+  request.header = played.header(Role::flex, 10);
+  request.role = Role::mechanics;
+  request.topic = static_cast<std::uint8_t>(Topic::flexible);
+  request.last_step = 20;
+  played.say(Topic::resend, request);
+  poll(kMs);
+  EXPECT_EQ(steps_of<wire::FlexibleMessage>(Topic::flexible), (std::vector<StepIndex>{10, 20}));
+  EXPECT_TRUE(steps_of<wire::MechanismMessage>(Topic::mechanism).empty());
+}
+
+class FlexNode : public WithFlexibleBodies {
+ protected:
+  void get_ready(ElasticExchange exchange) {
+    node = std::make_unique<PhysicsNode>(Role::flex, played.carrier(), built_for(exchange));
+    played.say(Topic::session, played.session);
+    poll(0);
+    const wire::Header own = node->member().header(Phase::join, kJoinStep);
+    played.say_heard(Role::io, NodeState::joining, own, {Topic::elastic});
+    played.say_heard(Role::mechanics, NodeState::joining, own, {Topic::elastic});
+    poll(kMs);
+    poll(kMs);
+    // what it states first needs nobody
+    EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic).back(), kJoinStep);
+    EXPECT_EQ(node->member().state(), NodeState::initialising);
+    say_flexible(0);
+    poll(kMs);
+    ASSERT_EQ(node->member().state(), NodeState::ready);
+    played.say_status(Role::mechanics, NodeState::ready, 0);
+    played.say_status(Role::io, NodeState::running, 0);
+    poll(0);
+  }
+  void poll(std::int64_t after_ns) { node->poll(now_ns += after_ns); }
+
+  std::unique_ptr<PhysicsNode> node;
+  std::int64_t now_ns = 1000 * kMs;
+};
+
+TEST_F(FlexNode, FollowsTheMechanicsWithoutTicks) {
+  get_ready(ElasticExchange::once);
+  EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), std::vector<StepIndex>{0});
+  say_flexible(20);
+  poll(kMs);
+  EXPECT_TRUE(steps_of<wire::ElasticMessage>(Topic::elastic).empty());
+  say_flexible(10);
+  poll(kMs);
+  EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{10, 20}));
+  EXPECT_EQ(node->member().refusals().refused(), 0u);
+}
+
+TEST_F(FlexNode, StatesEveryStep) {
+  get_ready(ElasticExchange::every_step);
+  for (StepIndex step = 1; step <= 3; ++step) say_flexible(step);
+  poll(kMs);
+  EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{0, 1, 2, 3}));
+}
+
+TEST_F(FlexNode, EndsWhenItHasSeenTheLastStep) {
+  get_ready(ElasticExchange::once);
+  played.say_tick(25, static_cast<std::uint32_t>(TickFlag::end));
+  say_flexible(10);
+  poll(kMs);
+  EXPECT_NE(node->member().state(), NodeState::ended);
+  say_flexible(20);
+  poll(kMs);
+  EXPECT_EQ(node->member().state(), NodeState::ended);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok);
+}
+
+TEST_F(FlexNode, AsksForAStateThatIsOverdue) {
+  get_ready(ElasticExchange::once);
+  played.forget();
+  poll(9 * kMs);
+  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  say_flexible(10);
+  poll(kMs);
+  for (int i = 0; i < 12; ++i) poll(kMs);
+  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  poll(3 * kMs);
+  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].role, Role::mechanics);
+  EXPECT_EQ(asked[0].header.step, 20);
+}
+
+TEST_F(FlexNode, BeginsAnewAfterAReset) {
+  get_ready(ElasticExchange::once);
+  say_flexible(10);
+  poll(kMs);
+  played.forget();
+  wire::Tick init;
+  init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
+  played.say(Topic::tick, init);
+  poll(kMs);
+  EXPECT_EQ(node->member().epoch(), 1u);
+  wire::FlexibleMessage message;
+  message.header = played.header(Role::mechanics, 0, Phase::running, 1);
+  played.say(Topic::flexible, message);
+  poll(kMs);
+  EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{kJoinStep, 0}));
+}
+
+TEST(NodesWithoutFlexibleBodies, ProveNoTopicOfTheirs) {
+  PlayedSession played{bit(Role::io) | bit(Role::mechanics)};
+  PhysicsNode node(Role::mechanics, played.carrier(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
+    built.subsystem = std::make_unique<testing::StillSubsystem>();
+    return Status::ok();
+  });
+  played.say(Topic::session, played.session);
+  node.poll(1000 * kMs);
+  played.say_heard(Role::io, NodeState::joining, node.member().header(Phase::join, kJoinStep), {Topic::mechanism});
+  node.poll(1001 * kMs);
+  node.poll(1002 * kMs);
+  EXPECT_GE(node.member().state(), NodeState::initialising);
+  EXPECT_TRUE(played.said<wire::FlexibleMessage>(Topic::flexible).empty());
+}
+
+}  // namespace
+}  // namespace slew::node
