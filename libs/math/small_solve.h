@@ -6,7 +6,7 @@
 namespace slew::math {
 
 // A X = B; A n x n and B n x columns, both row-major; A is overwritten, B becomes X. Gaussian elimination with row
-// pivoting. False when a pivot is zero or not finite; B is then unusable. No allocation; for n up to about 32.
+// pivoting. False when a pivot is zero or not finite; B is then unusable. No allocation.
 [[nodiscard]] bool solve_in_place(double* A, double* B, std::size_t n, std::size_t columns) noexcept;
 
 }  // namespace slew::math

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "math/small_solve.h"
 #include "multibody/contact_passes.h"
 #include "multibody/flexible/segmented_part.h"
 #include "multibody/observe.h"
@@ -27,35 +28,6 @@ constexpr double kProbe = 1e-7;     // step of the differences, the same
 
 std::size_t at(int index) noexcept {
   return static_cast<std::size_t>(index);
-}
-
-// Solves A x = b by elimination with the largest pivots; false: singular. The same bits in every build.
-bool solve(std::vector<double>& A, std::vector<double>& b) {
-  const std::size_t n = b.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < n; ++i) {
-      if (std::fabs(A[i * n + k]) > std::fabs(A[pivot * n + k])) pivot = i;
-    }
-    if (!(std::fabs(A[pivot * n + k]) > 0)) return false;
-    if (pivot != k) {
-      std::swap_ranges(A.begin() + static_cast<std::ptrdiff_t>(k * n),
-                       A.begin() + static_cast<std::ptrdiff_t>(k * n + n),
-                       A.begin() + static_cast<std::ptrdiff_t>(pivot * n));
-      std::swap(b[k], b[pivot]);
-    }
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double factor = A[i * n + k] / A[k * n + k];
-      if (factor == 0) continue;
-      for (std::size_t j = k; j < n; ++j) A[i * n + j] -= factor * A[k * n + j];
-      b[i] -= factor * b[k];
-    }
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t j = i + 1; j < n; ++j) b[i] -= A[i * n + j] * b[j];
-    b[i] /= A[i * n + i];
-  }
-  return true;
 }
 
 class Chains {
@@ -246,7 +218,7 @@ class Settling {
       for (std::size_t i = 0; i < n; ++i) A[i * n + j] = (moved[i] - r[i]) / (kProbe * scale[j]);
     }
     for (std::size_t i = 0; i < n; ++i) step[i] = -r[i];
-    if (!solve(A, step)) std::fill(step.begin(), step.end(), std::nan(""));
+    if (!math::solve_in_place(A.data(), step.data(), n, 1)) std::fill(step.begin(), step.end(), std::nan(""));
     return step;
   }
 

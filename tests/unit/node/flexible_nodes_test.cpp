@@ -43,7 +43,6 @@ class WithFlexibleBodies : public ::testing::Test {
     for (const Message& message : played.said<Message>(topic)) steps.push_back(message.header.step);
     return steps;
   }
-  static void poll(PhysicsNode& node, std::int64_t now_ns) { node.poll(now_ns); }
 
   PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::flex)};
 };
