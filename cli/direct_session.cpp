@@ -68,7 +68,7 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
   if (mechanics_ != nullptr) {
     PartnerSamples partners;
     if (hydraulics_ != nullptr) partners.actuators = &hydraulics_sample_.actuators;
-    const bool is_stated_anew = elastic_exchange_ == coupling::ElasticExchange::every_step;
+    const bool is_stated_anew = elastic_exchange_ != coupling::ElasticExchange::once;
     if (flex_ != nullptr && is_stated_anew) partners.elastic = &flex_sample_.elastic;
     mechanics_report_ = advance(*mechanics_, partners, mechanics_next_);
   }

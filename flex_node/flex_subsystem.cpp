@@ -14,7 +14,7 @@ using coupling::ElasticSample;
 using coupling::ModeArray;
 
 FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
-    : level_(scene.session.coupling), exchange_(scene.session.flexible) {
+    : level_(scene.session.coupling), exchange_(scene.session.flexible), H_(scene.session.step_duration().seconds()) {
   std::size_t points = 0;
   for (const scene::FlexibleBody& model : scene.flexible_bodies) {
     const std::size_t modes = model.reduction->body.modes();
@@ -49,7 +49,8 @@ void FlexSubsystem::list_variables(const Body& body) {
   }
   int number = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool is_same_end = i > 0 && points[i - 1].element == points[i].element && points[i - 1].node == points[i].node;
+    const bool is_same_end =
+        i > 0 && points[i - 1].element == points[i].element && points[i - 1].node == points[i].node;
     number = is_same_end ? number + 1 : 1;
     const std::string point = fmt::format("Element{}.Node{}.Point{}", points[i].element, points[i].node, number);
     add(point + ".normal_stress", Dimension::pressure, true);
@@ -65,33 +66,30 @@ bool FlexSubsystem::first_sample(coupling::OwnSample& sample) noexcept {
 Status FlexSubsystem::start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) {
   const std::size_t modes = q_.size();
   if (partners.flexible == nullptr || partners.flexible->q.size() != modes || partners.flexible->u.size() != modes) {
-    return Status::error(ExitCode::failed,
-                         fmt::format("mechanics states {} modal coordinates, the flexible bodies have {}: the nodes run "
-                                     "different scenes; start them with the same one",
-                                     partners.flexible != nullptr ? partners.flexible->q.size() : 0, modes));
+    return Status::error(
+        ExitCode::failed,
+        fmt::format("mechanics states {} modal coordinates, the flexible bodies have {}: the nodes run "
+                    "different scenes; start them with the same one",
+                    partners.flexible != nullptr ? partners.flexible->q.size() : 0, modes));
   }
+  q_ = partners.flexible->q;
+  u_ = partners.flexible->u;
   see(*partners.flexible, sample.elastic);
   return Status::ok();
 }
 
-// Elastic forces about the mechanics' coordinates, (1), and the strain energy there.
+// Elastic forces at the coordinates of the step, (1) or (2), and the strain energy there.
 void FlexSubsystem::see(const coupling::FlexibleSample& mechanics, ElasticSample& sample) noexcept {
-  q_ = mechanics.q;
-  u_ = mechanics.u;
+  if (exchange_ != ElasticExchange::condensed) {
+    q_ = mechanics.q;
+    u_ = mechanics.u;
+  }
   published_ = constant_;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     Body& body = bodies_[b];
     body.strain_energy = flex::strain_energy(body.model->body, modes_of(body));
     published_.strain_energy[b] = body.strain_energy;
-    if (constant_.is_constant) continue;
-    for (std::size_t k = 0; k < body.modes; ++k) {
-      double force = 0;
-      for (std::size_t l = 0; l < body.modes; ++l) {
-        const std::size_t pair = body.first_pair + k * body.modes + l, mode = body.first_mode + l;
-        force -= constant_.K[pair] * q_[mode] + constant_.D[pair] * u_[mode];
-      }
-      published_.Q[body.first_mode + k] = force;
-    }
+    if (!constant_.is_constant) state_law(body);
   }
   if (!constant_.is_constant) {
     published_.q_ref = q_;
@@ -100,10 +98,42 @@ void FlexSubsystem::see(const coupling::FlexibleSample& mechanics, ElasticSample
   sample = published_;
 }
 
+void FlexSubsystem::state_law(const Body& body) noexcept {
+  const bool is_condensed = exchange_ == ElasticExchange::condensed;
+  const double ahead = is_condensed ? 0.5 * H_ : 0.0;
+  if (is_condensed) published_.M.resize(constant_.K.size());
+  for (std::size_t k = 0; k < body.modes; ++k) {
+    double force = 0;
+    for (std::size_t l = 0; l < body.modes; ++l) {
+      const std::size_t pair = body.first_pair + k * body.modes + l, mode = body.first_mode + l;
+      const double K = constant_.K[pair], D = constant_.D[pair];
+      force -= K * (q_[mode] + ahead * u_[mode]) + D * u_[mode];
+      if (!is_condensed) continue;
+      published_.M[pair] = (k == l ? 1.0 : 0.0) + ahead * D + ahead * ahead * K;
+      published_.K[pair] = published_.D[pair] = 0;
+    }
+    published_.Q[body.first_mode + k] = force;
+  }
+}
+
 StepReport FlexSubsystem::step(StepIndex, const coupling::PartnerSamples& partners, std::span<const double>,
                                coupling::OwnSample& sample) noexcept {
+  StepReport report;
+  if (partners.flexible->u.size() != u_.size() || partners.flexible->q.size() != q_.size()) {
+    // another scene's: what was seen last stays
+    report.raise(StepFlag::clamp_active);
+    sample.elastic = published_;
+    return report;
+  }
+  if (exchange_ == ElasticExchange::condensed) {
+    const ModeArray& end = partners.flexible->u;
+    for (std::size_t k = 0; k < q_.size(); ++k) {
+      q_[k] += 0.5 * H_ * (u_[k] + end[k]);
+      u_[k] = end[k];
+    }
+  }
   see(*partners.flexible, sample.elastic);
-  return {};
+  return report;
 }
 
 // damping, modes and files need a restart
@@ -117,11 +147,12 @@ void FlexSubsystem::reset() {
   published_ = constant_;
 }
 
-// what was published is all there is
+// what was published is all there is, the own coordinates with it
 std::uint64_t FlexSubsystem::state_hash() const noexcept {
   StateHash hash;
-  for (const auto values : {published_.Q.span(), published_.q_ref.span(), published_.u_ref.span(), published_.K.span(),
-                            published_.D.span(), published_.strain_energy.span(), q_.span(), u_.span()}) {
+  for (const auto values :
+       {published_.Q.span(), published_.q_ref.span(), published_.u_ref.span(), published_.K.span(), published_.D.span(),
+        published_.M.span(), published_.strain_energy.span(), q_.span(), u_.span()}) {
     for (const double value : values) hash.add(value);
   }
   return hash.digest();

@@ -3,8 +3,12 @@
 //
 // The mechanics owns the modal coordinates and integrates them with the coupled mass matrix; this side states
 //   Q - K (q - q_ref) - D (u - u_ref)                                                                  (1)
-// once, about q_ref = 0, or at every step about the mechanics' coordinates of that step (scene: session.flexible). It has
-// no state: a step only looks at the mechanics' sample of the step's end.
+// once, about q_ref = 0, or at every step about the mechanics' coordinates of that step (scene: session.flexible). It then
+// has no state: a step only looks at the mechanics' sample of the step's end.
+// Scheme B (session.flexible: condensed): this side keeps q, u and moves them by the trapezoidal rule. With the mean
+// accelerations of the step eliminated, the mechanics sees modes of the mass M and a constant force,
+//   M = 1 + H/2 D + H^2/4 K,   Q = -K (q + H/2 u) - D u                                                (2)
+// and tells the rates at the step's end, from which   q <- q + H/2 (u + u_end),   u <- u_end             (3)
 // Not covered: stress by modes that the body does not take; loads and accelerations are not used for it.
 #pragma once
 
@@ -48,10 +52,12 @@ class FlexSubsystem final : public coupling::Subsystem {
     return q_.span().subspan(body.first_mode, body.modes);
   }
   void see(const coupling::FlexibleSample& mechanics, coupling::ElasticSample& sample) noexcept;
+  void state_law(const Body& body) noexcept;
   void list_variables(const Body& body);
 
   coupling::Level level_;
   coupling::ElasticExchange exchange_;
+  double H_;                  // s
   std::vector<Body> bodies_;  // in the order of the samples
   coupling::ElasticSample constant_;
   coupling::ElasticSample published_;

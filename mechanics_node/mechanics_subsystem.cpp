@@ -308,7 +308,11 @@ void MechanicsSubsystem::put_signals(std::span<const double> controls) noexcept 
 // where the flex node states them step by step; what does not fit leaves those of the step before
 void MechanicsSubsystem::take_elastic_forces(const coupling::ElasticSample* sample, StepReport& report) noexcept {
   if (sample == nullptr || modal_.is_empty()) return;
-  if (!modal_.apply(*sample, model_) || !modal_.apply(*sample, heavier_)) report.raise(StepFlag::clamp_active);
+  if (modal_.apply(*sample, model_) && modal_.apply(*sample, heavier_)) {
+    modal_.take_places(*sample, model_, state_);
+  } else {
+    report.raise(StepFlag::clamp_active);
+  }
   is_evaluated_ = false;
 }
 

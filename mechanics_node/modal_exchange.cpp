@@ -44,7 +44,7 @@ void ModalExchange::read(const Model& model, const multibody::State& state, cons
 
 bool ModalExchange::has_sizes(const ElasticSample& sample) const noexcept {
   return sample.Q.size() == modes_ && sample.q_ref.size() == modes_ && sample.u_ref.size() == modes_ &&
-         sample.K.size() == pairs_ && sample.D.size() == pairs_;
+         sample.K.size() == pairs_ && sample.D.size() == pairs_ && (sample.M.empty() || sample.M.size() == pairs_);
 }
 
 multibody::ElasticLaw ModalExchange::law_of(const ElasticSample& sample, const Body& body) const noexcept {
@@ -54,7 +54,10 @@ multibody::ElasticLaw ModalExchange::law_of(const ElasticSample& sample, const B
   const auto pairs = [&](const coupling::ModePairs& values) {
     return values.span().subspan(body.first_pair, body.modes * body.modes);
   };
-  return {modes(sample.Q), modes(sample.q_ref), modes(sample.u_ref), pairs(sample.K), pairs(sample.D)};
+  multibody::ElasticLaw law{modes(sample.Q), modes(sample.q_ref), modes(sample.u_ref),
+                            pairs(sample.K), pairs(sample.D),     {}};
+  if (!sample.M.empty()) law.M = pairs(sample.M);
+  return law;
 }
 
 Status ModalExchange::begin(const multibody::MechanicsDef& mechanics, const ElasticSample& sample, Model& model) {
@@ -91,12 +94,25 @@ bool ModalExchange::apply(const ElasticSample& sample, Model& model) const noexc
   return true;
 }
 
+void ModalExchange::take_places(const ElasticSample& sample, const Model& model,
+                                multibody::State& state) const noexcept {
+  if (sample.M.empty()) return;
+  for (const Body& body : bodies_) {
+    const FlexiblePart& part = model.parts[body.part];
+    for (std::size_t k = 0; k < body.modes; ++k) {
+      state.q[static_cast<std::size_t>(part.q) + k] = sample.q_ref[body.first_mode + k];
+      state.u[static_cast<std::size_t>(part.u) + k] = sample.u_ref[body.first_mode + k];
+    }
+  }
+}
+
 void ModalExchange::add_to(const Model& model, StateHash& hash) const noexcept {
   for (const Body& body : bodies_) {
     const FlexiblePart& part = model.parts[body.part];
     hash.add(part.stiffness);
     hash.add(part.damping);
     hash.add(part.preload);
+    hash.add(part.mass_matrix);
   }
 }
 

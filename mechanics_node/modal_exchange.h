@@ -32,6 +32,10 @@ class ModalExchange {
   // Those of a step. Pre-condition: begin() took a sample. Sizes that are others now leave the model as it is: false.
   [[nodiscard]] bool apply(const coupling::ElasticSample& sample, multibody::Model& model) const noexcept;
 
+  // Modal coordinates that the flex node keeps itself, into the state; the step then moves this side's copy.
+  void take_places(const coupling::ElasticSample& sample, const multibody::Model& model,
+                   multibody::State& state) const noexcept;
+
   void add_to(const multibody::Model& model, StateHash& hash) const noexcept;
 
  private:

@@ -69,18 +69,22 @@ using ModePairs = StaticVector<double, kMaxModePairs>;  // body after body, m x 
 
 // Mechanics to flexible bodies: scheme A1 of the study, in which the mechanics owns the modal coordinates.
 struct FlexibleSample {
-  ModeArray q;       // modal coordinates [m sqrt(kg)]
-  ModeArray u;       // their rates
-  FrameArray frame;  // by body: position [m], quaternion (w, x, y, z), velocity [m/s], angular velocity [rad/s] in Ground
+  ModeArray q;  // modal coordinates [m sqrt(kg)]
+  ModeArray u;  // their rates
+  FrameArray
+      frame;  // by body: position [m], quaternion (w, x, y, z), velocity [m/s], angular velocity [rad/s] in Ground
   bool operator==(const FlexibleSample&) const = default;
 };
 
 // Flexible bodies to mechanics: the elastic force of the modes, damping included, near the place (q_ref, u_ref),
 //   Q - K (q - q_ref) - D (u - u_ref)
+// Of bodies that keep their states, condensed over the step (scheme B): the place is where they are, K = D = 0, and
+//   M = M_modes + H/2 D + H^2/4 K,   Q = -K (q_ref + H/2 u_ref) - D u_ref
 struct ElasticSample {
   ModeArray Q;      // [m sqrt(kg)/s2]
   ModePairs K;      // stiffness, symmetric, positive definite [1/s2]
   ModePairs D;      // damping [1/s]
+  ModePairs M;      // condensed mass of the modes [1]; empty: not condensed
   ModeArray q_ref;  // [m sqrt(kg)]
   ModeArray u_ref;
   BodyArray strain_energy;   // at the mechanics' coordinates [J]
@@ -90,8 +94,9 @@ struct ElasticSample {
 
 // How a session's flexible bodies take part.
 enum class ElasticExchange : int {
-  once,       // their elastic forces are linear: stated at the start, nobody waits for them any more
-  every_step  // stated anew at every step, about the mechanics' coordinates of that step
+  once,        // their elastic forces are linear: stated at the start, nobody waits for them any more
+  every_step,  // stated anew at every step, about the mechanics' coordinates of that step
+  condensed    // the flexible side keeps its coordinates and states itself condensed over each step
 };
 
 void resize(MechanismSample& sample, std::size_t ports);

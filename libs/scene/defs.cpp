@@ -25,7 +25,7 @@ constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_
 
 constexpr std::string_view kPaces[] = {"real", "free"};
 constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
-constexpr std::string_view kElasticExchanges[] = {"once", "every_step"};
+constexpr std::string_view kElasticExchanges[] = {"once", "every_step", "condensed"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
 constexpr std::string_view kInterpolations[] = {"linear", "step"};
 
@@ -46,10 +46,10 @@ constexpr Field kSessionFields[] = {
     field<&SessionDef::flexible>(
         "flexible",
         {.choices = kElasticExchanges,
-         .doc =
-             "when the flex node states the elastic forces of the modes. once: at the start, they are linear and "
-             "nobody "
-             "waits for it any more; every_step: anew about each step's modal coordinates, and the mechanics waits"}),
+         .doc = "how the flex node states the elastic forces of the modes. once: at the start, nobody waits for it any "
+                "more; every_step: anew about each step's modal coordinates, and the mechanics waits; condensed: it "
+                "integrates the modes itself and states them condensed over each step (trapezoidal integrator, one "
+                "sub-step)"}),
     field<&SessionDef::window>(
         "window", {.range = kWindowRange,
                    .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace"}),

@@ -18,6 +18,7 @@
 #include "flex/input_error.h"
 #include "multibody/flexible/deflection.h"
 #include "multibody/flexible/elastic_law.h"
+#include "multibody/integrators.h"
 #include "scene/assets.h"
 #include "scene/modal_body.h"
 #include "scene/segment_chain.h"
@@ -122,7 +123,7 @@ class FlexibleReader {
     try {
       return Wanted{.ordinals = flex::mode_list(body.flex_modes)};
     } catch (const flex::InputError& error) {
-      complain(body, "flex_modes", error.what(), "ordinals between semicolons, such as '1;2', or none");
+      complain(body, "flex_modes", error.what(), "");
       return std::nullopt;
     }
   }
@@ -185,7 +186,7 @@ class FlexibleReader {
       compare_mass(body, of_files, multibody::length_of(*flexible.modes));
       if (chosen.body.modes() > 0) add_model(flexible, chosen);
     } catch (const flex::InputError& error) {
-      complain(body, "flex_modes", error.what(), fmt::format("ordinals from 1 to {}", all.body.modes()));
+      complain(body, "flex_modes", error.what(), "");
     }
   }
 
@@ -238,6 +239,22 @@ void check_caps(const Scene& scene, Problems& problems) {
   check(pairs, coupling::kMaxModePairs, "pairs of modes, the squares of their numbers of modes together");
 }
 
+// The condensed step is the trapezoidal rule's: with another rule on the mechanics' side the exchange grows.
+void check_condensed(const Scene& scene, Problems& problems) {
+  if (scene.session.flexible != coupling::ElasticExchange::condensed) return;
+  if (multibody::step_rule(scene.mechanics).integrator != multibody::Integrator::trapezoidal) {
+    problems.push_back({"session.flexible", "'condensed' goes with the trapezoidal integrator alone",
+                        "mechanics.integrator trapezoidal, or flexible once", ""});
+  }
+  if (scene.session.step > scene.mechanics.max_substep * (1 + 1e-9)) {
+    problems.push_back({"session.flexible",
+                        fmt::format("'condensed' goes with one sub-step, the mechanics has {}",
+                                    std::ceil(scene.session.step / scene.mechanics.max_substep * (1 - 1e-9))),
+                        fmt::format("mechanics.max_substep of at least {:.3g} s, or flexible once", scene.session.step),
+                        ""});
+  }
+}
+
 }  // namespace
 
 void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Problems& problems, Problems& warnings) {
@@ -247,6 +264,7 @@ void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Proble
     if (body.type == multibody::BodyType::segmented) reader.read_segmented(body);
   }
   check_caps(scene, problems);
+  check_condensed(scene, problems);
 }
 
 bool Scene::has_modes() const noexcept {

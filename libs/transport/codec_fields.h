@@ -128,7 +128,7 @@ void fields(A& a, typename A::template Of<wire::FlexibleMessage>& m) {
 
 template <typename A>
 void fields(A& a, typename A::template Of<coupling::ElasticSample>& m) {
-  a(m.Q, m.K, m.D, m.q_ref, m.u_ref, m.strain_energy, m.is_constant);
+  a(m.Q, m.K, m.D, m.M, m.q_ref, m.u_ref, m.strain_energy, m.is_constant);
 }
 
 template <typename A>

@@ -55,6 +55,7 @@ void set_elastic_law(Model& model, std::size_t part, const ElasticLaw& law) noex
   FlexiblePart& own = model.parts[part];
   std::copy(law.K.begin(), law.K.end(), own.stiffness.begin());
   std::copy(law.D.begin(), law.D.end(), own.damping.begin());
+  std::copy(law.M.begin(), law.M.end(), own.mass_matrix.begin());
   own.is_diagonal = has_diagonal_law(own);
   const std::size_t n = own.modes;
   for (std::size_t k = 0; k < n; ++k) {

@@ -16,10 +16,11 @@ namespace slew::multibody {
 struct FlexiblePart;
 struct Model;
 
-// Q - K (q - q_ref) - D (u - u_ref). Q, q_ref, u_ref: by mode; K, D: by pair of modes, symmetric.
+// Q - K (q - q_ref) - D (u - u_ref). Q, q_ref, u_ref: by mode; K, D: by pair of modes, symmetric. M: mass of the modes
+// in the place of their own, where they are condensed over a step; empty: their own.
 struct ElasticLaw {
   std::span<const double> Q, q_ref, u_ref;
-  std::span<const double> K, D;
+  std::span<const double> K, D, M;
 };
 
 // D of the relative damping zeta of the modes: 2 zeta omega on a mode of unit mass (table 23 as in the errata).

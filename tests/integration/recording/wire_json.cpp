@@ -139,6 +139,7 @@ json to_json(const wire::ElasticMessage& m) {
   const json sample = {{"Q", list_of(s.Q)},
                        {"K", list_of(s.K)},
                        {"D", list_of(s.D)},
+                       {"M", list_of(s.M)},
                        {"q_ref", list_of(s.q_ref)},
                        {"u_ref", list_of(s.u_ref)},
                        {"strain_energy", list_of(s.strain_energy)},

@@ -74,6 +74,51 @@ TEST_F(Flex, StatesItAnewAboutTheMechanicsCoordinates) {
   }
 }
 
+// the trapezoidal rule of the modes alone: what the mechanics would make of a free mode, and back
+TEST_F(Flex, KeepsCondensedCoordinatesByTheTrapezoidalRule) {
+  const scene::Scene scene =
+      load({"session.flexible=condensed", "mechanics.integrator=trapezoidal", "mechanics.max_substep=1 ms"});
+  FlexSubsystem flex(scene);
+  coupling::FlexibleSample at = bent();
+  coupling::OwnSample own = see(flex, at);
+  double energy[2] = {};
+  const auto energy_of = [&](std::size_t k) {
+    const double omega = scene.flexible_bodies[0].reduction->body.omega[k];
+    const coupling::ElasticSample& s = own.elastic;
+    return 0.5 * s.u_ref[k] * s.u_ref[k] + 0.5 * omega * omega * s.q_ref[k] * s.q_ref[k];
+  };
+  for (std::size_t k = 0; k < 2; ++k) energy[k] = energy_of(k);
+  const int steps = 1000;
+  for (int n = 0; n < steps; ++n) {
+    // free modes, M u' = Q
+    for (std::size_t k = 0; k < 2; ++k) at.u[k] = own.elastic.u_ref[k] + 1e-3 * own.elastic.Q[k] / own.elastic.M[3 * k];
+    coupling::PartnerSamples partners;
+    partners.flexible = &at;
+    static_cast<void>(flex.step(n, partners, {}, own));
+  }
+  // the rule keeps energy; what is lost is the damping's, exp(-2 zeta omega t)
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double omega = scene.flexible_bodies[0].reduction->body.omega[k];
+    EXPECT_NEAR(energy_of(k) / energy[k], std::exp(-2 * 0.005 * omega * 1e-3 * steps), 0.02) << k;
+  }
+}
+
+TEST_F(Flex, CondensedGoesWithOneTrapezoidalStep) {
+  const auto refusal = [](const scene::Overrides& overrides) -> std::string {
+    try {
+      static_cast<void>(load(overrides));
+    } catch (const scene::LoadError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string rule = refusal({"session.flexible=condensed", "mechanics.max_substep=1 ms"});
+  EXPECT_NE(rule.find("'condensed' goes with the trapezoidal integrator alone"), std::string::npos) << rule;
+  const std::string parts =
+      refusal({"session.flexible=condensed", "mechanics.integrator=trapezoidal", "mechanics.max_substep=0.4 ms"});
+  EXPECT_NE(parts.find("'condensed' goes with one sub-step, the mechanics has 3"), std::string::npos) << parts;
+}
+
 TEST_F(Flex, RecoversEnergyDeflectionAndStress) {
   const scene::Scene scene = load();
   FlexSubsystem flex(scene);
