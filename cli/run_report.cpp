@@ -90,18 +90,17 @@ nlohmann::json number(double value) {
 
 std::string write_plots(const scene::Scene& scene, const std::string& recording) {
   const auto reader = open_recording(recording);
-  std::vector<plotting::Series> curves;
+  std::vector<plotting::Plot> plots;
   for (const scene::PlotDef& plot : scene.plots) {
     try {
-      for (plotting::Series& curve : read_series(*reader, plot.variables, Units::display)) {
-        curves.push_back(std::move(curve));
-      }
+      plots.push_back(
+          {plot.title.empty() ? plot.name : plot.title, read_series(*reader, plot.variables, Units::display)});
     } catch (const cli_support::Failure& failure) {
       throw cli_support::Failure(
           failure.code(), "no plots were drawn; the recording is complete; plot " + plot.name + ": " + failure.what());
     }
   }
-  if (curves.empty()) return "";
+  if (plots.empty()) return "";
   plotting::PlotOptions options;
   options.title = scene.name;
   options.subtitle =
@@ -109,7 +108,7 @@ std::string write_plots(const scene::Scene& scene, const std::string& recording)
   const std::filesystem::path path =
       std::filesystem::path(recording).parent_path() / (recording::file_name(scene.name) + ".svg");
   std::ofstream file(path, std::ios::binary);
-  file << plotting::plot_svg(curves, options);
+  file << plotting::plot_svg(std::span<const plotting::Plot>(plots), options);
   if (!file.flush()) {
     throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
                                                       "; the recording is complete; free some space and use 'slewring "

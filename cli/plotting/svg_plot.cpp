@@ -22,6 +22,7 @@ constexpr double kTopMargin = 16;
 constexpr double kTitleHeight = 24;
 constexpr double kSubtitleHeight = 18;
 constexpr double kTitleGap = 8;
+constexpr double kHeadingRow = 20;
 constexpr double kLegendRow = 18;
 constexpr double kLegendGap = 8;  // to the plot area
 constexpr double kPanelGap = 20;
@@ -31,11 +32,12 @@ constexpr double kPixelsPerTimeTick = 95;
 constexpr double kPixelsPerValueTick = 38;
 
 struct Panel {
-  std::string unit;
-  std::vector<const Series*> series;
+  std::string unit{};
+  std::vector<const Series*> series{};
+  std::string heading{};  // of the plot, in its first panel
   double legend_top = 0;  // y of the first legend row's base line
   double top = 0;         // y of the plot area
-  Axis axis;
+  Axis axis{};
   bool is_empty = true;  // no value that can be shown
 };
 
@@ -63,10 +65,10 @@ std::string power_of_ten(int exponent) {
 
 class Picture {
  public:
-  Picture(std::span<const Series> series, const PlotOptions& options)
+  Picture(std::span<const Plot> plots, const PlotOptions& options)
       : options_(options), width_(std::max(options.width, 300.0)), panel_height_(std::max(options.panel_height, 60.0)) {
-    group_by_unit(series);
-    find_time_axis(series);
+    for (const Plot& plot : plots) add_panels(plot);
+    find_time_axis();
     lay_out();
   }
 
@@ -94,22 +96,28 @@ class Picture {
     fmt::format_to(std::back_inserter(out_), format, std::forward<Values>(values)...);
   }
 
-  void group_by_unit(std::span<const Series> series) {
-    for (const Series& s : series) {
-      auto panel = std::find_if(panels_.begin(), panels_.end(), [&s](const Panel& p) { return p.unit == s.unit; });
-      if (panel == panels_.end()) panel = panels_.insert(panels_.end(), Panel{s.unit, {}, 0, 0, {}, true});
+  // one panel per unit of the plot
+  void add_panels(const Plot& plot) {
+    const auto first = static_cast<std::ptrdiff_t>(panels_.size());
+    for (const Series& s : plot.series) {
+      const auto has_unit = [&s](const Panel& p) { return p.unit == s.unit; };
+      auto panel = std::find_if(panels_.begin() + first, panels_.end(), has_unit);
+      if (panel == panels_.end()) panel = panels_.insert(panels_.end(), Panel{.unit = s.unit});
       panel->series.push_back(&s);
     }
+    if (!plot.series.empty()) panels_[static_cast<std::size_t>(first)].heading = plot.title;
   }
 
-  void find_time_axis(std::span<const Series> series) {
+  void find_time_axis() {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
-    for (const Series& s : series) {
-      for (const double t : s.time) {
-        if (!is_shown(t)) continue;
-        low = std::min(low, t);
-        high = std::max(high, t);
+    for (const Panel& panel : panels_) {
+      for (const Series* s : panel.series) {
+        for (const double t : s->time) {
+          if (!is_shown(t)) continue;
+          low = std::min(low, t);
+          high = std::max(high, t);
+        }
       }
     }
     if (low > high) low = high = 0;
@@ -160,6 +168,7 @@ class Picture {
     if (!options_.subtitle.empty()) y += kSubtitleHeight;
     if (y > kTopMargin) y += kTitleGap;
     for (Panel& panel : panels_) {
+      if (!panel.heading.empty()) y += kHeadingRow;
       panel.legend_top = y + 12;
       y += place_legend(panel, [](std::size_t, double, double) {}) + kLegendGap;
       panel.top = y;
@@ -176,7 +185,12 @@ class Picture {
   }
 
   void draw_panel(const Panel& panel, std::size_t number) {
-    put("<g>\n<text class=\"unit\" x=\"{}\" y=\"{:.1f}\">{}{}</text>\n", kLeft, panel.legend_top,
+    out_ += "<g>\n";
+    if (!panel.heading.empty()) {
+      put("<text class=\"heading\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft, panel.legend_top - kHeadingRow,
+          escaped(panel.heading));
+    }
+    put("<text class=\"unit\" x=\"{}\" y=\"{:.1f}\">{}{}</text>\n", kLeft, panel.legend_top,
         escaped(typeset_unit(panel.unit)), power_of_ten(panel.axis.exponent));
     draw_grid(panel);
     put("<clipPath id=\"p{}\"><rect x=\"{}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/></clipPath>\n", number,
@@ -264,8 +278,13 @@ class Picture {
 
 }  // namespace
 
+std::string plot_svg(std::span<const Plot> plots, const PlotOptions& options) {
+  return Picture(plots, options).draw();
+}
+
 std::string plot_svg(std::span<const Series> series, const PlotOptions& options) {
-  return Picture(series, options).draw();
+  const Plot plot = {"", {series.begin(), series.end()}};
+  return plot_svg(std::span(&plot, 1), options);
 }
 
 }  // namespace slew::plotting

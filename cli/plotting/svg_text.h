@@ -18,6 +18,7 @@ inline constexpr std::array<std::string_view, 8> kColours = {"#1b6ca8", "#d95f02
 inline constexpr std::string_view kStyle =
     "text{font-family:Inter,'Helvetica Neue',Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#3c434b}"
     ".title{font-size:17px;font-weight:600;fill:#1d2227}.sub{fill:#6a727b}"
+    ".heading{font-size:13px;font-weight:600;fill:#1d2227}"
     ".unit{font-weight:600;fill:#1d2227}.tick{fill:#5d656e}.end{text-anchor:end}.mid{text-anchor:middle}"
     ".grid{stroke:#e7eaed;stroke-width:1}.zero{stroke:#b3bac1;stroke-width:1}.axis{stroke:#8a929a;stroke-width:1}"
     ".curve{fill:none;stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}.dash{stroke-dasharray:6 4}";

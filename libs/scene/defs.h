@@ -24,8 +24,8 @@ struct SessionDef {
   Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
   coupling::Level coupling = coupling::Level::two;  // linear and tlm are refused in this version
   coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
-  std::int64_t window = 0;                          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free
-  double controller_timeout = 0.5;                  // s of silence after which a controller's channel goes to neutral
+  std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free
+  double controller_timeout = 0.5;  // s of silence after which a controller's channel goes to neutral
 
   [[nodiscard]] SimDuration step_duration() const noexcept;
   [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped
@@ -88,7 +88,7 @@ struct RecordingDef {
 struct PlotDef {
   std::string name;
   std::string title;                   // empty: the name
-  std::vector<std::string> variables;  // names or patterns; of one dimension
+  std::vector<std::string> variables;  // names or patterns; one panel per unit
 };
 
 inline constexpr double kMinStep = 10e-6;                    // s

@@ -87,7 +87,7 @@ void add_own(std::vector<ElementTable>& tables) {
   tables.push_back({.section = "plots",
                     .type = "",
                     .kind = "plot",
-                    .doc = "panel of curves",
+                    .doc = "curves over time, with a heading and a panel per unit",
                     .fields = plot_fields(),
                     .append = [](Scene& scene, const std::string& name) { return append_named(scene.plots, name); }});
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -38,6 +39,31 @@ TEST_F(InProcess, FirstStepsAreRunRecordedDrawnAndReplayed) {
   EXPECT_EQ(replay.at("steps"), 10'000);
   EXPECT_EQ(replay.at("compared"), 10'001);
   EXPECT_EQ(replay.at("unrecorded"), 0);
+}
+
+TEST_F(InProcess, EachPlotOfTheSceneHasItsHeadingAndItsOwnPanel) {
+  std::ofstream(work_.path() / "rod.yaml") << "bodies:\n  Rod: {mass: 2 kg, inertia: [1, 1, 1]}\n"
+                                              "joints:\n  Hinge: {type: revolute, body2: Rod}\n"
+                                              "plots:\n  Swing: {title: How it swings, variables: [Rod.position.x]}\n"
+                                              "  Height: {variables: [Rod.position.y, Hinge.position]}\n";
+  const CommandResult result =
+      slewring({"run", "rod.yaml", "--in-process", "--pace", "free", "--duration", "0.1", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const std::string path = nlohmann::json::parse(result.out).at("plots");
+  const auto expect_plots = [&] {
+    std::ifstream file(work_.path() / path);
+    const std::string svg{std::istreambuf_iterator<char>(file), {}};
+    std::size_t panels = 0;
+    for (std::size_t at = 0; (at = svg.find("<clipPath", at)) != std::string::npos; ++at) ++panels;
+    EXPECT_EQ(panels, 3u);  // two metres apart, and the angle
+    const std::size_t swing = svg.find(">How it swings</text>"), x = svg.find(">Rod.position.x</text>");
+    const std::size_t height = svg.find(">Height</text>"), y = svg.find(">Rod.position.y</text>");
+    EXPECT_TRUE(swing < x && x < height && height < y && y != std::string::npos) << svg;
+  };
+  expect_plots();
+  std::filesystem::remove(work_.path() / path);
+  EXPECT_EQ(slewring({"plot", work_.recording().string()}).code, 0);  // the same from the recording
+  expect_plots();
 }
 
 TEST_F(InProcess, APlotOfAVariableThatIsNotThereIsNamedAndTheRecordingIsKept) {

@@ -48,6 +48,35 @@ TEST(SvgPlot, HasOnePanelPerUnitAndOneTimeAxis) {
   EXPECT_EQ(count(svg, "nan"), 0u);
 }
 
+TEST(SvgPlot, PlotsShareNoPanelAndAUnitOfAPlotHasOne) {
+  const std::vector<Plot> plots = {{"Height", {{"high", "m", {0, 1}, {100, 400}}}},
+                                   {"Tip <y>", {{"low", "m", {0, 3}, {0.1, 0.3}}, line("b", "bar"), line("c", "m")}},
+                                   {"", {line("d", "bar")}},
+                                   {"nothing", {}}};
+  const std::string svg = plot_svg(plots, {"", ""});
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_EQ(count(svg, "<clipPath"), 4u);
+  EXPECT_EQ(count(svg, "time [s]"), 1u);
+  EXPECT_EQ(count(svg, "class=\"heading\""), 2u);
+  // in the order of the scene, each heading above the panels of its own plot
+  std::size_t at = 0;
+  for (const char* text :
+       {">Height<", ">high</text>", ">Tip &lt;y&gt;<", ">low</text>", ">c</text>", ">b</text>", ">d</text>"}) {
+    const std::size_t next = svg.find(text, at);
+    ASSERT_NE(next, std::string::npos) << text;
+    at = next;
+  }
+  // each range is that of its own plot
+  EXPECT_EQ(count(svg, ">400</text>"), 1u);
+  EXPECT_GE(count(svg, ">0.5</text>") + count(svg, ">1</text>") + count(svg, ">1.0</text>"), 1u);
+}
+
+TEST(SvgPlot, AHeadingTakesItsOwnRow) {
+  const std::vector<Plot> plain = {{"", {line("a", "m")}}}, headed = {{"Height", {line("a", "m")}}};
+  const auto height = [](const std::string& svg) { return std::stoi(svg.substr(svg.find("height=\"") + 8)); };
+  EXPECT_EQ(height(plot_svg(headed, {"", ""})), height(plot_svg(plain, {"", ""})) + 20);
+}
+
 TEST(SvgPlot, TextIsEscaped) {
   const std::vector<Series> series = {line("a<b & \"c\"", "m3/s2")};
   const std::string svg = plot_svg(series, {"<script>", ""});
@@ -75,7 +104,7 @@ TEST(SvgPlot, HoldsForAwkwardCurves) {
   EXPECT_EQ(count(svg, "nan"), 0u);
   EXPECT_EQ(count(svg, "inf"), 0u);
   EXPECT_EQ(count(svg, "no values"), 1u);
-  EXPECT_TRUE(is_well_formed(plot_svg({}, {"", ""})));
+  EXPECT_TRUE(is_well_formed(plot_svg(std::span<const Series>(), {"", ""})));
 }
 
 TEST(SvgPlot, SizeDoesNotGrowWithTheRecording) {
