@@ -127,10 +127,11 @@ const ParameterInfo* ParameterDirectory::find(std::string_view path) const {
 
 Assignment ParameterDirectory::check(std::string_view path, double value) const {
   const std::string name(path);
+  const std::string restart = "cannot be changed while the session runs; start it again with --set " + name + "=VALUE";
   const ParameterInfo* parameter = find(path);
   if (parameter == nullptr) {
     if (const auto other = not_numeric_.find(path); other != not_numeric_.end()) {
-      return refused(name + " takes " + other->second + " and is set in the scene only");
+      return refused(name + " takes " + other->second + " and " + restart);
     }
     std::vector<std::string_view> live;
     for (const ParameterInfo& candidate : parameters_) {
@@ -141,7 +142,7 @@ Assignment ParameterDirectory::check(std::string_view path, double value) const 
   }
   if (!parameter->obstacle.empty()) return refused(name + " would change nothing: " + parameter->obstacle);
   if (parameter->change == Change::restart) {
-    return refused(name + " cannot be changed while the session runs; start it again with --set " + name + "=VALUE");
+    return refused(name + " " + restart);
   }
   if (!parameter->range.contains(value) || !std::isfinite(value)) {
     const std::string range = range_text(parameter->range, parameter->dimension);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "flex/flexible_files.h"
+#include "scene/parameters.h"
 #include "scene_text.h"
 #include "support/flex_beams.h"
 #include "temporary_folder.h"
@@ -97,6 +98,18 @@ TEST_F(FlexibleScene, ModesAreTakenByListByFrequencyOrNotAtAll) {
 
 TEST_F(FlexibleScene, OneSettingFreezesTheModes) {
   EXPECT_EQ(load(kBoom, {"Boom.flex_modes=none"}).mechanics.flexible_bodies[0].modes->modes(), 0U);
+}
+
+TEST_F(FlexibleScene, DampingAndModesNeedARestartAndARefusalSaysSo) {
+  ParameterDirectory directory{load()};
+  for (const std::string key : {"Boom.relative_damping", "Boom.flex_modes"}) {
+    EXPECT_EQ(directory.parse_assignment(key + "=0.02").status.text,
+              key + " takes a text and cannot be changed while the session runs; start it again with --set " + key +
+                  "=VALUE");
+  }
+  EXPECT_EQ(directory.parse_assignment("Boom.flex_frequency_limit=20 Hz").status.text,
+            "Boom.flex_frequency_limit cannot be changed while the session runs; start it again with --set "
+            "Boom.flex_frequency_limit=VALUE");
 }
 
 TEST_F(FlexibleScene, ANodeIsNamedAsIfItWereABody) {

@@ -56,7 +56,10 @@ TEST_F(Parameters, AnAssignmentIsRefusedWithAReason) {
   EXPECT_EQ(refusal("Rod.mass=5 m"),
             "Rod.mass: '5 m' is a length; expected a mass such as '500 kg', or a bare number in kg");
   EXPECT_EQ(refusal("Rod.mass=.nan"), "Rod.mass: '.nan' is not finite; expected a finite number");
-  EXPECT_EQ(refusal("Rod.relative_to=Ground"), "Rod.relative_to takes the name of a body and is set in the scene only");
+  EXPECT_EQ(
+      refusal("Rod.relative_to=Ground"),
+      "Rod.relative_to takes the name of a body and cannot be changed while the session runs; start it again with "
+      "--set Rod.relative_to=VALUE");
   EXPECT_EQ(refusal("Rod.mass"),
             "'Rod.mass' is not an assignment; expected Element.key=value, such as 'Bag.mass=1500kg'");
 }
