@@ -1,6 +1,6 @@
-// What modes cost: the mechanics of the truck crane with its jib boom rigid, frozen, and with more and more modes, of
-// 20 and of 200 nodes; and a chain of five booms of which none, one or all bend. Beside each the rigid one of the same
-// run.
+// What bending costs: the mechanics of the truck crane with its jib boom rigid, frozen, with more and more modes, of 20
+// and of 200 nodes, and in segments; and a chain of five booms of which none, one or all bend. Beside each the rigid
+// one of the same run.
 //
 //   flexible_cost                    tables of microseconds per simulated millisecond
 //   flexible_cost --steps NAME N     N steps of one mechanism and nothing else, for a counter of instructions; prints
@@ -33,8 +33,8 @@ namespace {
 
 using namespace slew;
 
-constexpr SimDuration kH = milliseconds(1);
-constexpr StepIndex kSteps = 3000;  // rest, lift
+constexpr SimDuration kH = milliseconds(1);  // without segments
+constexpr int kMilliseconds = 3000;          // rest, lift
 constexpr int kRounds = 15;
 
 double thread_seconds() {
@@ -62,6 +62,8 @@ struct Boom {
   std::string name;
   int modes = 0, nodes = 20;  // modes below zero: rigid
   flex::GeometricStiffening stiffening = flex::GeometricStiffening::none;
+  int segments = 0;                       // 0: by modes
+  const char* longest_substep = nullptr;  // that a whole number of them makes the step of the session, for segments
 };
 
 const std::vector<Boom>& booms() {
@@ -74,12 +76,20 @@ const std::vector<Boom>& booms() {
       {"6", 6},
       {"12", 12},
       {"12_of_200_nodes", 12, 200},
+      {.name = "5_segments", .segments = 5, .longest_substep = "250 us"},
+      {.name = "10_segments", .segments = 10, .longest_substep = "50 us"},
+      {.name = "20_segments", .segments = 20, .longest_substep = "13.9 us"},
   };
   return list;
 }
 
 scene::Scene crane(const Boom& boom) {
   const std::string folder = SLEWRING_SOURCE_DIR "/scenes/";
+  if (boom.segments > 0) {
+    return scene::load_file(folder + "truck_crane_segmented.yaml",
+                            {fmt::format("Truck_JibBoom.segments={}", boom.segments),
+                             fmt::format("mechanics.max_substep={}", boom.longest_substep)});
+  }
   if (boom.modes < 0) return scene::load_file(folder + "truck_crane.yaml", {"hydraulics.minimum_step=1e-8 s"});
   scene::Scene scene = scene::load_file(folder + "truck_crane_flexible.yaml");
   scene.mechanics.flexible_bodies[0].modes = jib_modes(boom.nodes, boom.modes, boom.stiffening);
@@ -101,14 +111,16 @@ Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics)
   wish.operating = io::Operator::script;
   wish.recording = io::Recording::none;
   const io::IoConfig config = io::make_config(scene, wish);
-  io::InputGate gate(config.channels, config.gate, kH);
+  const SimDuration H = scene.session.step_duration();
+  io::InputGate gate(config.channels, config.gate, H);
   std::vector<double> raw(gate.size());
   coupling::OwnSample m, h;
   static_cast<void>(mechanics.first_sample(m));
   static_cast<void>(hydraulics.start({&m.mechanism, nullptr}, h));
   static_cast<void>(mechanics.start({nullptr, &h.actuators}, m));
-  for (StepIndex n = 0; n < kSteps; ++n) {
-    for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = script.value(i, start_of(n, kH));
+  const StepIndex steps = kMilliseconds * milliseconds(1).ns / H.ns;
+  for (StepIndex n = 0; n < steps; ++n) {
+    for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = script.value(i, start_of(n, H));
     gate.advance(n, raw, 0);
     std::vector<double> controls;
     for (std::size_t i = 0; i < gate.size(); ++i) controls.push_back(gate.control(i));
@@ -123,16 +135,20 @@ Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics)
   return tape;
 }
 
-// A mechanism without its surroundings: Runge-Kutta steps of 1 ms from a start.
+// A mechanism without its surroundings: Runge-Kutta steps from a start, of 1 ms or of what segments need.
 class Falling {
  public:
-  explicit Falling(multibody::MechanicsDef def) : model_(build(def)), ws_(model_), start_(start_state(model_)) {
+  explicit Falling(multibody::MechanicsDef def)
+      : h_(def.segmented_bodies.empty() ? kH.seconds() : def.max_substep),
+        model_(build(def)),
+        ws_(model_),
+        start_(start_state(model_)) {
     moving_ = start_;
   }
   double time(int steps) {
     multibody::copy_state(start_, moving_);
     const double begin = thread_seconds();
-    for (int i = 0; i < steps; ++i) is_right_ = advance_free(model_, moving_, ws_, kH.seconds()) && is_right_;
+    for (int i = 0; i < steps; ++i) is_right_ = advance_free(model_, moving_, ws_, h_) && is_right_;
     return (thread_seconds() - begin) / steps;
   }
   [[nodiscard]] std::uint64_t hash() const {
@@ -148,6 +164,7 @@ class Falling {
     def.shapes.clear();
     return multibody::build_model(def);
   }
+  double h_;  // s
   multibody::Model model_;
   multibody::Workspace ws_;
   multibody::State start_, moving_;
@@ -187,11 +204,11 @@ struct Crane {
     static_cast<void>(mechanics.start({nullptr, &tape.actuators[0]}, sample));
     iterations = 0;
     const double begin = thread_seconds();
-    for (StepIndex n = 0; n < kSteps; ++n) {
-      const auto i = static_cast<std::size_t>(n);
+    for (std::size_t i = 0; i < tape.controls.size(); ++i) {
+      const auto n = static_cast<StepIndex>(i);
       iterations += mechanics.step(n, {nullptr, &tape.actuators[i]}, tape.controls[i], sample).iterations;
     }
-    node_times.push_back((thread_seconds() - begin) / static_cast<double>(kSteps));
+    node_times.push_back((thread_seconds() - begin) / kMilliseconds);
     alone_times.push_back(alone.time(200));
   }
 
@@ -221,7 +238,7 @@ int print_tables() {
   for (const auto& crane : cranes) {
     const double own = median(crane->node_times), bare = median(crane->alone_times);
     fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", crane->name, own * 1e6, own / node,
-               crane->iterations / static_cast<double>(kSteps), bare * 1e6, bare / alone);
+               crane->iterations / kMilliseconds, bare * 1e6, bare / alone);
     is_right = is_right && crane->alone.is_right();
   }
   fmt::print("\n| chain of five booms, bending | RK4 step [us] | over rigid |\n|---|---|---|\n");
