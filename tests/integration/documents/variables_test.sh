@@ -19,11 +19,12 @@ for type in $(sed -n 's/^`type: \([a-z0-9_]*\)`.*/\1/p' "$source/docs/scene-form
 done > "$scratch/wrong"
 
 # quantity and unit of all variables: El.position.x becomes El.position, El.point1.depth El.pointN.depth, a node of a
-# flexible body the body, El.modal_velocity_2 El.modal_velocity_k; what belongs to no element keeps its name
+# flexible body the body but for its deflection and stresses, El.modal_velocity_2 El.modal_velocity_k; what belongs to no
+# element keeps its name
 for scene in "${scenes[@]}"; do "$slewring" variables "$scene" 2> /dev/null; done |
   awk '$1 != "variable" {
     name = $1; $1 = ""; $NF = ""; gsub(/^ +| +$/, "")
-    if (name !~ /^(mechanics|hydraulics)\./) { sub(/^[^.]*/, "El", name); sub(/\.point[1-8]\./, ".pointN.", name); sub(/\.(Node|Segment|Connector)[0-9]+\./, ".", name); sub(/modal_coordinate_[0-9]+/, "modal_coordinate_k", name); sub(/modal_velocity_[0-9]+/, "modal_velocity_k", name); sub(/\.[wxyz]$/, "", name) }
+    if (name !~ /^(mechanics|hydraulics)\./) { sub(/^[^.]*/, "El", name); sub(/\.point[1-8]\./, ".pointN.", name); sub(/\.Node[0-9]+\.deflection/, ".NodeN.deflection", name); sub(/\.Element[0-9]+\.Node[0-9]+\.Point[0-9]+\./, ".ElementE.NodeN.PointP.", name); sub(/\.(Node|Segment|Connector)[0-9]+\./, ".", name); sub(/modal_coordinate_[0-9]+/, "modal_coordinate_k", name); sub(/modal_velocity_[0-9]+/, "modal_velocity_k", name); sub(/\.[wxyz]$/, "", name) }
     print name "\t" $0 }' | sort -u > "$scratch/variables"
 
 # quantities and the text that holds the units: the second column of a row, or the third
