@@ -143,6 +143,10 @@ TEST_F(Program, CheckAcceptsTheScenesOfTheRepository) {
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_TRUE(contains(result.out, "ok")) << result.out;
   }
+  // its plots are there with frozen modes too, when it has no flex node
+  const CommandResult frozen =
+      slewring({"check", scene_file("truck_crane_flexible.yaml"), "--set", "Truck_JibBoom.flex_modes=none"});
+  EXPECT_EQ(frozen.code, 0) << frozen.err;
 }
 
 TEST_F(Program, AMissingSceneIsNamed) {
