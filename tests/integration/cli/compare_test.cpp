@@ -47,6 +47,18 @@ TEST_F(CompareVerb, PrintsTheTableAndWritesPictureAndValues) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5) << csv;
 }
 
+// nodes of flexible bodies are joints of the mechanism, not of the scene
+TEST_F(CompareVerb, AFlexibleBodyRunsInEveryFormulation) {
+  for (const std::string scene : {"truck_crane_flexible", "truck_crane_segmented"}) {
+    const CommandResult result = compare(scene + ".yaml", {"--until", "0.01s", "--repeats", "1", "--json"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_TRUE(json.at("is_complete").get<bool>());
+    EXPECT_FALSE(json.at("rows").empty());
+    for (const nlohmann::json& row : json.at("rows")) EXPECT_TRUE(row.at("has_run").get<bool>()) << scene << row;
+  }
+}
+
 TEST_F(CompareVerb, ALoopClosesInEveryFormulationThatRuns) {
   const CommandResult result = compare(
       "slider_crank.yaml", {"--until", "0.5s", "--steps", "1ms", "--repeats", "1", "--json", "-o", "crank.html"});
