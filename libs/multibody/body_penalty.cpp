@@ -32,6 +32,10 @@ double moving_mass(const Model& model) noexcept {
   double mass = 0;
   for (std::size_t i = 1; i < model.links.size(); ++i) mass += model.links[i].mass;
   for (const CoupledMass& coupled : model.coupled) mass += coupled.m1 + coupled.m2;
+  // a body whose frame is held by Ground moves in its modes alone
+  for (const FlexiblePart& part : model.parts) {
+    if (part.link == 0 && part.modes > 0) mass += part.source->mass;
+  }
   return mass;
 }
 

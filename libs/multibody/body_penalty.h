@@ -86,7 +86,7 @@ struct PenaltyWorkspace {
 // m: the largest distance of a joint's point from the origin of a moving link that it is fixed to, or radius of
 // gyration about such an origin.
 [[nodiscard]] double penalty_length(const Model& model, std::span<const Constraint> constraints) noexcept;
-// kg: links and the dummies between them.
+// kg: links, the dummies between them, and flexible bodies whose frames are at Ground.
 [[nodiscard]] double moving_mass(const Model& model) noexcept;
 
 // Joints of the tree and whatever else holds links to each other. Allocates.
