@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
+#include <string>
 
 #include "multibody/dynamics.h"
+#include "multibody/flexible/deflection.h"
 
 namespace slew::multibody {
 namespace {
@@ -40,16 +43,39 @@ bool is_singular(const Link& link, const Workspace& ws, std::size_t i) {
   return !(1 / largest > kSmallestShare * turning);
 }
 
+// What hangs on the joint has inertia as long as no flexible body is bent: the name of the body that is bent furthest.
+std::string bent_body(const Model& model, const State& state, std::size_t link, Workspace& ws) {
+  State straight = state;
+  for_each_mode(model, [&](std::size_t q, std::size_t) { straight.q[q] = 0; });
+  forward_dynamics(model, straight.q, straight.u, {}, ws);
+  if (is_singular(model.links[link], ws, link)) return "";
+  std::string name;
+  double furthest = 0;
+  for (const FlexiblePart& part : model.parts) {
+    const std::span<const double> q(state.q.data() + part.q, part.modes);
+    const double share = largest_deflection(*part.source, part.watched, q).size / part.length;
+    if (share > furthest) furthest = share, name = part.name;
+  }
+  return name;
+}
+
 }  // namespace
 
 void find_singular_joints(const MechanicsDef& mechanics, Problems& problems) {
   const Model model = build_model(mechanics);
-  Workspace ws(model);
+  Workspace ws(model), scratch(model);
   const State state = start_state(model);
   forward_dynamics(model, state.q, state.u, {}, ws);
   for (const Joint& joint : model.joints) {
-    if (joint.link == 0 ||
-        !is_singular(model.links[static_cast<std::size_t>(joint.link)], ws, static_cast<std::size_t>(joint.link))) {
+    const auto link = static_cast<std::size_t>(joint.link);
+    if (joint.link == 0 || !is_singular(model.links[link], ws, link)) continue;
+    const std::string bent = bent_body(model, state, link, scratch);
+    if (!bent.empty()) {
+      problems.push_back(
+          {bent + ".flex_modes",
+           "bent as it is at the start, its modes with their shortening leave no inertia to the joint '" + joint.name +
+               "'",
+           "fewer modes, less load, files without geometric stiffening, or type segmented", ""});
       continue;
     }
     problems.push_back({joint.name,
