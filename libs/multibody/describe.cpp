@@ -27,9 +27,11 @@ std::string describe(const Model& model, const FlexiblePart& part) {
     if (is_its_own) nodes += (nodes.empty() ? "" : ", ") + joint.name;
   }
   if (part.modes == 0) return fmt::format("{}: no mode of '{}', rigid", part.name, part.source->source);
-  return fmt::format("{}: {} of '{}', {:.4g} to {:.4g} rad/s by themselves; nodes in use: {}", part.name,
+  return fmt::format("{}: {} of '{}', {:.4g} to {:.4g} rad/s by themselves, {}; nodes in use: {}", part.name,
                      part.modes == 1 ? "1 mode" : fmt::format("{} modes", part.modes), part.source->source, omega(0),
-                     omega(part.modes - 1), nodes.empty() ? "none" : nodes);
+                     omega(part.modes - 1),
+                     part.is_shortening() ? "with geometric stiffening" : "without geometric stiffening (no buckling)",
+                     nodes.empty() ? "none" : nodes);
 }
 
 std::string describe(const SegmentedPart& part) {
