@@ -241,7 +241,7 @@ void check_caps(const Scene& scene, Problems& problems) {
 
 // The condensed step is the trapezoidal rule's: with another rule on the mechanics' side the exchange grows.
 void check_condensed(const Scene& scene, Problems& problems) {
-  if (scene.session.flexible != coupling::ElasticExchange::condensed) return;
+  if (scene.session.flexible != coupling::ElasticExchange::condensed || !scene.has_modes()) return;
   if (multibody::step_rule(scene.mechanics).integrator != multibody::Integrator::trapezoidal) {
     problems.push_back({"session.flexible", "'condensed' goes with the trapezoidal integrator alone",
                         "mechanics.integrator trapezoidal, or flexible once", ""});
@@ -265,6 +265,9 @@ void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Proble
   }
   check_caps(scene, problems);
   check_condensed(scene, problems);
+  if (scene.session.flexible != coupling::ElasticExchange::once && !scene.has_modes()) {
+    warnings.push_back({"session.flexible", "it has no effect: no body of the scene keeps modes", "", ""});
+  }
 }
 
 bool Scene::has_modes() const noexcept {

@@ -119,6 +119,17 @@ TEST_F(Flex, CondensedGoesWithOneTrapezoidalStep) {
   EXPECT_NE(parts.find("'condensed' goes with one sub-step, the mechanics has 3"), std::string::npos) << parts;
 }
 
+TEST_F(Flex, AnExchangeWithoutModesIsWarnedOf) {
+  const auto warnings = [](const char* modes) {
+    const scene::Scene scene = load({"session.flexible=every_step", std::string("Truck_JibBoom.flex_modes=") + modes});
+    return std::count_if(scene.warnings.begin(), scene.warnings.end(), [](const std::string& warning) {
+      return warning.find("it has no effect: no body of the scene keeps modes") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(warnings("none"), 1);
+  EXPECT_EQ(warnings("\"1;2\""), 0);
+}
+
 TEST_F(Flex, RecoversEnergyDeflectionAndStress) {
   const scene::Scene scene = load();
   FlexSubsystem flex(scene);
