@@ -17,7 +17,8 @@ std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scen
 }
 
 DirectSession::DirectSession(const scene::Scene& scene)
-    : mechanics_(make_subsystem(Role::mechanics, scene)), hydraulics_(make_subsystem(Role::hydraulics, scene)),
+    : mechanics_(make_subsystem(Role::mechanics, scene)),
+      hydraulics_(make_subsystem(Role::hydraulics, scene)),
       flex_(make_subsystem(Role::flex, scene)),
       elastic_exchange_(scene.session.flexible),
       flexible_every_(scene.flexible_every()) {}

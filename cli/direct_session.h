@@ -48,7 +48,7 @@ class DirectSession {
   std::unique_ptr<coupling::Subsystem> hydraulics_;
   std::unique_ptr<coupling::Subsystem> flex_;
   coupling::ElasticExchange elastic_exchange_;
-  StepIndex flexible_every_;  // steps between two samples for and of flexible bodies
+  StepIndex flexible_every_;              // steps between two samples for and of flexible bodies
   coupling::OwnSample mechanics_sample_;  // at t_n
   coupling::OwnSample hydraulics_sample_;
   coupling::OwnSample flex_sample_;

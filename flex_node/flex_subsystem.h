@@ -3,10 +3,10 @@
 //
 // The mechanics owns the modal coordinates and integrates them with the coupled mass matrix; this side states
 //   Q - K (q - q_ref) - D (u - u_ref)                                                                  (1)
-// once, about q_ref = 0, or at every step about the mechanics' coordinates of that step (scene: session.flexible). It then
-// has no state: a step only looks at the mechanics' sample of the step's end.
-// Scheme B (session.flexible: condensed): this side keeps q, u and moves them by the trapezoidal rule. With the mean
-// accelerations of the step eliminated, the mechanics sees modes of the mass M and a constant force,
+// once, about q_ref = 0, or at every step about the mechanics' coordinates of that step (scene: session.flexible). It
+// then has no state: a step only looks at the mechanics' sample of the step's end. Scheme B (session.flexible:
+// condensed): this side keeps q, u and moves them by the trapezoidal rule. With the mean accelerations of the step
+// eliminated, the mechanics sees modes of the mass M and a constant force,
 //   M = 1 + H/2 D + H^2/4 K,   Q = -K (q + H/2 u) - D u                                                (2)
 // and tells the rates at the step's end, from which   q <- q + H/2 (u + u_end),   u <- u_end             (3)
 // Not covered: stress by modes that the body does not take; loads and accelerations are not used for it.

@@ -1,5 +1,5 @@
-// The mechanics' side of flexible bodies in a session: where they are, for the flex node, and the elastic forces that it
-// states for their modes.
+// The mechanics' side of flexible bodies in a session: where they are, for the flex node, and the elastic forces that
+// it states for their modes.
 #pragma once
 
 #include <cstddef>

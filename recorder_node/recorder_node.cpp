@@ -330,8 +330,8 @@ void RecorderNode::begin_streams() {
   }
 }
 
-// Blocks of variables, and the samples of and for flexible bodies, come every k-th step from step 0 on. They are not asked
-// for again: what is missing is counted.
+// Blocks of variables, and the samples of and for flexible bodies, come every k-th step from step 0 on. They are not
+// asked for again: what is missing is counted.
 void RecorderNode::record_variables(const transport::Received& message, const wire::Header& header,
                                     EpochStreams& streams) {
   wire::VariableBlock block;

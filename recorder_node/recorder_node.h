@@ -117,7 +117,7 @@ class RecorderNode final : public node::Node {
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;
-  EpochStreams former_;        // of the epoch before: its last messages may come after the tick that ended it
+  EpochStreams former_;  // of the epoch before: its last messages may come after the tick that ended it
   // steps between two blocks of a topic, as those that came say; 0: unknown yet
   std::array<StepIndex, wire::kTopics> block_every_{};
   StepIndex reported_step_ = kJoinStep;

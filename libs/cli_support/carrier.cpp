@@ -19,9 +19,8 @@ TopicSet topics_written(Role role) noexcept {
               Topic::variables, Topic::controller_lease, Topic::control_reply, Topic::health,
               Topic::resend};
     case Role::mechanics:
-      return {Topic::node_status,        Topic::mechanism, Topic::flexible,
-              Topic::variable_directory, Topic::variables, Topic::health,
-              Topic::resend};
+      return {Topic::node_status, Topic::mechanism, Topic::flexible, Topic::variable_directory,
+              Topic::variables,   Topic::health,    Topic::resend};
     case Role::hydraulics:
       return {Topic::node_status, Topic::actuators, Topic::variable_directory,
               Topic::variables,   Topic::health,    Topic::resend};
@@ -40,9 +39,8 @@ TopicSet topics_written(Role role) noexcept {
 TopicSet topics_read(Role role) noexcept {
   switch (role) {
     case Role::io:
-      return {Topic::session, Topic::node_status,      Topic::mechanism,       Topic::actuators,
-              Topic::elastic, Topic::controller_input, Topic::control_request, Topic::health,
-              Topic::resend};
+      return {Topic::session,          Topic::node_status,     Topic::mechanism, Topic::actuators, Topic::elastic,
+              Topic::controller_input, Topic::control_request, Topic::health,    Topic::resend};
     case Role::mechanics:
       return {Topic::session, Topic::node_status, Topic::tick,  Topic::actuators,
               Topic::elastic, Topic::health,      Topic::resend};

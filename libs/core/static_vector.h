@@ -1,5 +1,5 @@
-// Sequence with inline storage and a fixed capacity: no heap in wire messages and step loops. A copy moves the elements,
-// not the capacity.
+// Sequence with inline storage and a fixed capacity: no heap in wire messages and step loops. A copy moves the
+// elements, not the capacity.
 #pragma once
 
 #include <array>

@@ -298,8 +298,8 @@ bool PhysicsNode::advance_init(std::int64_t now_ns) {
   return true;
 }
 
-// In `real` pace the next tick is due a step later. Nobody waits for a follower: it never asks before its sample would be
-// there in that pace.
+// In `real` pace the next tick is due a step later. Nobody waits for a follower: it never asks before its sample would
+// be there in that pace.
 void PhysicsNode::expect_next(std::int64_t now_ns) noexcept {
   const std::int64_t stride_ns = std::min(samples_.stride() * member_.session().step_ns, kResendAtMost.ns);
   const bool has_time = is_follower() || member_.session().pace == wire::Pace::real;

@@ -91,8 +91,8 @@ void SampleExchange::receive(std::span<const std::byte> bytes, const wire::Heade
 }
 
 bool SampleExchange::find_start(coupling::PartnerSamples& partners) const noexcept {
-  return take(actuators_, actuators_.find(0), partners.actuators) && take(elastic_, elastic_.init(), partners.elastic) &&
-         take(mechanism_, mechanism_.init(), partners.mechanism) &&
+  return take(actuators_, actuators_.find(0), partners.actuators) &&
+         take(elastic_, elastic_.init(), partners.elastic) && take(mechanism_, mechanism_.init(), partners.mechanism) &&
          take(flexible_, flexible_.find(0), partners.flexible);
 }
 

@@ -1,5 +1,5 @@
-// The samples of one physics node: those of its partners by step, as long as they are needed, and its own, kept for those
-// that missed one.
+// The samples of one physics node: those of its partners by step, as long as they are needed, and its own, kept for
+// those that missed one.
 //
 //   role         reads                                          writes
 //   mechanics    actuators, elastic                             mechanism, flexible

@@ -24,11 +24,20 @@ using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 // in the order of wire::Topic
 constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors = {
-    &slewring_SessionDescription_desc, &slewring_NodeStatus_desc,      &slewring_Tick_desc,
-    &slewring_MechanismMessage_desc,   &slewring_ActuatorMessage_desc, &slewring_FlexibleMessage_desc,
-    &slewring_ElasticMessage_desc,     &slewring_VariableDirectory_desc,
-    &slewring_VariableBlock_desc,      &slewring_ControllerInput_desc, &slewring_ControllerLease_desc,
-    &slewring_ControlRequest_desc,     &slewring_ControlReply_desc,    &slewring_Health_desc,
+    &slewring_SessionDescription_desc,
+    &slewring_NodeStatus_desc,
+    &slewring_Tick_desc,
+    &slewring_MechanismMessage_desc,
+    &slewring_ActuatorMessage_desc,
+    &slewring_FlexibleMessage_desc,
+    &slewring_ElasticMessage_desc,
+    &slewring_VariableDirectory_desc,
+    &slewring_VariableBlock_desc,
+    &slewring_ControllerInput_desc,
+    &slewring_ControllerLease_desc,
+    &slewring_ControlRequest_desc,
+    &slewring_ControlReply_desc,
+    &slewring_Health_desc,
     &slewring_ResendRequest_desc,
 };
 

@@ -217,7 +217,8 @@ void write_step(KnownRecording& recording, StepIndex step) {
   for (coupling::ModeArray* list : {&elastic.sample.Q, &elastic.sample.q_ref, &elastic.sample.u_ref}) {
     fill(*list, n % 5, ++seed);
   }
-  for (coupling::ModePairs* list : {&elastic.sample.K, &elastic.sample.D, &elastic.sample.M}) fill(*list, (n % 5) * (n % 5), ++seed);
+  for (coupling::ModePairs* list : {&elastic.sample.K, &elastic.sample.D, &elastic.sample.M})
+    fill(*list, (n % 5) * (n % 5), ++seed);
   fill(elastic.sample.strain_energy, n % 3, ++seed);
   recording.write(elastic, step);
 

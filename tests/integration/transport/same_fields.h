@@ -78,9 +78,9 @@ inline bool same(const slewring_FlexibleMessage& a, const wire::FlexibleMessage&
 }
 
 inline bool same(const slewring_ElasticSample& a, const coupling::ElasticSample& b) {
-  return same_numbers(a.Q, b.Q) && same_numbers(a.K, b.K) && same_numbers(a.D, b.D) && same_numbers(a.M, b.M) && same_numbers(a.q_ref, b.q_ref) &&
-         same_numbers(a.u_ref, b.u_ref) && same_numbers(a.strain_energy, b.strain_energy) &&
-         a.is_constant == b.is_constant;
+  return same_numbers(a.Q, b.Q) && same_numbers(a.K, b.K) && same_numbers(a.D, b.D) && same_numbers(a.M, b.M) &&
+         same_numbers(a.q_ref, b.q_ref) && same_numbers(a.u_ref, b.u_ref) &&
+         same_numbers(a.strain_energy, b.strain_energy) && a.is_constant == b.is_constant;
 }
 
 inline bool same(const slewring_ElasticMessage& a, const wire::ElasticMessage& b) {
