@@ -5,7 +5,8 @@
 //   U = (IA + E) S,  D = S^T U,  Ia = IA + E - U D^-1 U^T,  passed on to the parent through X       (2)
 // D^-1 is zero along directions that are prescribed (motions/drive.h).
 // E is what dummies between the link and its parent add. They see both links' motion, so E differs between the two
-// sides of (2): E_Vq and E_qq for motion of the joint alone, E_VV for motion of both links as one rigid body.
+// sides of (2): E_Vq and E_qq for motion of the joint alone, E_VV for motion of both links as one rigid body. Those
+// with a point on another node: flexible/node_dummies.h.
 #include <cstddef>
 
 #include "multibody/joint_directions.h"
@@ -259,6 +260,7 @@ void factorize_floating(const Model& model, Workspace& ws, std::size_t i) noexce
 }  // namespace
 
 void factorize(const Model& model, Workspace& ws) noexcept {
+  if (!model.node_dummies.empty()) begin_node_dummies(model, ws);
   for (std::size_t i = model.links.size() - 1; i > 0; --i) {
     if (model.links[i].has_parts()) eliminate_parts(model, i, ws);
     switch (model.links[i].joint) {
@@ -283,6 +285,7 @@ void factorize(const Model& model, Workspace& ws) noexcept {
         add_node(model, i, ws);
         break;
     }
+    if (model.links[i].has_node_dummies()) couple_node_dummies(model, i, ws);
   }
   if (model.links[0].has_parts()) eliminate_parts(model, 0, ws);
 }

@@ -71,7 +71,9 @@ void solve_forward(const Model& model, Workspace& ws, std::span<const double> re
     ws.delta_a[i] = a;
     if (!has_modes) continue;
     if (link.joint == LinkJoint::node) follow_node(model, i, udot, ws);
+    if (link.has_node_dummies()) pull_joint(model, i, udot, ws);
     for (int k = link.first_part; k < link.part_end; ++k) solve_modes(model, at(k), ws, residual, udot);
+    if (link.has_node_dummies()) pull_modes(model, i, udot, ws);
   }
 }
 
@@ -170,6 +172,13 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
   }
 }
 
+[[gnu::noinline]] void push_to_dummies(const Model& model, Workspace& ws, std::size_t link, const Rows& rows,
+                                       std::size_t k) noexcept {
+  const std::size_t links = model.links.size(), speeds = ws.udot.size();
+  push_back(model, link, ws, {rows.residual + k * speeds, speeds}, {rows.rate + k * speeds, speeds},
+            std::span(ws.pass_n).subspan(k * links, links), std::span(ws.pass_f).subspan(k * links, links));
+}
+
 // ws.pass_n, ws.pass_f hold minus the wrenches on the links
 void pass_back(const Model& model, Workspace& ws, std::span<const int> supports, const Rows& rows) noexcept {
   const std::size_t links = model.links.size(), speeds = ws.udot.size();
@@ -187,6 +196,7 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
       if (has_modes && link.joint == LinkJoint::node) pass_node(model, ws, link, rows.residual + k * speeds, n, f);
       pass_link(link, m, factor, rows.tau == nullptr ? nullptr : rows.tau + u, rows.residual + k * speeds + u,
                 rows.rate + k * speeds + u, n, f);
+      if (link.has_node_dummies()) push_to_dummies(model, ws, at(i), rows, k);
       if (link.parent == 0) continue;
       ws.pass_n[k * links + at(link.parent)] += n + cross(m.r, f);
       ws.pass_f[k * links + at(link.parent)] += f;

@@ -29,6 +29,23 @@ void put(Vec3 a, double* x) noexcept {
 
 // ---- building -------------------------------------------------------------------------------------------------
 
+namespace {
+
+// those of dummies between links that no joint connects
+void couple_points(const Model& model, BodyModel& body) {
+  std::vector<std::pair<int, int>>& couplings = body.pattern.couplings;
+  for (const NodeDummy& dummy : model.node_dummies) {
+    if (dummy.inner == 0 || dummy.outer == 0) continue;
+    const auto is_same = [&](const std::pair<int, int>& pair) {
+      return std::minmax(pair.first, pair.second) == std::minmax(dummy.outer - 1, dummy.inner - 1);
+    };
+    if (std::any_of(couplings.begin(), couplings.end(), is_same)) continue;
+    couplings.emplace_back(std::max(dummy.outer, dummy.inner) - 1, std::min(dummy.outer, dummy.inner) - 1);
+  }
+}
+
+}  // namespace
+
 BodyModel build_body_model(const Model& model) {
   constexpr JointType kTypes[] = {JointType::revolute, JointType::prismatic, JointType::spherical,
                                   JointType::floating, JointType::universal, JointType::cylindrical,
@@ -58,6 +75,7 @@ BodyModel build_body_model(const Model& model) {
       body.pattern.couplings.emplace_back(static_cast<int>(i) - 1, link.parent - 1);
     }
   }
+  couple_points(model, body);
   for (const Cut& cut : model.cuts) {
     if (cut.rows.empty()) continue;
     const int node = static_cast<int>(body.pattern.nodes.size());

@@ -21,6 +21,10 @@ std::vector<std::pair<int, int>> coupled_links(const Model& model, std::span<con
     if (link1 > 0 && link2 > 0 && link1 != link2) pairs.insert(std::minmax(link1 - 1, link2 - 1));
   };
   for (const Constraint& constraint : constraints) couple(constraint.link1, constraint.link2);
+  for (const CoupledMass& mass : model.coupled) {
+    const LineElement& line = model.lines[static_cast<std::size_t>(mass.line)];
+    couple(line.link1, line.link2);
+  }
   // elements may get constants while running
   for_each_coupling(model, couple);
   return {pairs.begin(), pairs.end()};

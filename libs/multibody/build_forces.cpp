@@ -134,6 +134,9 @@ class DummyBuilder {
       if (child.coupled_end == child.first_coupled) child.first_coupled = static_cast<int>(i);
       child.coupled_end = static_cast<int>(i) + 1;
     }
+    const std::size_t first = model_.coupled.size();
+    model_.coupled.insert(model_.coupled.end(), at_nodes_.begin(), at_nodes_.end());
+    add_node_dummies(model_, first);
   }
 
  private:
@@ -161,7 +164,9 @@ class DummyBuilder {
     }
     coupled.is_point1_on_child = line.link1 > line.link2;
     coupled.child = coupled.is_point1_on_child ? line.link1 : line.link2;
-    model_.coupled.push_back(coupled);
+    const Link& child = model_.links[at(coupled.child)];
+    const bool is_joint_between = child.joint != LinkJoint::node && child.parent == std::min(line.link1, line.link2);
+    (is_joint_between ? model_.coupled : at_nodes_).push_back(coupled);
   }
 
   // both points on one link: the dummies are part of it
@@ -187,6 +192,7 @@ class DummyBuilder {
 
   const MechanicsDef& def_;
   Model& model_;
+  std::vector<CoupledMass> at_nodes_;
 };
 
 }  // namespace

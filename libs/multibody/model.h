@@ -30,6 +30,7 @@
 #include "multibody/defs.h"
 #include "multibody/elements/element_set.h"
 #include "multibody/flexible/flexible_part.h"
+#include "multibody/flexible/node_dummies.h"
 #include "multibody/flexible/segmented_part.h"
 #include "multibody/joint_law.h"
 #include "multibody/motions/drive.h"
@@ -74,9 +75,12 @@ struct Link {
   int node = -1;       // Model::nodes, of a link with LinkJoint::node
   int first_part = 0;  // flexible parts whose frame this link is: [first_part, part_end) of Model::parts
   int part_end = 0;
+  int first_node_dummy = 0;  // Model::node_dummies across this link's joint: [first_node_dummy, node_dummy_end)
+  int node_dummy_end = 0;
   bool is_driven = false;
   std::array<int, 2> drive = {-1, -1};  // Model::drives, by coordinate; -1: free
   [[nodiscard]] bool has_parts() const noexcept { return part_end > first_part; }
+  [[nodiscard]] bool has_node_dummies() const noexcept { return node_dummy_end > first_node_dummy; }
 };
 
 // Something with a mass that is fixed to a link: a body, a static dummy, a force dummy between merged bodies.
@@ -143,8 +147,8 @@ struct AngleElement {
   int path_end = 0;
 };
 
-// Dummies of one force: masses without degrees of freedom, whose points lie on a link and on its parent, or on one
-// link.
+// Dummies of one force: masses without degrees of freedom, whose points lie on a link and on its parent, on one link,
+// or, with nodes of flexible bodies, as flexible/node_dummies.h says.
 struct CoupledMass {
   int line = 0;   // LineElement
   int child = 0;  // link whose joint it spans; of one link: 0
@@ -245,8 +249,9 @@ struct Model {
   std::vector<FlexibleNode> nodes;
   std::vector<SegmentedPart> segmented;  // in the order of the scene
   std::vector<LumpedMass> lumped;
-  std::vector<CoupledMass> coupled;  // by child link
-  std::vector<CoupledMass> welded;   // within one link: lumped into it, but carried by both bodies of their line
+  std::vector<CoupledMass> coupled;     // by child link, then those of node_dummies
+  std::vector<NodeDummy> node_dummies;  // by child link
+  std::vector<CoupledMass> welded;      // within one link: lumped into it, but carried by both bodies of their line
   std::vector<LineElement> lines;
   std::vector<AngleElement> angles;
   ElementSet elements;  // all other kinds

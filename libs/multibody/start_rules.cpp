@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "multibody/assembly.h"
 #include "multibody/constraint.h"
+#include "multibody/flexible/node_span.h"
 #include "multibody/joint_axes.h"
 #include "multibody/start_pose.h"
 
@@ -18,6 +20,77 @@ using math::Vec3;
 
 // a start on a limit, by numbers with six digits and more
 constexpr double kLimitTolerance = 1e-6;  // m, rad
+
+// A dummy's mass couples the links of its two points, which the recursion takes within one body, across one joint, and
+// along the modes of one flexible body on either side of it (flexible/node_dummies.h).
+class DummyRules {
+ public:
+  struct Verdict {
+    const char* what = nullptr;  // none: it is fine
+    const char* expected = nullptr;
+  };
+
+  DummyRules(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree)
+      : merged_(merged_into(mechanics, tree)),
+        parent_(merged_.size(), kGround),
+        flexible_(merged_.size(), kNoBody),
+        is_node_(merged_.size(), 0),
+        is_free_(merged_.size(), false),
+        across_(merged_.size(), kNoBody) {
+    for (const TreeEdge& edge : tree) {
+      const auto child = at(edge.child);
+      if (merged_[child] != edge.child) continue;
+      parent_[child] = merged_[at(edge.parent)];
+      const JointDef* joint = edge.joint == kNoJoint ? nullptr : &mechanics.joints[at(edge.joint)];
+      is_free_[child] = joint == nullptr || joint->type == JointType::floating;
+      if (joint != nullptr && joint->type == JointType::node) {
+        flexible_[child] = multibody::find_body(mechanics, joint->body1);
+        is_node_[child] = 1;
+      }
+    }
+  }
+
+  Verdict check(int body1, int body2) {
+    const int end1 = merged_[at(body1)], end2 = merged_[at(body2)];
+    if (end1 == end2) return {};
+    const std::optional<NodeSpan> span = node_span(end1, end2, parent_, is_node_);
+    if (!span) {
+      return {"acts between bodies that more than one joint connects",
+              "a force between neighbours; dummies on a force across more than one joint are not in this version"};
+    }
+    const bool is_joint_between = span->outer == span->child && span->inner == span->carrier;
+    if (is_joint_between || span->inner == kGround) return {};
+    if (span->child > 0 && is_free_[at(span->child)]) {
+      return {"acts between a node of a body on Ground and a body that no joint of the tree holds",
+              "a force between bodies that a joint connects, or one without dummies"};
+    }
+    return check_modes(*span);
+  }
+
+ private:
+  static std::size_t at(int body) { return static_cast<std::size_t>(body); }
+
+  // all nodes that ends and the joint are at, on its inner side, are of one body
+  Verdict check_modes(const NodeSpan& span) {
+    int unused = kNoBody;
+    int& known = span.child > 0 ? across_[at(span.child)] : unused;
+    for (const int link : {span.inner, span.carrier}) {
+      if (link == span.frame) continue;
+      if (known == kNoBody) known = flexible_[at(link)];
+      if (known == flexible_[at(link)]) continue;
+      return {
+          "couples nodes of two flexible bodies that are fixed to each other",
+          "points and joints at nodes of one of them; dummies that couple the modes of both are not in this version"};
+    }
+    return {};
+  }
+
+  std::vector<int> merged_, parent_;  // by body: that it is merged into; that its joint is on
+  std::vector<int> flexible_;         // whose node it is
+  std::vector<char> is_node_;
+  std::vector<bool> is_free_;
+  std::vector<int> across_;  // whose nodes dummies across the body's joint have ends at
+};
 
 class StartRules {
  public:
@@ -88,23 +161,15 @@ class StartRules {
     add(force.name + ".point2", "the force's points coincide at the start", "two points that stay apart");
   }
 
-  // a dummy's mass couples the links of its two points, which the recursion takes for parent and child only
-  void check_neighbours(const std::vector<TreeEdge>& tree) {
-    const std::vector<int> merged = merged_into(m_, tree);
-    std::vector<int> parent(merged.size(), kGround);
-    for (const TreeEdge& edge : tree) {
-      const auto child = static_cast<std::size_t>(edge.child);
-      if (merged[child] == edge.child) parent[child] = merged[static_cast<std::size_t>(edge.parent)];
-    }
+  void check_dummies(const std::vector<TreeEdge>& tree) {
+    DummyRules rules(m_, tree);
     for (const ForceDummyDef& dummy : m_.force_dummies) {
       for (const TranslationalForceDef& force : m_.translational_forces) {
         if (force.name != dummy.relative_to) continue;
-        const int a = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body1))];
-        const int b = merged[static_cast<std::size_t>(multibody::find_body(m_, force.body2))];
-        if (a == b || parent[static_cast<std::size_t>(a)] == b || parent[static_cast<std::size_t>(b)] == a) continue;
-        add(dummy.name + ".relative_to",
-            fmt::format("'{}' acts between bodies that more than one joint connects", force.name),
-            "a force between neighbours; dummies on a force across more than one joint are not in this version");
+        const DummyRules::Verdict verdict =
+            rules.check(multibody::find_body(m_, force.body1), multibody::find_body(m_, force.body2));
+        if (verdict.what == nullptr) continue;
+        add(dummy.name + ".relative_to", fmt::format("'{}' {}", force.name, verdict.what), verdict.expected);
       }
     }
   }
@@ -130,7 +195,7 @@ void check_start(const MechanicsDef& mechanics, std::span<const Pose> poses, con
   StartRules rules(mechanics, poses, problems);
   for (const JointDef& joint : mechanics.joints) rules.check_frames(joint);
   for (const TranslationalForceDef& force : mechanics.translational_forces) rules.check_start_length(force);
-  rules.check_neighbours(tree);
+  rules.check_dummies(tree);
 }
 
 }  // namespace slew::multibody

@@ -20,6 +20,10 @@ Workspace::Workspace(const Model& model)
       body_f(model.bodies.size()) {
   for (const FlexiblePart& part : model.parts) parts.emplace_back(part.modes);
   for (const FlexibleNode& node : model.nodes) nodes.emplace_back(node.shift.size());
+  const auto modes_of = [&](int part) { return part < 0 ? 0 : model.parts[static_cast<std::size_t>(part)].modes; };
+  for (const NodeDummy& dummy : model.node_dummies) {
+    node_dummies.emplace_back(modes_of(dummy.inner_part), modes_of(dummy.outer_part));
+  }
   const auto nq = model.start_q.size(), nu = model.start_u.size(), rows = model.rows.size();
   for (auto* by_u : {&tau, &residual, &udot, &u_stage, &u_sum, &udot_free, &residual_free}) by_u->assign(nu, 0.0);
   for (auto* by_q : {&q_stage, &qdot, &q_sum}) by_q->assign(nq, 0.0);

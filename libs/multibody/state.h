@@ -103,6 +103,7 @@ struct Workspace {
   std::vector<JointFactor> factor;
   std::vector<PartMotion> parts;
   std::vector<NodeMotion> nodes;
+  std::vector<NodeDummyMotion> node_dummies;
   std::vector<CoupledMotion> coupled;
   std::vector<LineMotion> lines;
   std::vector<AngleMotion> angles;

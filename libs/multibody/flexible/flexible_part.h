@@ -118,6 +118,8 @@ void follow_node(const Model& model, std::size_t link, std::span<const double> u
 
 // E^-1 times a right side by mode; they may be the same.
 void solve_mass(const PartMotion& motion, std::span<const double> right, std::span<double> x) noexcept;
+// The same for three right sides.
+void solve_mass(const PartMotion& motion, const std::vector<math::Vec3>& right, std::vector<math::Vec3>& x) noexcept;
 
 struct PartEnergy {
   double kinetic = 0, potential = 0;  // J, beyond those of the undeformed body

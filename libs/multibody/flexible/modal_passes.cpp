@@ -89,6 +89,10 @@ void solve_mass(const PartMotion& motion, std::span<const double> right, std::sp
   math::substitute_backward(motion.E.data(), size, x.data());
 }
 
+void solve_mass(const PartMotion& motion, const std::vector<Vec3>& right, std::vector<Vec3>& x) noexcept {
+  substitute(motion.E, right, x);
+}
+
 void follow_node(const Model& model, std::size_t link, std::span<const double> udot, Workspace& ws) noexcept {
   const auto node = at(model.links[link].node);
   const FlexiblePart& part = model.parts[at(model.nodes[node].part)];

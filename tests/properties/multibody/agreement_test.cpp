@@ -116,8 +116,41 @@ TEST_P(RandomTrees, ObeyLagrangesEquations) {
   EXPECT_LT(difference(to_vector(mechanism.ws.udot), expected), kTolerance);
 }
 
+// what the seeds with dummies at nodes are there for
+TEST(NodeDummies, AreOfEveryKindInTheRandomTrees) {
+  int within = 0, at_outer = 0, at_inner = 0, at_both = 0, in_pairs = 0;
+  for (unsigned seed = kFirstWithNodeDummies; seed < kFirstWithNodeDummies + 60; ++seed) {
+    const TreeOptions options =
+        with_modes_of(seed, {.bodies = 1 + static_cast<int>(seed) % 9, .two_coordinates = true});
+    const Model model = build_model(random_tree(seed, options).def);
+    int last = 0;
+    for (const NodeDummy& dummy : model.node_dummies) {
+      within += dummy.carrier == dummy.outer ? 1 : 0;
+      if (dummy.child == 0) continue;
+      const bool is_outer = dummy.outer_part >= 0, is_inner = dummy.inner_part >= 0;
+      at_outer += is_outer && !is_inner ? 1 : 0;
+      at_inner += is_inner && !is_outer ? 1 : 0;
+      at_both += is_inner && is_outer ? 1 : 0;
+      in_pairs += dummy.child == last ? 1 : 0;
+      last = dummy.child;
+    }
+  }
+  for (const int count : {within, at_outer, at_inner, at_both, in_pairs}) EXPECT_GE(count, 5);
+  for (const auto& [name, count] : {
+           std::pair("within", within),
+           {"outer", at_outer},
+           {"inner", at_inner},
+           {"both", at_both},
+           {"pairs", in_pairs},
+       }) {
+    RecordProperty(name, count);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomTrees, ::testing::Range(1u, 25u));
 INSTANTIATE_TEST_SUITE_P(WithModes, RandomTrees, ::testing::Range(kFirstWithModes, kFirstWithModes + 40));
+INSTANTIATE_TEST_SUITE_P(WithNodeDummies, RandomTrees,
+                         ::testing::Range(kFirstWithNodeDummies, kFirstWithNodeDummies + 60));
 
 }  // namespace
 }  // namespace slew::multibody

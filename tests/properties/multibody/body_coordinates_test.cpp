@@ -142,6 +142,9 @@ INSTANTIATE_TEST_SUITE_P(Seeds, BodyCoordinates, ::testing::Range(1u, 41u));
 INSTANTIATE_TEST_SUITE_P(WithModes, BodyCoordinates, ::testing::Range(kFirstWithModes, kFirstWithModes + 20));
 INSTANTIATE_TEST_SUITE_P(WithShortening, BodyCoordinates,
                          ::testing::Range(kFirstWithShortening, kFirstWithShortening + 20));
+INSTANTIATE_TEST_SUITE_P(WithNodeDummies, BodyCoordinates,
+                         ::testing::Range(kFirstWithNodeDummies, kFirstWithNodeDummies + 30));
+INSTANTIATE_TEST_SUITE_P(WithBoth, BodyCoordinates, ::testing::Range(kFirstWithBoth, kFirstWithBoth + 20));
 
 }  // namespace
 }  // namespace slew::multibody

@@ -73,6 +73,16 @@ MechanicsDef flexible_links() {
   return def;
 }
 
+// and with a cylinder from a node of one to a node of the other
+MechanicsDef flexible_links_with_dummies() {
+  MechanicsDef def = flexible_links();
+  def.translational_forces = {
+      {.name = "Strut", .body1 = "A.Node3", .point1 = {0, -2, 1}, .body2 = "B.Node12", .point2 = {0, 1, 1}}};
+  def.force_dummies = {{"Tube", "Strut", 1, 0.6, {-0.4, 0, 0}, {0.01, 0.1, 0.1}},
+                       {"Piston", "Strut", 2, 0.4, {0.5, 0, 0}, {0.01, 0.1, 0.1}}};
+  return def;
+}
+
 std::vector<double> state_after(const Subject& subject, Formulation formulation, Integrator integrator, double step) {
   MechanicsDef def = subject.def;
   def.formulation = formulation;
@@ -121,6 +131,9 @@ TEST_P(Integrators, HaveTheirOrderOnLinksWithBalls) {
 }
 TEST_P(Integrators, HaveTheirOrderOnFlexibleLinks) {
   expect_order({"flexible", flexible_links(), 0.2, 4e-3});
+}
+TEST_P(Integrators, HaveTheirOrderOnFlexibleLinksWithDummies) {
+  expect_order({"dummies", flexible_links_with_dummies(), 0.2, 4e-3});
 }
 TEST_P(Integrators, HaveTheirOrderOnAFourBarThroughTheFlatPosition) {
   expect_order({"four_bar", four_bars(1), 1, 20e-3});

@@ -226,6 +226,9 @@ TEST_P(Invariants, ReactionsDoNoWorkThroughTheFreeDirections) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Invariants, ::testing::Range(1u, 17u));
 INSTANTIATE_TEST_SUITE_P(WithModes, Invariants, ::testing::Range(kFirstWithModes, kFirstWithModes + 16));
 INSTANTIATE_TEST_SUITE_P(WithShortening, Invariants, ::testing::Range(kFirstWithShortening, kFirstWithShortening + 16));
+INSTANTIATE_TEST_SUITE_P(WithNodeDummies, Invariants,
+                         ::testing::Range(kFirstWithNodeDummies, kFirstWithNodeDummies + 20));
+INSTANTIATE_TEST_SUITE_P(WithBoth, Invariants, ::testing::Range(kFirstWithBoth, kFirstWithBoth + 10));
 
 // final state of the actuated crane with forces that are linear in time over the whole run
 std::vector<double> crane_after(double h) {

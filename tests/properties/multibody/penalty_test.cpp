@@ -194,6 +194,11 @@ TEST_P(SmoothPenalties, PlainOpensItsJointsByAShareOfItsFactor) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Penalties, ::testing::Range(1u, 41u));
 INSTANTIATE_TEST_SUITE_P(WithModes, Penalties, ::testing::Range(kFirstWithModes, kFirstWithModes + 20));
 INSTANTIATE_TEST_SUITE_P(WithShortening, Penalties, ::testing::Range(kFirstWithShortening, kFirstWithShortening + 10));
+INSTANTIATE_TEST_SUITE_P(WithNodeDummies, Penalties,
+                         ::testing::Range(kFirstWithNodeDummies, kFirstWithNodeDummies + 20));
+// flexible bodies that are fixed at nodes of others: dummies on their nodes, and one (588) from there to the other's
+INSTANTIATE_TEST_SUITE_P(WithNestedBodies, Penalties, ::testing::Values(341u, 493u, 526u, 588u));
+INSTANTIATE_TEST_SUITE_P(WithBoth, Penalties, ::testing::Range(kFirstWithBoth, kFirstWithBoth + 10));
 INSTANTIATE_TEST_SUITE_P(Seeds, SmoothPenalties, ::testing::Range(1u, 41u));
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "math/rotation.h"
 #include "multibody/topology.h"
+#include "multibody/validate.h"
 
 namespace slew::multibody::testing {
 namespace {
@@ -22,6 +23,7 @@ class Generator {
     for (int i = 0; i < options_.bodies; ++i) add_body(i);
     if (options_.with_forces) add_dampers();
     if (tree_.rows.size() > 10) tree_.rows.resize(10);
+    if (options_.with_modes && options_.with_dummies) drop_refused_dummies();
     return tree_;
   }
 
@@ -94,7 +96,14 @@ class Generator {
       flexible.relative_damping = {options_.with_forces ? number(0, 0.1) : 0};
       tree_.def.flexible_bodies.push_back(flexible);
     }
-    add_line(i, name, parent_name, joint.type);
+    add_line(std::to_string(i), name, parent_name, joint.type);
+    if (!options_.with_modes || !options_.with_dummies) return;
+    // a second one across the same joint, and one within the body
+    if (pick(2) == 0) add_line(std::to_string(i) + "_2", name, parent_name, joint.type);
+    if (pick(3) == 0 && tree_.def.bodies.back().type == BodyType::flexible) {
+      add_line(std::to_string(i) + "_3", name + ".Node7", name + (pick(3) == 0 ? ".Node1" : ".Node3"),
+               JointType::fixed);
+    }
   }
 
   void add_mass(const std::string& name, const Pose& pose) {
@@ -121,9 +130,9 @@ class Generator {
   }
 
   // a force between neighbours, with or without dummies; sometimes the body comes first
-  void add_line(int i, const std::string& body, const std::string& parent, JointType type) {
+  void add_line(const std::string& number_of, const std::string& body, const std::string& parent, JointType type) {
     if (pick(3) == 0 || (parent == kGroundName && !options_.lines_to_ground)) return;
-    const std::string name = "F" + std::to_string(i);
+    const std::string name = "F" + number_of;
     const bool is_swapped = pick(2) == 0;
     const Triple far = {number(1, 2), number(-2, -1), number(1, 2)};
     tree_.def.translational_forces.push_back({.name = name,
@@ -147,6 +156,16 @@ class Generator {
     if (pick(4) != 0)
       tree_.def.force_dummies.push_back({name + "_Piston", name, 2, number(0.5, 4), {c2, 0, 0}, {0, I2, I2}});
     if (pick(6) == 0) tree_.def.force_dummies.push_back({name + "_Valve", name, 1, number(0.1, 1), {-0.1, 0, 0}, {}});
+  }
+
+  // modes of two bodies that a fixed joint makes one
+  void drop_refused_dummies() {
+    Problems problems;
+    validate(tree_.def, problems);
+    for (const Problem& problem : problems) {
+      std::erase_if(tree_.def.force_dummies,
+                    [&](const ForceDummyDef& dummy) { return problem.path.starts_with(dummy.name + "."); });
+    }
   }
 
   // dampers between any two bodies and about any axis, springs about some

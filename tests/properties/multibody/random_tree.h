@@ -24,14 +24,16 @@ struct TreeOptions {
   bool with_shortening = false;  // and stiffen by bending
 };
 
-// Seeds from here on have flexible bodies in the tests of trees, then those with geometric stiffening.
-inline constexpr unsigned kFirstWithModes = 101, kFirstWithShortening = 201;
+// Seeds from here on have flexible bodies in the tests of trees, then those with geometric stiffening, then those with
+// dummies at the nodes of flexible bodies, and with both.
+inline constexpr unsigned kFirstWithModes = 101, kFirstWithShortening = 201, kFirstWithNodeDummies = 301,
+                          kFirstWithBoth = 401;
 
 // The same options with flexible bodies for such a seed.
 [[nodiscard]] inline TreeOptions with_modes_of(unsigned seed, TreeOptions options) {
   options.with_modes = seed >= kFirstWithModes;
-  options.with_shortening = seed >= kFirstWithShortening;
-  if (options.with_modes) options.with_dummies = false;
+  options.with_shortening = (seed >= kFirstWithShortening && seed < kFirstWithNodeDummies) || seed >= kFirstWithBoth;
+  if (options.with_modes) options.with_dummies = seed >= kFirstWithNodeDummies;
   return options;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 
 #include "multibody/field_tables.h"
 #include "multibody/integrators.h"
@@ -287,6 +288,56 @@ TEST(Validate, RefusesDummiesAcrossMoreThanOneJoint) {
               d.joints[1].type = JointType::fixed;
             })),
             "");
+}
+
+// an arm that bends, with one mode and nodes at its root and at 0.5 and 1 m
+FlexibleBodyDef bending(const std::string& name) {
+  auto modes = std::make_shared<ModalBody>();
+  modes->mass = 2;
+  modes->first_moment = math::Vec3(1, 0, 0);
+  modes->second_moment = math::Mat3::diagonal(2, 0.1, 0.1);
+  modes->mass_matrix = {1};
+  modes->stiffness = {1e4};
+  modes->C = {math::Vec3(0, 1, 0)};
+  modes->Z.resize(1);
+  modes->Y.resize(1);
+  const std::vector<math::Vec3> zero(1);
+  modes->nodes = {{1, math::Vec3(), zero, zero, {}},
+                  {2, math::Vec3(0.5, 0, 0), {math::Vec3(0, 0.5, 0)}, zero, {}},
+                  {3, math::Vec3(1, 0, 0), {math::Vec3(0, 1, 0)}, zero, {}}};
+  modes->root = 0;
+  return {.body = name, .modes = modes, .start = {0}};
+}
+
+TEST(Validate, TakesDummiesAtNodesButForThoseThatCoupleModesOfTwoBodies) {
+  const auto bend = [](MechanicsDef& d) {
+    d.bodies[0].type = BodyType::flexible;
+    d.flexible_bodies = {bending("Arm")};
+  };
+  EXPECT_EQ(testing::text_of(problems_of(bend)), "");
+  // from a node to what hangs at another
+  EXPECT_EQ(testing::text_of(problems_of([&](auto& d) {
+              bend(d);
+              d.translational_forces[0].body1 = "Load";
+            })),
+            "");
+  // a second arm, fixed to the first one's root; the load hangs at a node of the first
+  const auto two = [&](MechanicsDef& d) {
+    bend(d);
+    d.bodies.push_back({.name = "Twin", .type = BodyType::flexible, .relative_to = "Arm"});
+    d.flexible_bodies.push_back(bending("Twin"));
+    d.joints.push_back({.name = "Weld", .type = JointType::fixed, .body1 = "Arm", .body2 = "Twin"});
+    d.translational_forces[0] = {
+        .name = "Strut", .body1 = "Twin", .point1 = {0.5, 0, 0}, .body2 = "Load", .point2 = {0, 1, 0}};
+  };
+  expect_problem(two, "Tube.relative_to", "nodes of two flexible bodies");
+  expect_problem(
+      [&](auto& d) {
+        two(d);
+        d.translational_forces[0].body2 = "Arm";
+        d.translational_forces[0].point2 = {1, 0, 0};
+      },
+      "Tube.relative_to", "nodes of two flexible bodies");
 }
 
 TEST(Validate, WantsUnitsOfSenseInTheSection) {
