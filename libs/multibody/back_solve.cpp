@@ -172,11 +172,12 @@ inline void pass_link(const Link& link, const LinkMotion& m, const JointFactor& 
   }
 }
 
-[[gnu::noinline]] void push_to_dummies(const Model& model, Workspace& ws, std::size_t link, const Rows& rows,
-                                       std::size_t k) noexcept {
+[[gnu::noinline]] void push_to_dummies(const Model& model, Workspace& ws, std::size_t link, const Rows& rows) noexcept {
   const std::size_t links = model.links.size(), speeds = ws.udot.size();
-  push_back(model, link, ws, {rows.residual + k * speeds, speeds}, {rows.rate + k * speeds, speeds},
-            std::span(ws.pass_n).subspan(k * links, links), std::span(ws.pass_f).subspan(k * links, links));
+  for (std::size_t k = 0; k < rows.count; ++k) {
+    push_back(model, link, ws, {rows.residual + k * speeds, speeds}, {rows.rate + k * speeds, speeds},
+              std::span(ws.pass_n).subspan(k * links, links), std::span(ws.pass_f).subspan(k * links, links));
+  }
 }
 
 // ws.pass_n, ws.pass_f hold minus the wrenches on the links
@@ -196,11 +197,11 @@ void pass_back(const Model& model, Workspace& ws, std::span<const int> supports,
       if (has_modes && link.joint == LinkJoint::node) pass_node(model, ws, link, rows.residual + k * speeds, n, f);
       pass_link(link, m, factor, rows.tau == nullptr ? nullptr : rows.tau + u, rows.residual + k * speeds + u,
                 rows.rate + k * speeds + u, n, f);
-      if (link.has_node_dummies()) push_to_dummies(model, ws, at(i), rows, k);
       if (link.parent == 0) continue;
       ws.pass_n[k * links + at(link.parent)] += n + cross(m.r, f);
       ws.pass_f[k * links + at(link.parent)] += f;
     }
+    if (link.has_node_dummies()) push_to_dummies(model, ws, at(i), rows);
   }
   if (model.links[0].part_end == 0) return;
   for (std::size_t k = 0; k < rows.count; ++k) {
