@@ -1,9 +1,12 @@
 // `slewring plot REC VAR...` and `slewring export REC`: a recording's variables as a picture or a table.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
+#include <set>
 
 #include "cli/plotting/csv_export.h"
 #include "cli/plotting/svg_plot.h"
@@ -21,9 +24,11 @@ using cli_support::Failure;
 struct Options {
   std::string recording;
   std::vector<std::string> variables;
+  std::vector<std::string> others;  // recordings to compare with
   std::string output;
   std::string title;
   bool is_csv = false;
+  bool is_input = false;
 };
 
 void write_text(const std::string& path, const std::string& text) {
@@ -38,7 +43,62 @@ void write_text(const std::string& path, const std::string& text) {
   }
 }
 
+using Readers = std::vector<std::unique_ptr<recording::Reader>>;
+
+// What tells the curves of several recordings apart: their scenes, or where those are alike their folders.
+std::vector<std::string> labels_of(const Readers& readers) {
+  std::vector<std::string> scenes, folders;
+  for (const auto& reader : readers) {
+    scenes.push_back(reader->identity().scene);
+    folders.push_back(std::filesystem::absolute(reader->path()).parent_path().filename().string());
+  }
+  const std::set<std::string> different(scenes.begin(), scenes.end());
+  return different.size() == scenes.size() ? scenes : folders;
+}
+
+// The variables of all recordings, those of one beside each other.
+std::vector<plotting::Series> read_beside(const Readers& readers, const std::vector<std::string>& variables) {
+  const std::vector<std::string> labels = labels_of(readers);
+  std::vector<std::vector<plotting::Series>> by_recording;
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    try {
+      by_recording.push_back(read_series(*readers[i], variables, Units::display));
+    } catch (const Failure& failure) {
+      throw Failure(failure.code(), readers[i]->path().string() + ": " + failure.what());
+    }
+    for (plotting::Series& curve : by_recording.back()) curve.name += " (" + labels[i] + ")";
+  }
+  std::vector<plotting::Series> curves;
+  std::size_t longest = 0;
+  for (const auto& of_one : by_recording) longest = std::max(longest, of_one.size());
+  for (std::size_t k = 0; k < longest; ++k) {
+    for (auto& of_one : by_recording) {
+      if (k < of_one.size()) curves.push_back(std::move(of_one[k]));
+    }
+  }
+  return curves;
+}
+
+ExitCode plot_beside(const Options& options) {
+  if (options.variables.empty()) {
+    throw Failure(ExitCode::bad_input, "--with compares variables; nothing was written; name those to plot");
+  }
+  Readers readers;
+  readers.push_back(open_recording(options.recording));
+  for (const std::string& other : options.others) readers.push_back(open_recording(other));
+  plotting::PlotOptions look;
+  look.title = options.title;
+  for (const std::string& label : labels_of(readers)) {
+    if (options.title.empty()) look.title += (look.title.empty() ? "" : ", ") + label;
+  }
+  const std::string path = options.output.empty() ? "plot.svg" : options.output;
+  write_text(path, plotting::plot_svg(read_beside(readers, options.variables), look));
+  if (path != "-") fmt::print("{}\n", path);
+  return ExitCode::ok;
+}
+
 ExitCode plot(const Options& options) {
+  if (!options.others.empty()) return plot_beside(options);
   const auto reader = open_recording(options.recording);
   if (options.variables.empty()) {
     const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
@@ -61,7 +121,39 @@ ExitCode plot(const Options& options) {
   return ExitCode::ok;
 }
 
+// What the operator did, as `run --input` and scripts read it: raw values by input.
+ExitCode export_input(const Options& options) {
+  const auto reader = open_recording(options.recording);
+  if (!options.variables.empty()) {
+    throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
+  }
+  const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
+  if (scene.inputs.empty()) {
+    throw Failure(ExitCode::bad_input, "the scene of this recording has no inputs; nothing was written");
+  }
+  std::vector<std::string> names;
+  for (const scene::InputDef& input : scene.inputs) names.push_back(input.name + ".raw");
+  const std::vector<plotting::Series> curves = read_series(*reader, names, Units::si);
+  std::string text = "time";
+  for (const scene::InputDef& input : scene.inputs) text += "," + input.name;
+  const std::vector<double>& time = curves.front().time;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (i > 0 && time[i] <= time[i - 1]) {
+      throw Failure(ExitCode::bad_input,
+                    "the session was reset on the way, so its input is no one table over time; "
+                    "nothing was written; record it without a reset");
+    }
+    text += fmt::format("\n{}", time[i]);
+    for (const plotting::Series& curve : curves) text += fmt::format(",{}", curve.values[i]);
+  }
+  const std::string path = options.output.empty() ? "-" : options.output;
+  write_text(path, text + "\n");
+  if (path != "-") fmt::print("{}\n", path);
+  return ExitCode::ok;
+}
+
 ExitCode export_table(const Options& options) {
+  if (options.is_input) return export_input(options);
   const auto reader = open_recording(options.recording);
   const std::vector<std::string> all = {"*"};
   const std::vector<plotting::Series> curves =
@@ -87,7 +179,15 @@ void add_plot(CLI::App& program, Action& action) {
   verb->add_option("-o,--output", options->output, "file to write, - for standard output; without it plot.svg")
       ->type_name("FILE");
   verb->add_option("--title", options->title, "heading; without it the scene's name")->type_name("TEXT");
-  verb->footer("Example:\n  slewring plot runs/truck_crane-20260501-102030 'Cyl_*.force' Bag.position.y -o lift.svg");
+  verb->add_option("--with", options->others, "another recording whose variables are drawn beside; repeat for more")
+      ->type_name("REC")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->footer(
+      "Examples:\n"
+      "  slewring plot runs/truck_crane-20260501-102030 'Cyl_*.force' Bag.position.y -o lift.svg\n"
+      "  slewring plot runs/truck_crane-20260501-102030 Bag.position.y --with "
+      "runs/truck_crane_flexible-20260501-103000");
   verb->callback([&action, options] { action = [options] { return plot(*options); }; });
 }
 
@@ -98,8 +198,14 @@ void add_export(CLI::App& program, Action& action) {
   verb->add_option("variables", options->variables, "names, or patterns with * and ?; without them all")
       ->type_name("VAR");
   verb->add_flag("--csv", options->is_csv, "comma-separated values in SI units (the only format of this version)");
+  verb->add_flag("--input", options->is_input,
+                 "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, straight "
+                 "lines between");
   verb->add_option("-o,--output", options->output, "file to write; without it standard output")->type_name("FILE");
-  verb->footer("Example:\n  slewring export runs/truck_crane-20260501-102030 --csv -o crane.csv");
+  verb->footer(
+      "Examples:\n"
+      "  slewring export runs/truck_crane-20260501-102030 --csv -o crane.csv\n"
+      "  slewring export runs/truck_crane-20260501-102030 --input -o levers.csv");
   verb->callback([&action, options] { action = [options] { return export_table(*options); }; });
 }
 

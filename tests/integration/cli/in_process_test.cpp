@@ -184,6 +184,46 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_NE(typo.err.find("did you mean 'Cyl_Lift.force'?"), std::string::npos) << typo.err;
 }
 
+// what an operator did on one crane, done again on another, and both in one picture
+TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
+  const auto run_into = [&](const std::string& scene, const std::string& out, const std::string& input) {
+    const CommandResult run = run_scene(scene, {"--duration", "2", "--out", out, "--input", input});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return only_recording_below(work_.path() / out).string();
+  };
+  const std::string rigid = run_into("truck_crane.yaml", "rigid", "script");
+  const CommandResult exported = slewring({"export", rigid, "--input", "-o", "levers.csv"});
+  ASSERT_EQ(exported.code, 0) << exported.err;
+  const std::string levers = (work_.path() / "levers.csv").string();
+  const std::string again = run_into("truck_crane.yaml", "again", levers);
+  const std::string flexible = run_into("truck_crane_flexible.yaml", "flexible", levers);
+
+  // the same levers again: raw values at every time of the table
+  const std::vector<std::string> inputs = {"Input_Slew.raw", "Input_Lift.raw", "Input_Jib.raw"};
+  const auto table = [&](const std::string& recording) {
+    std::vector<std::string> arguments = {"export", recording};
+    arguments.insert(arguments.end(), inputs.begin(), inputs.end());
+    return slewring(arguments).out;
+  };
+  EXPECT_EQ(table(again), table(rigid));
+  EXPECT_EQ(table(flexible), table(rigid));
+  EXPECT_NE(table(rigid).find(",1"), std::string::npos) << "a lever was moved";
+
+  const CommandResult plotted = slewring({"plot", rigid, "Bag.center_of_mass.y", "--with", flexible, "-o", "both.svg"});
+  ASSERT_EQ(plotted.code, 0) << plotted.err;
+  std::ostringstream svg;
+  svg << std::ifstream(work_.path() / "both.svg").rdbuf();
+  EXPECT_NE(svg.str().find("Bag.center_of_mass.y (truck_crane)"), std::string::npos);
+  EXPECT_NE(svg.str().find("Bag.center_of_mass.y (truck_crane_flexible)"), std::string::npos);
+
+  const CommandResult missing = slewring({"plot", flexible, "Truck_JibBoom.strain_energy", "--with", rigid});
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_NE(missing.err.find(rigid + ": there is no variable 'Truck_JibBoom.strain_energy'"), std::string::npos)
+      << missing.err;
+  EXPECT_EQ(slewring({"plot", flexible, "--with", rigid}).code, 2);
+  EXPECT_EQ(slewring({"export", rigid, "Bag.*", "--input"}).code, 2);
+}
+
 TEST_F(InProcess, TheSummarySaysWhyALoadCannotBeLiftedAndHowMuchCouldBe) {
   const CommandResult heavy = run_scene("truck_crane_heavy.yaml", {"--out", "heavy"});
   ASSERT_EQ(heavy.code, 0) << heavy.err;
