@@ -92,7 +92,7 @@ TEST(FlexiblePendulums, VibrateWithTheFrequencyOfThePinnedBeam) {
   }
 }
 
-// The reference vibrates 0.4 % too fast (16 elements): it judges how far the middle leaves the chord, not the phase.
+// The reference vibrates 0.4 % faster than theory has it: it judges how far the middle leaves the chord, not the phase.
 // What modes and nodes do is judged by the finest of the models here.
 TEST(FlexiblePendulums, ConvergeWithModesAndNodes) {
   slew::plotting::MarkGroup by_modes{"modes, 21 nodes"}, by_nodes{"nodes, 6 modes"};
