@@ -51,9 +51,13 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       m_(scene.ports.size()),
       level_(scene.session.coupling),
       H_(scene.session.step_duration()),
+      is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
+      exchange_every_(scene.session.exchange_every),
+      past_(m_),
+      said_(is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       reduced_(laws_of(scene)),
       held_(m_),
-      indicator_(m_, H_) {
+      indicator_(m_, {H_.ns * exchange_every_}) {
   reset();
   for (const scene::PortDef& port : scene.ports) port_names_.push_back(port.name);
   for (const scene::InputDef& input : scene.inputs) {
@@ -69,6 +73,10 @@ void HydraulicsSubsystem::reset() {
   indicator_.reset();
   ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
   failure_ = StepReport{};
+  past_.clear();
+  std::fill(said_.begin(), said_.end(), Said{});
+  used_step_ = -1;
+  partner_age_ = 0;
   coupling::resize(published_, m_);
 }
 
@@ -97,16 +105,71 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
   }
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
   integrator_->refresh();
-  publish(sample.actuators, 0);
+  publish(sample.actuators, 0, false);
   return Status::ok();
 }
 
 // ---- step -----------------------------------------------------------------------------------------------------
 
-void HydraulicsSubsystem::take_mechanism(const coupling::MechanismSample& mechanism) noexcept {
-  indicator_.update(mechanism, published_);
-  integrator_->align(mechanism.x.span(), mechanism.v.span());
-  reduced_.set_sample(mechanism);
+// The pistons take the positions of this step's sample. Without news they go on by their own copy of the mechanics.
+void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
+                                         StepReport& report) noexcept {
+  partner_age_ = age;
+  const bool has_news = n - age != used_step_;
+  used_step_ = n - age;
+  if (has_news && age == 0) {
+    indicator_.update(mechanism, published_);
+    integrator_->align(mechanism.x.span(), mechanism.v.span());
+  } else if (has_news) {
+    take_late(used_step_, mechanism);
+  }
+  if (has_news) reduced_.set_sample(mechanism);
+  if (!is_free_running_) return;
+  keep_begin(n);
+  const double late = static_cast<double>(age) * H_.seconds();
+  if (age > 0 && coupling::coupling_frequency(mechanism.W, published_.K, late) > coupling::kDegradedAbove) {
+    report.raise(StepFlag::late_input);
+  }
+}
+
+// A sample of an earlier step: the pistons move by what it says of that step (coupling/own_past.h), and the indicator
+// compares the ways of both sides in that step, since the circuit's own position then lacks what it learned later.
+void HydraulicsSubsystem::take_late(StepIndex step, const coupling::MechanismSample& mechanism) noexcept {
+  if (!past_.has(step)) return;
+  std::array<double, kMaxPorts> x{}, v{};
+  for (std::size_t i = 0; i < m_; ++i) {
+    const double dx = mechanism.x[i] - past_.first(step, i);
+    const double dv = mechanism.v[i] - past_.second(step, i);
+    past_.correct(step, i, dx, dv);
+    x[i] = integrator_->actuators()[i].x + dx;
+    v[i] = integrator_->actuators()[i].v + dv;
+  }
+  integrator_->align({x.data(), m_}, {v.data(), m_});
+  const Said& said = said_[static_cast<std::size_t>(step) % said_.size()];
+  if (said.step != step) return;
+  coupling::ActuatorSample own = said.sample;
+  for (std::size_t i = 0; i < m_; ++i) {
+    own.x_ref[i] = mechanism.x[i] - (mechanism.v_mean[i] * H_.seconds() - said.way[i]);
+  }
+  indicator_.update(mechanism, own);
+}
+
+void HydraulicsSubsystem::keep_begin(StepIndex n) noexcept {
+  std::array<double, kMaxPorts> x{}, v{};
+  for (std::size_t i = 0; i < m_; ++i) {
+    const int port = static_cast<int>(i);
+    x[i] = integrator_->state()[static_cast<std::size_t>(circuit_->position(port))];
+    v[i] = integrator_->state()[static_cast<std::size_t>(circuit_->speed(port))];
+  }
+  past_.keep(n, {x.data(), m_}, {v.data(), m_});
+}
+
+void HydraulicsSubsystem::keep_end(StepIndex n) noexcept {
+  Said& said = said_[static_cast<std::size_t>(n) % said_.size()];
+  said.step = n;
+  said.sample = published_;
+  said.way.resize(m_);
+  for (std::size_t i = 0; i < m_; ++i) said.way[i] = published_.x_ref[i] - past_.first(n - 1, i);
 }
 
 StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners,
@@ -119,21 +182,25 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   for (std::size_t i = 0; i < std::min(controls.size(), control_of_channel_.size()); ++i) {
     if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
   }
-  if (partners.mechanism != nullptr && m_ > 0) take_mechanism(*partners.mechanism);
+  StepReport taken;
+  if (partners.mechanism != nullptr && m_ > 0) take_mechanism(n, *partners.mechanism, partners.mechanism_age, taken);
   const bool is_hold = level_ == coupling::Level::hold;
   StepReport report =
       integrator_->step(H_.seconds(), is_hold ? static_cast<const hydraulics::PistonMotion&>(held_) : reduced_);
+  report.flags |= taken.flags;
   if (indicator_.creates_energy()) report.raise(StepFlag::coupling_creates_energy);
   if (report.has_failed()) {
     failure_ = report;
     sample.actuators = published_;
     return report;
   }
-  publish(sample.actuators, report.flags);
+  publish(sample.actuators, report.flags, n % exchange_every_ != 0);
+  if (is_free_running_ && m_ > 0) keep_end(n + 1);
   return report;
 }
 
-void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags) noexcept {
+// adds_up: work and impulse go on from the sample before, since there was no exchange in between
+void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept {
   if (sample.F.size() != m_) coupling::resize(sample, m_);
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
   for (std::size_t i = 0; i < m_; ++i) {
@@ -146,8 +213,8 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     sample.x_ref[i] = a.x;
     sample.v_ref[i] = a.v;
     sample.friction_scale[i] = reduced_.law(i).friction_scale(a.F);
-    sample.work[i] = a.work;
-    sample.impulse[i] = a.impulse;
+    sample.work[i] = a.work + (adds_up ? published_.work[i] : 0.0);
+    sample.impulse[i] = a.impulse + (adds_up ? published_.impulse[i] : 0.0);
     sample.p_A[i] = a.p_a;
     sample.p_B[i] = a.p_b;
     sample.Q_A[i] = a.Q_a;
@@ -189,6 +256,7 @@ void HydraulicsSubsystem::list_variables() {
     variables_.push_back({port + ".coupling_net", Dimension::none});
   }
   variables_.push_back({"hydraulics.omega_H", Dimension::none});
+  if (is_free_running_) variables_.push_back({"hydraulics.partner_age", Dimension::none});
 }
 
 void HydraulicsSubsystem::read_variables(std::span<double> values) const noexcept {
@@ -200,7 +268,9 @@ void HydraulicsSubsystem::read_variables(std::span<double> values) const noexcep
                                                            defects.dE_star, defects.eta, defects.net};
     std::copy(shown.begin(), shown.end(), values.begin() + static_cast<std::ptrdiff_t>(circuit + i * shown.size()));
   }
-  values[circuit + m_ * kIndicatorVariables] = indicator_.omega_H();
+  const std::size_t rest = circuit + m_ * kIndicatorVariables;
+  values[rest] = indicator_.omega_H();
+  if (is_free_running_) values[rest + 1] = static_cast<double>(partner_age_);
 }
 
 std::string_view HydraulicsSubsystem::offender_name(std::int32_t index) const noexcept {

@@ -12,6 +12,7 @@
 
 #include "coupling/indicator.h"
 #include "coupling/line_force.h"
+#include "coupling/own_past.h"
 #include "coupling/parameter_ramps.h"
 #include "coupling/subsystem.h"
 #include "hydraulics/circuit.h"
@@ -60,8 +61,19 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] hydraulics::CircuitIntegrator& integrator() noexcept { return *integrator_; }  // for tests and tools
 
  private:
-  void take_mechanism(const coupling::MechanismSample& mechanism) noexcept;
-  void publish(coupling::ActuatorSample& sample, std::uint32_t flags) noexcept;
+  // What was published at a step and how the pistons came there, for samples of the mechanics that come late.
+  struct Said {
+    StepIndex step = -1;
+    coupling::ActuatorSample sample;
+    coupling::PortArray way;  // by port, of the circuit's own piston in the step [m]
+  };
+
+  void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
+                      StepReport& report) noexcept;
+  void take_late(StepIndex step, const coupling::MechanismSample& mechanism) noexcept;
+  void keep_begin(StepIndex n) noexcept;
+  void keep_end(StepIndex n) noexcept;
+  void publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept;
   void list_variables();
 
   const scene::Scene& scene_;  // outlives the subsystem
@@ -70,6 +82,12 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   std::size_t m_;
   coupling::Level level_;
   SimDuration H_;
+  bool is_free_running_;
+  StepIndex exchange_every_;
+  coupling::OwnPast past_;     // free-running: position and speed by port
+  std::vector<Said> said_;     // free-running: the last steps
+  StepIndex used_step_ = -1;   // of the mechanics' sample in use
+  StepIndex partner_age_ = 0;  // of that sample in the last step
   std::vector<std::string> port_names_;
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
   ReducedMechanics reduced_;

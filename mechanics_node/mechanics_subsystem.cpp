@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/indicator.h"
 #include "coupling/static_forces.h"
 #include "math/small_solve.h"
 #include "multibody/joint_law.h"
@@ -89,6 +90,9 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
       workspace_(model_),
       level_(scene.session.coupling),
       H_(scene.session.step_duration()),
+      is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
+      exchange_every_(scene.session.exchange_every),
+      past_(scene.ports.size()),
       modal_(scene, model_),
       row_is_active_(model_.rows.size(), 1),
       laws_(std::make_unique<Laws>(*this)),
@@ -143,6 +147,9 @@ void MechanicsSubsystem::reset() {
   has_failed_ = false;
   failure_ = StepReport{};
   for (Port& port : ports_) port.F = port.friction = port.stop = port.static_force = 0;
+  past_.clear();
+  used_step_ = -1;
+  partner_age_ = 0;
   coupling::resize(published_.mechanism, ports_.size());
 }
 
@@ -207,20 +214,45 @@ bool MechanicsSubsystem::select_rows(double h) noexcept {
   return has_changed;
 }
 
-// the partner's linearisation; at the exchange the pressure force starts from the sample, moved to the true position
+void MechanicsSubsystem::note_age(StepIndex n, const coupling::PartnerSamples& partners, StepReport& report) noexcept {
+  partner_age_ = partners.actuators_age;
+  has_news_ = n - partner_age_ != used_step_;
+  used_step_ = n - partner_age_;
+  if (!is_free_running_ || partners.actuators == nullptr || partner_age_ == 0) return;
+  const double age = static_cast<double>(partner_age_) * H_.seconds();
+  if (coupling::coupling_frequency(published_.mechanism.W, partners.actuators->K, age) > coupling::kDegradedAbove) {
+    report.raise(StepFlag::late_input);
+  }
+}
+
+// The pressure force at the start of the step, where the port is at x: that of this step's sample, moved to the true
+// position; without news the copy goes on, and a late sample corrects it by what it says of its own step.
+double MechanicsSubsystem::force_at_exchange(std::size_t port, const coupling::ActuatorSample& partner,
+                                             double x) noexcept {
+  const double copy = ports_[port].F;
+  if (!has_news_) return copy;
+  const bool is_hold = level_ == coupling::Level::hold;
+  const auto at = [&](double position) {
+    return is_hold ? partner.F[port] : partner.F[port] - partner.K[port] * (position - partner.x_ref[port]);
+  };
+  if (partner_age_ == 0) return at(x);
+  if (!past_.has(used_step_)) return copy;
+  const double correction = at(past_.first(used_step_, port)) - past_.second(used_step_, port);
+  past_.correct(used_step_, port, 0, correction);
+  return copy + correction;
+}
+
+// the partner's linearisation, and where the pressure force starts
 void MechanicsSubsystem::load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept {
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const std::size_t row = active_[k];
     coupling::RowPartner law;
     double z = 0;
     if (row < ports_.size() && partner != nullptr) {
-      z = ports_[row].F;
-      if (level_ == coupling::Level::hold) {
-        if (is_first_substep) z = partner->F[row];
-      } else {
+      z = is_first_substep ? force_at_exchange(row, *partner, dynamics_.x()[k]) : ports_[row].F;
+      if (level_ != coupling::Level::hold) {
         law = {partner->F_dot[row], partner->K[row], partner->lambda[row],
                partner->D[row],     partner->F[row], partner->v_ref[row]};
-        if (is_first_substep) z = partner->F[row] - law.K * (dynamics_.x()[k] - partner->x_ref[row]);
       }
     }
     dynamics_.partner()[k] = law;
@@ -228,7 +260,7 @@ void MechanicsSubsystem::load_partner(const coupling::ActuatorSample* partner, b
   }
 }
 
-coupling::PortStep MechanicsSubsystem::advance(double h, const coupling::ActuatorSample* partner,
+coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coupling::ActuatorSample* partner,
                                                bool is_first_substep) noexcept {
   evaluate();
   if (select_rows(h)) {
@@ -254,6 +286,9 @@ coupling::PortStep MechanicsSubsystem::advance(double h, const coupling::Actuato
     }
   }
   load_partner(partner, is_first_substep);
+  if (is_first_substep && is_free_running_) {
+    past_.keep(n, dynamics_.x().first(ports_.size()), dynamics_.z().first(ports_.size()));
+  }
   coupling::PortStep solved = dynamics_.solve(h, micro_steps_, *laws_);
   // the mechanism under these forces
   std::fill(force_mean_.begin(), force_mean_.end(), 0.0);
@@ -332,13 +367,18 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   put_signals(controls);
   StepReport report;
   take_elastic_forces(partners.elastic, report);
+  note_age(n, partners, report);
   const double h = H_.seconds() / substeps_;
   coupling::MechanismSample& out = sample.mechanism;
   coupling::resize(out, ports_.size());
+  if (n % exchange_every_ != 0) {
+    out.work = published_.mechanism.work;
+    out.impulse = published_.mechanism.impulse;
+  }
   evaluate();
   const PortPositions begin = port_positions();
   for (int i = 0; i < substeps_; ++i) {
-    const coupling::PortStep solved = advance(h, partners.actuators, i == 0);
+    const coupling::PortStep solved = advance(n, h, partners.actuators, i == 0);
     // by the count of steps, not by adding them up
     state_.time = static_cast<double>(n) * H_.seconds() + (i + 1) * h;
     if (!solved.has_converged) report.raise(StepFlag::not_converged);
@@ -541,6 +581,7 @@ void MechanicsSubsystem::list_variables() {
     variables_.push_back({port.name + ".static_force", Dimension::force});
     variables_.push_back({port.name + ".static_force_per_kg", Dimension::acceleration});
   }
+  if (is_free_running_) variables_.push_back({"mechanics.partner_age", Dimension::none});
   if (payload_ > 0)
     variables_.push_back({model_.bodies[static_cast<std::size_t>(payload_)].name + ".mass", Dimension::mass});
 }
@@ -597,6 +638,7 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
     values[k++] = ports_[i].static_force;
     values[k++] = slopes[i];
   }
+  if (is_free_running_) values[k++] = static_cast<double>(partner_age_);
   if (payload_ > 0) values[k++] = payload_mass();
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coupling/line_force.h"
+#include "coupling/own_past.h"
 #include "coupling/parameter_ramps.h"
 #include "coupling/port_dynamics.h"
 #include "coupling/subsystem.h"
@@ -63,8 +64,10 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void evaluate() noexcept;
   bool select_rows(double h) noexcept;
   void put_signals(std::span<const double> controls) noexcept;
+  void note_age(StepIndex n, const coupling::PartnerSamples& partners, StepReport& report) noexcept;
+  [[nodiscard]] double force_at_exchange(std::size_t port, const coupling::ActuatorSample& partner, double x) noexcept;
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
-  [[nodiscard]] coupling::PortStep advance(double h, const coupling::ActuatorSample* partner,
+  [[nodiscard]] coupling::PortStep advance(StepIndex n, double h, const coupling::ActuatorSample* partner,
                                            bool is_first_substep) noexcept;
   void finish_substep(const coupling::ActuatorSample* partner, coupling::MechanismSample& sample) noexcept;
   void publish(coupling::OwnSample& own) noexcept;
@@ -104,6 +107,12 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   bool is_evaluated_ = false;        // workspace_ belongs to state_ and model_
   coupling::Level level_;
   SimDuration H_;
+  bool is_free_running_;
+  StepIndex exchange_every_;
+  coupling::OwnPast past_;     // free-running: stroke and pressure force by port
+  StepIndex used_step_ = -1;   // of the hydraulics' sample in use
+  StepIndex partner_age_ = 0;  // of that sample in the last step
+  bool has_news_ = false;      // it came in this step
   int substeps_ = 1;
   int micro_steps_ = 1;
   std::vector<Port> ports_;

@@ -10,7 +10,7 @@ enum class StepFlag : std::uint32_t {
   step_budget = 1u << 1,    // the sub-step budget of H was used up; the last step was accepted with its error
   limit_hit = 1u << 2,      // a joint limit or an end stop is in contact
   clamp_active = 1u << 3,   // a quantity was held at a bound of its validity (pressure floor, input range)
-  late_input = 1u << 4,     // a partner's sample was replaced by its continued copy; reserved, no node continues yet
+  late_input = 1u << 4,     // the partner's sample was too late for what the copy of its model is good for
   overrun = 1u << 5,        // the deadline passed; reserved, io counts slips instead
   non_finite = 1u << 6,     // the state became NaN or infinite: latched, outputs are the last good ones
   coupling_creates_energy = 1u << 7,

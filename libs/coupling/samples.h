@@ -33,8 +33,8 @@ struct MechanismSample {
   MobilityKind W_kind = MobilityKind::instant;
   PortArray F_used;   // mechanics' copy of the pressure force at t_n [N]
   PortArray F_line;   // pressure force less friction plus end stop at t_n [N]
-  PortArray work;     // integral of F v dt over the finished step [J]
-  PortArray impulse;  // integral of F dt over the finished step [N s]
+  PortArray work;     // integral of F v dt since the last exchange [J]
+  PortArray impulse;  // integral of F dt since the last exchange [N s]
   PortArray v_mean;   // mean speed of the finished step [m/s]
   bool operator==(const MechanismSample&) const = default;
 };
@@ -50,8 +50,8 @@ struct ActuatorSample {
   PortArray x_ref;           // [m]
   PortArray v_ref;           // [m/s]
   PortArray friction_scale;  // |F| (1 - eta) [N]
-  PortArray work;            // integral of F v dt over the finished step [J]
-  PortArray impulse;         // integral of F dt over the finished step [N s]
+  PortArray work;            // integral of F v dt since the last exchange [J]
+  PortArray impulse;         // integral of F dt since the last exchange [N s]
   PortArray p_A, p_B;        // chamber pressures, absolute [Pa]
   PortArray Q_A, Q_B;        // flows into the A and B volumes from the circuit [m3/s]
   std::uint32_t flags = 0;   // StepFlag bits of the finished step

@@ -19,12 +19,16 @@
 
 namespace slew::coupling {
 
-// The partners' samples of one step; null when the scene has no such partner.
+// The partners' samples of one step, or the newest that there are; null when the scene has no such partner. An age is
+// the number of steps since the sample's: a sample that is handed over again is no news, one that comes late corrects
+// the copy of the partner at its own step (docs/models/coupling_late_samples.md).
 struct PartnerSamples {
   const MechanismSample* mechanism = nullptr;
   const ActuatorSample* actuators = nullptr;
   const FlexibleSample* flexible = nullptr;
   const ElasticSample* elastic = nullptr;
+  StepIndex mechanism_age = 0;
+  StepIndex actuators_age = 0;
 };
 
 // The sample that this subsystem publishes; what is not its own stays empty.

@@ -28,30 +28,47 @@ std::span<const double> Operator::controls(SimTime t) {
 
 // ---- coupled run ----------------------------------------------------------------------------------------------
 
-CoupledRun::CoupledRun(const scene::Scene& scene)
-    : H_(scene.session.step_duration()), mechanics_(scene), hydraulics_(scene) {}
+Ages exchanges_of(const scene::Scene& scene) {
+  return [every = scene.session.exchange_every](StepIndex n) { return n % every; };
+}
+
+Ages lost(StepIndex count, StepIndex period) {
+  return [count, period](StepIndex n) { return std::max<StepIndex>(0, n % period - (period - count) + 1); };
+}
+
+Ages delayed(StepIndex steps) {
+  return [steps](StepIndex n) { return std::min(n, steps); };
+}
+
+CoupledRun::CoupledRun(const scene::Scene& scene, Ages ages)
+    : H_(scene.session.step_duration()),
+      mechanics_(scene),
+      hydraulics_(scene),
+      ages_(std::move(ages)),
+      mechanics_samples_(kKept),
+      hydraulics_samples_(kKept) {}
 
 Status CoupledRun::start() {
   PartnerSamples partners;
-  static_cast<void>(mechanics_.first_sample(mechanics_sample_));
-  partners.mechanism = &mechanics_sample_.mechanism;
-  const Status status = hydraulics_.start(partners, hydraulics_sample_);
+  static_cast<void>(mechanics_.first_sample(mechanics_samples_[0]));
+  partners.mechanism = &mechanics_samples_[0].mechanism;
+  const Status status = hydraulics_.start(partners, hydraulics_samples_[0]);
   if (!status.is_ok()) return status;
   partners = {};
-  partners.actuators = &hydraulics_sample_.actuators;
-  return mechanics_.start(partners, mechanics_sample_);
+  partners.actuators = &hydraulics_samples_[0].actuators;
+  return mechanics_.start(partners, mechanics_samples_[0]);
 }
 
 void CoupledRun::step(std::span<const double> controls) {
+  const StepIndex age = ages_(n_);
+  had_news_ = n_ - age != used_;
+  used_ = n_ - age;
   PartnerSamples for_mechanics, for_hydraulics;
-  for_mechanics.actuators = &hydraulics_sample_.actuators;
-  for_hydraulics.mechanism = &mechanics_sample_.mechanism;
-  mechanics_next_ = mechanics_sample_;
-  hydraulics_next_ = hydraulics_sample_;
-  const StepReport m = mechanics_.step(n_, for_mechanics, controls, mechanics_next_);
-  const StepReport h = hydraulics_.step(n_, for_hydraulics, controls, hydraulics_next_);
-  std::swap(mechanics_sample_, mechanics_next_);
-  std::swap(hydraulics_sample_, hydraulics_next_);
+  for_mechanics.actuators = &hydraulics_samples_[slot(n_ - age)].actuators;
+  for_hydraulics.mechanism = &mechanics_samples_[slot(n_ - age)].mechanism;
+  for_mechanics.actuators_age = for_hydraulics.mechanism_age = age;
+  const StepReport m = mechanics_.step(n_, for_mechanics, controls, mechanics_samples_[slot(n_ + 1)]);
+  const StepReport h = hydraulics_.step(n_, for_hydraulics, controls, hydraulics_samples_[slot(n_ + 1)]);
   flags_ |= m.flags | h.flags;
   has_failed_ = has_failed_ || m.has_failed() || h.has_failed();
   ++n_;
@@ -103,7 +120,11 @@ Traces reference_traces(const scene::Scene& scene, double duration, std::int64_t
 }
 
 Comparison compare(const scene::Scene& scene, const Traces& reference, double duration) {
-  CoupledRun run(scene);
+  return compare(scene, reference, duration, exchanges_of(scene));
+}
+
+Comparison compare(const scene::Scene& scene, const Traces& reference, double duration, Ages ages) {
+  CoupledRun run(scene, std::move(ages));
   const Status status = run.start();
   if (!status.is_ok()) throw std::runtime_error(status.text);
   Operator op(scene, kControlGrid);
@@ -126,9 +147,12 @@ Comparison compare(const scene::Scene& scene, const Traces& reference, double du
     for (std::size_t i = 0; i < reference.size(); ++i) {
       PortError& port = result.ports[i];
       const PortDefects& defects = run.indicator().port(i);
-      port.work += std::fabs(run.mechanism().work[i]);
-      port.residual += std::fabs(defects.dE_star);
-      port.net += defects.dE_star;
+      // work adds up from one exchange to the next
+      if ((n + 1) % scene.session.exchange_every == 0) port.work += std::fabs(run.mechanism().work[i]);
+      if (run.had_news()) {
+        port.residual += std::fabs(defects.dE_star);
+        port.net += defects.dE_star;
+      }
       const double F = run.actuators().F[i];
       port.spring = std::max(port.spring, F * F / (2 * run.actuators().K[i]));
       if (!is_on_grid) continue;

@@ -3,6 +3,7 @@
 // runs receive the same signals.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -32,18 +33,31 @@ class Operator {
   std::vector<double> ramped_, controls_;
 };
 
+// How many steps old the newest sample is that both sides have at step n: lost and late samples.
+using Ages = std::function<StepIndex(StepIndex n)>;
+
+// As a session exchanges that loses nothing: at every exchange_every-th step.
+[[nodiscard]] Ages exchanges_of(const scene::Scene& scene);
+// The last `count` samples of every `period` steps are lost.
+[[nodiscard]] Ages lost(StepIndex count, StepIndex period);
+// Every sample comes `steps` late.
+[[nodiscard]] Ages delayed(StepIndex steps);
+
 class CoupledRun {
  public:
   // scene outlives the run; its session's step and level are those of the construction.
-  explicit CoupledRun(const scene::Scene& scene);
+  explicit CoupledRun(const scene::Scene& scene) : CoupledRun(scene, exchanges_of(scene)) {}
+  // Pre-condition: ages of less than kKept steps.
+  CoupledRun(const scene::Scene& scene, Ages ages);
   Status start();
   void step(std::span<const double> controls);
   void change(std::string_view path, double value, SimDuration over);
 
   [[nodiscard]] SimTime time() const { return start_of(n_, H_); }
-  [[nodiscard]] const MechanismSample& mechanism() const { return mechanics_sample_.mechanism; }
-  [[nodiscard]] const ActuatorSample& actuators() const { return hydraulics_sample_.actuators; }
+  [[nodiscard]] const MechanismSample& mechanism() const { return mechanics_samples_[slot(n_)].mechanism; }
+  [[nodiscard]] const ActuatorSample& actuators() const { return hydraulics_samples_[slot(n_)].actuators; }
   [[nodiscard]] bool has_failed() const { return has_failed_; }
+  [[nodiscard]] bool had_news() const { return had_news_; }     // the last step had a sample that no step before it had
   [[nodiscard]] std::uint32_t flags() const { return flags_; }  // all so far
   [[nodiscard]] const Indicator& indicator() const { return hydraulics_.indicator(); }
   [[nodiscard]] double variable(std::string_view name) const;
@@ -54,8 +68,14 @@ class CoupledRun {
   SimDuration H_;
   mechanics::MechanicsSubsystem mechanics_;
   hydraulic_node::HydraulicsSubsystem hydraulics_;
-  OwnSample mechanics_sample_, hydraulics_sample_, mechanics_next_, hydraulics_next_;
+  static constexpr StepIndex kKept = 128;
+  static std::size_t slot(StepIndex n) { return static_cast<std::size_t>(n % kKept); }
+
+  Ages ages_;
+  std::vector<OwnSample> mechanics_samples_, hydraulics_samples_;  // of the last steps
   StepIndex n_ = 0;
+  StepIndex used_ = -1;  // step of the sample that the last step had
+  bool had_news_ = false;
   std::uint32_t flags_ = 0;
   bool has_failed_ = false;
 };
@@ -94,6 +114,7 @@ struct Comparison {
   double seconds_of_work = 0;  // wall time of all steps
 };
 [[nodiscard]] Comparison compare(const scene::Scene& scene, const Traces& reference, double duration);
+[[nodiscard]] Comparison compare(const scene::Scene& scene, const Traces& reference, double duration, Ages ages);
 
 // The same with another communication step and level, which the scene keeps.
 [[nodiscard]] Comparison compare(scene::Scene& scene, double step, Level level, const Traces& reference,
