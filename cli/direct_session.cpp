@@ -21,7 +21,8 @@ DirectSession::DirectSession(const scene::Scene& scene)
       hydraulics_(make_subsystem(Role::hydraulics, scene)),
       flex_(make_subsystem(Role::flex, scene)),
       elastic_exchange_(scene.session.flexible),
-      flexible_every_(scene.flexible_every()) {}
+      flexible_every_(scene.flexible_every()),
+      exchange_every_(scene.session.exchange_every) {}
 
 Status DirectSession::start() {
   mechanics_report_ = hydraulics_report_ = {};
@@ -65,10 +66,19 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
     }
     return subsystem.step(n, partners, controls, next);
   };
+  const StepIndex age = n % exchange_every_;
+  if (exchange_every_ > 1 && age == 0) {
+    mechanics_exchanged_ = mechanics_sample_;
+    hydraulics_exchanged_ = hydraulics_sample_;
+  }
+  const auto exchanged = [&](const coupling::OwnSample& now, const coupling::OwnSample& last) -> auto& {
+    return age == 0 ? now : last;
+  };
   const std::int64_t begin_ns = monotonic_ns();
   if (mechanics_ != nullptr) {
     PartnerSamples partners;
-    if (hydraulics_ != nullptr) partners.actuators = &hydraulics_sample_.actuators;
+    if (hydraulics_ != nullptr) partners.actuators = &exchanged(hydraulics_sample_, hydraulics_exchanged_).actuators;
+    partners.actuators_age = age;
     const bool is_stated_anew = elastic_exchange_ != coupling::ElasticExchange::once;
     if (flex_ != nullptr && is_stated_anew) partners.elastic = &flex_sample_.elastic;
     mechanics_report_ = advance(*mechanics_, partners, mechanics_next_);
@@ -76,7 +86,8 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
   const std::int64_t middle_ns = monotonic_ns();
   if (hydraulics_ != nullptr) {
     PartnerSamples partners;
-    if (mechanics_ != nullptr) partners.mechanism = &mechanics_sample_.mechanism;
+    if (mechanics_ != nullptr) partners.mechanism = &exchanged(mechanics_sample_, mechanics_exchanged_).mechanism;
+    partners.mechanism_age = age;
     hydraulics_report_ = advance(*hydraulics_, partners, hydraulics_next_);
   }
   mechanics_ns_ = middle_ns - begin_ns;

@@ -49,8 +49,10 @@ class DirectSession {
   std::unique_ptr<coupling::Subsystem> flex_;
   coupling::ElasticExchange elastic_exchange_;
   StepIndex flexible_every_;              // steps between two samples for and of flexible bodies
+  StepIndex exchange_every_;              // steps between two exchanges of mechanics and hydraulics
   coupling::OwnSample mechanics_sample_;  // at t_n
   coupling::OwnSample hydraulics_sample_;
+  coupling::OwnSample mechanics_exchanged_, hydraulics_exchanged_;  // those of the last exchange, when it is not t_n's
   coupling::OwnSample flex_sample_;
   coupling::OwnSample mechanics_next_;
   coupling::OwnSample hydraulics_next_;

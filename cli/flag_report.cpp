@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -23,11 +24,13 @@ struct Meaning {
   const char* remedy;
 };
 
-constexpr std::array<Meaning, 6> kMeanings = {{
+constexpr std::array<Meaning, 7> kMeanings = {{
     {StepFlag::not_converged, "an iteration reached its limit and its residual was accepted", "choose a smaller step"},
     {StepFlag::step_budget, "the sub-step budget was used up and the error of the last one accepted",
      "raise hydraulics.substep_budget or the tolerances"},
     {StepFlag::clamp_active, "a quantity was held at a bound of its validity", "look at the pressures and the inputs"},
+    {StepFlag::late_input, "a sample was later than the copy of the partner's model is good for",
+     "look for load on the machine or the network, or choose session.mode: lockstep"},
     {StepFlag::coupling_creates_energy, "the coupling created energy, so the run may be unstable",
      "choose session.coupling: two or a smaller step"},
     {StepFlag::cavitating, "a volume cavitated", "look at the pressures near zero"},
@@ -40,13 +43,32 @@ struct Seen {
   StepIndex first = 0;
 };
 
+// How a free-running node fared without its partner's samples.
+struct Late {
+  std::uint64_t steps = 0;  // that continued a copy
+  StepIndex longest = 0;    // steps in a row
+  std::uint64_t all = 0;
+  std::uint32_t lost = 0;  // samples that no step used
+
+  void add(const wire::Header& header, const wire::SampleState& state) {
+    if (header.phase != wire::Phase::running || header.step == 0) return;
+    ++all;
+    lost = state.lost;
+    if (state.quality == coupling::Quality::ok) return;
+    ++steps;
+    longest = std::max(longest, header.step - 1 - state.used_step);
+  }
+};
+
 }  // namespace
 
 std::vector<std::string> explain_flags(const recording::Reader& reader) {
   std::map<std::pair<wire::Role, std::size_t>, Seen> seen;
-  const auto take = [&](const wire::Header& header, std::uint32_t flags) {
+  std::map<wire::Role, Late> late;
+  const auto take = [&](const wire::Header& header, const wire::SampleState& state) {
+    late[header.role].add(header, state);
     for (std::size_t i = 0; i < kMeanings.size(); ++i) {
-      if ((flags & static_cast<std::uint32_t>(kMeanings[i].flag)) == 0) continue;
+      if ((state.flags & static_cast<std::uint32_t>(kMeanings[i].flag)) == 0) continue;
       Seen& entry = seen[{header.role, i}];
       if (entry.steps++ == 0) entry.first = header.step;
     }
@@ -58,16 +80,25 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   const Status status = reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     if (message.channel->topic == filter.topics.front()) {
       wire::MechanismMessage sample;
-      if (transport::decode(message.payload, sample)) take(sample.header, sample.state.flags);
+      if (transport::decode(message.payload, sample)) take(sample.header, sample.state);
     } else {
       wire::ActuatorMessage sample;
-      if (transport::decode(message.payload, sample)) take(sample.header, sample.state.flags);
+      if (transport::decode(message.payload, sample)) take(sample.header, sample.state);
     }
     return recording::Reader::Visit::go_on;
   });
   if (status.code == ExitCode::storage) throw cli_support::Failure(status.code, status.text);
   std::vector<std::string> sentences;
   const double H = reader.identity().communication_step.seconds();
+  for (const auto& [role, entry] : late) {
+    if (entry.steps == 0 && entry.lost == 0) continue;
+    sentences.push_back(
+        fmt::format("{}: free-running, {} of {} without the partner's sample ({:.2g} %), {} in a row at "
+                    "most; {} never used",
+                    node::to_text(role), entry.steps, counted(entry.all, "step", "steps"),
+                    100.0 * static_cast<double>(entry.steps) / static_cast<double>(entry.all), entry.longest,
+                    counted(entry.lost, "sample", "samples")));
+  }
   for (const auto& [key, entry] : seen) {
     const Meaning& meaning = kMeanings[key.second];
     sentences.push_back(fmt::format("{}: {} in {}, first at {}; {}", node::to_text(key.first), meaning.what,

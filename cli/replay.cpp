@@ -32,6 +32,12 @@ class Replay {
   Replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets)
       : reader_(reader), on_difference_(on_difference), scene_(recorded_scene(reader, assets)), session_(scene_) {
     set_floating_point_mode();
+    if (scene_.session.mode == scene::ExchangeMode::free_running) {
+      throw Failure(ExitCode::bad_input,
+                    "the recording is of a free-running session, in which the clock decided which samples each step "
+                    "used; it cannot be computed again; nothing was compared; record with session.mode: lockstep what "
+                    "is to be verified");
+    }
     if (scene_.session.step_duration() != reader.identity().communication_step) {
       throw Failure(ExitCode::bad_input, "the recording's step is not its scene's; it cannot be replayed");
     }

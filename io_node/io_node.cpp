@@ -155,8 +155,8 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
   if (!member_.fits(header, topic)) return;
   member_.heard(header, topic, now_ns);
   if (header.phase != Phase::running) return;
-  // nobody can be further than the ticks that were sent
-  if (header.step > n_) {
+  // nobody can be further than the ticks that were sent, but a free-running node, which does not wait for them
+  if (header.step > n_ + (config_.is_free_running ? config_.window : 0)) {
     ++member_.refusals().too_far_ahead;
     return;
   }

@@ -59,6 +59,7 @@ struct IoConfig {
   SimDuration name_check = milliseconds(300);  // listens so long for a holder of the name; 0 in one process
   SimDuration join_timeout = node::kJoinTimeout;
   bool starts_paused = false;
+  bool is_free_running = false;  // nodes may be ahead of the ticks by the window
 };
 
 // Recorder window of architecture section 2.

@@ -41,6 +41,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   config.step = scene.session.step_duration();
   config.pace = scene.session.pace == scene::Pace::free ? wire::Pace::free : wire::Pace::real;
   config.window = scene.session.window_steps();
+  config.is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
   config.required_roles = required_roles(scene, wish.recording);
   config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;
   for (const scene::InputDef& input : scene.inputs) {

@@ -39,6 +39,8 @@ node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets)
       *scene = scene::load_text(session.scene_text, "scene of session '" + session.name + "'", {}, assets);
       built.subsystem = make(*scene);
       built.variables_every = static_cast<std::uint32_t>(scene->recording.every);
+      built.ports = {static_cast<std::uint32_t>(scene->session.exchange_every),
+                     scene->session.mode == scene::ExchangeMode::free_running, scene->session.wait_budget_duration()};
       built.flexible = {scene->session.flexible, scene->flexible_every()};
       built.published_variables = published_variables(*scene, *built.subsystem);
       return Status::ok();

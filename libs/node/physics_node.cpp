@@ -60,8 +60,10 @@ std::int64_t PhysicsNode::next_deadline(std::int64_t now_ns) const {
   switch (stage_) {
     case Stage::joining:
       return now_ns + kProbeInterval.ns / 2;
-    case Stage::initialising:
     case Stage::stepping:
+      if (built_.ports.is_free_running) return free_deadline(now_ns);
+      [[fallthrough]];
+    case Stage::initialising:
       // after a fault's END nothing is asked for: io's status comes by itself
       return is_ended_by_fault_ ? now_ns + kProbeInterval.ns : std::max(now_ns, resend_.due_ns());
     default:
@@ -155,7 +157,7 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     return;
   }
   variable_values_.resize(built_.subsystem->variables().size());
-  samples_.configure(member_, built_.flexible);
+  samples_.configure(member_, built_.ports, built_.flexible);
   member_.set_state(NodeState::joining);
   stage_ = Stage::joining;
 }
@@ -172,13 +174,36 @@ void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t no
   member_.heard(header, Topic::tick, now_ns);
   if (header.phase != Phase::running) return;
   if (is_follower()) return receive_last_tick(bytes);
+  if (header.step > newest_tick_) {
+    newest_tick_ = header.step;
+    newest_tick_ns_ = now_ns;
+  }
   if (header.step >= n_ + static_cast<StepIndex>(kRingDepth)) {
     ++member_.refusals().too_far_ahead;
+  } else if (header.step < n_ && built_.ports.is_free_running) {
+    take_late_tick(bytes);
   } else if (header.step < n_ || ticks_.find(header.step) != nullptr) {
     ++member_.refusals().duplicate;
   } else if (!transport::decode(bytes, ticks_.put(header.step))) {
     ticks_.remove(header.step);
     ++member_.refusals().undecodable;
+  }
+}
+
+// A step that was done without its tick: once, for a tick that is asked for may come twice.
+void PhysicsNode::take_late_tick(std::span<const std::byte> bytes) {
+  wire::Tick tick;
+  if (!transport::decode(bytes, tick)) {
+    ++member_.refusals().undecodable;
+  } else if (std::erase(missed_ticks_, tick.header.step) == 0) {
+    ++member_.refusals().duplicate;
+  } else {
+    late_commands_.insert(late_commands_.end(), tick.commands.begin(), tick.commands.end());
+    if (tick.header.step == newest_tick_) controls_.assign(tick.controls.begin(), tick.controls.end());
+    if (is_end(tick)) {
+      has_late_end_ = true;
+      is_ended_by_fault_ = is_fault(tick);
+    }
   }
 }
 
@@ -231,7 +256,10 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
       return advance_init(now_ns);
     case Stage::stepping: {
       bool any = false;
-      const auto go_on = [&] { return is_follower() ? follow(now_ns) : advance_step(now_ns); };
+      const auto go_on = [&] {
+        if (is_follower()) return follow(now_ns);
+        return built_.ports.is_free_running ? advance_free(now_ns) : advance_step(now_ns);
+      };
       while (stage_ == Stage::stepping && member_.send_failure().is_ok() && go_on()) any = true;
       if (!any) ask_for_missing(now_ns);
       return any;
@@ -306,9 +334,9 @@ void PhysicsNode::expect_next(std::int64_t now_ns) noexcept {
   resend_.restart(has_time ? now_ns + stride_ns : now_ns);
 }
 
-void PhysicsNode::apply_commands(const wire::Tick& tick) {
-  for (const wire::Command& command : tick.commands) {
-    built_.subsystem->change_parameter(tick.header.step, {command.path, command.value, {command.over_ns}});
+void PhysicsNode::apply_commands(std::span<const wire::Command> commands) {
+  for (const wire::Command& command : commands) {
+    built_.subsystem->change_parameter(n_, {command.path, command.value, {command.over_ns}});
   }
 }
 
@@ -323,9 +351,58 @@ bool PhysicsNode::advance_step(std::int64_t now_ns) {
   }
   coupling::PartnerSamples partners;
   if (!samples_.find(n_, partners)) return false;
-  apply_commands(*tick);
+  apply_commands(tick->commands);
+  used_step_ = n_ - std::max(partners.mechanism_age, partners.actuators_age);
   compute(partners, tick->controls.span(), now_ns);
   return true;
+}
+
+bool PhysicsNode::advance_free(std::int64_t now_ns) {
+  const wire::Tick* tick = ticks_.find(n_);
+  if (has_late_end_ || (tick != nullptr && is_end(*tick))) {
+    // after a fault io's status says why, see watch()
+    if (!has_late_end_) is_ended_by_fault_ = is_fault(*tick);
+    if (!is_ended_by_fault_) leave(ExitCode::ok, "", now_ns);
+    return !is_ended_by_fault_;
+  }
+  // the tick, or its time and the budget
+  if (tick == nullptr && newest_tick_ < n_) {
+    const bool is_far_ahead = newest_tick_ == kNoStep || n_ - newest_tick_ > member_.session().window;
+    if (is_far_ahead || is_withheld(n_) || now_ns < tick_due_ns() + built_.ports.wait_budget.ns) return false;
+  }
+  coupling::PartnerSamples partners;
+  samples_.find_newest(n_, partners);
+  const StepIndex age = std::max(partners.mechanism_age, partners.actuators_age);
+  // one that is behind the ticks has nothing to wait for: its partner is ahead
+  if (age > 0 && newest_tick_ <= n_) {
+    if (sample_due_ns_ == 0) sample_due_ns_ = now_ns + built_.ports.wait_budget.ns;
+    if (now_ns < sample_due_ns_) return false;
+  }
+  sample_due_ns_ = 0;
+  if (tick != nullptr) {
+    controls_.assign(tick->controls.begin(), tick->controls.end());
+  } else {
+    if (missed_ticks_.size() == kRingDepth) missed_ticks_.erase(missed_ticks_.begin());
+    missed_ticks_.push_back(n_);
+  }
+  apply_commands(late_commands_);
+  late_commands_.clear();
+  if (tick != nullptr) apply_commands(tick->commands);
+  if (n_ - age > used_step_ + 1) lost_ += static_cast<std::uint32_t>(n_ - age - used_step_ - 1);
+  used_step_ = std::max(used_step_, n_ - age);
+  compute(partners, controls_, now_ns);
+  return true;
+}
+
+// When Tick n would come if the last one had been in time.
+std::int64_t PhysicsNode::tick_due_ns() const noexcept {
+  return newest_tick_ns_ + (n_ - newest_tick_) * member_.session().step_ns;
+}
+
+std::int64_t PhysicsNode::free_deadline(std::int64_t now_ns) const noexcept {
+  if (is_ended_by_fault_ || newest_tick_ == kNoStep) return now_ns + kProbeInterval.ns;
+  const std::int64_t step = sample_due_ns_ > 0 ? sample_due_ns_ : tick_due_ns() + built_.ports.wait_budget.ns;
+  return std::max(now_ns, std::min(step, missed_ticks_.empty() ? step : resend_.due_ns()));
 }
 
 // A follower's next sample is that of the step whose sample of the mechanics it needs.
@@ -348,6 +425,9 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
   const std::int64_t begin_ns = monotonic_ns();
   const StepReport report = built_.subsystem->step(n_, partners, controls, own_);
   const std::int64_t spent_ns = monotonic_ns() - begin_ns;
+  quality_ = report.has(StepFlag::late_input)                  ? coupling::Quality::degraded
+             : built_.ports.is_free_running && used_step_ < n_ ? coupling::Quality::extrapolated
+                                                               : coupling::Quality::ok;
   n_ += samples_.stride();
   publish_sample(Phase::running, n_, report);
   if (n_ % built_.variables_every == 0) publish_variables(n_);
@@ -382,7 +462,14 @@ void PhysicsNode::restart(std::uint32_t epoch) {
   ticks_.clear();
   samples_.clear();
   n_ = 0;
-  last_step_ = kNoStep;
+  last_step_ = newest_tick_ = kNoStep;
+  used_step_ = kJoinStep;
+  lost_ = 0;
+  sample_due_ns_ = 0;
+  missed_ticks_.clear();
+  late_commands_.clear();
+  controls_.clear();
+  has_late_end_ = false;
   first_sample_sent_ = false;
   member_.set_step(kJoinStep);
   member_.set_state(NodeState::initialising);
@@ -406,7 +493,9 @@ void PhysicsNode::leave(ExitCode code, const std::string& reason, std::int64_t n
 void PhysicsNode::publish_sample(Phase phase, StepIndex step, const StepReport& report) {
   wire::SampleState state;
   state.level = built_.subsystem->level();
-  state.used_step = is_follower() ? step : step - 1;
+  state.used_step = is_follower() ? step : used_step_;
+  state.quality = quality_;
+  state.lost = lost_;
   state.state_hash = built_.subsystem->state_hash();
   state.flags = report.flags;
   state.offender = report.offender;
@@ -472,6 +561,11 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
   if (stage_ == Stage::initialising) return samples_.for_each_missing_at_start(ask);
   if (is_follower()) {
     if (!is_withheld(n_ + samples_.stride() - 1)) samples_.for_each_missing(n_ + samples_.stride(), ask);
+    return;
+  }
+  if (built_.ports.is_free_running) {
+    // samples are too late by then, commands are not
+    for (const StepIndex step : missed_ticks_) ask(Role::io, Topic::tick, step);
     return;
   }
   if (ticks_.find(n_) == nullptr && !is_withheld(n_)) ask(Role::io, Topic::tick, n_);

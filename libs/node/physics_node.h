@@ -4,6 +4,10 @@
 // and publish sample n+1 with the hash of its state. Message arrival order never matters: everything is taken by step.
 // A flex node has no state of its own to advance: it follows the mechanics' samples, needs no tick but the last, and
 // publishes its sample of the same step.
+//
+// Free-running: step n is done when Tick n has come, or its time by the last tick and the budget have passed; with the
+// samples n, or, when the budget has passed since, with the newest that there are. A tick that comes later still has
+// its commands applied, in the step that is next then. Nobody is further ahead of the ticks than the session's window.
 #pragma once
 
 #include <functional>
@@ -25,6 +29,7 @@ struct BuiltSubsystem {
   std::unique_ptr<coupling::Subsystem> subsystem;
   std::uint32_t variables_every = 10;              // steps between two variable blocks
   std::vector<std::uint32_t> published_variables;  // indices into Subsystem::variables(), ascending
+  PortTraffic ports;
   FlexibleTraffic flexible;
 };
 
@@ -59,6 +64,10 @@ class PhysicsNode final : public Node {
   bool advance_init(std::int64_t now_ns);
   bool advance_step(std::int64_t now_ns);
   bool follow(std::int64_t now_ns);
+  bool advance_free(std::int64_t now_ns);
+  [[nodiscard]] std::int64_t free_deadline(std::int64_t now_ns) const noexcept;
+  [[nodiscard]] std::int64_t tick_due_ns() const noexcept;
+  void take_late_tick(std::span<const std::byte> bytes);
   void expect_next(std::int64_t now_ns) noexcept;
   void compute(const coupling::PartnerSamples& partners, std::span<const double> controls, std::int64_t now_ns);
   bool advance_leaving(std::int64_t now_ns);
@@ -71,7 +80,7 @@ class PhysicsNode final : public Node {
   void ask_for_missing(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   void leave(ExitCode code, const std::string& reason, std::int64_t now_ns);
-  void apply_commands(const wire::Tick& tick);
+  void apply_commands(std::span<const wire::Command> commands);
   [[nodiscard]] bool is_follower() const noexcept { return member_.role() == wire::Role::flex; }
   void update_health() noexcept;
 
@@ -94,7 +103,17 @@ class PhysicsNode final : public Node {
   wire::VariableBlock block_;
   coupling::OwnSample own_;
   std::vector<double> variable_values_;
-  wire::Tick last_tick_;  // of a follower
+  wire::Tick last_tick_;                 // of a follower
+  StepIndex used_step_ = kJoinStep;      // of the partner's sample that the last step used
+  std::uint32_t lost_ = 0;               // partner samples that no step used
+  StepIndex newest_tick_ = kNoStep;      // free-running: the highest that came
+  std::int64_t newest_tick_ns_ = 0;      // when it came
+  std::int64_t sample_due_ns_ = 0;       // when the budget of the step that waits is over; 0: none waits
+  std::vector<StepIndex> missed_ticks_;  // free-running: of steps that were done without them, ascending
+  std::vector<wire::Command> late_commands_;
+  std::vector<double> controls_;  // free-running: those of the newest tick so far
+  bool has_late_end_ = false;
+  coupling::Quality quality_ = coupling::Quality::ok;
   ResendClock resend_;
 };
 

@@ -52,14 +52,15 @@ bool SampleExchange::is_sample(Topic topic) noexcept {
   return topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::flexible || topic == Topic::elastic;
 }
 
-void SampleExchange::configure(const SessionMember& member, const FlexibleTraffic& flexible) {
+void SampleExchange::configure(const SessionMember& member, const PortTraffic& ports, const FlexibleTraffic& flexible) {
   const bool is_stated_once = flexible.exchange == coupling::ElasticExchange::once;
   has_flexible_ = member.requires_role(Role::flex);
   flexible_every_ = is_stated_once ? std::max<StepIndex>(1, flexible.every) : 1;
-  if (own_ == Role::mechanics && member.requires_role(Role::hydraulics)) actuators_.need(1);
+  if (own_ == Role::mechanics && member.requires_role(Role::hydraulics)) actuators_.need(ports.every);
   if (own_ == Role::mechanics && has_flexible_) elastic_.need(1);
   elastic_.is_needed_each_step = !is_stated_once;
-  if (own_ == Role::hydraulics && member.requires_role(Role::mechanics)) mechanism_.need(1);
+  if (own_ == Role::hydraulics && member.requires_role(Role::mechanics)) mechanism_.need(ports.every);
+  actuators_.takes_late = mechanism_.takes_late = ports.is_free_running;
   if (own_ == Role::flex) flexible_.need(flexible_every_);
 }
 
@@ -97,8 +98,21 @@ bool SampleExchange::find_start(coupling::PartnerSamples& partners) const noexce
 }
 
 bool SampleExchange::find(StepIndex step, coupling::PartnerSamples& partners) const noexcept {
+  partners.actuators_age = step % actuators_.every;
+  partners.mechanism_age = step % mechanism_.every;
   return take_step(actuators_, step, partners.actuators) && take_step(elastic_, step, partners.elastic) &&
          take_step(mechanism_, step, partners.mechanism) && take_step(flexible_, step, partners.flexible);
+}
+
+void SampleExchange::find_newest(StepIndex step, coupling::PartnerSamples& partners) const noexcept {
+  if (const auto* newest = actuators_.is_needed ? actuators_.find_newest(step) : nullptr) {
+    partners.actuators = &newest->sample;
+    partners.actuators_age = step - newest->header.step;
+  }
+  if (const auto* newest = mechanism_.is_needed ? mechanism_.find_newest(step) : nullptr) {
+    partners.mechanism = &newest->sample;
+    partners.mechanism_age = step - newest->header.step;
+  }
 }
 
 // ---- sending --------------------------------------------------------------------------------------------------

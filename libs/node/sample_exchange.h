@@ -5,6 +5,8 @@
 //   mechanics    actuators, elastic                             mechanism, flexible
 //   hydraulics   mechanism                                      actuators
 //   flex         flexible                                       elastic
+// Mechanics and hydraulics may exchange at every k-th step only: in between they are handed the sample of the last
+// exchange again, with its age. Of a free-running session the newest sample is handed over, however old.
 // A node with several partners waits for all of them. Flexible bodies whose elastic forces were stated once are waited
 // for at the start only; samples for them and of them then come at every k-th step, those of the variables.
 #pragma once
@@ -33,18 +35,27 @@ struct FlexibleTraffic {
   std::uint32_t every = 1;  // steps between two samples for and of them
 };
 
+// How mechanics and hydraulics of a session exchange.
+struct PortTraffic {
+  std::uint32_t every = 1;       // steps between two exchanges
+  bool is_free_running = false;  // nobody waits longer than the budget
+  SimDuration wait_budget;       // of a free-running node
+};
+
 // Samples of one partner.
 template <typename Message>
 class Inbox {
  public:
   Inbox(wire::Role from, wire::Topic on) : writer(from), topic(on) {}
 
-  // Takes a message of a step that is still to be done, once. n: the next step to do.
+  // Takes a message of a step that is still needed, once. n: the next step to do.
   void keep(std::span<const std::byte> bytes, StepIndex step, StepIndex n, Refusals& refusals) {
+    if (step % every != 0) return;
     const StepIndex place = step / every;
+    const StepIndex first = takes_late ? n - static_cast<StepIndex>(kRingDepth) + 1 : n;
     if (place >= n / every + static_cast<StepIndex>(kRingDepth)) {
       ++refusals.too_far_ahead;
-    } else if (step < n || step % every != 0 || ring_.find(place) != nullptr) {
+    } else if (step < first || ring_.find(place) != nullptr) {
       ++refusals.duplicate;
     } else if (!transport::decode(bytes, ring_.put(place))) {
       ring_.remove(place);
@@ -65,8 +76,15 @@ class Inbox {
     ring_.clear();
     has_init_ = false;
   }
-  [[nodiscard]] const Message* find(StepIndex step) const noexcept {
-    return step % every == 0 ? ring_.find(step / every) : nullptr;
+  // Of the step, or of the last one before it that brings a message.
+  [[nodiscard]] const Message* find(StepIndex step) const noexcept { return ring_.find(step / every); }
+  // The newest up to the step; null when there is none in reach.
+  [[nodiscard]] const Message* find_newest(StepIndex step) const noexcept {
+    for (std::size_t back = 0; back < kRingDepth; ++back) {
+      const Message* found = ring_.find(step - static_cast<StepIndex>(back));
+      if (found != nullptr) return found;
+    }
+    return nullptr;
   }
   [[nodiscard]] const Message* init() const noexcept { return has_init_ ? &init_ : nullptr; }
 
@@ -74,6 +92,7 @@ class Inbox {
   const wire::Topic topic;
   bool is_needed = false;
   bool is_needed_each_step = true;  // beyond the start
+  bool takes_late = false;          // also messages of steps that are done
   StepIndex every = 1;
 
  private:
@@ -90,7 +109,7 @@ class SampleExchange {
   [[nodiscard]] static bool is_sample(wire::Topic topic) noexcept;
 
   // Who takes part in the session. flexible: of a session with a flex node.
-  void configure(const SessionMember& member, const FlexibleTraffic& flexible);
+  void configure(const SessionMember& member, const PortTraffic& ports, const FlexibleTraffic& flexible);
   void clear() noexcept;
   [[nodiscard]] bool has_partner() const noexcept;
   // Steps from one of this node's samples to the next.
@@ -104,6 +123,8 @@ class SampleExchange {
   // mechanics' INIT, flexible bodies from the mechanics' sample 0.
   [[nodiscard]] bool find_start(coupling::PartnerSamples& partners) const noexcept;
   [[nodiscard]] bool find(StepIndex step, coupling::PartnerSamples& partners) const noexcept;
+  // The newest samples up to the step. Pre-condition: the session is free-running.
+  void find_newest(StepIndex step, coupling::PartnerSamples& partners) const noexcept;
 
   // What is missing, for a request: visit(role, topic, step).
   template <typename Visit>
@@ -117,7 +138,7 @@ class SampleExchange {
   void for_each_missing(StepIndex step, Visit visit) const {
     const auto look = [&](const auto& inbox) {
       if (inbox.is_needed && inbox.is_needed_each_step && inbox.find(step) == nullptr) {
-        visit(inbox.writer, inbox.topic, step);
+        visit(inbox.writer, inbox.topic, step - step % inbox.every);
       }
     };
     look(actuators_);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -14,16 +15,20 @@ constexpr double kWholeNanosecondTolerance = 1e-3;  // ns
 
 constexpr Range kStepRange{.min = kMinStep, .max = kMaxStep, .min_is_open = false, .max_is_open = false};
 constexpr Range kDurationRange{.min = 0, .max = 1e6, .min_is_open = false, .max_is_open = false};
-constexpr Range kWindowRange{.min = 0, .max = 64, .min_is_open = false, .max_is_open = false};
+constexpr std::int64_t kMaxWindow = 64;
+constexpr Range kWindowRange{.min = 0, .max = kMaxWindow, .min_is_open = false, .max_is_open = false};
 constexpr Range kTimeoutRange{.min = 0.01, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kBlockRange{.min = 0, .max = 15, .min_is_open = false, .max_is_open = false};
 constexpr Range kChannelRange{.min = 0, .max = 63, .min_is_open = false, .max_is_open = false};
 constexpr Range kDeadZoneRange{.min = 0, .max = 1, .min_is_open = false};
 constexpr Range kRampRange{.min = 0, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
+constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
+constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
 
 constexpr std::string_view kPaces[] = {"real", "free"};
+constexpr std::string_view kModes[] = {"lockstep", "free_running"};
 constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
 constexpr std::string_view kElasticExchanges[] = {"once", "every_step", "condensed"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
@@ -50,9 +55,26 @@ constexpr Field kSessionFields[] = {
                 "more; every_step: anew about each step's modal coordinates, and the mechanics waits; condensed: it "
                 "integrates the modes itself and states them condensed over each step (trapezoidal integrator, one "
                 "sub-step)"}),
+    field<&SessionDef::mode>(
+        "mode",
+        {.choices = kModes,
+         .doc = "what a node does without a partner's sample. lockstep: it waits, the result is the same on any "
+                "machine; free_running: it waits no longer than wait_budget, then continues its copy of the partner's "
+                "model (real pace; levels linear and two)"}),
+    field<&SessionDef::exchange_every>(
+        "exchange_every",
+        {.range = kExchangeRange,
+         .doc = "steps between two exchanges of mechanics and hydraulics; in between each continues its copy of the "
+                "other's model, while ticks and inputs come at every step"}),
+    field<&SessionDef::wait_budget>("wait_budget",
+                                    {.dimension = Dimension::time,
+                                     .range = kBudgetRange,
+                                     .doc = "longest time a free-running node waits for a sample; 0: half a step"}),
     field<&SessionDef::window>(
-        "window", {.range = kWindowRange,
-                   .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace"}),
+        "window",
+        {.range = kWindowRange,
+         .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace, free-running "
+                "as many as fit into 100 ms"}),
     field<&SessionDef::controller_timeout>("controller_timeout",
                                            {.dimension = Dimension::time,
                                             .range = kTimeoutRange,
@@ -131,7 +153,14 @@ StepIndex SessionDef::steps() const noexcept {
 
 std::int64_t SessionDef::window_steps() const noexcept {
   if (window > 0) return window;
+  if (mode == ExchangeMode::free_running) {
+    return std::clamp<std::int64_t>(kLongestCopy.ns / step_duration().ns, 1, kMaxWindow);
+  }
   return pace == Pace::real ? 1 : 4;
+}
+
+SimDuration SessionDef::wait_budget_duration() const noexcept {
+  return wait_budget > 0 ? duration_of_seconds(wait_budget) : SimDuration{step_duration().ns / 2};
 }
 
 std::span<const Field> session_fields() noexcept {
@@ -156,6 +185,29 @@ std::span<const Field> plot_fields() noexcept {
   return kPlotFields;
 }
 
+namespace {
+
+void validate_free_running(const SessionDef& session, Problems& errors) {
+  const auto refuse = [&](const char* key, const char* what, const char* expected) {
+    errors.push_back({key, what, expected, ""});
+  };
+  if (session.pace == Pace::free) {
+    refuse("session.pace", "a free-running session has no other clock than the wall's", "real");
+  }
+  if (session.coupling == coupling::Level::hold || session.coupling == coupling::Level::tlm) {
+    refuse("session.coupling", "a free-running node continues its partner's model, which this level does not state",
+           "two or linear");
+  }
+  if (session.flexible != coupling::ElasticExchange::once) {
+    refuse("session.flexible", "elastic forces that are stated step by step cannot be continued without them", "once");
+  }
+  if (session.exchange_every > 1) {
+    refuse("session.exchange_every", "a free-running node takes every sample that comes", "1");
+  }
+}
+
+}  // namespace
+
 void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   const double nanoseconds = session.step * 1e9;
   if (std::abs(nanoseconds - std::round(nanoseconds)) > kWholeNanosecondTolerance) {
@@ -164,6 +216,18 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   }
   if (session.step < kMinUsualStep || session.step > kMaxUsualStep) {
     warnings.push_back({"session.step", fmt::format("{} ms is outside 0.1 to 10 ms", session.step * 1e3), "", ""});
+  }
+  if (session.mode == ExchangeMode::free_running) validate_free_running(session, errors);
+  const double exchange = session.step * static_cast<double>(session.exchange_every);
+  if (session.exchange_every > 1 && exchange > kMaxStep * (1 + 1e-9)) {
+    errors.push_back({"session.exchange_every",
+                      fmt::format("{} steps of {} ms are {} ms between two exchanges", session.exchange_every,
+                                  session.step * 1e3, exchange * 1e3),
+                      fmt::format("at most {} ms", kMaxStep * 1e3), ""});
+  }
+  if (session.wait_budget > 0 && session.mode != ExchangeMode::free_running) {
+    errors.push_back({"session.wait_budget", "a session in lockstep waits as long as it takes",
+                      "session.mode: free_running beside it", ""});
   }
   if (session.coupling == coupling::Level::linear || session.coupling == coupling::Level::tlm) {
     const auto index = static_cast<std::size_t>(session.coupling);

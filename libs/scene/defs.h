@@ -17,6 +17,12 @@ namespace slew::scene {
 
 enum class Pace : int { real, free };
 
+// What a node does when a partner's sample is not there yet.
+enum class ExchangeMode : int {
+  lockstep,     // it waits: the same bits on any machine
+  free_running  // it waits for a while, then continues its copy of the partner's model
+};
+
 // How a session runs.
 struct SessionDef {
   double step = 1e-3;                               // s, communication step H; whole nanoseconds
@@ -24,12 +30,17 @@ struct SessionDef {
   Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
   coupling::Level coupling = coupling::Level::two;  // linear and tlm are refused in this version
   coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
-  std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free
+  ExchangeMode mode = ExchangeMode::lockstep;
+  std::int64_t exchange_every = 1;  // steps between two exchanges of mechanics and hydraulics
+  double wait_budget = 0;           // s, longest wait of a free-running node; 0: half a step
+  std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free, see window_steps()
   double controller_timeout = 0.5;  // s of silence after which a controller's channel goes to neutral
 
   [[nodiscard]] SimDuration step_duration() const noexcept;
   [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped
+  // Free-running: as many steps as fit into 100 ms, 64 at most.
   [[nodiscard]] std::int64_t window_steps() const noexcept;
+  [[nodiscard]] SimDuration wait_budget_duration() const noexcept;
 };
 
 enum class InputType : int { analog, digital };
@@ -91,16 +102,17 @@ struct PlotDef {
   std::vector<std::string> variables;  // names or patterns; one panel per unit
 };
 
-inline constexpr double kMinStep = 10e-6;                    // s
-inline constexpr double kMaxStep = 20e-3;                    // s
-inline constexpr double kMinUsualStep = 0.1e-3;              // s, warned about below
-inline constexpr double kMaxUsualStep = 10e-3;               // s, warned about above
-inline constexpr std::size_t kMaxNameLength = 32;            // of an element: "name.quantity" must fit the wire's 63
-inline constexpr std::size_t kMaxSceneNameLength = 63;       // on the wire
-inline constexpr std::size_t kMaxAssetNameLength = 255;      // on the wire
-inline constexpr std::size_t kMaxExpandedBytes = 4 << 20;    // of Scene::expanded_text on the wire
-inline constexpr std::size_t kMaxInputs = 64;                // channels on the wire
-inline constexpr std::size_t kMaxScriptChangesPerStep = 16;  // commands in one tick
+inline constexpr double kMinStep = 10e-6;                       // s
+inline constexpr double kMaxStep = 20e-3;                       // s
+inline constexpr SimDuration kLongestCopy = milliseconds(100);  // free-running: beyond it the ticks wait
+inline constexpr double kMinUsualStep = 0.1e-3;                 // s, warned about below
+inline constexpr double kMaxUsualStep = 10e-3;                  // s, warned about above
+inline constexpr std::size_t kMaxNameLength = 32;               // of an element: "name.quantity" must fit the wire's 63
+inline constexpr std::size_t kMaxSceneNameLength = 63;          // on the wire
+inline constexpr std::size_t kMaxAssetNameLength = 255;         // on the wire
+inline constexpr std::size_t kMaxExpandedBytes = 4 << 20;       // of Scene::expanded_text on the wire
+inline constexpr std::size_t kMaxInputs = 64;                   // channels on the wire
+inline constexpr std::size_t kMaxScriptChangesPerStep = 16;     // commands in one tick
 
 [[nodiscard]] std::span<const Field> session_fields() noexcept;
 [[nodiscard]] std::span<const Field> input_fields() noexcept;   // without `type`

@@ -18,7 +18,7 @@ namespace slew::testing {
 inline constexpr std::int64_t kMs = 1'000'000;
 
 // A subsystem without motion: every step succeeds.
-class StillSubsystem final : public coupling::Subsystem {
+class StillSubsystem : public coupling::Subsystem {
  public:
   bool first_sample(coupling::OwnSample&) noexcept override { return true; }
   Status start(const coupling::PartnerSamples&, coupling::OwnSample&) override { return Status::ok(); }

@@ -48,6 +48,7 @@ TEST_F(Distributed, CranesHaveTheSameHashesAsInOneProcess) {
   };
   const Case cases[] = {
       {"truck_crane", "2", {}, 4, 2 * 2001 + 1},
+      {"truck_crane", "2", {"session.exchange_every=5"}, 4, 2 * 2001 + 1},
       {"truck_crane_flexible", "2", {"session.flexible=once"}, 5, 2 * 2001 + 1 + 201 + 1},
       {"truck_crane_flexible", "2", {"session.flexible=every_step"}, 5, 3 * 2001 + 2},
       {"truck_crane_flexible",

@@ -14,6 +14,7 @@ namespace slew::testing {
 namespace {
 
 constexpr const char* kIp = "/sbin/ip";
+constexpr const char* kNft = "/usr/sbin/nft";
 constexpr const char* kNamespaces = "/run/netns";
 const std::string kPrefix = "slewring-test-";
 
@@ -54,6 +55,25 @@ NamespacePair::~NamespacePair() {
 
 void NamespacePair::unplug() {
   static_cast<void>(ip({"-n", left_.name, "link", "set", left_.interface, "down"}));
+}
+
+bool NamespacePair::lose(int percent) {
+  if (access(kNft, X_OK) != 0) return false;
+  for (const Side* side : {&left_, &right_}) {
+    if (!filter(*side, {"add", "table", "ip", "loss"})) return false;
+    if (!filter(*side, {"add", "chain", "ip", "loss", "input", "{ type filter hook input priority 0; }"})) return false;
+    if (!filter(*side, {"add", "rule", "ip", "loss", "input", "iifname", side->interface, "meta", "l4proto", "udp",
+                        "numgen", "random", "mod", "100", "<", std::to_string(percent), "counter", "drop"})) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool NamespacePair::filter(const Side& side, const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = {"netns", "exec", side.name, kNft};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return ip(all);
 }
 
 bool NamespacePair::ip(const std::vector<std::string>& arguments) {

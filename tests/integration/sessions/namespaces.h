@@ -27,9 +27,12 @@ class NamespacePair {
   [[nodiscard]] const Side& right() const noexcept { return right_; }
 
   void unplug();
+  // From now on each side loses this share of the datagrams that come to it [%]. False where that is not possible.
+  [[nodiscard]] bool lose(int percent);
 
  private:
   [[nodiscard]] bool ip(const std::vector<std::string>& arguments);
+  [[nodiscard]] bool filter(const Side& side, const std::vector<std::string>& arguments);
   void remove_left_behind();
 
   std::string problem_;

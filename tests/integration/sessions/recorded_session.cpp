@@ -22,6 +22,26 @@ HashChain& epoch_of(RecordedSession& session, const wire::Header& header) {
   return session.epochs[header.epoch];
 }
 
+// names by role and index, as the directories tell them
+using VariableNames = std::map<std::pair<wire::Role, std::size_t>, std::string>;
+
+void take_variables(RecordedSession& session, VariableNames& names, const recording::RecordedMessage& recorded) {
+  if (recorded.channel->topic == "variable_directory") {
+    const auto directory = decoded<wire::VariableDirectory>(recorded);
+    for (std::size_t i = 0; i < directory.entries.size(); ++i) {
+      names[{directory.header.role, directory.first + i}] = directory.entries[i].name;
+    }
+  } else if (recorded.channel->topic == "variables") {
+    const auto block = decoded<wire::VariableBlock>(recorded);
+    for (std::size_t i = 0; i < block.values.size(); ++i) {
+      const auto name = names.find({block.header.role, block.first + i});
+      if (name == names.end()) continue;
+      const auto [place, is_new] = session.largest.emplace(name->second, block.values[i]);
+      if (!is_new) place->second = std::max(place->second, block.values[i]);
+    }
+  }
+}
+
 void take(RecordedSession& session, const recording::RecordedMessage& recorded) {
   const std::string& topic = recorded.channel->topic;
   wire::Header header;
@@ -44,6 +64,7 @@ void take(RecordedSession& session, const recording::RecordedMessage& recorded) 
   } else if (topic == "actuators") {
     const auto sample = decoded<wire::ActuatorMessage>(recorded);
     epoch_of(session, sample.header)[sample.header.step].hydraulics = sample.state.state_hash;
+    if (sample.header.phase == wire::Phase::running) session.actuators.push_back(sample);
   } else if (topic == "node_status") {
     session.statuses.push_back(
         {decoded<wire::NodeStatus>(recorded), static_cast<std::int64_t>(recorded.publish_time_ns)});
@@ -116,8 +137,10 @@ RecordedSession read_session(const std::filesystem::path& path) {
       if (key.find(".lost") != std::string::npos || key == "last_step") session.summary[key] = value;
     }
   }
+  VariableNames names;
   const Status status = reader->for_each({}, [&](const recording::RecordedMessage& message) {
     take(session, message);
+    take_variables(session, names, message);
     return recording::Reader::Visit::go_on;
   });
   if (!status.is_ok() && session.problem.empty()) session.problem = status.text;

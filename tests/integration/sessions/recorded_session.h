@@ -33,9 +33,11 @@ struct RecordedSession {
   std::vector<HashChain> epochs;
   std::vector<std::map<StepIndex, wire::Tick>> ticks;  // by epoch
   std::vector<wire::MechanismMessage> mechanisms;      // running samples in the order of the file
+  std::vector<wire::ActuatorMessage> actuators;        // likewise
   std::vector<SaidStatus> statuses;
   std::vector<wire::ControlReply> replies;
   std::map<std::string, std::string> summary;  // what the recorder counted
+  std::map<std::string, double> largest;       // value of each variable
   std::string problem;                         // why the file is not valid; empty: every byte is as it was written
   bool has_all_messages = false;               // closed in order
 

@@ -123,6 +123,13 @@ TEST(Load, TheWindowFollowsThePaceWhenItIsNotGiven) {
   EXPECT_EQ(load_text(kPendulum, "test").session.window_steps(), 1);
   EXPECT_EQ(load_text(kPendulum, "test", {"session.pace=free"}).session.window_steps(), 4);
   EXPECT_EQ(load_text(kPendulum, "test", {"session.window=7"}).session.window_steps(), 7);
+  const Overrides free_running = {"session.mode=free_running"};
+  const auto with_step = [&](const std::string& step) {
+    return load_text(kPendulum, "test", {free_running.front(), "session.step=" + step}).session;
+  };
+  EXPECT_EQ(with_step("1 ms").window_steps(), 64);
+  EXPECT_EQ(with_step("5 ms").window_steps(), 20);
+  EXPECT_EQ(with_step("5 ms").wait_budget_duration().ns, 2'500'000);
 }
 
 TEST(Load, StepsAreWholeNumbersOfTheDuration) {
