@@ -23,6 +23,10 @@ static_assert(multibody::kMaxRows <= static_cast<int>(coupling::kMaxRows));
 // a limit takes part in the port problem when it could be reached within so many sub-steps
 constexpr double kLimitLookAhead = 4;
 
+// A change of W over a step, of sqrt(W_ii W_jj), from which on the step's is published: an error of a tenth in W is far
+// inside of what level two bears (coupling study, section 3), and the step's rows cost a factorisation a step.
+constexpr double kWorthAStep = 0.1;
+
 // a multibody parameter as the one number that ParameterRamps keeps
 int handle_of(multibody::Parameter parameter) {
   return (static_cast<int>(parameter.kind) << 24) | (parameter.element << 8) | parameter.member;
@@ -128,6 +132,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
     const bool is_rigid = def_.bodies[i - 1].type == multibody::BodyType::rigid;
     if (is_rigid && model_.bodies[i].link > 0) payload_ = static_cast<int>(i);
   }
+  choose_mobility();
   list_variables();
 }
 
@@ -441,6 +446,33 @@ std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noe
 
 // ---- publishing -----------------------------------------------------------------------------------------------
 
+// At the start of the scene, for good: part of neither the state nor of what may change under way.
+void MechanicsSubsystem::choose_mobility() {
+  if (ports_.empty() || !multibody::has_springs(model_)) return;
+  auto rows_of_step = std::make_unique<multibody::StepRows>(model_);
+  evaluate();
+  is_evaluated_ = false;
+  if (!rows_of_step->evaluate(model_, state_, workspace_, H_.seconds())) return;
+  const std::size_t rows = model_.rows.size();
+  const std::span<const double> W = multibody::row_mobility(workspace_), W_H = rows_of_step->mobility();
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double scale = std::sqrt(W[i * rows + i] * W[j * rows + j]);
+      if (!(std::fabs(W_H[i * rows + j] - W[i * rows + j]) > kWorthAStep * scale)) continue;
+      step_rows_ = std::move(rows_of_step);
+      return;
+    }
+  }
+}
+
+// Over a step where that is worth it; where its matrix is singular, which W_kind shows, at the instant.
+MechanicsSubsystem::Rows MechanicsSubsystem::published_rows() noexcept {
+  if (step_rows_ != nullptr && step_rows_->evaluate(model_, state_, workspace_, H_.seconds())) {
+    return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
+  }
+  return {multibody::row_free_accelerations(workspace_), multibody::row_mobility(workspace_)};
+}
+
 // Work, impulse and mean speed are the finished step's and stay as they are.
 void MechanicsSubsystem::publish(coupling::OwnSample& own) noexcept {
   coupling::MechanismSample& sample = own.mechanism;
@@ -449,17 +481,17 @@ void MechanicsSubsystem::publish(coupling::OwnSample& own) noexcept {
   multibody::observe(model_, state_, workspace_);
   const std::size_t m = ports_.size();
   const std::size_t rows = model_.rows.size();
-  const std::span<const double> W = multibody::row_mobility(workspace_);
+  const Rows published = published_rows();
   for (std::size_t i = 0; i < m; ++i) {
     const double ratio = ports_[i].ratio;
     sample.x[i] = ports_[i].offset + ratio * workspace_.row_x[i];
     sample.v[i] = ratio * workspace_.row_v[i];
-    sample.a_free[i] = ratio * workspace_.row_a_free[i];
+    sample.a_free[i] = ratio * published.a_free[i];
     sample.F_used[i] = ports_[i].F;
-    for (std::size_t j = 0; j < m; ++j) sample.W[i * m + j] = ratio * W[i * rows + j] * ports_[j].ratio;
+    for (std::size_t j = 0; j < m; ++j) sample.W[i * m + j] = ratio * published.W[i * rows + j] * ports_[j].ratio;
   }
-  sample.W_kind = coupling::MobilityKind::instant;
-  condense_joints(sample);
+  sample.W_kind = published.kind;
+  condense_joints(published, sample);
   update_line_forces(sample);
   find_static_forces(sample);
   modal_.read(model_, state_, workspace_, own.flexible);
@@ -470,10 +502,10 @@ void MechanicsSubsystem::publish(coupling::OwnSample& own) noexcept {
 // force on the way with the present speed, f_0 + H/2 dF/dx v,
 //   (I + H S W_rr) f_r = f_m - H S (a_r + W_ra F_a)
 // so that a_free += W_ar f_r(F_a = 0) and W -= W_ar (I + H S W_rr)^-1 H S W_ra.
-void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noexcept {
+void MechanicsSubsystem::condense_joints(const Rows& of, coupling::MechanismSample& sample) noexcept {
   const std::size_t m = ports_.size();
   const std::size_t rows = model_.rows.size();
-  const std::span<const double> W = multibody::row_mobility(workspace_);
+  const std::span<const double> W = of.W;
   const double H = H_.seconds();
   active_.clear();
   for (std::size_t row = m; row < rows; ++row) {
@@ -501,7 +533,7 @@ void MechanicsSubsystem::condense_joints(coupling::MechanismSample& sample) noex
     for (std::size_t b = 0; b < r; ++b) {
       matrix_[a * r + b] = (a == b ? 1.0 : 0.0) + HS * W[active_[a] * rows + active_[b]];
     }
-    right_[a * columns] = joint_mean_[active_[a]] - HS * workspace_.row_a_free[active_[a]];
+    right_[a * columns] = joint_mean_[active_[a]] - HS * of.a_free[active_[a]];
     for (std::size_t i = 0; i < m; ++i) {
       right_[a * columns + 1 + i] = -HS * W[active_[a] * rows + i] * ports_[i].ratio;
     }

@@ -4,7 +4,8 @@
 // Ports come first among the rows, in the scene's order; then the joints with friction or limits. Per sub-step:
 //   rows x, v, a_free, W  ->  PortDynamics: mean and slope of every row's force  ->  one step of the mechanism.
 // Published a_free and W contain the joints' laws condensed implicitly over H (MobilityKind::step), so that the partner
-// sees a slewing ring with its friction, not without.
+// sees a slewing ring with its friction, not without. Where springs or modes behind the ports change W over a step, the
+// published rows are those of the step (multibody/step_rows.h); decided once, at the start of the scene.
 #pragma once
 
 #include <memory>
@@ -20,6 +21,7 @@
 #include "multibody/dynamics.h"
 #include "multibody/formulation.h"
 #include "multibody/observe.h"
+#include "multibody/step_rows.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics {
@@ -72,7 +74,13 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void finish_substep(const coupling::ActuatorSample* partner, coupling::MechanismSample& sample) noexcept;
   void publish(coupling::OwnSample& own) noexcept;
   void take_elastic_forces(const coupling::ElasticSample* sample, StepReport& report) noexcept;
-  void condense_joints(coupling::MechanismSample& sample) noexcept;
+  void choose_mobility();
+  struct Rows {
+    std::span<const double> a_free, W;  // of all rows, on their own coordinates
+    coupling::MobilityKind kind = coupling::MobilityKind::instant;
+  };
+  [[nodiscard]] Rows published_rows() noexcept;
+  void condense_joints(const Rows& of, coupling::MechanismSample& sample) noexcept;
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
   void find_static_forces(const coupling::MechanismSample& sample) noexcept;
   void list_variables();
@@ -119,7 +127,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::vector<OperatedLoad> operated_;
   ModalExchange modal_;
   std::vector<char> row_is_active_;
-  std::vector<std::size_t> active_;  // rows of the port problem, ascending
+  std::vector<std::size_t> active_;                 // rows of the port problem, ascending
+  std::unique_ptr<multibody::StepRows> step_rows_;  // none: the rows at the instant are published
   std::unique_ptr<Laws> laws_;
   coupling::PortDynamics dynamics_;
   std::vector<double> force_mean_, force_slope_;  // by row, for the Runge-Kutta step

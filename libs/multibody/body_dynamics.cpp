@@ -83,13 +83,8 @@ bool prepare(const Model& model, const BodyModel& body, const BodyState& state, 
   return is_regular;
 }
 
-bool evaluate(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
-              BodyWorkspace& bws) noexcept {
-  begin_contacts(model, joints, ws);
-  set_time(model, joints.time, ws);
-  const bool is_regular = prepare(model, body, state, joints, ws, bws);
-  bws.ldl.solve(bws.solution);
-  bws.free = bws.solution;
+void find_rows(const Model& model, const BodyModel& body, const State& joints, Workspace& ws,
+               BodyWorkspace& bws) noexcept {
   const std::size_t rows = model.rows.size(), size = bws.solution.size();
   for (std::size_t k = 0; k < rows; ++k) {
     const BodyRow row = body_row(model, body, joints, model.rows[k], ws);
@@ -111,6 +106,16 @@ bool evaluate(const Model& model, const BodyModel& body, const BodyState& state,
       ws.row_W[k * rows + l] = ws.row_W[l * rows + k] = w;
     }
   }
+}
+
+bool evaluate(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
+              BodyWorkspace& bws) noexcept {
+  begin_contacts(model, joints, ws);
+  set_time(model, joints.time, ws);
+  const bool is_regular = prepare(model, body, state, joints, ws, bws);
+  bws.ldl.solve(bws.solution);
+  bws.free = bws.solution;
+  find_rows(model, body, joints, ws, bws);
   return is_regular;
 }
 

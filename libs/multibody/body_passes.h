@@ -49,6 +49,11 @@ struct BodyRow {
 [[nodiscard]] BodyRow body_row(const Model& model, const BodyModel& body, const State& joints, const Row& row,
                                const Workspace& ws) noexcept;
 
+// x, v, a_free and W of all rows in ws, by the factors of the matrix and the accelerations without row forces in
+// bws.free.
+void find_rows(const Model& model, const BodyModel& body, const State& joints, Workspace& ws,
+               BodyWorkspace& bws) noexcept;
+
 // Adds the row's force to a right-hand side; the row's acceleration in a solution, without its bias.
 void add_row(const BodyRow& row, double force, const math::BlockLdl& ldl, std::span<double> x) noexcept;
 [[nodiscard]] double along(const BodyRow& row, const math::BlockLdl& ldl, std::span<const double> x) noexcept;

@@ -18,8 +18,12 @@ std::size_t at(int index) noexcept {
 
 class Adding {
  public:
-  Adding(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix) noexcept
-      : model_(model), ws_(ws), weights_(weights), matrix_(matrix) {}
+  Adding(const Model& model, const Workspace& ws, ChangeWeights weights, Stiffness which, LinkMatrix& matrix) noexcept
+      : model_(model),
+        ws_(ws),
+        weights_(weights),
+        pull_weight_(which == Stiffness::with_pulls ? weights.position : 0),
+        matrix_(matrix) {}
 
   void add_all() noexcept {
     for (std::size_t i = 0; i < model_.lines.size(); ++i) {
@@ -53,7 +57,7 @@ class Adding {
     // a pull holds the line straight
     const double pull = std::max(0.0, -force_of(line.law, m.length, m.rate, m.rate));
     const Mat3 e = outer(m.e, m.e);
-    const Mat3 A = e * along + (Mat3::identity() - e) * (weights_.position * pull / m.length);
+    const Mat3 A = e * along + (Mat3::identity() - e) * (pull_weight_ * pull / m.length);
     add_stretch(line.link1, m.P1, line.link2, m.P2, A);
   }
 
@@ -84,8 +88,8 @@ class Adding {
     const PairMatrix A = matrix_of(d, slopes);
     add_relative(ws_, frames.link1, frames.link2, d.P2, {A.vv, A.vw, A.ww}, matrix_);
     const Vec3 F = d.R_W1 * Vec3(force[0], force[1], force[2]);
-    add_pull(frames.link1, d.P2 - motion(frames.link1).p, -F, weights_.position, matrix_);
-    add_pull(frames.link2, d.P2 - motion(frames.link2).p, F, weights_.position, matrix_);
+    add_pull(frames.link1, d.P2 - motion(frames.link1).p, -F, pull_weight_, matrix_);
+    add_pull(frames.link2, d.P2 - motion(frames.link2).p, F, pull_weight_, matrix_);
   }
 
   // gradient of the length by the point
@@ -114,7 +118,7 @@ class Adding {
       if (dot(e, e) == 0) continue;
       const Mat3 across = Mat3::identity() - outer(e, e);
       add_stretch(rope.points[k].link, P1, rope.points[k + 1].link, P2,
-                  across * (weights_.position * state.tension / norm(P2 - P1)));
+                  across * (pull_weight_ * state.tension / norm(P2 - P1)));
     }
   }
 
@@ -135,13 +139,15 @@ class Adding {
   const Model& model_;
   const Workspace& ws_;
   ChangeWeights weights_;
+  double pull_weight_;
   LinkMatrix& matrix_;
 };
 
 }  // namespace
 
-void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix) noexcept {
-  Adding(model, ws, weights, matrix).add_all();
+void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix,
+                   Stiffness which) noexcept {
+  Adding(model, ws, weights, which, matrix).add_all();
 }
 
 void add_pull(int link, Vec3 s, Vec3 F, double weight, LinkMatrix& matrix) noexcept {

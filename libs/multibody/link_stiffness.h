@@ -15,8 +15,13 @@
 
 namespace slew::multibody {
 
+// What of the above is added: all, or what a rigid motion of all links together does not strain. A force that stays
+// with the links turns with them, its pull alone would say that it does not.
+enum class Stiffness { with_pulls, of_strain };
+
 // (1) to (3) at the motion in ws; needs update_elements().
-void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix) noexcept;
+void add_stiffness(const Model& model, const Workspace& ws, ChangeWeights weights, LinkMatrix& matrix,
+                   Stiffness which = Stiffness::with_pulls) noexcept;
 
 // Turns of a link about its origin by a force F at s from it.
 void add_pull(int link, math::Vec3 s, math::Vec3 F, double weight, LinkMatrix& matrix) noexcept;

@@ -56,7 +56,7 @@ TEST_F(Distributed, CranesHaveTheSameHashesAsInOneProcess) {
        {"session.flexible=condensed", "mechanics.integrator=trapezoidal", "mechanics.max_substep=1 ms"},
        5,
        3 * 2001 + 2},
-      {"truck_crane_segmented", "0.5", {}, 4, 2 * 2001 + 1}};
+      {"truck_crane_segmented", "2", {}, 4, 2 * 2001 + 1}};
   int number = 0;
   for (const Case& one : cases) {
     const std::string folder = std::to_string(++number);

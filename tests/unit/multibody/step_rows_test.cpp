@@ -1,0 +1,256 @@
+// Rows over a step against dense algebra in joint coordinates: M^-1 K and M^-1 D are there the slopes of the
+// recursion's accelerations, found by differences, where the code under test assembles K and D in body coordinates.
+#include "multibody/step_rows.h"
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "multibody/passes.h"
+#include "tests/properties/multibody/random_modes.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace {
+
+using namespace testing;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using math::Vec3;
+
+constexpr double kH = 5e-3;
+
+VectorXd to_vector(std::span<const double> values) {
+  return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// a_free and W of all rows over H, for a mechanism without strain, force and gravity
+struct Dense {
+  VectorXd a_free;
+  MatrixXd W;
+
+  Dense(Mechanism& m, double H) {
+    const auto n = static_cast<Eigen::Index>(m.state.u.size()), rows = static_cast<Eigen::Index>(m.model.rows.size());
+    evaluate(m.model, m.state, m.ws);
+    const VectorXd u = to_vector(m.state.u), udot = to_vector(m.ws.udot_free);
+    const VectorXd a_instant = to_vector(row_free_accelerations(m.ws));
+    const MatrixXd J =
+        Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(row_jacobian(m.ws).data(), rows, n);
+    MatrixXd R(n, rows);
+    std::vector<double> column(m.state.u.size());
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      response_column(m.model, m.ws, static_cast<int>(k), column);
+      R.col(k) = to_vector(column);
+    }
+    MatrixXd K(n, n), D(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      K.col(j) = (accelerations_at(m, j, -kStep, 0) - accelerations_at(m, j, kStep, 0)) / (2 * kStep);
+      D.col(j) = (accelerations_at(m, j, 0, -kStep) - accelerations_at(m, j, 0, kStep)) / (2 * kStep);
+    }
+    const MatrixXd A = MatrixXd::Identity(n, n) + H * D + H * H / 2 * K;
+    const Eigen::PartialPivLU<MatrixXd> solver(A);
+    a_free = J * solver.solve(udot - H * K * u) + (a_instant - J * udot);
+    W = J * solver.solve(R);
+  }
+
+ private:
+  static constexpr double kStep = 1e-6;
+
+  // away from the state along one speed, or with that speed alone
+  static VectorXd accelerations_at(Mechanism& m, Eigen::Index j, double way, double speed) {
+    std::vector<double> q = m.state.q, u(m.state.u.size()), rate(q.size());
+    u[static_cast<std::size_t>(j)] = 1;
+    update_motion(m.model, q, u, m.ws);
+    coordinate_rates(m.model, m.ws, q, u, rate);
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] += way * rate[i];
+    normalize_quaternions(m.model, q);
+    u[static_cast<std::size_t>(j)] = speed;
+    forward_dynamics(m.model, q, u, {}, m.ws);
+    return to_vector(m.ws.udot);
+  }
+};
+
+// small: forces of dampers would pull, and what pulls is in K of a step but not in that of this reference
+void set_speeds(Mechanism& m) {
+  for (std::size_t i = 0; i < m.state.u.size(); ++i) m.state.u[i] = 1e-6 * (1 + 0.3 * static_cast<double>(i % 5));
+}
+
+void expect_same(Mechanism& m, double H) {
+  const Dense dense(m, H);
+  StepRows rows(m.model);
+  ASSERT_TRUE(rows.evaluate(m.model, m.state, m.ws, H));
+  const VectorXd a = to_vector(rows.free_accelerations()), W = to_vector(rows.mobility());
+  EXPECT_LT((a - dense.a_free).norm(), 1e-5 * dense.a_free.norm());
+  const MatrixXd transposed = dense.W.transpose();
+  const VectorXd flat = Eigen::Map<const VectorXd>(transposed.data(), transposed.size());
+  EXPECT_LT((W - flat).norm(), 1e-6 * flat.norm());
+  // springs matter here
+  evaluate(m.model, m.state, m.ws);
+  EXPECT_GT((to_vector(row_mobility(m.ws)) - W).norm(), 0.01 * W.norm());
+}
+
+// m1 at a row, m2 behind a spring and a damper, on a line
+MechanicsDef two_masses() {
+  MechanicsDef def;
+  def.gravity = {};
+  def.bodies = {{.name = "A", .position = {1, 0, 0}, .mass = 2, .inertia = {1, 1, 1}},
+                {.name = "B", .position = {3, 0, 0}, .mass = 5, .inertia = {1, 1, 1}}};
+  // z of both joints' frames along x of Ground
+  const Triple along = {0, M_PI / 2, 0};
+  def.joints = {{.name = "First",
+                 .type = JointType::prismatic,
+                 .body1 = "Ground",
+                 .point1 = {1, 0, 0},
+                 .orientation1 = along,
+                 .body2 = "A",
+                 .orientation2 = along},
+                {.name = "Second",
+                 .type = JointType::prismatic,
+                 .body1 = "Ground",
+                 .point1 = {3, 0, 0},
+                 .orientation1 = along,
+                 .body2 = "B",
+                 .orientation2 = along}};
+  def.translational_forces = {{.name = "Cyl", .body1 = "A", .body2 = "Ground"},
+                              {.name = "Spring",
+                               .body1 = "B",
+                               .body2 = "A",
+                               .spring_constant = 3e5,
+                               .damping_constant = 700,
+                               .free_length = 1.9}};
+  return def;
+}
+
+TEST(StepRows, TwoMassesOnASpringAreAsWrittenOut) {
+  Mechanism m(two_masses(), {"Cyl"});
+  m.state.u = {0.3, -0.2};
+  evaluate(m.model, m.state, m.ws);
+  const double k = 3e5, d = 700, pull = k * 0.1 + d * -0.5;
+  for (const double H : {1e-4, 1e-3, 1e-2, 0.1}) {
+    StepRows rows(m.model);
+    ASSERT_TRUE(rows.evaluate(m.model, m.state, m.ws, H));
+    const double s = H * d + H * H / 2 * k;
+    Eigen::Matrix2d A;
+    A << 2 + s, -s, -s, 5 + s;
+    const double force = pull + H * k * -0.5;
+    EXPECT_NEAR(rows.mobility()[0], A.inverse()(0, 0), 1e-12);
+    const double a = A.inverse().row(0) * Eigen::Vector2d(force, -force);
+    EXPECT_NEAR(rows.free_accelerations()[0], a, 1e-9 * std::fabs(a)) << H;
+  }
+}
+
+MechanicsDef bodies_on_bushings() {
+  MechanicsDef def;
+  def.gravity = {};
+  def.bodies = {
+      {.name = "A", .mass = 20, .center_of_mass = {0.4, 0.1, 0}, .inertia = {1, 2, 1.5}},
+      {.name = "B", .position = {1, 0.1, 0.2}, .mass = 3, .center_of_mass = {0.2, 0, 0.1}, .inertia = {.1, .2, .2}},
+      {.name = "C", .position = {2, 0, 0}, .orientation = {0.3, -0.2, 0.5}, .mass = 40, .inertia = {3, 2, 4}}};
+  def.joints = {{.name = "Pin", .orientation1 = {0.2, 0.1, 0}, .body2 = "A", .orientation2 = {0.2, 0.1, 0}},
+                {.name = "FreeB", .type = JointType::floating, .body2 = "B"},
+                {.name = "FreeC", .type = JointType::floating, .body2 = "C"}};
+  const auto join = [&](const char* name, const char* body1, Triple point1, const char* body2) {
+    BushingDef bushing;
+    bushing.name = name;
+    bushing.frames = {.body1 = body1, .point1 = point1, .body2 = body2};
+    bushing.stiffness = {4e6, 1e6, 2e6};
+    bushing.rotational_stiffness = {3e5, 8e5, 5e5};
+    bushing.damping = {4e3, 9e2, 3e3};
+    bushing.rotational_damping = {200, 300, 100};
+    def.bushings.push_back(bushing);
+  };
+  join("AB", "A", {1, 0.1, 0.2}, "B");
+  def.bodies[2].orientation = {};
+  join("BC", "B", {1, -0.1, -0.2}, "C");
+  def.translational_forces = {
+      {.name = "Cyl", .body1 = "B", .point1 = {0.1, 0.2, 0}, .body2 = "Ground", .point2 = {0, -1, 0.3}},
+      {.name = "Other", .body1 = "C", .point1 = {0.3, 0, 0.2}, .body2 = "A", .point2 = {0, 1, 0}}};
+  return def;
+}
+
+TEST(StepRows, BodiesOnBushingsAreAsDenseAlgebraSays) {
+  Mechanism m(bodies_on_bushings(), {"Cyl", "Other", "Pin"});
+  set_speeds(m);
+  expect_same(m, kH);
+}
+
+MechanicsDef flexible_arm(ModalBody modes) {
+  MechanicsDef def;
+  def.gravity = {};
+  def.max_substep = 1e-5;
+  BodyDef arm{.name = "Arm"};
+  arm.type = BodyType::flexible;
+  def.bodies = {arm, {.name = "Tip", .mass = 4, .inertia = {1, 1, 1}}};
+  take_mass(modes, def.bodies[0]);
+  const Vec3 place = modes.nodes[2].position;
+  def.bodies[1].position = place.array();
+  def.joints = {{.name = "Pin", .body2 = "Arm"}, {.name = "Hook", .body1 = "Arm.Node3", .body2 = "Tip"}};
+  def.translational_forces = {
+      {.name = "Cyl", .body1 = "Tip", .point1 = {0.3, 0.2, 0.1}, .body2 = "Ground", .point2 = {0, -2, 0.3}}};
+  def.flexible_bodies = {
+      {.body = "Arm", .modes = std::make_shared<ModalBody>(std::move(modes)), .relative_damping = {0.05}}};
+  return def;
+}
+
+TEST(StepRows, ModesAreAsDenseAlgebraSays) {
+  for (const unsigned seed : {1U, 2U, 5U}) {
+    std::mt19937 random(seed);
+    std::vector<MassPoint> points;
+    ModalBody modes = random_modes(random, Vec3(), points);
+    for (double& k : modes.stiffness) k *= 1e6;
+    Mechanism m(flexible_arm(std::move(modes)), {"Cyl", "Hook"});
+    set_speeds(m);
+    expect_same(m, kH);
+  }
+}
+
+TEST(StepRows, AreThoseOfTheInstantOverNoTime) {
+  Mechanism m(bodies_on_bushings(), {"Cyl", "Other", "Pin"});
+  for (std::size_t i = 0; i < m.state.u.size(); ++i) m.state.u[i] = 0.5 - 0.07 * static_cast<double>(i);
+  deactivate_row(m.ws, 1);
+  evaluate(m.model, m.state, m.ws);
+  StepRows rows(m.model);
+  ASSERT_TRUE(rows.evaluate(m.model, m.state, m.ws, 0));
+  for (std::size_t k = 0; k < m.model.rows.size(); ++k) {
+    const double a = row_free_accelerations(m.ws)[k];
+    EXPECT_NEAR(rows.free_accelerations()[k], a, 1e-9 * (1 + std::fabs(a))) << k;
+    for (std::size_t l = 0; l < m.model.rows.size(); ++l) {
+      const double W = row_mobility(m.ws)[k * m.model.rows.size() + l];
+      EXPECT_NEAR(rows.mobility()[k * m.model.rows.size() + l], W, 1e-12) << k << " " << l;
+    }
+  }
+}
+
+// what turns as one has no strain: the pulls between the parts must not show as one
+TEST(StepRows, ATurnOfAllPartsTogetherIsNoStrain) {
+  MechanicsDef def = bodies_on_bushings();
+  Mechanism m(def, {"Cyl", "Pin"});
+  for (BushingDef& bushing : def.bushings) bushing.preload_force = {2e4, 0, 0};
+  Mechanism loaded(def, {"Cyl", "Pin"});
+  const auto turn = [](Mechanism& mechanism, double speed) {
+    State& state = mechanism.state;
+    std::fill(state.u.begin(), state.u.end(), 0.0);
+    state.u[static_cast<std::size_t>(mechanism.model.links[1].u)] = speed;
+    update_motion(mechanism.model, state.q, state.u, mechanism.ws);
+    const LinkMotion frame = mechanism.ws.motion[1];
+    for (std::size_t i = 2; i < mechanism.model.links.size(); ++i) {
+      const auto u = static_cast<std::size_t>(mechanism.model.links[i].u);
+      const Vec3 v = cross(frame.w, mechanism.ws.motion[i].p - frame.p);
+      for (std::size_t k = 0; k < 3; ++k) {
+        state.u[u + k] = v[static_cast<int>(k)];
+        state.u[u + 3 + k] = frame.w[static_cast<int>(k)];
+      }
+    }
+    evaluate(mechanism.model, state, mechanism.ws);
+    StepRows rows(mechanism.model);
+    EXPECT_TRUE(rows.evaluate(mechanism.model, state, mechanism.ws, kH));
+    return std::vector<double>(rows.free_accelerations().begin(), rows.free_accelerations().end());
+  };
+  for (Mechanism* mechanism : {&m, &loaded}) {
+    const std::vector<double> still = turn(*mechanism, 0), slow = turn(*mechanism, 1e-4);
+    for (std::size_t k = 0; k < still.size(); ++k)
+      EXPECT_NEAR(slow[k], still[k], 1e-6 * (1 + std::fabs(still[k]))) << k;
+  }
+}
+
+}  // namespace
+}  // namespace slew::multibody
