@@ -239,6 +239,7 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   StateHash hash;
   integrator_->add_to(hash);
   ramps_.add_to(hash);
+  if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step brings another
   hash.add(failure_.has_failed());
   return hash.digest();
 }

@@ -29,6 +29,10 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
     W_ = sample.W;
     a_free_ = sample.a_free;
   }
+  void add_to(StateHash& hash) const noexcept {
+    hash.add(std::span<const double>(W_.span()));
+    hash.add(std::span<const double>(a_free_.span()));
+  }
   void accelerations(const double* F, const double* x, const double* v, double* a) const noexcept override;
   void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
               double* da_dv) const noexcept override;

@@ -452,7 +452,7 @@ void MechanicsSubsystem::choose_mobility() {
   auto rows_of_step = std::make_unique<multibody::StepRows>(model_);
   evaluate();
   is_evaluated_ = false;
-  if (!rows_of_step->evaluate(model_, state_, workspace_, H_.seconds())) return;
+  if (!rows_of_step->evaluate(model_, state_, workspace_, exchange_interval())) return;
   const std::size_t rows = model_.rows.size();
   const std::span<const double> W = multibody::row_mobility(workspace_), W_H = rows_of_step->mobility();
   for (std::size_t i = 0; i < ports_.size(); ++i) {
@@ -467,7 +467,7 @@ void MechanicsSubsystem::choose_mobility() {
 
 // Over a step where that is worth it; where its matrix is singular, which W_kind shows, at the instant.
 MechanicsSubsystem::Rows MechanicsSubsystem::published_rows() noexcept {
-  if (step_rows_ != nullptr && step_rows_->evaluate(model_, state_, workspace_, H_.seconds())) {
+  if (step_rows_ != nullptr && step_rows_->evaluate(model_, state_, workspace_, exchange_interval())) {
     return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
   }
   return {multibody::row_free_accelerations(workspace_), multibody::row_mobility(workspace_)};
@@ -506,7 +506,7 @@ void MechanicsSubsystem::condense_joints(const Rows& of, coupling::MechanismSamp
   const std::size_t m = ports_.size();
   const std::size_t rows = model_.rows.size();
   const std::span<const double> W = of.W;
-  const double H = H_.seconds();
+  const double H = exchange_interval();
   active_.clear();
   for (std::size_t row = m; row < rows; ++row) {
     row_force_[row] = 0;

@@ -74,6 +74,10 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void finish_substep(const coupling::ActuatorSample* partner, coupling::MechanismSample& sample) noexcept;
   void publish(coupling::OwnSample& own) noexcept;
   void take_elastic_forces(const coupling::ElasticSample* sample, StepReport& report) noexcept;
+  // from one exchange to the next, for which the partner takes what is published [s]
+  [[nodiscard]] double exchange_interval() const noexcept {
+    return H_.seconds() * static_cast<double>(exchange_every_);
+  }
   void choose_mobility();
   struct Rows {
     std::span<const double> a_free, W;  // of all rows, on their own coordinates
