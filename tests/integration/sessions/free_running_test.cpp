@@ -63,7 +63,8 @@ TEST(FreeRunning, OverACableThatLosesOnePercentIsGreenOrAmber) {
     const bool is_left = role == Role::mechanics || role == Role::recorder;
     const NamespacePair::Side& here = is_left ? cable.left() : cable.right();
     const NamespacePair::Side& there = is_left ? cable.right() : cable.left();
-    session.run_under(role, here.command(), {"--interface", here.interface, "--peer", there.address});
+    // beside other tests the processor would be what is lost
+    session.run_under(role, here.command(), {"--interface", here.interface, "--peer", there.address, "--rt"});
   }
   if (!cable.lose(1)) GTEST_SKIP() << "packets cannot be lost here: " << cable.problem();
   session.start_all();
