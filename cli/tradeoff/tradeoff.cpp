@@ -267,10 +267,34 @@ class Trader {
     return true;
   }
 
-  bool run_references() {
+  // Communication steps of the rows, as far as the scene itself may have them; rows in another one cannot be compared.
+  [[nodiscard]] std::vector<double> steps_with_reference() {
+    std::map<double, std::string> refusals;  // empty: none
     std::vector<double> steps;
-    for (const Planned& planned : planned_) {
-      if (planned.is_run && std::find(steps.begin(), steps.end(), planned.H) == steps.end()) steps.push_back(planned.H);
+    for (std::size_t i = 0; i < planned_.size(); ++i) {
+      if (!planned_[i].is_run) continue;
+      const double H = planned_[i].H;
+      const auto [known, is_new] = refusals.try_emplace(H);
+      if (is_new) {
+        try {
+          static_cast<void>(cli_support::load_scene(options_with(monolithic(H, kReferenceTolerance))));
+          steps.push_back(H);
+        } catch (const scene::LoadError& error) {
+          known->second = reason_of(error);
+        }
+      }
+      if (known->second.empty()) continue;
+      planned_[i].is_run = false;
+      result_.rows[i].is_done = true;
+      result_.rows[i].result.refusal = "there is no reference in this step: " + known->second;
+    }
+    return steps;
+  }
+
+  bool run_references() {
+    const std::vector<double> steps = steps_with_reference();
+    if (steps.empty()) {
+      throw Failure(ExitCode::bad_input, "no row of this scene can run: " + result_.rows.front().result.refusal);
     }
     const double share = kReferenceWeight * static_cast<double>(steps.size()) /
                          (kReferenceWeight * static_cast<double>(steps.size()) + static_cast<double>(planned_.size()));
