@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "cli_support/failure.h"
@@ -50,11 +51,9 @@ void append_product(std::span<const Axis> axes, const Settings& chosen, std::vec
 }
 
 std::vector<Settings> without_repetitions(std::vector<Settings> rows) {
-  std::vector<Settings> kept;
-  for (Settings& row : rows) {
-    if (std::find(kept.begin(), kept.end(), row) == kept.end()) kept.push_back(std::move(row));
-  }
-  return kept;
+  std::set<Settings> seen;
+  std::erase_if(rows, [&seen](const Settings& row) { return !seen.insert(row).second; });
+  return rows;
 }
 
 // the values of an axis that are in a list
@@ -122,16 +121,19 @@ std::vector<Axis> default_axes(const scene::Scene& scene) {
 }
 
 std::vector<Settings> default_grid(std::span<const Axis> axes, GridSize size) {
-  if (size == GridSize::full) return product_grid(axes);
   std::vector<Settings> rows = {{}};
   for (const Axis& axis : axes) {
     for (const std::string& value : axis.values) rows.push_back({{axis.path, value}});
   }
   std::vector<Axis> product;
   for (const Axis& axis : axes) {
-    if (axis.path == kStep) product.push_back(narrowed(axis, kProductSteps));
-    if (axis.path == kCoupling) product.push_back(axis);
-    if (axis.path == kTolerance) product.push_back(narrowed(axis, kProductTolerances));
+    if (size == GridSize::full || axis.path == kCoupling) {
+      product.push_back(axis);
+    } else if (axis.path == kStep) {
+      product.push_back(narrowed(axis, kProductSteps));
+    } else if (axis.path == kTolerance) {
+      product.push_back(narrowed(axis, kProductTolerances));
+    }
   }
   if (product.size() > 1) append_product(product, {}, rows);
   return without_repetitions(std::move(rows));

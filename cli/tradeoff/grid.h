@@ -33,8 +33,8 @@ enum class GridSize { modest, full };
 // Those of the scene: communication step, coupling, formulation, integrators, tolerances, modes, contact.
 [[nodiscard]] std::vector<Axis> default_axes(const scene::Scene& scene);
 
-// Of the scene's own axes: nothing changed, then every value alone, then (modest) the product of steps, couplings and
-// tolerances that matter most together, or (full) the product of all. Without repetitions.
+// Of the scene's own axes: nothing changed, then every value alone, then the product: of the steps, couplings and
+// tolerances that matter most together (modest), or of all (full). Without repetitions.
 [[nodiscard]] std::vector<Settings> default_grid(std::span<const Axis> axes, GridSize size);
 // Nothing changed, then the product.
 [[nodiscard]] std::vector<Settings> product_grid(std::span<const Axis> axes);

@@ -63,9 +63,8 @@ Node& map_at(Node& parent, const std::string& key) {
 }
 
 // the section that an element stands in; empty: its name is a section's
-std::string section_of(const scene::Scene& scene, const std::string& owner) {
-  // the elements' addresses are not written through
-  for (const scene::ElementRef& element : scene::elements(const_cast<scene::Scene&>(scene))) {
+std::string section_of(scene::Scene& scene, const std::string& owner) {
+  for (const scene::ElementRef& element : scene::elements(scene)) {
     if (element.name == owner) return std::string(element.section);
   }
   return "";
@@ -87,7 +86,7 @@ bool is_own(const std::string& path) {
 
 }  // namespace
 
-std::string overlay_text(const std::string& file, const scene::Scene& scene, const scene::Overrides& settings,
+std::string overlay_text(const std::string& file, scene::Scene& scene, const scene::Overrides& settings,
                          const std::string& remark) {
   Node root = read_tree(file);
   if (root.find("include") == nullptr) {
@@ -129,7 +128,7 @@ std::string write_overlay(const std::string& file, const scene::Overrides& setti
                                            "written; name a file in " +
                                            source.parent_path().string() + "/");
   }
-  const scene::Scene scene = scene::load_file(file, settings);
+  scene::Scene scene = scene::load_file(file, settings);
   std::ofstream out(target, std::ios::binary);
   out << overlay_text(file, scene, settings, remark);
   if (!out.flush()) {

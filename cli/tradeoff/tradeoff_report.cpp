@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
+#include "cli/plotting/svg_text.h"
 
 namespace slew::cli {
 namespace {
@@ -217,20 +218,6 @@ std::string in_script(std::string text) {
   return text;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<') {
-      out += "&lt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string answer_text(const Tradeoff& tradeoff, const Answer& answer) {
@@ -330,7 +317,8 @@ std::string report_html(const Tradeoff& tradeoff, const std::optional<Answer>& a
       "</label></p>\n<svg id=\"plot\" viewBox=\"0 0 1000 560\"></svg>\n<div id=\"tip\"></div>\n"
       "<table id=\"rows\"></table>\n<script id=\"data\" type=\"application/json\">{3}</script>\n"
       "<script>{4}</script>\n</body>\n</html>\n",
-      escaped(tradeoff.scene), kPageStyle, escaped(note), in_script(to_json(tradeoff, answer).dump()), kPageScript);
+      plotting::escaped(tradeoff.scene), kPageStyle, plotting::escaped(note),
+      in_script(to_json(tradeoff, answer).dump()), kPageScript);
 }
 
 }  // namespace slew::cli

@@ -83,7 +83,7 @@ TEST_F(Tradeoff, AnswersWithASceneThatChecks) {
   EXPECT_EQ(checked.code, 0) << checked.err;
   std::ifstream file(work_.path() / "boom_tradeoff.yaml");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_NE(text.find("include: \"boom.yaml\""), std::string::npos) << text;
+  EXPECT_NE(text.find("boom.yaml"), std::string::npos) << text;
   EXPECT_NE(text.find("  step: "), std::string::npos) << text;
   const std::size_t before = results();
   const CommandResult impossible = ask({"--error", "Cyl_Lift.force 0.001 N"});
