@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "cli_support/failure.h"
 #include "coupling/static_forces.h"
 
 namespace slew::hydraulic_node {
@@ -178,10 +179,7 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
     sample.actuators = published_;
     return failure_;
   }
-  ramps_.apply(n, [this](int parameter, double value) { circuit_->set_parameter(parameter, value); });
-  for (std::size_t i = 0; i < std::min(controls.size(), control_of_channel_.size()); ++i) {
-    if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
-  }
+  take_tick(n, controls);
   StepReport taken;
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(n, *partners.mechanism, partners.mechanism_age, taken);
   const bool is_hold = level_ == coupling::Level::hold;
@@ -196,6 +194,31 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   }
   publish(sample.actuators, report.flags, n % exchange_every_ != 0);
   if (is_free_running_ && m_ > 0) keep_end(n + 1);
+  return report;
+}
+
+// parameters on their way, and the controls of the step
+void HydraulicsSubsystem::take_tick(StepIndex n, std::span<const double> controls) noexcept {
+  ramps_.apply(n, [this](int parameter, double value) { circuit_->set_parameter(parameter, value); });
+  for (std::size_t i = 0; i < std::min(controls.size(), control_of_channel_.size()); ++i) {
+    if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
+  }
+}
+
+StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
+                                       const coupling::PartnerSamples& partners, std::span<const double> controls,
+                                       coupling::OwnSample& sample) noexcept {
+  take_tick(n, controls);
+  if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_);
+  std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
+  integrator_->refresh();
+  StepReport report;
+  report.flags = circuit_->flags(step.state.data());
+  report.offender = circuit_->first_cavitating(step.state.data());
+  publish(sample.actuators, report.flags, false);
+  std::copy(step.work.begin(), step.work.end(), sample.actuators.work.begin());
+  std::copy(step.impulse.begin(), step.impulse.end(), sample.actuators.impulse.begin());
+  published_ = sample.actuators;
   return report;
 }
 
@@ -284,6 +307,7 @@ std::string_view HydraulicsSubsystem::offender_name(std::int32_t index) const no
 }
 
 std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene) {
+  cli_support::require(scene::check_is_split(scene));
   return std::make_unique<HydraulicsSubsystem>(scene);
 }
 

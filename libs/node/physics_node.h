@@ -69,6 +69,7 @@ class PhysicsNode final : public Node {
   [[nodiscard]] std::int64_t tick_due_ns() const noexcept;
   void take_late_tick(std::span<const std::byte> bytes);
   void expect_next(std::int64_t now_ns) noexcept;
+  [[nodiscard]] std::string divergence_text(const StepReport& report) const;
   void compute(const coupling::PartnerSamples& partners, std::span<const double> controls, std::int64_t now_ns);
   bool advance_leaving(std::int64_t now_ns);
   void restart(std::uint32_t epoch);

@@ -25,11 +25,14 @@ constexpr Range kRampRange{.min = 0, .max = 60, .min_is_open = false, .max_is_op
 constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
 constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
 constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
+constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-3, .min_is_open = false, .max_is_open = false};
 constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
 
 constexpr std::string_view kPaces[] = {"real", "free"};
 constexpr std::string_view kModes[] = {"lockstep", "free_running"};
 constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
+constexpr std::string_view kContactUses[] = {"tested", "off"};
+constexpr std::string_view kSolutions[] = {"split", "monolithic"};
 constexpr std::string_view kElasticExchanges[] = {"once", "every_step", "condensed"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
 constexpr std::string_view kInterpolations[] = {"linear", "step"};
@@ -70,6 +73,16 @@ constexpr Field kSessionFields[] = {
                                     {.dimension = Dimension::time,
                                      .range = kBudgetRange,
                                      .doc = "longest time a free-running node waits for a sample; 0: half a step"}),
+    field<&SessionDef::solution>(
+        "solution",
+        {.choices = kSolutions,
+         .doc = "split: every node solves its own part; monolithic: all physics as one system in one process, the "
+                "reference for accuracy; coupling, formulation and integrators then have no effect"}),
+    field<&SessionDef::rtol>("rtol", {.range = kToleranceRange, .doc = "relative tolerance of a monolithic solution"}),
+    field<&SessionDef::contact>(
+        "contact",
+        {.choices = kContactUses,
+         .doc = "off: the pairs of shapes in `contacts` are left out of the session, with their variables and cost"}),
     field<&SessionDef::window>(
         "window",
         {.range = kWindowRange,
@@ -228,6 +241,15 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   if (session.wait_budget > 0 && session.mode != ExchangeMode::free_running) {
     errors.push_back({"session.wait_budget", "a session in lockstep waits as long as it takes",
                       "session.mode: free_running beside it", ""});
+  }
+  if (session.solution == Solution::monolithic &&
+      (session.mode == ExchangeMode::free_running || session.exchange_every > 1)) {
+    errors.push_back({"session.solution", "a monolithic solution exchanges nothing",
+                      "split, or session.mode: lockstep and session.exchange_every: 1", ""});
+  }
+  if (session.solution == Solution::monolithic && session.flexible == coupling::ElasticExchange::condensed) {
+    errors.push_back({"session.flexible",
+                      "'condensed' leaves the modes to the flex node, a monolithic solution has them", "once", ""});
   }
   if (session.coupling == coupling::Level::linear || session.coupling == coupling::Level::tlm) {
     const auto index = static_cast<std::size_t>(session.coupling);

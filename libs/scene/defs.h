@@ -23,6 +23,13 @@ enum class ExchangeMode : int {
   free_running  // it waits for a while, then continues its copy of the partner's model
 };
 
+// How the parts of a session are solved: each node its own, coupled once a step, or all physics as one system
+// (docs/models/coupling_reference_monolith.md).
+enum class Solution : int { split, monolithic };
+
+// Whether the pairs of shapes that a scene declares are tested; `off` is the scene without them.
+enum class ContactUse : int { tested, off };
+
 // How a session runs.
 struct SessionDef {
   double step = 1e-3;                               // s, communication step H; whole nanoseconds
@@ -33,6 +40,9 @@ struct SessionDef {
   ExchangeMode mode = ExchangeMode::lockstep;
   std::int64_t exchange_every = 1;  // steps between two exchanges of mechanics and hydraulics
   double wait_budget = 0;           // s, longest wait of a free-running node; 0: half a step
+  Solution solution = Solution::split;
+  double rtol = 1e-9;  // of a monolithic solution: relative tolerance of its integration
+  ContactUse contact = ContactUse::tested;
   std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free, see window_steps()
   double controller_timeout = 0.5;  // s of silence after which a controller's channel goes to neutral
 
