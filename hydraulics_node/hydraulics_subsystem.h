@@ -60,6 +60,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] hydraulics::CircuitIntegrator& integrator() noexcept { return *integrator_; }  // for tests and tools
 
  private:
+  [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
   void take_mechanism(const coupling::MechanismSample& mechanism) noexcept;
   void publish(coupling::ActuatorSample& sample, std::uint32_t flags) noexcept;
   void list_variables();
