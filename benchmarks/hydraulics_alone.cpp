@@ -42,7 +42,8 @@ class Masses final : public PistonMotion {
   explicit Masses(const Circuit& circuit) {
     for (const Actuator& actuator : circuit.actuators()) {
       const LineForceParameters& line = actuator.line_force;
-      laws_.emplace_back(coupling::LineForceDef{.stroke_min = line.minimum_stroke,
+      laws_.emplace_back(coupling::LineForceDef{.friction_curve = {},
+                                                .stroke_min = line.minimum_stroke,
                                                 .stroke_max = line.maximum_stroke,
                                                 .stop_stiffness = line.end_stiffness,
                                                 .stop_damping = line.end_damping});

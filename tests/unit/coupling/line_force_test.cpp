@@ -38,7 +38,7 @@ TEST(LineForce, FrictionHasTheValuesOfTheCurve) {
 }
 
 TEST(LineForce, ViscousFrictionIsProportionalToTheSpeed) {
-  const LineForceLaw law(LineForceDef{.viscous_friction = 1e5});
+  const LineForceLaw law(LineForceDef{.friction_curve = {}, .viscous_friction = 1e5});
   for (const double v : {-0.3, 0.0, 0.02}) {
     EXPECT_DOUBLE_EQ(law.friction(5e4, v), 1e5 * v);
     EXPECT_DOUBLE_EQ(law.evaluate(5e4, 0, v).d_speed, -1e5);
