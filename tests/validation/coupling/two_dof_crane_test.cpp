@@ -219,7 +219,8 @@ SplitError split(double H, ForceOf force_of) {
 
     mechanism.x[0] = rods.length() - kStart, mechanism.v[0] = rods.rate(), mechanism.W[0] = rods.mobility();
     mechanism.F_used[0] = F, mechanism.work[0] = held_F * (rods.length() - s);
-    actuators.F[0] = F, actuators.K[0] = a.K, actuators.x_ref[0] = x + H * v, actuators.v_ref[0] = v;
+    // the hydraulics takes the position over as it is: no work of a volume correction
+    actuators.F[0] = F, actuators.K[0] = a.K, actuators.x_ref[0] = mechanism.x[0], actuators.v_ref[0] = v;
     actuators.work[0] = oil_work;
     indicator.update(mechanism, actuators);
     excess += indicator.port(0).dE;
