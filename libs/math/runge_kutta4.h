@@ -3,8 +3,10 @@
 //   y_new = y + h/6 (k_1 + 2 k_2 + 2 k_3 + k_4)                                                             (1)
 //
 // h is the interval over the smallest whole number that brings it to maximum_step or below. There is no error control;
-// what is watched is stability: h |lambda|_max by power iteration on the Jacobian, at the start and then once an
-// interval, has to stay below 2 (the method's limit: 2.79 on the real axis, 2.83 on the imaginary one).
+// what is watched is stability: h |lambda|_max by power iteration on the Jacobian has to stay below 2 (the method's
+// limit: 2.79 on the real axis, 2.83 on the imaginary one), at the start of every interval and at sub-steps, four an
+// interval at most, where the stages themselves are suspicious:
+//   2 |k_3 - k_2| / |k_2 - k_1| > 2                       h times the growth of J along k_2 - k_1               (2)
 // Source: Hairer, Norsett and Wanner 1993, II.1; limits: Hairer and Wanner 1996, IV.2. Real-time safe.
 #pragma once
 
@@ -25,7 +27,8 @@ class RungeKutta4 final : public StiffIntegrator {
   void set_step_size(double) noexcept override {}
 
  private:
-  void watch(StiffSystem& system, const double* y, double h, StiffReport& report) noexcept;
+  void watch(StiffSystem& system, const double* y, const double* f, double h, StiffReport& report) noexcept;
+  [[nodiscard]] bool is_suspicious() const noexcept;
 
   StiffOptions options_;
   SpectralRadius radius_;
