@@ -1,5 +1,7 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -107,7 +109,23 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
   integrator_->refresh();
   publish(sample.actuators, 0, false);
-  return Status::ok();
+  return check_stability(partners.mechanism);
+}
+
+// An explicit solver beyond its limit at the very start is refused; later it is flagged.
+Status HydraulicsSubsystem::check_stability(const coupling::MechanismSample* mechanism) {
+  if (mechanism != nullptr && m_ > 0) reduced_.set_sample(*mechanism);
+  const bool is_hold = level_ == coupling::Level::hold || mechanism == nullptr;
+  const hydraulics::ExplicitStability stability = integrator_->explicit_stability(
+      H_.seconds(), is_hold ? static_cast<const hydraulics::PistonMotion&>(held_) : reduced_);
+  if (!(stability.ratio > 1)) return Status::ok();
+  return Status::error(
+      ExitCode::failed,
+      fmt::format(
+          "hydraulics.solver: rk4 with sub-steps of {:.3g} ms would be unstable: {} moves {:.2g} times too fast "
+          "for it. Set hydraulics.max_substep below {:.3g} ms, or solver: rodas3",
+          1e3 * stability.substep, offender_name(stability.owner), stability.ratio,
+          1e3 * stability.substep / stability.ratio));
 }
 
 // ---- step -----------------------------------------------------------------------------------------------------

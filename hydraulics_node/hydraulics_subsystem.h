@@ -81,6 +81,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
     coupling::PortArray way;  // by port, of the circuit's own piston in the step [m]
   };
 
+  [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                       StepReport& report) noexcept;

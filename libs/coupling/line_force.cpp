@@ -37,9 +37,10 @@ LineForceLaw::Friction LineForceLaw::friction_at(double F, double v) const noexc
   const bool seal_slips = speed >= def_.seal_speed;
   const double scale = friction_scale(F);
   const double magnitude = scale * f.value + def_.seal_friction * (seal_slips ? 1.0 : speed / def_.seal_speed);
-  return {.force = direction * magnitude,
-          .d_pressure = direction * std::copysign(1 - def_.efficiency, F) * f.value,
-          .d_speed = scale * f.slope + (seal_slips ? 0.0 : def_.seal_friction / def_.seal_speed)};
+  return {
+      .force = direction * magnitude + def_.viscous_friction * v,
+      .d_pressure = direction * std::copysign(1 - def_.efficiency, F) * f.value,
+      .d_speed = scale * f.slope + (seal_slips ? 0.0 : def_.seal_friction / def_.seal_speed) + def_.viscous_friction};
 }
 
 // (3) and its slopes

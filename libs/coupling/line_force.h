@@ -2,7 +2,7 @@
 // hydraulics and the monolith, so that all three feel the same cylinder.
 //
 //   F_line = F - F_mu + F_stop                                                                     (1)
-//   F_mu   = (|F| (1 - eta) f(|v|) + F_seal min(|v| / v_seal, 1)) sgn(v)                           (2)
+//   F_mu   = (|F| (1 - eta) f(|v|) + F_seal min(|v| / v_seal, 1)) sgn(v) + c_v v                   (2)
 //   F_stop = max(0, k d_min - c v) - max(0, k d_max + c v)                                         (3)
 //            d_min = x_min - x while x < x_min, else the first term is 0; d_max = x - x_max likewise
 //
@@ -21,14 +21,15 @@
 namespace slew::coupling {
 
 struct LineForceDef {
-  Table friction_curve;       // speed [m/s >= 0], coefficient [-], from [0, 0] on; empty: no curve
-  double efficiency = 1;      // eta, 0 < eta <= 1
-  double seal_friction = 0;   // F_seal [N], >= 0
-  double seal_speed = 1e-4;   // v_seal [m/s], > 0: speed at which the seal friction is fully there
-  double stroke_min = 0;      // [m]
-  double stroke_max = 0;      // [m]
-  double stop_stiffness = 0;  // k [N/m], >= 0
-  double stop_damping = 0;    // c [N s/m], >= 0
+  Table friction_curve;         // speed [m/s >= 0], coefficient [-], from [0, 0] on; empty: no curve
+  double efficiency = 1;        // eta, 0 < eta <= 1
+  double seal_friction = 0;     // F_seal [N], >= 0
+  double seal_speed = 1e-4;     // v_seal [m/s], > 0: speed at which the seal friction is fully there
+  double viscous_friction = 0;  // c_v [N s/m], >= 0
+  double stroke_min = 0;        // [m]
+  double stroke_max = 0;        // [m]
+  double stop_stiffness = 0;    // k [N/m], >= 0
+  double stop_damping = 0;      // c [N s/m], >= 0
 };
 
 // A force law's value and slopes at one point.

@@ -72,6 +72,7 @@ class Circuit {
   // inputs
   [[nodiscard]] int find_control(std::string_view component) const noexcept;  // -1: none
   [[nodiscard]] std::span<const std::string> controls() const noexcept { return control_name_; }
+  [[nodiscard]] std::span<const double> control_signals() const noexcept { return control_; }
   void set_control(int control, double signal) noexcept { control_[static_cast<std::size_t>(control)] = signal; }
   void set_line_force(int actuator, double F) noexcept { line_force_[static_cast<std::size_t>(actuator)] = F; }
 

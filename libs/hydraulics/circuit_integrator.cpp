@@ -5,6 +5,10 @@
 
 #include "core/check.h"
 #include "core/reductions.h"
+#include "math/cvode_stepper.h"
+#include "math/implicit_euler.h"
+#include "math/rodas3.h"
+#include "math/runge_kutta4.h"
 
 namespace slew::hydraulics {
 namespace {
@@ -25,13 +29,35 @@ math::SparsityPattern coupled_pattern(const Circuit& circuit) {
   return pattern;
 }
 
-math::Rodas3Options options_of(const Circuit& circuit, const HydraulicsDef& def) {
+math::StiffOptions options_of(const Circuit& circuit, const HydraulicsDef& def) {
   return {.relative_tolerance = def.relative_tolerance,
           .minimum_step = def.minimum_step,
+          .maximum_step = def.max_substep,
           .substep_budget = static_cast<std::uint32_t>(def.substep_budget),
           .scale = circuit.scales(),
           .relative = circuit.relatives()};
 }
+
+std::unique_ptr<math::StiffIntegrator> make_solver(const Circuit& circuit, Solver choice,
+                                                   const math::StiffOptions& options) {
+  const auto stride = static_cast<std::size_t>(circuit.state_count());
+  switch (choice) {
+    case Solver::rk4:
+      return std::make_unique<math::RungeKutta4>(stride, options);
+    case Solver::implicit_euler:
+      return std::make_unique<math::ImplicitEuler>(coupled_pattern(circuit), stride, options);
+    case Solver::cvode:
+      return std::make_unique<math::CvodeStepper>(stride, options);
+    case Solver::rodas3:
+      break;
+  }
+  return std::make_unique<math::Rodas3>(coupled_pattern(circuit), stride, options);
+}
+
+constexpr int kMostCorrections = 40;        // of the quasi-static pressures; the way to a far solution is halved often
+constexpr double kConsistent = 1e-3;        // of the solver's tolerance
+constexpr double kLargestCorrection = 0.5;  // of a pressure and its scale, at once
+constexpr int kRadiusIterations = 200;      // once, before a run
 
 }  // namespace
 
@@ -50,8 +76,22 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
       C_(static_cast<std::size_t>(circuit.volume_count())),
       outflow_(C_),
       published_(m_),
-      solver_(coupled_pattern(circuit), static_cast<std::size_t>(circuit.state_count()), options_of(circuit, def)) {
+      options_(options_of(circuit, def)),
+      choice_(def.solver),
+      solver_(make_solver(circuit, def.solver, options_)),
+      inputs_(def.solver == Solver::cvode ? circuit.control_signals().size() + circuit.parameter_values().size() : 0),
+      quasi_static_above_(def.quasi_static_above),
+      mass_(y_.size(), 1),
+      algebraic_(0) {
+  for (int i = 0; i < circuit.volume_count(); ++i) {
+    const bool is_chamber = std::any_of(circuit.actuators().begin(), circuit.actuators().end(),
+                                        [i](const Actuator& a) { return a.port_a == i || a.port_b == i; });
+    may_be_quasi_static_.push_back(!is_chamber && !circuit.is_fixed(i) ? 1 : 0);
+    is_marked_.push_back(def.volumes[static_cast<std::size_t>(i)].quasi_static ? 1 : 0);
+  }
   circuit_.start_at_initial_pressures(y_);
+  choose_quasi_static();
+  is_consistent_ = make_consistent();
   refresh();
 }
 
@@ -64,9 +104,82 @@ void CircuitIntegrator::start(std::span<const double> x, std::span<const double>
     y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))] = v[j];
     published_[j].work = published_[j].impulse = 0;
   }
-  solver_.set_step_size(0);
+  solver_->restart();
   has_failed_ = false;
+  choose_quasi_static();
+  is_consistent_ = make_consistent();
   refresh();
+}
+
+// Those that the Def marks, and those whose rate at the present state is above the limit.
+void CircuitIntegrator::choose_quasi_static() {
+  quasi_static_.clear();
+  if (quasi_static_above_ > 0) {
+    circuit_.outflow_slopes(y_.data(), outflow_.data());
+    circuit_.capacities(y_.data(), C_.data());
+  }
+  for (std::size_t i = 0; i < may_be_quasi_static_.size(); ++i) {
+    const bool is_fast = quasi_static_above_ > 0 && outflow_[i] > quasi_static_above_ * C_[i];
+    const bool is_chosen = may_be_quasi_static_[i] && (is_marked_[i] || is_fast);
+    mass_[i] = is_chosen ? 0 : 1;
+    if (is_chosen) quasi_static_.push_back(static_cast<StateIndex>(i));
+  }
+  if (solver_->takes_algebraic_rows()) solver_->set_mass(mass_);
+  algebraic_ = math::DenseLu(quasi_static_.size());
+}
+
+// Newton on the pressures of the quasi-static volumes, all other states held.
+bool CircuitIntegrator::make_consistent() noexcept {
+  const std::size_t n = quasi_static_.size();
+  if (n == 0) return true;
+  const auto stride = static_cast<std::size_t>(circuit_.state_count());
+  for (int k = 0; k < kMostCorrections; ++k) {
+    circuit_.rates(y_.data(), f_.data());
+    const double* const J = circuit_.jacobian(y_.data(), f_.data());
+    const std::span<double> a = algebraic_.matrix();
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = static_cast<std::size_t>(quasi_static_[i]);
+      for (std::size_t j = 0; j < n; ++j) a[i * n + j] = -J[row * stride + static_cast<std::size_t>(quasi_static_[j])];
+      outflow_[i] = f_[row];
+    }
+    if (!algebraic_.factorise()) return false;
+    algebraic_.solve({outflow_.data(), n});
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = static_cast<std::size_t>(quasi_static_[i]);
+      const double size = options_.scale[row] + std::fabs(y_[row]);
+      if (!std::isfinite(outflow_[i])) return false;
+      y_[row] += std::clamp(outflow_[i], -kLargestCorrection * size, kLargestCorrection * size);
+      largest = std::max(largest, std::fabs(outflow_[i]) / size);
+    }
+    was_clamped_ = circuit_.bound(y_.data()) || was_clamped_;
+    if (largest <= kConsistent * options_.relative_tolerance) return true;
+  }
+  return false;
+}
+
+// A solver with a memory has to know when an input changed by a step.
+void CircuitIntegrator::note_inputs() noexcept {
+  bool has_changed = false;
+  std::size_t k = 0;
+  for (const std::span<const double> values : {circuit_.control_signals(), circuit_.parameter_values()}) {
+    for (const double value : values) {
+      has_changed = has_changed || inputs_[k] != value;
+      inputs_[k++] = value;
+    }
+  }
+  if (has_changed) solver_->inputs_jumped();
+}
+
+ExplicitStability CircuitIntegrator::explicit_stability(double H, const PistonMotion& motion) {
+  if (choice_ != Solver::rk4) return {};
+  motion_ = &motion;
+  derivative(y_.data(), f_.data());
+  math::SpectralRadius radius(options_.scale, y_.size());
+  const double lambda = radius.update(jacobian(y_.data(), f_.data()), kRadiusIterations);
+  motion_ = nullptr;
+  const double h = H / std::max(1.0, std::ceil(H / options_.maximum_step * (1 - 1e-12)));
+  return {.ratio = h * lambda / math::kExplicitLimit, .substep = h, .owner = radius.owner()};
 }
 
 void CircuitIntegrator::align(std::span<const double> x, std::span<const double> v) noexcept {
@@ -152,7 +265,9 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
   std::copy(y_.begin(), y_.end(), y_start_.begin());
   for (ActuatorLinearisation& actuator : published_) actuator.work = actuator.impulse = 0;
   open_quadrature_ = 0;
-  report_ = solver_.advance(*this, y_, H);
+  if (!inputs_.empty()) note_inputs();
+  if (!quasi_static_.empty()) is_consistent_ = make_consistent();
+  report_ = solver_->advance(*this, y_, H);
   if (!report_.is_finite) {
     has_failed_ = true;
     offender_ = report_.worst_state;
@@ -176,8 +291,11 @@ void CircuitIntegrator::report_flags(StepReport& report) noexcept {
   report.residual = report_.largest_error;
   if (report_.is_over_budget) report.raise(StepFlag::step_budget);
   if (report_.is_at_minimum_step) report.raise(StepFlag::not_converged);
+  if (report_.is_unstable || !is_consistent_) report.raise(StepFlag::not_converged);
   if (was_clamped_) report.raise(StepFlag::clamp_active);
-  if (report_.is_over_budget || report_.is_at_minimum_step || has_failed_) report.offender = report_.worst_state;
+  if (!is_consistent_) report.offender = quasi_static_.front();
+  const bool has_error = report_.is_over_budget || report_.is_at_minimum_step || report_.is_unstable;
+  if (has_error || has_failed_) report.offender = report_.worst_state;
   if (has_failed_) report.raise(StepFlag::non_finite);
 }
 
@@ -211,7 +329,7 @@ void CircuitIntegrator::publish() noexcept {
 
 void CircuitIntegrator::add_to(StateHash& hash) const noexcept {
   hash.add(std::span<const double>(y_));
-  hash.add(solver_.step_size());
+  solver_->add_to(hash);
   hash.add(has_failed_);
   hash.add(circuit_.parameter_values());
 }

@@ -1,7 +1,10 @@
 // Advances a circuit and its pistons over communication steps, and states what a partner needs to know afterwards.
 //
-// Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for RODAS3:
+// Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for the solver that the
+// Def chooses (math/rodas3.h, runge_kutta4.h, implicit_euler.h, cvode_stepper.h):
 //   y' = rates(y),  x' = v,  v' = a(F, x, v),  F = p_A A_A - p_B A_B
+// The row of a quasi-static volume is algebraic, 0 = sum Q; its pressure is solved for at the start and again at the
+// start of every step, so that a jump of an input finds it consistent.
 // Work and impulse of each actuator are integrated beside it with the cubic through both ends of a sub-step:
 //   int g dt = h/2 (g_0 + g_1) + h^2/12 (g_0' - g_1')                                                           (1)
 // for g = F (impulse) and, about the sub-step's mean force F_m = (F_0 + F_1)/2,
@@ -14,6 +17,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,7 +25,8 @@
 #include "core/step_report.h"
 #include "hydraulics/circuit.h"
 #include "hydraulics/piston_motion.h"
-#include "math/rodas3.h"
+#include "math/dense_lu.h"
+#include "math/stiff_system.h"
 
 namespace slew::hydraulics {
 
@@ -39,6 +44,13 @@ struct ActuatorLinearisation {
   double Q_a = 0, Q_b = 0;  // m3/s, what the circuit sends into the chambers' volumes
 };
 
+// How near an explicit solver's sub-step is to its limit at a state.
+struct ExplicitStability {
+  double ratio = 0;       // h |lambda|_max / 2; above 1 the solver is not to be used
+  double substep = 0;     // h [s]
+  StateIndex owner = -1;  // the state with the largest part in the fastest motion
+};
+
 class CircuitIntegrator final : private math::StiffSystem {
  public:
   // circuit outlives the integrator. def: validated.
@@ -47,11 +59,15 @@ class CircuitIntegrator final : private math::StiffSystem {
   // Start state as the Def asks for; F: static forces of the actuators [N]. Clears the step size and failures.
   void start(std::span<const double> x, std::span<const double> v, std::span<const double> F) noexcept;
 
+  // Of rk4 at the present state, for steps of H seconds; nothing for the other solvers, which have no limit.
+  [[nodiscard]] ExplicitStability explicit_stability(double H, const PistonMotion& motion);
+
   // Takes the pistons' true position and speed: pressures follow with the oil enclosed (study, section 8).
   void align(std::span<const double> x, std::span<const double> v) noexcept;
 
   // Advances by H seconds. A non-finite state is latched: the last finite one stays, every further report says so.
-  // offender: StateIndex of the state that failed, ran out of budget, or of the first volume that cavitates.
+  // offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), or of the first
+  // volume that cavitates.
   StepReport step(double H, const PistonMotion& motion) noexcept;
 
   [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }
@@ -60,11 +76,12 @@ class CircuitIntegrator final : private math::StiffSystem {
   [[nodiscard]] std::span<double> mutable_state() noexcept { return y_; }
   // Works out actuators() from the state.
   void refresh() noexcept;
-  [[nodiscard]] double step_size() const noexcept { return solver_.step_size(); }
-  void set_step_size(double h) noexcept { solver_.set_step_size(h); }
-  [[nodiscard]] const math::Rodas3Report& last_report() const noexcept { return report_; }
+  [[nodiscard]] double step_size() const noexcept { return solver_->step_size(); }
+  void set_step_size(double h) noexcept { solver_->set_step_size(h); }
+  [[nodiscard]] std::span<const StateIndex> quasi_static() const noexcept { return quasi_static_; }  // volumes
+  [[nodiscard]] const math::StiffReport& last_report() const noexcept { return report_; }
 
-  // Raw bits of all that the future depends on: y, step size, failure latch, live parameters.
+  // Raw bits of all that the future depends on: y, the solver's memory, failure latch, live parameters.
   void add_to(StateHash& hash) const noexcept;
 
  private:
@@ -73,6 +90,9 @@ class CircuitIntegrator final : private math::StiffSystem {
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
   void publish() noexcept;
   void close_quadrature(const double* y, const double* f) noexcept;
+  void choose_quasi_static();
+  void note_inputs() noexcept;
+  [[nodiscard]] bool make_consistent() noexcept;
   void report_flags(StepReport& report) noexcept;
 
   Circuit& circuit_;
@@ -85,8 +105,17 @@ class CircuitIntegrator final : private math::StiffSystem {
   bool was_clamped_ = false;
   bool has_failed_ = false;
   StateIndex offender_ = -1;  // of the failure
-  math::Rodas3 solver_;
-  math::Rodas3Report report_;
+  math::StiffOptions options_;
+  Solver choice_;
+  std::unique_ptr<math::StiffIntegrator> solver_;
+  math::StiffReport report_;
+  std::vector<double> inputs_;  // controls and live parameters of the last step; empty when nobody asks
+  double quasi_static_above_;   // 1/s
+  std::vector<char> may_be_quasi_static_, is_marked_;  // by volume
+  std::vector<StateIndex> quasi_static_;
+  std::vector<double> mass_;
+  math::DenseLu algebraic_;  // of the quasi-static rows and columns
+  bool is_consistent_ = true;
 };
 
 }  // namespace slew::hydraulics

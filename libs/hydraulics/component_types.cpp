@@ -4,6 +4,8 @@
 #include "hydraulics/components/compensated_orifice.h"
 #include "hydraulics/components/direct_relief_valve.h"
 #include "hydraulics/components/double_acting_cylinder.h"
+#include "hydraulics/components/double_rod_cylinder.h"
+#include "hydraulics/components/four_way_valve.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/l90ls_valve.h"
 #include "hydraulics/components/ls_pump.h"
@@ -18,8 +20,10 @@ std::span<const ComponentType> component_types() {
   static const std::array types = {
       hose_type(),
       double_acting_cylinder_type(),
+      double_rod_cylinder_type(),
       slew_cylinder_type(),
       l90ls_valve_type(),
+      four_way_valve_type(),
       ls_shuttle_type(),
       relief_valve_type(),
       direct_relief_valve_type(),

@@ -17,10 +17,12 @@
 namespace slew::hydraulics {
 
 enum class Solver : int { rodas3, rk4, implicit_euler, cvode };
+enum class OilLaw : int { oil_and_air, density_parabola };
 enum class StartState : int { equilibrium, table13 };
 enum class Interpolation : int { linear, pchip };
 
 inline constexpr std::string_view kSolverChoices[] = {"rodas3", "rk4", "implicit_euler", "cvode"};
+inline constexpr std::string_view kOilLawChoices[] = {"oil_and_air", "density_parabola"};
 inline constexpr std::string_view kStartChoices[] = {"equilibrium", "table13"};
 inline constexpr std::string_view kInterpolationChoices[] = {"linear", "pchip"};
 
@@ -31,6 +33,7 @@ struct VolumeDef {
   double initial_pressure = 1e5;  // Pa absolute
   double rigid_volume = 0;        // m3, oil in a rigid block at this node
   bool fixed = false;             // true: a tank or an ideal pressure source, held at initial_pressure
+  bool quasi_static = false;      // true: no storage, the pressure makes the flows add up to zero
 };
 
 // A function of one variable given by points; the last value is held beyond the ends.
@@ -43,21 +46,26 @@ struct CurveDef {
 
 struct HydraulicsDef {
   // oil: an ISO VG 46 mineral oil
-  double oil_bulk_modulus = 1.5e9;      // Pa, of the oil without air
-  double oil_density = 870;             // kg/m3
-  double oil_viscosity = 46e-6;         // m2/s, at working temperature
-  double entrained_air = 0.005;         // air volume / oil volume at the reference pressure
-  double air_reference_pressure = 1e5;  // Pa absolute
-  double polytropic_exponent = 1.2;     // of the entrained air
-  double pressure_floor = 5e3;          // Pa absolute; below it a volume is cavitating
-  double orifice_transition = 1e4;      // Pa; below it an orifice is laminar
+  OilLaw oil_law = OilLaw::oil_and_air;
+  double oil_bulk_modulus = 1.5e9;       // Pa, of the oil without air
+  double oil_density = 870;              // kg/m3
+  double oil_viscosity = 46e-6;          // m2/s, at working temperature
+  double entrained_air = 0.005;          // air volume / oil volume at the reference pressure
+  double air_reference_pressure = 1e5;   // Pa absolute
+  double polytropic_exponent = 1.2;      // of the entrained air
+  double oil_compressibility = 6.5e-10;  // 1/Pa at zero pressure, of the density parabola
+  double oil_density_peak = 3000e5;      // Pa absolute, where the density parabola has its top
+  double pressure_floor = 5e3;           // Pa absolute; below it a volume is cavitating
+  double orifice_transition = 1e4;       // Pa; below it an orifice is laminar
 
   // solver
   Solver solver = Solver::rodas3;
   double relative_tolerance = 1e-4;
   double pressure_scale = 1e6;        // Pa, below it the error of a pressure is judged absolutely
   double minimum_step = 1e-6;         // s
+  double max_substep = 1e-4;          // s, fixed sub-step of rk4 and implicit_euler
   std::int64_t substep_budget = 200;  // sub-steps per communication step
+  double quasi_static_above = 0;      // 1/s; volumes faster than this at the start become quasi-static; 0: none
 
   // start state
   StartState start = StartState::equilibrium;
@@ -72,10 +80,16 @@ struct HydraulicsDef {
 
 inline constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-1};
 inline constexpr Range kBudgetRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
+// a top below 1300 bar would be inside the pressures that a circuit may reach
+inline constexpr Range kPeakRange{.min = 1300e5};
 inline constexpr Range kAirRange{.min = 0, .max = 0.2, .min_is_open = false, .max_is_open = false};
 inline constexpr Range kPolytropicRange{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
 
 inline constexpr Field kHydraulicsFields[] = {
+    field<&HydraulicsDef::oil_law>(
+        "oil_law", {.choices = kOilLawChoices,
+                    .doc = "oil_and_air: bulk modulus with entrained air; density_parabola: density over pressure as a "
+                           "parabola, no air"}),
     field<&HydraulicsDef::oil_bulk_modulus>(
         "oil_bulk_modulus",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "bulk modulus of the oil without air"}),
@@ -94,6 +108,14 @@ inline constexpr Field kHydraulicsFields[] = {
                                                    .doc = "absolute pressure at which the air content is stated"}),
     field<&HydraulicsDef::polytropic_exponent>("polytropic_exponent",
                                                {.range = kPolytropicRange, .doc = "polytropic exponent of the air"}),
+    field<&HydraulicsDef::oil_compressibility>("oil_compressibility",
+                                               {.dimension = Dimension::pressure_gain,
+                                                .range = kPositive,
+                                                .doc = "compressibility at zero pressure, for density_parabola"}),
+    field<&HydraulicsDef::oil_density_peak>("oil_density_peak",
+                                            {.dimension = Dimension::pressure,
+                                             .range = kPeakRange,
+                                             .doc = "absolute pressure at the top of the density parabola"}),
     field<&HydraulicsDef::pressure_floor>(
         "pressure_floor", {.dimension = Dimension::pressure,
                            .range = kPositive,
@@ -103,7 +125,10 @@ inline constexpr Field kHydraulicsFields[] = {
                                .range = kPositive,
                                .doc = "pressure drop below which an orifice turns from square root to linear"}),
     field<&HydraulicsDef::solver>(
-        "solver", {.choices = kSolverChoices, .doc = "integrator; this version has rodas3 (adaptive, L-stable)"}),
+        "solver",
+        {.choices = kSolverChoices,
+         .doc = "rodas3: adaptive, L-stable; rk4 and implicit_euler: sub-steps of fixed size; cvode: adaptive BDF "
+                "of variable order, for reference runs"}),
     field<&HydraulicsDef::relative_tolerance>("relative_tolerance",
                                               {.range = kToleranceRange, .doc = "relative error allowed per sub-step"}),
     field<&HydraulicsDef::pressure_scale>(
@@ -111,10 +136,17 @@ inline constexpr Field kHydraulicsFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure added to the scale of the error"}),
     field<&HydraulicsDef::minimum_step>("minimum_step",
                                         {.dimension = Dimension::time, .range = kPositive, .doc = "smallest sub-step"}),
+    field<&HydraulicsDef::max_substep>(
+        "max_substep", {.dimension = Dimension::time, .range = kPositive, .doc = "sub-step of rk4 and implicit_euler"}),
     field<&HydraulicsDef::substep_budget>(
         "substep_budget",
         {.range = kBudgetRange,
          .doc = "sub-steps allowed in one communication step; beyond, steps are accepted and flagged"}),
+    field<&HydraulicsDef::quasi_static_above>(
+        "quasi_static_above", {.dimension = Dimension::frequency,
+                               .range = kNotNegative,
+                               .doc = "volumes without a chamber whose rate at the start is above this become "
+                                      "quasi-static; 0: only those marked so"}),
     field<&HydraulicsDef::start>(
         "start", {.choices = kStartChoices,
                   .doc = "equilibrium: cylinders hold the static load; table13: every volume at its initial pressure"}),
@@ -139,6 +171,9 @@ inline constexpr Field kVolumeFields[] = {
         "rigid_volume",
         {.dimension = Dimension::volume, .range = kNotNegative, .doc = "oil in a rigid block at this node"}),
     field<&VolumeDef::fixed>("fixed", {.doc = "held at its initial pressure: a tank or an ideal pressure source"}),
+    field<&VolumeDef::quasi_static>(
+        "quasi_static",
+        {.doc = "stores nothing: its pressure makes the flows into it add up to zero at every instant"}),
 };
 
 inline constexpr Field kCurveFields[] = {

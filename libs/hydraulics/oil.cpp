@@ -9,16 +9,20 @@ namespace {
 
 constexpr double kHighestPressure = 4e9;  // Pa; beyond, kappa keeps its last value
 constexpr double kLowestFraction = 1e-3;  // of the floor: the table's lower end
+constexpr double kParabolaEnd = 1000e5;   // Pa; the top, where kappa is zero, lies above 1300 bar
 constexpr double kVapour = 10;            // c of (3): 110 % expansion at half the floor
 
 }  // namespace
 
 OilCompressibility::OilCompressibility(const HydraulicsDef& def)
-    : B_(def.oil_bulk_modulus),
+    : law_(def.oil_law),
+      B_(def.oil_bulk_modulus),
       alpha_(def.entrained_air),
       p_0_(def.air_reference_pressure),
       inverse_n_(1 / def.polytropic_exponent),
-      floor_(def.pressure_floor) {
+      floor_(def.pressure_floor),
+      a_(def.oil_compressibility),
+      peak_(def.oil_density_peak) {
   const auto start_of = [](std::uint64_t bits) { return std::bit_cast<double>(bits << kPartsShift); };
   first_ = leading_bits(kLowestFraction * floor_);
   lowest_ = start_of(first_);
@@ -33,13 +37,28 @@ OilCompressibility::OilCompressibility(const HydraulicsDef& def)
   }
 }
 
-ValueSlope OilCompressibility::exact(double p) const noexcept {
+// (1), (2)
+ValueSlope OilCompressibility::oil_and_air(double p) const noexcept {
   const double oil = std::exp(-(p - p_0_) / B_);
   const double air = alpha_ * std::pow(p_0_ / p, inverse_n_);
   const double V = oil + air;
   const double V_1 = -oil / B_ - air * inverse_n_ / p;
   const double V_2 = oil / (B_ * B_) + air * inverse_n_ * (inverse_n_ + 1) / (p * p);
-  ValueSlope kappa{-V_1 / V, -V_2 / V + V_1 * V_1 / (V * V)};
+  return {-V_1 / V, -V_2 / V + V_1 * V_1 / (V * V)};
+}
+
+// (4)
+ValueSlope OilCompressibility::density_parabola(double p) const noexcept {
+  const bool is_beyond = p > kParabolaEnd;
+  const double q = is_beyond ? kParabolaEnd : p;
+  const double rho = 1 + a_ * q * (1 - q / (2 * peak_)), rho_1 = a_ * (1 - q / peak_), rho_2 = -a_ / peak_;
+  const double kappa = rho_1 / rho;
+  return {kappa, is_beyond ? 0 : rho_2 / rho - kappa * kappa};
+}
+
+// (3) on top of the law
+ValueSlope OilCompressibility::exact(double p) const noexcept {
+  ValueSlope kappa = law_ == OilLaw::density_parabola ? density_parabola(p) : oil_and_air(p);
   if (p < floor_) {
     const double q = floor_ / p - 1;
     kappa.value += kVapour / floor_ * q * q;

@@ -2,13 +2,15 @@
 //
 //   V(p)/V_0 = exp(-(p - p_0)/B) + alpha (p_0/p)^(1/n)                                          (1)
 //   kappa(p) = -V'/V                                  1/Pa, the inverse bulk modulus            (2)
+//   rho(p)/rho_0 = 1 + a p - a p^2/(2 p_m),  kappa = rho'/rho   instead of (1) as density_parabola    (4)
 //   kappa(p) += c/p_f (p_f/p - 1)^2  for p < p_f      vapour fills what the oil cannot          (3)
 //
 // p absolute; p_0 air reference pressure, alpha air content there, n polytropic exponent, p_f floor, c = 10. The
 // integral of (3) diverges towards p = 0, so no finite expansion brings a pressure to zero. kappa is tabulated once as
 // piecewise cubics over 32 equal parts of each octave of p (relative error below 1e-6 above the floor, 1e-4 in vapour)
 // and read without a transcendental function. Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to
-// 27; the air term is the usual polytropic one. Not covered: dissolution of air, temperature.
+// 27; the air term is the usual polytropic one; (4) as 1 + a p + b p^2 in Naya et al. 2011, p_m = -a/(2 b): kappa keeps
+// its value at 1000 bar beyond that, and there is no air. Not covered: dissolution of air, temperature.
 #pragma once
 
 #include <array>
@@ -21,6 +23,7 @@
 namespace slew::hydraulics {
 
 struct HydraulicsDef;
+enum class OilLaw : int;
 
 class OilCompressibility {
  public:
@@ -44,6 +47,9 @@ class OilCompressibility {
   [[nodiscard]] double lowest_pressure() const noexcept { return lowest_; }
 
  private:
+  [[nodiscard]] ValueSlope oil_and_air(double p) const noexcept;
+  [[nodiscard]] ValueSlope density_parabola(double p) const noexcept;
+
   // 32 parts of an octave: the exponent and the five leading bits of the mantissa number them
   static constexpr int kPartsShift = 52 - 5;
   [[nodiscard]] static std::uint64_t leading_bits(double p) noexcept {
@@ -55,7 +61,8 @@ class OilCompressibility {
     std::array<double, 4> coefficient;  // of powers of t = (p - start) inverse_width
   };
 
-  double B_, alpha_, p_0_, inverse_n_, floor_;
+  OilLaw law_;
+  double B_, alpha_, p_0_, inverse_n_, floor_, a_, peak_;
   double lowest_;
   std::uint64_t first_ = 0;  // leading bits of the first segment's start
   std::vector<Segment> segment_;

@@ -120,9 +120,49 @@ bool has_content(const HydraulicsDef& def, const VolumeDef& volume) {
   return false;
 }
 
+// Algebraic pressures need a solver that takes them, and no piston may stand on one: its stiffness would be infinite.
+bool takes_quasi_static(Solver solver) {
+  return solver == Solver::rodas3 || solver == Solver::implicit_euler;
+}
+
+std::string no_quasi_static(Solver solver) {
+  return fmt::format("the solver {} has no algebraic pressures", kSolverChoices[static_cast<std::size_t>(solver)]);
+}
+
+const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volume) {
+  for (const auto& component : def.components) {
+    const ComponentType* type = find_component_type(component->type_name());
+    if (type == nullptr || !type->is_actuator) continue;
+    for (const Field& row : type->fields) {
+      if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) {
+        return component.get();
+      }
+    }
+  }
+  return nullptr;
+}
+
+void check_quasi_static(const HydraulicsDef& def, const VolumeDef& volume, Problems& errors) {
+  if (!volume.quasi_static) return;
+  const std::string path = volume.name + ".quasi_static";
+  if (volume.fixed) {
+    errors.push_back({path, "the volume is fixed already", "fixed: true or quasi_static: true", ""});
+  }
+  if (!takes_quasi_static(def.solver)) {
+    errors.push_back({path, no_quasi_static(def.solver), "solver: rodas3 or implicit_euler", ""});
+  }
+  if (const ComponentDef* cylinder = find_chamber(def, volume)) {
+    errors.push_back(
+        {path,
+         fmt::format("a chamber of '{}' is part of the volume: without storage it would be rigid", cylinder->name),
+         "a volume without a cylinder", ""});
+  }
+}
+
 void check_volumes(const HydraulicsDef& def, Problems& errors) {
   for (const VolumeDef& volume : def.volumes) {
     check_fields(volume.name, kVolumeFields, &volume, errors);
+    check_quasi_static(def, volume, errors);
     if (!has_content(def, volume)) {
       errors.push_back({volume.name + ".rigid_volume", "the volume has no content: no hose or chamber is connected",
                         "a hose, a cylinder, a rigid_volume, or fixed: true", ""});
@@ -190,10 +230,9 @@ void check_forces(const HydraulicsDef& def, Problems& errors) {
 
 void check_circuit_numbers(const HydraulicsDef& def, Problems& errors) {
   check_fields("hydraulics", kHydraulicsFields, &def, errors);
-  if (def.solver != Solver::rodas3) {
-    errors.push_back({"hydraulics.solver",
-                      fmt::format("{} is not in this version", kSolverChoices[static_cast<std::size_t>(def.solver)]),
-                      "rodas3", ""});
+  if (def.quasi_static_above > 0 && !takes_quasi_static(def.solver)) {
+    errors.push_back({"hydraulics.quasi_static_above", no_quasi_static(def.solver),
+                      "solver: rodas3 or implicit_euler, or quasi_static_above: 0", ""});
   }
   const auto above_floor = [&](const char* key, double pressure) {
     if (pressure > def.pressure_floor) return;

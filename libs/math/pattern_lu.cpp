@@ -25,7 +25,7 @@ std::size_t elimination_cost(const std::vector<char>& a, const std::vector<char>
 }  // namespace
 
 PatternLu::PatternLu(const SparsityPattern& pattern, std::size_t stride)
-    : size_(pattern.size()), stride_(stride), inverse_pivot_(size_), work_(size_) {
+    : size_(pattern.size()), stride_(stride), mass_(size_, 1), inverse_pivot_(size_), work_(size_) {
   SLEW_CHECK(stride >= size_ && size_ <= 200);
   choose_order(pattern);
 }
@@ -111,11 +111,15 @@ void PatternLu::list_operations(const std::vector<char>& filled) {
   }
 }
 
+void PatternLu::set_mass(std::span<const double> mass) noexcept {
+  for (std::size_t k = 0; k < size_; ++k) mass_[k] = mass[order_[k]];
+}
+
 bool PatternLu::factorise(const double* J, double c) noexcept {
   double* const a = value_.data();
   for (double& value : value_) value = 0;
   for (const Gather& g : gather_) a[g.slot] = -J[g.source];
-  for (const Slot slot : diagonal_) a[slot] += c;
+  for (std::size_t k = 0; k < size_; ++k) a[diagonal_[k]] += c * mass_[k];
 
   const Elimination* entry = elimination_.data();
   const Update* update = update_.data();

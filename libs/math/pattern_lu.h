@@ -1,4 +1,5 @@
-// LU of (c I - J) for a J whose non-zero pattern is known at build: pivots on the diagonal in an order chosen once.
+// LU of (c M - J), M diagonal, for a J whose non-zero pattern is known at build: pivots on the diagonal in an order
+// chosen once.
 //
 // The order is the greedy Markowitz order (fewest operations next, the lowest index of equals); the elimination becomes
 // flat lists of slots, so a factorisation is a few hundred multiply-adds without index search. Diagonal pivots are safe
@@ -33,7 +34,9 @@ class PatternLu {
   // J will be handed over row-major with this many columns (>= pattern.size()).
   PatternLu(const SparsityPattern& pattern, std::size_t stride);
 
-  // Factorises c I - J. False when a pivot falls below 1e-3 c in size or is not finite.
+  // Diagonal of M, ones and zeros in the order of J's rows; all ones until this is called.
+  void set_mass(std::span<const double> mass) noexcept;
+  // Factorises c M - J. False when a pivot falls below 1e-3 c in size or is not finite.
   [[nodiscard]] bool factorise(const double* J, double c) noexcept;
   // Replaces b by the solution.
   void solve(double* b) noexcept;
@@ -71,6 +74,7 @@ class PatternLu {
   std::vector<Update> update_;
   std::vector<Row> row_;
   std::vector<Term> term_;
+  std::vector<double> mass_;  // by pivot
   std::vector<double> value_;
   std::vector<double> inverse_pivot_;
   std::vector<double> work_;

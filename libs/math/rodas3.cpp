@@ -22,12 +22,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, Rodas3Options options)
+Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, StiffOptions options)
     : size_(pattern.size()),
       stride_(jacobian_stride),
       options_(std::move(options)),
       lu_(pattern, jacobian_stride),
       dense_(size_),
+      mass_(size_, 1),
       f_(size_),
       k1_(size_),
       k2_(size_),
@@ -38,7 +39,13 @@ Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, Roda
   SLEW_CHECK(options_.scale.size() == size_ && options_.relative.size() == size_);
 }
 
-bool Rodas3::factorise(const double* J, double c, Rodas3Report& report) noexcept {
+void Rodas3::set_mass(std::span<const double> mass) noexcept {
+  SLEW_CHECK(mass.size() == size_);
+  std::copy(mass.begin(), mass.end(), mass_.begin());
+  lu_.set_mass(mass);
+}
+
+bool Rodas3::factorise(const double* J, double c, StiffReport& report) noexcept {
   uses_dense_ = !lu_.factorise(J, c);
   if (!uses_dense_) return true;
   // rare: a pivot on the diagonal nearly vanished
@@ -46,7 +53,7 @@ bool Rodas3::factorise(const double* J, double c, Rodas3Report& report) noexcept
   const std::span<double> a = dense_.matrix();
   for (std::size_t i = 0; i < size_; ++i) {
     for (std::size_t j = 0; j < size_; ++j) a[i * size_ + j] = -J[i * stride_ + j];
-    a[i * size_ + i] += c;
+    a[i * size_ + i] += c * mass_[i];
   }
   return dense_.factorise();
 }
@@ -65,17 +72,19 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
   const double c = 1 / h;
   std::copy(f_.begin(), f_.end(), k1_.begin());
   solve(k1_.data());
-  for (std::size_t i = 0; i < n; ++i) k2_[i] = f_[i] + c * kC21 * k1_[i];
+  for (std::size_t i = 0; i < n; ++i) k2_[i] = f_[i] + mass_[i] * (c * kC21 * k1_[i]);
   solve(k2_.data());
 
   for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + 2 * k1_[i];
   system.derivative(stage_.data(), k3_.data());
-  for (std::size_t i = 0; i < n; ++i) k3_[i] += c * (kC31 * k1_[i] + kC32 * k2_[i]);
+  for (std::size_t i = 0; i < n; ++i) k3_[i] += mass_[i] * (c * (kC31 * k1_[i] + kC32 * k2_[i]));
   solve(k3_.data());
 
   for (std::size_t i = 0; i < n; ++i) stage_[i] += k3_[i];
   system.derivative(stage_.data(), k4_.data());
-  for (std::size_t i = 0; i < n; ++i) k4_[i] += c * (kC41 * k1_[i] + kC42 * k2_[i] + kC43 * k3_[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    k4_[i] += mass_[i] * (c * (kC41 * k1_[i] + kC42 * k2_[i] + kC43 * k3_[i]));
+  }
   solve(k4_.data());
 
   double error = 0;
@@ -111,9 +120,9 @@ double Rodas3::next_step(double wanted_before, double used, double factor, doubl
   return std::min(std::max(wanted, options_.minimum_step), longest);
 }
 
-Rodas3Report Rodas3::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
+StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
   SLEW_ASSERT(y.size() == size_);
-  Rodas3Report report;
+  StiffReport report;
   double h = step_size_ > 0 ? step_size_ : kFirstFraction * duration;
   double rest = duration;
   const double* J = nullptr;

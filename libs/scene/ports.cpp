@@ -8,6 +8,7 @@
 
 #include "coupling/samples.h"
 #include "hydraulics/components/double_acting_cylinder.h"
+#include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/curve.h"
 #include "multibody/dynamics.h"
@@ -23,13 +24,14 @@ bool has_element(const std::vector<Def>& defs, std::string_view name) {
   return std::any_of(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
 }
 
-// What both kinds of cylinder say about the line force.
+// What all kinds of cylinder say about the line force.
 PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& cylinder) {
   PortDef port;
   port.name = name;
   port.force = cylinder.force;
   port.line_force.efficiency = cylinder.cylinder_coefficient;
   port.line_force.seal_friction = cylinder.seal_friction;
+  port.line_force.viscous_friction = cylinder.viscous_friction;
   port.line_force.stroke_min = cylinder.minimum_stroke;
   port.line_force.stroke_max = cylinder.maximum_stroke;
   port.line_force.stop_stiffness = cylinder.end_stiffness;
@@ -54,6 +56,17 @@ void check_force(const PortDef& port, std::string_view wanted, bool fits, Proble
                       fmt::format("a force of type {}", wanted), ""});
 }
 
+// Of a cylinder between two points; its stroke is their distance less what is no stroke.
+template <typename Def>
+PortDef linear_port(const Def& cylinder, const Scene& scene, Problems& problems) {
+  PortDef port = port_of(cylinder.name, cylinder.common);
+  port.offset = -(cylinder.attachment_length + cylinder.rod_length);
+  take_curve(port, cylinder.common.friction_curve, scene, problems);
+  check_force(port, "translational", has_element(scene.mechanics.translational_forces, cylinder.common.force),
+              problems);
+  return port;
+}
+
 // Piston positions at the start, from the poses of the scene.
 std::vector<double> start_strokes(const Scene& scene) {
   const multibody::Model model = multibody::build_model(scene.mechanics, row_names(scene));
@@ -72,11 +85,9 @@ void make_ports(Scene& scene, Problems& problems) {
   for (const auto& component : scene.hydraulics.components) {
     PortDef port;
     if (const auto* line = dynamic_cast<const hydraulics::DoubleActingCylinderDef*>(component.get())) {
-      port = port_of(line->name, line->common);
-      port.offset = -(line->attachment_length + line->rod_length);
-      take_curve(port, line->common.friction_curve, scene, problems);
-      check_force(port, "translational", has_element(scene.mechanics.translational_forces, line->common.force),
-                  problems);
+      port = linear_port(*line, scene, problems);
+    } else if (const auto* rods = dynamic_cast<const hydraulics::DoubleRodCylinderDef*>(component.get())) {
+      port = linear_port(*rods, scene, problems);
     } else if (const auto* slew = dynamic_cast<const hydraulics::SlewCylinderDef*>(component.get())) {
       port = port_of(slew->name, slew->common);
       port.offset = slew->stroke_offset;

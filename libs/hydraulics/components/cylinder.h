@@ -15,7 +15,7 @@ enum class Motion { linear, rotary };
 
 // What sets a cylinder type apart.
 struct CylinderGeometry {
-  double area_b = 0;  // m2, on the side of port B; on A it is the piston's
+  double area_a = 0, area_b = 0;  // m2, on the sides of ports A and B
   PortCoordinate coordinate = {};
   StartRule start = StartRule::return_pressure;
   Motion motion = Motion::linear;  // rotary: coordinate.ratio turns the line force into a torque

@@ -7,12 +7,13 @@ namespace slew::hydraulics {
 
 // Parameters of the line force, evaluated in port space by both sides of the coupling:
 //   F_line = F - F_mu + F_stop,  F = p_A A_A - p_B A_B
-//   F_mu   = (|F| (1 - cylinder_coefficient) f(|v|) + seal_friction f_0(v)) sgn v
+//   F_mu   = (|F| (1 - cylinder_coefficient) f(|v|) + seal_friction f_0(v)) sgn v + viscous_friction v
 //   F_stop = max(0, end_stiffness d + end_damping d') at either end, pushing only
 struct LineForceParameters {
   std::string friction_curve;       // coefficient f over piston speed, m/s
   double cylinder_coefficient = 1;  // eta
   double seal_friction = 0;         // N
+  double viscous_friction = 0;      // N s/m
   double end_stiffness = 0;         // N/m
   double end_damping = 0;           // N s/m
   double minimum_stroke = 0;        // m
@@ -39,6 +40,7 @@ struct CylinderParameters {
   double bulk_modulus = 1e10;         // Pa, of the barrel
   double cylinder_coefficient = 0.9;  // eta, 1 = no friction
   double seal_friction = 0;           // N
+  double viscous_friction = 0;        // N s/m
   double leak_flow = 0;               // m3/s across the piston ...
   double leak_pressure = 100e5;       // Pa ... at this difference
   double end_stiffness = 5e7;         // N/m

@@ -65,6 +65,9 @@ constexpr auto cylinder_stroke_fields() {
       cylinder_field<Def, &C::seal_friction>(
           "seal_friction",
           {.dimension = Dimension::force, .range = kNotNegative, .doc = "friction at equal pressures"}),
+      cylinder_field<Def, &C::viscous_friction>(
+          "viscous_friction",
+          {.dimension = Dimension::damping, .range = kNotNegative, .doc = "friction proportional to the speed"}),
       cylinder_field<Def, &C::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
                                                        .range = kNotNegative,
                                                        .change = Change::live,

@@ -24,7 +24,8 @@ constexpr auto kDoubleActingCylinderFields = cylinder_fields<DoubleActingCylinde
 
 CylinderGeometry geometry_of(const DoubleActingCylinderDef& def) {
   const double D = def.common.piston_diameter, d = def.rod_diameter;
-  return {.area_b = 0.25 * std::numbers::pi * (D * D - d * d),
+  return {.area_a = piston_area(def.common),
+          .area_b = 0.25 * std::numbers::pi * (D * D - d * d),
           .coordinate = {.offset = -(def.attachment_length + def.rod_length), .ratio = 1},
           .start = StartRule::return_pressure,
           .motion = Motion::linear};

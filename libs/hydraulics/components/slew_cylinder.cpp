@@ -19,7 +19,8 @@ constexpr auto kSlewCylinderFields = cylinder_fields<SlewCylinderDef>(std::array
 });
 
 CylinderGeometry geometry_of(const SlewCylinderDef& def) {
-  return {.area_b = piston_area(def.common),
+  return {.area_a = piston_area(def.common),
+          .area_b = piston_area(def.common),
           .coordinate = {.offset = def.stroke_offset, .ratio = def.pinion_radius},
           .start = StartRule::mean_pressure,
           .motion = Motion::rotary};

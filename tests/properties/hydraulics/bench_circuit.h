@@ -3,6 +3,8 @@
 
 #include "hydraulics/components/compensated_orifice.h"
 #include "hydraulics/components/direct_relief_valve.h"
+#include "hydraulics/components/double_rod_cylinder.h"
+#include "hydraulics/components/four_way_valve.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
@@ -46,6 +48,14 @@ inline HydraulicsDef bench_circuit() {
   orifice.port_1 = "Vol_A", orifice.port_2 = "Vol_B", orifice.diameter = 1e-3;
   LaminarRestrictionDef& capillary = add<LaminarRestrictionDef>(circuit, "Capillary");
   capillary.port_1 = "Vol_B", capillary.port_2 = "Vol_T", capillary.diameter = 1e-3, capillary.length = 0.5;
+
+  DoubleRodCylinderDef& cylinder = add<DoubleRodCylinderDef>(circuit, "Cylinder");
+  cylinder.common.force = "Force", cylinder.common.port_a = "Vol_A", cylinder.common.port_b = "Vol_B";
+  cylinder.common.piston_diameter = 0.1, cylinder.rod_diameter = 0.05, cylinder.common.chamber_length = 1;
+  cylinder.common.minimum_stroke = 0.1, cylinder.common.maximum_stroke = 0.9, cylinder.common.leak_flow = kLeak;
+  FourWayValveDef& bridge = add<FourWayValveDef>(circuit, "Bridge");
+  bridge.port_p = "Vol_P", bridge.port_a = "Vol_A", bridge.port_b = "Vol_B", bridge.port_t = "Vol_T";
+  bridge.edge_area = 1e-5, bridge.neutral_opening = 0.4, bridge.opening_gain = 1e-3;
   return circuit;
 }
 

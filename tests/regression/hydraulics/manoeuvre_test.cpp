@@ -82,7 +82,7 @@ Outcome manoeuvre(double H) {
     circuit.set_control(jib, ramp(1, 3));
     circuit.set_control(slew, ramp(2.8, 4.5));
     outcome.flags |= integrator.step(H, crane).flags;
-    const math::Rodas3Report& report = integrator.last_report();
+    const math::StiffReport& report = integrator.last_report();
     outcome.substeps_per_step += static_cast<double>(report.accepted) / steps;
     outcome.rejected_per_step += static_cast<double>(report.rejected) / steps;
     outcome.worst = std::max(outcome.worst, report.accepted + report.rejected);

@@ -37,6 +37,14 @@ TEST(LineForce, FrictionHasTheValuesOfTheCurve) {
   EXPECT_NEAR(law.friction(2e5, 5.0), 2e5 * 0.1 * 0.8 + 1000, 1e-9);  // last value held
 }
 
+TEST(LineForce, ViscousFrictionIsProportionalToTheSpeed) {
+  const LineForceLaw law(LineForceDef{.friction_curve = {}, .viscous_friction = 1e5});
+  for (const double v : {-0.3, 0.0, 0.02}) {
+    EXPECT_DOUBLE_EQ(law.friction(5e4, v), 1e5 * v);
+    EXPECT_DOUBLE_EQ(law.evaluate(5e4, 0, v).d_speed, -1e5);
+  }
+}
+
 TEST(LineForce, IsMadeOfTheFrictionAndTheStopThatAreShown) {
   const LineForceLaw law(crane_lift());
   for (const double F : {-1e5, 0.0, 3e5}) {

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "hydraulics/circuit_integrator.h"
 #include "hydraulics/curve.h"
 #include "hydraulics/oil.h"
 #include "hydraulics/smooth.h"
+#include "tests/properties/hydraulics/bench_circuit.h"
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
@@ -81,6 +83,65 @@ TEST(Oil, vapour_keeps_pressures_positive_at_any_expansion) {
     p -= dp;
     ASSERT_GT(p, 0.1 * def.pressure_floor);
   }
+}
+
+TEST(Oil, density_parabola_has_the_bulk_moduli_of_the_two_dof_crane) {
+  HydraulicsDef def;
+  def.oil_law = OilLaw::density_parabola;
+  def.oil_compressibility = 6.53e-10;
+  def.oil_density_peak = 6.53e-10 / (2 * 1.19e-18);
+  const OilCompressibility oil(def);
+  // published: (1 + a p + b p^2) / (a + 2 b p)
+  EXPECT_NEAR(1 / oil.exact(3.17084615e6).value, 1.552488e9, 1e3);
+  EXPECT_NEAR(1 / oil.at(4.52915385e6).value, 1.561664e9, 1e4);
+  EXPECT_GT(oil.at(1e9).value, 0);
+  EXPECT_EQ(oil.at(1e9).slope, 0);
+}
+
+TEST(DoubleRodCylinder, starts_around_the_mean_pressure_and_holds_its_load) {
+  HydraulicsDef def = bench_circuit();
+  Circuit circuit(def);
+  const double F = 2e4;
+  std::vector<double> y(static_cast<std::size_t>(circuit.state_count()));
+  circuit.start_in_equilibrium({&F, 1}, y);
+  const double area = 0.25 * std::numbers::pi * (0.1 * 0.1 - 0.05 * 0.05);
+  const auto a = static_cast<std::size_t>(circuit.find_volume("Vol_A"));
+  const auto b = static_cast<std::size_t>(circuit.find_volume("Vol_B"));
+  EXPECT_NEAR((y[a] - y[b]) * area, F, 1e-6);
+  EXPECT_NEAR(0.5 * (y[a] + y[b]), def.start_slew_pressure, 1e-3);
+  EXPECT_DOUBLE_EQ(circuit.actuators()[0].area_a, circuit.actuators()[0].area_b);
+}
+
+TEST(FourWayValve, meters_by_complementary_edges) {
+  HydraulicsDef def;
+  def.oil_density = 850, def.orifice_transition = 1;
+  add_tank(def, "Vol_P", 80 * kBar), add_tank(def, "Vol_T", 1 * kBar);
+  add_volume(def, "Vol_A", 40 * kBar).rigid_volume = 1e-3;
+  add_volume(def, "Vol_B", 30 * kBar).rigid_volume = 1e-3;
+  FourWayValveDef& valve = add<FourWayValveDef>(def, "Valve");
+  valve.port_p = "Vol_P", valve.port_a = "Vol_A", valve.port_b = "Vol_B", valve.port_t = "Vol_T";
+  valve.edge_area = 1e-5, valve.neutral_opening = 0.5, valve.opening_gain = 0.5;
+  Circuit circuit(def);
+  std::vector<double> y(static_cast<std::size_t>(circuit.state_count())), values(circuit.variables().size());
+  circuit.start_at_initial_pressures(y);
+  const auto value = [&](const std::string& name) {
+    circuit.read_variables(y.data(), values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (circuit.variables()[i].name == name) return values[i];
+    }
+    ADD_FAILURE() << name;
+    return 0.0;
+  };
+  const double K = 0.67 * 1e-5 * std::sqrt(2 / 850.0);
+  circuit.set_control(0, 0.4);  // u = 0.7
+  EXPECT_NEAR(value("Valve.opening"), 0.7, 1e-12);
+  EXPECT_NEAR(value("Valve.flow_pa"), 0.7 * K * std::sqrt(40e5), 1e-9);
+  EXPECT_NEAR(value("Valve.flow_bt"), 0.7 * K * std::sqrt(29e5), 1e-9);
+  EXPECT_NEAR(value("Valve.flow_pb"), 0.3 * K * std::sqrt(50e5), 1e-9);
+  EXPECT_NEAR(value("Valve.flow_at"), 0.3 * K * std::sqrt(39e5), 1e-9);
+  circuit.set_control(0, 2);
+  EXPECT_EQ(value("Valve.opening"), 1);
+  EXPECT_EQ(value("Valve.flow_pb"), 0);
 }
 
 TEST(Curve, pchip_passes_through_its_points_and_stays_between_them) {

@@ -212,10 +212,38 @@ TEST(HydraulicsValidation, curves_must_increase_and_friction_must_brake) {
   EXPECT_EQ(what_at(findings(def).errors, "Spline_CylinderFriction.points"), "point 1 is not finite");
 }
 
-TEST(HydraulicsValidation, solvers_of_later_versions_are_refused_by_name) {
+TEST(HydraulicsValidation, quasi_static_volumes_are_refused_by_solvers_without_algebraic_rows) {
   HydraulicsDef def = crane_circuit();
+  def.volumes[0].quasi_static = true;
+  for (const Solver solver : {Solver::rodas3, Solver::implicit_euler}) {
+    def.solver = solver;
+    EXPECT_TRUE(findings(def).errors.empty()) << listing(findings(def).errors);
+  }
   def.solver = Solver::rk4;
-  EXPECT_EQ(what_at(findings(def).errors, "hydraulics.solver"), "rk4 is not in this version");
+  EXPECT_EQ(what_at(findings(def).errors, "Vol_MainPump.quasi_static"), "the solver rk4 has no algebraic pressures");
+  def.solver = Solver::cvode;
+  EXPECT_EQ(what_at(findings(def).errors, "Vol_MainPump.quasi_static"), "the solver cvode has no algebraic pressures");
+  def.volumes[0].quasi_static = false;
+  EXPECT_TRUE(findings(def).errors.empty());
+  def.quasi_static_above = 1e5;
+  EXPECT_EQ(what_at(findings(def).errors, "hydraulics.quasi_static_above"),
+            "the solver cvode has no algebraic pressures");
+}
+
+TEST(HydraulicsValidation, quasi_static_chambers_and_tanks_are_refused) {
+  HydraulicsDef def = crane_circuit();
+  for (VolumeDef& volume : def.volumes) volume.quasi_static = true;
+  const Problems errors = findings(def).errors;
+  EXPECT_EQ(what_at(errors, "Vol_Tank.quasi_static"), "the volume is fixed already");
+  EXPECT_EQ(what_at(errors, "Vol_JibCyl_A.quasi_static"),
+            "a chamber of 'Cyl_Jib' is part of the volume: without storage it would be rigid");
+  EXPECT_EQ(what_at(errors, "Vol_MainPump.quasi_static"), "");
+}
+
+TEST(HydraulicsValidation, a_double_rod_thicker_than_its_piston_is_refused) {
+  HydraulicsDef def = bench_circuit();
+  component<DoubleRodCylinderDef>(def, "Cylinder").rod_diameter = 0.2;
+  EXPECT_EQ(what_at(findings(def).errors, "Cylinder.rod_diameter"), "the rod is not thinner than the piston");
 }
 
 TEST(HydraulicsValidation, start_pressures_below_the_floor_are_refused) {

@@ -122,7 +122,7 @@ TEST(Rodas3, covers_the_interval_exactly_and_carries_its_step_size_on) {
   StiffOscillator system;
   Rodas3 solver = oscillator_solver(1e-5);
   double y[] = {1, 0, 1};
-  const Rodas3Report report = solver.advance(system, y, 0.1);
+  const StiffReport report = solver.advance(system, y, 0.1);
   EXPECT_NEAR(system.time, 0.1, 1e-15);
   EXPECT_GT(report.accepted, 5u);
   EXPECT_GT(solver.step_size(), 1e-4);
@@ -148,7 +148,7 @@ TEST(Rodas3, survives_a_vanishing_diagonal) {
   Rodas3 solver(pattern, 2, {.relative_tolerance = 1e-6, .scale = {1, 1}, .relative = {1, 1}});
   solver.set_step_size(0.01);  // 1/(0.01/2) = 200
   double y[] = {1, 0};
-  const Rodas3Report report = solver.advance(system, y, 0.01);
+  const StiffReport report = solver.advance(system, y, 0.01);
   EXPECT_TRUE(report.is_finite);
   EXPECT_NEAR(y[0], std::exp(2.0), 1e-3);
 }

@@ -1,0 +1,61 @@
+#include "hydraulics/components/double_rod_cylinder.h"
+
+#include <numbers>
+#include "hydraulics/components/cylinder.h"
+#include "hydraulics/components/cylinder_fields.h"
+#include "hydraulics/components/cylinder_rules.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr auto kDoubleRodCylinderFields = cylinder_fields<DoubleRodCylinderDef>(std::array{
+    field<&DoubleRodCylinderDef::rod_diameter>("rod_diameter", {.dimension = Dimension::length,
+                                                                .range = kPositive,
+                                                                .presence = Presence::required,
+                                                                .doc = "diameter of the rods"}),
+    field<&DoubleRodCylinderDef::rod_length>("rod_length",
+                                             {.dimension = Dimension::length,
+                                              .range = kNotNegative,
+                                              .presence = Presence::required,
+                                              .doc = "length of the rod outside of the barrel at stroke zero"}),
+    field<&DoubleRodCylinderDef::attachment_length>(
+        "attachment_length",
+        {.dimension = Dimension::length, .range = kNotNegative, .doc = "length of the attachment"}),
+});
+
+double ring_area(const DoubleRodCylinderDef& def) noexcept {
+  return piston_area(def.common) - 0.25 * std::numbers::pi * def.rod_diameter * def.rod_diameter;
+}
+
+CylinderGeometry geometry_of(const DoubleRodCylinderDef& def) {
+  return {.area_a = ring_area(def),
+          .area_b = ring_area(def),
+          .coordinate = {.offset = -(def.attachment_length + def.rod_length), .ratio = 1},
+          .start = StartRule::mean_pressure,
+          .motion = Motion::linear};
+}
+
+void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+  const DoubleRodCylinderDef& def = static_cast<const DoubleRodCylinderDef&>(component);
+  if (!(def.rod_diameter < def.common.piston_diameter)) {
+    errors.push_back(
+        {def.name + ".rod_diameter", "the rod is not thinner than the piston", "less than piston_diameter", ""});
+  }
+  check_cylinder(circuit, def.name, def.common, def.rod_diameter, errors);
+}
+
+}  // namespace
+
+ComponentType double_rod_cylinder_type() {
+  return {.name = "double_rod_cylinder",
+          .fields = kDoubleRodCylinderFields,
+          .doc = "cylinder with a rod through both ends on a translational force",
+          .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<DoubleRodCylinderDef>(); },
+          .validate = validate_cylinder,
+          .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
+            return make_cylinder<DoubleRodCylinderDef>(def, geometry_of, builder);
+          },
+          .is_actuator = true};
+}
+
+}  // namespace slew::hydraulics

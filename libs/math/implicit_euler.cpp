@@ -1,0 +1,123 @@
+#include "math/implicit_euler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/check.h"
+
+namespace slew::math {
+namespace {
+
+constexpr int kMostIterations = 12;  // quadratic from a guess one sub-step away; kinks cost a few more
+constexpr double kConverged = 0.1;   // of the tolerance: the iteration's error stays below the method's
+
+}  // namespace
+
+ImplicitEuler::ImplicitEuler(const SparsityPattern& pattern, std::size_t jacobian_stride, StiffOptions options)
+    : size_(pattern.size()),
+      stride_(jacobian_stride),
+      options_(std::move(options)),
+      lu_(pattern, jacobian_stride),
+      dense_(size_),
+      mass_(size_, 1),
+      f_(size_),
+      new_(size_),
+      slope_(size_),
+      d_(size_) {
+  SLEW_CHECK(options_.scale.size() == size_ && options_.relative.size() == size_);
+}
+
+void ImplicitEuler::set_mass(std::span<const double> mass) noexcept {
+  SLEW_CHECK(mass.size() == size_);
+  std::copy(mass.begin(), mass.end(), mass_.begin());
+  lu_.set_mass(mass);
+}
+
+// d_ of (2) in place of its right-hand side.
+bool ImplicitEuler::solve(const double* J, double c, StiffReport& report) noexcept {
+  if (lu_.factorise(J, c)) {
+    lu_.solve(d_.data());
+    return true;
+  }
+  ++report.dense_factorisations;
+  const std::span<double> a = dense_.matrix();
+  for (std::size_t i = 0; i < size_; ++i) {
+    for (std::size_t j = 0; j < size_; ++j) a[i * size_ + j] = -J[i * stride_ + j];
+    a[i * size_ + i] += c * mass_[i];
+  }
+  if (!dense_.factorise()) return false;
+  dense_.solve(d_);
+  return true;
+}
+
+ImplicitEuler::Newton ImplicitEuler::try_step(StiffSystem& system, const double* y, double h,
+                                              StiffReport& report) noexcept {
+  Newton newton;
+  const double c = 1 / h;
+  std::copy(y, y + size_, new_.begin());
+  std::copy(f_.begin(), f_.end(), slope_.begin());
+  for (int k = 0; k < kMostIterations; ++k) {
+    if (k > 0) system.derivative(new_.data(), slope_.data());
+    for (std::size_t i = 0; i < size_; ++i) d_[i] = slope_[i] - mass_[i] * (c * (new_[i] - y[i]));
+    newton.is_finite = solve(system.jacobian(new_.data(), slope_.data()), c, report);
+    newton.last = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      new_[i] += d_[i];
+      const double size = options_.scale[i] + options_.relative[i] * std::fabs(y[i]);
+      const double e = std::fabs(d_[i]) / (kConverged * options_.relative_tolerance * size);
+      if (!std::isfinite(e)) {
+        newton.is_finite = false;
+        newton.worst = static_cast<std::int32_t>(i);
+        return newton;
+      }
+      if (e > newton.last) {
+        newton.last = e;
+        newton.worst = static_cast<std::int32_t>(i);
+      }
+    }
+    newton.has_converged = newton.is_finite && newton.last <= 1;
+    if (newton.has_converged || !newton.is_finite) return newton;
+  }
+  return newton;
+}
+
+StiffReport ImplicitEuler::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
+  SLEW_ASSERT(y.size() == size_);
+  StiffReport report;
+  const double parts = std::max(1.0, std::ceil(duration / options_.maximum_step * (1 - 1e-12)));
+  const double nominal = duration / parts;
+  for (double part = 0; part < parts; ++part) {
+    double rest = nominal, h = nominal;
+    while (rest > 0) {
+      h = std::min(h, rest);
+      system.derivative(y.data(), f_.data());
+      const Newton newton = try_step(system, y.data(), h, report);
+      const bool is_shortest = h <= options_.minimum_step;
+      if (!newton.has_converged && !is_shortest) {
+        ++report.rejected;
+        h = std::max(0.5 * h, options_.minimum_step);
+        continue;
+      }
+      if (!newton.is_finite) {
+        report.is_finite = false;
+        report.worst_state = newton.worst;
+        return report;
+      }
+      if (newton.last >= report.largest_error) {
+        report.largest_error = newton.last;
+        report.worst_state = newton.worst;
+      }
+      report.is_at_minimum_step = report.is_at_minimum_step || !newton.has_converged;
+      ++report.accepted;
+      report.is_over_budget = report.rejected > options_.substep_budget;
+      system.accepted(h, y.data(), f_.data(), new_.data());
+      std::copy(new_.begin(), new_.end(), y.begin());
+      rest = h >= rest ? 0 : rest - h;
+      h = std::min(2 * h, nominal);
+    }
+  }
+  return report;
+}
+
+}  // namespace slew::math

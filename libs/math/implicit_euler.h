@@ -1,0 +1,47 @@
+// Implicit Euler with a fixed sub-step: order 1, L-stable, never blows up, damps what it should not.
+//
+//   M (y_new - y) / h = f(y_new)                                                                            (1)
+//   (M/h - J) d = f(y_k) - M (y_k - y)/h,  y_k+1 = y_k + d                                     Newton       (2)
+//
+// h is the interval over the smallest whole number that brings it to maximum_step or below. Newton takes a fresh
+// Jacobian each iteration and ends when max |d_i| / (rtol (s_i + r_i |y_i|)) <= 0.1. A sub-step whose iteration does
+// not end is tried again with half its length (counted as rejected) down to minimum_step, where it is accepted and
+// said. Source: Hairer and Wanner 1996, IV.8. Real-time safe.
+#pragma once
+
+#include "math/dense_lu.h"
+#include "math/pattern_lu.h"
+#include "math/stiff_system.h"
+
+namespace slew::math {
+
+class ImplicitEuler final : public StiffIntegrator {
+ public:
+  ImplicitEuler(const SparsityPattern& pattern, std::size_t jacobian_stride, StiffOptions options);
+
+  StiffReport advance(StiffSystem& system, std::span<double> y, double duration) noexcept override;
+  void restart() noexcept override {}
+  [[nodiscard]] double step_size() const noexcept override { return options_.maximum_step; }
+  void set_step_size(double) noexcept override {}
+  [[nodiscard]] bool takes_algebraic_rows() const noexcept override { return true; }
+  void set_mass(std::span<const double> mass) noexcept override;
+
+ private:
+  struct Newton {
+    bool has_converged = false;
+    bool is_finite = true;
+    double last = 0;  // size of the last correction, 1 = the bound of convergence
+    std::int32_t worst = -1;
+  };
+  Newton try_step(StiffSystem& system, const double* y, double h, StiffReport& report) noexcept;
+  [[nodiscard]] bool solve(const double* J, double c, StiffReport& report) noexcept;
+
+  std::size_t size_;
+  std::size_t stride_;
+  StiffOptions options_;
+  PatternLu lu_;
+  DenseLu dense_;
+  std::vector<double> mass_, f_, new_, slope_, d_;
+};
+
+}  // namespace slew::math

@@ -1,0 +1,77 @@
+// A stiff system of ordinary differential equations, and the seam of the integrators that advance one.
+//
+//   M y' = f(y),  M diagonal of ones and zeros                                                        (1)
+//
+// A zero in M makes its row algebraic, 0 = f_i(y), of index 1: df_i/dy_i stays away from zero. Integrators that do not
+// take algebraic rows say so. All of them cover an interval exactly, sub-step inside it, and call accepted() after
+// each sub-step. Deterministic: the same system, state and history give the same bits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/state_hash.h"
+
+namespace slew::math {
+
+// y' = f(y), constant inputs over an interval.
+class StiffSystem {
+ public:
+  virtual ~StiffSystem() = default;
+  virtual void derivative(const double* y, double* f) noexcept = 0;
+  // J = df/dy at y, f = f(y) given; row-major with the stride stated to the integrator. Valid until the next call.
+  virtual const double* jacobian(const double* y, const double* f) noexcept = 0;
+  // A sub-step from y_before (derivative f_before) to y was accepted; may move y back into its bounds.
+  virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
+};
+
+// What the integrators judge errors and residuals by: the size of state i is s_i + r_i |y_i|.
+struct StiffOptions {
+  double relative_tolerance = 1e-4;
+  double minimum_step = 1e-6;          // s
+  double maximum_step = 1e-4;          // s, sub-step of the integrators with a fixed one
+  std::uint32_t substep_budget = 200;  // accepted and rejected sub-steps per interval
+  std::vector<double> scale;           // s_i of the error measure, one per state, > 0
+  std::vector<double> relative;        // r_i: 1, or 0 for a state whose zero is arbitrary (a position)
+};
+
+struct StiffReport {
+  std::uint32_t accepted = 0;
+  std::uint32_t rejected = 0;
+  std::uint32_t dense_factorisations = 0;  // when a diagonal pivot was too small
+  std::uint32_t restarts = 0;              // of a method with a memory
+  bool is_over_budget = false;             // rodas3: the rest of the interval was accepted with its error;
+                                           // implicit Euler: more halved sub-steps than the budget
+  bool is_at_minimum_step = false;         // a step was accepted with its error because it could not be shorter
+  bool is_unstable = false;                // an explicit method's sub-step is beyond its stability limit
+  bool is_finite = true;                   // false: y is the last finite state, the interval is not finished
+  double largest_error = 0;                // of the accepted steps, 1 = tolerance; explicit: h |lambda|_max / limit
+  std::int32_t worst_state = -1;           // the state with that error; when not finite: the first such state
+};
+
+class StiffIntegrator {
+ public:
+  virtual ~StiffIntegrator() = default;
+
+  // Advances y by `duration` seconds.
+  virtual StiffReport advance(StiffSystem& system, std::span<double> y, double duration) noexcept = 0;
+
+  // The inputs of the system changed by a step since the last interval. Methods without a memory need not know.
+  virtual void inputs_jumped() noexcept {}
+  // Forgets the past: a new start.
+  virtual void restart() noexcept = 0;
+
+  // Size that the next sub-step would like to have; a guess that may be set.
+  [[nodiscard]] virtual double step_size() const noexcept = 0;
+  virtual void set_step_size(double h) noexcept = 0;
+  // Raw bits of all that the future depends on beside y.
+  virtual void add_to(StateHash& hash) const noexcept { hash.add(step_size()); }
+
+  // Diagonal of M in (1), ones and zeros, one per state. Pre-condition: takes_algebraic_rows().
+  [[nodiscard]] virtual bool takes_algebraic_rows() const noexcept { return false; }
+  virtual void set_mass(std::span<const double> mass) noexcept { static_cast<void>(mass); }
+};
+
+}  // namespace slew::math
