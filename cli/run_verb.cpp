@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "cli/coupling_check.h"
 #include "cli/distributed_run.h"
 #include "cli/in_process_run.h"
 #include "cli/run_report.h"
@@ -16,6 +17,7 @@ namespace {
 ExitCode run(RunOptions options) {
   const scene::Scene scene = cli_support::load_scene(options.scene);
   for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : coupling_warnings(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
   if (options.is_in_process && !options.remote.empty()) {
     throw cli_support::Failure(ExitCode::bad_input,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coupling/static_forces.h"
+#include "scene/ports.h"
 
 namespace slew::hydraulic_node {
 namespace {
@@ -21,11 +22,20 @@ constexpr std::size_t kIndicatorVariables = 7;
 
 }  // namespace
 
+coupling::LineForce ReducedMechanics::line_force(std::size_t port, double F, double x, double v) const noexcept {
+  if (ports_[port].level != coupling::Level::tlm) return laws_[port].evaluate(F, x, v);
+  coupling::LineForce line = laws_[port].evaluate(ports_[port].thrust, x, v);
+  line.d_pressure = 0;
+  return line;
+}
+
 void ReducedMechanics::accelerations(const double* F, const double* x, const double* v, double* a) const noexcept {
   const std::size_t m = laws_.size();
   std::array<double, kMaxPorts> line{};
-  for (std::size_t j = 0; j < m; ++j) line[j] = laws_[j].evaluate(F[j], x[j], v[j]).force;
+  for (std::size_t j = 0; j < m; ++j) line[j] = line_force(j, F[j], x[j], v[j]).force;
   for (std::size_t i = 0; i < m; ++i) {
+    a[i] = 0;
+    if (ports_[i].level != coupling::Level::two) continue;
     double sum = a_free_[i];
     for (std::size_t j = 0; j < m; ++j) sum += W_[i * m + j] * line[j];
     a[i] = sum;
@@ -36,9 +46,9 @@ void ReducedMechanics::slopes(const double* F, const double* x, const double* v,
                               double* da_dv) const noexcept {
   const std::size_t m = laws_.size();
   for (std::size_t j = 0; j < m; ++j) {
-    const coupling::LineForce line = laws_[j].evaluate(F[j], x[j], v[j]);
+    const coupling::LineForce line = line_force(j, F[j], x[j], v[j]);
     for (std::size_t i = 0; i < m; ++i) {
-      const double w = W_[i * m + j];
+      const double w = ports_[i].level == coupling::Level::two ? W_[i * m + j] : 0.0;
       da_dF[i * m + j] = w * line.d_pressure;
       da_dx[i * m + j] = w * line.d_position;
       da_dv[i * m + j] = w * line.d_speed;
@@ -49,10 +59,9 @@ void ReducedMechanics::slopes(const double* F, const double* x, const double* v,
 HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
     : scene_(scene),
       m_(scene.ports.size()),
-      level_(scene.session.coupling),
+      levels_(scene::port_levels(scene)),
       H_(scene.session.step_duration()),
       reduced_(laws_of(scene)),
-      held_(m_),
       indicator_(m_, H_) {
   reset();
   for (const scene::PortDef& port : scene.ports) port_names_.push_back(port.name);
@@ -68,8 +77,11 @@ void HydraulicsSubsystem::reset() {
   integrator_ = std::make_unique<hydraulics::CircuitIntegrator>(*circuit_, scene_.hydraulics);
   indicator_.reset();
   ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
+  levels_.reset();
   failure_ = StepReport{};
   coupling::resize(published_, m_);
+  stiffness_.resize(m_);
+  for (double& K : stiffness_) K = 0;
 }
 
 // ---- start ----------------------------------------------------------------------------------------------------
@@ -96,6 +108,7 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
     }
   }
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
+  apply_levels();
   integrator_->refresh();
   publish(sample.actuators, 0);
   return Status::ok();
@@ -103,9 +116,21 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
 
 // ---- step -----------------------------------------------------------------------------------------------------
 
+void HydraulicsSubsystem::apply_levels() noexcept {
+  for (std::size_t i = 0; i < m_; ++i) {
+    reduced_.set_level(i, levels_[i]);
+    integrator_->set_line(static_cast<int>(i), levels_[i] == coupling::Level::tlm, H_.seconds());
+  }
+}
+
+// The exchange is that of the levels of the finished step; then those of the coming one hold.
 void HydraulicsSubsystem::take_mechanism(const coupling::MechanismSample& mechanism) noexcept {
-  indicator_.update(mechanism, published_);
+  indicator_.update(mechanism, published_, stiffness_);
   integrator_->align(mechanism.x.span(), mechanism.v.span());
+  apply_levels();
+  for (std::size_t i = 0; i < m_; ++i) {
+    reduced_.set_thrust(i, published_.F[i] - published_.D[i] * (mechanism.v[i] - published_.v_ref[i]));
+  }
   reduced_.set_sample(mechanism);
 }
 
@@ -120,9 +145,7 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
     if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
   }
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(*partners.mechanism);
-  const bool is_hold = level_ == coupling::Level::hold;
-  StepReport report =
-      integrator_->step(H_.seconds(), is_hold ? static_cast<const hydraulics::PistonMotion&>(held_) : reduced_);
+  StepReport report = integrator_->step(H_.seconds(), reduced_);
   if (indicator_.creates_energy()) report.raise(StepFlag::coupling_creates_energy);
   if (report.has_failed()) {
     failure_ = report;
@@ -142,7 +165,8 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     sample.F_dot[i] = a.F_dot;
     sample.K[i] = a.K;
     sample.lambda[i] = a.lambda;
-    sample.D[i] = 0;
+    sample.D[i] = a.D;
+    stiffness_[i] = a.stiffness;
     sample.x_ref[i] = a.x;
     sample.v_ref[i] = a.v;
     sample.friction_scale[i] = reduced_.law(i).friction_scale(a.F);
@@ -161,6 +185,7 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
 // ---- parameters, hash, variables ------------------------------------------------------------------------------
 
 bool HydraulicsSubsystem::change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept {
+  if (levels_.change(change.path, change.value)) return true;
   const int parameter = circuit_->find_parameter(change.path);
   if (parameter < 0) return false;
   const double now = *circuit_->parameters()[static_cast<std::size_t>(parameter)].value;
@@ -172,6 +197,7 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   StateHash hash;
   integrator_->add_to(hash);
   ramps_.add_to(hash);
+  levels_.add_to(hash);
   hash.add(failure_.has_failed());
   return hash.digest();
 }

@@ -34,6 +34,7 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
       row_force_(model_.rows.size()),
       q_rate_(state_.q.size()),
       u_rate_(state_.u.size()),
+      levels_(scene::port_levels(scene)),
       port_states_(scene.ports.size()) {
   for (const scene::PortDef& port : scene.ports) {
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
@@ -152,6 +153,8 @@ Status SceneEquations::set_parameter(std::string_view path, double value) {
     if (index >= 0 && circuit_->set_parameter(index, value) == hydraulics::ParameterResult::ok) return Status::ok();
     if (index >= 0) return Status::error(ExitCode::bad_input, std::string(path) + ": the value is out of its range");
   }
+  // how the machine is split says nothing about the undivided one
+  if (levels_.change(path, value)) return Status::ok();
   return Status::error(ExitCode::bad_input, std::string(path) + ": there is no live parameter of this name");
 }
 

@@ -41,8 +41,10 @@ constexpr Field kSessionFields[] = {
                              {.choices = kPaces, .doc = "real: paced by the wall clock; free: as fast as possible"}),
     field<&SessionDef::coupling>(
         "coupling",
-        {.choices = kLevels,
-         .doc = "how much of the partner's behaviour a node uses inside a step; this version has hold, two"}),
+        {.change = Change::live,
+         .choices = kLevels,
+         .doc = "how much of the partner's behaviour a node uses inside a step, at every cylinder without a level of "
+                "its own"}),
     field<&SessionDef::flexible>(
         "flexible",
         {.choices = kElasticExchanges,
@@ -164,11 +166,6 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   }
   if (session.step < kMinUsualStep || session.step > kMaxUsualStep) {
     warnings.push_back({"session.step", fmt::format("{} ms is outside 0.1 to 10 ms", session.step * 1e3), "", ""});
-  }
-  if (session.coupling == coupling::Level::linear || session.coupling == coupling::Level::tlm) {
-    const auto index = static_cast<std::size_t>(session.coupling);
-    errors.push_back(
-        {"session.coupling", fmt::format("'{}' is not in this version", kLevels[index]), "hold or two", ""});
   }
 }
 

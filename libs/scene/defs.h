@@ -22,7 +22,7 @@ struct SessionDef {
   double step = 1e-3;                               // s, communication step H; whole nanoseconds
   double duration = 20;                             // s; 0: until it is stopped
   Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
-  coupling::Level coupling = coupling::Level::two;  // linear and tlm are refused in this version
+  coupling::Level coupling = coupling::Level::two;  // of the ports that have no level of their own
   coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
   std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free
   double controller_timeout = 0.5;  // s of silence after which a controller's channel goes to neutral
@@ -65,8 +65,9 @@ struct ScriptTrack {
 struct ScriptChange {
   double at = 0;     // s
   std::string set;   // parameter's path, "Bag.mass"
-  double value = 0;  // SI
+  double value = 0;  // SI; of a choice its place among the choices
   double over = 0;   // s, spread over this time
+  std::string choice{};  // name of a choice; empty: a number
 };
 
 // The scene's own operator, used when no other input is asked for.
