@@ -81,8 +81,8 @@ class Indicator {
   double omega_H_ = 0;
 };
 
-// Largest omega_H at which a level is used without a warning (coupling study, sections 3, 4 and 10); zeta: damping ratio
-// of the port. Level tlm has none: what it costs is a parasitic mass K H^2.
+// Largest omega_H at which a level is used without a warning (coupling study, sections 3, 4 and 10); zeta: damping
+// ratio of the port. Level tlm has none: what it costs is a parasitic mass K H^2.
 [[nodiscard]] double omega_limit(Level level, double zeta) noexcept;
 
 // H sqrt(largest eigenvalue of W diag(K)) by power iteration on the similar symmetric matrix, ports <= kMaxPorts.

@@ -88,10 +88,10 @@ void Circuit::add_contents(const CircuitBuilder& builder) {
     if (piece.position < 0) continue;
     const int actuator = piece.position - volume_count();
     lines_[2 * at(actuator) + (piece.slope > 0 ? 0 : 1)] = {.volume = piece.volume_index,
-                                                           .position = piece.position,
-                                                           .speed = piece.position + actuator_count(),
-                                                           .slope = piece.slope,
-                                                           .piece = k};
+                                                            .position = piece.position,
+                                                            .speed = piece.position + actuator_count(),
+                                                            .slope = piece.slope,
+                                                            .piece = k};
   }
 }
 

@@ -66,6 +66,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   [[nodiscard]] std::span<const double> state() const noexcept { return y_; }
   // For tests and tools; refresh() afterwards.
   [[nodiscard]] std::span<double> mutable_state() noexcept { return y_; }
+  [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return circuit_.mutable_lines(); }
   // Works out actuators() from the state.
   void refresh() noexcept;
   [[nodiscard]] double step_size() const noexcept { return solver_.step_size(); }

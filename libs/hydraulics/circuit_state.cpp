@@ -81,7 +81,8 @@ void Circuit::chamber_rates(const double* y, double* dp) const noexcept {
     for (std::size_t k = volumes_[i].begin; k < volumes_[i].end; ++k) {
       const Piece& piece = pieces_[k];
       // a line's oil follows in move_lines()
-      if (piece.position >= 0 && piece.lumped == 1) dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
+      if (piece.position >= 0 && piece.lumped == 1)
+        dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
     }
     if (dV != 0) dp[i] = -dV / capacity_at(i, y);
   }

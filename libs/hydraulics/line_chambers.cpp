@@ -120,8 +120,8 @@ bool Circuit::is_line(int actuator) const noexcept {
 void Circuit::add_lines_to(StateHash& hash) const noexcept {
   for (const LineChamber& line : lines_) {
     if (!line.is_line) continue;
-    for (const double value : {line.state.c_h, line.state.c_m, line.state.c_m_next, line.state.Z, line.state.Z_next,
-                               line.state.x}) {
+    for (const double value :
+         {line.state.c_h, line.state.c_m, line.state.c_m_next, line.state.Z, line.state.Z_next, line.state.x}) {
       hash.add(value);
     }
   }

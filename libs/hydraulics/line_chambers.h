@@ -8,7 +8,7 @@
 // mean of both waves, p = (c_h + c_m)/2: with (2), C (p+ - p) = T (mean(Q_h) - S mean(v)). C depends on pressure and
 // stroke; where it changes within a step, c_h+ takes what (2) leaves to  int C dp = int Q_h dt - S dx            (3)
 //
-// kLumpedShare of the chamber stays with the volume, so that its pressure is a state with the time constant 0.05 T also
+// kLumpedShare of the chamber stays with the volume, so that its pressure is a state with the time constant 0.01 T also
 // where no hose is connected. Sources: Auslander (1968), J. Basic Eng. 90, 208; Krus et al. (1990), the transmission
 // line method. Not covered: cavitation within the line (waves end at the lowest pressure; then oil is made), losses.
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace slew::hydraulics {
 
-inline constexpr double kLumpedShare = 0.05;
+inline constexpr double kLumpedShare = 0.01;
 
 // What the line remembers.
 struct LineState {
@@ -37,7 +37,7 @@ struct LineChamber {
   std::size_t piece = 0;  // of the circuit
   bool is_line = false;
   double delay = 0;  // T [s]
-  LineState state;
+  LineState state{};
 
   // Into the line at the pressure p of the volume [m3/s].
   [[nodiscard]] double inflow(double p) const noexcept { return (p - state.c_h) / state.Z; }

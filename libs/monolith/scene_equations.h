@@ -98,7 +98,7 @@ class SceneEquations {
   multibody::Workspace workspace_;
   std::unique_ptr<hydraulics::Circuit> circuit_;  // null: none in the scene
   std::vector<Port> ports_;
-  coupling::PortLevels levels_;  // taken and without effect
+  coupling::PortLevels levels_;          // taken and without effect
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
   std::vector<int> load_of_channel_;     // -1: it drives no point force or torque
   double control_time_ = 0;

@@ -63,10 +63,10 @@ struct ScriptTrack {
 
 // A parameter that the script changes.
 struct ScriptChange {
-  double at = 0;     // s
-  std::string set;   // parameter's path, "Bag.mass"
-  double value = 0;  // SI; of a choice its place among the choices
-  double over = 0;   // s, spread over this time
+  double at = 0;         // s
+  std::string set;       // parameter's path, "Bag.mass"
+  double value = 0;      // SI; of a choice its place among the choices
+  double over = 0;       // s, spread over this time
   std::string choice{};  // name of a choice; empty: a number
 };
 

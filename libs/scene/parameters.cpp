@@ -154,10 +154,12 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
   }
   if (!parameter->obstacle.empty()) return refused(name + " would change nothing: " + parameter->obstacle);
   if (parameter->change == Change::restart) {
-    return refused(name + (parameter->is_choice() ? " takes " + choice_list(parameter->choices) + " and " : " ") + restart);
+    return refused(name + (parameter->is_choice() ? " takes " + choice_list(parameter->choices) + " and " : " ") +
+                   restart);
   }
   if (parameter->is_choice() && parameter->choice_of(value).empty()) {
-    return refused(fmt::format("{}: {} is none of its choices; expected {}", name, value, choice_list(parameter->choices)));
+    return refused(
+        fmt::format("{}: {} is none of its choices; expected {}", name, value, choice_list(parameter->choices)));
   }
   if (parameter->is_choice() && over && over->ns > 0) {
     return refused(name + " is a choice and changes at once; leave out the time to spread it over");
