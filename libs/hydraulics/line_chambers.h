@@ -9,8 +9,9 @@
 // stroke; where it changes within a step, c_h+ takes what (2) leaves to  int C dp = int Q_h dt - S dx            (3)
 //
 // kLumpedShare of the chamber stays with the volume, so that its pressure is a state with the time constant 0.01 T also
-// where no hose is connected. Sources: Auslander (1968), J. Basic Eng. 90, 208; Krus et al. (1990), the transmission
-// line method. Not covered: cavitation within the line (waves end at the lowest pressure; then oil is made), losses.
+// where no hose is connected. Sources: Auslander (1968); Krus et al. (1990), transmission lines between the
+// parts of a distributed simulation. Not covered: cavitation within the line (waves end at the lowest pressure; then
+// oil is made), losses.
 #pragma once
 
 #include <cstddef>
