@@ -63,18 +63,19 @@ std::string safe_step(double seconds) {
   return duration_text(std::floor(seconds / digit * (1 + 1e-12)) * digit);
 }
 
-std::string swinging(const Ports& ports, Level level, const std::string& name, const coupling::ActuatorSample& actuators,
-                     double H) {
+std::string swinging(const Ports& ports, Level level, const std::string& name,
+                     const coupling::ActuatorSample& actuators, double H) {
   const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
   const double leak = actuators.lambda[ports.port[fastest(ports)]];
   const double zeta = leak > 0 && omega_H > 0 ? 0.5 * leak * H / omega_H : kLeastDamping;
   const double limit = coupling::omega_limit(level, zeta);
   if (!(omega_H > limit)) return {};
-  const std::string damping =
-      level != Level::hold ? ""
-                           : fmt::format(" (twice the damping ratio {:.2g}{})", zeta, leak > 0 ? " of its leaks" : ", assumed");
+  const std::string damping = level != Level::hold ? ""
+                                                   : fmt::format(" (twice the damping ratio {:.2g}{})", zeta,
+                                                                 leak > 0 ? " of its leaks" : ", assumed");
   return fmt::format(
-      "{}: omega_H, the angle that the machine swings on its oil in one step of {}, is {:.2g}; level '{}' is right up to "
+      "{}: omega_H, the angle that the machine swings on its oil in one step of {}, is {:.2g}; level '{}' is right up "
+      "to "
       "{:.2g}{}; the run may be wrong or unstable: use session.step {} or less{}",
       name, duration_text(H), omega_H, kNames[static_cast<std::size_t>(level)], limit, damping,
       safe_step(H * limit / omega_H), level == Level::two ? "" : ", or coupling 'two'");
@@ -86,7 +87,8 @@ std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) 
   const double mass = ports.K[i] * H * H, share = mass * ports.W[i * m + i];
   if (!(share > kLargestParasiticMass)) return {};
   return fmt::format(
-      "{}: level 'tlm' gives it a parasitic mass of {:.3g} kg, {:.0f} % of what it moves, at a step of {}; the run will be "
+      "{}: level 'tlm' gives it a parasitic mass of {:.3g} kg, {:.0f} % of what it moves, at a step of {}; the run "
+      "will be "
       "too slow and too damped: use session.step {} or less, or coupling 'two'",
       scene.ports[ports.port[i]].name, mass, 100 * share, duration_text(H),
       safe_step(H * std::sqrt(kLargestParasiticMass / share)));

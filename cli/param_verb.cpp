@@ -120,8 +120,7 @@ std::string table_of(const std::vector<Present>& all) {
                     parameter.change == Change::live ? "live" : "restart", range_text(parameter),
                     std::string(parameter.doc)});
     if (!has_changed) continue;
-    rows.back().insert(rows.back().begin() + 2,
-                       is_changed(present) ? value_text(parameter.value, parameter) : "");
+    rows.back().insert(rows.back().begin() + 2, is_changed(present) ? value_text(parameter.value, parameter) : "");
   }
   return table_text(rows, "");
 }

@@ -15,7 +15,9 @@ using coupling::ElasticSample;
 using coupling::ModeArray;
 
 FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
-    : levels_(scene::port_levels(scene)), exchange_(scene.session.flexible), H_(scene.session.step_duration().seconds()) {
+    : levels_(scene::port_levels(scene)),
+      exchange_(scene.session.flexible),
+      H_(scene.session.step_duration().seconds()) {
   std::size_t points = 0;
   for (const scene::FlexibleBody& model : scene.flexible_bodies) {
     const std::size_t modes = model.reduction->body.modes();

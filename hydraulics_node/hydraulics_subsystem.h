@@ -3,8 +3,8 @@
 //
 //   v_i^h' = (a_free + W F_line)_i  of a port of level two,   v_i^h' = 0  of any other                (1)
 //
-// F_line_j is that of F, x^h, v^h of port j whatever its level, since a held port's force moves the others too; of level
-// tlm F is what the lines do to the piston (hydraulics/line_chambers.h), as in the mechanics.
+// F_line_j is that of F, x^h, v^h of port j whatever its level, since a held port's force moves the others too; of
+// level tlm F is what the lines do to the piston (hydraulics/line_chambers.h), as in the mechanics.
 //
 // Also follows the coupling's error per port (coupling/indicator.h), since it is where both samples of a step meet.
 #pragma once

@@ -31,10 +31,10 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
     : model_(multibody::build_model(scene.mechanics, scene::row_names(scene))),
       state_(multibody::start_state(model_)),
       workspace_(model_),
+      levels_(scene::port_levels(scene)),
       row_force_(model_.rows.size()),
       q_rate_(state_.q.size()),
       u_rate_(state_.u.size()),
-      levels_(scene::port_levels(scene)),
       port_states_(scene.ports.size()) {
   for (const scene::PortDef& port : scene.ports) {
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});

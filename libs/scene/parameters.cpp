@@ -97,9 +97,9 @@ Assignment refused(std::string text) {
 
 }  // namespace
 
-std::string_view ParameterInfo::choice_of(double value) const noexcept {
+std::string_view ParameterInfo::choice_of(double number) const noexcept {
   for (std::size_t i = 0; i < choices.size(); ++i) {
-    if (value == static_cast<double>(i)) return choices[i];
+    if (number == static_cast<double>(i)) return choices[i];
   }
   return {};
 }

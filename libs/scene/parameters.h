@@ -30,8 +30,8 @@ struct ParameterInfo {
   std::span<const std::string_view> choices{};  // names by value; empty: a number
 
   [[nodiscard]] bool is_choice() const noexcept { return !choices.empty(); }
-  // Name of a choice with this value; empty when it has none.
-  [[nodiscard]] std::string_view choice_of(double value) const noexcept;
+  // Name of a choice with this number; empty when it has none.
+  [[nodiscard]] std::string_view choice_of(double number) const noexcept;
   std::string_view doc;
 };
 

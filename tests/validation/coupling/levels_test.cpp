@@ -38,8 +38,9 @@ struct Bound {
 void expect_within(scene::Scene& scene, Level level, const Traces& reference, const std::vector<Bound>& bounds) {
   for (const Bound& bound : bounds) {
     const Comparison run = compare(scene, bound.step, level, reference, kDuration);
-    ::testing::Test::RecordProperty("share_" + std::to_string(static_cast<int>(level)) + "_" + std::to_string(bound.step),
-                                    std::to_string(worst_share(run)));
+    ::testing::Test::RecordProperty(
+        "share_" + std::to_string(static_cast<int>(level)) + "_" + std::to_string(bound.step),
+        std::to_string(worst_share(run)));
     EXPECT_FALSE(run.has_failed) << bound.step;
     EXPECT_LT(worst_share(run), bound.share) << "level " << static_cast<int>(level) << " at " << bound.step;
   }
@@ -49,8 +50,8 @@ TEST(Levels, OnTheCraneAreWithinWhatIsMeasured) {
   scene::Scene scene = load("truck_crane.yaml");
   const Traces reference = reference_traces(scene, kDuration);
   expect_within(scene, Level::two, reference, {{1e-3, 5e-4}, {5e-3, 5e-3}, {10e-3, 1e-2}});
-  expect_within(scene, Level::linear, reference, {{1e-3, LINEAR1}, {5e-3, LINEAR5}, {10e-3, LINEAR10}});
-  expect_within(scene, Level::tlm, reference, {{0.5e-3, TLM05}, {1e-3, TLM1}, {5e-3, TLM5}});
+  expect_within(scene, Level::linear, reference, {{1e-3, 2e-3}, {5e-3, 0.03}, {10e-3, 0.1}});
+  expect_within(scene, Level::tlm, reference, {{0.5e-3, 0.05}, {1e-3, 0.1}, {5e-3, 0.5}});
   expect_within(scene, Level::hold, reference, {{1e-3, 2e-2}});
 }
 
@@ -87,16 +88,16 @@ TEST(Levels, MixedOnOneMachineAreAsGoodAsTheirWorst) {
   RecordProperty("lift", std::to_string(run.ports[kLift].F / run.ports[kLift].F_range));
   RecordProperty("jib", std::to_string(run.ports[kJib].F / run.ports[kJib].F_range));
   RecordProperty("slew", std::to_string(run.ports[kSlew].F / run.ports[kSlew].F_range));
-  EXPECT_LT(run.ports[kLift].F, MIXLIFT * run.ports[kLift].F_range);
-  EXPECT_LT(run.ports[kJib].F, MIXJIB * run.ports[kJib].F_range);
-  EXPECT_LT(run.ports[kSlew].F, MIXSLEW * run.ports[kSlew].F_range);
+  EXPECT_LT(run.ports[kLift].F, 5e-3 * run.ports[kLift].F_range);
+  EXPECT_LT(run.ports[kJib].F, 5e-3 * run.ports[kJib].F_range);
+  EXPECT_LT(run.ports[kSlew].F, 0.1 * run.ports[kSlew].F_range);
 }
 
 // a cylinder that is a line every other quarter of a second has not lost its oil: it goes where the others go
 TEST(Levels, ChangedWhileItMovesKeepTheOil) {
-  const scene::Scene scene = load("single_cylinder.yaml", {"Cyl_Lift.friction_curve=Spline_CylinderFriction",
-                                                           "Cyl_Lift.cylinder_coefficient=0.9",
-                                                           "Cyl_Lift.seal_friction=1 kN"});
+  const scene::Scene scene =
+      load("single_cylinder.yaml", {"Cyl_Lift.friction_curve=Spline_CylinderFriction",
+                                    "Cyl_Lift.cylinder_coefficient=0.9", "Cyl_Lift.seal_friction=1 kN"});
   const Traces reference = reference_traces(scene, 3);
   CoupledRun run(scene);
   ASSERT_TRUE(run.start().is_ok());
@@ -104,7 +105,8 @@ TEST(Levels, ChangedWhileItMovesKeepTheOil) {
   constexpr std::array kChoices = {4.0, 2.0, 1.0, 4.0, 3.0, 0.0};
   double worst_x = 0;
   for (StepIndex n = 0; n < 3000; ++n) {
-    if (n % 250 == 0) run.change("Cyl_Lift.coupling", kChoices[static_cast<std::size_t>(n / 250) % kChoices.size()], {});
+    if (n % 250 == 0)
+      run.change("Cyl_Lift.coupling", kChoices[static_cast<std::size_t>(n / 250) % kChoices.size()], {});
     run.step(op.controls(run.time()));
     worst_x = std::max(worst_x, std::fabs(run.mechanism().x[0] - reference[0].x[static_cast<std::size_t>(n) + 1]));
   }
@@ -112,7 +114,7 @@ TEST(Levels, ChangedWhileItMovesKeepTheOil) {
   RecordProperty("worst_x_um", std::to_string(1e6 * worst_x));
   const double way = reference[0].x.back() - reference[0].x.front();
   EXPECT_GT(way, 0.1);
-  EXPECT_LT(worst_x, CHANGEDX);
+  EXPECT_LT(worst_x, 1e-3);
 }
 
 }  // namespace
