@@ -59,6 +59,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
 void CircuitIntegrator::start(std::span<const double> x, std::span<const double> v,
                               std::span<const double> F) noexcept {
   SLEW_CHECK(x.size() == m_ && v.size() == m_ && F.size() == m_);
+  for (std::size_t j = 0; j < m_; ++j) circuit_.lump_line(static_cast<int>(j), y_.data());
   circuit_.start(F, y_);
   for (std::size_t j = 0; j < m_; ++j) {
     y_[static_cast<std::size_t>(circuit_.position(static_cast<int>(j)))] = x[j];
