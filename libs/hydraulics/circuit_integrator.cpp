@@ -130,17 +130,16 @@ void CircuitIntegrator::accepted(double h, const double* y_before, const double*
                           weight * (F_dot * y_before[v] - half * f_before[v]);
     published_[j].impulse += 0.5 * h * (F_0 + F_1) + weight * F_dot;
   }
-  integrate_pressures(h, y_before, f_before, y);
+  integrate_pressures(h, y_before);
   open_quadrature_ = weight;
   was_clamped_ = circuit_.bound(y) || was_clamped_;
 }
 
-void CircuitIntegrator::integrate_pressures(double h, const double* y_before, const double* f_before,
-                                            const double* y) noexcept {
+void CircuitIntegrator::integrate_pressures(double h, const double* y_before) noexcept {
   for (std::size_t i = 0; i < pressure_integral_.size(); ++i) {
     const LineChamber& line = circuit_.lines()[i];
     if (!line.is_line) continue;
-    pressure_integral_[i] += 0.5 * h * (y_before[line.volume] + y[line.volume]) + h * h / 12 * f_before[line.volume];
+    pressure_integral_[i] += solver_.integral(static_cast<std::size_t>(line.volume), y_before[line.volume], h);
   }
 }
 
@@ -153,10 +152,6 @@ void CircuitIntegrator::close_quadrature(const double* y, const double* f) noexc
     const double F_dot = f[actuator.port_a] * actuator.area_a - f[actuator.port_b] * actuator.area_b;
     published_[j].work -= open_quadrature_ * (F_dot * y[v] + (F - F_mean_[j]) * f[v]);
     published_[j].impulse -= open_quadrature_ * F_dot;
-  }
-  for (std::size_t i = 0; i < pressure_integral_.size(); ++i) {
-    const LineChamber& line = circuit_.lines()[i];
-    if (line.is_line) pressure_integral_[i] -= open_quadrature_ * f[line.volume];
   }
   open_quadrature_ = 0;
 }

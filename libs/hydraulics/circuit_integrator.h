@@ -11,8 +11,9 @@
 // Published at the end (coupling study, section 8; K_A = A_A^2/C_A, K_B = A_B^2/C_B):
 //   F, F_dot = A_A p_A' - A_B p_B',  K = K_A + K_B,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C             (2)
 // l on the steeper side of unilateral valves. Chambers have no feed-through, D = 0; where they are transmission lines
-// (line_chambers.h) F is what the lines do at v, D their impedance, K = F_dot = lambda = 0, and the mean pressure of a
-// volume over the step is integrated by (1) as well.
+// (line_chambers.h) F is what the lines do at v, D their impedance, K = F_dot = lambda = 0. The mean pressure of a
+// volume, and with it the oil that the line takes, is integrated by the method itself: what leaves the volume is in the
+// line, whatever the tolerance.
 #pragma once
 
 #include <cstdint>
@@ -84,7 +85,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   void close_quadrature(const double* y, const double* f) noexcept;
   void report_flags(StepReport& report) noexcept;
   void publish_line(int actuator) noexcept;
-  void integrate_pressures(double h, const double* y_before, const double* f_before, const double* y) noexcept;
+  void integrate_pressures(double h, const double* y_before) noexcept;
 
   Circuit& circuit_;
   const PistonMotion* motion_ = nullptr;  // during step()

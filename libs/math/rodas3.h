@@ -58,6 +58,10 @@ class Rodas3 {
   // Advances y by `duration` seconds.
   Rodas3Report advance(StiffSystem& system, std::span<double> y, double duration) noexcept;
 
+  // Integral of a state over the step that is being accepted, from y_before, as the method would integrate it as a
+  // state of its own: what flows out of one state and into another is the same. For StiffSystem::accepted() only.
+  [[nodiscard]] double integral(std::size_t state, double y_before, double h) const noexcept;
+
   // Size that the next sub-step would like to have; set it back to 0 after a jump of the state.
   [[nodiscard]] double step_size() const noexcept { return step_size_; }
   void set_step_size(double h) noexcept { step_size_ = h; }
