@@ -12,7 +12,7 @@ namespace {
 
 // px
 constexpr double kLeft = 70, kTop = 66, kWidth = 560, kHeight = 400, kRight = 230, kBottom = 56;
-constexpr std::array<std::string_view, 4> kColours = {"#1b6ca8", "#d95f02", "#2a9d5c", "#b8327a"};
+constexpr std::array<std::string_view, 5> kColours = {"#1b6ca8", "#2a9d5c", "#b8327a", "#d95f02", "#9aa2aa"};
 constexpr std::string_view kStyle =
     "text{font-family:Inter,'Helvetica Neue',Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#3c434b}"
     ".title{font-size:17px;font-weight:600;fill:#1d2227}.sub{fill:#6a727b}.end{text-anchor:end}.mid{text-anchor:middle}"
@@ -36,7 +36,7 @@ class Frame {
 
 std::string grid(const LogLogPlot& plot, const Frame& frame) {
   std::string svg;
-  for (const double step : {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0}) {
+  for (const double step : plot.x_ticks) {
     const double x = frame.x(step);
     svg += fmt::format("<line class='grid' x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}'/>", x, kTop, kTop + kHeight);
     svg += fmt::format("<text class='mid' x='{:.1f}' y='{}'>{}</text>", x, kTop + kHeight + 18, step);
@@ -59,6 +59,8 @@ std::string curve_of(const ErrorCurve& curve, const Frame& frame) {
     marks += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='4' stroke='{}' stroke-width='1.6' fill='{}'/>", x, y,
                          colour, curve.is_flagged[i] ? "#ffffff" : colour);
   }
+  if (!curve.has_marks) marks.clear();
+  if (!curve.has_line) return marks;
   return fmt::format("<path class='curve{}' stroke='{}' d='{}'/>", curve.is_dashed ? " dash" : "", colour, path) +
          marks;
 }
@@ -80,11 +82,18 @@ std::string log_log_svg(const std::vector<ErrorCurve>& curves, const LogLogPlot&
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const double y = kTop + 14 + 22 * static_cast<double>(i), x = kLeft + kWidth + 16;
     const std::string_view colour = kColours[static_cast<std::size_t>(curves[i].colour) % kColours.size()];
-    svg += fmt::format("<path class='curve{}' stroke='{}' d='M{},{} l26,0'/><text x='{}' y='{}'>{}</text>",
-                       curves[i].is_dashed ? " dash" : "", colour, x, y, x + 34, y + 4, curves[i].name);
+    if (curves[i].has_line) {
+      svg += fmt::format("<path class='curve{}' stroke='{}' d='M{},{} l26,0'/>", curves[i].is_dashed ? " dash" : "",
+                         colour, x, y);
+    } else {
+      svg += fmt::format("<circle cx='{}' cy='{}' r='4' fill='{}'/>", x + 13, y, colour);
+    }
+    svg += fmt::format("<text x='{}' y='{}'>{}</text>", x + 34, y + 4, curves[i].name);
   }
-  svg += fmt::format("<text x='{}' y='{}'>open circle: flagged as</text><text x='{}' y='{}'>creating energy</text>",
-                     kLeft + kWidth + 16, kTop + kHeight - 20, kLeft + kWidth + 16, kTop + kHeight - 4);
+  if (plot.has_flags) {
+    svg += fmt::format("<text x='{}' y='{}'>open circle: flagged as</text><text x='{}' y='{}'>creating energy</text>",
+                       kLeft + kWidth + 16, kTop + kHeight - 20, kLeft + kWidth + 16, kTop + kHeight - 4);
+  }
   svg +=
       fmt::format("<text class='mid' x='{}' y='{}'>{}</text>", kLeft + kWidth / 2, kTop + kHeight + 42, plot.x_label);
   svg += fmt::format("<text class='mid' transform='translate(18,{}) rotate(-90)'>{}</text></svg>\n", kTop + kHeight / 2,

@@ -1,4 +1,4 @@
-// Errors over the communication step on two logarithmic axes, as self-contained SVG.
+// Errors over the communication step or over the indicator, on two logarithmic axes, as self-contained SVG.
 #pragma once
 
 #include <string>
@@ -11,14 +11,17 @@ struct ErrorCurve {
   std::string name;
   int colour = 0;
   bool is_dashed = false;
-  std::vector<std::pair<double, double>> points;  // step [ms], error; both > 0
-  std::vector<bool> is_flagged;                   // per point: drawn open
+  bool has_line = true, has_marks = true;
+  std::vector<std::pair<double, double>> points{};  // both > 0
+  std::vector<bool> is_flagged{};                   // per point: drawn open
 };
 
 struct LogLogPlot {
   std::string title, subtitle, x_label, y_label;
   double x_low = 0.08, x_high = 25;
   double y_low = 1e-7, y_high = 1e1;  // what lies above is drawn at the edge
+  std::vector<double> x_ticks = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20};
+  bool has_flags = true;  // says what open circles mean
 };
 
 [[nodiscard]] std::string log_log_svg(const std::vector<ErrorCurve>& curves, const LogLogPlot& plot);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "cli/coupling_check.h"
 #include "cli/direct_session.h"
 #include "cli/display.h"
 #include "cli/verbs.h"
@@ -60,11 +61,13 @@ ExitCode check(const Options& options) {
     DirectSession session(scene);
     cli_support::require(session.start());
     check_variables(scene, session);
+    std::vector<std::string> warnings = scene.warnings;
+    for (std::string& warning : coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
     if (options.is_json) {
-      fmt::print("{}\n", nlohmann::json({{"ok", true}, {"scene", scene.name}, {"warnings", scene.warnings}}).dump(2));
+      fmt::print("{}\n", nlohmann::json({{"ok", true}, {"scene", scene.name}, {"warnings", warnings}}).dump(2));
       return ExitCode::ok;
     }
-    for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     fmt::print("{}: ok ({}, {}, {}, {})\n", options.scene, counted(scene.mechanics.bodies.size(), "body", "bodies"),
                counted(scene.hydraulics.volumes.size(), "volume", "volumes"),
                counted(scene.hydraulics.components.size(), "component", "components"),

@@ -109,6 +109,11 @@ std::uint64_t DirectSession::state_hash(Role role) const noexcept {
   return found != nullptr ? found->state_hash() : 0;
 }
 
+const coupling::OwnSample& DirectSession::sample(Role role) const noexcept {
+  if (role == Role::flex) return flex_sample_;
+  return role == Role::hydraulics ? hydraulics_sample_ : mechanics_sample_;
+}
+
 const StepReport& DirectSession::report(Role role) const noexcept {
   return role == Role::hydraulics ? hydraulics_report_ : mechanics_report_;
 }

@@ -29,6 +29,8 @@ class DirectSession {
   [[nodiscard]] const coupling::Subsystem* subsystem(wire::Role role) const noexcept;
   // Hash of the role's state now, 0 when the scene has no such role.
   [[nodiscard]] std::uint64_t state_hash(wire::Role role) const noexcept;
+  // What the role published last; of mechanics, hydraulics or flex.
+  [[nodiscard]] const coupling::OwnSample& sample(wire::Role role) const noexcept;
   // Whether the role has a sample of this step.
   [[nodiscard]] bool has_sample(wire::Role role, StepIndex step) const noexcept {
     return role != wire::Role::flex || step % flexible_every_ == 0;

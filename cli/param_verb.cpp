@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/display.h"
 #include "cli/observer.h"
@@ -69,8 +70,16 @@ class Source {
   scene::ParameterDirectory directory_;
 };
 
-std::string value_text(double value, Dimension dimension) {
-  return chosen_text(value, scene::is_plain_number(dimension) ? std::string_view() : info(dimension).si_unit);
+std::string value_text(double value, const scene::ParameterInfo& parameter) {
+  if (parameter.is_choice()) return std::string(parameter.choice_of(value));
+  const bool is_plain = scene::is_plain_number(parameter.dimension);
+  return chosen_text(value, is_plain ? std::string_view() : info(parameter.dimension).si_unit);
+}
+
+// What the parameter may be.
+std::string range_text(const scene::ParameterInfo& parameter) {
+  if (parameter.is_choice()) return scene::choice_list(parameter.choices);
+  return scene::range_text(parameter.range, parameter.dimension);
 }
 
 nlohmann::json to_json(const Present& present, bool is_of_session) {
@@ -79,8 +88,12 @@ nlohmann::json to_json(const Present& present, bool is_of_session) {
                          {"value", present.value},
                          {"unit", info(parameter.dimension).si_unit},
                          {"live", parameter.change == Change::live},
-                         {"range", scene::range_text(parameter.range, parameter.dimension)},
+                         {"range", range_text(parameter)},
                          {"doc", parameter.doc}};
+  if (parameter.is_choice()) {
+    json["choice"] = parameter.choice_of(present.value);
+    json["choices"] = std::vector<std::string>(parameter.choices.begin(), parameter.choices.end());
+  }
   if (parameter.change == Change::live) json["spread_over_s"] = parameter.ramp;
   if (!parameter.obstacle.empty()) json["not_live_because"] = parameter.obstacle;
   if (is_of_session) json["scene_value"] = parameter.value;
@@ -103,12 +116,11 @@ std::string table_of(const std::vector<Present>& all) {
   if (has_changed) rows.front().insert(rows.front().begin() + 2, "in the scene");
   for (const Present& present : all) {
     const scene::ParameterInfo& parameter = *present.about;
-    rows.push_back({parameter.path, value_text(present.value, parameter.dimension),
-                    parameter.change == Change::live ? "live" : "restart",
-                    scene::range_text(parameter.range, parameter.dimension), std::string(parameter.doc)});
+    rows.push_back({parameter.path, value_text(present.value, parameter),
+                    parameter.change == Change::live ? "live" : "restart", range_text(parameter),
+                    std::string(parameter.doc)});
     if (!has_changed) continue;
-    rows.back().insert(rows.back().begin() + 2,
-                       is_changed(present) ? value_text(parameter.value, parameter.dimension) : "");
+    rows.back().insert(rows.back().begin() + 2, is_changed(present) ? value_text(parameter.value, parameter) : "");
   }
   return table_text(rows, "");
 }
@@ -139,7 +151,7 @@ std::string circumstances(const Present& present, bool is_of_session) {
   std::string text = is_of_session && present.step < 0 ? "of the scene" : "as the scene states it";
   if (present.step >= 0) text = fmt::format("at step {}", present.step);
   if (!present.remark.empty()) text += ", " + present.remark;
-  if (present.value != parameter.value) text += "; the scene: " + value_text(parameter.value, parameter.dimension);
+  if (present.value != parameter.value) text += "; the scene: " + value_text(parameter.value, parameter);
   if (!parameter.obstacle.empty()) return text + "; a change would do nothing: " + parameter.obstacle;
   const bool is_live = parameter.change == Change::live;
   return text + (is_live ? "; can be changed while the session runs" : "; fixed while the session runs");
@@ -162,7 +174,7 @@ ExitCode get(const Options& options) {
   if (options.is_json) {
     fmt::print("{}\n", to_json(present, source.is_session()).dump(2));
   } else {
-    fmt::print("{} = {} ({})\n", path, value_text(present.value, parameter->dimension),
+    fmt::print("{} = {} ({})\n", path, value_text(present.value, *parameter),
                circumstances(present, source.is_session()));
   }
   return ExitCode::ok;
@@ -180,23 +192,24 @@ std::int64_t spread_ns(const std::string& text) {
 
 ExitCode set(const Options& options) {
   const std::string text = options.words.size() == 1 ? options.words[0] : options.words[0] + "=" + options.words[1];
-  const std::int64_t over_ns = options.over.empty() ? -1 : spread_ns(options.over);
+  const std::optional<SimDuration> asked =
+      options.over.empty() ? std::nullopt : std::optional(SimDuration{spread_ns(options.over)});
   node::install_signal_handlers();
   const auto observer = find_session(options.session);
   const wire::SessionDescription& session = observer->view().session();
   scene::ParameterDirectory directory(scene::load_text(session.scene_text, session.scene_name));
-  const scene::Assignment assignment = directory.parse_assignment(text);
+  const scene::Assignment assignment = directory.parse_assignment(text, asked);
   if (!assignment.status.is_ok()) {
     throw Failure(ExitCode::bad_input, "refused, nothing was changed: " + assignment.status.text);
   }
+  const scene::ParameterInfo& parameter = *directory.find(assignment.path);
   wire::ControlRequest request;
   request.action = wire::ControlAction::set_parameter;
   request.path = assignment.path;
   request.value = assignment.value;
-  request.over_ns = over_ns;
+  request.over_ns = assignment.over.ns;
   const wire::ControlReply reply = observer->ask(request);
-  const Dimension dimension = directory.find(assignment.path)->dimension;
-  const std::string value = value_text(assignment.value, dimension);
+  const std::string value = value_text(assignment.value, parameter);
   if (options.is_json) {
     fmt::print("{}\n", nlohmann::json({{"path", assignment.path},
                                        {"value", assignment.value},
@@ -210,7 +223,7 @@ ExitCode set(const Options& options) {
                   "refused, nothing was changed: " + assignment.path + " = " + value + ": " + reply.reason);
   }
   if (!options.is_json) {
-    const double over = static_cast<double>(over_ns >= 0 ? over_ns : assignment.over.ns) * 1e-9;
+    const double over = assignment.over.seconds();
     fmt::print("accepted({}): {} = {}, {}\n", reply.header.step, assignment.path, value,
                over > 0 ? "spread over " + duration_text(over) : "at once");
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "cli/coupling_check.h"
 #include "cli/distributed_run.h"
 #include "cli/in_process_run.h"
 #include "cli/run_report.h"
@@ -31,6 +32,7 @@ ExitCode run(RunOptions options, const CLI::App& verb) {
   if (!options.rtol.empty()) options.scene.overrides.push_back("session.rtol=" + options.rtol);
   const scene::Scene scene = cli_support::load_scene(options.scene);
   for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : coupling_warnings(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
   if (scene.session.solution == scene::Solution::monolithic) {
     check_monolithic(verb);

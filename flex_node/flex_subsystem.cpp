@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/state_hash.h"
+#include "scene/ports.h"
 
 namespace slew::flexible {
 
@@ -14,7 +15,9 @@ using coupling::ElasticSample;
 using coupling::ModeArray;
 
 FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
-    : level_(scene.session.coupling), exchange_(scene.session.flexible), H_(scene.session.step_duration().seconds()) {
+    : levels_(scene::port_levels(scene)),
+      exchange_(scene.session.flexible),
+      H_(scene.session.step_duration().seconds()) {
   std::size_t points = 0;
   for (const scene::FlexibleBody& model : scene.flexible_bodies) {
     const std::size_t modes = model.reduction->body.modes();
@@ -136,12 +139,13 @@ StepReport FlexSubsystem::step(StepIndex, const coupling::PartnerSamples& partne
   return report;
 }
 
-// damping, modes and files need a restart
-bool FlexSubsystem::change_parameter(StepIndex, const coupling::ParameterChange&) noexcept {
-  return false;
+// of its own none: damping, modes and files need a restart
+bool FlexSubsystem::change_parameter(StepIndex, const coupling::ParameterChange& change) noexcept {
+  return levels_.change(change.path, change.value);
 }
 
 void FlexSubsystem::reset() {
+  levels_.reset();
   for (ModeArray* values : {&q_, &u_}) std::fill(values->begin(), values->end(), 0.0);
   for (Body& body : bodies_) body.strain_energy = 0;
   published_ = constant_;

@@ -16,6 +16,7 @@
 #include <memory>
 #include <vector>
 
+#include "coupling/port_levels.h"
 #include "coupling/subsystem.h"
 #include "flex/reduction.h"
 #include "scene/scene.h"
@@ -34,7 +35,7 @@ class FlexSubsystem final : public coupling::Subsystem {
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
-  [[nodiscard]] coupling::Level level() const noexcept override { return level_; }
+  [[nodiscard]] coupling::Level level() const noexcept override { return levels_.lowest(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
@@ -55,7 +56,7 @@ class FlexSubsystem final : public coupling::Subsystem {
   void state_law(const Body& body) noexcept;
   void list_variables(const Body& body);
 
-  coupling::Level level_;
+  coupling::PortLevels levels_;  // none is its own; it says them as the others do
   coupling::ElasticExchange exchange_;
   double H_;                  // s
   std::vector<Body> bodies_;  // in the order of the samples

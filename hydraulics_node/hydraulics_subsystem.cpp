@@ -8,6 +8,7 @@
 
 #include "cli_support/failure.h"
 #include "coupling/static_forces.h"
+#include "scene/ports.h"
 
 namespace slew::hydraulic_node {
 namespace {
@@ -24,11 +25,20 @@ constexpr std::size_t kIndicatorVariables = 7;
 
 }  // namespace
 
+coupling::LineForce ReducedMechanics::line_force(std::size_t port, double F, double x, double v) const noexcept {
+  if (ports_[port].level != coupling::Level::tlm) return laws_[port].evaluate(F, x, v);
+  coupling::LineForce line = laws_[port].evaluate(ports_[port].thrust, x, v);
+  line.d_pressure = 0;
+  return line;
+}
+
 void ReducedMechanics::accelerations(const double* F, const double* x, const double* v, double* a) const noexcept {
   const std::size_t m = laws_.size();
   std::array<double, kMaxPorts> line{};
-  for (std::size_t j = 0; j < m; ++j) line[j] = laws_[j].evaluate(F[j], x[j], v[j]).force;
+  for (std::size_t j = 0; j < m; ++j) line[j] = line_force(j, F[j], x[j], v[j]).force;
   for (std::size_t i = 0; i < m; ++i) {
+    a[i] = 0;
+    if (ports_[i].level != coupling::Level::two) continue;
     double sum = a_free_[i];
     for (std::size_t j = 0; j < m; ++j) sum += W_[i * m + j] * line[j];
     a[i] = sum;
@@ -39,9 +49,9 @@ void ReducedMechanics::slopes(const double* F, const double* x, const double* v,
                               double* da_dv) const noexcept {
   const std::size_t m = laws_.size();
   for (std::size_t j = 0; j < m; ++j) {
-    const coupling::LineForce line = laws_[j].evaluate(F[j], x[j], v[j]);
+    const coupling::LineForce line = line_force(j, F[j], x[j], v[j]);
     for (std::size_t i = 0; i < m; ++i) {
-      const double w = W_[i * m + j];
+      const double w = ports_[i].level == coupling::Level::two ? W_[i * m + j] : 0.0;
       da_dF[i * m + j] = w * line.d_pressure;
       da_dx[i * m + j] = w * line.d_position;
       da_dv[i * m + j] = w * line.d_speed;
@@ -52,14 +62,13 @@ void ReducedMechanics::slopes(const double* F, const double* x, const double* v,
 HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
     : scene_(scene),
       m_(scene.ports.size()),
-      level_(scene.session.coupling),
+      levels_(scene::port_levels(scene)),
       H_(scene.session.step_duration()),
       is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
       exchange_every_(scene.session.exchange_every),
       past_(m_),
       said_(is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
       reduced_(laws_of(scene)),
-      held_(m_),
       indicator_(m_, {H_.ns * exchange_every_}) {
   reset();
   for (const scene::PortDef& port : scene.ports) port_names_.push_back(port.name);
@@ -75,12 +84,15 @@ void HydraulicsSubsystem::reset() {
   integrator_ = std::make_unique<hydraulics::CircuitIntegrator>(*circuit_, scene_.hydraulics);
   indicator_.reset();
   ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
+  levels_.reset();
   failure_ = StepReport{};
   past_.clear();
   std::fill(said_.begin(), said_.end(), Said{});
   used_step_ = -1;
   partner_age_ = 0;
   coupling::resize(published_, m_);
+  stiffness_.resize(m_);
+  for (double& K : stiffness_) K = 0;
 }
 
 // ---- start ----------------------------------------------------------------------------------------------------
@@ -107,6 +119,7 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
     }
   }
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
+  apply_levels();
   integrator_->refresh();
   publish(sample.actuators, 0, false);
   return check_stability(partners.mechanism);
@@ -115,9 +128,7 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
 // An explicit solver beyond its limit at the very start is refused; later it is flagged.
 Status HydraulicsSubsystem::check_stability(const coupling::MechanismSample* mechanism) {
   if (mechanism != nullptr && m_ > 0) reduced_.set_sample(*mechanism);
-  const bool is_hold = level_ == coupling::Level::hold || mechanism == nullptr;
-  const hydraulics::ExplicitStability stability = integrator_->explicit_stability(
-      H_.seconds(), is_hold ? static_cast<const hydraulics::PistonMotion&>(held_) : reduced_);
+  const hydraulics::ExplicitStability stability = integrator_->explicit_stability(H_.seconds(), reduced_);
   if (!(stability.ratio > 1)) return Status::ok();
   return Status::error(
       ExitCode::failed,
@@ -130,6 +141,13 @@ Status HydraulicsSubsystem::check_stability(const coupling::MechanismSample* mec
 
 // ---- step -----------------------------------------------------------------------------------------------------
 
+void HydraulicsSubsystem::apply_levels() noexcept {
+  for (std::size_t i = 0; i < m_; ++i) {
+    reduced_.set_level(i, levels_[i]);
+    integrator_->set_line(static_cast<int>(i), levels_[i] == coupling::Level::tlm, H_.seconds());
+  }
+}
+
 // The pistons take the positions of this step's sample. Without news they go on by their own copy of the mechanics.
 void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                                          StepReport& report) noexcept {
@@ -137,12 +155,19 @@ void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismS
   const bool has_news = n - age != used_step_;
   used_step_ = n - age;
   if (has_news && age == 0) {
-    indicator_.update(mechanism, published_);
+    indicator_.update(mechanism, published_, stiffness_);
     integrator_->align(mechanism.x.span(), mechanism.v.span());
   } else if (has_news) {
     take_late(used_step_, mechanism);
   }
-  if (has_news) reduced_.set_sample(mechanism);
+  // the exchange was that of the levels of the finished step; those of the coming one hold now
+  apply_levels();
+  if (has_news) {
+    for (std::size_t i = 0; i < m_; ++i) {
+      reduced_.set_thrust(i, published_.F[i] - published_.D[i] * (mechanism.v[i] - published_.v_ref[i]));
+    }
+    reduced_.set_sample(mechanism);
+  }
   if (!is_free_running_) return;
   keep_begin(n);
   const double late = static_cast<double>(age) * H_.seconds();
@@ -170,7 +195,7 @@ void HydraulicsSubsystem::take_late(StepIndex step, const coupling::MechanismSam
   for (std::size_t i = 0; i < m_; ++i) {
     own.x_ref[i] = mechanism.x[i] - (mechanism.v_mean[i] * H_.seconds() - said.way[i]);
   }
-  indicator_.update(mechanism, own);
+  indicator_.update(mechanism, own, stiffness_);
 }
 
 void HydraulicsSubsystem::keep_begin(StepIndex n) noexcept {
@@ -200,9 +225,7 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   take_tick(n, controls);
   StepReport taken;
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(n, *partners.mechanism, partners.mechanism_age, taken);
-  const bool is_hold = level_ == coupling::Level::hold;
-  StepReport report =
-      integrator_->step(H_.seconds(), is_hold ? static_cast<const hydraulics::PistonMotion&>(held_) : reduced_);
+  StepReport report = integrator_->step(H_.seconds(), reduced_);
   report.flags |= taken.flags;
   if (indicator_.creates_energy()) report.raise(StepFlag::coupling_creates_energy);
   if (report.has_failed()) {
@@ -227,7 +250,7 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
                                        const coupling::PartnerSamples& partners, std::span<const double> controls,
                                        coupling::OwnSample& sample) noexcept {
   take_tick(n, controls);
-  if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_);
+  if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_, stiffness_);
   std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
   integrator_->refresh();
   StepReport report;
@@ -250,7 +273,8 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
     sample.F_dot[i] = a.F_dot;
     sample.K[i] = a.K;
     sample.lambda[i] = a.lambda;
-    sample.D[i] = 0;
+    sample.D[i] = a.D;
+    stiffness_[i] = a.stiffness;
     sample.x_ref[i] = a.x;
     sample.v_ref[i] = a.v;
     sample.friction_scale[i] = reduced_.law(i).friction_scale(a.F);
@@ -269,6 +293,7 @@ void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_
 // ---- parameters, hash, variables ------------------------------------------------------------------------------
 
 bool HydraulicsSubsystem::change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept {
+  if (levels_.change(change.path, change.value)) return true;
   const int parameter = circuit_->find_parameter(change.path);
   if (parameter < 0) return false;
   const double now = *circuit_->parameters()[static_cast<std::size_t>(parameter)].value;
@@ -281,6 +306,7 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   integrator_->add_to(hash);
   ramps_.add_to(hash);
   if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step brings another
+  levels_.add_to(hash);
   hash.add(failure_.has_failed());
   return hash.digest();
 }

@@ -1,7 +1,10 @@
 // The hydraulic circuit of a scene as a Subsystem: the circuit's own integration with the partner's reduced mechanics
 // inside, volumes made consistent with the true piston positions at each exchange (coupling study, section 8).
 //
-//   level two:  v^h' = a_free + W F_line(F, x^h, v^h)       level hold:  v^h' = 0                    (1)
+//   v_i^h' = (a_free + W F_line)_i  of a port of level two,   v_i^h' = 0  of any other                (1)
+//
+// F_line_j is that of F, x^h, v^h of port j whatever its level, since a held port's force moves the others too; of
+// level tlm F is what the lines do to the piston (hydraulics/line_chambers.h), as in the mechanics.
 //
 // Also follows the coupling's error per port (coupling/indicator.h), since it is where both samples of a step meet.
 #pragma once
@@ -14,6 +17,7 @@
 #include "coupling/line_force.h"
 #include "coupling/own_past.h"
 #include "coupling/parameter_ramps.h"
+#include "coupling/port_levels.h"
 #include "coupling/subsystem.h"
 #include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
@@ -24,7 +28,7 @@ namespace slew::hydraulic_node {
 // Partner's reduced model (1) as the circuit's piston motion.
 class ReducedMechanics final : public hydraulics::PistonMotion {
  public:
-  explicit ReducedMechanics(std::vector<coupling::LineForceLaw> laws) : laws_(std::move(laws)) {}
+  explicit ReducedMechanics(std::vector<coupling::LineForceLaw> laws) : laws_(std::move(laws)), ports_(laws_.size()) {}
   void set_sample(const coupling::MechanismSample& sample) noexcept {
     W_ = sample.W;
     a_free_ = sample.a_free;
@@ -33,13 +37,23 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
     hash.add(std::span<const double>(W_.span()));
     hash.add(std::span<const double>(a_free_.span()));
   }
+  void set_level(std::size_t port, coupling::Level level) noexcept { ports_[port].level = level; }
+  // Of a port of level tlm, for the coming step [N].
+  void set_thrust(std::size_t port, double F) noexcept { ports_[port].thrust = F; }
   void accelerations(const double* F, const double* x, const double* v, double* a) const noexcept override;
   void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
               double* da_dv) const noexcept override;
   [[nodiscard]] const coupling::LineForceLaw& law(std::size_t port) const noexcept { return laws_[port]; }
 
  private:
+  struct Port {
+    coupling::Level level = coupling::Level::two;
+    double thrust = 0;  // N
+  };
+  [[nodiscard]] coupling::LineForce line_force(std::size_t port, double F, double x, double v) const noexcept;
+
   std::vector<coupling::LineForceLaw> laws_;
+  std::vector<Port> ports_;
   coupling::PortMatrix W_;
   coupling::PortArray a_free_;
 };
@@ -65,7 +79,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
-  [[nodiscard]] coupling::Level level() const noexcept override { return level_; }
+  [[nodiscard]] coupling::Level level() const noexcept override { return levels_.lowest(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
@@ -81,6 +95,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
     coupling::PortArray way;  // by port, of the circuit's own piston in the step [m]
   };
 
+  void apply_levels() noexcept;
   [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
@@ -95,7 +110,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   std::unique_ptr<hydraulics::Circuit> circuit_;
   std::unique_ptr<hydraulics::CircuitIntegrator> integrator_;
   std::size_t m_;
-  coupling::Level level_;
+  coupling::PortLevels levels_;
   SimDuration H_;
   bool is_free_running_;
   StepIndex exchange_every_;
@@ -106,11 +121,11 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   std::vector<std::string> port_names_;
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
   ReducedMechanics reduced_;
-  hydraulics::HeldSpeed held_;
   coupling::Indicator indicator_;
   coupling::ParameterRamps ramps_{0};  // sized with the circuit
   std::vector<ElementVariable> variables_;
   coupling::ActuatorSample published_;
+  coupling::PortArray stiffness_;  // N/m, of the oil columns, also of ports that publish none
   StepReport failure_;
 };
 

@@ -249,7 +249,7 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
 
 void IoNode::set_parameter(const wire::ControlRequest& request) {
   const ParameterVerdict verdict = config_.judge_parameter
-                                       ? config_.judge_parameter(request.path, request.value)
+                                       ? config_.judge_parameter(request.path, request.value, request.over_ns)
                                        : ParameterVerdict{false, "this session has no live parameters", 0};
   if (!verdict.is_accepted) return answer(request, false, verdict.reason, n_);
   if (waiting_commands_.size() >= wire::kMaxCommandsPerTick) {
@@ -262,7 +262,7 @@ void IoNode::set_parameter(const wire::ControlRequest& request) {
   command.request = request.request;
   command.path = request.path;
   command.value = request.value;
-  command.over_ns = request.over_ns >= 0 ? request.over_ns : verdict.default_over_ns;
+  command.over_ns = verdict.over_ns;
   waiting_commands_.push_back(command);
   answer(request, true, "", n_);
 }

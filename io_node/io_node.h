@@ -36,7 +36,7 @@ class InputSource {
 struct ParameterVerdict {
   bool is_accepted = false;
   std::string reason;
-  std::int64_t default_over_ns = 0;
+  std::int64_t over_ns = 0;  // the one that was asked for, or the parameter's own
 };
 
 struct IoConfig {
@@ -52,7 +52,8 @@ struct IoConfig {
   std::vector<ChannelConfig> channels;
   GateConfig gate;
   std::unique_ptr<InputSource> source;  // may be null
-  std::function<ParameterVerdict(const std::string& path, double value)> judge_parameter;
+  // over_ns: -1 when the request leaves it open
+  std::function<ParameterVerdict(const std::string& path, double value, std::int64_t over_ns)> judge_parameter;
   std::vector<LiveParameter> parameters;  // those that may change while the session runs
   std::uint32_t variables_every = 10;
   std::uint32_t flexible_every = 1;            // steps between two samples of flexible bodies

@@ -63,8 +63,9 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   for (const scene::ParameterInfo& parameter : directory->all()) {
     if (parameter.change == Change::live) config.parameters.push_back({parameter.path, parameter.value});
   }
-  config.judge_parameter = [directory](const std::string& path, double value) {
-    const scene::Assignment assignment = directory->check(path, value);
+  config.judge_parameter = [directory](const std::string& path, double value, std::int64_t over_ns) {
+    const auto over = over_ns >= 0 ? std::optional(SimDuration{over_ns}) : std::nullopt;
+    const scene::Assignment assignment = directory->check(path, value, over);
     return ParameterVerdict{assignment.status.is_ok(), assignment.status.text, assignment.over.ns};
   };
   config.variables_every = static_cast<std::uint32_t>(scene.recording.every);

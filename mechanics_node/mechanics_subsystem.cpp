@@ -98,7 +98,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
       mechanism_(def_.formulation, model_, state_, multibody::step_rule(def_)),
       last_good_(state_),
       workspace_(model_),
-      level_(scene.session.coupling),
+      levels_(scene::port_levels(scene)),
       H_(scene.session.step_duration()),
       is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
       exchange_every_(scene.session.exchange_every),
@@ -155,9 +155,10 @@ void MechanicsSubsystem::reset() {
   is_evaluated_ = false;
   std::fill(row_is_active_.begin(), row_is_active_.end(), 1);
   ramps_.clear();
+  levels_.reset();
   has_failed_ = false;
   failure_ = StepReport{};
-  for (Port& port : ports_) port.F = port.friction = port.stop = port.static_force = 0;
+  for (Port& port : ports_) port.z = port.F = port.friction = port.stop = port.static_force = 0;
   past_.clear();
   used_step_ = -1;
   partner_age_ = 0;
@@ -188,7 +189,7 @@ Status MechanicsSubsystem::start(const coupling::PartnerSamples& partners, coupl
                                                  " actuators, mechanics has " + std::to_string(ports_.size()) +
                                                  " ports: the nodes run different scenes");
     }
-    for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].F = partners.actuators->F[i];
+    for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].z = ports_[i].F = partners.actuators->F[i];
   }
   if (partners.elastic != nullptr) {
     if (Status status = modal_.begin(def_, *partners.elastic, model_); !status.is_ok()) return status;
@@ -240,9 +241,9 @@ void MechanicsSubsystem::note_age(StepIndex n, const coupling::PartnerSamples& p
 // position; without news the copy goes on, and a late sample corrects it by what it says of its own step.
 double MechanicsSubsystem::force_at_exchange(std::size_t port, const coupling::ActuatorSample& partner,
                                              double x) noexcept {
-  const double copy = ports_[port].F;
+  const double copy = ports_[port].z;
   if (!has_news_) return copy;
-  const bool is_hold = level_ == coupling::Level::hold;
+  const bool is_hold = levels_[port] == coupling::Level::hold;
   const auto at = [&](double position) {
     return is_hold ? partner.F[port] : partner.F[port] - partner.K[port] * (position - partner.x_ref[port]);
   };
@@ -260,8 +261,8 @@ void MechanicsSubsystem::load_partner(const coupling::ActuatorSample* partner, b
     coupling::RowPartner law;
     double z = 0;
     if (row < ports_.size() && partner != nullptr) {
-      z = is_first_substep ? force_at_exchange(row, *partner, dynamics_.x()[k]) : ports_[row].F;
-      if (level_ != coupling::Level::hold) {
+      z = is_first_substep ? force_at_exchange(row, *partner, dynamics_.x()[k]) : ports_[row].z;
+      if (levels_[row] != coupling::Level::hold) {
         law = {partner->F_dot[row], partner->K[row], partner->lambda[row],
                partner->D[row],     partner->F[row], partner->v_ref[row]};
       }
@@ -308,7 +309,10 @@ coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coup
     const std::size_t row = active_[k];
     force_mean_[row] = ratio_of(row) * dynamics_.f_mean()[k];
     force_slope_[row] = ratio_of(row) * dynamics_.f_slope()[k];
-    if (row < ports_.size()) ports_[row].F = dynamics_.z()[k];
+    if (row >= ports_.size()) continue;
+    const coupling::RowPartner& law = dynamics_.partner()[k];
+    ports_[row].z = dynamics_.z()[k];
+    ports_[row].F = dynamics_.z()[k] - law.D * (dynamics_.v()[k] - law.v_ref);
   }
   const bool is_closed = mechanism_.advance(model_, state_, workspace_, h, force_mean_, force_slope_);
   solved.has_converged = solved.has_converged && is_closed;
@@ -329,6 +333,7 @@ void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
     const double K = partner == nullptr ? 0.0 : dynamics_.partner()[k].K;
     sample.work[row] += dynamics_.work()[k] + (port.F - 0.5 * K * dx) * dx;
     sample.impulse[row] += dynamics_.impulse()[k];
+    port.z -= K * dx;
     port.F -= K * dx;
   }
   // bristles follow the true way as well: what sticks stays where it is
@@ -424,7 +429,7 @@ StepReport MechanicsSubsystem::follow(StepIndex n, const FollowedStep& step, std
   multibody::copy_state(step.state, state_);
   multibody::copy_state(state_, last_good_);
   is_evaluated_ = false;
-  for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].F = step.F[i];
+  for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].z = ports_[i].F = step.F[i];
   evaluate();
   StepReport report;
   const PortPositions end = port_positions();
@@ -620,6 +625,7 @@ void MechanicsSubsystem::find_static_forces(const coupling::MechanismSample& sam
 // ---- parameters, hash, variables ------------------------------------------------------------------------------
 
 bool MechanicsSubsystem::change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept {
+  if (levels_.change(change.path, change.value)) return true;
   const std::optional<multibody::Parameter> parameter = multibody::find_parameter(model_, change.path);
   if (!parameter) return false;
   ramps_.begin(handle_of(*parameter), multibody::get_parameter(model_, *parameter), change.value, n, change.over, H_);
@@ -632,7 +638,11 @@ std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
   mechanism_.add_to_hash(hash);
   modal_.add_to(model_, hash);
   ramps_.add_to(hash);
+  levels_.add_to(hash);
   for (const Port& port : ports_) hash.add(port.F);
+  if (exchange_every_ > 1) {
+    for (const Port& port : ports_) hash.add(port.z);  // otherwise every step begins with another
+  }
   for (const char is_active : row_is_active_) hash.add(is_active);
   for (const OperatedLoad& operated : operated_) hash.add(model_.elements.loads[operated.load].signal);
   hash.add(has_failed_);

@@ -16,6 +16,7 @@
 #include "coupling/own_past.h"
 #include "coupling/parameter_ramps.h"
 #include "coupling/port_dynamics.h"
+#include "coupling/port_levels.h"
 #include "coupling/subsystem.h"
 #include "mechanics_node/modal_exchange.h"
 #include "multibody/dynamics.h"
@@ -52,7 +53,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
-  [[nodiscard]] coupling::Level level() const noexcept override { return level_; }
+  [[nodiscard]] coupling::Level level() const noexcept override { return levels_.lowest(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
@@ -67,7 +68,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
     std::string name;
     double offset = 0, ratio = 1;  // x = offset + ratio * row coordinate
     coupling::LineForceLaw law;
-    double F = 0;             // pressure force, this side's copy [N]
+    double z = 0;             // pressure force, this side's copy, without its damping -D (v - v_ref) [N]
+    double F = 0;             // with it [N]
     double friction = 0;      // [N]
     double stop = 0;          // [N]
     double static_force = 0;  // line force that would hold the mechanism where it is [N]
@@ -132,7 +134,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::vector<double> stage_speed_;  // by row, in the stage before
   bool has_balls_ = false;           // some row is a spherical joint's
   bool is_evaluated_ = false;        // workspace_ belongs to state_ and model_
-  coupling::Level level_;
+  coupling::PortLevels levels_;
   SimDuration H_;
   bool is_free_running_;
   StepIndex exchange_every_;

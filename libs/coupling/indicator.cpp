@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace slew::coupling {
 namespace {
@@ -73,7 +74,8 @@ void Indicator::evaluate_window(std::size_t port) noexcept {
   defects.creates_energy = steps_below_alarm_[port] >= alarm_after_steps_;
 }
 
-void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& actuators) noexcept {
+void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& actuators,
+                       const PortArray& stiffness) noexcept {
   start_bucket();
   for (std::size_t i = 0; i < ports_; ++i) {
     PortDefects& defects = defects_[i];
@@ -88,10 +90,10 @@ void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& a
     bucket.net += defects.dE_star;
     bucket.work += std::fabs(mechanism.work[i]);
     bucket.force = std::max(bucket.force, std::fabs(actuators.F[i]));
-    bucket.stiffness = std::max(bucket.stiffness, K);
+    bucket.stiffness = std::max(bucket.stiffness, stiffness[i]);
     evaluate_window(i);
   }
-  omega_H_ = coupling_frequency(mechanism.W, actuators.K, H_);
+  omega_H_ = coupling_frequency(mechanism.W, stiffness, H_);
 }
 
 bool Indicator::creates_energy() const noexcept {
@@ -124,6 +126,20 @@ double largest_eigenvalue_from(std::size_t start, const PortMatrix& W, const std
 }
 
 }  // namespace
+
+double omega_limit(Level level, double zeta) noexcept {
+  switch (level) {
+    case Level::hold:
+      return 2 * zeta;
+    case Level::linear:
+      return 0.5;
+    case Level::two:
+      return 1;
+    case Level::tlm:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
 
 double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept {
   // S = sqrt(K) W sqrt(K) has the eigenvalues of W K; from every port, since one start could lie in a part of the

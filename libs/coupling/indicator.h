@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/time.h"
+#include "coupling/level.h"
 #include "coupling/samples.h"
 
 namespace slew::coupling {
@@ -49,8 +50,9 @@ class Indicator {
  public:
   Indicator(std::size_t ports, SimDuration communication_step);
 
-  // Both samples of the same step n >= 0. No allocation.
-  void update(const MechanismSample& mechanism, const ActuatorSample& actuators) noexcept;
+  // Both samples of the same step n >= 0; stiffness: of the oil columns [N/m], also of ports whose sample has none
+  // because their spring is not inside the step (level tlm). No allocation.
+  void update(const MechanismSample& mechanism, const ActuatorSample& actuators, const PortArray& stiffness) noexcept;
   void reset() noexcept;
 
   [[nodiscard]] const PortDefects& port(std::size_t i) const noexcept { return defects_[i]; }
@@ -78,6 +80,10 @@ class Indicator {
   std::vector<PortDefects> defects_;
   double omega_H_ = 0;
 };
+
+// Largest omega_H at which a level is used without a warning (coupling study, sections 3, 4 and 10); zeta: damping
+// ratio of the port. Level tlm has none: what it costs is a parasitic mass K H^2.
+[[nodiscard]] double omega_limit(Level level, double zeta) noexcept;
 
 // H sqrt(largest eigenvalue of W diag(K)) by power iteration on the similar symmetric matrix, ports <= kMaxPorts.
 [[nodiscard]] double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept;

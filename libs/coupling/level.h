@@ -9,8 +9,17 @@ enum class Level : std::uint8_t {
   hold,    // held pressure force, held speed, volume corrected at the exchange, friction local
   linear,  // mechanics uses the hydraulics' linearisation; hydraulics holds the speed
   two,     // both sides integrate against the partner's reduced model
-  tlm      // transmission line with one step of delay
+  tlm      // the chambers are transmission lines with one step of delay
 };
+inline constexpr int kLevels = 4;
+
+// What a port says about its level: one of its own, or the session's.
+enum class PortLevel : std::uint8_t { session, hold, linear, two, tlm };
+
+// Pre-condition: not `session`.
+[[nodiscard]] constexpr Level level_of(PortLevel port) noexcept {
+  return static_cast<Level>(static_cast<int>(port) - 1);
+}
 
 enum class Quality : std::uint8_t { ok, extrapolated, degraded, invalid };
 

@@ -82,6 +82,17 @@ void Circuit::add_contents(const CircuitBuilder& builder) {
     volume.end = pieces_.size();
     volumes_.push_back(volume);
   }
+  lines_.resize(2 * actuators_.size());
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    const Piece& piece = pieces_[k];
+    if (piece.position < 0) continue;
+    const int actuator = piece.position - volume_count();
+    lines_[2 * at(actuator) + (piece.slope > 0 ? 0 : 1)] = {.volume = piece.volume_index,
+                                                            .position = piece.position,
+                                                            .speed = piece.position + actuator_count(),
+                                                            .slope = piece.slope,
+                                                            .piece = k};
+  }
 }
 
 void Circuit::order_ls_sources(const CircuitBuilder& builder) {
@@ -196,16 +207,18 @@ inline Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) 
   const double p = y[volume];
   const ValueSlope oil = oil_.at(p);
   const VolumeContent& contents = volumes_[volume];
-  double V = contents.volume, walls = contents.wall, d_walls = 0;
+  double V = contents.volume, lumped = contents.volume, walls = contents.wall, d_walls = 0;
   for (std::size_t k = contents.begin; k < contents.end; ++k) {
     const Piece& piece = pieces_[k];
     const double V_k = piece.content_at(y);
+    const double share = piece.lumped * V_k;
     const ValueSlope wall = piece.wall_at(p);
     V += V_k;
-    walls += V_k * wall.value;
-    d_walls += V_k * wall.slope;
+    lumped += share;
+    walls += share * wall.value;
+    d_walls += share * wall.slope;
   }
-  return {V * oil.value + walls, V * oil.slope + d_walls, V, oil.value};
+  return {lumped * oil.value + walls, lumped * oil.slope + d_walls, V, oil.value};
 }
 
 double Circuit::capacity_at(std::size_t volume, const double* y) const noexcept {
@@ -222,6 +235,10 @@ void Circuit::rates(const double* y, double* f) noexcept {
   const CircuitView now = view(y);
   Rates sums(f);
   for (const HydraulicComponent* component : active_) component->add_rates(now, sums);
+  // a line's flow in place of the piston's
+  for (const LineChamber& line : lines_) {
+    if (line.is_line) sums.add_flow(line.volume, line.slope * y[line.speed] - line.inflow(y[line.volume]));
+  }
   // (1), (2)
   for (std::size_t i = 0; i < volumes_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity(i, y).value;
   // (3)
@@ -240,6 +257,12 @@ void Circuit::stamp_flows(const double* y) noexcept {
 
 double* Circuit::jacobian(const double* y, const double* f) noexcept {
   stamp_flows(y);
+  JacobianStamp stamp(jacobian_.data(), size_);
+  for (const LineChamber& line : lines_) {
+    if (!line.is_line) continue;
+    stamp.add(line.volume, line.speed, line.slope);
+    stamp.add(line.volume, line.volume, -1 / line.state.Z);
+  }
   add_capacity_slopes(y, f);
   for (int j = 0; j < actuator_count(); ++j) jacobian_[at(position(j) * size_ + speed(j))] = 1;
   return jacobian_.data();
@@ -261,7 +284,7 @@ void Circuit::add_capacity_slopes(const double* y, const double* f) noexcept {
     for (std::size_t k = volumes_[i].begin; k < volumes_[i].end; ++k) {
       const Piece& piece = pieces_[k];
       if (piece.position < 0 || piece.is_closed(y)) continue;
-      row[piece.position] -= share * piece.slope * (C.oil + piece.wall_at(y[i]).value);
+      row[piece.position] -= share * piece.lumped * piece.slope * (C.oil + piece.wall_at(y[i]).value);
     }
   }
 }

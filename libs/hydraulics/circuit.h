@@ -19,9 +19,11 @@
 #include <vector>
 
 #include "core/element_variable.h"
+#include "core/state_hash.h"
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/hydraulics_def.h"
+#include "hydraulics/line_chambers.h"
 #include "hydraulics/oil.h"
 
 namespace slew::hydraulics {
@@ -95,6 +97,23 @@ class Circuit {
   // Moves the pistons to x_new and lets each pressure follow its chamber's change of volume, no oil lost:
   // C dp + A dx = 0, integrated over the way. False when a pressure had to be held at the lowest pressure.
   bool move_pistons(double* y, const double* x_new) noexcept;
+
+  // Chambers of an actuator as transmission lines (line_chambers.h), and back; the oil is kept. delay [s] is the
+  // communication step, the same until they are lumped again. Between them the volumes' pressures are those at the
+  // lines' ends, and moving the pistons makes the lines consistent.
+  void make_line(int actuator, double delay, const double* y) noexcept;
+  void lump_line(int actuator, double* y) noexcept;
+  [[nodiscard]] bool is_line(int actuator) const noexcept;
+  // Ends a communication step; mean_pressure [Pa] of the volumes over it, by line.
+  void end_line_step(const double* y, std::span<const double> mean_pressure) noexcept;
+  // What the lines will do to the piston in the next step, at rest.
+  [[nodiscard]] LineThrust line_thrust(int actuator, const double* y) const noexcept;
+  [[nodiscard]] double line_capacity(const LineChamber& line, double p, double x) const noexcept;
+  // Two chambers per actuator, A then B, lines or not.
+  [[nodiscard]] std::span<const LineChamber> lines() const noexcept { return lines_; }
+  [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return lines_; }  // for tests
+  void add_lines_to(StateHash& hash) const noexcept;
+
   // Holds pressures at or above the lowest pressure; true when one had to be moved.
   bool bound(double* y) const noexcept;
 
@@ -114,6 +133,7 @@ class Circuit {
 
   // A content whose volume or wall changes, with what is constant in it worked out.
   struct Piece : Content {
+    double lumped = 1;  // share that belongs to the volume; the rest is a transmission line
     bool has_constant_wall = true;
     double wall_compressibility = 0;  // 1/Pa, when constant
 
@@ -149,6 +169,13 @@ class Circuit {
   void stamp_flows(const double* y) noexcept;
   void add_capacity_slopes(const double* y, const double* f) noexcept;
   void chamber_rates(const double* y, double* dp) const noexcept;
+  bool move_lines(const double* x_new) noexcept;
+  [[nodiscard]] std::span<LineChamber> lines_of(int actuator) noexcept {
+    return std::span(lines_).subspan(2 * static_cast<std::size_t>(actuator), 2);
+  }
+  [[nodiscard]] std::span<const LineChamber> lines_of(int actuator) const noexcept {
+    return std::span(lines_).subspan(2 * static_cast<std::size_t>(actuator), 2);
+  }
 
   int size_ = 0;
   OilCompressibility oil_;
@@ -162,6 +189,7 @@ class Circuit {
 
   std::vector<Piece> pieces_;  // by volume
   std::vector<VolumeContent> volumes_;
+  std::vector<LineChamber> lines_;  // two by actuator
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
   std::vector<double> scale_, relative_;

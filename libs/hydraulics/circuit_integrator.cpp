@@ -75,6 +75,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
       da_dv_(m_ * m_),
       C_(static_cast<std::size_t>(circuit.volume_count())),
       outflow_(C_),
+      pressure_integral_(2 * m_),
       published_(m_),
       options_(options_of(circuit, def)),
       choice_(def.solver),
@@ -98,6 +99,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
 void CircuitIntegrator::start(std::span<const double> x, std::span<const double> v,
                               std::span<const double> F) noexcept {
   SLEW_CHECK(x.size() == m_ && v.size() == m_ && F.size() == m_);
+  for (std::size_t j = 0; j < m_; ++j) circuit_.lump_line(static_cast<int>(j), y_.data());
   circuit_.start(F, y_);
   for (std::size_t j = 0; j < m_; ++j) {
     y_[static_cast<std::size_t>(circuit_.position(static_cast<int>(j)))] = x[j];
@@ -189,6 +191,15 @@ void CircuitIntegrator::align(std::span<const double> x, std::span<const double>
   for (std::size_t j = 0; j < m_; ++j) y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))] = v[j];
 }
 
+void CircuitIntegrator::set_line(int actuator, bool is_line, double H) noexcept {
+  if (has_failed_ || is_line == circuit_.is_line(actuator)) return;
+  if (is_line) {
+    circuit_.make_line(actuator, H, y_.data());
+  } else {
+    circuit_.lump_line(actuator, y_.data());
+  }
+}
+
 void CircuitIntegrator::derivative(const double* y, double* f) noexcept {
   circuit_.rates(y, f);
   circuit_.pressure_forces(y, F_.data());
@@ -232,8 +243,18 @@ void CircuitIntegrator::accepted(double h, const double* y_before, const double*
                           weight * (F_dot * y_before[v] - half * f_before[v]);
     published_[j].impulse += 0.5 * h * (F_0 + F_1) + weight * F_dot;
   }
+  integrate_pressures(h, y_before, f_before, y);
   open_quadrature_ = weight;
   was_clamped_ = circuit_.bound(y) || was_clamped_;
+}
+
+void CircuitIntegrator::integrate_pressures(double h, const double* y_before, const double* f_before,
+                                            const double* y) noexcept {
+  for (std::size_t i = 0; i < pressure_integral_.size(); ++i) {
+    const LineChamber& line = circuit_.lines()[i];
+    if (!line.is_line) continue;
+    pressure_integral_[i] += solver_->integral(static_cast<std::size_t>(line.volume), h, y_before, f_before, y);
+  }
 }
 
 void CircuitIntegrator::close_quadrature(const double* y, const double* f) noexcept {
@@ -264,6 +285,7 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
   motion_ = &motion;
   std::copy(y_.begin(), y_.end(), y_start_.begin());
   for (ActuatorLinearisation& actuator : published_) actuator.work = actuator.impulse = 0;
+  std::fill(pressure_integral_.begin(), pressure_integral_.end(), 0.0);
   open_quadrature_ = 0;
   if (!inputs_.empty()) note_inputs();
   if (!quasi_static_.empty()) is_consistent_ = make_consistent();
@@ -276,6 +298,8 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
   }
   derivative(y_.data(), f_.data());
   close_quadrature(y_.data(), f_.data());
+  for (double& value : pressure_integral_) value /= H;
+  if (!has_failed_) circuit_.end_line_step(y_.data(), pressure_integral_);
   publish();
   report_flags(report);
   was_clamped_ = false;
@@ -324,6 +348,26 @@ void CircuitIntegrator::publish() noexcept {
     out.K = K_a + K_b;
     const double weighted = (K_a > 0 ? K_a * outflow_[a] / C_[a] : 0) + (K_b > 0 ? K_b * outflow_[b] / C_[b] : 0);
     out.lambda = out.K > 0 ? std::max(0.0, weighted / out.K) : 0;
+    out.stiffness = out.K;
+    out.D = 0;
+    if (circuit_.is_line(static_cast<int>(j))) publish_line(static_cast<int>(j));
+  }
+}
+
+// of the lines as the next step has them
+void CircuitIntegrator::publish_line(int actuator) noexcept {
+  ActuatorLinearisation& out = published_[static_cast<std::size_t>(actuator)];
+  const LineThrust thrust = circuit_.line_thrust(actuator, y_.data());
+  out.D = thrust.damping;
+  out.F = thrust.force - out.D * out.v;
+  out.K = out.F_dot = out.lambda = out.stiffness = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const LineChamber& line = circuit_.lines()[2 * static_cast<std::size_t>(actuator) + side];
+    if (!line.is_line) continue;
+    const double p = y_[static_cast<std::size_t>(line.volume)];
+    const double C = C_[static_cast<std::size_t>(line.volume)];
+    out.stiffness += line.slope * line.slope / (C + circuit_.line_capacity(line, p, out.x));
+    (side == 0 ? out.Q_a : out.Q_b) = C * f_[static_cast<std::size_t>(line.volume)] + line.inflow(p);
   }
 }
 
@@ -332,6 +376,7 @@ void CircuitIntegrator::add_to(StateHash& hash) const noexcept {
   solver_->add_to(hash);
   hash.add(has_failed_);
   hash.add(circuit_.parameter_values());
+  circuit_.add_lines_to(hash);
 }
 
 }  // namespace slew::hydraulics

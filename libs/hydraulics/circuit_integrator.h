@@ -13,7 +13,10 @@
 //
 // Published at the end (coupling study, section 8; K_A = A_A^2/C_A, K_B = A_B^2/C_B):
 //   F, F_dot = A_A p_A' - A_B p_B',  K = K_A + K_B,  lambda = (K_A l_A + K_B l_B)/K,  l = -(dQ/dp)/C             (2)
-// l on the steeper side of unilateral valves. Chambers have no feed-through: D = 0.
+// l on the steeper side of unilateral valves. Chambers have no feed-through, D = 0; where they are transmission lines
+// (line_chambers.h) F is what the lines do at v, D their impedance, K = F_dot = lambda = 0. The mean pressure of a
+// volume, and with it the oil that the line takes, is integrated by the method itself: what leaves the volume is in the
+// line, whatever the tolerance.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +37,9 @@ namespace slew::hydraulics {
 struct ActuatorLinearisation {
   double F = 0;             // N
   double F_dot = 0;         // N/s at constant v
-  double K = 0;             // N/m
+  double K = 0;             // N/m; 0 of lines
+  double D = 0;             // N s/m
+  double stiffness = 0;     // N/m, K of the oil columns, of lines too
   double lambda = 0;        // 1/s
   double x = 0;             // m, the circuit's own piston position
   double v = 0;             // m/s
@@ -61,6 +66,9 @@ class CircuitIntegrator final : private math::StiffSystem {
 
   // Of rk4 at the present state, for steps of H seconds; nothing for the other solvers, which have no limit.
   [[nodiscard]] ExplicitStability explicit_stability(double H, const PistonMotion& motion);
+  // Turns chambers into transmission lines with the delay H, or back into volumes; the oil is kept. Between two steps,
+  // after align().
+  void set_line(int actuator, bool is_line, double H) noexcept;
 
   // Takes the pistons' true position and speed: pressures follow with the oil enclosed (study, section 8).
   void align(std::span<const double> x, std::span<const double> v) noexcept;
@@ -74,6 +82,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   [[nodiscard]] std::span<const double> state() const noexcept { return y_; }
   // For tests and tools; refresh() afterwards.
   [[nodiscard]] std::span<double> mutable_state() noexcept { return y_; }
+  [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return circuit_.mutable_lines(); }
   // Works out actuators() from the state.
   void refresh() noexcept;
   [[nodiscard]] double step_size() const noexcept { return solver_->step_size(); }
@@ -94,12 +103,15 @@ class CircuitIntegrator final : private math::StiffSystem {
   void note_inputs() noexcept;
   [[nodiscard]] bool make_consistent() noexcept;
   void report_flags(StepReport& report) noexcept;
+  void publish_line(int actuator) noexcept;
+  void integrate_pressures(double h, const double* y_before, const double* f_before, const double* y) noexcept;
 
   Circuit& circuit_;
   const PistonMotion* motion_ = nullptr;  // during step()
   std::size_t m_;
   std::vector<double> y_, y_start_, f_;
   std::vector<double> F_, F_dot_, F_mean_, da_dF_, da_dx_, da_dv_, C_, outflow_;
+  std::vector<double> pressure_integral_;  // Pa s, by line
   std::vector<ActuatorLinearisation> published_;
   double open_quadrature_ = 0;  // h^2/12 of the last sub-step, whose end slope is not known yet
   bool was_clamped_ = false;

@@ -80,7 +80,9 @@ void Circuit::chamber_rates(const double* y, double* dp) const noexcept {
     double dV = 0;
     for (std::size_t k = volumes_[i].begin; k < volumes_[i].end; ++k) {
       const Piece& piece = pieces_[k];
-      if (piece.position >= 0) dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
+      // a line's oil follows in move_lines()
+      if (piece.position >= 0 && piece.lumped == 1)
+        dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
     }
     if (dV != 0) dp[i] = -dV / capacity_at(i, y);
   }
@@ -89,6 +91,7 @@ void Circuit::chamber_rates(const double* y, double* dp) const noexcept {
 bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
   const std::size_t n = volume_name_.size(), m = actuators_.size();
   for (std::size_t j = 0; j < m; ++j) way_[j] = x_new[j] - y[n + j];
+  bool is_within = move_lines(x_new);
   // parts short enough for the stiffness of oil with air to change little within one
   chamber_rates(y, slope_[0].data());
   double change = 0;
@@ -96,7 +99,6 @@ bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
   const double wanted = std::min(std::ceil(change / kLargestChange), static_cast<double>(kMostParts));
   const int parts = std::max(1, static_cast<int>(wanted));
   const double h = 1.0 / parts;
-  bool is_within = true;
   for (int part = 0; part < parts; ++part) {
     // classical Runge-Kutta of order 4 along the way
     constexpr double kStage[] = {0, 0.5, 0.5, 1};

@@ -20,7 +20,7 @@ class PistonMotion {
                       double* da_dv) const noexcept = 0;
 };
 
-// Pistons keep the speed they have: coupling level HOLD, and test rigs.
+// Pistons keep the speed they have: test rigs.
 class HeldSpeed final : public PistonMotion {
  public:
   explicit HeldSpeed(std::size_t actuators) noexcept : m_(actuators) {}

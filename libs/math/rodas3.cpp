@@ -103,6 +103,20 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
   return is_number ? error : kInfinity;
 }
 
+// (1) for w' = y_i, whose row of J is the unit vector of i: with q the K of w,
+//   q_s = h gamma (stage_s + K_s) + gamma sum_j c_sj q_j
+double Rodas3::integral(std::size_t state, double h, const double* before, const double*,
+                        const double*) const noexcept {
+  const double y_before = before[state];
+  const double k1 = k1_[state], k2 = k2_[state], k3 = k3_[state], k4 = k4_[state];
+  const double y3 = y_before + 2 * k1, y4 = y3 + k3, weight = h * kGamma;
+  const double q1 = weight * (y_before + k1);
+  const double q2 = weight * (y_before + k2) + kGamma * kC21 * q1;
+  const double q3 = weight * (y3 + k3) + kGamma * (kC31 * q1 + kC32 * q2);
+  const double q4 = weight * (y4 + k4) + kGamma * (kC41 * q1 + kC42 * q2 + kC43 * q3);
+  return 2 * q1 + q3 + q4;
+}
+
 // In the derivative at the step's start, else in the new state.
 std::int32_t Rodas3::first_non_finite() const noexcept {
   for (std::size_t i = 0; i < size_; ++i) {

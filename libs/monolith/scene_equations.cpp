@@ -33,6 +33,7 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
     : model_(multibody::build_model(scene.mechanics, scene::row_names(scene))),
       state_(multibody::start_state(model_)),
       workspace_(model_),
+      levels_(scene::port_levels(scene)),
       row_force_(model_.rows.size()),
       q_rate_(state_.q.size()),
       u_rate_(state_.u.size()),
@@ -169,6 +170,8 @@ Status SceneEquations::set_parameter(std::string_view path, double value) {
     if (index >= 0 && circuit_->set_parameter(index, value) == hydraulics::ParameterResult::ok) return Status::ok();
     if (index >= 0) return Status::error(ExitCode::bad_input, std::string(path) + ": the value is out of its range");
   }
+  // how the machine is split says nothing about the undivided one
+  if (levels_.change(path, value)) return Status::ok();
   return Status::error(ExitCode::bad_input, std::string(path) + ": there is no live parameter of this name");
 }
 

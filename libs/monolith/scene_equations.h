@@ -29,6 +29,7 @@
 #include "core/element_variable.h"
 #include "core/status.h"
 #include "coupling/line_force.h"
+#include "coupling/port_levels.h"
 #include "hydraulics/circuit.h"
 #include "multibody/dynamics.h"
 #include "multibody/observe.h"
@@ -113,6 +114,7 @@ class SceneEquations {
   std::unique_ptr<hydraulics::Circuit> circuit_;  // null: none in the scene
   hydraulics::StartState start_ = hydraulics::StartState::equilibrium;
   std::vector<Port> ports_;
+  coupling::PortLevels levels_;          // taken and without effect
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
   std::vector<int> load_of_channel_;     // -1: it drives no point force or torque
   double control_time_ = 0;

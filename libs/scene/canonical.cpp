@@ -81,8 +81,8 @@ void write_script(std::string& text, const ScriptDef& script) {
   }
   if (!script.changes.empty()) text += "  parameters:\n";
   for (const ScriptChange& change : script.changes) {
-    text += fmt::format("    - {{at: {}, set: {}, value: {}, over: {}}}\n", change.at, change.set, change.value,
-                        change.over);
+    const std::string value = change.choice.empty() ? number_text(change.value) : change.choice;
+    text += fmt::format("    - {{at: {}, set: {}, value: {}, over: {}}}\n", change.at, change.set, value, change.over);
   }
 }
 

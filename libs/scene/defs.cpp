@@ -49,8 +49,10 @@ constexpr Field kSessionFields[] = {
                              {.choices = kPaces, .doc = "real: paced by the wall clock; free: as fast as possible"}),
     field<&SessionDef::coupling>(
         "coupling",
-        {.choices = kLevels,
-         .doc = "how much of the partner's behaviour a node uses inside a step; this version has hold, two"}),
+        {.change = Change::live,
+         .choices = kLevels,
+         .doc = "how much of the partner's behaviour a node uses inside a step, at every cylinder without a level of "
+                "its own"}),
     field<&SessionDef::flexible>(
         "flexible",
         {.choices = kElasticExchanges,
@@ -198,6 +200,17 @@ std::span<const Field> plot_fields() noexcept {
   return kPlotFields;
 }
 
+std::string_view obstacle_of(const SessionDef& session, coupling::Level level) noexcept {
+  const bool is_free_running = session.mode == ExchangeMode::free_running;
+  if (is_free_running && (level == coupling::Level::hold || level == coupling::Level::tlm)) {
+    return "a free-running node continues its partner's model, which this level does not state";
+  }
+  if (session.exchange_every > 1 && level == coupling::Level::tlm) {
+    return "the waves of this level need an exchange at every step";
+  }
+  return "";
+}
+
 namespace {
 
 void validate_free_running(const SessionDef& session, Problems& errors) {
@@ -206,10 +219,6 @@ void validate_free_running(const SessionDef& session, Problems& errors) {
   };
   if (session.pace == Pace::free) {
     refuse("session.pace", "a free-running session has no other clock than the wall's", "real");
-  }
-  if (session.coupling == coupling::Level::hold || session.coupling == coupling::Level::tlm) {
-    refuse("session.coupling", "a free-running node continues its partner's model, which this level does not state",
-           "two or linear");
   }
   if (session.flexible != coupling::ElasticExchange::once) {
     refuse("session.flexible", "elastic forces that are stated step by step cannot be continued without them", "once");
@@ -251,10 +260,8 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
     errors.push_back({"session.flexible",
                       "'condensed' leaves the modes to the flex node, a monolithic solution has them", "once", ""});
   }
-  if (session.coupling == coupling::Level::linear || session.coupling == coupling::Level::tlm) {
-    const auto index = static_cast<std::size_t>(session.coupling);
-    errors.push_back(
-        {"session.coupling", fmt::format("'{}' is not in this version", kLevels[index]), "hold or two", ""});
+  if (const std::string_view obstacle = obstacle_of(session, session.coupling); !obstacle.empty()) {
+    errors.push_back({"session.coupling", std::string(obstacle), "two or linear", ""});
   }
 }
 

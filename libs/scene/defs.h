@@ -35,7 +35,7 @@ struct SessionDef {
   double step = 1e-3;                               // s, communication step H; whole nanoseconds
   double duration = 20;                             // s; 0: until it is stopped
   Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
-  coupling::Level coupling = coupling::Level::two;  // linear and tlm are refused in this version
+  coupling::Level coupling = coupling::Level::two;  // of the ports that have no level of their own
   coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
   ExchangeMode mode = ExchangeMode::lockstep;
   std::int64_t exchange_every = 1;  // steps between two exchanges of mechanics and hydraulics
@@ -84,10 +84,11 @@ struct ScriptTrack {
 
 // A parameter that the script changes.
 struct ScriptChange {
-  double at = 0;     // s
-  std::string set;   // parameter's path, "Bag.mass"
-  double value = 0;  // SI
-  double over = 0;   // s, spread over this time
+  double at = 0;         // s
+  std::string set;       // parameter's path, "Bag.mass"
+  double value = 0;      // SI; of a choice its place among the choices
+  double over = 0;       // s, spread over this time
+  std::string choice{};  // name of a choice; empty: a number
 };
 
 // The scene's own operator, used when no other input is asked for.
@@ -133,6 +134,9 @@ inline constexpr std::size_t kMaxScriptChangesPerStep = 16;     // commands in o
 [[nodiscard]] std::span<const Field> plot_fields() noexcept;
 
 inline constexpr std::string_view kInputTypeChoices[] = {"analog", "digital"};
+
+// Why the session cannot couple a port at this level; empty: it can.
+[[nodiscard]] std::string_view obstacle_of(const SessionDef& session, coupling::Level level) noexcept;
 
 // Rules between the fields; ranges are the tables' matter.
 void validate(const SessionDef& session, Problems& errors, Problems& warnings);

@@ -22,15 +22,6 @@ Writing writing_of(const Node& node) {
   return node.is_quoted ? Writing::quoted : Writing::plain;
 }
 
-std::string choice_list(std::span<const std::string_view> choices) {
-  std::string all;
-  for (std::size_t i = 0; i < choices.size(); ++i) {
-    if (i > 0) all += i + 1 == choices.size() ? " or " : ", ";
-    all += choices[i];
-  }
-  return all;
-}
-
 // Reads values of one field; all problems carry its path.
 class ValueReader {
  public:
@@ -274,6 +265,15 @@ const Field* find_field(std::span<const Field> fields, std::string_view key) {
 }
 
 }  // namespace
+
+std::string choice_list(std::span<const std::string_view> choices) {
+  std::string all;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i > 0) all += i + 1 == choices.size() ? " or " : ", ";
+    all += choices[i];
+  }
+  return all;
+}
 
 std::string expected_value(const Field& field) {
   switch (field.type) {

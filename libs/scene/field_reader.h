@@ -46,6 +46,9 @@ void report_duplicates(const Node& map, const std::string& path, Report& report)
 // What a field takes, for messages: "a mass such as '500 kg', or a bare number in kg".
 [[nodiscard]] std::string expected_value(const Field& field);
 
+// "hold, linear, two or tlm".
+[[nodiscard]] std::string choice_list(std::span<const std::string_view> choices);
+
 // "more than 0 kg", "0 to 1", for messages and documentation; empty for any finite number.
 [[nodiscard]] std::string range_text(const Range& range, Dimension dimension);
 

@@ -147,7 +147,8 @@ Json elements_of(std::string_view section) {
 Json script() {
   Json schema = object_of(script_fields(), "the scene's own operator", "");
   Json change = object_of(script_change_fields(), "change of a live parameter", "");
-  change["properties"]["value"] = quantity(Range{});
+  // of a choice its name
+  change["properties"]["value"] = {{"type", Json::array({"number", "string"})}};
   change["required"].push_back("value");
   Json& properties = schema["properties"];
   properties["file"] = {{"type", "string"}, {"description", "CSV or YAML file beside the scene, instead of inputs"}};

@@ -25,6 +25,7 @@ ParameterInfo about(const Field& field, std::string path, double value) {
           .change = field.change,
           .ramp = field.ramp,
           .is_integer = field.type == FieldType::integer,
+          .choices = field.choices,
           .doc = field.doc};
 }
 
@@ -40,6 +41,9 @@ void add_field(std::vector<ParameterInfo>& all, const Field& field, const std::s
       for (std::size_t i = 0; i < 3; ++i) {
         all.push_back(about(field, path + std::string(kAxes[i]), (*static_cast<const Triple*>(field.member(def)))[i]));
       }
+      break;
+    case FieldType::choice:
+      all.push_back(about(field, path, field.get_choice(def)));
       break;
     default:
       break;
@@ -71,6 +75,7 @@ std::string obstacle(const Scene& scene, const ElementRef& element, const Field&
     return fmt::format("; start it again with --set {}.{}=VALUE", element.name, with);
   };
   if (element.section == "mechanics" && !scene.has_mechanics()) return "the scene has no bodies";
+  if (element.section == "session" && scene.ports.empty()) return "the scene has no cylinder that is coupled";
   if (element.type == "rope") return obstacle_of_rope(*static_cast<const multibody::RopeDef*>(element.def), field);
   if (element.section != "joints") return {};
   const auto& joint = *static_cast<const multibody::JointDef*>(element.def);
@@ -84,6 +89,16 @@ std::string obstacle(const Scene& scene, const ElementRef& element, const Field&
   return "the scene gives the joint neither friction nor limits, so none is computed" + restart(field.key);
 }
 
+// Why the session cannot take this value of a coupling level; empty: it can, or the parameter is another.
+std::string_view obstacle_of_level(const SessionDef& session, const ParameterInfo& parameter, double value) {
+  if (parameter.path == "session.coupling") {
+    return obstacle_of(session, static_cast<coupling::Level>(static_cast<int>(value)));
+  }
+  const auto level = static_cast<coupling::PortLevel>(static_cast<int>(value));
+  if (!parameter.path.ends_with(".coupling") || level == coupling::PortLevel::session) return "";
+  return obstacle_of(session, coupling::level_of(level));
+}
+
 Assignment refused(std::string text) {
   Assignment assignment;
   assignment.status = Status::error(ExitCode::bad_input, std::move(text));
@@ -91,6 +106,13 @@ Assignment refused(std::string text) {
 }
 
 }  // namespace
+
+std::string_view ParameterInfo::choice_of(double number) const noexcept {
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (number == static_cast<double>(i)) return choices[i];
+  }
+  return {};
+}
 
 std::vector<ParameterInfo> parameters(const Scene& scene) {
   std::vector<ParameterInfo> all;
@@ -110,7 +132,7 @@ std::vector<ParameterInfo> parameters(const Scene& scene) {
   return all;
 }
 
-ParameterDirectory::ParameterDirectory(const Scene& scene) : parameters_(parameters(scene)) {
+ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.session), parameters_(parameters(scene)) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) index_.emplace(parameters_[i].path, i);
   for (const ElementRef& element : everything(scene)) {
     for (const Field& field : element.fields) {
@@ -125,7 +147,7 @@ const ParameterInfo* ParameterDirectory::find(std::string_view path) const {
   return found == index_.end() ? nullptr : &parameters_[found->second];
 }
 
-Assignment ParameterDirectory::check(std::string_view path, double value) const {
+Assignment ParameterDirectory::check(std::string_view path, double value, std::optional<SimDuration> over) const {
   const std::string name(path);
   const std::string restart = "cannot be changed while the session runs; start it again with --set " + name + "=VALUE";
   const ParameterInfo* parameter = find(path);
@@ -142,7 +164,18 @@ Assignment ParameterDirectory::check(std::string_view path, double value) const 
   }
   if (!parameter->obstacle.empty()) return refused(name + " would change nothing: " + parameter->obstacle);
   if (parameter->change == Change::restart) {
-    return refused(name + " " + restart);
+    return refused(name + (parameter->is_choice() ? " takes " + choice_list(parameter->choices) + " and " : " ") +
+                   restart);
+  }
+  if (parameter->is_choice() && parameter->choice_of(value).empty()) {
+    return refused(
+        fmt::format("{}: {} is none of its choices; expected {}", name, value, choice_list(parameter->choices)));
+  }
+  if (const std::string_view level = obstacle_of_level(session_, *parameter, value); !level.empty()) {
+    return refused(fmt::format("{}: {}", name, level));
+  }
+  if (parameter->is_choice() && over && over->ns > 0) {
+    return refused(name + " is a choice and changes at once; leave out the time to spread it over");
   }
   if (!parameter->range.contains(value) || !std::isfinite(value)) {
     const std::string range = range_text(parameter->range, parameter->dimension);
@@ -152,11 +185,24 @@ Assignment ParameterDirectory::check(std::string_view path, double value) const 
   Assignment assignment;
   assignment.path = name;
   assignment.value = value;
-  assignment.over = duration_of_seconds(parameter->ramp);
+  assignment.over = over.value_or(duration_of_seconds(parameter->ramp));
   return assignment;
 }
 
-Assignment ParameterDirectory::parse_assignment(std::string_view text) {
+Assignment ParameterDirectory::parse_choice(const ParameterInfo& parameter, std::string_view name,
+                                            std::optional<SimDuration> over) const {
+  while (name.starts_with(' ')) name.remove_prefix(1);
+  while (name.ends_with(' ')) name.remove_suffix(1);
+  const auto found = std::find(parameter.choices.begin(), parameter.choices.end(), name);
+  if (found != parameter.choices.end()) {
+    return check(parameter.path, static_cast<double>(found - parameter.choices.begin()), over);
+  }
+  const std::string meant = closest(name, {parameter.choices.begin(), parameter.choices.end()});
+  return refused(fmt::format("{}: '{}' is none of its choices; expected {}{}", parameter.path, name,
+                             choice_list(parameter.choices), meant.empty() ? "" : "; did you mean '" + meant + "'?"));
+}
+
+Assignment ParameterDirectory::parse_assignment(std::string_view text, std::optional<SimDuration> over) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0) {
     return refused(
@@ -166,6 +212,7 @@ Assignment ParameterDirectory::parse_assignment(std::string_view text) {
   const ParameterInfo* parameter = find(path);
   // an unknown or fixed parameter is refused for that, whatever the value is
   if (parameter == nullptr || parameter->change == Change::restart) return check(path, 0);
+  if (parameter->is_choice()) return parse_choice(*parameter, text.substr(equals + 1), over);
   const QuantityResult quantity = read_quantity(text.substr(equals + 1), Writing::plain, parameter->dimension, units_);
   if (!quantity.value) {
     std::string complaint =
@@ -173,7 +220,7 @@ Assignment ParameterDirectory::parse_assignment(std::string_view text) {
     if (!quantity.complaint.suggestion.empty()) complaint += "; did you mean '" + quantity.complaint.suggestion + "'?";
     return refused(std::move(complaint));
   }
-  return check(path, *quantity.value);
+  return check(path, *quantity.value, over);
 }
 
 }  // namespace slew::scene

@@ -1,9 +1,11 @@
-// The parameters of a scene: every numeric field of every element and section, with its range and whether it may be
-// changed while the session runs.
+// The parameters of a scene: every numeric field and every choice of every element and section, with its range and
+// whether it may be changed while the session runs. A choice is changed by name; its value, in ticks and in programs,
+// is the name's place among the choices, from 0.
 #pragma once
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +27,15 @@ struct ParameterInfo {
   std::string obstacle{};  // why a parameter that is live elsewhere would change nothing in this scene, and is not
   double ramp = 0;         // s, over which a live change is spread by default
   bool is_integer = false;
+  std::span<const std::string_view> choices{};  // names by value; empty: a number
+
+  [[nodiscard]] bool is_choice() const noexcept { return !choices.empty(); }
+  // Name of a choice with this number; empty when it has none.
+  [[nodiscard]] std::string_view choice_of(double number) const noexcept;
   std::string_view doc;
 };
 
-// All parameters of a scene in canonical order. Triples give three, .x .y .z; texts, choices and tables none.
+// All parameters of a scene in canonical order. Triples give three, .x .y .z; texts and tables none.
 [[nodiscard]] std::vector<ParameterInfo> parameters(const Scene& scene);
 
 // A change that may be applied: path, SI value and the time over which it is spread.
@@ -48,12 +55,18 @@ class ParameterDirectory {
   // Null when there is none.
   [[nodiscard]] const ParameterInfo* find(std::string_view path) const;
 
-  // "Bag.mass=1500kg": refused when unknown (with a suggestion), not live, of a wrong dimension or out of range.
-  [[nodiscard]] Assignment parse_assignment(std::string_view text);
-  // The same for a value that is already in SI, as it comes over the wire.
-  [[nodiscard]] Assignment check(std::string_view path, double value) const;
+  // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused when unknown (with a suggestion), not live, of a wrong
+  // dimension, out of range, or none of the choices.
+  [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {});
+  // The same for a value that is already in SI, as it comes over the wire. over: the time that is asked for; without
+  // one it is the parameter's own. A choice is made at once, or refused.
+  [[nodiscard]] Assignment check(std::string_view path, double value, std::optional<SimDuration> over = {}) const;
 
  private:
+  [[nodiscard]] Assignment parse_choice(const ParameterInfo& parameter, std::string_view name,
+                                        std::optional<SimDuration> over) const;
+
+  SessionDef session_;
   std::vector<ParameterInfo> parameters_;
   std::map<std::string, std::size_t, std::less<>> index_;
   std::map<std::string, std::string, std::less<>> not_numeric_;  // path of a field that is no parameter: its type

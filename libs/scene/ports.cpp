@@ -19,6 +19,10 @@ namespace {
 // a start at the end of the stroke, by numbers with six digits and more
 constexpr double kStrokeTolerance = 1e-6;  // m
 
+// the hydraulics' choices are the coupling's
+static_assert(static_cast<int>(hydraulics::PortCoupling::session) == static_cast<int>(coupling::PortLevel::session));
+static_assert(static_cast<int>(hydraulics::PortCoupling::tlm) == static_cast<int>(coupling::PortLevel::tlm));
+
 template <typename Def>
 bool has_element(const std::vector<Def>& defs, std::string_view name) {
   return std::any_of(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
@@ -29,6 +33,7 @@ PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& c
   PortDef port;
   port.name = name;
   port.force = cylinder.force;
+  port.level = static_cast<coupling::PortLevel>(cylinder.coupling);
   port.line_force.efficiency = cylinder.cylinder_coefficient;
   port.line_force.seal_friction = cylinder.seal_friction;
   port.line_force.viscous_friction = cylinder.viscous_friction;
@@ -99,11 +104,22 @@ void make_ports(Scene& scene, Problems& problems) {
     }
     scene.ports.push_back(std::move(port));
   }
+  for (const PortDef& port : scene.ports) {
+    if (port.level == coupling::PortLevel::session) continue;
+    const std::string_view obstacle = obstacle_of(scene.session, coupling::level_of(port.level));
+    if (!obstacle.empty()) problems.push_back({port.name + ".coupling", std::string(obstacle), "session", ""});
+  }
   if (scene.ports.size() > coupling::kMaxPorts) {
     problems.push_back({scene.ports[coupling::kMaxPorts].name,
                         fmt::format("there are {} cylinders", scene.ports.size()),
                         fmt::format("at most {}", coupling::kMaxPorts), ""});
   }
+}
+
+coupling::PortLevels port_levels(const Scene& scene) {
+  std::vector<coupling::PortLevels::Port> ports;
+  for (const PortDef& port : scene.ports) ports.push_back({port.name, port.level});
+  return {scene.session.coupling, std::move(ports)};
 }
 
 std::vector<std::string> row_names(const Scene& scene) {

@@ -35,6 +35,7 @@ struct PortDef {
   double offset = 0;  // m
   double ratio = 1;   // 1 for a line, m/rad for an axis
   coupling::LineForceDef line_force;
+  coupling::PortLevel level = coupling::PortLevel::session;
 };
 
 // A file that belongs to the scene and must be the same on every machine.

@@ -146,6 +146,10 @@ class ScriptReader {
     if (value == nullptr) complain(node.mark, path, {"the key 'value' is missing", "the parameter's new value", ""});
     if (value == nullptr || context_.report.size() > problems) return;
     if (!take_value(value->value, path, node.find("set")->value.mark, change)) return;
+    if (!change.choice.empty() && change.over > 0) {
+      complain(node.find("over")->value.mark, path + ".over", {"a choice changes at once", "no time, or 0", ""});
+      return;
+    }
     scene_.script.changes.push_back(std::move(change));
     if (node.find("over") == nullptr) scene_.script.changes.back().over = directory().find(change_path_)->ramp;
   }
@@ -159,12 +163,16 @@ class ScriptReader {
       return false;
     }
     Field row;
-    static_cast<FieldOptions&>(row) = {.dimension = parameter->dimension, .range = parameter->range};
-    row.type = FieldType::number;
+    static_cast<FieldOptions&>(row) = {
+        .dimension = parameter->dimension, .range = parameter->range, .choices = parameter->choices};
+    row.type = parameter->is_choice() ? FieldType::choice : FieldType::number;
     row.member = [](void* def) -> void* { return &static_cast<ScriptChange*>(def)->value; };
+    row.set_choice = [](void* def, int index) { static_cast<ScriptChange*>(def)->value = index; };
     const std::size_t problems = context_.report.size();
     read_value(node, row, &change, path + ".value", context_);
-    return context_.report.size() == problems;
+    if (context_.report.size() > problems) return false;
+    change.choice = parameter->choice_of(change.value);
+    return true;
   }
 
   const ParameterDirectory& directory() {

@@ -20,6 +20,10 @@ struct LineForceParameters {
   double maximum_stroke = 0;        // m
 };
 
+// How closely the cylinder's power port couples its circuit to the mechanism: a level of its own or the session's. The
+// coupling knows what they mean (coupling/level.h).
+enum class PortCoupling : int { session, hold, linear, two, tlm };
+
 // x = offset + ratio * (coordinate of the force element): distance of its points [m] or angle [rad].
 struct PortCoordinate {
   double offset = 0;  // m
@@ -46,6 +50,7 @@ struct CylinderParameters {
   double end_stiffness = 5e7;         // N/m
   double end_damping = 5e5;           // N s/m
   double dead_volume = 0;             // m3 in each chamber
+  PortCoupling coupling = PortCoupling::session;
 
   // L_chamber - L_piston, the piston's free way [m].
   [[nodiscard]] double free_way() const noexcept { return chamber_length - piston_length; }

@@ -11,6 +11,8 @@
 
 namespace slew::hydraulics {
 
+inline constexpr std::string_view kPortCouplings[] = {"session", "hold", "linear", "two", "tlm"};
+
 template <typename Def, auto Member>
 constexpr Field cylinder_field(std::string_view key, const FieldOptions& options) {
   return field<&Def::common, Member>(key, options);
@@ -84,6 +86,10 @@ constexpr auto cylinder_stroke_fields() {
       cylinder_field<Def, &C::dead_volume>(
           "dead_volume",
           {.dimension = Dimension::volume, .range = kNotNegative, .doc = "oil in each chamber beyond the stroke"}),
+      cylinder_field<Def, &C::coupling>(
+          "coupling", {.change = Change::live,
+                       .choices = kPortCouplings,
+                       .doc = "coupling level of this cylinder's port; session: as session.coupling says"}),
   };
 }
 

@@ -197,6 +197,31 @@ TEST_F(Control, SeveralParametersInOneTickAreOneDeterministicLog) {
   EXPECT_EQ(first_difference(replayed, physics_only(recorded.chain())), "");
 }
 
+TEST_F(Control, CouplingLevelsChangeWhileItRunsAndTheTicksReproduceIt) {
+  start({"--pace", "real", "--duration", "1.6s"}, 200);
+  // the lift a line, the others as the session, which goes to linear and back; the lift to a level of its own at last
+  constexpr std::tuple<const char*, double, StepIndex> kChanges[] = {{"Cyl_Lift.coupling", 4, 400},
+                                                                     {"session.coupling", 1, 600},
+                                                                     {"session.coupling", 2, 800},
+                                                                     {"Cyl_Lift.coupling", 1, 1000}};
+  StepIndex first = -1;
+  for (const auto& [path, level, step] : kChanges) {
+    ASSERT_TRUE(observer_->wait_for_step(step)) << session_->said();
+    const ControlReply reply = observer_->request(ControlAction::set_parameter, level, path);
+    ASSERT_TRUE(reply.is_accepted) << reply.reason;
+    if (first < 0) first = reply.header.step;
+  }
+  EXPECT_EQ(observer_->request(ControlAction::get_parameter, 0, "Cyl_Lift.coupling").value, 1);
+  EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 5, "Cyl_Lift.coupling").is_accepted);
+  EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 1, "Cyl_Lift.coupling", 1'000'000).is_accepted);
+  expect_ends_well();
+  const RecordedSession recorded = session_->recorded();
+  EXPECT_EQ(recorded.chain().at(first), undisturbed().at(first));
+  EXPECT_NE(recorded.chain().at(first + 1).hydraulics, undisturbed().at(first + 1).hydraulics);
+  const HashChain replayed = chain_of_ticks(load_scene(kScene, "1.6s"), recorded.ticks.at(0));
+  EXPECT_EQ(first_difference(replayed, physics_only(recorded.chain())), "");
+}
+
 TEST_F(Control, WrongParametersAreRefusedWithTheReasonAndTouchNothing) {
   start({"--pace", "real", "--duration", "1.6s"}, 200);
   const auto refusal = [this](const std::string& path, double value) {

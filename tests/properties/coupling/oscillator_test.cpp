@@ -36,6 +36,63 @@ TEST(LevelTwo, DampsAsTheOscillatorItselfDoes) {
   }
 }
 
+TEST(LevelLinear, NeverGrowsOnAPortThatHardlyLeaks) {
+  for (const double Omega : kOmegas) {
+    for (const double zeta : {0.0, 0.001, 0.05, 0.2}) {
+      EXPECT_LT(growth_rate({.Omega = Omega, .zeta = zeta, .level = Level::linear}, 400), 1e-6) << Omega << " " << zeta;
+    }
+  }
+}
+
+TEST(LevelLinear, HasALimitBetweenTwoAndThreeWhereTheOilLeaks) {
+  // the study's table, zeta .01: 2.8 at a leakage of 0.1 omega, 2.5 at 1 omega, none at 10 omega
+  for (const auto& [lambda, limit] : {std::pair{0.1, 2.8}, {1.0, 2.5}}) {
+    const auto rate = [&, lambda = lambda](double Omega) {
+      return growth_rate({.Omega = Omega, .zeta = 0.01, .lambda = lambda, .level = Level::linear}, 400);
+    };
+    EXPECT_LT(rate(0.95 * limit), 0) << lambda;
+    EXPECT_GT(rate(1.08 * limit), 0) << lambda;
+  }
+  for (const double Omega : kOmegas) {
+    EXPECT_LT(growth_rate({.Omega = Omega, .zeta = 0.01, .lambda = 10, .level = Level::linear}, 400), 0) << Omega;
+  }
+}
+
+TEST(LevelLinear, DampsAsTheOscillatorItselfDoes) {
+  for (const double Omega : {0.05, 0.1, 0.2, 0.5}) {
+    const double zeta = 0.01;
+    const int exchanges = static_cast<int>(200 / Omega);
+    EXPECT_NEAR(growth_rate({.Omega = Omega, .zeta = zeta, .level = Level::linear}, exchanges), -zeta, 0.05 * zeta)
+        << Omega;
+  }
+}
+
+TEST(LevelTlm, NeverGrowsAtAnyStep) {
+  for (const double Omega : kOmegas) {
+    for (const double zeta : {0.0, 0.001, 0.05, 0.2}) {
+      for (const double lambda : {0.0, 0.1, 1.0, 10.0}) {
+        const OscillatorDef def{.Omega = Omega, .zeta = zeta, .lambda = lambda, .level = Level::tlm};
+        EXPECT_LT(growth_rate(def, 400), 1e-9) << Omega << " " << zeta << " " << lambda;
+      }
+    }
+  }
+}
+
+TEST(LevelTlm, SlowsAndDampsTheSwingAsTheStudySays) {
+  // its parasitic mass K H^2; study: damping ratio 2e-4 and 4e-3, frequency lower by 8e-3 and 5e-2. The hundredth of the
+  // chamber that is charged in steps adds its share, Omega / 400
+  const auto damping = [](double Omega) {
+    return -growth_rate({.Omega = Omega, .level = Level::tlm}, static_cast<int>(200 / Omega));
+  };
+  const auto slower = [](double Omega) {
+    return 1 - frequency({.Omega = Omega, .level = Level::tlm}, static_cast<int>(200 / Omega));
+  };
+  EXPECT_NEAR(damping(0.2), 2e-4 + 0.2 / 400, 2e-4);
+  EXPECT_NEAR(damping(0.5), 4e-3 + 0.5 / 400, 1e-3);
+  EXPECT_NEAR(slower(0.2), 8e-3, 3e-3);
+  EXPECT_NEAR(slower(0.5), 5e-2, 1.5e-2);
+}
+
 TEST(LevelHold, GrowsByHalfOmegaHWithoutTheVolumeCorrection) {
   // growth rate omega^2 H / 2: forward Euler
   for (const double Omega : {0.02, 0.05, 0.1}) {

@@ -116,9 +116,9 @@ TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
   EXPECT_EQ(config.steps, 20'000);
   EXPECT_EQ(config.required_roles,
             bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics) | bit(wire::Role::recorder));
-  EXPECT_TRUE(config.judge_parameter("Bag.mass", 1500).is_accepted);
-  EXPECT_FALSE(config.judge_parameter("Bag.mass", -1).is_accepted);
-  EXPECT_FALSE(config.judge_parameter("Bag.mas", 1).is_accepted);
+  EXPECT_TRUE(config.judge_parameter("Bag.mass", 1500, -1).is_accepted);
+  EXPECT_FALSE(config.judge_parameter("Bag.mass", -1, -1).is_accepted);
+  EXPECT_FALSE(config.judge_parameter("Bag.mas", 1, -1).is_accepted);
 }
 
 }  // namespace

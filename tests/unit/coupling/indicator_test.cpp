@@ -26,7 +26,7 @@ TEST(Indicator, PerfectAgreementIsGreen) {
   Indicator indicator(1, milliseconds(1));
   Pair pair = one_port();
   pair.mechanism.work[0] = pair.actuators.work[0] = 1.0;
-  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators);
+  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
   EXPECT_EQ(indicator.port(0).eta, 0.0);
   EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::green);
 }
@@ -40,7 +40,7 @@ TEST(Indicator, VolumeCorrectionIsNotAnError) {
   pair.mechanism.F_used[0] = 1e5 - 1e8 * e_x;
   pair.mechanism.work[0] = 10;
   pair.actuators.work[0] = 10 - (1e5 * e_x - 0.5 * 1e8 * e_x * e_x);
-  indicator.update(pair.mechanism, pair.actuators);
+  indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
   EXPECT_NEAR(indicator.port(0).e_x, e_x, 1e-18);
   EXPECT_NEAR(indicator.port(0).e_F, 0, 1e-9);
   EXPECT_NEAR(indicator.port(0).dE_star, 0, 1e-12);
@@ -53,7 +53,7 @@ TEST(Indicator, EnergyThatTheCouplingCreatesRaisesTheAlarmAfterItsTime) {
   pair.actuators.work[0] = 10 - 0.5;
   int steps = 0;
   while (!indicator.creates_energy() && steps < 1000) {
-    indicator.update(pair.mechanism, pair.actuators);
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
     ++steps;
   }
   EXPECT_EQ(steps, 200);
@@ -86,7 +86,7 @@ TEST(Indicator, AnIdlePortIsGreen) {
   pair.actuators.F[0] = 1e-11;
   pair.mechanism.F_used[0] = 1.1e-11;
   pair.actuators.work[0] = 3e-31;
-  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators);
+  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
   EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::green);
 }
 
@@ -97,11 +97,11 @@ TEST(Indicator, ForgetsAnErrorAfterItsWindow) {
     Pair pair = one_port();
     pair.mechanism.work[0] = 10;
     pair.actuators.work[0] = 10 + 0.5;
-    indicator.update(pair.mechanism, pair.actuators);
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
     pair.actuators.work[0] = 10;
     int steps = 1;
     while (indicator.port(0).eta > 0 && steps < 100000) {
-      indicator.update(pair.mechanism, pair.actuators);
+      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
       ++steps;
     }
     // the step that forgets it begins the bucket after its window

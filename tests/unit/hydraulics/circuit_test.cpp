@@ -291,6 +291,23 @@ TEST(Circuit, lambda_takes_the_steeper_side_of_an_anti_cavitation_valve) {
   EXPECT_GT(integrator.actuators()[0].lambda, 1 + closed);
 }
 
+TEST(Circuit, lambda_before_an_anti_cavitation_valve_opens_is_what_it_is_just_behind) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  const auto B = at(circuit.find_volume("Vol_LiftCyl_B"));
+  const auto lambda_at = [&](double below) {
+    integrator.mutable_state()[B] = 1e5 - below;
+    integrator.refresh();
+    return integrator.actuators()[0].lambda;
+  };
+  // opens at 0.2 bar; the published slope is that of the side to which it would switch, on both sides of the switch
+  const double before = lambda_at(0.1999e5), behind = lambda_at(0.2001e5);
+  EXPECT_GT(before, 0.99 * behind);
+  EXPECT_GT(behind, 10 * lambda_at(-1e5));
+}
+
 TEST(Circuit, live_parameters_act_at_once_and_others_are_refused) {
   Circuit circuit(crane_circuit());
   std::vector<double> y(at(circuit.state_count())), f(y), g(y);

@@ -1,6 +1,7 @@
 // The hash of a subsystem's state covers every bit that its future depends on.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -86,6 +87,32 @@ TEST_F(SubsystemHash, ChangesWithAParameterChangeUnderWay) {
   }
 }
 
+TEST_F(SubsystemHash, ChangesWithTheLevelOfAPort) {
+  for (coupling::Subsystem* subsystem : {static_cast<coupling::Subsystem*>(crane.mechanics.get()),
+                                         static_cast<coupling::Subsystem*>(crane.hydraulics.get())}) {
+    std::set<std::uint64_t> seen = {subsystem->state_hash()};
+    for (const char* path : {"session.coupling", "Cyl_Lift.coupling", "Cyl_Jib.coupling"}) {
+      ASSERT_TRUE(subsystem->change_parameter(crane.n, {path, 1, {}}));
+      EXPECT_TRUE(seen.insert(subsystem->state_hash()).second) << path;
+    }
+  }
+}
+
+TEST_F(SubsystemHash, OfHydraulicsChangesWithEveryStateOfALineByOneUlp) {
+  ASSERT_TRUE(crane.mechanics->change_parameter(crane.n, {"Cyl_Lift.coupling", 4, {}}));
+  ASSERT_TRUE(crane.hydraulics->change_parameter(crane.n, {"Cyl_Lift.coupling", 4, {}}));
+  for (int i = 0; i < 50; ++i) crane.step(CranePair::levers(crane.n));
+  int lines = 0;
+  for (hydraulics::LineChamber& line : crane.hydraulics->integrator().mutable_lines()) {
+    if (!line.is_line) continue;
+    ++lines;
+    hydraulics::LineState& state = line.state;
+    std::array values = {&state.c_h, &state.c_m, &state.c_m_next, &state.Z, &state.Z_next, &state.x};
+    for (double* value : values) expect_each_counts(*crane.hydraulics, {value, 1}, "line");
+  }
+  EXPECT_EQ(lines, 2);
+}
+
 TEST_F(SubsystemHash, ChangesWithTheValueOfAParameterThatHasArrived) {
   CranePair other(scene);
   other.start();
@@ -130,6 +157,10 @@ TEST_F(SubsystemHash, TellsAFailedStateFromAGoodOne) {
 TEST_F(SubsystemHash, AfterAResetIsThatOfAFreshOneAtEveryStep) {
   ASSERT_TRUE(crane.mechanics->change_parameter(crane.n, {"Bag.mass", 1500, milliseconds(100)}));
   ASSERT_TRUE(crane.hydraulics->change_parameter(crane.n, {"MainPump.set_pressure", 2e6, {}}));
+  for (const char* path : {"session.coupling", "Cyl_Jib.coupling"}) {
+    ASSERT_TRUE(crane.mechanics->change_parameter(crane.n, {path, 3, {}}));
+    ASSERT_TRUE(crane.hydraulics->change_parameter(crane.n, {path, 3, {}}));
+  }
   for (int i = 0; i < 50; ++i) crane.step(CranePair::levers(crane.n));
   crane.mechanics->reset();
   crane.hydraulics->reset();

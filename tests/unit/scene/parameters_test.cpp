@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "build_paths.h"
 #include "scene_text.h"
 
 namespace slew::scene {
@@ -96,6 +97,66 @@ forces:
   EXPECT_TRUE(rope.check("Rope.free_length", 1).status.is_ok());
   EXPECT_EQ(rope.check("Rope.stiffness", 5).status.text,
             "Rope.stiffness would change nothing: the rope has its spring by axial_rigidity");
+}
+
+constexpr const char* kCylinder = SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml";
+
+TEST(ParameterOfChoices, IsListedWithItsNamesAndTakesOneOfThem) {
+  const Scene scene = load_file(kCylinder);
+  ParameterDirectory directory(scene);
+  const ParameterInfo* level = directory.find("session.coupling");
+  ASSERT_NE(level, nullptr);
+  EXPECT_EQ(level->change, Change::live);
+  EXPECT_EQ(level->choice_of(level->value), "two");
+  EXPECT_EQ(level->choice_of(0.5), "");
+  const Assignment assignment = directory.parse_assignment("Cyl_Lift.coupling = linear");
+  ASSERT_FALSE(assignment.status.is_ok());  // the path has a blank
+  const Assignment chosen = directory.parse_assignment("Cyl_Lift.coupling= linear");
+  EXPECT_TRUE(chosen.status.is_ok()) << chosen.status.text;
+  EXPECT_EQ(chosen.value, 2);
+  EXPECT_EQ(chosen.over.ns, 0);
+}
+
+TEST(ParameterOfChoices, IsRefusedWhatItIsNot) {
+  ParameterDirectory directory(load_file(kCylinder));
+  const auto refusal = [&](const char* text) { return directory.parse_assignment(text).status.text; };
+  EXPECT_EQ(
+      refusal("Cyl_Lift.coupling=liner"),
+      "Cyl_Lift.coupling: 'liner' is none of its choices; expected session, hold, linear, two or tlm; did you mean "
+      "'linear'?");
+  EXPECT_EQ(refusal("session.coupling=2"),
+            "session.coupling: '2' is none of its choices; expected hold, linear, two or tlm");
+  EXPECT_EQ(refusal("session.pace=free"),
+            "session.pace takes real or free and cannot be changed while the session runs; start it again with --set "
+            "session.pace=VALUE");
+  EXPECT_EQ(directory.check("session.coupling", 4).status.text,
+            "session.coupling: 4 is none of its choices; expected hold, linear, two or tlm");
+  EXPECT_EQ(directory.check("session.coupling", 1, milliseconds(10)).status.text,
+            "session.coupling is a choice and changes at once; leave out the time to spread it over");
+  EXPECT_TRUE(directory.check("session.coupling", 1, SimDuration{}).status.is_ok());
+}
+
+TEST_F(Parameters, OfACouplingThatIsNotThereIsRefused) {
+  EXPECT_EQ(directory.check("session.coupling", 1).status.text,
+            "session.coupling would change nothing: the scene has no cylinder that is coupled");
+}
+
+TEST(ParameterOfChoices, IsTheSameInTheCanonicalText) {
+  const std::string text = R"(
+script:
+  parameters:
+    - {at: 1 s, set: Cyl_Lift.coupling, value: tlm}
+    - {at: 2 s, set: session.coupling, value: hold, over: 0}
+)";
+  const Scene crane = load_file(kCylinder);
+  const Scene scene = load_text(crane.expanded_text.substr(0, crane.expanded_text.find("script:")) + text, "test");
+  ASSERT_EQ(scene.script.changes.size(), 2u);
+  EXPECT_EQ(scene.script.changes[0].choice, "tlm");
+  EXPECT_EQ(scene.script.changes[0].value, 4);
+  EXPECT_EQ(scene.script.changes[1].value, 0);
+  const Scene again = load_text(scene.expanded_text, "test");
+  EXPECT_EQ(again.expanded_text, scene.expanded_text);
+  EXPECT_EQ(again.script.changes[0].choice, "tlm");
 }
 
 TEST_F(Parameters, AValueFromTheWireIsCheckedInTheSameWay) {

@@ -76,7 +76,9 @@ void CoupledRun::step(std::span<const double> controls) {
 
 void CoupledRun::change(std::string_view path, double value, SimDuration over) {
   const ParameterChange change{path, value, over};
-  if (!mechanics_.change_parameter(n_, change) && !hydraulics_.change_parameter(n_, change)) {
+  // a level of the coupling is both sides'
+  const bool of_mechanics = mechanics_.change_parameter(n_, change);
+  if (!hydraulics_.change_parameter(n_, change) && !of_mechanics) {
     throw std::runtime_error("no such parameter: " + std::string(path));
   }
 }
@@ -154,7 +156,8 @@ Comparison compare(const scene::Scene& scene, const Traces& reference, double du
         port.net += defects.dE_star;
       }
       const double F = run.actuators().F[i];
-      port.spring = std::max(port.spring, F * F / (2 * run.actuators().K[i]));
+      const double K = run.hydraulics().integrator().actuators()[i].stiffness;
+      port.spring = std::max(port.spring, F * F / (2 * K));
       if (!is_on_grid) continue;
       port.x = std::max(port.x, std::fabs(run.mechanism().x[i] - reference[i].x[k]));
       port.F = std::max(port.F, std::fabs(F - reference[i].F[k]));

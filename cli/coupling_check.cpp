@@ -1,0 +1,125 @@
+#include "cli/coupling_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include "cli/display.h"
+#include "coupling/indicator.h"
+#include "scene/ports.h"
+
+namespace slew::cli {
+namespace {
+
+using coupling::Level;
+using wire::Role;
+
+// of a port without leaks: the little that seals and hoses have
+constexpr double kLeastDamping = 0.02;
+// a tenth more mass than the machine has
+constexpr double kLargestParasiticMass = 0.1;
+
+constexpr std::string_view kNames[coupling::kLevels] = {"hold", "linear", "two", "tlm"};
+
+// The ports of one level at the start: their mobilities and oil columns, as if there were no others.
+struct Ports {
+  std::vector<std::size_t> port;
+  coupling::PortMatrix W;
+  coupling::PortArray K;
+};
+
+Ports ports_of(Level level, const coupling::PortLevels& levels, const coupling::MechanismSample& mechanism,
+               const coupling::ActuatorSample& actuators, double H) {
+  Ports ports;
+  const std::size_t m = mechanism.x.size();
+  for (std::size_t i = 0; i < m; ++i) {
+    if (levels[i] == level) ports.port.push_back(i);
+  }
+  for (const std::size_t i : ports.port) {
+    // a line states its impedance K H
+    ports.K.push_back(level == Level::tlm ? actuators.D[i] / H : actuators.K[i]);
+    for (const std::size_t j : ports.port) ports.W.push_back(mechanism.W[i * m + j]);
+  }
+  return ports;
+}
+
+// Index among the ports of the one whose own oil column swings fastest.
+std::size_t fastest(const Ports& ports) {
+  std::size_t found = 0;
+  const std::size_t m = ports.port.size();
+  const auto square = [&](std::size_t i) { return ports.W[i * m + i] * ports.K[i]; };
+  for (std::size_t i = 1; i < m; ++i) {
+    if (square(i) > square(found)) found = i;
+  }
+  return found;
+}
+
+// Rounded down to two digits.
+std::string safe_step(double seconds) {
+  const double digit = std::pow(10, std::floor(std::log10(seconds)) - 1);
+  return duration_text(std::floor(seconds / digit * (1 + 1e-12)) * digit);
+}
+
+std::string swinging(const Ports& ports, Level level, const std::string& name,
+                     const coupling::ActuatorSample& actuators, double H) {
+  const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
+  const double leak = actuators.lambda[ports.port[fastest(ports)]];
+  const double zeta = leak > 0 && omega_H > 0 ? 0.5 * leak * H / omega_H : kLeastDamping;
+  const double limit = coupling::omega_limit(level, zeta);
+  if (!(omega_H > limit)) return {};
+  const std::string damping = level != Level::hold ? ""
+                                                   : fmt::format(" (twice the damping ratio {:.2g}{})", zeta,
+                                                                 leak > 0 ? " of its leaks" : ", assumed");
+  return fmt::format(
+      "{}: omega_H, the angle that the machine swings on its oil in one step of {}, is {:.2g}; level '{}' is right up "
+      "to "
+      "{:.2g}{}; the run may be wrong or unstable: use session.step {} or less{}",
+      name, duration_text(H), omega_H, kNames[static_cast<std::size_t>(level)], limit, damping,
+      safe_step(H * limit / omega_H), level == Level::two ? "" : ", or coupling 'two'");
+}
+
+// K H^2 against 1/W, port by port
+std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) {
+  const std::size_t m = ports.port.size(), i = fastest(ports);
+  const double mass = ports.K[i] * H * H, share = mass * ports.W[i * m + i];
+  if (!(share > kLargestParasiticMass)) return {};
+  return fmt::format(
+      "{}: level 'tlm' gives it a parasitic mass of {:.3g} kg, {:.0f} % of what it moves, at a step of {}; the run "
+      "will be "
+      "too slow and too damped: use session.step {} or less, or coupling 'two'",
+      scene.ports[ports.port[i]].name, mass, 100 * share, duration_text(H),
+      safe_step(H * std::sqrt(kLargestParasiticMass / share)));
+}
+
+}  // namespace
+
+std::vector<std::string> coupling_warnings(const scene::Scene& scene, const DirectSession& session) {
+  std::vector<std::string> warnings;
+  if (scene.ports.empty() || !scene.has_mechanics() || !scene.has_hydraulics()) return warnings;
+  const coupling::MechanismSample& mechanism = session.sample(Role::mechanics).mechanism;
+  const coupling::ActuatorSample& actuators = session.sample(Role::hydraulics).actuators;
+  const coupling::PortLevels levels = scene::port_levels(scene);
+  const double H = scene.session.step_duration().seconds();
+  for (int k = 0; k < coupling::kLevels; ++k) {
+    const auto level = static_cast<Level>(k);
+    const Ports ports = ports_of(level, levels, mechanism, actuators, H);
+    if (ports.port.empty()) continue;
+    const std::string& name = scene.ports[ports.port[fastest(ports)]].name;
+    std::string warning =
+        level == Level::tlm ? heavy_line(ports, scene, H) : swinging(ports, level, name, actuators, H);
+    if (!warning.empty()) warnings.push_back(std::move(warning));
+  }
+  return warnings;
+}
+
+std::vector<std::string> coupling_warnings(const scene::Scene& scene) {
+  if (scene.ports.empty()) return {};
+  DirectSession session(scene);
+  if (!session.start().is_ok()) return {};
+  return coupling_warnings(scene, session);
+}
+
+}  // namespace slew::cli

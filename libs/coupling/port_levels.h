@@ -1,0 +1,49 @@
+// The coupling level of every port of a session, as each of its nodes keeps it.
+//
+// A port has a level of its own or follows the session's. Levels change at step boundaries, by parameter changes that
+// all nodes apply at the same step: "session.coupling" (a Level) and "<port>.coupling" (a PortLevel). Both sides can
+// change at once because a sample means the same at every level: a level only says what a side does with it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/state_hash.h"
+#include "coupling/level.h"
+
+namespace slew::coupling {
+
+class PortLevels {
+ public:
+  struct Port {
+    std::string name;
+    PortLevel level = PortLevel::session;
+  };
+
+  // ports: in port order.
+  PortLevels(Level session, std::vector<Port> ports);
+
+  [[nodiscard]] Level operator[](std::size_t port) const noexcept { return levels_[port]; }
+  // The first of the enum's order that any port has; the session's without ports.
+  [[nodiscard]] Level lowest() const noexcept;
+
+  // True when the path is the session's or a port's and the value is one of its levels, by number. No allocation.
+  bool change(std::string_view path, double value) noexcept;
+  // As they were at construction.
+  void reset() noexcept;
+
+  // What differs from the construction.
+  void add_to(StateHash& hash) const noexcept;
+
+ private:
+  void follow() noexcept;
+
+  Level session_, first_session_;
+  std::vector<Port> ports_;
+  std::vector<PortLevel> first_;
+  std::vector<Level> levels_;  // by port, in force
+};
+
+}  // namespace slew::coupling

@@ -1,0 +1,64 @@
+// What is said about the step and the coupling levels before a run.
+#include "cli/coupling_check.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "build_paths.h"
+#include "coupling/indicator.h"
+
+namespace slew::cli {
+namespace {
+
+std::vector<std::string> warnings(const std::string& file, const scene::Overrides& overrides) {
+  return coupling_warnings(scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides));
+}
+
+TEST(CouplingCheck, SaysNothingOfScenesAsTheyAre) {
+  for (const char* file :
+       {"truck_crane.yaml", "single_cylinder.yaml", "tipper.yaml", "four_bar.yaml", "truck_crane_flexible.yaml"}) {
+    EXPECT_EQ(warnings(file, {}), std::vector<std::string>()) << file;
+  }
+}
+
+TEST(CouplingCheck, NamesThePortAndAStepThatSuitsTheLevel) {
+  // the crane's omega_H is 0.1 at 1 ms (docs/coupling-results.md)
+  const auto two = warnings("truck_crane.yaml", {"session.step=20 ms"});
+  ASSERT_EQ(two.size(), 1u);
+  EXPECT_NE(two[0].find("Cyl_Lift: omega_H"), std::string::npos) << two[0];
+  EXPECT_NE(two[0].find("level 'two' is right up to 1"), std::string::npos) << two[0];
+  EXPECT_NE(two[0].find("use session.step"), std::string::npos) << two[0];
+  EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=5 ms"}).size(), 0u);
+  EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=10 ms", "session.coupling=linear"}).size(), 1u);
+  EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=2 ms", "session.coupling=linear"}).size(), 0u);
+}
+
+TEST(CouplingCheck, TheStepThatItNamesIsBelowTheLimit) {
+  const auto before = warnings("truck_crane.yaml", {"session.step=20 ms"});
+  ASSERT_EQ(before.size(), 1u);
+  const std::size_t from = before[0].find("session.step ") + 13;
+  const std::string step = before[0].substr(from, before[0].find(" or less") - from);
+  EXPECT_EQ(warnings("truck_crane.yaml", {"session.step=" + step}).size(), 0u) << step;
+}
+
+TEST(CouplingCheck, LooksAtEveryLevelForItself) {
+  // hold is beyond its limit on any machine that swings; a line is heavy at long steps
+  const auto mixed =
+      warnings("truck_crane.yaml", {"session.step=5 ms", "Cyl_Jib.coupling=hold", "Cyl_Lift.coupling=tlm"});
+  ASSERT_EQ(mixed.size(), 2u);
+  EXPECT_NE(mixed[0].find("Cyl_Jib: omega_H"), std::string::npos) << mixed[0];
+  EXPECT_NE(mixed[0].find("level 'hold'"), std::string::npos) << mixed[0];
+  EXPECT_NE(mixed[1].find("Cyl_Lift: level 'tlm' gives it a parasitic mass of"), std::string::npos) << mixed[1];
+  EXPECT_EQ(warnings("truck_crane.yaml", {"session.coupling=tlm", "session.step=0.2 ms"}).size(), 0u);
+}
+
+TEST(OmegaLimit, GrowsFromHoldToTlm) {
+  using coupling::Level;
+  EXPECT_LT(coupling::omega_limit(Level::hold, 0.02), coupling::omega_limit(Level::linear, 0.02));
+  EXPECT_LT(coupling::omega_limit(Level::linear, 0.02), coupling::omega_limit(Level::two, 0.02));
+  EXPECT_GT(coupling::omega_limit(Level::tlm, 0.02), 1e9);
+}
+
+}  // namespace
+}  // namespace slew::cli
