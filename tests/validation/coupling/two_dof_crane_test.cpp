@@ -124,6 +124,16 @@ TEST(TwoDofCrane, co_simulation_of_level_two_follows_the_published_case_with_eve
   }
 }
 
+TEST(TwoDofCrane, runge_kutta_beyond_its_limit_is_refused_with_the_volume_and_a_substep_that_would_do) {
+  // the valve's edges empty a chamber in 0.2 ms
+  const scene::Scene scene = load({"hydraulics.solver=rk4", "hydraulics.max_substep=1 ms"});
+  CoupledRun run(scene);
+  const Status status = run.start();
+  ASSERT_FALSE(status.is_ok());
+  EXPECT_NE(status.text.find("Vol_"), std::string::npos) << status.text;
+  EXPECT_NE(status.text.find("Set hydraulics.max_substep below 0.4"), std::string::npos) << status.text;
+}
+
 // ---- E03 ------------------------------------------------------------------------------------------------------
 
 // The two rods by their own equations, absolute angles from +x, no code of the libraries.
