@@ -61,7 +61,8 @@ TEST_F(LiftLines, AtRestPushAsTheChambersDid) {
 }
 
 TEST_F(LiftLines, KeepTheOilOfAPistonThatComesBack) {
-  // closed valves: in 20 ms by 0.5 mm and back, then lumped; as a volume it does the same
+  // closed valves: in 20 ms by 0.5 mm and back, then lumped; as a volume it does the same, but for what leaks on the
+  // way
   const Actuator& lift = circuit.actuators()[kLift];
   double p_a[2] = {}, p_b[2] = {};
   for (const bool is_line : {false, true}) {
@@ -75,8 +76,8 @@ TEST_F(LiftLines, KeepTheOilOfAPistonThatComesBack) {
     p_a[is_line] = pressure(lift.port_a);
     p_b[is_line] = pressure(lift.port_b);
   }
-  EXPECT_NEAR(p_a[1], p_a[0], 2e-3 * p_a[0]);
-  EXPECT_NEAR(p_b[1], p_b[0], 2e-3 * p_b[0]);
+  EXPECT_NEAR(p_a[1], p_a[0], 5e-3 * p_a[0]);
+  EXPECT_NEAR(p_b[1], p_b[0], 5e-3 * p_b[0]);
 }
 
 TEST_F(LiftLines, CompressTheirOilAsAVolumeDoes) {
@@ -93,7 +94,7 @@ TEST_F(LiftLines, CompressTheirOilAsAVolumeDoes) {
     p_a[is_line] = pressure(lift.port_a);
   }
   EXPECT_GT(p_a[0], 1e6 + circuit.lowest_pressure());
-  EXPECT_NEAR(p_a[1], p_a[0], 2e-3 * p_a[0]);
+  EXPECT_NEAR(p_a[1], p_a[0], 5e-3 * p_a[0]);
 }
 
 TEST_F(LiftLines, JacobianIsTheDerivativeOfTheRates) {
