@@ -121,12 +121,14 @@ std::string write_overlay(const std::string& file, const scene::Overrides& setti
                                            "name another file with --overlay");
   }
   std::error_code error;
-  const auto folder = std::filesystem::weakly_canonical(std::filesystem::path(target), error).parent_path();
-  if (folder != std::filesystem::weakly_canonical(source, error).parent_path()) {
+  const auto folder_of = [&error](const std::filesystem::path& of) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(of, error).parent_path(), error);
+  };
+  if (folder_of(target) != folder_of(source)) {
     throw Failure(ExitCode::bad_input, target +
                                            " would not lie beside its scene, whose files it needs; nothing was "
                                            "written; name a file in " +
-                                           source.parent_path().string() + "/");
+                                           folder_of(source).string() + "/");
   }
   scene::Scene scene = scene::load_file(file, settings);
   std::ofstream out(target, std::ios::binary);

@@ -184,7 +184,7 @@ function draw(){const W=1000,H=560,L=80,R=20,T=30,B=60,svg=document.getElementBy
  if(!P.length){svg.append(el('text',{x:W/2,y:H/2,'text-anchor':'middle'},'no stable row'));return}
  const span=f=>{let a=Math.log10(Math.min(...P.map(f))),b=Math.log10(Math.max(...P.map(f)));const m=.05*(b-a)+.08;return[a-m,b+m]};
  const X=span(p=>p.x),Y=span(p=>p.y),px=x=>L+(Math.log10(x)-X[0])/(X[1]-X[0])*(W-L-R),py=y=>H-B-(Math.log10(y)-Y[0])/(Y[1]-Y[0])*(H-T-B);
- const grid=(S2,f,g)=>{const wide=S2[1]-S2[0]>2.2;for(let d=Math.floor(S2[0]);d<=S2[1];d++)for(const m of wide?[1]:[1,2,5]){const v=m*10**d,l=Math.log10(v);if(l>=S2[0]&&l<=S2[1])g(v)}};
+ const grid=(S2,f,g)=>{const w=S2[1]-S2[0];for(let d=Math.floor(S2[0]);d<=S2[1];d++)for(const m of w>2.2?[1]:w>.7?[1,2,5]:[1,2,3,4,5,6,7,8,9]){const v=m*10**d,l=Math.log10(v);if(l>=S2[0]&&l<=S2[1])g(v)}};
  grid(X,px,v=>{svg.append(el('line',{x1:px(v),x2:px(v),y1:T,y2:H-B,stroke:'#e4e4e4'}),el('text',{x:px(v),y:H-B+18,'text-anchor':'middle','font-size':13},+v.toPrecision(2)))});
  grid(Y,py,v=>{svg.append(el('line',{x1:L,x2:W-R,y1:py(v),y2:py(v),stroke:'#e4e4e4'}),el('text',{x:L-8,y:py(v)+4,'text-anchor':'end','font-size':13},+(100*v).toPrecision(2)+' %'))});
  svg.append(el('text',{x:(L+W-R)/2,y:H-14,'text-anchor':'middle','font-size':14},'microseconds per simulated millisecond (median step)'));
@@ -196,8 +196,9 @@ function draw(){const W=1000,H=560,L=80,R=20,T=30,B=60,svg=document.getElementBy
   c.onclick=()=>document.getElementById('row'+p.i).scrollIntoView({block:'center'});svg.append(c);
   if(p.i==0)svg.append(el('circle',{cx:px(p.x),cy:py(p.y),r:12,fill:'none',stroke:'#222','stroke-width':2,'pointer-events':'none'}),el('text',{x:px(p.x)+16,y:py(p.y)-10,'font-size':13,'font-weight':'bold'},'now'));
   if(D.answer&&D.answer.row==p.i)svg.append(el('rect',{x:px(p.x)-14,y:py(p.y)-14,width:28,height:28,fill:'none',stroke:'#d90','stroke-width':2.5,'pointer-events':'none'}),el('text',{x:px(p.x)+18,y:py(p.y)+18,'font-size':13,'font-weight':'bold',fill:'#a60'},'answer'))}
- groups.forEach((g,k)=>svg.append(el('circle',{cx:W-R-150,cy:T+14+k*18,r:5,fill:colours[k%colours.length]}),el('text',{x:W-R-138,y:T+18+k*18,'font-size':13},path.split('.').pop()+' '+g)));
- svg.append(el('line',{x1:W-R-156,x2:W-R-144,y1:T+14+groups.length*18,y2:T+14+groups.length*18,stroke:'#0a6','stroke-width':2}),el('text',{x:W-R-138,y:T+18+groups.length*18,'font-size':13},'Pareto front'))}
+ const shown=groups.filter(g=>P.some(p=>(p.r.settings[path]||'as the scene')==g)),n=shown.length;
+ shown.forEach((g,k)=>svg.append(el('circle',{cx:W-R-170,cy:T+14+k*18,r:5,fill:colours[groups.indexOf(g)%colours.length]}),el('text',{x:W-R-158,y:T+18+k*18,'font-size':13},path.split('.').pop()+' '+g)));
+ svg.append(el('line',{x1:W-R-176,x2:W-R-164,y1:T+14+n*18,y2:T+14+n*18,stroke:'#0a6','stroke-width':2}),el('text',{x:W-R-158,y:T+18+n*18,'font-size':13},'Pareto front'))}
 let order=null,up=true;
 function table(){const head=['','settings',...names.slice(1),'eta','net','joints','\u00b5s/ms','worst step','stable'];
  const cell=(r,i)=>[(i==0?'now':'')+(r.is_pareto?' best':''),r.label,...names.slice(1).map(n=>r.errors&&r.errors[n]?(kind.value=='rms'?r.errors[n].relative_rms:r.errors[n].relative):null),

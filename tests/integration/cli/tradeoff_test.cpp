@@ -54,7 +54,8 @@ TEST_F(Tradeoff, ShowsLevelTwoCloserThanHoldAndShortStepsCloserThanLongOnes) {
   EXPECT_GT(worst_error(report, "step 4ms, coupling two"), 4 * now);
   EXPECT_GT(worst_error(report, "step 1ms, coupling hold"), 10 * now);
   for (const nlohmann::json& variable : report.at("variables")) {
-    if (variable.at("range") > 0.0) EXPECT_LT(variable.at("spread"), 1e-4 * variable.at("range").get<double>());
+    const double range = variable.at("range");
+    EXPECT_LE(variable.at("spread").get<double>(), 1e-4 * range) << variable;
   }
   EXPECT_TRUE(std::filesystem::exists(work_.path() / "page.html"));
   EXPECT_GT(std::filesystem::file_size(work_.path() / "rows.csv"), 500u);
@@ -65,7 +66,7 @@ TEST_F(Tradeoff, KeepsRefusedRowsWithTheReason) {
   ASSERT_EQ(result.code, 0) << result.err;
   const nlohmann::json rows = parsed(result).at("rows");
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_NE(rows.at(1).at("refusal").get<std::string>().find("mechanics.max_substep"), std::string::npos) << rows;
+  EXPECT_NE(rows.at(1).at("refusal").get<std::string>().find("out of range"), std::string::npos) << rows;
   EXPECT_FALSE(rows.at(1).at("is_stable").get<bool>());
 }
 
@@ -111,7 +112,7 @@ TEST_F(Tradeoff, GoesOnAfterAnInterruption) {
   ASSERT_EQ(second.code, 0) << second.err;
   const nlohmann::json all = parsed(second);
   EXPECT_TRUE(all.at("is_complete").get<bool>());
-  EXPECT_GE(all.at("kept"), 1);
+  EXPECT_GE(all.at("kept").get<int>(), 1);
   // what was kept is as it was
   for (std::size_t i = 0; i < part.at("rows").size(); ++i) {
     if (!part.at("rows").at(i).at("is_done").get<bool>()) continue;
@@ -128,7 +129,7 @@ TEST_F(Tradeoff, TakesAFinelySplitReferenceWhereShapesTouch) {
   const nlohmann::json report = parsed(result);
   EXPECT_NE(report.at("reference").get<std::string>().find("touch"), std::string::npos) << report.at("reference");
   // without contact the ball falls through
-  EXPECT_GT(report.at("rows").at(1).value("worst_error", 10.0), report.at("rows").at(0).at("worst_error"));
+  EXPECT_GT(report.at("rows").at(1).value("worst_error", 10.0), report.at("rows").at(0).value("worst_error", 0.0));
 }
 
 }  // namespace

@@ -242,7 +242,7 @@ TEST(Monolith, CarriesTheBristlesOfJointFriction) {
   const scene::Scene scene = scene::load_text(R"(
 bodies:
   Rod: {mass: 2 kg, center_of_mass: [0.5 m, 0, 0], inertia: [0.1, 0.167, 0.167]}
-  Slider: {mass: 3 kg, inertia: [0.1, 0.1, 0.1]}
+  Slider: {position: [2 m, 0, 0], mass: 3 kg, inertia: [0.1, 0.1, 0.1]}
 joints:
   Hinge: {type: revolute, body1: Ground, body2: Rod, coulomb_friction: 12 Nm, friction_speed: 0.01 rad/s,
           bristle_stiffness: 1e4 Nm/rad, bristle_damping: 10 Nms/rad}
