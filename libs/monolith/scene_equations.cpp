@@ -18,6 +18,8 @@ constexpr double kLengthScale = 0.01;          // m
 constexpr double kMechanismSpeedScale = 0.01;  // rad/s, m/s
 constexpr double kWorkScale = 1e3;             // J
 
+constexpr std::string_view kNoBristles = "the reference does not carry the bristles of joint friction";
+
 // first entry of a joint's quaternion in q, or -1
 int quaternion_of(const multibody::Link& link) {
   if (link.joint == multibody::LinkJoint::spherical) return link.q;
@@ -84,10 +86,67 @@ std::vector<double> SceneEquations::absolute_scales() const {
 
 std::string SceneEquations::state_name(std::size_t index) const {
   if (index >= work_) return "the work of " + ports_[index - work_].name;
-  if (index >= component_) return "state " + std::to_string(index - component_) + " of the hydraulic components";
+  if (index >= component_) return "a state of " + circuit_->state_owner(static_cast<int>(index - component_));
   if (index >= p_) return "the pressure of " + circuit_->volume_name(static_cast<int>(index - p_));
   return (index < u_ ? "the position of " : "the speed of ") +
          std::string(multibody::joint_of(model_, static_cast<int>(index)));
+}
+
+StateOwner SceneEquations::owner(std::size_t index) const {
+  using enum StateOwner::Kind;
+  if (index >= work_) return {port, ports_[index - work_].name};
+  if (index >= component_) return {component, circuit_->state_owner(static_cast<int>(index - component_))};
+  if (index >= p_) return {volume, circuit_->volume_name(static_cast<int>(index - p_))};
+  for (const multibody::FlexiblePart& part : model_.parts) {
+    const std::size_t first = index < u_ ? static_cast<std::size_t>(part.q) : u_ + static_cast<std::size_t>(part.u);
+    if (index >= first && index < first + part.modes)
+      return {mode, "mode " + std::to_string(index - first + 1) + " of " + part.name};
+  }
+  return {joint, std::string(multibody::joint_of(model_, static_cast<int>(index)))};
+}
+
+bool SceneEquations::is_held(std::size_t index) const noexcept {
+  if (index >= work_) return true;
+  if (index >= component_) return false;
+  if (index >= p_) return circuit_->is_fixed(static_cast<int>(index - p_));
+  for (const multibody::Link& link : model_.links) {
+    if (!link.is_driven) continue;
+    const std::size_t first = index < u_ ? static_cast<std::size_t>(link.q) : u_ + static_cast<std::size_t>(link.u);
+    if (index >= first && index < first + link.drive.size() && link.drive[index - first] >= 0) return true;
+  }
+  return false;
+}
+
+Status SceneEquations::take(const multibody::Model& model, const multibody::State& state,
+                            const hydraulics::Circuit* circuit, std::span<const double> circuit_y,
+                            std::span<double> y) {
+  SLEW_CHECK(y.size() == size_ && (circuit == nullptr) == (circuit_ == nullptr));
+  SLEW_CHECK(state.q.size() == state_.q.size() && state.u.size() == state_.u.size());
+  if (!state.bristles.empty()) return Status::error(ExitCode::bad_input, std::string(kNoBristles));
+  model_ = model;
+  multibody::copy_state(state, state_);
+  std::fill(y.begin(), y.end(), 0.0);
+  std::copy(state.q.begin(), state.q.end(), y.begin());
+  std::copy(state.u.begin(), state.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));
+  if (circuit == nullptr) return Status::ok();
+  for (std::size_t i = 0; i < circuit->parameters().size(); ++i) {
+    circuit_->set_parameter(static_cast<int>(i), circuit->parameter_values()[i]);
+  }
+  std::copy_n(circuit_y.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
+  std::copy(circuit_y.begin() + circuit_->first_component_state(), circuit_y.end(),
+            y.begin() + static_cast<std::ptrdiff_t>(component_));
+  return Status::ok();
+}
+
+void SceneEquations::neglect_dry_friction() {
+  for (Port& port : ports_) {
+    coupling::LineForceDef def = port.law.def();
+    def.friction_curve.clear();
+    def.efficiency = 1;
+    def.seal_friction = 0;
+    port.law = coupling::LineForceLaw(def);
+  }
+  for (multibody::Row& row : model_.rows) row.law.coulomb = 0;
 }
 
 std::string SceneEquations::touching_pair() const {
@@ -118,8 +177,7 @@ Status SceneEquations::find_static_forces(std::span<double> F) {
 Status SceneEquations::start(std::span<double> y) {
   SLEW_CHECK(y.size() == size_);
   state_ = multibody::start_state(model_);
-  if (!state_.bristles.empty())
-    return Status::error(ExitCode::bad_input, "the reference does not carry the bristles of joint friction");
+  if (!state_.bristles.empty()) return Status::error(ExitCode::bad_input, std::string(kNoBristles));
   std::fill(y.begin(), y.end(), 0.0);
   std::copy(state_.q.begin(), state_.q.end(), y.begin());
   std::copy(state_.u.begin(), state_.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));
@@ -201,6 +259,7 @@ void SceneEquations::take_state(double t, const double* y) noexcept {
 
 // (3), (4)
 void SceneEquations::evaluate_ports() noexcept {
+  if (row_forces_ == RowForces::held) return;
   if (circuit_) circuit_->pressure_forces(circuit_y_.data(), F_.data());
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     const Port& port = ports_[i];
