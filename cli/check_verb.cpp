@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "cli/description/liftable_load.h"
 #include "cli/direct_session.h"
 #include "cli/display.h"
 #include "cli/verbs.h"
@@ -54,12 +55,22 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
   }
 }
 
+// A payload that the scene's valves do not lift: a physical result, and rarely what was wanted.
+void check_payload(scene::Scene& scene) {
+  const LiftableLoad load = find_liftable(scene, {}, Settings::left_out);
+  if (!load.has_answer() || load.mass <= load.limit().load) return;
+  scene.warnings.push_back(fmt::format(
+      "{}: {} kg cannot be lifted from where the scene begins, but {}; see 'slewring describe {} --liftable'",
+      load.payload, load.mass, limit_text(load), scene.name));
+}
+
 ExitCode check(const Options& options) {
   try {
-    const scene::Scene scene = scene::load_file(options.scene, options.overrides);
+    scene::Scene scene = scene::load_file(options.scene, options.overrides);
     DirectSession session(scene);
     cli_support::require(session.start());
     check_variables(scene, session);
+    check_payload(scene);
     if (options.is_json) {
       fmt::print("{}\n", nlohmann::json({{"ok", true}, {"scene", scene.name}, {"warnings", scene.warnings}}).dump(2));
       return ExitCode::ok;
