@@ -94,7 +94,12 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.driven = m.driven;
   d.contacts = m.pairs;
   for (const std::string& pair : m.pairs_at_rest) {
-    d.left_out.push_back("contact " + pair + ": its shapes cannot move against each other, it is not tested");
+    const auto& pairs = scene.mechanics.contacts;
+    const bool is_tested =
+        std::any_of(pairs.begin(), pairs.end(), [&](const auto& one) { return one.name == pair && one.tested; });
+    d.left_out.push_back("contact " + pair +
+                         (is_tested ? ": its shapes cannot move against each other, it is not tested"
+                                    : ": the scene says that it is not tested"));
   }
   for (const std::string& body : m.fixed_to_ground) d.merged.push_back(body + " with Ground");
   for (const multibody::LinkDescription& link : m.links) {
@@ -274,7 +279,10 @@ void print(const Description& d) {
 
 // Only the parts that were asked for, in the order of the options.
 ExitCode show_parts(const Options& options) {
-  scene::Scene scene = scene::load_file(options.scene, options.overrides);
+  // the same physics, in the parts that are described
+  scene::Overrides overrides = options.overrides;
+  overrides.emplace_back("session.solution=split");
+  scene::Scene scene = scene::load_file(options.scene, overrides);
   const double at = read_option("--at", options.at, Dimension::time);
   nlohmann::json json = {{"name", scene.name}};
   std::vector<std::string> texts;
@@ -282,7 +290,7 @@ ExitCode show_parts(const Options& options) {
     const double whole = scene.session.duration > 0 ? std::min(scene.session.duration, kCostTime) : kCostTime;
     const double until = options.until.empty() ? whole : read_option("--until", options.until, Dimension::time);
     const std::vector<std::string> not_paid = describe(scene).left_out;
-    const CostByPart cost = measure_cost(scene, options.scene, options.overrides, until);
+    const CostByPart cost = measure_cost(scene, options.scene, overrides, until);
     json["cost"] = report_json(cost, not_paid);
     texts.push_back(report_text(cost, not_paid));
   }

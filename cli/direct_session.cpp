@@ -1,25 +1,14 @@
 #include "cli/direct_session.h"
 
-#include "flex_node/flex_subsystem.h"
-#include "hydraulics_node/hydraulics_subsystem.h"
-#include "mechanics_node/mechanics_subsystem.h"
-
 namespace slew::cli {
 
 using coupling::PartnerSamples;
 using wire::Role;
 
-std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scene& scene) {
-  if (role == Role::mechanics && scene.has_mechanics()) return mechanics::make_mechanics_subsystem(scene);
-  if (role == Role::hydraulics && scene.has_hydraulics()) return hydraulic_node::make_hydraulics_subsystem(scene);
-  if (role == Role::flex && scene.has_modes()) return flexible::make_flex_subsystem(scene);
-  return nullptr;
-}
-
 DirectSession::DirectSession(const scene::Scene& scene)
-    : mechanics_(make_subsystem(Role::mechanics, scene)),
-      hydraulics_(make_subsystem(Role::hydraulics, scene)),
-      flex_(make_subsystem(Role::flex, scene)),
+    : mechanics_(family_.make(Role::mechanics, scene)),
+      hydraulics_(family_.make(Role::hydraulics, scene)),
+      flex_(family_.make(Role::flex, scene)),
       elastic_exchange_(scene.session.flexible),
       flexible_every_(scene.flexible_every()) {}
 
@@ -118,6 +107,12 @@ std::int64_t DirectSession::step_time_ns(Role role) const noexcept {
 }
 
 std::string DirectSession::failure() const {
+  for (const coupling::Subsystem* subsystem : {mechanics_.get(), hydraulics_.get()}) {
+    const bool has_failed = (subsystem == mechanics_.get() ? mechanics_report_ : hydraulics_report_).has_failed();
+    if (subsystem != nullptr && has_failed && !subsystem->failure_text().empty()) {
+      return std::string(subsystem->failure_text());
+    }
+  }
   if (mechanics_report_.has_failed()) return std::string(mechanics_->offender_name(mechanics_report_.offender));
   if (hydraulics_report_.has_failed()) return std::string(hydraulics_->offender_name(hydraulics_report_.offender));
   return "";

@@ -8,14 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "cli/monolithic_session.h"
 #include "coupling/subsystem.h"
 #include "scene/scene.h"
 #include "transport/wire.h"
 
 namespace slew::cli {
-
-// Subsystems of a scene; null where the scene has nothing of the kind. The scene must outlive them.
-[[nodiscard]] std::unique_ptr<coupling::Subsystem> make_subsystem(wire::Role role, const scene::Scene& scene);
 
 class DirectSession {
  public:
@@ -44,6 +42,7 @@ class DirectSession {
   [[nodiscard]] std::string failure() const;
 
  private:
+  SubsystemFamily family_;
   std::unique_ptr<coupling::Subsystem> mechanics_;
   std::unique_ptr<coupling::Subsystem> hydraulics_;
   std::unique_ptr<coupling::Subsystem> flex_;

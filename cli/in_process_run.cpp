@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "cli/direct_session.h"
 #include "cli/interrupts.h"
 #include "cli/keyboard.h"
+#include "cli/monolithic_session.h"
 #include "cli/observer.h"
 #include "cli/status_line.h"
 #include "cli_support/carrier.h"
@@ -66,7 +66,7 @@ class InProcessRun {
     if ((roles_ & bit(role)) == 0) return;
     auto node = std::make_unique<node::PhysicsNode>(
         role, endpoint(role),
-        cli_support::subsystem_factory([role](const scene::Scene& scene) { return make_subsystem(role, scene); },
+        cli_support::subsystem_factory([this, role](const scene::Scene& scene) { return family_.make(role, scene); },
                                        options_.assets()));
     nodes_.push_back(node.get());
     physics_.push_back(std::move(node));
@@ -129,6 +129,7 @@ class InProcessRun {
   std::vector<std::unique_ptr<transport::Transport>> endpoints_;
   std::uint32_t roles_ = 0;
   std::unique_ptr<io::IoNode> io_;
+  SubsystemFamily family_;
   std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
   std::unique_ptr<recorder::RecorderNode> recorder_;
   std::vector<node::Node*> nodes_;  // io first: it takes a request to stop

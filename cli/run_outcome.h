@@ -18,6 +18,8 @@ struct RunOptions {
   std::string runs = "runs";        // folder of the recordings
   std::vector<std::string> remote;  // roles that somebody else starts
   bool is_in_process = false;
+  bool is_monolithic = false;
+  std::string rtol;  // of a monolithic run; empty: the scene's
   bool is_real_time = false;
   bool is_json = false;
   bool is_quiet = false;

@@ -13,10 +13,29 @@ namespace slew::cli {
 
 namespace {
 
-ExitCode run(RunOptions options) {
+// All physics as one system: one process, and no clock can be promised.
+void check_monolithic(const CLI::App& verb) {
+  for (const char* option : {"--remote", "--domain", "--interface", "--peer", "--rt"}) {
+    if (verb.count(option) == 0) continue;
+    const std::string why =
+        std::string_view(option) == "--rt" ? "its steps take as long as they take" : "it is one system in one process";
+    throw cli_support::Failure(ExitCode::bad_input,
+                               fmt::format("a monolithic run takes no {}: {}; nothing was started; "
+                                           "leave one out",
+                                           option, why));
+  }
+}
+
+ExitCode run(RunOptions options, const CLI::App& verb) {
+  if (options.is_monolithic) options.scene.overrides.emplace_back("session.solution=monolithic");
+  if (!options.rtol.empty()) options.scene.overrides.push_back("session.rtol=" + options.rtol);
   const scene::Scene scene = cli_support::load_scene(options.scene);
   for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
+  if (scene.session.solution == scene::Solution::monolithic) {
+    check_monolithic(verb);
+    options.is_in_process = true;
+  }
   if (options.is_in_process && !options.remote.empty()) {
     throw cli_support::Failure(ExitCode::bad_input,
                                "--in-process and --remote exclude each other; nothing was started; leave one out");
@@ -51,6 +70,14 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("ROLE")
       ->group("Session");
   verb->add_flag("--in-process", options->is_in_process, "all nodes in this process, on one thread")->group("Session");
+  CLI::Option* monolithic =
+      verb->add_flag("--monolithic", options->is_monolithic,
+                     "all physics as one system in this process (CVODE): the reference for accuracy")
+          ->group("Accuracy");
+  verb->add_option("--rtol", options->rtol, "its relative tolerance, 1e-10 to 1e-3; without it the scene's")
+      ->needs(monolithic)
+      ->type_name("NUMBER")
+      ->group("Accuracy");
   verb->add_option("--out", options->runs, "folder in which the recording gets a folder of its own")
       ->type_name("DIR")
       ->capture_default_str();
@@ -62,8 +89,9 @@ void add_run(CLI::App& program, Action& action) {
       "Examples:\n"
       "  slewring run scenes/truck_crane.yaml\n"
       "  slewring run scenes/truck_crane.yaml --set Bag.mass=1000kg --duration 10 --pace free --in-process\n"
+      "  slewring run scenes/truck_crane.yaml --monolithic --rtol 1e-9 --pace free\n"
       "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb->callback([&action, options, verb] { action = [options, verb] { return run(*options, *verb); }; });
 }
 
 }  // namespace slew::cli

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cli/direct_session.h"
 #include "cli/display.h"
+#include "cli/monolithic_session.h"
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
@@ -30,11 +30,12 @@ struct Named {
 std::vector<Named> of_scene(const std::string& file) {
   const scene::Scene scene = scene::load_file(file);
   std::vector<Named> all;
+  SubsystemFamily family;
   for (const scene::InputDef& input : scene.inputs) {
     for (const char* quantity : {".raw", ".control", ".age"}) all.push_back({input.name + quantity, "1", "io"});
   }
   for (const Role role : wire::kPhysicsRoles) {
-    const auto subsystem = make_subsystem(role, scene);
+    const auto subsystem = family.make(role, scene);
     if (subsystem == nullptr) continue;
     const std::string owner(node::to_text(role));
     for (const ElementVariable& variable : subsystem->variables()) {

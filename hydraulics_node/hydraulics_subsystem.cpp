@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "cli_support/failure.h"
 #include "coupling/static_forces.h"
 
 namespace slew::hydraulic_node {
@@ -115,10 +116,7 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
     sample.actuators = published_;
     return failure_;
   }
-  ramps_.apply(n, [this](int parameter, double value) { circuit_->set_parameter(parameter, value); });
-  for (std::size_t i = 0; i < std::min(controls.size(), control_of_channel_.size()); ++i) {
-    if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
-  }
+  take_tick(n, controls);
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(*partners.mechanism);
   const bool is_hold = level_ == coupling::Level::hold;
   StepReport report =
@@ -130,6 +128,31 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
     return report;
   }
   publish(sample.actuators, report.flags);
+  return report;
+}
+
+// parameters on their way, and the controls of the step
+void HydraulicsSubsystem::take_tick(StepIndex n, std::span<const double> controls) noexcept {
+  ramps_.apply(n, [this](int parameter, double value) { circuit_->set_parameter(parameter, value); });
+  for (std::size_t i = 0; i < std::min(controls.size(), control_of_channel_.size()); ++i) {
+    if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
+  }
+}
+
+StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
+                                       const coupling::PartnerSamples& partners, std::span<const double> controls,
+                                       coupling::OwnSample& sample) noexcept {
+  take_tick(n, controls);
+  if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_);
+  std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
+  integrator_->refresh();
+  StepReport report;
+  report.flags = circuit_->flags(step.state.data());
+  report.offender = circuit_->first_cavitating(step.state.data());
+  publish(sample.actuators, report.flags);
+  std::copy(step.work.begin(), step.work.end(), sample.actuators.work.begin());
+  std::copy(step.impulse.begin(), step.impulse.end(), sample.actuators.impulse.begin());
+  published_ = sample.actuators;
   return report;
 }
 
@@ -213,6 +236,7 @@ std::string_view HydraulicsSubsystem::offender_name(std::int32_t index) const no
 }
 
 std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene) {
+  cli_support::require(scene::check_is_split(scene));
   return std::make_unique<HydraulicsSubsystem>(scene);
 }
 

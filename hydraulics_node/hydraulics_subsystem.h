@@ -39,6 +39,12 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   coupling::PortArray a_free_;
 };
 
+// The end of a step that somebody else computed: all states of the circuit, pistons included; work and impulse of the
+// ports over the step [J, N s].
+struct FollowedCircuit {
+  std::span<const double> state, work, impulse;
+};
+
 class HydraulicsSubsystem final : public coupling::Subsystem {
  public:
   // Pre-condition: a validated scene with a circuit; it outlives the subsystem (reset() builds from it again).
@@ -48,6 +54,9 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   Status start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) override;
   StepReport step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double> controls,
                   coupling::OwnSample& sample) noexcept override;
+  // In the place of step(): parameters and controls of this step, then what is published at its end.
+  StepReport follow(StepIndex n, const FollowedCircuit& step, const coupling::PartnerSamples& partners,
+                    std::span<const double> controls, coupling::OwnSample& sample) noexcept;
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
@@ -62,6 +71,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] hydraulics::CircuitIntegrator& integrator() noexcept { return *integrator_; }  // for tests and tools
 
  private:
+  void take_tick(StepIndex n, std::span<const double> controls) noexcept;
   void take_mechanism(const coupling::MechanismSample& mechanism) noexcept;
   void publish(coupling::ActuatorSample& sample, std::uint32_t flags) noexcept;
   void list_variables();

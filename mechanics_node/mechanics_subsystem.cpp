@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli_support/failure.h"
 #include "coupling/static_forces.h"
 #include "math/small_solve.h"
 #include "mechanics_node/payload.h"
@@ -30,6 +31,11 @@ int handle_of(multibody::Parameter parameter) {
 
 multibody::Parameter parameter_of(int handle) {
   return {static_cast<multibody::ParameterKind>(handle >> 24), (handle >> 8) & 0xffff, handle & 0xff};
+}
+
+multibody::MechanicsDef as_moved(multibody::MechanicsDef mechanics, Motion motion) {
+  if (motion == Motion::followed) mechanics.formulation = multibody::Formulation::recursive;
+  return mechanics;
 }
 
 }  // namespace
@@ -80,8 +86,8 @@ class MechanicsSubsystem::Laws final : public coupling::RowLaws {
   mutable double held_speed_ = 0;  // rad/s, of the ball whose parts are carried
 };
 
-MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene)
-    : def_(scene.mechanics),
+MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
+    : def_(as_moved(scene.mechanics, motion)),
       row_names_(scene::row_names(scene)),
       model_(multibody::build_model(def_, row_names_)),
       state_(multibody::start_state(model_)),
@@ -321,13 +327,7 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     sample = published_;
     return failure_;
   }
-  if (!ramps_.empty()) {
-    ramps_.apply(n, [this](int handle, double value) {
-      for (multibody::Model* model : {&model_, &heavier_})
-        multibody::set_parameter(*model, parameter_of(handle), value);
-    });
-    is_evaluated_ = false;
-  }
+  apply_ramps(n);
   put_signals(controls);
   StepReport report;
   take_elastic_forces(partners.elastic, report);
@@ -364,6 +364,45 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     if (ports_[i].law.touches_stop(x)) report.raise(StepFlag::limit_hit);
   }
   publish(sample);
+  raise_flags(report);
+  return report;
+}
+
+StepReport MechanicsSubsystem::follow(StepIndex n, const FollowedStep& step, std::span<const double> controls,
+                                      coupling::OwnSample& sample) noexcept {
+  apply_ramps(n);
+  put_signals(controls);
+  coupling::MechanismSample& out = sample.mechanism;
+  coupling::resize(out, ports_.size());
+  const PortPositions begin = port_positions();
+  multibody::copy_state(step.state, state_);
+  multibody::copy_state(state_, last_good_);
+  is_evaluated_ = false;
+  for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].F = step.F[i];
+  evaluate();
+  StepReport report;
+  const PortPositions end = port_positions();
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    out.work[i] = step.work[i];
+    out.impulse[i] = step.impulse[i];
+    out.v_mean[i] = (end[i] - begin[i]) / H_.seconds();
+    if (ports_[i].law.touches_stop(end[i])) report.raise(StepFlag::limit_hit);
+  }
+  publish(sample);
+  raise_flags(report);
+  return report;
+}
+
+void MechanicsSubsystem::apply_ramps(StepIndex n) noexcept {
+  if (ramps_.empty()) return;
+  ramps_.apply(n, [this](int handle, double value) {
+    for (multibody::Model* model : {&model_, &heavier_}) multibody::set_parameter(*model, parameter_of(handle), value);
+  });
+  is_evaluated_ = false;
+}
+
+// of the published instant: joint limits, deflections beyond the theory
+void MechanicsSubsystem::raise_flags(StepReport& report) const noexcept {
   for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
     if (multibody::touches_limit(model_.rows[row].law, workspace_.row_x[row])) report.raise(StepFlag::limit_hit);
   }
@@ -373,7 +412,6 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   for (const multibody::SegmentedPart& part : model_.segmented) {
     if (multibody::is_bent_far(model_, part, workspace_)) report.raise(StepFlag::large_deflection);
   }
-  return report;
 }
 
 MechanicsSubsystem::PortPositions MechanicsSubsystem::port_positions() const noexcept {
@@ -565,6 +603,7 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
 }
 
 std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene) {
+  cli_support::require(scene::check_is_split(scene));
   return std::make_unique<MechanicsSubsystem>(scene);
 }
 

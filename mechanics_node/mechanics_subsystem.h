@@ -23,16 +23,29 @@
 
 namespace slew::mechanics {
 
+// Who integrates the motion: this subsystem in step(), or somebody else whose states follow() takes. What is followed
+// is shown in joint coordinates, whatever the scene's formulation.
+enum class Motion : std::uint8_t { integrated, followed };
+
+// The end of a step that somebody else computed; forces, work and impulse by port, the latter over the step.
+struct FollowedStep {
+  const multibody::State& state;
+  std::span<const double> F, work, impulse;  // N, J, N s
+};
+
 class MechanicsSubsystem final : public coupling::Subsystem {
  public:
   // Pre-condition: a validated scene with bodies.
-  explicit MechanicsSubsystem(const scene::Scene& scene);
+  explicit MechanicsSubsystem(const scene::Scene& scene, Motion motion = Motion::integrated);
   ~MechanicsSubsystem() override;
 
   [[nodiscard]] bool first_sample(coupling::OwnSample& sample) noexcept override;
   Status start(const coupling::PartnerSamples& partners, coupling::OwnSample& sample) override;
   StepReport step(StepIndex n, const coupling::PartnerSamples& partners, std::span<const double> controls,
                   coupling::OwnSample& sample) noexcept override;
+  // In the place of step(): parameters and signals of this step, then what is published at its end.
+  StepReport follow(StepIndex n, const FollowedStep& step, std::span<const double> controls,
+                    coupling::OwnSample& sample) noexcept;
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
@@ -61,6 +74,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
 
   [[nodiscard]] PortPositions port_positions() const noexcept;
   void evaluate() noexcept;
+  void apply_ramps(StepIndex n) noexcept;
+  void raise_flags(StepReport& report) const noexcept;
   bool select_rows(double h) noexcept;
   void put_signals(std::span<const double> controls) noexcept;
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;

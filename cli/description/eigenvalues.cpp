@@ -147,10 +147,11 @@ Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction f
   }
   monolith::SceneEquations equations(scene);
   std::vector<double> y(equations.size());
-  cli_support::require(hydraulics == nullptr
-                           ? equations.take(mechanics->model(), mechanics->state(), nullptr, {}, y)
-                           : equations.take(mechanics->model(), mechanics->state(), &hydraulics->circuit(),
-                                            hydraulics->integrator().state(), y));
+  if (hydraulics == nullptr) {
+    equations.take(mechanics->model(), mechanics->state(), nullptr, {}, y);
+  } else {
+    equations.take(mechanics->model(), mechanics->state(), &hydraulics->circuit(), hydraulics->integrator().state(), y);
+  }
   const std::vector<double> slopes(scene.inputs.size());
   equations.set_controls(found.at, played.controls(), slopes);
   if (friction == DryFriction::neglected) equations.neglect_dry_friction();

@@ -75,6 +75,9 @@ class Subsystem {
 
   // Name of what a StepReport's offender index means.
   [[nodiscard]] virtual std::string_view offender_name(std::int32_t index) const noexcept = 0;
+
+  // Why a step failed, where there is more to say than which state is not finite; empty: there is not.
+  [[nodiscard]] virtual std::string_view failure_text() const noexcept { return {}; }
 };
 
 }  // namespace slew::coupling

@@ -2,8 +2,8 @@
 //
 // A by central differences of 1e-5 of each state's scale. At a corner of a law (a check valve about to open, a piston
 // at rest in its friction) the two sides count half each. States that are not free are left out: fixed pressures,
-// prescribed coordinates, the work of ports. Coordinates that loops make dependent stay in: with them come eigenvalues
-// of zero, which are counted as at rest.
+// prescribed coordinates, work and impulse of ports. Coordinates that loops make dependent stay in: with them come
+// eigenvalues of zero, which are counted as at rest.
 #pragma once
 
 #include <complex>

@@ -3,13 +3,16 @@
 // A co-simulation is judged against it: same laws, same start, same controls, no coupling. BDF at rtol 1e-9 with
 // absolute tolerances of 1e-9 of each state's scale (0.01 rad, m, rad/s, m/s; pressure scale of the scene; 1 kJ); the
 // integration restarts at every change of a control, of its slope, or of a parameter, and quaternions are normalised
-// there. Controls are what the components receive (after dead zone, ramp and scale), by channel index; they are held
-// over a call of advance_to, as a tick holds them over a communication step, or go linearly over it.
+// there; with joints that are cut also every 50 ms, where these are closed. Controls are what the components receive
+// (after dead zone, ramp and scale), by channel index; they are held over a call of advance_to, as a tick holds them
+// over a communication step, or go linearly over it.
 //
 // Card: docs/models/coupling_reference_monolith.md. Not for real time: it allocates and its cost is not bounded.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +45,7 @@ class Monolith final : private DifferentialEquation {
 
   // A live parameter jumps to its new SI value now.
   Status set_parameter(std::string_view path, double value);
+  [[nodiscard]] std::optional<double> parameter(std::string_view path) const { return equations_.parameter(path); }
 
   // At time(), after start() or advance_to()
   [[nodiscard]] SimTime time() const noexcept { return time_; }
@@ -54,11 +58,12 @@ class Monolith final : private DifferentialEquation {
 
  private:
   void rates(double t, const double* y, double* f) noexcept override { equations_.rates(t, y, f); }
+  [[nodiscard]] std::string advance_closed(SimTime t);
   void restart_with(std::span<const double> controls, std::span<const double> slopes);
 
   SceneEquations equations_;
   StiffSolver solver_;
-  SimTime time_;
+  SimTime time_, closed_at_;
   bool must_restart_ = true;
   std::vector<double> slope_, control_end_, slope_now_, y_, values_;
 };

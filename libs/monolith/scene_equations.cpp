@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "coupling/static_forces.h"
+#include "multibody/loops.h"
 #include "multibody/parameters.h"
 #include "multibody/passes.h"
 #include "multibody/rows.h"
@@ -17,8 +18,7 @@ constexpr double kAngleScale = 0.01;           // rad: with 1e-9 an error of abo
 constexpr double kLengthScale = 0.01;          // m
 constexpr double kMechanismSpeedScale = 0.01;  // rad/s, m/s
 constexpr double kWorkScale = 1e3;             // J
-
-constexpr std::string_view kNoBristles = "the reference does not carry the bristles of joint friction";
+constexpr double kImpulseScale = 1e3;          // N s
 
 // first entry of a joint's quaternion in q, or -1
 int quaternion_of(const multibody::Link& link) {
@@ -41,7 +41,8 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
   }
   u_ = state_.q.size();
-  p_ = u_ + state_.u.size();
+  z_ = u_ + state_.u.size();
+  p_ = z_ + state_.bristles.size();
   component_ = work_ = p_;
   if (scene.has_hydraulics()) {
     circuit_ = std::make_unique<hydraulics::Circuit>(scene.hydraulics);
@@ -50,10 +51,12 @@ SceneEquations::SceneEquations(const scene::Scene& scene)
     work_ = component_ + states - static_cast<std::size_t>(circuit_->first_component_state());
     circuit_y_.assign(states, 0);
     circuit_rates_.assign(states, 0);
+    start_ = scene.hydraulics.start;
     SLEW_CHECK(static_cast<std::size_t>(circuit_->actuator_count()) == ports_.size());
   }
   F_.assign(ports_.size(), 0);
-  size_ = work_ + ports_.size();
+  impulse_ = work_ + ports_.size();
+  size_ = impulse_ + ports_.size();
   for (const scene::InputDef& input : scene.inputs) {
     control_of_channel_.push_back(circuit_ ? circuit_->find_control(input.primitive) : -1);
     load_of_channel_.push_back(multibody::find_load(model_.elements, input.primitive));
@@ -71,8 +74,14 @@ std::vector<double> SceneEquations::absolute_scales() const {
     if (link.joint == multibody::LinkJoint::prismatic) scale[static_cast<std::size_t>(q)] = kLengthScale;
     if (link.joint == multibody::LinkJoint::floating) std::fill_n(scale.begin() + q, 3, kLengthScale);
   }
-  std::fill(scale.begin() + static_cast<std::ptrdiff_t>(u_), scale.begin() + static_cast<std::ptrdiff_t>(p_),
+  std::fill(scale.begin() + static_cast<std::ptrdiff_t>(u_), scale.begin() + static_cast<std::ptrdiff_t>(z_),
             kMechanismSpeedScale);
+  // bristles: the bending at which they slide
+  for (std::size_t k = 0; k < state_.bristles.size(); ++k) {
+    if (k < ports_.size()) continue;
+    const multibody::JointLaw& law = multibody::law_of(model_, k);
+    if (multibody::has_bristles(law)) scale[z_ + k] = law.breakaway_ratio * law.coulomb / law.bristle_stiffness;
+  }
   if (circuit_) {
     const std::vector<double>& of_circuit = circuit_->scales();
     const auto volumes = static_cast<std::ptrdiff_t>(component_ - p_);
@@ -80,23 +89,28 @@ std::vector<double> SceneEquations::absolute_scales() const {
     std::copy(of_circuit.begin() + circuit_->first_component_state(), of_circuit.end(),
               scale.begin() + static_cast<std::ptrdiff_t>(component_));
   }
-  std::fill(scale.begin() + static_cast<std::ptrdiff_t>(work_), scale.end(), kWorkScale);
+  std::fill(scale.begin() + static_cast<std::ptrdiff_t>(work_), scale.begin() + static_cast<std::ptrdiff_t>(impulse_),
+            kWorkScale);
+  std::fill(scale.begin() + static_cast<std::ptrdiff_t>(impulse_), scale.end(), kImpulseScale);
   return scale;
 }
 
 std::string SceneEquations::state_name(std::size_t index) const {
+  if (index >= impulse_) return "the impulse of " + ports_[index - impulse_].name;
   if (index >= work_) return "the work of " + ports_[index - work_].name;
   if (index >= component_) return "a state of " + circuit_->state_owner(static_cast<int>(index - component_));
   if (index >= p_) return "the pressure of " + circuit_->volume_name(static_cast<int>(index - p_));
+  if (index >= z_) return "the bristles of " + model_.rows[index - z_].name;
   return (index < u_ ? "the position of " : "the speed of ") +
          std::string(multibody::joint_of(model_, static_cast<int>(index)));
 }
 
 StateOwner SceneEquations::owner(std::size_t index) const {
   using enum StateOwner::Kind;
-  if (index >= work_) return {port, ports_[index - work_].name};
+  if (index >= work_) return {port, ports_[(index - work_) % ports_.size()].name};
   if (index >= component_) return {component, circuit_->state_owner(static_cast<int>(index - component_))};
   if (index >= p_) return {volume, circuit_->volume_name(static_cast<int>(index - p_))};
+  if (index >= z_) return {joint, model_.rows[index - z_].name};
   for (const multibody::FlexiblePart& part : model_.parts) {
     const std::size_t first = index < u_ ? static_cast<std::size_t>(part.q) : u_ + static_cast<std::size_t>(part.u);
     if (index >= first && index < first + part.modes)
@@ -109,6 +123,7 @@ bool SceneEquations::is_held(std::size_t index) const noexcept {
   if (index >= work_) return true;
   if (index >= component_) return false;
   if (index >= p_) return circuit_->is_fixed(static_cast<int>(index - p_));
+  if (index >= z_) return index - z_ < ports_.size() || !multibody::has_bristles(model_.rows[index - z_].law);
   for (const multibody::Link& link : model_.links) {
     if (!link.is_driven) continue;
     const std::size_t first = index < u_ ? static_cast<std::size_t>(link.q) : u_ + static_cast<std::size_t>(link.u);
@@ -117,25 +132,23 @@ bool SceneEquations::is_held(std::size_t index) const noexcept {
   return false;
 }
 
-Status SceneEquations::take(const multibody::Model& model, const multibody::State& state,
-                            const hydraulics::Circuit* circuit, std::span<const double> circuit_y,
-                            std::span<double> y) {
+void SceneEquations::take(const multibody::Model& model, const multibody::State& state,
+                          const hydraulics::Circuit* circuit, std::span<const double> circuit_y, std::span<double> y) {
   SLEW_CHECK(y.size() == size_ && (circuit == nullptr) == (circuit_ == nullptr));
   SLEW_CHECK(state.q.size() == state_.q.size() && state.u.size() == state_.u.size());
-  if (!state.bristles.empty()) return Status::error(ExitCode::bad_input, std::string(kNoBristles));
   model_ = model;
   multibody::copy_state(state, state_);
   std::fill(y.begin(), y.end(), 0.0);
   std::copy(state.q.begin(), state.q.end(), y.begin());
   std::copy(state.u.begin(), state.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));
-  if (circuit == nullptr) return Status::ok();
+  std::copy(state.bristles.begin(), state.bristles.end(), y.begin() + static_cast<std::ptrdiff_t>(z_));
+  if (circuit == nullptr) return;
   for (std::size_t i = 0; i < circuit->parameters().size(); ++i) {
     circuit_->set_parameter(static_cast<int>(i), circuit->parameter_values()[i]);
   }
   std::copy_n(circuit_y.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
   std::copy(circuit_y.begin() + circuit_->first_component_state(), circuit_y.end(),
             y.begin() + static_cast<std::ptrdiff_t>(component_));
-  return Status::ok();
 }
 
 void SceneEquations::neglect_dry_friction() {
@@ -146,7 +159,7 @@ void SceneEquations::neglect_dry_friction() {
     def.seal_friction = 0;
     port.law = coupling::LineForceLaw(def);
   }
-  for (multibody::Row& row : model_.rows) row.law.coulomb = 0;
+  for (multibody::Row& row : model_.rows) row.law.coulomb = row.law.bristle_stiffness = 0;
 }
 
 std::string SceneEquations::touching_pair() const {
@@ -165,7 +178,8 @@ Status SceneEquations::find_static_forces(std::span<double> F) {
   for (std::size_t i = 0; i < m; ++i) {
     double a = workspace_.row_a_free[i];
     for (std::size_t r = m; r < rows; ++r) {
-      a += W[i * rows + r] * multibody::joint_force(model_, r, workspace_.row_x, workspace_.row_v, 0, 0).force;
+      a += W[i * rows + r] *
+           multibody::joint_force(model_, r, workspace_.row_x, workspace_.row_v, 0, bristle_of(r)).force;
     }
     a_free[i] = ports_[i].ratio * a;
     for (std::size_t j = 0; j < m; ++j) matrix[i * m + j] = ports_[i].ratio * W[i * rows + j] * ports_[j].ratio;
@@ -177,15 +191,17 @@ Status SceneEquations::find_static_forces(std::span<double> F) {
 Status SceneEquations::start(std::span<double> y) {
   SLEW_CHECK(y.size() == size_);
   state_ = multibody::start_state(model_);
-  if (!state_.bristles.empty()) return Status::error(ExitCode::bad_input, std::string(kNoBristles));
   std::fill(y.begin(), y.end(), 0.0);
   std::copy(state_.q.begin(), state_.q.end(), y.begin());
   std::copy(state_.u.begin(), state_.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));
+  std::copy(state_.bristles.begin(), state_.bristles.end(), y.begin() + static_cast<std::ptrdiff_t>(z_));
   std::fill(control_.begin(), control_.end(), 0.0);
   std::fill(control_slope_.begin(), control_slope_.end(), 0.0);
   if (circuit_ == nullptr) return Status::ok();
-  const Status status = find_static_forces(F_);
-  if (!status.is_ok()) return status;
+  std::fill(F_.begin(), F_.end(), 0.0);
+  if (start_ == hydraulics::StartState::equilibrium) {
+    if (const Status status = find_static_forces(F_); !status.is_ok()) return status;
+  }
   circuit_->start(F_, circuit_y_);
   std::copy_n(circuit_y_.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
   std::copy(circuit_y_.begin() + circuit_->first_component_state(), circuit_y_.end(),
@@ -211,6 +227,14 @@ Status SceneEquations::set_parameter(std::string_view path, double value) {
     if (index >= 0) return Status::error(ExitCode::bad_input, std::string(path) + ": the value is out of its range");
   }
   return Status::error(ExitCode::bad_input, std::string(path) + ": there is no live parameter of this name");
+}
+
+std::optional<double> SceneEquations::parameter(std::string_view path) const {
+  if (const auto found = multibody::find_parameter(model_, path)) return multibody::get_parameter(model_, *found);
+  if (circuit_ == nullptr) return std::nullopt;
+  const int index = circuit_->find_parameter(path);
+  if (index < 0) return std::nullopt;
+  return *circuit_->parameters()[static_cast<std::size_t>(index)].value;
 }
 
 // ---- equations ------------------------------------------------------------------------------------------------
@@ -240,11 +264,16 @@ void SceneEquations::take_state(double t, const double* y) noexcept {
   std::copy_n(y, state_.q.size(), state_.q.begin());
   normalize(state_.q);
   std::copy_n(y + u_, state_.u.size(), state_.u.begin());
+  std::copy_n(y + z_, state_.bristles.size(), state_.bristles.begin());
   state_.time = t;
   take_controls(t);
   multibody::set_time(model_, t, workspace_);
   multibody::impose_positions(model_, workspace_, state_.q);
   multibody::impose_speeds(model_, workspace_, state_.u);
+  if (has_loops()) {
+    multibody::renew_matrix(model_, state_.q, state_.u, workspace_);
+    is_closed_ = multibody::project(model_, state_.q, state_.u, workspace_);
+  }
   multibody::evaluate(model_, state_, workspace_);
   if (circuit_ == nullptr) return;
   std::copy_n(y + p_, component_ - p_, circuit_y_.begin());
@@ -255,6 +284,13 @@ void SceneEquations::take_state(double t, const double* y) noexcept {
     circuit_y_[static_cast<std::size_t>(circuit_->speed(actuator))] = port.ratio * workspace_.row_v[i];
   }
   std::copy_n(y + component_, work_ - component_, circuit_y_.begin() + circuit_->first_component_state());
+}
+
+bool SceneEquations::close(double t, std::span<double> y) noexcept {
+  take_state(t, y.data());
+  std::copy(state_.q.begin(), state_.q.end(), y.begin());
+  std::copy(state_.u.begin(), state_.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));
+  return is_closed_;
 }
 
 // (3), (4)
@@ -271,7 +307,7 @@ void SceneEquations::evaluate_ports() noexcept {
     row_force_[i] = port.ratio * now.line_force;
   }
   for (std::size_t r = ports_.size(); r < model_.rows.size(); ++r) {
-    row_force_[r] = multibody::joint_force(model_, r, workspace_.row_x, workspace_.row_v, 0, 0).force;
+    row_force_[r] = multibody::joint_force(model_, r, workspace_.row_x, workspace_.row_v, 0, bristle_of(r)).force;
   }
 }
 
@@ -283,6 +319,11 @@ void SceneEquations::rates(double t, const double* y, double* f) noexcept {
   multibody::accelerations(model_, workspace_, row_force_, u_rate_);
   std::copy(q_rate_.begin(), q_rate_.end(), f);
   std::copy(u_rate_.begin(), u_rate_.end(), f + u_);
+  // (4); rows of ports have none
+  for (std::size_t k = 0; k < state_.bristles.size(); ++k) {
+    const bool is_port = k < ports_.size();
+    f[z_ + k] = is_port ? 0 : multibody::joint_bristle_rate(model_, k, workspace_.row_v, state_.bristles[k]);
+  }
   // (5)
   if (circuit_) {
     circuit_->rates(circuit_y_.data(), circuit_rates_.data());
@@ -290,7 +331,10 @@ void SceneEquations::rates(double t, const double* y, double* f) noexcept {
     std::copy(circuit_rates_.begin() + circuit_->first_component_state(), circuit_rates_.end(), f + component_);
   }
   // (6)
-  for (std::size_t i = 0; i < ports_.size(); ++i) f[work_ + i] = port_states_[i].F * port_states_[i].v;
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    f[work_ + i] = port_states_[i].F * port_states_[i].v;
+    f[impulse_ + i] = port_states_[i].F;
+  }
 }
 
 // ---- readings -------------------------------------------------------------------------------------------------
@@ -308,6 +352,7 @@ void SceneEquations::observe(double t, const double* y) {
     now.friction = ports_[i].law.friction(now.F, now.v);
     now.stop = ports_[i].law.stop_force(now.x, now.v);
     now.work = y[work_ + i];
+    now.impulse = y[impulse_ + i];
     if (circuit_) circuit_->set_line_force(static_cast<int>(i), now.line_force);
   }
   multibody::observe(model_, state_, workspace_);

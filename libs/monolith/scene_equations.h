@@ -1,13 +1,17 @@
 // All physics of a scene as one system of ordinary differential equations y' = f(t, y), nothing split.
 //
-//   y = [ q | u | p of all volumes | component states | work of all ports ]                          (1)
+//   y = [ q | u | z | p of all volumes | component states | work and impulse of all ports ]          (1)
 //   q' = multibody coordinate rates,   u' = u'_free + M^-1 J^T r                                     (2)
 //   row of port i:   r_i = ratio_i F_line,i(F_i, x_i, v_i),   x_i = offset_i + ratio_i * row coordinate,
 //                    F_i = p_A A_A - p_B A_B                                                         (3)
-//   row of joint j:  r_j = friction and limits(q_j, u_j)                                             (4)
+//   row of joint j:  r_j = friction and limits(q_j, u_j, z_j),  z_j' = bristle rate(u_j, z_j)        (4)
 //   p', component states': the circuit's rates with the mechanism's x, v of every actuator           (5)
-//   W_i' = F_i v_i                                                                                   (6)
+//   W_i' = F_i v_i,   S_i' = F_i                                                                     (6)
 //   control(t) = control_0 + (t - t_0) slope                                                         (7)
+//
+// q and u hold the modes of flexible bodies and the coordinates between segments beside those of joints; z are bristles
+// of joint friction, one a row, none in a scene without. Joints that are cut are closed by projecting q and u onto them
+// before every evaluation (multibody/loops.h); what y itself violates meanwhile is close()'s to take away.
 //
 // The laws are the very code that the split simulation runs: multibody dynamics, coupling::LineForceLaw (3),
 // multibody::JointLaw (4), hydraulics::Circuit::rates (5). What differs is only that nothing is held, extrapolated or
@@ -16,6 +20,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +45,7 @@ struct PortState {
   double friction = 0;    // N
   double stop = 0;        // N
   double work = 0;        // integral of F v dt since the start [J]
+  double impulse = 0;     // integral of F dt since the start [N s]
 };
 
 // Whom a state belongs to: "joint Body_Pillar", "mode 2 of Boom", "volume Vol_LiftCyl_A", "component L90Lift".
@@ -67,14 +73,14 @@ class SceneEquations {
   [[nodiscard]] std::string state_name(std::size_t index) const;
 
   [[nodiscard]] StateOwner owner(std::size_t index) const;
-  // Not free: a fixed volume's pressure, a prescribed coordinate, the work of a port.
+  // Not free: a fixed volume's pressure, a prescribed coordinate, work and impulse of a port, what has no bristles.
   [[nodiscard]] bool is_held(std::size_t index) const noexcept;
 
   // The instant that a co-simulation of the same scene has reached, with its live parameters: y without the work.
-  // circuit: null where the scene has none; circuit_y: its state. Error: joint friction with bristles.
-  Status take(const multibody::Model& model, const multibody::State& state, const hydraulics::Circuit* circuit,
-              std::span<const double> circuit_y, std::span<double> y);
-  // No more friction of cylinders, and no Coulomb friction of joints.
+  // circuit: null where the scene has none; circuit_y: its state.
+  void take(const multibody::Model& model, const multibody::State& state, const hydraulics::Circuit* circuit,
+            std::span<const double> circuit_y, std::span<double> y);
+  // No more friction of cylinders, no Coulomb friction and no bristles of joints.
   void neglect_dry_friction();
   // What rates() does with the rows' forces; held: those of the last rates() before.
   void set_row_forces(RowForces forces) noexcept { row_forces_ = forces; }
@@ -87,11 +93,16 @@ class SceneEquations {
 
   // Error: no live parameter of that path, or a value out of range.
   Status set_parameter(std::string_view path, double value);
+  // Its value now, SI; none: no live parameter of that path.
+  [[nodiscard]] std::optional<double> parameter(std::string_view path) const;
 
   // (2) to (6)
   void rates(double t, const double* y, double* f) noexcept;
   // Unit quaternions, as the multibody steps leave them.
   void normalize(std::span<double> y) const noexcept;
+  // Whether some joint is cut, and y onto these joints; false: they cannot be closed.
+  [[nodiscard]] bool has_loops() const noexcept { return !model_.cuts.empty(); }
+  [[nodiscard]] bool close(double t, std::span<double> y) noexcept;
 
   // Everything below belongs to the last rates() or observe().
   void observe(double t, const double* y);
@@ -102,6 +113,7 @@ class SceneEquations {
   [[nodiscard]] std::string touching_pair() const;
   [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
   [[nodiscard]] const multibody::State& mechanism_state() const noexcept { return state_; }
+  [[nodiscard]] std::span<const double> circuit_state() const noexcept { return circuit_y_; }  // pistons included
 
  private:
   struct Port {
@@ -111,6 +123,9 @@ class SceneEquations {
   };
 
   void take_state(double t, const double* y) noexcept;
+  [[nodiscard]] double bristle_of(std::size_t row) const noexcept {
+    return state_.bristles.empty() ? 0.0 : state_.bristles[row];
+  }
   void take_controls(double t) noexcept;
   void evaluate_ports() noexcept;
   [[nodiscard]] Status find_static_forces(std::span<double> F);
@@ -120,13 +135,15 @@ class SceneEquations {
   multibody::State state_;
   multibody::Workspace workspace_;
   std::unique_ptr<hydraulics::Circuit> circuit_;  // null: none in the scene
+  hydraulics::StartState start_ = hydraulics::StartState::equilibrium;
   std::vector<Port> ports_;
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
   std::vector<int> load_of_channel_;     // -1: it drives no point force or torque
   double control_time_ = 0;
   std::vector<double> control_, control_slope_;  // by channel
   // layout (1)
-  std::size_t u_ = 0, p_ = 0, component_ = 0, work_ = 0, size_ = 0;
+  std::size_t u_ = 0, z_ = 0, p_ = 0, component_ = 0, work_ = 0, impulse_ = 0, size_ = 0;
+  bool is_closed_ = true;  // at the instant: the joints that are cut
   // at the instant
   std::vector<double> circuit_y_, circuit_rates_, F_;
   std::vector<double> row_force_;

@@ -358,14 +358,15 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
   if (spent_ns > h.step_time_max_ns) h.step_time_max_ns = spent_ns;
   member_.set_step(n_);
   expect_next(now_ns);
-  if (report.has_failed()) {
-    leave(ExitCode::diverged,
-          "diverged in step " + std::to_string(n_ - 1) + ": " +
-              std::string(built_.subsystem->offender_name(report.offender)) +
-              " is not finite; the last good state is kept in the recording; reduce session.step, or look at what "
-              "happened just before in a plot",
-          now_ns);
-  }
+  if (report.has_failed()) leave(ExitCode::diverged, divergence_text(report), now_ns);
+}
+
+std::string PhysicsNode::divergence_text(const StepReport& report) const {
+  const std::string head = "diverged in step " + std::to_string(n_ - 1) + ": ";
+  if (const std::string_view told = built_.subsystem->failure_text(); !told.empty()) return head + std::string(told);
+  return head + std::string(built_.subsystem->offender_name(report.offender)) +
+         " is not finite; the last good state is kept in the recording; reduce session.step, or look at what "
+         "happened just before in a plot";
 }
 
 bool PhysicsNode::advance_leaving(std::int64_t now_ns) {

@@ -60,6 +60,7 @@ class PhysicsNode final : public Node {
   bool advance_step(std::int64_t now_ns);
   bool follow(std::int64_t now_ns);
   void expect_next(std::int64_t now_ns) noexcept;
+  [[nodiscard]] std::string divergence_text(const StepReport& report) const;
   void compute(const coupling::PartnerSamples& partners, std::span<const double> controls, std::int64_t now_ns);
   bool advance_leaving(std::int64_t now_ns);
   void restart(std::uint32_t epoch);

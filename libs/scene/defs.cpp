@@ -25,6 +25,10 @@ constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_
 
 constexpr std::string_view kPaces[] = {"real", "free"};
 constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
+constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-3, .min_is_open = false, .max_is_open = false};
+
+constexpr std::string_view kContactUses[] = {"tested", "off"};
+constexpr std::string_view kSolutions[] = {"split", "monolithic"};
 constexpr std::string_view kElasticExchanges[] = {"once", "every_step", "condensed"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
 constexpr std::string_view kInterpolations[] = {"linear", "step"};
@@ -50,6 +54,16 @@ constexpr Field kSessionFields[] = {
                 "more; every_step: anew about each step's modal coordinates, and the mechanics waits; condensed: it "
                 "integrates the modes itself and states them condensed over each step (trapezoidal integrator, one "
                 "sub-step)"}),
+    field<&SessionDef::solution>(
+        "solution",
+        {.choices = kSolutions,
+         .doc = "split: every node solves its own part; monolithic: all physics as one system in one process, the "
+                "reference for accuracy; coupling, formulation and integrators then have no effect"}),
+    field<&SessionDef::rtol>("rtol", {.range = kToleranceRange, .doc = "relative tolerance of a monolithic solution"}),
+    field<&SessionDef::contact>(
+        "contact",
+        {.choices = kContactUses,
+         .doc = "off: the pairs of shapes in `contacts` are left out of the session, with their variables and cost"}),
     field<&SessionDef::window>(
         "window", {.range = kWindowRange,
                    .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace"}),
@@ -164,6 +178,10 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   }
   if (session.step < kMinUsualStep || session.step > kMaxUsualStep) {
     warnings.push_back({"session.step", fmt::format("{} ms is outside 0.1 to 10 ms", session.step * 1e3), "", ""});
+  }
+  if (session.solution == Solution::monolithic && session.flexible == coupling::ElasticExchange::condensed) {
+    errors.push_back({"session.flexible",
+                      "'condensed' leaves the modes to the flex node, a monolithic solution has them", "once", ""});
   }
   if (session.coupling == coupling::Level::linear || session.coupling == coupling::Level::tlm) {
     const auto index = static_cast<std::size_t>(session.coupling);

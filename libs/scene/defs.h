@@ -17,6 +17,13 @@ namespace slew::scene {
 
 enum class Pace : int { real, free };
 
+// How the parts of a session are solved: each node its own, coupled once a step, or all physics as one system
+// (docs/models/coupling_reference_monolith.md).
+enum class Solution : int { split, monolithic };
+
+// Whether the pairs of shapes that a scene declares are tested; `off` is the scene without them.
+enum class ContactUse : int { tested, off };
+
 // How a session runs.
 struct SessionDef {
   double step = 1e-3;                               // s, communication step H; whole nanoseconds
@@ -24,6 +31,9 @@ struct SessionDef {
   Pace pace = Pace::real;                           // real: paced by the wall clock; free: as fast as possible
   coupling::Level coupling = coupling::Level::two;  // linear and tlm are refused in this version
   coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
+  Solution solution = Solution::split;
+  double rtol = 1e-9;  // of a monolithic solution: relative tolerance of its integration
+  ContactUse contact = ContactUse::tested;
   std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free
   double controller_timeout = 0.5;  // s of silence after which a controller's channel goes to neutral
 

@@ -262,6 +262,7 @@ class SceneReader {
         multibody::find_unlikely_contacts(scene_.mechanics, warnings);
       }
     });
+    if (scene_.session.contact == ContactUse::off) scene_.mechanics.contacts.clear();
     return report_.size() == problems;
   }
 
@@ -396,6 +397,14 @@ Scene load_text(std::string text, const std::string& name, const Overrides& over
     surroundings.flexible_folder = flexible_files.value_or("");
     return read_tree(std::move(*root), std::move(surroundings), name, overrides, report);
   });
+}
+
+Status check_is_split(const Scene& scene) {
+  if (scene.session.solution == Solution::split) return Status::ok();
+  return Status::error(ExitCode::bad_input,
+                       "the scene's session.solution is monolithic: its physics is one system in one process and no "
+                       "node can take a part of it; run it with 'slewring run SCENE --monolithic', or set "
+                       "session.solution to split");
 }
 
 }  // namespace slew::scene

@@ -106,6 +106,9 @@ inline constexpr std::size_t kMaxReportedProblems = 20;
 [[nodiscard]] Scene load_text(std::string text, const std::string& name, const Overrides& overrides = {},
                               const std::optional<std::string>& flexible_files = std::nullopt);
 
+// Error (bad_input) for a scene whose physics is solved as one system: no node can have a part of it.
+[[nodiscard]] Status check_is_split(const Scene& scene);
+
 // Compares the files in a folder with a session's manifest; the error names every file that is missing or differs.
 [[nodiscard]] Status check_assets(std::span<const Asset> manifest, const std::string& folder);
 

@@ -10,7 +10,9 @@
 #include "build_paths.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
+#include "monolith/mechanics_reference.h"
 #include "multibody/observe.h"
+#include "scene/ports.h"
 
 namespace slew::monolith {
 namespace {
@@ -207,6 +209,55 @@ TEST(Monolith, NamesTheTimeWhereItCouldNotGoOn) {
   const Status status = monolith.advance_to({600'000'000}, nothing);
   EXPECT_EQ(status.code, ExitCode::diverged);
   EXPECT_NE(status.text.find("0.500000 s"), std::string::npos) << status.text;
+}
+
+// q of the mechanism after half a second, of all three computations
+void expect_same_motion(const scene::Scene& scene, double tolerance) {
+  Monolith monolith(scene, {1e-10, 1e-10});
+  ASSERT_TRUE(monolith.start().is_ok());
+  // steps like those of a session
+  for (int n = 1; n <= 500; ++n) {
+    const Status status = monolith.advance_to({n * 1'000'000}, std::vector<double>(scene.inputs.size()));
+    ASSERT_TRUE(status.is_ok()) << status.text;
+  }
+  const std::vector<double>& q = monolith.equations().mechanism_state().q;
+  const std::vector<double> times = {0.5};
+  for (const ReferenceEquations equations :
+       {ReferenceEquations::joint_coordinates, ReferenceEquations::body_coordinates}) {
+    MechanicsReference reference;
+    const Status status = integrate_mechanics(scene.mechanics, times, {equations, 1e-10, 1e-11}, reference);
+    ASSERT_TRUE(status.is_ok()) << status.text;
+    const std::vector<double>& expected = reference.states.front().q;
+    ASSERT_EQ(q.size(), expected.size());
+    for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(q[i], expected[i], tolerance) << i;
+  }
+}
+
+TEST(Monolith, ClosesLoopsAsTheReferencesOfTheMechanicsDo) {
+  expect_same_motion(scene::load_file(kScenes + "four_bar.yaml"), 1e-7);
+}
+
+TEST(Monolith, CarriesTheBristlesOfJointFriction) {
+  // a rod that is held by the bristles of its hinge, springs back, and one that slides in them
+  const scene::Scene scene = scene::load_text(R"(
+bodies:
+  Rod: {mass: 2 kg, center_of_mass: [0.5 m, 0, 0], inertia: [0.1, 0.167, 0.167]}
+  Slider: {mass: 3 kg, inertia: [0.1, 0.1, 0.1]}
+joints:
+  Hinge: {type: revolute, body1: Ground, body2: Rod, coulomb_friction: 12 Nm, friction_speed: 0.01 rad/s,
+          bristle_stiffness: 1e4 Nm/rad, bristle_damping: 10 Nms/rad}
+  Rail: {type: prismatic, body1: Ground, point1: [2 m, 0, 0], body2: Slider, initial_velocity: 0.5 m/s,
+         coulomb_friction: 8 N, friction_speed: 0.01 m/s, bristle_stiffness: 1e4 N/m, bristle_damping: 20 Ns/m}
+)",
+                                              "bristles");
+  ASSERT_FALSE(
+      multibody::start_state(multibody::build_model(scene.mechanics, scene::row_names(scene))).bristles.empty());
+  expect_same_motion(scene, 1e-7);
+  Monolith monolith(scene);
+  ASSERT_TRUE(monolith.start().is_ok());
+  ASSERT_TRUE(monolith.advance_to({1'000'000'000}, std::vector<double>{}).is_ok());
+  // weight 9.81 N m on bristles of 1e4 N m/rad
+  EXPECT_NEAR(monolith.variable("Hinge.position"), -9.81e-4, 2e-5);
 }
 
 TEST(Monolith, GivesVariablesByName) {
