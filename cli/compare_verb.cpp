@@ -1,13 +1,12 @@
 // `slewring compare SCENE`: one scene and input under every formulation, as a table and a picture of error over cost.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
 
 #include "cli/comparison/comparison_report.h"
-#include "cli/display.h"
 #include "cli/interrupts.h"
+#include "cli/progress_line.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 
@@ -16,7 +15,6 @@ namespace {
 
 using cli_support::Failure;
 
-constexpr std::int64_t kTerminalPeriodNs = 200'000'000;
 constexpr int kMostRepeats = 1000;
 
 struct Options {
@@ -25,47 +23,6 @@ struct Options {
   std::string csv;
   bool is_json = false;
   bool is_quiet = false;
-};
-
-// Where the work is, on standard error: rewritten in place on a terminal, a line for each part elsewhere.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool is_quiet) : is_quiet_(is_quiet), is_terminal_(isatty(STDERR_FILENO) != 0) {}
-  ~ProgressLine() { clear(); }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void show(std::string_view doing, double share) {
-    if (is_quiet_) return;
-    const std::int64_t now_ns = monotonic_ns();
-    if (!is_terminal_) {
-      if (doing != last_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * share, std::string(doing).c_str());
-    } else if (doing != last_ || now_ns >= next_ns_) {
-      next_ns_ = now_ns + kTerminalPeriodNs;
-      std::fprintf(stderr, "\r%3.0f %%  %s%s\x1b[K", 100 * share, std::string(doing).c_str(),
-                   left_text(share, now_ns).c_str());
-      is_shown_ = true;
-    }
-    last_ = doing;
-  }
-
-  void clear() {
-    if (is_shown_) std::fprintf(stderr, "\r\x1b[K");
-    is_shown_ = false;
-  }
-
- private:
-  [[nodiscard]] std::string left_text(double share, std::int64_t now_ns) const {
-    constexpr double kKnown = 0.02;  // before it, a guess would only jump
-    if (share < kKnown) return "";
-    const double elapsed = static_cast<double>(now_ns - begin_ns_) * 1e-9;
-    return fmt::format("  {} left", duration_text(elapsed * (1 - share) / share));
-  }
-
-  bool is_quiet_, is_terminal_;
-  bool is_shown_ = false;
-  std::int64_t begin_ns_ = monotonic_ns(), next_ns_ = 0;
-  std::string last_;
 };
 
 void write_file(const std::string& path, const std::string& text) {

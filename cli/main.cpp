@@ -35,6 +35,8 @@ int main(int argc, char** argv) {
   cli::add_export(app, action);
   cli::add_replay(app, action);
   cli::add_compare(app, action);
+  cli::add_tradeoff(app, action);
+  cli::add_tradeoff_row(app, action);
   cli::add_node(app, action);
   cli::add_doctor(app, action);
   int exit_code = 0;

@@ -27,6 +27,8 @@ void add_plot(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
+void add_tradeoff(CLI::App& program, Action& action);
+void add_tradeoff_row(CLI::App& program, Action& action);
 void add_doctor(CLI::App& program, Action& action);
 
 // `slewring node ROLE ...` in the place of this program; gives a code only when that fails.

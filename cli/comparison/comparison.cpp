@@ -49,6 +49,10 @@ class Comparer {
     if (!base_.has_mechanics()) {
       throw Failure(ExitCode::bad_input, "the scene has no bodies; there are no formulations to compare");
     }
+    if (base_.session.solution == scene::Solution::monolithic) {
+      throw Failure(ExitCode::bad_input,
+                    "session.solution monolithic has no formulations to compare; nothing was run; set it to split");
+    }
     if (!(base_.session.duration > 0)) {
       throw Failure(ExitCode::bad_input,
                     "the scene runs until it is stopped; nothing was run; say with --until how long to compare");

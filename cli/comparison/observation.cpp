@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "cli_support/failure.h"
@@ -62,21 +63,24 @@ class Reader {
   std::vector<double> buffer_;
 };
 
-// Energy and joints, from the poses that the formulation integrates.
+// Energy and joints, from the poses that the formulation integrates; not of a mechanism that is another's.
 class Mechanism {
  public:
   explicit Mechanism(const DirectSession& session)
-      : mechanics_(dynamic_cast<const mechanics::MechanicsSubsystem&>(*session.subsystem(Role::mechanics))),
-        gauge_(mechanics_.model()),
-        ws_(mechanics_.model()) {}
+      : mechanics_(dynamic_cast<const mechanics::MechanicsSubsystem*>(session.subsystem(Role::mechanics))) {
+    if (mechanics_ == nullptr) return;
+    gauge_.emplace(mechanics_->model());
+    ws_.emplace(mechanics_->model());
+  }
 
   void measure(std::size_t sample, Observation& run) {
-    const multibody::Model& model = mechanics_.model();
-    mechanics_.mechanism().observe(model, mechanics_.state(), ws_);
-    const multibody::Energy energy = multibody::energy(model, ws_);
+    if (mechanics_ == nullptr) return;
+    const multibody::Model& model = mechanics_->model();
+    mechanics_->mechanism().observe(model, mechanics_->state(), *ws_);
+    const multibody::Energy energy = multibody::energy(model, *ws_);
     run.energy[sample] = energy.kinetic + energy.potential;
     run.largest_kinetic_energy = std::max(run.largest_kinetic_energy, energy.kinetic);
-    const multibody::JointGap gap = gauge_.measure(ws_);
+    const multibody::JointGap gap = gauge_->measure(*ws_);
     if (gap.position > run.gap.position) {
       run.gap.position = gap.position;
       run.gap.joint = gap.joint;
@@ -85,9 +89,9 @@ class Mechanism {
   }
 
  private:
-  const mechanics::MechanicsSubsystem& mechanics_;
-  multibody::JointGauge gauge_;
-  multibody::Workspace ws_;
+  const mechanics::MechanicsSubsystem* mechanics_;
+  std::optional<multibody::JointGauge> gauge_;
+  std::optional<multibody::Workspace> ws_;
 };
 
 // Times of the steps of several runs, as microseconds per simulated millisecond.

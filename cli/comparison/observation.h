@@ -21,7 +21,7 @@ struct Observation {
   SimDuration sample;                 // sample i is at i times this
   std::size_t variables = 0;          // values of a sample
   std::vector<double> values;         // samples x variables; a run in longer steps leaves samples out: NaN
-  std::vector<double> energy;         // J, kinetic and potential, by sample
+  std::vector<double> energy;         // J, kinetic and potential, by sample; NaN without a mechanism of its own
   double largest_kinetic_energy = 0;  // J
   multibody::JointGap gap;            // largest of all samples
   StepIndex steps = 0;                // done

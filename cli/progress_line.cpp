@@ -1,0 +1,47 @@
+#include "cli/progress_line.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "cli/display.h"
+#include "core/time.h"
+
+namespace slew::cli {
+namespace {
+
+constexpr std::int64_t kTerminalPeriodNs = 200'000'000;
+constexpr double kKnown = 0.02;  // of the work: before it, a guess of the time left would only jump
+
+}  // namespace
+
+ProgressLine::ProgressLine(bool is_quiet)
+    : is_quiet_(is_quiet), is_terminal_(isatty(STDERR_FILENO) != 0), begin_ns_(monotonic_ns()) {}
+
+void ProgressLine::show(std::string_view doing, double share) {
+  if (is_quiet_) return;
+  const std::int64_t now_ns = monotonic_ns();
+  if (!is_terminal_) {
+    if (doing != last_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * share, std::string(doing).c_str());
+  } else if (doing != last_ || now_ns >= next_ns_) {
+    next_ns_ = now_ns + kTerminalPeriodNs;
+    std::fprintf(stderr, "\r%3.0f %%  %s%s\x1b[K", 100 * share, std::string(doing).c_str(),
+                 left_text(share, now_ns).c_str());
+    is_shown_ = true;
+  }
+  last_ = doing;
+}
+
+void ProgressLine::clear() {
+  if (is_shown_) std::fprintf(stderr, "\r\x1b[K");
+  is_shown_ = false;
+}
+
+std::string ProgressLine::left_text(double share, std::int64_t now_ns) const {
+  if (share < kKnown) return "";
+  const double elapsed = static_cast<double>(now_ns - begin_ns_) * 1e-9;
+  return fmt::format("  {} left", duration_text(elapsed * (1 - share) / share));
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,187 @@
+// `slewring tradeoff SCENE`: error against cost of many settings of one scene, and which of them to take.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "cli/interrupts.h"
+#include "cli/progress_line.h"
+#include "cli/tradeoff/overlay.h"
+#include "cli/tradeoff/tradeoff_report.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+
+namespace slew::cli {
+namespace {
+
+using cli_support::Failure;
+
+constexpr int kMostWorkers = 64;
+constexpr int kMostRepeats = 1000;
+
+struct Options {
+  TradeoffWish wish;
+  std::string budget;
+  std::vector<std::string> errors;
+  std::string page, csv, overlay;
+  bool is_full = false, is_json = false, is_quiet = false;
+};
+
+struct RowOptions {
+  std::string job, result;
+};
+
+void write_file(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) {
+    throw Failure(ExitCode::storage, "cannot write " + path + "; the table above is complete; name another file");
+  }
+}
+
+// the answer's settings beside the user's own changes
+scene::Overrides overlay_settings(const Options& options, const TradeoffRow& row) {
+  scene::Overrides overrides = options.wish.scene.overrides;
+  for (std::string& one : overrides_of(row.settings)) overrides.push_back(std::move(one));
+  return overrides;
+}
+
+std::optional<Answer> answer(const Options& options, const Tradeoff& tradeoff) {
+  Answer answer;
+  if (!options.budget.empty()) answer.question.budget = parse_budget(options.budget);
+  for (const std::string& text : options.errors) answer.question.errors.push_back(parse_error(text, tradeoff));
+  if (!answer.question.is_asked()) return std::nullopt;
+  answer.row = best_row(tradeoff, answer.question);
+  if (answer.row && *answer.row > 0) {
+    answer.overlay = write_overlay(tradeoff.file, overlay_settings(options, tradeoff.rows[*answer.row]),
+                                   answer_text(tradeoff, answer), options.overlay);
+  }
+  return answer;
+}
+
+ExitCode run(Options options) {
+  if (options.wish.scene.input == "keyboard") {
+    throw Failure(ExitCode::bad_input,
+                  "--input keyboard: every run needs the same input; nothing was run; write it "
+                  "into a .csv file");
+  }
+  if (!options.budget.empty()) static_cast<void>(parse_budget(options.budget));  // refused before anything has run
+  options.wish.size = options.is_full ? GridSize::full : GridSize::modest;
+  count_interrupts();
+  Tradeoff tradeoff;
+  {
+    ProgressLine line(options.is_quiet);
+    tradeoff = trade_off(options.wish, [&line](std::string_view doing, double share) {
+      line.show(doing, share);
+      return interrupts() == 0;
+    });
+  }
+  const std::optional<Answer> found = tradeoff.done() > 0 ? answer(options, tradeoff) : std::nullopt;
+  fmt::print("{}", options.is_json ? report_json(tradeoff, found) + '\n' : report_text(tradeoff, found));
+  std::fflush(stdout);
+  const std::string page = options.page.empty() ? tradeoff.folder + "/tradeoff.html" : options.page;
+  write_file(page, report_html(tradeoff, found));
+  if (!options.csv.empty()) write_file(options.csv, report_csv(tradeoff));
+  if (!options.is_json) {
+    if (found && !found->overlay.empty()) fmt::print("{}\n", found->overlay);
+    if (!options.csv.empty()) fmt::print("{}\n", options.csv);
+    fmt::print("{}\n", page);
+  }
+  if (interrupts() > 0) return static_cast<ExitCode>(interrupt_code());
+  return found && !found->row ? ExitCode::failed : ExitCode::ok;
+}
+
+ExitCode run_row(const RowOptions& options) {
+  std::ifstream in(options.job, std::ios::binary);
+  const nlohmann::json job = nlohmann::json::parse(in, nullptr, false);
+  if (!in || job.is_discarded()) throw Failure(ExitCode::bad_input, options.job + " is no row of a tradeoff");
+  write_result(options.result, to_json(compute(job_from(job))));
+  return ExitCode::ok;
+}
+
+void add_what(CLI::App& verb, Options& options) {
+  TradeoffWish& wish = options.wish;
+  verb.add_option("scene", wish.scene.file, "scene file")->required()->type_name("SCENE");
+  const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
+    verb.add_option(name, to, text)->allow_extra_args(false)->type_name(type);
+  };
+  repeated("--set", wish.scene.overrides, "change a value of the scene for all rows; repeat for more", "PATH=VALUE");
+  repeated("--axis", wish.axes,
+           "values of a setting to try, such as session.step=0.5ms,1ms,2ms; repeat for the product. Without it the "
+           "scene's own axes: step, coupling, formulation, integrators, tolerances, modes, contact",
+           "PATH=VALUES");
+  repeated("--variables", wish.variables,
+           "whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
+           "actuators and the place of the last body",
+           "PATTERN");
+  verb.add_flag("--full", options.is_full, "the whole product of the scene's own axes: may take hours");
+  verb.add_option("--until", wish.scene.duration,
+                  "how long to simulate, such as '5 s'; without it the scene's duration")
+      ->type_name("TIME");
+  verb.add_option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+      ->type_name("SOURCE")
+      ->capture_default_str();
+}
+
+void add_answers(CLI::App& verb, Options& options) {
+  verb.add_option("--budget", options.budget, "answer: least error at no more than this cost, such as '20 us/ms'")
+      ->type_name("COST")
+      ->group("Answer");
+  verb.add_option("--error", options.errors,
+                  "answer: least cost with no more than this error, such as 'Cyl_Lift.force 1%' (of its range) or "
+                  "'Bag.position 1mm'; repeat for more")
+      ->allow_extra_args(false)
+      ->type_name("BOUND")
+      ->group("Answer");
+  verb.add_option("--overlay", options.overlay,
+                  "where the answer is written as a scene; without it SCENE_tradeoff.yaml beside the scene")
+      ->type_name("FILE")
+      ->group("Answer");
+}
+
+void add_how(CLI::App& verb, Options& options) {
+  TradeoffWish& wish = options.wish;
+  verb.add_option("--folder", wish.folder, "where results are kept; without it runs/tradeoff-SCENE")->type_name("DIR");
+  verb.add_flag("--anew", wish.is_anew, "compute also what the folder has already");
+  verb.add_option("--workers", wish.workers, "processes at once")
+      ->check(CLI::Range(1, kMostWorkers))
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--repeats", wish.repeats, "timed runs of every row")
+      ->check(CLI::Range(1, kMostRepeats))
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("-o,--output", options.page, "the page; without it tradeoff.html in the folder")->type_name("FILE");
+  verb.add_option("--csv", options.csv, "write the table as comma-separated values too")->type_name("FILE");
+  verb.add_flag("--json", options.is_json, "print the table as JSON and nothing else");
+  verb.add_flag("--quiet", options.is_quiet, "no progress");
+}
+
+}  // namespace
+
+void add_tradeoff(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("tradeoff", "error against cost of a scene's settings, and which to take");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  add_what(*verb, *options);
+  add_answers(*verb, *options);
+  add_how(*verb, *options);
+  verb->footer(
+      "Each row is a process of its own, two at once. Ctrl-C keeps what is done; the same command goes on from there.\n"
+      "What the columns mean: docs/howto/tradeoff.md.\n\n"
+      "Examples:\n"
+      "  slewring tradeoff scenes/truck_crane.yaml --budget '20 us/ms'\n"
+      "  slewring tradeoff scenes/truck_crane.yaml --until 5s --axis session.step=1ms,2ms,5ms "
+      "--axis session.coupling=hold,two --error 'Cyl_Lift.force 1%'");
+  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+// the process of one row: no verb for people
+void add_tradeoff_row(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("tradeoff-row", "one row of a tradeoff")->group("");
+  const auto options = std::make_shared<RowOptions>();
+  verb->add_option("job", options->job, "file of the row")->required();
+  verb->add_option("--result", options->result, "file to write")->required();
+  verb->callback([&action, options] { action = [options] { return run_row(*options); }; });
+}
+
+}  // namespace slew::cli
