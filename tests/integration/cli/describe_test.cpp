@@ -61,5 +61,37 @@ TEST_F(DescribeVerb, CheckWarnsOfAPayloadThatCannotBeLifted) {
   EXPECT_TRUE(contains(heavy.err, "warning: Bag: 15000 kg cannot be lifted")) << heavy.err;
 }
 
+class SimplifyVerb : public DescribeVerb {
+ protected:
+  // a scene of the test's own, beside which the overlay lies
+  std::string copied(const std::string& name) {
+    const std::filesystem::path copy = work_.path() / name;
+    std::filesystem::copy_file(scene_file(name), copy);
+    return copy.string();
+  }
+};
+
+TEST_F(SimplifyVerb, WritesAnOverlayThatCheckAccepts) {
+  const std::string scene = copied("single_cylinder.yaml");
+  const CommandResult result =
+      slewring({"simplify", scene, "--error", "Load.position 2mm", "--error", "Cyl_Lift.force 5%", "--repeats", "1"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const std::string overlay = (work_.path() / "single_cylinder_simplified.yaml").string();
+  EXPECT_TRUE(result.out.ends_with(overlay + "\n")) << result.out;
+  EXPECT_TRUE(contains(result.out, "measured: ")) << result.out;
+  EXPECT_EQ(slewring({"check", overlay}).code, 0);
+}
+
+TEST_F(SimplifyVerb, WritesNothingWhenNothingHelps) {
+  const std::string scene = copied("single_cylinder.yaml");
+  const CommandResult result =
+      slewring({"simplify", scene, "--error", "Load.position 1e-12", "--until", "0.5s", "--repeats", "1", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_FALSE(json.at("helps").get<bool>());
+  EXPECT_FALSE(json.at("trials").empty());
+  EXPECT_FALSE(std::filesystem::exists(work_.path() / "single_cylinder_simplified.yaml"));
+}
+
 }  // namespace
 }  // namespace slew::testing
