@@ -28,6 +28,7 @@ constexpr double kOfSetting = 0.25;  // effect from which a setting limits
 
 struct Command {
   std::string input;
+  double stick = 0;
   hydraulics::HeldControl held;
 };
 
@@ -39,7 +40,7 @@ std::vector<Command> commands_of(const scene::Scene& scene, const hydraulics::Ci
     if (control < 0) continue;
     for (const double stick : {1.0, -1.0}) {
       if (stick < 0 && input.type == scene::InputType::digital) continue;
-      commands.push_back({input.name, {control, stick * input.scale}});
+      commands.push_back({input.name, stick, {control, stick * input.scale}});
     }
   }
   if (commands.empty()) commands.push_back({});
@@ -159,6 +160,7 @@ class Finder {
       port.chamber = circuit.volume_name(chamber);
       port.pressure = best.pressures[static_cast<std::size_t>(chamber)];
       port.input = commands_[command_of_[i]].input;
+      port.stick = commands_[command_of_[i]].stick;
       port.is_steady = best.is_steady;
       const coupling::LineForceLaw law(scene_.ports[i].line_force);
       const double F = best.forces[i];
@@ -253,7 +255,8 @@ std::string report_text(const LiftableLoad& load) {
     if (!port.is_steady) limit += ", pressure still rising after 30 s";
     rows.push_back({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"),
                     quantity_text(port.force_per_kg, "N"), quantity_text(port.largest_force, "N"),
-                    quantity_text(port.pressure, "Pa"), port.input.empty() ? "always" : port.input, limit});
+                    quantity_text(port.pressure, "Pa"),
+                    port.input.empty() ? "always" : fmt::format("{} at {:+g}", port.input, port.stick), limit});
   }
   return text + table_text(rows);
 }
@@ -275,6 +278,7 @@ nlohmann::json report_json(const LiftableLoad& load) {
                    {"pressure", port.pressure},
                    {"chamber", port.chamber},
                    {"input", port.input},
+                   {"stick", port.stick},
                    {"load", port.load},
                    {"at_end", port.is_at_end},
                    {"steady", port.is_steady},

@@ -36,6 +36,7 @@ struct LiftingPort {
   double pressure = 0;                      // Pa absolute, in the loaded chamber at (2)
   std::string chamber{};                    // volume
   std::string input{};                      // that loads it; empty: none has to
+  double stick = 0;                         // +1 or -1: its direction, at full stick
   double load = 0;                          // kg, (3); below 0: it does not hold the machine alone
   bool is_at_end = false;                   // the piston stands in the end stop that it would have to leave
   bool is_steady = true;                    // false: the pressure still rose after 30 s

@@ -31,8 +31,8 @@ double value(const PlayedScene& played, wire::Role role, const std::string& name
 double way(const std::string& scene_name, const LiftableLoad& found, double mass) {
   const LiftingPort& port = found.limit();
   const scene::Scene scene =
-      load(scene_name, {found.payload + ".mass=" + std::to_string(mass),
-                        "script={interpolation: step, inputs: {" + port.input + ": [[0 s, 0], [1 s, 1]]}}"});
+      load(scene_name, {found.payload + ".mass=" + std::to_string(mass), "script.interpolation=step",
+                        "script.inputs={" + port.input + ": [[0 s, 0], [1 s, " + std::to_string(port.stick) + "]]}"});
   PlayedScene played(scene);
   play_to(played, 1);
   const double before = value(played, wire::Role::hydraulics, port.name + ".stroke");
