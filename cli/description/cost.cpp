@@ -165,10 +165,10 @@ class Measurement {
   }
 
   void add_flexible(const multibody::FlexibleBodyDef& body, const multibody::Model& sampled, double calls) {
-    if (body.modes == nullptr || body.modes->mode_count() == 0) return;
+    if (body.modes == nullptr || body.modes->modes() == 0) return;
     scene::Overrides overrides = overrides_;
     overrides.push_back(body.body + ".flex_modes=none");
-    overrides.push_back(body.body + ".relative_damping=");
+    overrides.push_back(body.body + ".relative_damping=\"\"");
     try {
       const scene::Scene frozen = scene::load_file(file_, overrides);
       add_removed("modes of " + body.body, calls,

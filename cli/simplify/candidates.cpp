@@ -42,7 +42,7 @@ class Collector {
 
   // the lowest modes that are kept: all but one, half of them, none
   void add_modes(const multibody::FlexibleBodyDef& body) {
-    const std::size_t count = body.modes == nullptr ? 0 : body.modes->mode_count();
+    const std::size_t count = body.modes == nullptr ? 0 : body.modes->modes();
     if (count == 0) return;
     const multibody::BodyDef& def = *std::find_if(scene_.mechanics.bodies.begin(), scene_.mechanics.bodies.end(),
                                                   [&](const auto& one) { return one.name == body.body; });

@@ -19,6 +19,9 @@ namespace {
 using cli_support::Failure;
 using wire::Role;
 
+// attempts that are expected before the candidates are known, for the progress
+constexpr std::size_t kUsualWorks = 20;
+
 // "Bag.position 1mm"
 struct ErrorWish {
   std::string name, limit;
@@ -279,7 +282,7 @@ class Simplifier {
   std::vector<double> fraction_;  // of the range, by name; 0: the tolerance is given
   Observation base_run_;
   RunFindings found_;
-  std::size_t done_ = 0, works_ = 0;
+  std::size_t done_ = 0, works_ = kUsualWorks;
   bool is_stopped_ = false;
   Simplification result_;
 };
