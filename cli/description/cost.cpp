@@ -149,10 +149,10 @@ class Measurement {
     add(1, choice_of(scene_, "formulation") + " formulation, integrator " + choice_of(scene_, "integrator"),
         to_cost_ * all.advance, Measured::calls);
     const double calls = all.evaluate + all.advance;
-    for (const multibody::ContactPairDef& pair : scene_.mechanics.contacts) {
+    for (const std::string& pair : multibody::describe(sampled).pairs) {
       MechanicsVariant without = variant;
-      without.left_out = pair.name;
-      add_removed("contact pair " + pair.name, calls, time_mechanics(without, mechanics_states_));
+      without.left_out = pair;
+      add_removed("contact pair " + pair, calls, time_mechanics(without, mechanics_states_));
     }
     for (const multibody::FlexibleBodyDef& body : scene_.mechanics.flexible_bodies) add_flexible(body, sampled, calls);
     add(1, "readings of every element", to_cost_ * all.observe, Measured::calls);
