@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/coupling_check.h"
+#include "cli/description/liftable_load.h"
 #include "cli/direct_session.h"
 #include "cli/display.h"
 #include "cli/verbs.h"
@@ -55,12 +56,22 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
   }
 }
 
+// A payload that the scene's valves do not lift: a physical result, and rarely what was wanted.
+void check_payload(scene::Scene& scene) {
+  const LiftableLoad load = find_liftable(scene, {}, Settings::left_out);
+  if (!load.has_answer() || load.mass <= load.limit().load) return;
+  scene.warnings.push_back(fmt::format(
+      "{}: {} kg cannot be lifted from where the scene begins, but {}; see 'slewring describe {} --liftable'",
+      load.payload, load.mass, limit_text(load), scene.name));
+}
+
 ExitCode check(const Options& options) {
   try {
-    const scene::Scene scene = scene::load_file(options.scene, options.overrides);
+    scene::Scene scene = scene::load_file(options.scene, options.overrides);
     DirectSession session(scene);
     cli_support::require(session.start());
     check_variables(scene, session);
+    check_payload(scene);
     std::vector<std::string> warnings = scene.warnings;
     for (std::string& warning : coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
     if (options.is_json) {

@@ -1,10 +1,15 @@
-// `slewring describe SCENE`: what a scene is made of, what it costs in states, and which nodes it needs and why.
+// `slewring describe SCENE`: what a scene is made of, what it costs in states, and which nodes it needs and why; what
+// each part costs in time, its eigenvalues and what it can lift when asked for.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/description/cost.h"
+#include "cli/description/eigenvalues.h"
+#include "cli/description/instant.h"
+#include "cli/description/liftable_load.h"
 #include "cli/display.h"
 #include "cli/verbs.h"
 #include "hydraulics/circuit.h"
@@ -16,10 +21,21 @@
 namespace slew::cli {
 namespace {
 
+// s of a scene's run whose cost is measured when nothing is said: some manoeuvre, some seconds of waiting
+constexpr double kCostTime = 8;
+
 struct Options {
   std::string scene;
   std::vector<std::string> overrides;
   bool is_json = false;
+  // what to work out beside the description
+  bool has_cost = false, has_eigenvalues = false, is_frictionless = false, has_liftable = false;
+  std::string until;      // of the run whose cost is measured; empty: all of it, at most kCostTime
+  std::size_t count = 8;  // eigenvalues of either end
+  std::string at = "0 s";
+  std::vector<std::string> pose;
+
+  [[nodiscard]] bool has_part() const { return has_cost || has_eigenvalues || has_liftable; }
 };
 
 // A body by its numbers, and the mesh that they came from.
@@ -78,7 +94,12 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.driven = m.driven;
   d.contacts = m.pairs;
   for (const std::string& pair : m.pairs_at_rest) {
-    d.left_out.push_back("contact " + pair + ": its shapes cannot move against each other, it is not tested");
+    const auto& pairs = scene.mechanics.contacts;
+    const bool is_tested =
+        std::any_of(pairs.begin(), pairs.end(), [&](const auto& one) { return one.name == pair && one.tested; });
+    d.left_out.push_back("contact " + pair +
+                         (is_tested ? ": its shapes cannot move against each other, it is not tested"
+                                    : ": the scene says that it is not tested"));
   }
   for (const std::string& body : m.fixed_to_ground) d.merged.push_back(body + " with Ground");
   for (const multibody::LinkDescription& link : m.links) {
@@ -256,7 +277,44 @@ void print(const Description& d) {
   fmt::print("{}", table_text(rows, ""));
 }
 
+// Only the parts that were asked for, in the order of the options.
+ExitCode show_parts(const Options& options) {
+  // the same physics, in the parts that are described
+  scene::Overrides overrides = options.overrides;
+  overrides.emplace_back("session.solution=split");
+  scene::Scene scene = scene::load_file(options.scene, overrides);
+  const double at = read_option("--at", options.at, Dimension::time);
+  nlohmann::json json = {{"name", scene.name}};
+  std::vector<std::string> texts;
+  if (options.has_cost) {
+    const double whole = scene.session.duration > 0 ? std::min(scene.session.duration, kCostTime) : kCostTime;
+    const double until = options.until.empty() ? whole : read_option("--until", options.until, Dimension::time);
+    const std::vector<std::string> not_paid = describe(scene).left_out;
+    const CostByPart cost = measure_cost(scene, options.scene, overrides, until);
+    json["cost"] = report_json(cost, not_paid);
+    texts.push_back(report_text(cost, not_paid));
+  }
+  if (options.has_eigenvalues) {
+    const Eigenvalues eigenvalues =
+        find_eigenvalues(scene, at, options.is_frictionless ? DryFriction::neglected : DryFriction::kept);
+    json["eigenvalues"] = report_json(eigenvalues);
+    texts.push_back(report_text(eigenvalues, options.count));
+  }
+  if (options.has_liftable) {
+    const LiftableLoad load = find_liftable(scene, {at, options.pose}, Settings::named);
+    json["liftable"] = report_json(load);
+    texts.push_back(report_text(load));
+  }
+  if (options.is_json) {
+    fmt::print("{}\n", json.dump(2));
+    return ExitCode::ok;
+  }
+  for (std::size_t i = 0; i < texts.size(); ++i) fmt::print("{}{}", i == 0 ? "" : "\n", texts[i]);
+  return ExitCode::ok;
+}
+
 ExitCode show(const Options& options) {
+  if (options.has_part()) return show_parts(options);
   const scene::Scene scene = scene::load_file(options.scene, options.overrides);
   const Description description = describe(scene);
   if (options.is_json) {
@@ -278,7 +336,33 @@ void add_describe(CLI::App& program, Action& action) {
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
   verb->add_flag("--json", options->is_json, "for machines");
-  verb->footer("Example:\n  slewring describe scenes/truck_crane.yaml");
+  CLI::Option* cost = verb->add_flag("--cost", options->has_cost, "what each part costs, measured on the scene's run");
+  verb->add_option("--until", options->until, "end of that run (default: the scene's, at most 8 s)")
+      ->type_name("TIME")
+      ->needs(cost);
+  CLI::Option* eigenvalues = verb->add_flag("--eigenvalues", options->has_eigenvalues,
+                                            "fastest and slowest motions of the whole machine, and whose they are");
+  CLI::Option* liftable = verb->add_flag("--liftable", options->has_liftable,
+                                         "largest payload that the cylinders lift, and what limits it");
+  verb->add_option("--at", options->at, "time of the scene's own run at which to look")
+      ->type_name("TIME")
+      ->capture_default_str();
+  verb->add_option("--count", options->count, "eigenvalues shown of either end")
+      ->needs(eigenvalues)
+      ->capture_default_str();
+  verb->add_flag("--frictionless", options->is_frictionless,
+                 "eigenvalues without the dry friction of cylinders and joints")
+      ->needs(eigenvalues);
+  verb->add_option("--pose", options->pose, "joints put elsewhere, with --liftable; repeat or separate by commas")
+      ->type_name("JOINT=VALUE")
+      ->delimiter(',')
+      ->needs(liftable);
+  verb->footer(
+      "Examples:\n"
+      "  slewring describe scenes/truck_crane.yaml\n"
+      "  slewring describe scenes/truck_crane.yaml --cost\n"
+      "  slewring describe scenes/truck_crane.yaml --eigenvalues --at 5s\n"
+      "  slewring describe scenes/truck_crane.yaml --liftable --pose 'Body_LiftBoom=20 deg'");
   verb->callback([&action, options] { action = [options] { return show(*options); }; });
 }
 

@@ -54,7 +54,7 @@ std::optional<Answer> answer(const Options& options, const Tradeoff& tradeoff) {
   answer.row = best_row(tradeoff, answer.question);
   if (answer.row && *answer.row > 0) {
     answer.overlay = write_overlay(tradeoff.file, overlay_settings(options, tradeoff.rows[*answer.row]),
-                                   answer_text(tradeoff, answer), options.overlay);
+                                   "tradeoff: " + answer_text(tradeoff, answer), options.overlay);
   }
   return answer;
 }

@@ -27,6 +27,7 @@ void add_plot(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
+void add_simplify(CLI::App& program, Action& action);
 void add_tradeoff(CLI::App& program, Action& action);
 void add_tradeoff_row(CLI::App& program, Action& action);
 void add_doctor(CLI::App& program, Action& action);

@@ -85,6 +85,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
 
   [[nodiscard]] const coupling::Indicator& indicator() const noexcept { return indicator_; }
+  [[nodiscard]] const hydraulics::Circuit& circuit() const noexcept { return *circuit_; }
+  [[nodiscard]] const hydraulics::CircuitIntegrator& integrator() const noexcept { return *integrator_; }
   [[nodiscard]] hydraulics::CircuitIntegrator& integrator() noexcept { return *integrator_; }  // for tests and tools
 
  private:

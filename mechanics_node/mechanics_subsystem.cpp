@@ -7,6 +7,7 @@
 #include "cli_support/failure.h"
 #include "coupling/static_forces.h"
 #include "math/small_solve.h"
+#include "mechanics_node/payload.h"
 #include "multibody/joint_law.h"
 #include "multibody/parameters.h"
 #include "multibody/rows.h"
@@ -118,6 +119,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
       reactions_(model_.joints.size()) {
   for (const scene::PortDef& port : scene.ports) {
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
+    port_ratios_.push_back(port.ratio);
   }
   for (std::size_t i = 0; i < scene.inputs.size(); ++i) {
     const int load = multibody::find_load(model_.elements, scene.inputs[i].primitive);
@@ -134,10 +136,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
   matrix_.resize(rows * rows);
   right_.resize(rows * (ports_.size() + 1));
   coupling::resize(published_.mechanism, ports_.size());
-  for (std::size_t i = 1; i <= def_.bodies.size(); ++i) {
-    const bool is_rigid = def_.bodies[i - 1].type == multibody::BodyType::rigid;
-    if (is_rigid && model_.bodies[i].link > 0) payload_ = static_cast<int>(i);
-  }
+  payload_ = payload_of(def_, model_);
   choose_mobility();
   list_variables();
 }
@@ -666,42 +665,6 @@ void MechanicsSubsystem::list_variables() {
     variables_.push_back({model_.bodies[static_cast<std::size_t>(payload_)].name + ".mass", Dimension::mass});
 }
 
-double MechanicsSubsystem::payload_mass() const noexcept {
-  const int lumped = model_.bodies[static_cast<std::size_t>(payload_)].lumped;
-  return model_.lumped[static_cast<std::size_t>(lumped)].mass;
-}
-
-// Change of the static line forces with the payload's mass, by 1 kg: exact at rest, since gravity is linear in the
-// mass.
-void MechanicsSubsystem::find_payload_slopes(std::span<double> slopes) const noexcept {
-  const std::size_t m = ports_.size();
-  const std::size_t rows = model_.rows.size();
-  std::fill(slopes.begin(), slopes.end(), 0.0);
-  if (m == 0 || payload_ == 0) return;
-  const double mass = payload_mass();
-  // the same static problem twice, without joint laws: now and with more payload
-  const auto static_forces = [&](double payload, std::span<double> F) {
-    multibody::set_body_mass(heavier_, payload_, payload);
-    multibody::evaluate(heavier_, state_, reading_workspace_);
-    coupling::PortMatrix W;
-    coupling::PortArray a_free;
-    W.resize(m * m);
-    a_free.resize(m);
-    for (std::size_t i = 0; i < m; ++i) {
-      a_free[i] = ports_[i].ratio * reading_workspace_.row_a_free[i];
-      for (std::size_t j = 0; j < m; ++j) {
-        W[i * m + j] = ports_[i].ratio * reading_workspace_.row_W[i * rows + j] * ports_[j].ratio;
-      }
-    }
-    return coupling::static_forces(W.span(), a_free.span(), F);
-  };
-  coupling::PortArray now, more;
-  now.resize(m);
-  more.resize(m);
-  if (!static_forces(mass, now.span()) || !static_forces(mass + 1, more.span())) return;
-  for (std::size_t i = 0; i < m; ++i) slopes[i] = more[i] - now[i];
-}
-
 void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept {
   multibody::read_variables(model_, state_, workspace_, row_force_, values.first(model_variables_));
   multibody::joint_reactions(model_, state_, reading_workspace_, row_force_, reactions_);
@@ -710,7 +673,8 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
   std::size_t k = model_variables_ + reaction_variables_;
   coupling::PortArray slopes;
   slopes.resize(ports_.size());
-  find_payload_slopes(slopes.span());
+  payload_slopes(heavier_, state_, reading_workspace_, port_ratios_, payload_,
+                 payload_ > 0 ? mass_of(model_, payload_) : 0, slopes.span());
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     values[k++] = published_.mechanism.F_line[i];
     values[k++] = ports_[i].friction;
@@ -719,7 +683,7 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
     values[k++] = slopes[i];
   }
   if (is_free_running_) values[k++] = static_cast<double>(partner_age_);
-  if (payload_ > 0) values[k++] = payload_mass();
+  if (payload_ > 0) values[k++] = mass_of(model_, payload_);
 }
 
 std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene) {

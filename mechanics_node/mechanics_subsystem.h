@@ -105,8 +105,6 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
   void find_static_forces(const coupling::MechanismSample& sample) noexcept;
   void list_variables();
-  [[nodiscard]] double payload_mass() const noexcept;
-  void find_payload_slopes(std::span<double> slopes) const noexcept;
   [[nodiscard]] std::int32_t first_not_finite() const noexcept;
   [[nodiscard]] double bristle_of(std::size_t row) const noexcept {
     return state_.bristles.empty() ? 0.0 : state_.bristles[row];
@@ -145,6 +143,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   int substeps_ = 1;
   int micro_steps_ = 1;
   std::vector<Port> ports_;
+  std::vector<double> port_ratios_;
   std::vector<OperatedLoad> operated_;
   ModalExchange modal_;
   std::vector<char> row_is_active_;

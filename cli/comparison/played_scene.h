@@ -2,6 +2,7 @@
 // for bit, without messages and recording.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "cli/direct_session.h"
@@ -28,6 +29,8 @@ class PlayedScene {
   [[nodiscard]] StepIndex step() const noexcept { return n_; }
   [[nodiscard]] SimTime time() const noexcept { return start_of(n_, H_); }
   [[nodiscard]] const DirectSession& session() const noexcept { return session_; }
+  // Of the last advance(), by input channel.
+  [[nodiscard]] std::span<const double> controls() const noexcept { return controls_; }
   [[nodiscard]] StateHashes state_hashes() const noexcept;
 
  private:

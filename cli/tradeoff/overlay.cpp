@@ -18,7 +18,7 @@ namespace {
 using cli_support::Failure;
 using scene::Node;
 
-constexpr std::string_view kFirstLine = "# Overlay written by slewring tradeoff";
+constexpr std::string_view kFirstLine = "# Overlay written by slewring";
 
 std::string flow_text(const Node& node) {
   std::string text;
@@ -107,7 +107,7 @@ std::string overlay_text(const std::string& file, scene::Scene& scene, const sce
     Node& map = section.empty() ? map_at(root, owner) : map_at(map_at(root, section), owner);
     scene::set_key(map, setting->path.substr(dot + 1), std::move(setting->value), setting->mark);
   }
-  return fmt::format("{}: {}\n", kFirstLine, remark) + block_text(root);
+  return fmt::format("{} {}\n", kFirstLine, remark) + block_text(root);
 }
 
 std::string write_overlay(const std::string& file, const scene::Overrides& settings, const std::string& remark,
@@ -117,7 +117,7 @@ std::string write_overlay(const std::string& file, const scene::Overrides& setti
       path.empty() ? (source.parent_path() / (source.stem().string() + "_tradeoff.yaml")).string() : path;
   if (std::filesystem::exists(target) && !is_own(target)) {
     throw Failure(ExitCode::bad_input, target +
-                                           " is there already and no overlay of this verb; it was left as it is; "
+                                           " is there already and no overlay of slewring; it was left as it is; "
                                            "name another file with --overlay");
   }
   std::error_code error;

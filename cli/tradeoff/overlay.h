@@ -8,6 +8,8 @@
 
 namespace slew::cli {
 
+// remark: the verb that writes it and why, for the first line.
+//
 // Text of the overlay, to lie in the folder of the scene. A scene that includes others cannot be included itself: then
 // the overlay holds the scene's own keys too. scene: the loaded file. Throws LoadError for a file that cannot be read.
 [[nodiscard]] std::string overlay_text(const std::string& file, scene::Scene& scene, const scene::Overrides& settings,

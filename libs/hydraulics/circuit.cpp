@@ -28,6 +28,7 @@ Circuit::Circuit(const HydraulicsDef& def)
   for (const auto& component : def.components) {
     components_.push_back(find_component_type(component->type_name())->build(*component, builder));
     if (components_.back()->has_equations()) active_.push_back(components_.back().get());
+    state_owner_.resize(builder.states().size(), component->name);
   }
   size_ = builder.state_count();
   for (const VolumeDef& volume : def.volumes) {
@@ -243,6 +244,22 @@ void Circuit::rates(const double* y, double* f) noexcept {
   for (std::size_t i = 0; i < volumes_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity(i, y).value;
   // (3)
   for (int j = 0; j < actuator_count(); ++j) f[position(j)] = y[speed(j)];
+}
+
+void Circuit::add_rates_of(std::size_t component, const double* y, double* f) const noexcept {
+  const HydraulicComponent& one = *components_[component];
+  if (!one.has_equations()) return;
+  Rates sums(f);
+  one.add_rates(view(y), sums);
+}
+
+void Circuit::add_slopes_of(std::size_t component, const double* y) noexcept {
+  const HydraulicComponent& one = *components_[component];
+  if (!one.has_equations()) return;
+  JacobianStamp stamp(jacobian_.data(), size_);
+  const CircuitView now = view(y);
+  one.add_ls_jacobian(now, stamp);
+  one.add_jacobian(now, stamp);
 }
 
 // Partial derivatives of the flows and of the component states' rates.

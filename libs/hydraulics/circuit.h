@@ -56,6 +56,10 @@ class Circuit {
   [[nodiscard]] const std::string& volume_name(int volume) const {
     return volume_name_[static_cast<std::size_t>(volume)];
   }
+  // Component that a state belongs to, counted from first_component_state() on.
+  [[nodiscard]] const std::string& state_owner(int state) const {
+    return state_owner_[static_cast<std::size_t>(state)];
+  }
   [[nodiscard]] bool is_fixed(int volume) const noexcept { return is_fixed_[static_cast<std::size_t>(volume)] != 0; }
   [[nodiscard]] int find_volume(std::string_view name) const noexcept;                       // -1: none
   [[nodiscard]] const std::vector<double>& scales() const noexcept { return scale_; }        // typical sizes of y
@@ -86,6 +90,10 @@ class Circuit {
 
   // equations (1) to (3)
   void rates(const double* y, double* f) noexcept;
+  // One component's part of rates(), added to f, and of jacobian(), for who measures what each costs. Pre-condition:
+  // rates() was called at this y.
+  void add_rates_of(std::size_t component, const double* y, double* f) const noexcept;
+  void add_slopes_of(std::size_t component, const double* y) noexcept;
   // Jacobian of rates() at y, with f = rates(y); row-major, stride state_count(); valid until the next call.
   double* jacobian(const double* y, const double* f) noexcept;
   void pressure_forces(const double* y, double* F) const noexcept;
@@ -192,6 +200,7 @@ class Circuit {
   std::vector<LineChamber> lines_;  // two by actuator
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
+  std::vector<std::string> state_owner_;
   std::vector<double> scale_, relative_;
 
   std::vector<std::unique_ptr<HydraulicComponent>> components_;

@@ -99,11 +99,68 @@ std::vector<double> SceneEquations::absolute_scales() const {
 std::string SceneEquations::state_name(std::size_t index) const {
   if (index >= impulse_) return "the impulse of " + ports_[index - impulse_].name;
   if (index >= work_) return "the work of " + ports_[index - work_].name;
-  if (index >= component_) return "state " + std::to_string(index - component_) + " of the hydraulic components";
+  if (index >= component_) return "a state of " + circuit_->state_owner(static_cast<int>(index - component_));
   if (index >= p_) return "the pressure of " + circuit_->volume_name(static_cast<int>(index - p_));
   if (index >= z_) return "the bristles of " + model_.rows[index - z_].name;
   return (index < u_ ? "the position of " : "the speed of ") +
          std::string(multibody::joint_of(model_, static_cast<int>(index)));
+}
+
+StateOwner SceneEquations::owner(std::size_t index) const {
+  using enum StateOwner::Kind;
+  if (index >= work_) return {port, ports_[(index - work_) % ports_.size()].name};
+  if (index >= component_) return {component, circuit_->state_owner(static_cast<int>(index - component_))};
+  if (index >= p_) return {volume, circuit_->volume_name(static_cast<int>(index - p_))};
+  if (index >= z_) return {joint, model_.rows[index - z_].name};
+  for (const multibody::FlexiblePart& part : model_.parts) {
+    const std::size_t first = index < u_ ? static_cast<std::size_t>(part.q) : u_ + static_cast<std::size_t>(part.u);
+    if (index >= first && index < first + part.modes)
+      return {mode, "mode " + std::to_string(index - first + 1) + " of " + part.name};
+  }
+  return {joint, std::string(multibody::joint_of(model_, static_cast<int>(index)))};
+}
+
+bool SceneEquations::is_held(std::size_t index) const noexcept {
+  if (index >= work_) return true;
+  if (index >= component_) return false;
+  if (index >= p_) return circuit_->is_fixed(static_cast<int>(index - p_));
+  if (index >= z_) return index - z_ < ports_.size() || !multibody::has_bristles(model_.rows[index - z_].law);
+  for (const multibody::Link& link : model_.links) {
+    if (!link.is_driven) continue;
+    const std::size_t first = index < u_ ? static_cast<std::size_t>(link.q) : u_ + static_cast<std::size_t>(link.u);
+    if (index >= first && index < first + link.drive.size() && link.drive[index - first] >= 0) return true;
+  }
+  return false;
+}
+
+void SceneEquations::take(const multibody::Model& model, const multibody::State& state,
+                          const hydraulics::Circuit* circuit, std::span<const double> circuit_y, std::span<double> y) {
+  SLEW_CHECK(y.size() == size_ && (circuit == nullptr) == (circuit_ == nullptr));
+  SLEW_CHECK(state.q.size() == state_.q.size() && state.u.size() == state_.u.size());
+  model_ = model;
+  multibody::copy_state(state, state_);
+  std::fill(y.begin(), y.end(), 0.0);
+  std::copy(state.q.begin(), state.q.end(), y.begin());
+  std::copy(state.u.begin(), state.u.end(), y.begin() + static_cast<std::ptrdiff_t>(u_));
+  std::copy(state.bristles.begin(), state.bristles.end(), y.begin() + static_cast<std::ptrdiff_t>(z_));
+  if (circuit == nullptr) return;
+  for (std::size_t i = 0; i < circuit->parameters().size(); ++i) {
+    circuit_->set_parameter(static_cast<int>(i), circuit->parameter_values()[i]);
+  }
+  std::copy_n(circuit_y.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
+  std::copy(circuit_y.begin() + circuit_->first_component_state(), circuit_y.end(),
+            y.begin() + static_cast<std::ptrdiff_t>(component_));
+}
+
+void SceneEquations::neglect_dry_friction() {
+  for (Port& port : ports_) {
+    coupling::LineForceDef def = port.law.def();
+    def.friction_curve.clear();
+    def.efficiency = 1;
+    def.seal_friction = 0;
+    port.law = coupling::LineForceLaw(def);
+  }
+  for (multibody::Row& row : model_.rows) row.law.coulomb = row.law.bristle_stiffness = 0;
 }
 
 std::string SceneEquations::touching_pair() const {
@@ -241,6 +298,7 @@ bool SceneEquations::close(double t, std::span<double> y) noexcept {
 
 // (3), (4)
 void SceneEquations::evaluate_ports() noexcept {
+  if (row_forces_ == RowForces::held) return;
   if (circuit_) circuit_->pressure_forces(circuit_y_.data(), F_.data());
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     const Port& port = ports_[i];

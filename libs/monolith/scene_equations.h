@@ -49,6 +49,17 @@ struct PortState {
   double impulse = 0;     // integral of F dt since the start [N s]
 };
 
+// Whom a state belongs to: "joint Body_Pillar", "mode 2 of Boom", "volume Vol_LiftCyl_A", "component L90Lift".
+struct StateOwner {
+  enum class Kind : unsigned char { joint, mode, volume, component, port };
+  Kind kind = Kind::joint;
+  std::string name;
+  bool operator==(const StateOwner&) const = default;
+};
+
+// Forces of cylinders, and of joints' friction and limits: as the state says, or as they were.
+enum class RowForces : unsigned char { follow, held };
+
 class SceneEquations {
  public:
   // Pre-condition: a validated scene. Only read during construction.
@@ -61,6 +72,19 @@ class SceneEquations {
   [[nodiscard]] std::vector<double> absolute_scales() const;
   // What y_i is, for messages.
   [[nodiscard]] std::string state_name(std::size_t index) const;
+
+  [[nodiscard]] StateOwner owner(std::size_t index) const;
+  // Not free: a fixed volume's pressure, a prescribed coordinate, work and impulse of a port, what has no bristles.
+  [[nodiscard]] bool is_held(std::size_t index) const noexcept;
+
+  // The instant that a co-simulation of the same scene has reached, with its live parameters: y without the work.
+  // circuit: null where the scene has none; circuit_y: its state.
+  void take(const multibody::Model& model, const multibody::State& state, const hydraulics::Circuit* circuit,
+            std::span<const double> circuit_y, std::span<double> y);
+  // No more friction of cylinders, no Coulomb friction and no bristles of joints.
+  void neglect_dry_friction();
+  // What rates() does with the rows' forces; held: those of the last rates() before.
+  void set_row_forces(RowForces forces) noexcept { row_forces_ = forces; }
 
   // Start state of the scene: mechanism as the scene poses it, circuit from the static forces that hold the ports.
   Status start(std::span<double> y);
@@ -125,6 +149,7 @@ class SceneEquations {
   // at the instant
   std::vector<double> circuit_y_, circuit_rates_, F_;
   std::vector<double> row_force_;
+  RowForces row_forces_ = RowForces::follow;
   std::vector<double> q_rate_, u_rate_;
   std::vector<PortState> port_states_;
   std::vector<ElementVariable> variables_;

@@ -42,6 +42,7 @@ struct ContactPairDef {
   std::string shape_a{}, shape_b{};
   std::string friction{};            // name of a FrictionDef; empty: frictionless
   std::int64_t point_variables = 4;  // contact points that are variables, 0 .. contact::kMaxPointsPerPair
+  bool tested = true;                // false: known by name, never searched
 };
 
 // A named friction as in table 12.

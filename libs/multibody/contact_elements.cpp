@@ -27,7 +27,7 @@ class ContactBuilder {
       ContactPairElement& element = pairs.emplace_back(pair.name, static_cast<std::size_t>(pair.point_variables));
       const ShapeDef& a = named(mechanics_.shapes, pair.shape_a);
       const ShapeDef& b = named(mechanics_.shapes, pair.shape_b);
-      if (link_of(a) == link_of(b)) continue;
+      if (link_of(a) == link_of(b) || !pair.tested) continue;
       element.tested = static_cast<int>(def_.pairs.size());
       pair_of_tested.push_back(static_cast<int>(pairs.size()) - 1);
       add_shape(a);

@@ -1,7 +1,8 @@
 // The contacts of a mechanism, ready to be searched: which frames on which links, which pairs.
 //
 // Immutable and shared by all copies of a Model (live parameters do not reach it). A pair of shapes that cannot move
-// against each other (both on Ground, or on bodies that fixed joints merge) is known by name and never tested.
+// against each other (both on Ground, or on bodies that fixed joints merge), or that the scene has not tested, is known
+// by name and never searched.
 #pragma once
 
 #include <memory>
@@ -26,7 +27,7 @@ struct ContactFrame {
 struct ContactPairElement {
   std::string name;
   std::size_t point_slots = 0;  // contact points that are variables
-  int tested = -1;              // pair of ContactElements::model; -1: the shapes cannot move against each other
+  int tested = -1;              // pair of ContactElements::model; -1: the pair is never searched
 };
 
 struct ContactElements {

@@ -87,6 +87,8 @@ constexpr Field kPairFields[] = {
                                      {.reference = "friction", .doc = "friction between them; without it none"}),
     field<&ContactPairDef::point_variables>(
         "point_variables", {.range = kPointSlots, .doc = "contact points that are variables, with place and forces"}),
+    field<&ContactPairDef::tested>(
+        "tested", {.doc = "false: the pair is known by name and never searched, for one that does not come together"}),
 };
 
 // the pair's own rows, then those of its normal law

@@ -109,7 +109,8 @@ struct Description {
   std::vector<std::string> flexible;         // "Boom: 2 modes of 51.29 to 51.29 rad/s, nodes Boom.Node20 in use"
   std::vector<std::string> fixed_to_ground;  // bodies that do not move
   std::vector<std::string> pairs;            // of shapes, that are tested
-  std::vector<std::string> pairs_at_rest;    // whose shapes cannot move against each other
+  std::vector<std::string>
+      pairs_at_rest;  // that are not: their shapes cannot move against each other, or the scene says so
 };
 [[nodiscard]] Description describe(const Model& model);
 

@@ -1,0 +1,32 @@
+// `slewring describe SCENE --eigenvalues`: the fastest and the slowest motions of the whole machine about an instant,
+// whose they are, and with which steps they can be followed.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "monolith/linearisation.h"
+#include "scene/scene.h"
+
+namespace slew::cli {
+
+enum class DryFriction { kept, neglected };
+
+struct Eigenvalues {
+  double at = 0;  // s
+  DryFriction friction = DryFriction::kept;
+  monolith::SceneModes machine;        // everything
+  monolith::SceneModes explicit_part;  // left to the mechanics' integrator
+  std::string formulation, integrator, hydraulics_solver;
+  double step = 0, substep = 0;  // s; substep 0: no mechanics
+  std::string touching;          // pair of shapes that touch; empty: none
+};
+
+// Of the scene's run at a time [s]. Throws Failure.
+[[nodiscard]] Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction friction);
+
+// count: rows of the fastest, and of the slowest.
+[[nodiscard]] std::string report_text(const Eigenvalues& eigenvalues, std::size_t count);
+[[nodiscard]] nlohmann::json report_json(const Eigenvalues& eigenvalues);
+
+}  // namespace slew::cli

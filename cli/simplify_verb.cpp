@@ -1,0 +1,112 @@
+// `slewring simplify SCENE --error "Bag.position 1mm"`: what of a scene may be left out, tried, measured and written as
+// an overlay.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/interrupts.h"
+#include "cli/progress_line.h"
+#include "cli/simplify/simplify.h"
+#include "cli/tradeoff/overlay.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+
+namespace slew::cli {
+namespace {
+
+constexpr int kMostRepeats = 100;
+
+struct Options {
+  SimplifyWish wish;
+  std::string overlay;
+  bool is_json = false, is_quiet = false;
+};
+
+std::string overlay_path(const Options& options) {
+  if (!options.overlay.empty()) return options.overlay;
+  const std::filesystem::path scene(options.wish.scene.file);
+  return (scene.parent_path() / (scene.stem().string() + "_simplified.yaml")).string();
+}
+
+std::string remark(const Simplification& result) {
+  std::string text = "simplify with";
+  for (const Watched& watched : result.watched) {
+    text += fmt::format(" {} {:.4g} {},", watched.name, watched.tolerance, watched.unit);
+  }
+  return fmt::format("{} {:.3g} instead of {:.3g} us per simulated ms", text, result.combined.cost, result.base_cost);
+}
+
+ExitCode run(const Options& options) {
+  if (options.wish.scene.input == "keyboard") {
+    throw cli_support::Failure(ExitCode::bad_input,
+                               "--input keyboard: every run needs the same input; nothing was run; write it into a "
+                               ".csv file");
+  }
+  count_interrupts();
+  Simplification result;
+  {
+    ProgressLine line(options.is_quiet);
+    result = simplify(options.wish, [&line](std::string_view doing, double share) {
+      line.show(doing, share);
+      return interrupts() == 0;
+    });
+  }
+  std::string written;
+  if (result.helps()) {
+    scene::Overrides settings = options.wish.scene.overrides;
+    settings.insert(settings.end(), result.settings.begin(), result.settings.end());
+    written = write_overlay(options.wish.scene.file, settings, remark(result), overlay_path(options));
+  }
+  if (options.is_json) {
+    nlohmann::json json = report_json(result);
+    if (!written.empty()) json["overlay"] = written;
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("{}", report_text(result));
+    if (!written.empty()) fmt::print("{}\n", written);
+  }
+  return interrupts() > 0 ? static_cast<ExitCode>(interrupt_code()) : ExitCode::ok;
+}
+
+}  // namespace
+
+void add_simplify(CLI::App& program, Action& action) {
+  CLI::App* verb =
+      program.add_subcommand("simplify", "what of a scene may be left out while chosen variables stay as they are");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  SimplifyWish& wish = options->wish;
+  verb->add_option("scene", wish.scene.file, "scene file")->required()->type_name("SCENE");
+  verb->add_option("--error", wish.errors,
+                   "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
+      ->required()
+      ->type_name("'VARIABLE TOLERANCE'")
+      ->allow_extra_args(false);
+  verb->add_option("--until", wish.scene.duration, "how long each run is; without it the scene's duration")
+      ->type_name("TIME");
+  verb->add_option("--set", wish.scene.overrides, "change a value of the scene first; repeat for more")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  verb->add_option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+      ->type_name("SOURCE")
+      ->capture_default_str();
+  verb->add_option("-o,--overlay", options->overlay,
+                   "file to write, beside the scene; without it SCENE_simplified.yaml")
+      ->type_name("FILE");
+  verb->add_option("--repeats", wish.repeats, "timed runs of everything tried")
+      ->check(CLI::Range(1, kMostRepeats))
+      ->type_name("N")
+      ->capture_default_str();
+  verb->add_flag("--json", options->is_json, "print the result as JSON and nothing else");
+  verb->add_flag("--quiet", options->is_quiet, "no progress");
+  verb->footer(
+      "Every part is tried alone, then those that hold and save time together; all runs are in this process, with the\n"
+      "same input. The overlay includes the scene. What is judged and what not: "
+      "docs/howto/describe-and-simplify.md.\n\n"
+      "Example:\n"
+      "  slewring simplify scenes/truck_crane.yaml --error 'Bag.position 1mm' --error 'Cyl_Lift.force 1%'");
+  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace slew::cli

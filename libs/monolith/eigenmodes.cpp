@@ -1,0 +1,136 @@
+#include "monolith/eigenmodes.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+
+namespace slew::monolith {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+
+// eigenvalues that differ by less than this part are one: differences of the equations are right to 1e-8
+constexpr double kEqual = 1e-6;
+constexpr int kBalancingPasses = 20;
+// a growth that rounding makes of none
+constexpr double kNoGrowth = 1e-9;
+
+// rows and columns of like size by powers of two (Osborne 1960)
+void balance(MatrixXd& A) {
+  for (int pass = 0; pass < kBalancingPasses; ++pass) {
+    bool has_changed = false;
+    for (Index i = 0; i < A.rows(); ++i) {
+      double row = 0, column = 0;
+      for (Index j = 0; j < A.rows(); ++j) {
+        if (i == j) continue;
+        row += std::fabs(A(i, j));
+        column += std::fabs(A(j, i));
+      }
+      if (row == 0 || column == 0) continue;
+      const double factor = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (factor == 1) continue;
+      A.col(i) *= factor;
+      A.row(i) /= factor;
+      has_changed = true;
+    }
+    if (!has_changed) return;
+  }
+}
+
+bool are_equal(std::complex<double> a, std::complex<double> b) {
+  return std::abs(a - b) <= kEqual * std::max(std::abs(a), std::abs(b));
+}
+
+// columns of the vectors whose values are nearest to one value
+MatrixXcd nearest(const VectorXcd& values, const MatrixXcd& vectors, std::complex<double> value, std::size_t count) {
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return std::abs(values(a) - value) < std::abs(values(b) - value); });
+  MatrixXcd chosen(vectors.rows(), static_cast<Index>(count));
+  for (std::size_t k = 0; k < count; ++k) chosen.col(static_cast<Index>(k)) = vectors.col(order[k]);
+  return chosen;
+}
+
+// (2)
+std::vector<double> participation(const MatrixXcd& R, const MatrixXcd& L) {
+  const MatrixXcd product = L.transpose() * R;
+  const MatrixXcd weights = product.fullPivLu().solve(MatrixXcd(L.transpose()));
+  std::vector<double> share(static_cast<std::size_t>(R.rows()));
+  double sum = 0;
+  for (Index k = 0; k < R.rows(); ++k) {
+    std::complex<double> p = 0;
+    for (Index j = 0; j < R.cols(); ++j) p += R(k, j) * weights(j, k);
+    share[static_cast<std::size_t>(k)] = std::abs(p);
+    sum += std::abs(p);
+  }
+  for (double& s : share) s /= sum;
+  return share;
+}
+
+}  // namespace
+
+Eigenmodes eigenmodes(std::span<const double> A, std::size_t n) {
+  SLEW_CHECK(A.size() == n * n);
+  Eigenmodes result;
+  if (n == 0) return result;
+  MatrixXd matrix(static_cast<Index>(n), static_cast<Index>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) matrix(static_cast<Index>(i), static_cast<Index>(j)) = A[i * n + j];
+  }
+  balance(matrix);
+  const Eigen::EigenSolver<MatrixXd> right(matrix);
+  const Eigen::EigenSolver<MatrixXd> left(MatrixXd(matrix.transpose()));
+  if (right.info() != Eigen::Success || left.info() != Eigen::Success) return result;
+  const VectorXcd values = right.eigenvalues();
+  const MatrixXcd right_vectors = right.eigenvectors(), left_vectors = left.eigenvectors();
+  std::vector<std::complex<double>> sorted;
+  for (Index i = 0; i < values.size(); ++i) {
+    if (std::abs(values(i)) < kSlowestRate) {
+      ++result.at_rest;
+    } else if (values(i).imag() >= 0) {
+      sorted.push_back(values(i));
+    }
+  }
+  std::stable_sort(sorted.begin(), sorted.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+  std::vector<char> is_taken(sorted.size(), 0);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (is_taken[i] != 0) continue;
+    std::size_t count = 0;
+    for (std::size_t j = i; j < sorted.size(); ++j) {
+      if (is_taken[j] != 0 || !are_equal(sorted[i], sorted[j])) continue;
+      is_taken[j] = 1;
+      ++count;
+    }
+    result.modes.push_back({sorted[i], static_cast<int>(count),
+                            participation(nearest(values, right_vectors, sorted[i], count),
+                                          nearest(left.eigenvalues(), left_vectors, sorted[i], count))});
+  }
+  return result;
+}
+
+double longest_runge_kutta_step(std::complex<double> lambda) noexcept {
+  const double size = std::abs(lambda);
+  if (size == 0 || lambda.real() > kNoGrowth * size) return std::numeric_limits<double>::infinity();
+  // along the ray of lambda to where |1 + z + z2/2 + z3/6 + z4/24| passes 1; it does so before |z| = 4
+  const std::complex<double> direction = lambda / size;
+  const auto grows = [&](double length) {
+    const std::complex<double> z = length * direction;
+    return std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))) > 1 + kNoGrowth;
+  };
+  double stable = 0, step = 0.5;
+  for (int halving = 0; halving < 30; ++halving) {
+    while (!grows(stable + step)) stable += step;
+    step /= 2;
+  }
+  return stable / size;
+}
+
+}  // namespace slew::monolith

@@ -1,0 +1,32 @@
+// What the load that hangs on a machine asks of its actuators: line forces that hold the ports at rest, and their
+// change with the payload's mass,
+//   W F = -a_free                                                                                     (1)
+//   dF/dm = F(m + 1 kg) - F(m)                                                                        (2)
+// without friction and limits of joints. (2) is exact at rest, since gravity is linear in the mass.
+#pragma once
+
+#include <span>
+
+#include "coupling/samples.h"
+#include "multibody/dynamics.h"
+
+namespace slew::mechanics {
+
+// The scene's last rigid body that moves: what hangs on the machine. 0: none does.
+[[nodiscard]] int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model& model);
+
+// kg, now.
+[[nodiscard]] double mass_of(const multibody::Model& model, int body) noexcept;
+
+// (1) at the state with the payload at `mass` [kg > 0], which the model then has. The ports are the first rows; ratio:
+// m or m/rad of each. False: no forces hold them. Does not allocate.
+[[nodiscard]] bool static_line_forces(multibody::Model& model, const multibody::State& state, multibody::Workspace& ws,
+                                      std::span<const double> ratio, int payload, double mass,
+                                      std::span<double> F) noexcept;
+
+// (2) [m/s2] at `mass`; zero where no forces hold the ports, or nothing hangs there.
+// The model is left with 1 kg more. Does not allocate.
+void payload_slopes(multibody::Model& model, const multibody::State& state, multibody::Workspace& ws,
+                    std::span<const double> ratio, int payload, double mass, std::span<double> slopes) noexcept;
+
+}  // namespace slew::mechanics
