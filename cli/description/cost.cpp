@@ -114,7 +114,7 @@ class Measurement {
     for (StepIndex n = 0; n < steps_; ++n) {
       played.advance();
       if (const hydraulic_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played)) {
-        const math::Rodas3Report& report = hydraulics->integrator().last_report();
+        const math::StiffReport& report = hydraulics->integrator().last_report();
         accepted_ += report.accepted;
         rejected_ += report.rejected;
       }
