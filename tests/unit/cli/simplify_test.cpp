@@ -7,6 +7,8 @@
 
 #include "build_paths.h"
 #include "cli_support/failure.h"
+#include "multibody/model.h"
+#include "multibody/observe.h"
 
 namespace slew::cli {
 namespace {
