@@ -9,6 +9,7 @@
 
 #include "cli/display.h"
 #include "coupling/indicator.h"
+#include "scene/defs.h"
 #include "scene/ports.h"
 
 namespace slew::cli {
@@ -73,12 +74,13 @@ std::string swinging(const Ports& ports, Level level, const std::string& name,
   const std::string damping = level != Level::hold ? ""
                                                    : fmt::format(" (twice the damping ratio {:.2g}{})", zeta,
                                                                  leak > 0 ? " of its leaks" : ", assumed");
+  const double safe = H * limit / omega_H;
+  std::string remedy = safe < scene::kMinStep ? "" : "session.step " + safe_step(safe) + " or less";
+  if (level != Level::two) remedy += (remedy.empty() ? "" : ", or ") + std::string("coupling 'two'");
   return fmt::format(
-      "{}: omega_H, the angle that the machine swings on its oil in one step of {}, is {:.2g}; level '{}' is right up "
-      "to "
-      "{:.2g}{}; the run may be wrong or unstable: use session.step {} or less{}",
-      name, duration_text(H), omega_H, kNames[static_cast<std::size_t>(level)], limit, damping,
-      safe_step(H * limit / omega_H), level == Level::two ? "" : ", or coupling 'two'");
+      "{}: omega_H, the angle that the machine swings on its oil from one exchange to the next in {}, is {:.2g}; level "
+      "'{}' is right up to {:.2g}{}; the run may be wrong or unstable: use {}",
+      name, duration_text(H), omega_H, kNames[static_cast<std::size_t>(level)], limit, damping, remedy);
 }
 
 // K H^2 against 1/W, port by port
@@ -102,7 +104,8 @@ std::vector<std::string> coupling_warnings(const scene::Scene& scene, const Dire
   const coupling::MechanismSample& mechanism = session.sample(Role::mechanics).mechanism;
   const coupling::ActuatorSample& actuators = session.sample(Role::hydraulics).actuators;
   const coupling::PortLevels levels = scene::port_levels(scene);
-  const double H = scene.session.step_duration().seconds();
+  const double every = static_cast<double>(scene.session.exchange_every);
+  const double H = every * scene.session.step_duration().seconds();
   for (int k = 0; k < coupling::kLevels; ++k) {
     const auto level = static_cast<Level>(k);
     const Ports ports = ports_of(level, levels, mechanism, actuators, H);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "cli/display.h"
+#include "hydraulics/component_def.h"
 
 namespace slew::cli {
 namespace {
@@ -77,7 +78,7 @@ class Collector {
                                       [](const Field& field) { return field.key == kQuasiStatic; });
     if (!is_known) return;
     for (const hydraulics::VolumeDef& volume : scene_.hydraulics.volumes) {
-      if (volume.fixed) continue;
+      if (volume.fixed || hydraulics::find_chamber(scene_.hydraulics, volume) != nullptr) continue;
       add("pressure of " + volume.name + " quasi-static", volume.name,
           {fmt::format("{}.{}=true", volume.name, kQuasiStatic)});
     }

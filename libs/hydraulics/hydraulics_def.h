@@ -189,4 +189,7 @@ inline constexpr Field kCurveFields[] = {
 // Force elements are named here but live in the mechanics: the scene checks that they exist.
 void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings);
 
+// The actuator with a chamber that is part of the volume; null when there is none.
+[[nodiscard]] const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volume);
+
 }  // namespace slew::hydraulics

@@ -129,19 +129,6 @@ std::string no_quasi_static(Solver solver) {
   return fmt::format("the solver {} has no algebraic pressures", kSolverChoices[static_cast<std::size_t>(solver)]);
 }
 
-const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volume) {
-  for (const auto& component : def.components) {
-    const ComponentType* type = find_component_type(component->type_name());
-    if (type == nullptr || !type->is_actuator) continue;
-    for (const Field& row : type->fields) {
-      if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) {
-        return component.get();
-      }
-    }
-  }
-  return nullptr;
-}
-
 void check_quasi_static(const HydraulicsDef& def, const VolumeDef& volume, Problems& errors) {
   if (!volume.quasi_static) return;
   const std::string path = volume.name + ".quasi_static";
@@ -251,6 +238,19 @@ void check_circuit_numbers(const HydraulicsDef& def, Problems& errors) {
 }
 
 }  // namespace
+
+const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volume) {
+  for (const auto& component : def.components) {
+    const ComponentType* type = find_component_type(component->type_name());
+    if (type == nullptr || !type->is_actuator) continue;
+    for (const Field& row : type->fields) {
+      if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) {
+        return component.get();
+      }
+    }
+  }
+  return nullptr;
+}
 
 void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
   check_names(def, errors);

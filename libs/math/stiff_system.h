@@ -69,8 +69,9 @@ class StiffIntegrator {
   // Raw bits of all that the future depends on beside y.
   virtual void add_to(StateHash& hash) const noexcept { hash.add(step_size()); }
 
-  // Integral of a state over the sub-step that is being accepted; for StiffSystem::accepted() only. As the method itself
-  // would integrate it where that differs from a parabola: what flows out of one state and into another is the same.
+  // Integral of a state over the sub-step that is being accepted; for StiffSystem::accepted() only. As the method
+  // itself would integrate it where that differs from a parabola: what flows out of one state and into another is the
+  // same.
   [[nodiscard]] virtual double integral(std::size_t state, double h, const double* y_before, const double* f_before,
                                         const double* y) const noexcept {
     return h / 3 * (2 * y_before[state] + y[state]) + h * h / 6 * f_before[state];

@@ -238,13 +238,13 @@ TEST(Monolith, ClosesLoopsAsTheReferencesOfTheMechanicsDo) {
 }
 
 TEST(Monolith, CarriesTheBristlesOfJointFriction) {
-  // a rod that is held by the bristles of its hinge, springs back, and one that slides in them
+  // a rod that swings on the bristles of its hinge, and a slider that comes to rest in those of its rail
   const scene::Scene scene = scene::load_text(R"(
 bodies:
   Rod: {mass: 2 kg, center_of_mass: [0.5 m, 0, 0], inertia: [0.1, 0.167, 0.167]}
   Slider: {position: [2 m, 0, 0], mass: 3 kg, inertia: [0.1, 0.1, 0.1]}
 joints:
-  Hinge: {type: revolute, body1: Ground, body2: Rod, coulomb_friction: 12 Nm, friction_speed: 0.01 rad/s,
+  Hinge: {type: revolute, body1: Ground, body2: Rod, coulomb_friction: 40 Nm, friction_speed: 0.01 rad/s,
           bristle_stiffness: 1e4 Nm/rad, bristle_damping: 10 Nms/rad}
   Rail: {type: prismatic, body1: Ground, point1: [2 m, 0, 0], body2: Slider, initial_velocity: 0.5 m/s,
          coulomb_friction: 8 N, friction_speed: 0.01 m/s, bristle_stiffness: 1e4 N/m, bristle_damping: 20 Ns/m}
