@@ -425,7 +425,7 @@ class Case {
   [[nodiscard]] Measures measure(const scene::Overrides& more) const {
     const scene::Scene scene = load(more);
     Run run = Stepper(case_, scene, Strictness::whole).run();
-    if (case_.comparison != Comparison::none && run.measures.refusal.empty()) {
+    if (case_.compared_with != ComparedWith::none && run.measures.refusal.empty()) {
       const Run other = Stepper(case_, scene, Strictness::compared).run();
       run.measures.difference = difference(run.trace, other.trace);
       run.measures.is_same = is_same(run.trace, other.trace);

@@ -213,7 +213,7 @@ void add_coupling(const Parts& parts, Cases& cases) {
                     .overrides = {"session.mode=free_running"},
                     .delay = delay,
                     .lost = lost,
-                    .comparison = Comparison::on_time};
+                    .compared_with = ComparedWith::on_time};
     one.bounds.difference = bound;
     add(std::move(one));
   };
@@ -228,7 +228,7 @@ void add_coupling(const Parts& parts, Cases& cases) {
   ExtremeCase hold{.name = "hold_10_s",
                    .what = "no step for 10 s of wall time in mid-motion; nothing may change",
                    .hold_at = 0.7,
-                   .comparison = Comparison::same,
+                   .compared_with = ComparedWith::same,
                    .seeks_edge = false};
   hold.bounds.asks_same = true;
   add(std::move(hold));
@@ -250,7 +250,7 @@ void add_numbers(const scene::Scene& scene, const Parts& parts, Cases& cases) {
                     .duration = 2,
                     .inputs = inputs,
                     .begin_ns = begin_ns / unit * unit,
-                    .comparison = Comparison::same,
+                    .compared_with = ComparedWith::same,
                     .seeks_edge = false};
     one.bounds.asks_same = true;
     cases.push_back(std::move(one));

@@ -49,7 +49,7 @@ struct ExtremeCase {
   double stiffness = 0;       // K H^2 W to be reached by the step, then by stiffer oil and hoses; 0: as it is
   bool penetrates = false;    // a shape is moved into its partner before the start
   Aim aim = Aim::none;
-  Comparison comparison = Comparison::none;
+  ComparedWith compared_with = ComparedWith::none;
   Bounds bounds{};
   bool seeks_edge = true;  // the largest stable step is looked for
 };

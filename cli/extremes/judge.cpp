@@ -3,18 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 
 namespace slew::cli {
 namespace {
 
-constexpr double kNear = 0.5;  // share of a bound from which on it is worth a word
+constexpr double kBeyond = 1e9;  // share of a bound of 0 that is not kept
+constexpr double kNear = 0.5;    // share of a bound from which on it is worth a word
 
 nlohmann::json number(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
 }  // namespace
+
+double Check::share() const noexcept {
+  if (!std::isfinite(value)) return kBeyond;
+  if (bound > 0) return value / bound;
+  return value > 0 ? kBeyond : 0;
+}
 
 std::string_view to_text(Verdict verdict) noexcept {
   switch (verdict) {
@@ -47,9 +55,8 @@ Judgement judge(const Measures& measures, const Bounds& bounds) {
   if (bounds.asks_same) add("bits that differ", "", measures.is_same ? 0.0 : 1.0, 0);
   std::stable_sort(result.checks.begin(), result.checks.end(),
                    [](const Check& a, const Check& b) { return a.share() > b.share(); });
-  // a value that is not a number is beyond every bound
   const bool is_beyond =
-      std::any_of(result.checks.begin(), result.checks.end(), [](const Check& check) { return !(check.share() <= 1); });
+      std::any_of(result.checks.begin(), result.checks.end(), [](const Check& check) { return check.share() > 1; });
   if (is_beyond) result.verdict = Verdict::exceeded;
   if (!measures.failure.empty()) result.verdict = Verdict::diverged;
   return result;

@@ -36,7 +36,7 @@ struct Measures {
   std::vector<std::string> notes;
 };
 
-enum class Comparison : std::uint8_t {
+enum class ComparedWith : std::uint8_t {
   none,
   on_time,  // the same with every sample in time
   same,     // the same from step 0, without a hold
@@ -52,7 +52,8 @@ struct Bounds {
 struct Check {
   std::string what, unit;  // unit: SI, empty for a plain number
   double value = 0, bound = 0;
-  [[nodiscard]] double share() const noexcept { return bound > 0 ? value / bound : (value > 0 ? 1e9 : 0.0); }
+  // Of the bound that is used up; what is no number is beyond every bound.
+  [[nodiscard]] double share() const noexcept;
 };
 
 enum class Verdict : std::uint8_t { within, refused, exceeded, diverged };
