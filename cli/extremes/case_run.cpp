@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "cli/direct_session.h"
 #include "cli_support/failure.h"
@@ -23,14 +24,16 @@ namespace {
 using cli_support::Failure;
 using wire::Role;
 
-constexpr double kRunLimit = 240;  // s of wall time
+constexpr double kRunLimit = 60;   // s of wall time
 constexpr double kNetLasts = 0.2;  // s, as the indicator's alarm
 constexpr double kCeilingMargin = 1.1;
-constexpr double kStiffnessRun = 0.5;           // s, to measure K H^2 W
-constexpr double kStepGrain = 1e-5;             // s, of a step that was computed
-constexpr double kPenetration = 0.02;           // m
-constexpr double kLift = 0.05, kMostLift = 10;  // m, of the ground's shape
-constexpr double kSmallHose = 1e-6;             // m3
+constexpr double kSwing = 2;                                    // of a load that is put on at once, about its rest
+constexpr double kStiffnessRun = 0.5;                           // s, to measure K H^2 W
+constexpr double kStepGrain = 1e-5;                             // s, of a step that was computed
+constexpr double kPenetration = 0.02;                           // m
+constexpr double kLift = 0.1, kMostLift = 5, kFineLift = 5e-3;  // m, of the ground's shape
+constexpr int kFineLifts = 40;
+constexpr double kSmallHose = 1e-6;  // m3
 constexpr StepIndex kStepsBetweenQuestions = 64;
 
 std::string reason_of(const scene::LoadError& error) {
@@ -66,24 +69,28 @@ class Ceiling {
         add_area(slew->common.piston_diameter, 0);
       }
     }
-    force_.assign(area_.size(), 0);
+    holding_.assign(area_.size(), 0);
+    stopping_.assign(area_.size(), 0);
   }
 
-  // Forces that hold or stop what the port carries.
+  // Force of a column that stops what moves now.
   void follow(const coupling::MechanismSample& mechanism, const coupling::ActuatorSample& actuators) {
-    const std::size_t ports = std::min(force_.size(), mechanism.v.size());
-    for (std::size_t i = 0; i < ports && i < actuators.K.size(); ++i) {
-      const double W = mechanism.W[i * mechanism.v.size() + i];
-      if (!(W > 0)) continue;
-      const double force =
-          std::fabs(mechanism.a_free[i]) / W + std::fabs(mechanism.v[i]) * std::sqrt(actuators.K[i] / W);
-      force_[i] = std::max(force_[i], force);
-    }
+    for_each_port(mechanism, [&](std::size_t i, double W) {
+      stopping_[i] = std::max(stopping_[i], std::fabs(mechanism.v[i]) * std::sqrt(actuators.K[i] / W));
+    });
+  }
+
+  // A load that is there, or is put on, at once: it swings to twice what holds it.
+  void put_on(const coupling::MechanismSample& mechanism) {
+    for_each_port(mechanism, [&](std::size_t i, double W) {
+      holding_[i] = std::max(holding_[i], kSwing * std::fabs(mechanism.a_free[i]) / W);
+    });
   }
 
   [[nodiscard]] double value() const {
     double by_force = 0;
-    for (std::size_t i = 0; i < area_.size(); ++i) by_force = std::max(by_force, force_[i] / area_[i]);
+    for (std::size_t i = 0; i < area_.size(); ++i)
+      by_force = std::max(by_force, (holding_[i] + stopping_[i]) / area_[i]);
     return kCeilingMargin * (tank_ + ratio_ * source_ + by_force);
   }
 
@@ -91,11 +98,19 @@ class Ceiling {
   void add_area(double piston, double rod) {
     const double bore = piston * piston, ring = bore - rod * rod;
     ratio_ = std::max(ratio_, bore / ring);
-    area_.push_back(0.25 * 3.14159265358979323846 * ring);
+    area_.push_back(0.25 * std::numbers::pi * ring);
+  }
+
+  template <typename Take>
+  void for_each_port(const coupling::MechanismSample& mechanism, Take&& take) {
+    for (std::size_t i = 0; i < std::min(area_.size(), mechanism.v.size()); ++i) {
+      const double W = mechanism.W[i * mechanism.v.size() + i];
+      if (W > 0) take(i, W);
+    }
   }
 
   double source_ = 0, tank_ = 0, ratio_ = 1;
-  std::vector<double> area_, force_;  // by port
+  std::vector<double> area_, holding_, stopping_;  // by port
 };
 
 struct Trace {
@@ -208,17 +223,19 @@ class Stepper {
     m.cavitating += count(StepFlag::cavitating);
     m.relief_open += count(StepFlag::relief_open);
     m.at_limit += count(StepFlag::limit_hit);
+    m.too_late += count(StepFlag::late_input);
+    m.creates_energy += count(StepFlag::coupling_creates_energy);
     if (count(StepFlag::non_finite) != 0) {
       m.failure = session_.failure();
       if (m.failure.empty()) m.failure = "the state";
       m.failed_at = static_cast<double>(k + 1) * H_.seconds();
       return;
     }
-    look_at_circuit();
+    look_at_circuit(k);
     if (k % std::max<std::int64_t>(1, milliseconds(1).ns / H_.ns) == 0) look_at_joints();
   }
 
-  void look_at_circuit() {
+  void look_at_circuit(StepIndex k) {
     if (hydraulics_ == nullptr) return;
     Measures& m = run_.measures;
     hydraulics_->read_variables(values_);
@@ -241,6 +258,7 @@ class Stepper {
     const double omega_H = indicator.omega_H();
     m.stiffness = std::max(m.stiffness.value_or(0), omega_H * omega_H);
     ceiling_.follow(session_.mechanism(), session_.actuators());
+    if (k == 0 || !commands_.empty()) ceiling_.put_on(session_.mechanism());
   }
 
   void look_at_joints() {
@@ -393,17 +411,22 @@ class Case {
     for (const multibody::ContactPairDef& pair : base_.mechanics.contacts) {
       const multibody::ShapeDef* ground = ground_shape(base_, pair);
       if (ground == nullptr) continue;
-      for (double up = kLift; up <= kMostLift; up += kLift) {
-        const auto at = [&](int axis) {
-          const auto i = static_cast<std::size_t>(axis);
-          return ground->position[i] - up * g[i] / size;
-        };
-        const scene::Overrides moved = {
-            fmt::format("{}.position=[{:.17g}, {:.17g}, {:.17g}]", ground->name, at(0), at(1), at(2))};
-        const double depth = depth_at_start(load(moved), pair.name);
-        if (depth < kPenetration) continue;
-        case_.overrides.insert(case_.overrides.end(), moved.begin(), moved.end());
-        notes_.push_back(fmt::format("{} starts {:.3g} m deep", pair.name, depth));
+      const auto moved = [&](double up) -> scene::Overrides {
+        const auto at = [&](std::size_t axis) { return ground->position[axis] - up * g[axis] / size; };
+        return {fmt::format("{}.position=[{:.17g}, {:.17g}, {:.17g}]", ground->name, at(0), at(1), at(2))};
+      };
+      const auto depth = [&](double up) { return depth_at_start(load(moved(up)), pair.name); };
+      // roughly to the first touch, then on in fine steps
+      double up = kLift;
+      while (up < kMostLift && !(depth(up) > 0)) up += kLift;
+      if (up >= kMostLift) continue;
+      up -= kLift;
+      for (int i = 0; i < kFineLifts; ++i, up += kFineLift) {
+        const double deep = depth(up);
+        if (deep < kPenetration) continue;
+        const scene::Overrides one = moved(up);
+        case_.overrides.insert(case_.overrides.end(), one.begin(), one.end());
+        notes_.push_back(fmt::format("{} starts {:.3g} m deep", pair.name, deep));
         return;
       }
     }
@@ -447,7 +470,7 @@ class Case {
   }
 
   void seek_edge(CaseOutcome& outcome) const {
-    outcome.has_edge = true;
+    outcome.edge.is_sought = true;
     const double H = outcome.measures.H;
     Bounds alone = case_.bounds;
     alone.difference = 0;
@@ -457,7 +480,7 @@ class Case {
     const auto place =
         std::lower_bound(std::begin(kEdgeSteps), std::end(kEdgeSteps), H * (1 - 1e-9)) - std::begin(kEdgeSteps);
     if (is_good) {
-      outcome.largest_step = H;
+      outcome.edge.step = H;
       const bool is_listed = place < bad && kEdgeSteps[place] <= H * (1 + 1e-9);
       good = is_listed ? place : place - 1;
     } else {
@@ -467,7 +490,7 @@ class Case {
       const std::ptrdiff_t middle = (good + bad) / 2;
       (is_stable(kEdgeSteps[middle]) ? good : bad) = middle;
     }
-    if (good >= 0) outcome.largest_step = std::max(outcome.largest_step.value_or(0), kEdgeSteps[good]);
+    if (good >= 0) outcome.edge.step = std::max(outcome.edge.step.value_or(0), kEdgeSteps[good]);
   }
 
   void note_aim(Measures& m) const {
@@ -479,6 +502,10 @@ class Case {
     if (case_.aim == Aim::limit) note(m.at_limit, "at a stop or limit");
     if (case_.aim == Aim::cavitation) note(m.cavitating, "cavitating");
     if (case_.aim == Aim::relief) note(m.relief_open, "relief open");
+    if (m.too_late > 0) m.notes.push_back(fmt::format("flagged late_input in {} steps", m.too_late));
+    if (m.creates_energy > 0) {
+      m.notes.push_back(fmt::format("flagged coupling_creates_energy in {} steps", m.creates_energy));
+    }
     if (m.not_converged > 0) m.notes.push_back(fmt::format("not converged in {} steps", m.not_converged));
     if (m.over_budget > 0) m.notes.push_back(fmt::format("sub-step budget used up in {} steps", m.over_budget));
     if (case_.stiffness > 0) m.notes.push_back(fmt::format("K H^2 W reached {:.3g}", m.stiffness.value_or(0)));
@@ -498,9 +525,9 @@ CaseOutcome run_case(const cli_support::SceneOptions& scene, const std::string& 
 
 nlohmann::json to_json(const CaseOutcome& outcome) {
   nlohmann::json json = to_json(outcome.measures, outcome.judgement);
-  json["largest_step"] = outcome.largest_step ? nlohmann::json(*outcome.largest_step) : nlohmann::json();
-  json["has_edge"] = outcome.has_edge;
-  json["advice"] = advice(outcome.measures, outcome.judgement, outcome.largest_step);
+  json["largest_step"] = outcome.edge.step ? nlohmann::json(*outcome.edge.step) : nlohmann::json();
+  json["has_edge"] = outcome.edge.is_sought;
+  json["advice"] = advice(outcome.measures, outcome.judgement, outcome.edge);
   return json;
 }
 

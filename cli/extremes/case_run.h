@@ -2,7 +2,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "cli/extremes/cases.h"
@@ -13,8 +12,7 @@ namespace slew::cli {
 struct CaseOutcome {
   Measures measures;
   Judgement judgement;
-  std::optional<double> largest_step;  // s, of kEdgeSteps; none: not looked for, or none is stable
-  bool has_edge = false;               // it was looked for
+  Edge edge;
 };
 
 // Steps that are tried for the edge [s], by bisection: what is stable in one is taken to be stable in shorter ones.

@@ -167,9 +167,10 @@ void add_hydraulics(const scene::Scene& scene, const Parts& parts, Cases& cases)
   add("valve_closes_in_1_ms", "valves of 1 ms close at full flow", fast.empty() ? "no valve with a step response" : "",
       fast, {{0.2, 1}, {1.5, 0}, {2, -1}, {2.5, 0}});
   scene::Overrides dry = parts.all("anti_cavitation_flow", 1e-9);
-  dry.emplace_back("hydraulics.start=table13");
+  append(dry, {"hydraulics.start=table13", "hydraulics.entrained_air=0.0005"});
   add("cavitation_and_back",
-      "from 1 bar without anti-cavitation valves: the load draws the rod sides empty, then full input",
+      "from 1 bar with 0.05 % of air, without anti-cavitation valves: the load draws the rod sides empty, then full "
+      "input",
       parts.without_ports(), dry, {{1, 1}, {2.5, 0}}, Aim::cavitation);
   scene::Overrides closed = parts.all("set_pressure", 400e5);
   append(closed, parts.all("standby_pressure", 400e5));
@@ -202,8 +203,7 @@ void add_coupling(const Parts& parts, Cases& cases) {
   for (const double stiffness : {0.01, 0.1, 1.0, 10.0, 100.0}) {
     add({.name = fmt::format("stiffness_{:g}", stiffness),
          .what = fmt::format("K H^2 W of {:g}, by the step, then by stiffer oil", stiffness),
-         .stiffness = stiffness,
-         .seeks_edge = false});
+         .stiffness = stiffness});
   }
   // bounds of the error: a copy of the partner is good while omega t is small
   const auto late = [&](StepIndex delay, StepIndex lost, double bound) {

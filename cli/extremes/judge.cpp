@@ -77,10 +77,10 @@ std::optional<double> lasting_minimum(const std::vector<double>& series, std::si
   return least;
 }
 
-std::string advice(const Measures& measures, const Judgement& judgement, const std::optional<double>& largest_step) {
-  const std::string step = largest_step
-                               ? fmt::format("set session.step to {:.4g} ms or less", *largest_step * 1e3)
-                               : std::string("no step of 0.1 to 20 ms keeps the bounds: do not run this; see the note");
+std::string advice(const Measures& measures, const Judgement& judgement, const Edge& edge) {
+  std::string step = "set a shorter session.step";
+  if (edge.is_sought && edge.step) step = fmt::format("set session.step to {:.4g} ms or less", *edge.step * 1e3);
+  if (edge.is_sought && !edge.step) step = "no step from 0.1 ms on keeps the bounds: avoid this";
   switch (judgement.verdict) {
     case Verdict::refused:
       return "nothing: it is refused before it runs";
@@ -89,7 +89,7 @@ std::string advice(const Measures& measures, const Judgement& judgement, const s
     case Verdict::exceeded:
       break;
     case Verdict::within:
-      if (largest_step && *largest_step <= measures.H) return "no larger step is stable: keep session.step";
+      if (edge.step && *edge.step <= measures.H) return "no larger step is stable: keep session.step";
       if (judgement.checks.empty() || judgement.checks.front().share() < kNear) return "nothing";
       break;
   }
@@ -122,6 +122,8 @@ nlohmann::json to_json(const Measures& m, const Judgement& judgement) {
           {"difference", number(m.difference)},
           {"stiffness", number(m.stiffness)},
           {"is_same", m.is_same},
+          {"too_late", m.too_late},
+          {"creates_energy", m.creates_energy},
           {"not_converged", m.not_converged},
           {"over_budget", m.over_budget},
           {"cavitating", m.cavitating},

@@ -1,10 +1,11 @@
 // What was measured of a run at the limits, and whether it kept within its bounds.
 //
 // Pressures are absolute. Their ceiling is what the circuit and the motion can make of each other,
-//   1.1 (p_tank + r p_s + max over ports (F_0 + v sqrt(K / W)) / A)
-// p_s: highest setting of relief and shock valves (without any: of the pumps) or ideal source; r: largest ratio of both
-// piston areas; F_0: largest static force; v sqrt(K / W): force of a column of stiffness K that stops what moves at v
-// behind the mobility W; A: the smaller area. Below zero no oil has a pressure.
+//   1.1 (p_tank + r p_s + max over ports (2 F_0 + v sqrt(K / W)) / A)
+// p_s: highest setting of relief and shock valves with their rise (without any: twice that of the pumps); r: largest
+// ratio of the areas of a piston; F_0 = |a_free| / W: force that holds the port at the start and when a load changes,
+// which then swings to twice that; v sqrt(K / W): force of a column of stiffness K that stops what moves at v behind
+// the mobility W; A: the smaller area. Below zero no oil has a pressure.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +33,8 @@ struct Measures {
       difference;  // of the port forces, or pressures, to the run it is compared with, over their range
   std::optional<double> stiffness;  // omega_H^2 = K H^2 W, largest
   bool is_same = true;              // every bit as in the run it is compared with
+  std::int64_t too_late = 0,
+               creates_energy = 0;  // steps with the session's own flags late_input, coupling_creates_energy
   std::int64_t not_converged = 0, over_budget = 0, cavitating = 0, relief_open = 0, at_limit = 0;  // steps
   std::vector<std::string> notes;
 };
@@ -71,9 +74,14 @@ struct Judgement {
 // series that is shorter.
 [[nodiscard]] std::optional<double> lasting_minimum(const std::vector<double>& series, std::size_t length);
 
-// What to do about it, in one sentence. largest_step [s]: largest stable one; none: unknown, or there is none.
-[[nodiscard]] std::string advice(const Measures& measures, const Judgement& judgement,
-                                 const std::optional<double>& largest_step);
+// Largest communication step that keeps the bounds, of those that were tried.
+struct Edge {
+  bool is_sought = false;
+  std::optional<double> step;  // s; none: not even the shortest
+};
+
+// What to do about it, in one sentence.
+[[nodiscard]] std::string advice(const Measures& measures, const Judgement& judgement, const Edge& edge);
 
 [[nodiscard]] nlohmann::json to_json(const Measures& measures, const Judgement& judgement);
 

@@ -74,8 +74,8 @@ TEST(Judge, RefusalIsGoodAndDivergenceIsNot) {
   Measures diverged = good_run();
   diverged.failure = "Bag.position";
   EXPECT_EQ(judge(diverged, {}).verdict, Verdict::diverged);
-  EXPECT_NE(advice(diverged, judge(diverged, {}), 2e-3).find("2 ms"), std::string::npos);
-  EXPECT_NE(advice(diverged, judge(diverged, {}), std::nullopt).find("no step"), std::string::npos);
+  EXPECT_NE(advice(diverged, judge(diverged, {}), {true, 2e-3}).find("2 ms"), std::string::npos);
+  EXPECT_NE(advice(diverged, judge(diverged, {}), {true, std::nullopt}).find("no step"), std::string::npos);
 }
 
 TEST(Judge, LastingMinimumOverlooksWhatIsShort) {
