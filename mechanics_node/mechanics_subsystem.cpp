@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/indicator.h"
 #include "cli_support/failure.h"
+#include "coupling/indicator.h"
 #include "coupling/static_forces.h"
 #include "math/small_solve.h"
 #include "multibody/joint_law.h"
