@@ -1,17 +1,21 @@
 #include "cli/direct_session.h"
 
+#include <utility>
+
 namespace slew::cli {
 
 using coupling::PartnerSamples;
 using wire::Role;
 
-DirectSession::DirectSession(const scene::Scene& scene)
+DirectSession::DirectSession(const scene::Scene& scene, SampleAges ages)
     : mechanics_(family_.make(Role::mechanics, scene)),
       hydraulics_(family_.make(Role::hydraulics, scene)),
       flex_(family_.make(Role::flex, scene)),
       elastic_exchange_(scene.session.flexible),
       flexible_every_(scene.flexible_every()),
-      exchange_every_(scene.session.exchange_every) {}
+      exchange_every_(scene.session.exchange_every),
+      ages_(std::move(ages)),
+      said_(ages_ ? kKeptSamples : 0) {}
 
 Status DirectSession::start() {
   mechanics_report_ = hydraulics_report_ = {};
@@ -55,18 +59,19 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
     }
     return subsystem.step(n, partners, controls, next);
   };
-  const StepIndex age = n % exchange_every_;
-  if (exchange_every_ > 1 && age == 0) {
+  const StepIndex age = ages_ ? ages_(n) : n % exchange_every_;
+  if (ages_) {
+    said_[static_cast<std::size_t>(n % kKeptSamples)] = {mechanics_sample_.mechanism, hydraulics_sample_.actuators};
+  } else if (exchange_every_ > 1 && age == 0) {
     mechanics_exchanged_ = mechanics_sample_;
     hydraulics_exchanged_ = hydraulics_sample_;
   }
-  const auto exchanged = [&](const coupling::OwnSample& now, const coupling::OwnSample& last) -> auto& {
-    return age == 0 ? now : last;
-  };
+  const Said* late = ages_ ? &said_[static_cast<std::size_t>((n - age) % kKeptSamples)] : nullptr;
   const std::int64_t begin_ns = monotonic_ns();
   if (mechanics_ != nullptr) {
     PartnerSamples partners;
-    if (hydraulics_ != nullptr) partners.actuators = &exchanged(hydraulics_sample_, hydraulics_exchanged_).actuators;
+    const coupling::OwnSample& last = age == 0 ? hydraulics_sample_ : hydraulics_exchanged_;
+    if (hydraulics_ != nullptr) partners.actuators = late != nullptr ? &late->actuators : &last.actuators;
     partners.actuators_age = age;
     const bool is_stated_anew = elastic_exchange_ != coupling::ElasticExchange::once;
     if (flex_ != nullptr && is_stated_anew) partners.elastic = &flex_sample_.elastic;
@@ -75,7 +80,8 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
   const std::int64_t middle_ns = monotonic_ns();
   if (hydraulics_ != nullptr) {
     PartnerSamples partners;
-    if (mechanics_ != nullptr) partners.mechanism = &exchanged(mechanics_sample_, mechanics_exchanged_).mechanism;
+    const coupling::OwnSample& last = age == 0 ? mechanics_sample_ : mechanics_exchanged_;
+    if (mechanics_ != nullptr) partners.mechanism = late != nullptr ? &late->mechanism : &last.mechanism;
     partners.mechanism_age = age;
     hydraulics_report_ = advance(*hydraulics_, partners, hydraulics_next_);
   }

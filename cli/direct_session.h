@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,9 +16,15 @@
 
 namespace slew::cli {
 
+// How many steps old the newest samples are that mechanics and hydraulics have of each other at step n, below
+// kKeptSamples: lost and late samples. For scenes in mode free_running, whose sides bridge such gaps.
+using SampleAges = std::function<StepIndex(StepIndex n)>;
+inline constexpr StepIndex kKeptSamples = 128;
+
 class DirectSession {
  public:
-  explicit DirectSession(const scene::Scene& scene);
+  // Without ages every sample that the scene exchanges comes in time.
+  explicit DirectSession(const scene::Scene& scene, SampleAges ages = {});
 
   // INIT: start states and samples 0. After reset() again.
   Status start();
@@ -35,6 +42,9 @@ class DirectSession {
   [[nodiscard]] bool has_sample(wire::Role role, StepIndex step) const noexcept {
     return role != wire::Role::flex || step % flexible_every_ == 0;
   }
+  // What mechanics and hydraulics have said of t_n; empty in a scene without them.
+  [[nodiscard]] const coupling::MechanismSample& mechanism() const noexcept { return mechanics_sample_.mechanism; }
+  [[nodiscard]] const coupling::ActuatorSample& actuators() const noexcept { return hydraulics_sample_.actuators; }
   // Mechanics' hash at its INIT sample.
   [[nodiscard]] std::uint64_t init_hash() const noexcept { return init_hash_; }
   // What the role's part of the last step reported, and how long it took [ns of the wall clock].
@@ -49,8 +59,14 @@ class DirectSession {
   std::unique_ptr<coupling::Subsystem> hydraulics_;
   std::unique_ptr<coupling::Subsystem> flex_;
   coupling::ElasticExchange elastic_exchange_;
-  StepIndex flexible_every_;              // steps between two samples for and of flexible bodies
-  StepIndex exchange_every_;              // steps between two exchanges of mechanics and hydraulics
+  StepIndex flexible_every_;  // steps between two samples for and of flexible bodies
+  StepIndex exchange_every_;  // steps between two exchanges of mechanics and hydraulics
+  SampleAges ages_;           // empty: as the scene exchanges
+  struct Said {
+    coupling::MechanismSample mechanism;
+    coupling::ActuatorSample actuators;
+  };
+  std::vector<Said> said_;                // of the last steps, when samples may be late
   coupling::OwnSample mechanics_sample_;  // at t_n
   coupling::OwnSample hydraulics_sample_;
   coupling::OwnSample mechanics_exchanged_, hydraulics_exchanged_;  // those of the last exchange, when it is not t_n's

@@ -38,6 +38,8 @@ int main(int argc, char** argv) {
   cli::add_tradeoff(app, action);
   cli::add_tradeoff_row(app, action);
   cli::add_simplify(app, action);
+  cli::add_extremes(app, action);
+  cli::add_extremes_case(app, action);
   cli::add_node(app, action);
   cli::add_doctor(app, action);
   int exit_code = 0;

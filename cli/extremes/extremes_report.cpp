@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/display.h"
+#include "cli/extremes/extremes.h"
+
+namespace slew::cli {
+namespace {
+
+// a number that JSON may have lost because it was not finite
+double number(const nlohmann::json& json) {
+  return json.is_number() ? json.get<double>() : std::nan("");
+}
+
+std::string value_text(double value, const std::string& unit) {
+  return unit.empty() ? fmt::format("{:.2g}", value) : quantity_text(value, unit);
+}
+
+// "highest pressure 212 bar of 381 bar, 56 %": the value nearest to its bound
+std::string nearest_text(const nlohmann::json& result) {
+  if (!result.at("refusal").get<std::string>().empty()) return result.at("refusal");
+  std::string text;
+  if (!result.at("failure").get<std::string>().empty()) {
+    text = fmt::format("{} at {:.4g} s; ", result.at("failure").get<std::string>(), number(result.at("failed_at")));
+  }
+  const nlohmann::json& checks = result.at("checks");
+  if (checks.empty()) return text + "finite";
+  const nlohmann::json& first = checks.front();
+  const double value = number(first.at("value")), bound = number(first.at("bound"));
+  const std::string unit = first.at("unit");
+  text += fmt::format("{} {}", first.at("what").get<std::string>(), value_text(value, unit));
+  if (bound > 0) text += fmt::format(" of {}, {:.0f} %", value_text(bound, unit), 100 * value / bound);
+  return text;
+}
+
+std::string edge_text(const nlohmann::json& result) {
+  if (!result.at("has_edge").get<bool>()) return "-";
+  const nlohmann::json& step = result.at("largest_step");
+  return step.is_number() ? fmt::format("{:.4g} ms", step.get<double>() * 1e3) : "none";
+}
+
+std::string notes_text(const nlohmann::json& result) {
+  std::string text;
+  for (const nlohmann::json& note : result.at("notes")) text += (text.empty() ? "" : "; ") + note.get<std::string>();
+  return text;
+}
+
+std::vector<std::string> cells_of(const ExtremesRow& row) {
+  if (!row.obstacle.empty()) return {row.name, "n/a", row.obstacle, "", "", ""};
+  if (!row.is_done) return {row.name, "not run", "", "", "", ""};
+  if (!row.result.is_object()) return {row.name, "FAILED", row.failure, "", "", "run it alone with --only"};
+  return {row.name,
+          row.result.at("verdict"),
+          nearest_text(row.result),
+          edge_text(row.result),
+          row.result.at("advice"),
+          notes_text(row.result)};
+}
+
+}  // namespace
+
+std::string report_text(const Extremes& extremes) {
+  std::string text;
+  std::size_t good = 0, bad = 0, not_for = 0, left = 0;
+  for (std::size_t i = 0; i < extremes.rows.size();) {
+    const std::string& scene = extremes.rows[i].scene;
+    std::vector<std::vector<std::string>> table = {
+        {"case", "verdict", "nearest to its bound", "largest stable step", "what to do", "notes"}};
+    for (; i < extremes.rows.size() && extremes.rows[i].scene == scene; ++i) {
+      const ExtremesRow& row = extremes.rows[i];
+      table.push_back(cells_of(row));
+      ++(!row.obstacle.empty() ? not_for : !row.is_done ? left : row.is_good() ? good : bad);
+    }
+    text += scene + "\n" + table_text(table) + "\n";
+  }
+  text += fmt::format("{} within bounds or refused by name, {} not, {} not for their scene", good, bad, not_for);
+  if (left > 0) text += fmt::format(", {} not run: the same command goes on from here", left);
+  if (extremes.kept > 0) text += fmt::format("; {} kept from {}", extremes.kept, extremes.folder);
+  return text + "\n";
+}
+
+std::string report_json(const Extremes& extremes) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const ExtremesRow& row : extremes.rows) {
+    nlohmann::json one = {{"scene", row.scene},
+                          {"name", row.name},
+                          {"group", to_text(row.group)},
+                          {"what", row.what},
+                          {"obstacle", row.obstacle},
+                          {"is_done", row.is_done},
+                          {"is_good", row.is_done && row.is_good()},
+                          {"failure", row.failure},
+                          {"result", row.result}};
+    rows.push_back(std::move(one));
+  }
+  return nlohmann::json{{"rows", rows},
+                        {"is_complete", extremes.is_complete()},
+                        {"is_good", extremes.is_good()},
+                        {"kept", extremes.kept},
+                        {"folder", extremes.folder}}
+      .dump(2);
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,88 @@
+// What was measured of a run at the limits, and whether it kept within its bounds.
+//
+// Pressures are absolute. Their ceiling is what the circuit and the motion can make of each other,
+//   1.1 (p_tank + r p_s + max over ports (2 F_0 + v sqrt(K / W)) / A)
+// p_s: highest setting of relief and shock valves with their rise (without any: twice that of the pumps); r: largest
+// ratio of the areas of a piston; F_0 = |a_free| / W: force that holds the port at the start and when a load changes,
+// which then swings to twice that; v sqrt(K / W): force of a column of stiffness K that stops what moves at v behind
+// the mobility W; A: the smaller area. Below zero no oil has a pressure.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace slew::cli {
+
+// One run of a case. Values that the scene has nothing of are none.
+struct Measures {
+  std::string refusal;     // why it was not run: the scene, or its start, was refused by name
+  std::string failure;     // what became not finite; empty: nothing
+  double failed_at = 0;    // s
+  std::int64_t steps = 0;  // done
+  double H = 0;            // s, communication step
+  std::optional<double> highest_pressure, lowest_pressure, ceiling;  // Pa
+  std::string highest_at;                                            // volume
+  std::optional<double> net;  // least indicator net that lasted for 0.2 s of any port
+  std::optional<double> eta;  // largest of any port
+  std::optional<double> gap;  // m or rad, largest opening of a joint
+  std::optional<double>
+      difference;  // of the port forces, or pressures, to the run it is compared with, over their range
+  std::optional<double> stiffness;  // omega_H^2 = K H^2 W, largest
+  bool is_same = true;              // every bit as in the run it is compared with
+  std::int64_t too_late = 0,
+               creates_energy = 0;  // steps with the session's own flags late_input, coupling_creates_energy
+  std::int64_t not_converged = 0, over_budget = 0, cavitating = 0, relief_open = 0, at_limit = 0;  // steps
+  std::vector<std::string> notes;
+};
+
+enum class ComparedWith : std::uint8_t {
+  none,
+  on_time,  // the same with every sample in time
+  same,     // the same from step 0, without a hold
+};
+
+struct Bounds {
+  double net = 3e-3;       // energy that the coupling may make, of the work done
+  double gap = 1e-5;       // m or rad
+  double difference = 0;   // of the range; 0: not compared
+  bool asks_same = false;  // the end must be the same to the bit
+};
+
+struct Check {
+  std::string what, unit;  // unit: SI, empty for a plain number
+  double value = 0, bound = 0;
+  // Of the bound that is used up; what is no number is beyond every bound.
+  [[nodiscard]] double share() const noexcept;
+};
+
+enum class Verdict : std::uint8_t { within, refused, exceeded, diverged };
+
+struct Judgement {
+  Verdict verdict = Verdict::within;
+  std::vector<Check> checks;  // the one nearest to its bound first
+};
+
+[[nodiscard]] std::string_view to_text(Verdict verdict) noexcept;
+
+[[nodiscard]] Judgement judge(const Measures& measures, const Bounds& bounds);
+
+// Least value that a series kept for `length` entries: the largest of every window, the least of these. None for a
+// series that is shorter.
+[[nodiscard]] std::optional<double> lasting_minimum(const std::vector<double>& series, std::size_t length);
+
+// Largest communication step that keeps the bounds, of those that were tried.
+struct Edge {
+  bool is_sought = false;
+  std::optional<double> step;  // s; none: not even the shortest
+};
+
+// What to do about it, in one sentence.
+[[nodiscard]] std::string advice(const Measures& measures, const Judgement& judgement, const Edge& edge);
+
+[[nodiscard]] nlohmann::json to_json(const Measures& measures, const Judgement& judgement);
+
+}  // namespace slew::cli

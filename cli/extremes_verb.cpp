@@ -1,0 +1,104 @@
+// `slewring extremes SCENE|--suite`: the hard cases of a scene, each judged by its bounds, and how near the edge it is.
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "cli/extremes/case_run.h"
+#include "cli/extremes/extremes.h"
+#include "cli/interrupts.h"
+#include "cli/progress_line.h"
+#include "cli/sweep/sweep.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+
+namespace slew::cli {
+namespace {
+
+using cli_support::Failure;
+
+constexpr int kMostWorkers = 64;
+
+struct Options {
+  ExtremesWish wish;
+  std::string scene, scenes = "scenes";
+  bool is_suite = false, is_json = false, is_quiet = false;
+};
+
+struct CaseOptions {
+  cli_support::SceneOptions scene;
+  std::string name, result;
+};
+
+ExitCode run(Options options) {
+  if (options.is_suite == !options.scene.empty()) {
+    throw Failure(ExitCode::bad_input, "a scene file or --suite is needed, one of both; nothing was run");
+  }
+  options.wish.files = options.is_suite ? suite_files(options.scenes) : std::vector<std::string>{options.scene};
+  count_interrupts();
+  Extremes extremes;
+  {
+    ProgressLine line(options.is_quiet);
+    extremes = run_extremes(options.wish, [&line](std::string_view doing, double share) {
+      line.show(doing, share);
+      return interrupts() == 0;
+    });
+  }
+  fmt::print("{}", options.is_json ? report_json(extremes) + '\n' : report_text(extremes));
+  std::fflush(stdout);
+  if (interrupts() > 0) return static_cast<ExitCode>(interrupt_code());
+  return extremes.is_good() ? ExitCode::ok : ExitCode::failed;
+}
+
+}  // namespace
+
+void add_extremes(CLI::App& program, Action& action) {
+  CLI::App* verb =
+      program.add_subcommand("extremes", "hard cases of a scene: within their bounds, and how near the edge");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  ExtremesWish& wish = options->wish;
+  verb->add_option("scene", options->scene, "scene file")->type_name("SCENE");
+  verb->add_flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
+  verb->add_option("--scenes", options->scenes, "folder of the suite's scenes")
+      ->type_name("DIR")
+      ->capture_default_str();
+  const auto repeated = [verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
+    verb->add_option(name, to, text)->allow_extra_args(false)->type_name(type);
+  };
+  repeated("--set", wish.overrides, "change a value of the scene for all cases; repeat for more", "PATH=VALUE");
+  repeated("--only", wish.only, "run these cases: names, or patterns with * and ?; repeat for more", "NAME");
+  verb->add_option("--folder", wish.folder, "where results are kept")->type_name("DIR")->capture_default_str();
+  verb->add_flag("--anew", wish.is_anew, "compute also what the folder has already");
+  verb->add_option("--workers", wish.workers, "processes at once")
+      ->check(CLI::Range(1, kMostWorkers))
+      ->type_name("N")
+      ->capture_default_str();
+  verb->add_flag("--json", options->is_json, "print the table as JSON and nothing else");
+  verb->add_flag("--quiet", options->is_quiet, "no progress");
+  verb->footer(
+      "Each case is a process of its own, two at once. Ctrl-C keeps what is done; the same command goes on from "
+      "there.\n"
+      "Exit code 0: every case ended within its bounds or was refused by name; 1: one did not.\n"
+      "The cases, their bounds and the suite's table: docs/extremes.md.\n\n"
+      "Examples:\n"
+      "  slewring extremes scenes/truck_crane.yaml\n"
+      "  slewring extremes --suite --only 'lost_*' --only end_stops");
+  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+// the process of one case: no verb for people
+void add_extremes_case(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("extremes-case", "one hard case")->group("");
+  const auto options = std::make_shared<CaseOptions>();
+  verb->add_option("scene", options->scene.file, "scene file")->required();
+  verb->add_option("name", options->name, "case")->required();
+  verb->add_option("--set", options->scene.overrides, "change")->allow_extra_args(false);
+  verb->add_option("--result", options->result, "file to write")->required();
+  verb->callback([&action, options] {
+    action = [options] {
+      write_result(options->result, to_json(run_case(options->scene, options->name)));
+      return ExitCode::ok;
+    };
+  });
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "build_paths.h"
+#include "cli/extremes/cases.h"
+#include "cli/extremes/extremes.h"
+#include "cli/extremes/judge.h"
+
+namespace slew::cli {
+namespace {
+
+Measures good_run() {
+  Measures measures;
+  measures.H = 1e-3;
+  measures.highest_pressure = 200e5;
+  measures.lowest_pressure = 2e3;
+  measures.ceiling = 400e5;
+  measures.net = -1e-4;
+  measures.gap = 1e-12;
+  return measures;
+}
+
+scene::Scene scene_of(const char* file) {
+  return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + file);
+}
+
+const ExtremeCase& named(const std::vector<ExtremeCase>& cases, std::string_view name) {
+  for (const ExtremeCase& one : cases) {
+    if (one.name == name) return one;
+  }
+  throw std::runtime_error("no case " + std::string(name));
+}
+
+TEST(Judge, RunInsideAllBoundsIsWithinAndNamesTheNearest) {
+  const Judgement result = judge(good_run(), {});
+  EXPECT_EQ(result.verdict, Verdict::within);
+  ASSERT_EQ(result.checks.size(), 4u);
+  EXPECT_EQ(result.checks.front().what, "highest pressure");
+  EXPECT_DOUBLE_EQ(result.checks.front().share(), 0.5);
+}
+
+TEST(Judge, EachBoundThatIsBrokenIsTheOneNamed) {
+  const auto broken = [](auto change, const Bounds& bounds = {}) {
+    Measures measures = good_run();
+    change(measures);
+    const Judgement result = judge(measures, bounds);
+    EXPECT_EQ(result.verdict, Verdict::exceeded);
+    return result.checks.front().what;
+  };
+  EXPECT_EQ(broken([](Measures& m) { m.highest_pressure = 401e5; }), "highest pressure");
+  EXPECT_EQ(broken([](Measures& m) { m.lowest_pressure = -1.0; }), "tension of the oil");
+  EXPECT_EQ(broken([](Measures& m) { m.net = -3.1e-3; }), "energy made");
+  EXPECT_EQ(broken([](Measures& m) { m.gap = 1.1e-5; }), "joints open");
+  Bounds compared;
+  compared.difference = 0.02;
+  EXPECT_EQ(broken([](Measures& m) { m.difference = 0.021; }, compared), "force error");
+  Bounds same;
+  same.asks_same = true;
+  EXPECT_EQ(broken([](Measures& m) { m.is_same = false; }, same), "bits that differ");
+}
+
+TEST(Judge, ValueThatIsNoNumberIsBeyondItsBound) {
+  Measures measures = good_run();
+  measures.gap = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(judge(measures, {}).verdict, Verdict::exceeded);
+}
+
+TEST(Judge, RefusalIsGoodAndDivergenceIsNot) {
+  Measures refused = good_run();
+  refused.refusal = "session.step: 1 s";
+  EXPECT_EQ(judge(refused, {}).verdict, Verdict::refused);
+  Measures diverged = good_run();
+  diverged.failure = "Bag.position";
+  EXPECT_EQ(judge(diverged, {}).verdict, Verdict::diverged);
+  EXPECT_NE(advice(diverged, judge(diverged, {}), {true, 2e-3}).find("2 ms"), std::string::npos);
+  EXPECT_NE(advice(diverged, judge(diverged, {}), {true, std::nullopt}).find("no step"), std::string::npos);
+}
+
+TEST(Judge, LastingMinimumOverlooksWhatIsShort) {
+  EXPECT_EQ(lasting_minimum({0, -5, 0, -1, -2, -1, 0}, 3), -1.0);
+  EXPECT_EQ(lasting_minimum({0, -5, 0}, 1), -5.0);
+  EXPECT_EQ(lasting_minimum({-3, -4}, 2), -3.0);
+  EXPECT_EQ(lasting_minimum({0, 1}, 3), std::nullopt);
+}
+
+TEST(ExtremeCases, InputsHoldTheirLastPoint) {
+  const std::vector<InputPoint> points = {{0.2, 1}, {1.0, -1}};
+  EXPECT_EQ(raw_at(points, 0.1), 0);
+  EXPECT_EQ(raw_at(points, 0.2), 1);
+  EXPECT_EQ(raw_at(points, 5.0), -1);
+}
+
+TEST(ExtremeCases, SceneWithoutACircuitHasCasesThatSayWhyTheyDoNotApply) {
+  const scene::Scene scene = scene_of("first_steps.yaml");
+  const std::vector<ExtremeCase> cases = extreme_cases(scene);
+  EXPECT_TRUE(named(cases, "zero_gravity").obstacle.empty());
+  EXPECT_TRUE(named(cases, "load_1500_kg").obstacle.empty());
+  EXPECT_FALSE(named(cases, "start_at_1_bar").obstacle.empty());
+  EXPECT_FALSE(named(cases, "relief_chatter").obstacle.empty());
+  EXPECT_FALSE(named(cases, "stiffness_1").obstacle.empty());
+  EXPECT_FALSE(named(cases, "start_in_penetration").obstacle.empty());
+}
+
+TEST(ExtremeCases, CraneHasThemAllWithItsOwnNames) {
+  const scene::Scene scene = scene_of("truck_crane.yaml");
+  const std::vector<ExtremeCase> cases = extreme_cases(scene);
+  std::set<std::string> names;
+  for (const ExtremeCase& one : cases) {
+    EXPECT_TRUE(one.obstacle.empty()) << one.name << ": " << one.obstacle;
+    EXPECT_TRUE(names.insert(one.name).second) << one.name;
+  }
+  EXPECT_EQ(named(cases, "load_1500_kg").changes.front().path, "Bag.mass");
+  // a mass is more than 0
+  EXPECT_GT(named(cases, "load_0_kg").changes.front().value, 0);
+  EXPECT_EQ(named(cases, "valve_closes_in_1_ms").overrides.size(), 3u);
+  EXPECT_EQ(hoses_of(scene, 1e-6).size(), 7u);
+  for (const ExtremeCase& one : cases) {
+    // the times of late cases are whole steps
+    EXPECT_EQ(one.begin_ns % scene.session.step_duration().ns, 0) << one.name;
+  }
+}
+
+TEST(Extremes, UnfinishedAndDivergedRowsAreNotGood) {
+  Extremes extremes;
+  extremes.rows.push_back({.scene = "a",
+                           .name = "one",
+                           .what = {},
+                           .obstacle = "no circuit",
+                           .is_done = true,
+                           .failure = {},
+                           .result = {}});
+  EXPECT_TRUE(extremes.is_good());
+  Measures diverged = good_run();
+  diverged.failure = "Bag.position";
+  extremes.rows.push_back({.scene = "a",
+                           .name = "two",
+                           .what = {},
+                           .obstacle = {},
+                           .is_done = true,
+                           .failure = {},
+                           .result = to_json(diverged, judge(diverged, {}))});
+  EXPECT_FALSE(extremes.is_good());
+  extremes.rows.back().result = to_json(good_run(), judge(good_run(), {}));
+  EXPECT_TRUE(extremes.is_good());
+  extremes.rows.push_back({.scene = "a", .name = "three", .what = {}, .obstacle = {}, .failure = {}, .result = {}});
+  EXPECT_FALSE(extremes.is_good());
+  EXPECT_FALSE(extremes.is_complete());
+}
+
+}  // namespace
+}  // namespace slew::cli
