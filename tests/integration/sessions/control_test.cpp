@@ -211,6 +211,7 @@ TEST_F(Control, CouplingLevelsChangeWhileItRunsAndTheTicksReproduceIt) {
     ASSERT_TRUE(reply.is_accepted) << reply.reason;
     if (first < 0) first = reply.header.step;
   }
+  ASSERT_TRUE(observer_->wait_for_step(1100)) << session_->said();
   EXPECT_EQ(observer_->request(ControlAction::get_parameter, 0, "Cyl_Lift.coupling").value, 1);
   EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 5, "Cyl_Lift.coupling").is_accepted);
   EXPECT_FALSE(observer_->request(ControlAction::set_parameter, 1, "Cyl_Lift.coupling", 1'000'000).is_accepted);

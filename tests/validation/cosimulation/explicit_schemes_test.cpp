@@ -21,7 +21,7 @@ TEST(LinearOscillator, IsWhereTheExactSolutionSays) {
   const State end = exact_map(masses, kTime) * kStart;
   const State published(-4.46079749, 87.5960608, -0.964932839, -99.8736233);
   EXPECT_LT((end - published).cwiseAbs().maxCoeff(), 1e-7 * published.norm());
-  EXPECT_NEAR(energy(masses, end), 1e4, 1e-8);
+  EXPECT_NEAR(energy(masses, end), 1e4, 1e-6);
   const Map map = exact_map(masses, 0.01);
   State state = kStart;
   const auto table = read_table("cosim_oscillator_c0.csv");
@@ -58,7 +58,8 @@ TEST(ExplicitSchemes, HoldingAForceCreatesTheEnergyOfTheTable) {
         Reference{first_2_then_1, 1e-3, 1.3857431}, Reference{first_2_then_1, 1e-4, 1.0306030}}) {
     const Map map = step_map({}, force_displacement, reference.order, reference.H);
     const State end = after(map, static_cast<int>(std::lround(kTime / reference.H)));
-    EXPECT_NEAR(energy({}, end) / 1e4 - 1, reference.energy - 1, 1e-6 * (reference.energy - 1)) << reference.H;
+    // the table's last digit is 1e-7
+    EXPECT_NEAR(energy({}, end) / 1e4, reference.energy, 1e-7) << reference.H;
   }
   const State end = after(step_map({}, force_displacement, jacobi, 1e-3), 10000);
   EXPECT_LT((end - State(-4.23826652, 87.88614335, -1.10363885, -137.56219425)).cwiseAbs().maxCoeff(), 1e-7);
