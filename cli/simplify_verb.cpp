@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/interrupts.h"
@@ -24,12 +23,6 @@ struct Options {
   bool is_json = false, is_quiet = false;
 };
 
-std::string overlay_path(const Options& options) {
-  if (!options.overlay.empty()) return options.overlay;
-  const std::filesystem::path scene(options.wish.scene.file);
-  return (scene.parent_path() / (scene.stem().string() + "_simplified.yaml")).string();
-}
-
 std::string remark(const Simplification& result) {
   std::string text = "simplify with";
   for (const Watched& watched : result.watched) {
@@ -44,6 +37,7 @@ ExitCode run(const Options& options) {
                                "--input keyboard: every run needs the same input; nothing was run; write it into a "
                                ".csv file");
   }
+  const std::string target = overlay_target(options.wish.scene.file, options.overlay, "simplified");
   count_interrupts();
   Simplification result;
   {
@@ -53,19 +47,18 @@ ExitCode run(const Options& options) {
       return interrupts() == 0;
     });
   }
-  std::string written;
   if (result.helps()) {
     scene::Overrides settings = options.wish.scene.overrides;
     settings.insert(settings.end(), result.settings.begin(), result.settings.end());
-    written = write_overlay(options.wish.scene.file, settings, remark(result), overlay_path(options));
+    write_overlay(options.wish.scene.file, settings, remark(result), target);
   }
   if (options.is_json) {
     nlohmann::json json = report_json(result);
-    if (!written.empty()) json["overlay"] = written;
+    if (result.helps()) json["overlay"] = target;
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{}", report_text(result));
-    if (!written.empty()) fmt::print("{}\n", written);
+    if (result.helps()) fmt::print("{}\n", target);
   }
   return interrupts() > 0 ? static_cast<ExitCode>(interrupt_code()) : ExitCode::ok;
 }

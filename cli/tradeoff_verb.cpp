@@ -25,6 +25,8 @@ struct Options {
   std::vector<std::string> errors;
   std::string page, csv, overlay;
   bool is_full = false, is_json = false, is_quiet = false;
+
+  [[nodiscard]] bool has_question() const { return !budget.empty() || !errors.empty(); }
 };
 
 struct RowOptions {
@@ -53,8 +55,9 @@ std::optional<Answer> answer(const Options& options, const Tradeoff& tradeoff) {
   if (!answer.question.is_asked()) return std::nullopt;
   answer.row = best_row(tradeoff, answer.question);
   if (answer.row && *answer.row > 0) {
-    answer.overlay = write_overlay(tradeoff.file, overlay_settings(options, tradeoff.rows[*answer.row]),
-                                   "tradeoff: " + answer_text(tradeoff, answer), options.overlay);
+    write_overlay(tradeoff.file, overlay_settings(options, tradeoff.rows[*answer.row]),
+                  "tradeoff: " + answer_text(tradeoff, answer), options.overlay);
+    answer.overlay = options.overlay;
   }
   return answer;
 }
@@ -65,7 +68,9 @@ ExitCode run(Options options) {
                   "--input keyboard: every run needs the same input; nothing was run; write it "
                   "into a .csv file");
   }
-  if (!options.budget.empty()) static_cast<void>(parse_budget(options.budget));  // refused before anything has run
+  // refused before anything has run
+  if (!options.budget.empty()) static_cast<void>(parse_budget(options.budget));
+  if (options.has_question()) options.overlay = overlay_target(options.wish.scene.file, options.overlay, "tradeoff");
   options.wish.size = options.is_full ? GridSize::full : GridSize::modest;
   count_interrupts();
   Tradeoff tradeoff;

@@ -110,15 +110,14 @@ std::string overlay_text(const std::string& file, scene::Scene& scene, const sce
   return fmt::format("{} {}\n", kFirstLine, remark) + block_text(root);
 }
 
-std::string write_overlay(const std::string& file, const scene::Overrides& settings, const std::string& remark,
-                          const std::string& path) {
+std::string overlay_target(const std::string& file, const std::string& path, std::string_view suffix) {
   const std::filesystem::path source(file);
   const std::string target =
-      path.empty() ? (source.parent_path() / (source.stem().string() + "_tradeoff.yaml")).string() : path;
+      path.empty() ? (source.parent_path() / fmt::format("{}_{}.yaml", source.stem().string(), suffix)).string() : path;
   if (std::filesystem::exists(target) && !is_own(target)) {
     throw Failure(ExitCode::bad_input, target +
-                                           " is there already and no overlay of slewring; it was left as it is; "
-                                           "name another file with --overlay");
+                                           " is there already and no overlay of slewring; it was left as it is and "
+                                           "nothing was run; name another file with --overlay");
   }
   std::error_code error;
   const auto folder_of = [&error](const std::filesystem::path& of) {
@@ -127,9 +126,14 @@ std::string write_overlay(const std::string& file, const scene::Overrides& setti
   if (folder_of(target) != folder_of(source)) {
     throw Failure(ExitCode::bad_input, target +
                                            " would not lie beside its scene, whose files it needs; nothing was "
-                                           "written; name a file in " +
+                                           "run; name a file in " +
                                            folder_of(source).string() + "/");
   }
+  return target;
+}
+
+void write_overlay(const std::string& file, const scene::Overrides& settings, const std::string& remark,
+                   const std::string& target) {
   scene::Scene scene = scene::load_file(file, settings);
   std::ofstream out(target, std::ios::binary);
   out << overlay_text(file, scene, settings, remark);
@@ -142,7 +146,6 @@ std::string write_overlay(const std::string& file, const scene::Overrides& setti
   } catch (const scene::LoadError& problem) {
     throw Failure(ExitCode::failed, target + " was written but does not load: " + problem.what());
   }
-  return target;
 }
 
 }  // namespace slew::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "cli/tradeoff/grid.h"
 #include "scene/scene.h"
@@ -15,10 +16,12 @@ namespace slew::cli {
 [[nodiscard]] std::string overlay_text(const std::string& file, scene::Scene& scene, const scene::Overrides& settings,
                                        const std::string& remark);
 
-// Writes it and reads it back: what was written loads, and is the scene with these settings. Without a path it lies
-// beside the scene, as SCENE_tradeoff.yaml. A file that is not such an overlay is never replaced. Returns the path.
-// Throws Failure.
-std::string write_overlay(const std::string& file, const scene::Overrides& settings, const std::string& remark,
-                          const std::string& path);
+// Where an overlay of the scene goes: to path, or without one beside the scene as SCENE_suffix.yaml. Throws Failure
+// when that is not the scene's folder or holds a file that is no such overlay, which is never replaced.
+[[nodiscard]] std::string overlay_target(const std::string& file, const std::string& path, std::string_view suffix);
+
+// Writes the text to target and reads it back: what was written loads. Throws Failure.
+void write_overlay(const std::string& file, const scene::Overrides& settings, const std::string& remark,
+                   const std::string& target);
 
 }  // namespace slew::cli

@@ -95,6 +95,14 @@ TEST_F(Tradeoff, AnswersWithASceneThatChecks) {
   EXPECT_EQ(ask({"--budget", "20 s"}).code, 2);
 }
 
+TEST_F(Tradeoff, RefusesAPlaceForTheAnswerBeforeAnythingRuns) {
+  const CommandResult result =
+      tradeoff({"--axis", "session.step=1ms,2ms", "--budget", "1 us/ms", "--overlay", "/tmp/elsewhere.yaml"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("would not lie beside its scene"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
+}
+
 TEST_F(Tradeoff, GoesOnAfterAnInterruption) {
   const std::vector<std::string> arguments = {
       "tradeoff",  "boom.yaml", "--until",   "2s",

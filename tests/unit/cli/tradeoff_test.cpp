@@ -220,13 +220,15 @@ class Overlay : public ::testing::Test {
 
 TEST_F(Overlay, IsTheSceneWithTheSettings) {
   const scene::Overrides settings = {"session.step=2ms", "Load.mass=1200kg", "hydraulics.relative_tolerance=1e-3"};
-  const std::string file = write_overlay(path("single_cylinder.yaml"), settings, "why", "");
+  const std::string file = overlay_target(path("single_cylinder.yaml"), "", "tradeoff");
   EXPECT_EQ(file, path("single_cylinder_tradeoff.yaml"));
+  write_overlay(path("single_cylinder.yaml"), settings, "why", file);
   scene::Scene read = scene::load_file(file), expected = scene::load_file(path("single_cylinder.yaml"), settings);
   EXPECT_EQ(read.expanded_text, expected.expanded_text);
   EXPECT_EQ(read.session.step, 2e-3);
   // it may be replaced by another one
-  EXPECT_EQ(write_overlay(path("single_cylinder.yaml"), {"session.step=4ms"}, "why", ""), file);
+  EXPECT_EQ(overlay_target(path("single_cylinder.yaml"), "", "tradeoff"), file);
+  write_overlay(path("single_cylinder.yaml"), {"session.step=4ms"}, "why", file);
   EXPECT_EQ(scene::load_file(file).session.step, 4e-3);
 }
 
@@ -234,20 +236,22 @@ TEST_F(Overlay, OfASceneThatIncludesHoldsItsKeysToo) {
   std::ofstream(path("long.yaml")) << "include: single_cylinder.yaml\nscene: long\nsession: {duration: 7 s}\n"
                                       "bodies: {Load: {mass: 900 kg}}\n";
   const scene::Overrides settings = {"session.step=2ms", "Load.center_of_mass=[0.1, 0, 0]"};
-  const std::string file = write_overlay(path("long.yaml"), settings, "why", "");
+  const std::string file = path("long_tradeoff.yaml");
+  write_overlay(path("long.yaml"), settings, "why", file);
   EXPECT_EQ(scene::load_file(file).expanded_text, scene::load_file(path("long.yaml"), settings).expanded_text);
 }
 
 TEST_F(Overlay, NeverReplacesWhatIsNotItsOwn) {
   std::ofstream(path("mine.yaml")) << "bodies: {}\n";
-  EXPECT_THROW(write_overlay(path("single_cylinder.yaml"), {"session.step=2ms"}, "why", path("mine.yaml")),
+  EXPECT_THROW(static_cast<void>(overlay_target(path("single_cylinder.yaml"), path("mine.yaml"), "tradeoff")),
                cli_support::Failure);
-  EXPECT_EQ(std::filesystem::file_size(path("mine.yaml")), 11u);
+}
+
+TEST_F(Overlay, LiesBesideItsScene) {
   std::filesystem::create_directories(folder_ / "elsewhere");
-  const std::string elsewhere = path("elsewhere/overlay.yaml");
-  EXPECT_THROW(write_overlay(path("single_cylinder.yaml"), {"session.step=2ms"}, "why", elsewhere),
-               cli_support::Failure);
-  EXPECT_FALSE(std::filesystem::exists(elsewhere));
+  EXPECT_THROW(
+      static_cast<void>(overlay_target(path("single_cylinder.yaml"), path("elsewhere/overlay.yaml"), "tradeoff")),
+      cli_support::Failure);
 }
 
 }  // namespace

@@ -99,8 +99,8 @@ double CoupledRun::variable(std::string_view name) const {
 
 // ---- comparison -----------------------------------------------------------------------------------------------
 
-Traces reference_traces(const scene::Scene& scene, double duration, std::int64_t* right_hand_sides) {
-  monolith::Monolith monolith(scene);
+Traces reference_traces(const scene::Scene& scene, double duration, monolith::MonolithOptions options) {
+  monolith::Monolith monolith(scene, options);
   const Status status = monolith.start();
   if (!status.is_ok()) throw std::runtime_error(status.text);
   Operator op(scene, kControlGrid);
@@ -117,7 +117,6 @@ Traces reference_traces(const scene::Scene& scene, double duration, std::int64_t
     const Status step = monolith.advance_to({(k + 1) * kTraceGrid.ns}, op.controls({k * kTraceGrid.ns}));
     if (!step.is_ok()) throw std::runtime_error(step.text);
   }
-  if (right_hand_sides != nullptr) *right_hand_sides = monolith.statistics().right_hand_sides;
   return traces;
 }
 

@@ -92,7 +92,7 @@ inline constexpr SimDuration kControlGrid = milliseconds(20);
 inline constexpr SimDuration kTraceGrid = milliseconds(1);
 
 [[nodiscard]] Traces reference_traces(const scene::Scene& scene, double duration,
-                                      std::int64_t* right_hand_sides = nullptr);
+                                      monolith::MonolithOptions options = {});
 
 // What a coupled run did, compared with a reference on the trace grid or on its own, coarser steps.
 struct PortError {
