@@ -244,7 +244,44 @@ std::string limits(const std::vector<Case>& cases) {
   std::string text =
       "### What limits level two\n\nLargest force error [N] by port.\n\n"
       "| machine | integrators | H = 1 ms | H = 5 ms |\n|---|---|---|---|\n";
-  for (const std::size_t i : {std::size_t{0}, std::size_t{3}}) text += limits_table(cases[i]);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{3}, std::size_t{5}}) text += limits_table(cases[i]);
+  return text + "\n";
+}
+
+// ---- what the reference itself is worth -----------------------------------------------------------------------
+
+// Largest difference of two references over the force range of the first, of the port with the largest share.
+double spread(const Traces& a, const Traces& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const auto [low, high] = std::minmax_element(a[i].F.begin(), a[i].F.end());
+    double difference = 0;
+    for (std::size_t k = 0; k < a[i].F.size(); ++k) difference = std::max(difference, std::fabs(a[i].F[k] - b[i].F[k]));
+    worst = std::max(worst, difference / (*high - *low));
+  }
+  return worst;
+}
+
+std::string spreads(const std::vector<Case>& cases) {
+  std::string text =
+      "### What the reference is worth\n\nLargest force difference from the reference (rtol 1e-9) as a share of the "
+      "force range.\n\n| machine | rtol 1e-10 | rtol 1e-8 | rtol 1e-7 | load heavier by 1e-6 "
+      "|\n|---|---|---|---|---|\n";
+  for (const Case& c : cases) {
+    const scene::Scene scene = load(c);
+    const Traces reference = coupling::test::reference_traces(scene, c.duration);
+    text += "| " + c.name + " ";
+    for (const double rtol : {1e-10, 1e-8, 1e-7}) {
+      text += fmt::format(
+          "| {:.1e} ",
+          spread(reference, coupling::test::reference_traces(
+                                scene, c.duration, {.relative_tolerance = rtol, .absolute_tolerance = rtol})));
+    }
+    const scene::Scene heavier =
+        load(c, {c.file == "single_cylinder.yaml" ? "Load.mass=1500.0015 kg" : "Bag.mass=500.0005 kg"});
+    text += fmt::format("| {:.1e} |\n", spread(reference, coupling::test::reference_traces(heavier, c.duration)));
+    std::cerr << "." << std::flush;
+  }
   return text + "\n";
 }
 
@@ -354,7 +391,7 @@ int run(const std::filesystem::path& results, const std::filesystem::path& figur
     if (!is_hardest && cases[i].short_name != "crane, friction") continue;
     for (ErrorCurve& curve : one.curves) curves.push_back(std::move(curve));
   }
-  text += factors(points) + limits(cases) + events();
+  text += factors(points) + limits(cases) + spreads(cases) + events();
   std::filesystem::create_directories(figures);
   const LogLogPlot plot{.title = "Force error over the communication step",
                         .subtitle = "largest difference from the monolith, share of the worst port's force range",
