@@ -106,6 +106,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
       past_(scene.ports.size()),
       modal_(scene, model_),
       row_is_active_(model_.rows.size(), 1),
+      a_free_trends_(model_.rows.size()),
       laws_(std::make_unique<Laws>(*this)),
       dynamics_(model_.rows.size()),
       force_mean_(model_.rows.size()),
@@ -129,6 +130,8 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
   substeps_ = multibody::substep_count(model_, H_.seconds());
   micro_steps_ = static_cast<int>(std::ceil(H_.seconds() / substeps_ / kMicroStep - 1e-9));
   micro_steps_ = std::max(1, micro_steps_);
+  const multibody::Integrator integrator = multibody::step_rule(def_).integrator;
+  has_long_substeps_ = multibody::is_implicit(integrator) || integrator == multibody::Integrator::index3_trapezoidal;
   active_.reserve(model_.rows.size());
   stage_speed_.resize(model_.rows.size());
   for (std::size_t row = 0; row < model_.rows.size(); ++row) has_balls_ = has_balls_ || is_ball(row);
@@ -153,6 +156,7 @@ void MechanicsSubsystem::reset() {
   put_signals({});
   is_evaluated_ = false;
   std::fill(row_is_active_.begin(), row_is_active_.end(), 1);
+  a_free_trends_.clear();
   ramps_.clear();
   levels_.reset();
   has_failed_ = false;
@@ -216,6 +220,7 @@ bool MechanicsSubsystem::select_rows(double h) noexcept {
     if (is_active == (row_is_active_[row] != 0)) continue;
     has_changed = true;
     row_is_active_[row] = is_active ? 1 : 0;
+    a_free_trends_.forget(row);
     if (is_active) {
       multibody::activate_row(workspace_, static_cast<int>(row));
     } else {
@@ -284,16 +289,19 @@ coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coup
     if (row_is_active_[row] != 0) active_.push_back(row);
   }
   const std::size_t rows = model_.rows.size();
-  const std::span<const double> W = multibody::row_mobility(workspace_);
+  const Rows of = has_long_substeps_ ? rows_over(h) : rows_now();
   dynamics_.set_rows(active_.size());
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const std::size_t row = active_[k];
     const double ratio = ratio_of(row);
     dynamics_.x()[k] = (row < ports_.size() ? ports_[row].offset : 0) + ratio * workspace_.row_x[row];
     dynamics_.v()[k] = ratio * workspace_.row_v[row];
-    dynamics_.a_free()[k] = ratio * workspace_.row_a_free[row];
+    dynamics_.a_free()[k] = ratio * of.a_free[row];
+    // that over a sub-step is a mean already
+    const bool is_mean = of.kind == coupling::MobilityKind::step;
+    dynamics_.a_free_rate()[k] = is_mean ? 0.0 : a_free_trends_.next(row, ratio * of.a_free[row]) / h;
     for (std::size_t j = 0; j < active_.size(); ++j) {
-      dynamics_.W()[k * active_.size() + j] = ratio * W[row * rows + active_[j]] * ratio_of(active_[j]);
+      dynamics_.W()[k * active_.size() + j] = ratio * of.W[row * rows + active_[j]] * ratio_of(active_[j]);
     }
   }
   load_partner(partner, is_first_substep);
@@ -428,6 +436,7 @@ StepReport MechanicsSubsystem::follow(StepIndex n, const FollowedStep& step, std
   multibody::copy_state(step.state, state_);
   multibody::copy_state(state_, last_good_);
   is_evaluated_ = false;
+  a_free_trends_.clear();
   for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].z = ports_[i].F = step.F[i];
   evaluate();
   StepReport report;
@@ -507,12 +516,14 @@ void MechanicsSubsystem::choose_mobility() {
   }
 }
 
-// Over a step where that is worth it; where its matrix is singular, which W_kind shows, at the instant.
-MechanicsSubsystem::Rows MechanicsSubsystem::published_rows() noexcept {
-  if (step_rows_ != nullptr && step_rows_->evaluate(model_, state_, workspace_, exchange_interval())) {
-    return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
-  }
+MechanicsSubsystem::Rows MechanicsSubsystem::rows_now() const noexcept {
   return {multibody::row_free_accelerations(workspace_), multibody::row_mobility(workspace_)};
+}
+
+// Over an interval where that is worth it; where its matrix is singular, which W_kind shows, at the instant.
+MechanicsSubsystem::Rows MechanicsSubsystem::rows_over(double h) noexcept {
+  if (step_rows_ == nullptr || !step_rows_->evaluate(model_, state_, workspace_, h)) return rows_now();
+  return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
 }
 
 // Work, impulse and mean speed are the finished step's and stay as they are.
@@ -523,7 +534,7 @@ void MechanicsSubsystem::publish(coupling::OwnSample& own) noexcept {
   multibody::observe(model_, state_, workspace_);
   const std::size_t m = ports_.size();
   const std::size_t rows = model_.rows.size();
-  const Rows published = published_rows();
+  const Rows published = rows_over(exchange_interval());
   for (std::size_t i = 0; i < m; ++i) {
     const double ratio = ports_[i].ratio;
     sample.x[i] = ports_[i].offset + ratio * workspace_.row_x[i];

@@ -18,6 +18,7 @@
 #include "coupling/port_dynamics.h"
 #include "coupling/port_levels.h"
 #include "coupling/subsystem.h"
+#include "coupling/trends.h"
 #include "mechanics_node/modal_exchange.h"
 #include "multibody/dynamics.h"
 #include "multibody/formulation.h"
@@ -100,7 +101,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
     std::span<const double> a_free, W;  // of all rows, on their own coordinates
     coupling::MobilityKind kind = coupling::MobilityKind::instant;
   };
-  [[nodiscard]] Rows published_rows() noexcept;
+  [[nodiscard]] Rows rows_now() const noexcept;
+  [[nodiscard]] Rows rows_over(double h) noexcept;
   void condense_joints(const Rows& of, coupling::MechanismSample& sample) noexcept;
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
   void find_static_forces(const coupling::MechanismSample& sample) noexcept;
@@ -142,12 +144,14 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   bool has_news_ = false;      // it came in this step
   int substeps_ = 1;
   int micro_steps_ = 1;
+  bool has_long_substeps_ = false;  // implicit ones, which do not resolve the springs behind the rows
   std::vector<Port> ports_;
   std::vector<double> port_ratios_;
   std::vector<OperatedLoad> operated_;
   ModalExchange modal_;
   std::vector<char> row_is_active_;
   std::vector<std::size_t> active_;                 // rows of the port problem, ascending
+  coupling::Trends a_free_trends_;                  // by row, from sub-step to sub-step
   std::unique_ptr<multibody::StepRows> step_rows_;  // none: the rows at the instant are published
   std::unique_ptr<Laws> laws_;
   coupling::PortDynamics dynamics_;

@@ -28,9 +28,10 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
   SLEW_CHECK(capacity <= kMaxRows);
-  for (std::vector<double>* values : {&x_,        &v_,       &z_,    &a_free_, &x_base_, &v_base_,  &z_base_, &x_stage_,
-                                      &v_stage_,  &z_stage_, &f_,    &slope_,  &f_mean_, &f_slope_, &work_,   &impulse_,
-                                      &residual_, &low_,     &high_, &k_x_,    &k_v_,    &k_z_}) {
+  for (std::vector<double>* values :
+       {&x_,       &v_,        &z_,       &a_free_, &a_free_rate_, &x_base_, &v_base_,  &z_base_,
+        &x_stage_, &v_stage_,  &z_stage_, &f_,      &slope_,       &f_mean_, &f_slope_, &work_,
+        &impulse_, &residual_, &low_,     &high_,   &k_x_,         &k_v_,    &k_z_}) {
     values->assign(capacity, 0.0);
   }
   W_.assign(capacity * capacity, 0.0);
@@ -73,17 +74,18 @@ double PortDynamics::bracketed(std::size_t row, double step) noexcept {
   return 0.5 * (low + high);
 }
 
-// v = v_base + weight (a_free + W f(v)) for the stage speeds
-bool PortDynamics::solve_stage(double weight, const RowLaws& laws, PortStep& report) noexcept {
+// v = v_base + weight (a_free + time a_free' + W f(v)) for the stage speeds
+bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept {
   const std::size_t m = rows_;
   for (int iteration = 0;; ++iteration) {
     evaluate_rows(weight, laws);
     double scale = 0;
     for (std::size_t i = 0; i < m; ++i) {
-      double acceleration = a_free_[i];
+      const double free = a_free_[i] + time * a_free_rate_[i];
+      double acceleration = free;
       for (std::size_t j = 0; j < m; ++j) acceleration += W_[i * m + j] * f_[j];
       residual_[i] = v_base_[i] + weight * acceleration - v_stage_[i];
-      scale = std::max({scale, std::fabs(v_stage_[i]), std::fabs(weight * a_free_[i])});
+      scale = std::max({scale, std::fabs(v_stage_[i]), std::fabs(weight * free)});
     }
     const double largest = fixed_max_abs({residual_.data(), m});
     ++report.iterations;
@@ -132,15 +134,15 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
         z_base_[i] = z_[i] + carried * k_z_[i];
         if (stage == 0) v_stage_[i] = v_[i];
       }
-      report.has_converged &= solve_stage(weight, laws, report);
+      const double time = (step + (stage == 0 ? kGamma : 1.0)) * delta;
+      report.has_converged &= solve_stage(weight, time, laws, report);
       const double share = (stage == 0 ? 1 - kGamma : kGamma) * delta;
-      const double time = step * delta + (stage == 0 ? kGamma : 1.0) * delta - 0.5 * h;
       for (std::size_t i = 0; i < rows_; ++i) {
         k_x_[i] = v_stage_[i];
         k_v_[i] = (v_stage_[i] - v_base_[i]) / weight;
         k_z_[i] = (z_stage_[i] - z_base_[i]) / weight;
         f_mean_[i] += share * f_[i];
-        f_slope_[i] += share * time * f_[i];
+        f_slope_[i] += share * (time - 0.5 * h) * f_[i];
         const double pressure_force = z_stage_[i] - partner_[i].D * (v_stage_[i] - partner_[i].v_ref);
         work_[i] += share * pressure_force * v_stage_[i];
         impulse_[i] += share * pressure_force;

@@ -2,7 +2,7 @@
 //
 // A row is a scalar coordinate of the mechanism with a stiff force law: an actuator's stroke, or a joint coordinate
 // with friction and limits. Over a sub-step of length h the mechanism is its reduced model
-//   x' = v,   v' = a_free + W f                                                                    (1)
+//   x' = v,   v' = a_free + a_free' t + W f                                                        (1)
 // and each row's force f = f(z, x, v, t) follows the row's own law, where z is the partner's pressure force with
 //   z' = F_dot - K (v - v_ref) - lambda (z - F_n)                                                  (2)
 // (K = lambda = F_dot = 0 for rows without partner). (1), (2) are integrated with micro-steps of the L-stable,
@@ -66,11 +66,12 @@ class PortDynamics {
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
 
   // inputs of a sub-step, set by the owner; all arrays have one entry per row
-  std::span<double> x() noexcept { return {x_.data(), rows_}; }  // start positions, advanced by solve()
-  std::span<double> v() noexcept { return {v_.data(), rows_}; }  // start speeds, advanced by solve()
-  std::span<double> z() noexcept { return {z_.data(), rows_}; }  // pressure forces, advanced by solve()
-  std::span<double> a_free() noexcept { return {a_free_.data(), rows_}; }
-  std::span<double> W() noexcept { return {W_.data(), rows_ * rows_}; }  // row-major
+  std::span<double> x() noexcept { return {x_.data(), rows_}; }            // start positions, advanced by solve()
+  std::span<double> v() noexcept { return {v_.data(), rows_}; }            // start speeds, advanced by solve()
+  std::span<double> z() noexcept { return {z_.data(), rows_}; }            // pressure forces, advanced by solve()
+  std::span<double> a_free() noexcept { return {a_free_.data(), rows_}; }  // at the start
+  std::span<double> a_free_rate() noexcept { return {a_free_rate_.data(), rows_}; }  // over the sub-step
+  std::span<double> W() noexcept { return {W_.data(), rows_ * rows_}; }              // row-major
   std::span<RowPartner> partner() noexcept { return {partner_.data(), rows_}; }
 
   // Integrates over h in `micro_steps` equal steps.
@@ -84,13 +85,13 @@ class PortDynamics {
   [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }  // of z [N s]
 
  private:
-  bool solve_stage(double weight, const RowLaws& laws, PortStep& report) noexcept;
+  bool solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
   double bracketed(std::size_t row, double step) noexcept;
 
   std::size_t capacity_;
   std::size_t rows_;
-  std::vector<double> x_, v_, z_, a_free_, W_;
+  std::vector<double> x_, v_, z_, a_free_, a_free_rate_, W_;
   std::vector<RowPartner> partner_;
   std::vector<double> x_base_, v_base_, z_base_;     // stage value = base + weight * slope
   std::vector<double> x_stage_, v_stage_, z_stage_;  // stage values
