@@ -226,6 +226,11 @@ double Circuit::capacity_at(std::size_t volume, const double* y) const noexcept 
   return capacity(volume, y).value;
 }
 
+double Circuit::capacity_growth(int volume, const double* y) const noexcept {
+  const Capacity C = capacity(at(volume), y);
+  return C.d_pressure / C.value;
+}
+
 void Circuit::capacities(const double* y, double* C) const noexcept {
   for (std::size_t i = 0; i < volume_name_.size(); ++i) C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
 }

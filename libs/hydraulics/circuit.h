@@ -100,6 +100,8 @@ class Circuit {
 
   // Capacities C_i [m3/Pa]; 0 for fixed volumes.
   void capacities(const double* y, double* C) const noexcept;
+  // d ln C / dp of a volume that is not fixed [1/Pa]
+  [[nodiscard]] double capacity_growth(int volume, const double* y) const noexcept;
   // -dQ/dp of each volume at y, on the steeper side of switches.
   void outflow_slopes(const double* y, double* slope) noexcept;
   // Moves the pistons to x_new and lets each pressure follow its chamber's change of volume, no oil lost:

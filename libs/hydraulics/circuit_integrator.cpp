@@ -130,7 +130,9 @@ void CircuitIntegrator::choose_quasi_static() {
   algebraic_ = math::DenseLu(quasi_static_.size());
 }
 
-// Newton on the pressures of the quasi-static volumes, all other states held.
+// Newton on the pressures of the quasi-static volumes, all other states held, for flows that add up to zero. The rows
+// are those flows over C: without the slope of C the iteration would run to where oil is soft, not to where flows
+// balance.
 bool CircuitIntegrator::make_consistent() noexcept {
   const std::size_t n = quasi_static_.size();
   if (n == 0) return true;
@@ -142,6 +144,7 @@ bool CircuitIntegrator::make_consistent() noexcept {
     for (std::size_t i = 0; i < n; ++i) {
       const auto row = static_cast<std::size_t>(quasi_static_[i]);
       for (std::size_t j = 0; j < n; ++j) a[i * n + j] = -J[row * stride + static_cast<std::size_t>(quasi_static_[j])];
+      a[i * n + i] -= f_[row] * circuit_.capacity_growth(quasi_static_[i], y_.data());
       outflow_[i] = f_[row];
     }
     if (!algebraic_.factorise()) return false;
