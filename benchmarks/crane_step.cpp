@@ -1,6 +1,6 @@
-// Cost of the truck crane in one process: each subsystem's step, both together, and the whole session over the bus of
-// one process (ticks, encoding, gate, no recorder), per simulated millisecond at H = 1 ms, over the scene's own
-// manoeuvre.
+// Cost of the truck crane in one process, rigid and with two modes of its jib boom: each subsystem's step, both coupled
+// in one thread, and the whole session over the bus of one process (ticks, encoding, gate, no recorder), per simulated
+// millisecond at H = 1 ms, over the scene's own manoeuvre.
 //
 //   crane_step --benchmark_min_time=2
 #include <benchmark/benchmark.h>
@@ -22,20 +22,23 @@ namespace {
 
 using namespace slew;
 
-const scene::Scene& crane() {
-  static const scene::Scene scene = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml");
-  return scene;
+enum class Boom { rigid, two_modes };
+
+const scene::Scene& crane(Boom boom) {
+  static const scene::Scene rigid = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml");
+  static const scene::Scene flexible = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml");
+  return boom == Boom::rigid ? rigid : flexible;
 }
 
 constexpr SimDuration kH = milliseconds(1);
 constexpr StepIndex kSteps = 6000;  // rest, lift, lift and slew
 
-io::IoConfig io_config() {
+io::IoConfig io_config(Boom boom) {
   io::SessionWish wish;
   wish.session_name = "benchmark";
   wish.operating = io::Operator::script;
   wish.recording = io::Recording::none;
-  return io::make_config(crane(), wish);
+  return io::make_config(crane(boom), wish);
 }
 
 // One run with everything that either side was given: replayed to one side alone, it does the same again.
@@ -53,34 +56,36 @@ void start(coupling::Subsystem& mechanics, coupling::Subsystem& hydraulics, coup
   static_cast<void>(mechanics.start({nullptr, &h.actuators}, m));
 }
 
-const Tape& tape() {
-  static const Tape tape = [] {
-    Tape t;
-    mechanics::MechanicsSubsystem mechanics(crane());
-    hydraulic_node::HydraulicsSubsystem hydraulics(crane());
-    const scene::ScriptPlayer script(crane());
-    const io::IoConfig config = io_config();
-    io::InputGate gate(config.channels, config.gate, kH);
-    std::vector<double> raw(gate.size());
-    coupling::OwnSample m, h;
-    start(mechanics, hydraulics, m, h);
-    for (StepIndex n = 0; n < kSteps; ++n) {
-      for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = script.value(i, start_of(n, kH));
-      gate.advance(n, raw, 0);
-      std::vector<double> controls;
-      for (std::size_t i = 0; i < gate.size(); ++i) controls.push_back(gate.control(i));
-      t.mechanism.push_back(m.mechanism);
-      t.actuators.push_back(h.actuators);
-      t.controls.push_back(controls);
-      coupling::OwnSample m_next, h_next;
-      mechanics.step(n, {nullptr, &t.actuators.back()}, controls, m_next);
-      hydraulics.step(n, {&t.mechanism.back(), nullptr}, controls, h_next);
-      m = m_next;
-      h = h_next;
-    }
-    return t;
-  }();
-  return tape;
+Tape record(Boom boom) {
+  Tape t;
+  mechanics::MechanicsSubsystem mechanics(crane(boom));
+  hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
+  const scene::ScriptPlayer script(crane(boom));
+  const io::IoConfig config = io_config(boom);
+  io::InputGate gate(config.channels, config.gate, kH);
+  std::vector<double> raw(gate.size());
+  coupling::OwnSample m, h;
+  start(mechanics, hydraulics, m, h);
+  for (StepIndex n = 0; n < kSteps; ++n) {
+    for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = script.value(i, start_of(n, kH));
+    gate.advance(n, raw, 0);
+    std::vector<double> controls;
+    for (std::size_t i = 0; i < gate.size(); ++i) controls.push_back(gate.control(i));
+    t.mechanism.push_back(m.mechanism);
+    t.actuators.push_back(h.actuators);
+    t.controls.push_back(controls);
+    coupling::OwnSample m_next, h_next;
+    mechanics.step(n, {nullptr, &t.actuators.back()}, controls, m_next);
+    hydraulics.step(n, {&t.mechanism.back(), nullptr}, controls, h_next);
+    m = m_next;
+    h = h_next;
+  }
+  return t;
+}
+
+const Tape& tape(Boom boom) {
+  static const Tape rigid = record(Boom::rigid), flexible = record(Boom::two_modes);
+  return boom == Boom::rigid ? rigid : flexible;
 }
 
 void report(benchmark::State& state, StepIndex steps_per_iteration) {
@@ -90,12 +95,12 @@ void report(benchmark::State& state, StepIndex steps_per_iteration) {
 
 // one side, given what the other said on the tape
 template <typename Side>
-void run_side(benchmark::State& state, Side side) {
-  const Tape& t = tape();
+void run_side(benchmark::State& state, Boom boom, Side side) {
+  const Tape& t = tape(boom);
   for (auto _ : state) {
     state.PauseTiming();
-    mechanics::MechanicsSubsystem mechanics(crane());
-    hydraulic_node::HydraulicsSubsystem hydraulics(crane());
+    mechanics::MechanicsSubsystem mechanics(crane(boom));
+    hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
     coupling::OwnSample m, h;
     start(mechanics, hydraulics, m, h);
     state.ResumeTiming();
@@ -116,17 +121,33 @@ void step_hydraulics(coupling::Subsystem&, coupling::Subsystem& hydraulics, Step
   hydraulics.step(n, {&t.mechanism[i], nullptr}, t.controls[i], h);
 }
 
-void BM_Mechanics(benchmark::State& state) {
-  run_side(state, step_mechanics);
+void step_both(coupling::Subsystem& mechanics, coupling::Subsystem& hydraulics, StepIndex n, const Tape& t,
+               coupling::OwnSample& m, coupling::OwnSample& h) {
+  const coupling::MechanismSample mechanism = m.mechanism;
+  const auto& controls = t.controls[static_cast<std::size_t>(n)];
+  mechanics.step(n, {nullptr, &h.actuators}, controls, m);
+  hydraulics.step(n, {&mechanism, nullptr}, controls, h);
 }
-BENCHMARK(BM_Mechanics)->Unit(benchmark::kMillisecond);
 
-void BM_Hydraulics(benchmark::State& state) {
-  run_side(state, step_hydraulics);
+void BM_Mechanics(benchmark::State& state, Boom boom) {
+  run_side(state, boom, step_mechanics);
 }
-BENCHMARK(BM_Hydraulics)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Mechanics, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Mechanics, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
 
-void BM_Session(benchmark::State& state) {
+void BM_Hydraulics(benchmark::State& state, Boom boom) {
+  run_side(state, boom, step_hydraulics);
+}
+BENCHMARK_CAPTURE(BM_Hydraulics, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Hydraulics, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
+
+void BM_Coupled(benchmark::State& state, Boom boom) {
+  run_side(state, boom, step_both);
+}
+BENCHMARK_CAPTURE(BM_Coupled, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Coupled, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
+
+void BM_Session(benchmark::State& state, Boom boom) {
   for (auto _ : state) {
     transport::InProcessBus bus;
     const auto endpoint = [&](const char* role) {
@@ -134,20 +155,20 @@ void BM_Session(benchmark::State& state) {
           bus, transport::InProcessOptions{role, transport::TopicSet::all(), transport::TopicSet::all()});
     };
     const auto io_end = endpoint("io"), mechanics_end = endpoint("mechanics"), hydraulics_end = endpoint("hydraulics");
-    io::IoConfig config = io_config();
+    io::IoConfig config = io_config(boom);
     config.pace = wire::Pace::free;
     config.window = 4;
     config.name_check = {0};
     config.steps = kSteps;
     io::IoNode io(*io_end, std::move(config));
     node::PhysicsNode mechanics(wire::Role::mechanics, *mechanics_end,
-                                [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
-                                  built.subsystem = mechanics::make_mechanics_subsystem(crane());
+                                [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
+                                  built.subsystem = mechanics::make_mechanics_subsystem(crane(boom));
                                   return Status::ok();
                                 });
     node::PhysicsNode hydraulics(wire::Role::hydraulics, *hydraulics_end,
-                                 [](const wire::SessionDescription&, node::BuiltSubsystem& built) {
-                                   built.subsystem = hydraulic_node::make_hydraulics_subsystem(crane());
+                                 [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
+                                   built.subsystem = hydraulic_node::make_hydraulics_subsystem(crane(boom));
                                    return Status::ok();
                                  });
     node::Node* nodes[] = {&io, &mechanics, &hydraulics};
@@ -155,7 +176,8 @@ void BM_Session(benchmark::State& state) {
   }
   report(state, kSteps);
 }
-BENCHMARK(BM_Session)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Session, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_Session, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

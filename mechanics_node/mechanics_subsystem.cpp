@@ -80,6 +80,10 @@ class MechanicsSubsystem::Laws final : public coupling::RowLaws {
                                             : multibody::evaluate(law, x, v, h, bending);
     return {joint.force, 0, joint.d_x, joint.d_v};
   }
+  void evaluate_all(std::size_t rows, const double* z, const double* x, const double* v,
+                    coupling::RowForce* force) const noexcept override {
+    for (std::size_t i = 0; i < rows; ++i) force[i] = Laws::evaluate(i, z[i], x[i], v[i]);
+  }
 
  private:
   // of a ball, in the stage before
@@ -161,7 +165,7 @@ void MechanicsSubsystem::reset() {
   levels_.reset();
   has_failed_ = false;
   failure_ = StepReport{};
-  for (Port& port : ports_) port.z = port.F = port.friction = port.stop = port.static_force = 0;
+  for (Port& port : ports_) port.z = port.F = port.friction = port.stop = 0;
   past_.clear();
   used_step_ = -1;
   partner_age_ = 0;
@@ -546,7 +550,6 @@ void MechanicsSubsystem::publish(coupling::OwnSample& own) noexcept {
   sample.W_kind = published.kind;
   condense_joints(published, sample);
   update_line_forces(sample);
-  find_static_forces(sample);
   modal_.read(model_, state_, workspace_, own.flexible);
   published_ = own;
 }
@@ -624,12 +627,13 @@ void MechanicsSubsystem::update_line_forces(coupling::MechanismSample& sample) n
   }
 }
 
-// line forces that would hold the ports where they are: W F = -a_free
-void MechanicsSubsystem::find_static_forces(const coupling::MechanismSample& sample) noexcept {
+// line forces that would hold the ports where they are: W F = -a_free; zero where there are none
+coupling::PortArray MechanicsSubsystem::static_forces() const noexcept {
+  const coupling::MechanismSample& sample = published_.mechanism;
   coupling::PortArray F;
   F.resize(ports_.size());
-  const bool is_regular = coupling::static_forces(sample.W.span(), sample.a_free.span(), F.span());
-  for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].static_force = is_regular ? F[i] : 0.0;
+  if (!coupling::static_forces(sample.W.span(), sample.a_free.span(), F.span())) std::fill(F.begin(), F.end(), 0.0);
+  return F;
 }
 
 // ---- parameters, hash, variables ------------------------------------------------------------------------------
@@ -686,11 +690,12 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
   slopes.resize(ports_.size());
   payload_slopes(heavier_, state_, reading_workspace_, port_ratios_, payload_,
                  payload_ > 0 ? mass_of(model_, payload_) : 0, slopes.span());
+  const coupling::PortArray static_force = static_forces();
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     values[k++] = published_.mechanism.F_line[i];
     values[k++] = ports_[i].friction;
     values[k++] = ports_[i].stop;
-    values[k++] = ports_[i].static_force;
+    values[k++] = static_force[i];
     values[k++] = slopes[i];
   }
   if (is_free_running_) values[k++] = static_cast<double>(partner_age_);

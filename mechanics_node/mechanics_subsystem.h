@@ -69,11 +69,10 @@ class MechanicsSubsystem final : public coupling::Subsystem {
     std::string name;
     double offset = 0, ratio = 1;  // x = offset + ratio * row coordinate
     coupling::LineForceLaw law;
-    double z = 0;             // pressure force, this side's copy, without its damping -D (v - v_ref) [N]
-    double F = 0;             // with it [N]
-    double friction = 0;      // [N]
-    double stop = 0;          // [N]
-    double static_force = 0;  // line force that would hold the mechanism where it is [N]
+    double z = 0;         // pressure force, this side's copy, without its damping -D (v - v_ref) [N]
+    double F = 0;         // with it [N]
+    double friction = 0;  // [N]
+    double stop = 0;      // [N]
   };
   class Laws;
   using PortPositions = coupling::PortArray;
@@ -105,7 +104,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] Rows rows_over(double h) noexcept;
   void condense_joints(const Rows& of, coupling::MechanismSample& sample) noexcept;
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
-  void find_static_forces(const coupling::MechanismSample& sample) noexcept;
+  [[nodiscard]] coupling::PortArray static_forces() const noexcept;
   void list_variables();
   [[nodiscard]] std::int32_t first_not_finite() const noexcept;
   [[nodiscard]] double bristle_of(std::size_t row) const noexcept {

@@ -7,8 +7,9 @@
 namespace slew::coupling {
 namespace {
 
-// enough for two digits of the largest eigenvalue; the figure is a warning level, not a result
-constexpr int kPowerIterations = 12;
+// S^16 on the way to its largest eigenvalue: two digits of it, as the share of a second one just below is lost slowest;
+// the figure is a warning level, not a result
+constexpr int kSquarings = 4;
 
 // N: a port that carries less is idle, and the rounding of its energies is no error of the coupling
 constexpr double kLeastForce = 1;
@@ -32,11 +33,13 @@ Indicator::Indicator(std::size_t ports, SimDuration communication_step)
           steps_per_bucket(kIndicatorWindow.ns / static_cast<std::int64_t>(kBuckets), communication_step)),
       alarm_after_steps_(std::max<std::int64_t>(1, kNetAlarmAfter.ns / communication_step.ns)),
       window_(ports),
+      others_(ports),
       steps_below_alarm_(ports, 0),
       defects_(ports) {}
 
 void Indicator::reset() noexcept {
   for (auto& buckets : window_) buckets.fill(Bucket{});
+  for (Bucket& others : others_) others = Bucket{};
   for (std::int64_t& steps : steps_below_alarm_) steps = 0;
   for (PortDefects& defects : defects_) defects = PortDefects{};
   steps_in_bucket_ = 0;
@@ -48,21 +51,26 @@ void Indicator::start_bucket() noexcept {
   if (steps_in_bucket_ == steps_per_bucket_) {
     steps_in_bucket_ = 0;
     current_ = (current_ + 1) % kBuckets;
-    for (auto& buckets : window_) buckets[current_] = Bucket{};
+    for (std::size_t port = 0; port < ports_; ++port) {
+      window_[port][current_] = Bucket{};
+      add_others(port);
+    }
   }
   ++steps_in_bucket_;
 }
 
+void Indicator::add_others(std::size_t port) noexcept {
+  Bucket sum;
+  for (std::size_t i = 0; i < kBuckets; ++i) {
+    if (i != current_) sum.add(window_[port][i]);
+  }
+  others_[port] = sum;
+}
+
 void Indicator::evaluate_window(std::size_t port) noexcept {
   // window sums and the scale of (5)
-  Bucket sum;
-  for (const Bucket& bucket : window_[port]) {
-    sum.residual += bucket.residual;
-    sum.net += bucket.net;
-    sum.work += bucket.work;
-    sum.force = std::max(sum.force, bucket.force);
-    sum.stiffness = std::max(sum.stiffness, bucket.stiffness);
-  }
+  Bucket sum = others_[port];
+  sum.add(window_[port][current_]);
   const double force = std::max(sum.force, kLeastForce);
   const double spring = sum.stiffness > 0 ? force * force / (2 * sum.stiffness) : 0.0;
   const double scale = std::max(sum.work, spring);
@@ -102,27 +110,49 @@ bool Indicator::creates_energy() const noexcept {
 
 namespace {
 
-// Largest Rayleigh quotient of S = diag(r) W diag(r) on the way of a power iteration from the unit vector `start`.
-double largest_eigenvalue_from(std::size_t start, const PortMatrix& W, const std::array<double, kMaxPorts>& r,
-                               std::size_t m) noexcept {
-  std::array<double, kMaxPorts> vector{}, image{};
-  vector[start] = 1;
-  double eigenvalue = 0;
-  for (int iteration = 0; iteration < kPowerIterations; ++iteration) {
-    double largest = 0, numerator = 0, denominator = 0;
-    for (std::size_t i = 0; i < m; ++i) {
+// m x m, row-major, on the stack of who needs it
+using Square = std::array<double, kMaxPorts * kMaxPorts>;
+
+// P = P^2 / trace(P^2) of a symmetric P >= 0; false when nothing is left.
+bool square(Square& P, std::size_t m) noexcept {
+  Square squared;
+  double trace = 0;
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
       double sum = 0;
-      for (std::size_t j = 0; j < m; ++j) sum += W[i * m + j] * r[j] * vector[j];
-      image[i] = r[i] * sum;
-      largest = std::max(largest, std::fabs(image[i]));
-      numerator += vector[i] * image[i];
-      denominator += vector[i] * vector[i];
+      for (std::size_t k = 0; k < m; ++k) sum += P[i * m + k] * P[j * m + k];
+      squared[i * m + j] = sum;
     }
-    if (!(largest > 0)) return eigenvalue;
-    eigenvalue = numerator / denominator;
-    for (std::size_t i = 0; i < m; ++i) vector[i] = image[i] / largest;
+    trace += squared[i * m + i];
   }
-  return eigenvalue;
+  if (!(trace > 0)) return false;
+  const double inverse = 1 / trace;
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) P[i * m + j] = P[j * m + i] = squared[i * m + j] * inverse;
+  }
+  return true;
+}
+
+// Of a symmetric S >= 0: the Rayleigh quotient of the longest column of S^16, that of its largest diagonal entry.
+double largest_eigenvalue(const Square& S, std::size_t m) noexcept {
+  if (m == 1) return S[0];
+  Square power = S;
+  for (int i = 0; i < kSquarings; ++i) {
+    if (!square(power, m)) return 0;
+  }
+  std::size_t longest = 0;
+  for (std::size_t i = 1; i < m; ++i) {
+    if (power[i * m + i] > power[longest * m + longest]) longest = i;
+  }
+  const double* const vector = &power[longest * m];
+  double numerator = 0, denominator = 0;
+  for (std::size_t i = 0; i < m; ++i) {
+    double image = 0;
+    for (std::size_t j = 0; j < m; ++j) image += S[i * m + j] * vector[j];
+    numerator += vector[i] * image;
+    denominator += vector[i] * vector[i];
+  }
+  return numerator / denominator;
 }
 
 }  // namespace
@@ -142,14 +172,16 @@ double omega_limit(Level level, double zeta) noexcept {
 }
 
 double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept {
-  // S = sqrt(K) W sqrt(K) has the eigenvalues of W K; from every port, since one start could lie in a part of the
-  // machine that does not touch the others
+  // S = sqrt(K) W sqrt(K) has the eigenvalues of W K; of all of S, since parts of the machine may not touch each other
   const std::size_t m = K.size();
-  std::array<double, kMaxPorts> root{};
+  if (m == 0) return 0;
+  std::array<double, kMaxPorts> root;
   for (std::size_t i = 0; i < m; ++i) root[i] = std::sqrt(std::max(0.0, K[i]));
-  double eigenvalue = 0;
-  for (std::size_t i = 0; i < m; ++i) eigenvalue = std::max(eigenvalue, largest_eigenvalue_from(i, W, root, m));
-  return H * std::sqrt(eigenvalue);
+  Square S;
+  for (std::size_t i = 0; i < m; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) S[i * m + j] = S[j * m + i] = root[i] * W[i * m + j] * root[j];
+  }
+  return H * std::sqrt(std::max(0.0, largest_eigenvalue(S, m)));
 }
 
 }  // namespace slew::coupling

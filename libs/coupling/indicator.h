@@ -63,10 +63,18 @@ class Indicator {
   // sums over one bucket of the window
   struct Bucket {
     double residual = 0, net = 0, work = 0, force = 0, stiffness = 0;
+    void add(const Bucket& other) noexcept {
+      residual += other.residual;
+      net += other.net;
+      work += other.work;
+      force = force < other.force ? other.force : force;
+      stiffness = stiffness < other.stiffness ? other.stiffness : stiffness;
+    }
   };
   static constexpr std::size_t kBuckets = 20;  // of whole steps; the oldest is dropped as a whole
 
   void start_bucket() noexcept;
+  void add_others(std::size_t port) noexcept;
   void evaluate_window(std::size_t port) noexcept;
 
   std::size_t ports_;
@@ -76,6 +84,7 @@ class Indicator {
   std::size_t current_ = 0;
   std::int64_t alarm_after_steps_;
   std::vector<std::array<Bucket, kBuckets>> window_;  // by port
+  std::vector<Bucket> others_;                        // by port, of the window without the current bucket
   std::vector<std::int64_t> steps_below_alarm_;       // by port
   std::vector<PortDefects> defects_;
   double omega_H_ = 0;
@@ -85,7 +94,7 @@ class Indicator {
 // ratio of the port. Level tlm has none: what it costs is a parasitic mass K H^2.
 [[nodiscard]] double omega_limit(Level level, double zeta) noexcept;
 
-// H sqrt(largest eigenvalue of W diag(K)) by power iteration on the similar symmetric matrix, ports <= kMaxPorts.
+// H sqrt(largest eigenvalue of W diag(K)) by powers of the similar symmetric matrix, ports <= kMaxPorts.
 [[nodiscard]] double coupling_frequency(const PortMatrix& W, const PortArray& K, double H) noexcept;
 
 }  // namespace slew::coupling

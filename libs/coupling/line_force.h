@@ -12,7 +12,7 @@
 // create energy), tables 16 to 18. Not covered: temperature, dwell-time dependence of the breakaway force.
 #pragma once
 
-#include <span>
+#include <cmath>
 #include <vector>
 
 #include "core/field.h"
@@ -58,12 +58,64 @@ class LineForceLaw {
   struct Friction {
     double force, d_pressure, d_speed;
   };
+  // Of the friction curve, from `start` to the next one's.
+  struct Segment {
+    double start, value, slope;  // m/s, 1, s/m
+  };
   [[nodiscard]] Coefficient curve_at(double speed) const noexcept;
   [[nodiscard]] Friction friction_at(double F, double v) const noexcept;
   [[nodiscard]] math::StopForce stop_at(double x, double v) const noexcept;
 
   LineForceDef def_;
-  std::vector<double> segment_slope_;  // of the curve, by segment
+  std::vector<Segment> segments_;  // the last one holds its value
+  double loss_;                    // 1 - eta
+  double seal_slope_;              // F_seal / v_seal [N s/m]
+  bool has_friction_;
 };
+
+// One node of the machine's stiffest iteration, several ten times a millisecond: all of it in line.
+
+inline LineForceLaw::Coefficient LineForceLaw::curve_at(double speed) const noexcept {
+  if (segments_.empty()) return {0, 0};
+  // a speed stays in its segment for long: the same few comparisons each time
+  const Segment* segment = segments_.data();
+  const Segment* const last = segment + segments_.size() - 1;
+  if (speed >= last->start) return {last->value, 0};
+  while (segment != last && speed >= segment[1].start) ++segment;
+  if (speed < segment->start) return {segment->value, 0};
+  return {segment->value + segment->slope * (speed - segment->start), segment->slope};
+}
+
+inline double LineForceLaw::friction_scale(double F) const noexcept {
+  return std::fabs(F) * loss_;
+}
+
+// (2) and its slopes
+inline LineForceLaw::Friction LineForceLaw::friction_at(double F, double v) const noexcept {
+  if (!has_friction_) return {0, 0, 0};
+  const double speed = std::fabs(v);
+  const double direction = v > 0 ? 1.0 : (v < 0 ? -1.0 : 0.0);
+  const Coefficient f = curve_at(speed);
+  const bool seal_slips = speed >= def_.seal_speed;
+  const double scale = friction_scale(F);
+  const double magnitude = scale * f.value + (seal_slips ? def_.seal_friction : seal_slope_ * speed);
+  return {.force = direction * magnitude + def_.viscous_friction * v,
+          .d_pressure = direction * std::copysign(loss_, F) * f.value,
+          .d_speed = scale * f.slope + (seal_slips ? 0.0 : seal_slope_) + def_.viscous_friction};
+}
+
+// (3) and its slopes
+inline math::StopForce LineForceLaw::stop_at(double x, double v) const noexcept {
+  return math::stop_force(x, v, def_.stroke_min, def_.stroke_max, def_.stop_stiffness, def_.stop_damping);
+}
+
+inline LineForce LineForceLaw::evaluate(double F, double x, double v) const noexcept {
+  const Friction friction = friction_at(F, v);
+  const math::StopForce stop = stop_at(x, v);
+  return {.force = F - friction.force + stop.force,
+          .d_pressure = 1 - friction.d_pressure,
+          .d_position = stop.d_x,
+          .d_speed = stop.d_v - friction.d_speed};
+}
 
 }  // namespace slew::coupling

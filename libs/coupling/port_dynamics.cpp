@@ -29,12 +29,15 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
   SLEW_CHECK(capacity <= kMaxRows);
   for (std::vector<double>* values :
-       {&x_,       &v_,        &z_,       &a_free_, &a_free_rate_, &x_base_, &v_base_,  &z_base_,
-        &x_stage_, &v_stage_,  &z_stage_, &f_,      &slope_,       &f_mean_, &f_slope_, &work_,
-        &impulse_, &residual_, &low_,     &high_,   &k_x_,         &k_v_,    &k_z_}) {
+       {&x_,    &v_,      &z_,      &a_free_,  &a_free_rate_, &weighted_a_, &shrink_,   &drive_,
+        &pull_, &x_base_, &v_base_, &z_base_,  &x_stage_,     &v_stage_,    &z_stage_,  &pressure_force_,
+        &f_,    &slope_,  &f_mean_, &f_slope_, &work_,        &impulse_,    &residual_, &low_,
+        &high_, &k_x_,    &k_v_,    &k_z_}) {
     values->assign(capacity, 0.0);
   }
+  law_.assign(capacity, RowForce{});
   W_.assign(capacity * capacity, 0.0);
+  weighted_W_.assign(capacity * capacity, 0.0);
   A_.assign(capacity * capacity, 0.0);
   partner_.assign(capacity, RowPartner{});
 }
@@ -44,16 +47,30 @@ void PortDynamics::set_rows(std::size_t rows) noexcept {
   rows_ = rows;
 }
 
+// what the stages of one solve have in common
+void PortDynamics::prepare(double weight) noexcept {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const RowPartner& p = partner_[i];
+    shrink_[i] = 1 / (1 + weight * p.lambda);
+    drive_[i] = weight * (p.F_dot + p.K * p.v_ref + p.lambda * p.F_n) * shrink_[i];
+    pull_[i] = weight * p.K * shrink_[i];
+  }
+  for (std::size_t i = 0; i < rows_ * rows_; ++i) weighted_W_[i] = weight * W_[i];
+}
+
 // stage values x, z from the stage speeds, then force f and its total slope with respect to the own speed
 void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
   for (std::size_t i = 0; i < rows_; ++i) {
     const RowPartner& p = partner_[i];
-    const double shrink = 1 / (1 + weight * p.lambda);
     x_stage_[i] = x_base_[i] + weight * v_stage_[i];
-    z_stage_[i] = (z_base_[i] + weight * (p.F_dot - p.K * (v_stage_[i] - p.v_ref) + p.lambda * p.F_n)) * shrink;
-    const RowForce law = laws.evaluate(i, z_stage_[i] - p.D * (v_stage_[i] - p.v_ref), x_stage_[i], v_stage_[i]);
+    z_stage_[i] = (shrink_[i] * z_base_[i] + drive_[i]) - pull_[i] * v_stage_[i];
+    pressure_force_[i] = z_stage_[i] - p.D * (v_stage_[i] - p.v_ref);
+  }
+  laws.evaluate_all(rows_, pressure_force_.data(), x_stage_.data(), v_stage_.data(), law_.data());
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const RowForce& law = law_[i];
     f_[i] = law.force;
-    slope_[i] = law.d_v + weight * law.d_x - law.d_z * (weight * p.K * shrink + p.D);
+    slope_[i] = law.d_v + weight * law.d_x - law.d_z * (pull_[i] + partner_[i].D);
   }
 }
 
@@ -77,15 +94,19 @@ double PortDynamics::bracketed(std::size_t row, double step) noexcept {
 // v = v_base + weight (a_free + time a_free' + W f(v)) for the stage speeds
 bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept {
   const std::size_t m = rows_;
+  largest_a_ = 0;
+  for (std::size_t i = 0; i < m; ++i) {
+    weighted_a_[i] = weight * (a_free_[i] + time * a_free_rate_[i]);
+    largest_a_ = std::max(largest_a_, std::fabs(weighted_a_[i]));
+  }
   for (int iteration = 0;; ++iteration) {
     evaluate_rows(weight, laws);
-    double scale = 0;
+    double scale = largest_a_;
     for (std::size_t i = 0; i < m; ++i) {
-      const double free = a_free_[i] + time * a_free_rate_[i];
-      double acceleration = free;
-      for (std::size_t j = 0; j < m; ++j) acceleration += W_[i * m + j] * f_[j];
-      residual_[i] = v_base_[i] + weight * acceleration - v_stage_[i];
-      scale = std::max({scale, std::fabs(v_stage_[i]), std::fabs(weight * free)});
+      double gain = weighted_a_[i];
+      for (std::size_t j = 0; j < m; ++j) gain += weighted_W_[i * m + j] * f_[j];
+      residual_[i] = v_base_[i] + gain - v_stage_[i];
+      scale = std::max(scale, std::fabs(v_stage_[i]));
     }
     const double largest = fixed_max_abs({residual_.data(), m});
     ++report.iterations;
@@ -93,9 +114,7 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
     bool is_over = has_converged || iteration == kMaxIterations || std::isnan(largest);
     if (!is_over) {
       for (std::size_t i = 0; i < m; ++i) {
-        for (std::size_t j = 0; j < m; ++j) {
-          A_[i * m + j] = (i == j ? 1.0 : 0.0) - weight * W_[i * m + j] * slope_[j];
-        }
+        for (std::size_t j = 0; j < m; ++j) A_[i * m + j] = (i == j ? 1.0 : 0.0) - weighted_W_[i * m + j] * slope_[j];
       }
       is_over = !math::solve_in_place(A_.data(), residual_.data(), m, 1);
     }
@@ -107,21 +126,24 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
       std::fill(low_.begin(), low_.end(), -kUnbounded);
       std::fill(high_.begin(), high_.end(), kUnbounded);
     }
+    if (iteration < kBracketedAfter) {
+      for (std::size_t i = 0; i < m; ++i) v_stage_[i] += residual_[i];
+      continue;
+    }
     std::size_t widest = 0;
     for (std::size_t i = 1; i < m; ++i) {
       if (std::fabs(residual_[i]) > std::fabs(residual_[widest])) widest = i;
     }
-    for (std::size_t i = 0; i < m; ++i) {
-      const bool is_bracketed = iteration >= kBracketedAfter && i == widest;
-      v_stage_[i] = is_bracketed ? bracketed(i, residual_[i]) : v_stage_[i] + residual_[i];
-    }
+    for (std::size_t i = 0; i < m; ++i)
+      v_stage_[i] = i == widest ? bracketed(i, residual_[i]) : v_stage_[i] + residual_[i];
   }
 }
 
 PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noexcept {
   PortStep report;
   const double delta = h / micro_steps;
-  const double weight = kGamma * delta;
+  const double weight = kGamma * delta, rate = 1 / weight;
+  prepare(weight);
   for (std::size_t i = 0; i < rows_; ++i) f_mean_[i] = f_slope_[i] = work_[i] = impulse_[i] = 0;
   const bool has_memory = laws.begin(weight);
   for (int step = 0; step < micro_steps; ++step) {
@@ -139,13 +161,12 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
       const double share = (stage == 0 ? 1 - kGamma : kGamma) * delta;
       for (std::size_t i = 0; i < rows_; ++i) {
         k_x_[i] = v_stage_[i];
-        k_v_[i] = (v_stage_[i] - v_base_[i]) / weight;
-        k_z_[i] = (z_stage_[i] - z_base_[i]) / weight;
+        k_v_[i] = (v_stage_[i] - v_base_[i]) * rate;
+        k_z_[i] = (z_stage_[i] - z_base_[i]) * rate;
         f_mean_[i] += share * f_[i];
         f_slope_[i] += share * (time - 0.5 * h) * f_[i];
-        const double pressure_force = z_stage_[i] - partner_[i].D * (v_stage_[i] - partner_[i].v_ref);
-        work_[i] += share * pressure_force * v_stage_[i];
-        impulse_[i] += share * pressure_force;
+        work_[i] += share * pressure_force_[i] * v_stage_[i];
+        impulse_[i] += share * pressure_force_[i];
       }
       if (!has_memory) continue;
       for (std::size_t i = 0; i < rows_; ++i) laws.carry(i, v_stage_[i], share);

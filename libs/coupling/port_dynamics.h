@@ -42,6 +42,11 @@ class RowLaws {
  public:
   virtual ~RowLaws() = default;
   [[nodiscard]] virtual RowForce evaluate(std::size_t row, double z, double x, double v) const noexcept = 0;
+  // Of the first `rows` rows at once.
+  virtual void evaluate_all(std::size_t rows, const double* z, const double* x, const double* v,
+                            RowForce* force) const noexcept {
+    for (std::size_t row = 0; row < rows; ++row) force[row] = evaluate(row, z[row], x[row], v[row]);
+  }
 
   // Laws that remember something (bristles of dry friction), which their owner keeps. begin(): from here on evaluate()
   // means the end of an interval h at its speed, begun with what is remembered; true when any row of this solve
@@ -85,6 +90,7 @@ class PortDynamics {
   [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }  // of z [N s]
 
  private:
+  void prepare(double weight) noexcept;
   bool solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
   double bracketed(std::size_t row, double step) noexcept;
@@ -93,12 +99,17 @@ class PortDynamics {
   std::size_t rows_;
   std::vector<double> x_, v_, z_, a_free_, a_free_rate_, W_;
   std::vector<RowPartner> partner_;
+  std::vector<double> weighted_W_, weighted_a_;      // weight W, the same in every stage; weight a_free of the stage
+  std::vector<double> shrink_, drive_, pull_;        // z of a stage = shrink z_base + drive - pull v, by (2)
   std::vector<double> x_base_, v_base_, z_base_;     // stage value = base + weight * slope
   std::vector<double> x_stage_, v_stage_, z_stage_;  // stage values
+  std::vector<double> pressure_force_;               // z with the feed-through
+  std::vector<RowForce> law_;
   std::vector<double> f_, slope_, f_mean_, f_slope_, work_, impulse_;
   std::vector<double> residual_, A_;
   std::vector<double> low_, high_;       // speeds of the stage between which the iteration's answer lies
   std::vector<double> k_x_, k_v_, k_z_;  // slopes of the first stage
+  double largest_a_ = 0;                 // of weighted_a_
 };
 
 }  // namespace slew::coupling

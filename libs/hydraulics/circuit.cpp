@@ -235,16 +235,20 @@ void Circuit::capacities(const double* y, double* C) const noexcept {
   for (std::size_t i = 0; i < volume_name_.size(); ++i) C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
 }
 
+// a line's flow in place of the piston's
+void Circuit::add_line_flows(const double* y, Rates& sums) const noexcept {
+  for (const LineChamber& line : lines_) {
+    if (line.is_line) sums.add_flow(line.volume, line.slope * y[line.speed] - line.inflow(y[line.volume]));
+  }
+}
+
 void Circuit::rates(const double* y, double* f) noexcept {
   std::fill(f, f + size_, 0.0);
   evaluate_ls(y);
   const CircuitView now = view(y);
   Rates sums(f);
   for (const HydraulicComponent* component : active_) component->add_rates(now, sums);
-  // a line's flow in place of the piston's
-  for (const LineChamber& line : lines_) {
-    if (line.is_line) sums.add_flow(line.volume, line.slope * y[line.speed] - line.inflow(y[line.volume]));
-  }
+  add_line_flows(y, sums);
   // (1), (2)
   for (std::size_t i = 0; i < volumes_.size(); ++i) f[i] = is_fixed_[i] ? 0 : f[i] / capacity(i, y).value;
   // (3)
@@ -277,45 +281,91 @@ void Circuit::stamp_flows(const double* y) noexcept {
   for (const HydraulicComponent* component : active_) component->add_jacobian(now, stamp);
 }
 
-double* Circuit::jacobian(const double* y, const double* f) noexcept {
-  stamp_flows(y);
+// Sums of the flows into f, their partial derivatives into jacobian_.
+void Circuit::evaluate_flows(const double* y, double* f) noexcept {
+  std::fill(f, f + size_, 0.0);
+  std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
+  evaluate_ls(y);
+  const CircuitView now = view(y);
+  Rates sums(f);
+  JacobianStamp stamp(jacobian_.data(), size_);
+  for (const LsSource& source : ls_order_) source.component->add_ls_jacobian(now, stamp);
+  for (const HydraulicComponent* component : active_) component->add_rates_and_jacobian(now, sums, stamp);
+  add_line_flows(y, sums);
+}
+
+void Circuit::stamp_lines() noexcept {
   JacobianStamp stamp(jacobian_.data(), size_);
   for (const LineChamber& line : lines_) {
     if (!line.is_line) continue;
     stamp.add(line.volume, line.speed, line.slope);
     stamp.add(line.volume, line.volume, -1 / line.state.Z);
   }
-  add_capacity_slopes(y, f);
+}
+
+double* Circuit::jacobian(const double* y, const double* f) noexcept {
+  stamp_flows(y);
+  stamp_lines();
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    to_pressure_rates(i, is_fixed_[i] ? Capacity{} : capacity(i, y), f[i], y);
+  }
   for (int j = 0; j < actuator_count(); ++j) jacobian_[at(position(j) * size_ + speed(j))] = 1;
   return jacobian_.data();
 }
 
-// Rows of flows become rows of pressure rates: d(Q/C) = dQ/C - p' dC/C.
-void Circuit::add_capacity_slopes(const double* y, const double* f) noexcept {
+double* Circuit::linearise(const double* y, double* f) noexcept {
+  evaluate_flows(y, f);
+  stamp_lines();
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
-    double* const row = &jacobian_[i * at(size_)];
-    if (is_fixed_[i]) {
-      std::fill(row, row + size_, 0.0);
-      continue;
-    }
-    const Capacity C = capacity(i, y);
-    const double inverse = 1 / C.value;
-    for (int j = 0; j < size_; ++j) row[j] *= inverse;
-    const double share = f[i] * inverse;
-    row[i] -= share * C.d_pressure;
-    for (std::size_t k = volumes_[i].begin; k < volumes_[i].end; ++k) {
-      const Piece& piece = pieces_[k];
-      if (piece.position < 0 || piece.is_closed(y)) continue;
-      row[piece.position] -= share * piece.lumped * piece.slope * (C.oil + piece.wall_at(y[i]).value);
-    }
+    const Capacity C = is_fixed_[i] ? Capacity{} : capacity(i, y);
+    f[i] = is_fixed_[i] ? 0 : f[i] / C.value;
+    to_pressure_rates(i, C, f[i], y);
+  }
+  for (int j = 0; j < actuator_count(); ++j) {
+    f[position(j)] = y[speed(j)];
+    jacobian_[at(position(j) * size_ + speed(j))] = 1;
+  }
+  return jacobian_.data();
+}
+
+// A row of flows becomes a row of pressure rates: d(Q/C) = dQ/C - p' dC/C.
+void Circuit::to_pressure_rates(std::size_t volume, const Capacity& C, double rate, const double* y) noexcept {
+  double* const row = &jacobian_[volume * at(size_)];
+  if (is_fixed_[volume]) {
+    std::fill(row, row + size_, 0.0);
+    return;
+  }
+  const double inverse = 1 / C.value;
+  for (int j = 0; j < size_; ++j) row[j] *= inverse;
+  const double share = rate * inverse;
+  row[volume] -= share * C.d_pressure;
+  for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
+    const Piece& piece = pieces_[k];
+    if (piece.position < 0 || piece.is_closed(y)) continue;
+    row[piece.position] -= share * piece.lumped * piece.slope * (C.oil + piece.wall_at(y[volume]).value);
   }
 }
 
 void Circuit::outflow_slopes(const double* y, double* slope) noexcept {
   stamp_flows(y);
+  read_outflow(y, slope);
+}
+
+// from the flows' slopes in jacobian_
+void Circuit::read_outflow(const double* y, double* slope) noexcept {
   for (int i = 0; i < volume_count(); ++i) slope[i] = -jacobian_[at(i * size_ + i)];
   const CircuitView now = view(y);
   for (const HydraulicComponent* component : active_) component->raise_outflow_slopes(now, slope);
+}
+
+void Circuit::rates_and_outflow(const double* y, double* f, double* slope, double* C) noexcept {
+  evaluate_flows(y, f);
+  read_outflow(y, slope);
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    C[i] = is_fixed_[i] ? 0 : capacity(i, y).value;
+    f[i] = is_fixed_[i] ? 0 : f[i] / C[i];
+  }
+  for (int j = 0; j < actuator_count(); ++j) f[position(j)] = y[speed(j)];
 }
 
 void Circuit::pressure_forces(const double* y, double* F) const noexcept {
@@ -343,7 +393,7 @@ int Circuit::first_cavitating(const double* y) const noexcept {
   return -1;
 }
 
-std::uint32_t Circuit::flags(const double* y) noexcept {
+std::uint32_t Circuit::flags(const double* y) const noexcept {
   std::uint32_t flags = first_cavitating(y) < 0 ? 0 : static_cast<std::uint32_t>(StepFlag::cavitating);
   for (const Piece& piece : pieces_) {
     if (piece.position >= 0 && piece.is_closed(y)) flags |= static_cast<std::uint32_t>(StepFlag::clamp_active);
@@ -354,7 +404,6 @@ std::uint32_t Circuit::flags(const double* y) noexcept {
     const bool is_in_stop = stop.end_stiffness > 0 && (x < stop.minimum_stroke || x > stop.maximum_stroke);
     if (is_in_stop) flags |= static_cast<std::uint32_t>(StepFlag::limit_hit);
   }
-  evaluate_ls(y);
   const CircuitView now = view(y);
   for (const HydraulicComponent* component : active_) flags |= component->flags(now);
   return flags;

@@ -205,14 +205,31 @@ void CircuitIntegrator::set_line(int actuator, bool is_line, double H) noexcept 
 
 void CircuitIntegrator::derivative(const double* y, double* f) noexcept {
   circuit_.rates(y, f);
-  circuit_.pressure_forces(y, F_.data());
-  motion_->accelerations(F_.data(), y + circuit_.position(0), y + circuit_.speed(0), f + circuit_.speed(0));
+  add_accelerations(y, f);
 }
 
 const double* CircuitIntegrator::jacobian(const double* y, const double* f) noexcept {
   double* const J = circuit_.jacobian(y, f);
-  if (m_ == 0) return J;
   circuit_.pressure_forces(y, F_.data());
+  stamp_accelerations(y, J);
+  return J;
+}
+
+const double* CircuitIntegrator::linearise(const double* y, double* f) noexcept {
+  double* const J = circuit_.linearise(y, f);
+  add_accelerations(y, f);
+  stamp_accelerations(y, J);
+  return J;
+}
+
+void CircuitIntegrator::add_accelerations(const double* y, double* f) noexcept {
+  circuit_.pressure_forces(y, F_.data());
+  motion_->accelerations(F_.data(), y + circuit_.position(0), y + circuit_.speed(0), f + circuit_.speed(0));
+}
+
+// Pre-condition: F_ are the forces at y.
+void CircuitIntegrator::stamp_accelerations(const double* y, double* J) noexcept {
+  if (m_ == 0) return;
   motion_->slopes(F_.data(), y + circuit_.position(0), y + circuit_.speed(0), da_dF_.data(), da_dx_.data(),
                   da_dv_.data());
   const int n = circuit_.state_count(), m = static_cast<int>(m_);
@@ -227,7 +244,6 @@ const double* CircuitIntegrator::jacobian(const double* y, const double* f) noex
       row[circuit_.speed(j)] = da_dv_[static_cast<std::size_t>(i * m + j)];
     }
   }
-  return J;
 }
 
 // (1); the slope at the end of a sub-step is taken when the next one starts.
@@ -299,7 +315,8 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
     std::copy(y_start_.begin(), y_start_.end(), y_.begin());
     open_quadrature_ = 0;
   }
-  derivative(y_.data(), f_.data());
+  circuit_.rates_and_outflow(y_.data(), f_.data(), outflow_.data(), C_.data());
+  add_accelerations(y_.data(), f_.data());
   close_quadrature(y_.data(), f_.data());
   for (double& value : pressure_integral_) value /= H;
   if (!has_failed_) circuit_.end_line_step(y_.data(), pressure_integral_);
@@ -327,14 +344,12 @@ void CircuitIntegrator::report_flags(StepReport& report) noexcept {
 }
 
 void CircuitIntegrator::refresh() noexcept {
-  circuit_.rates(y_.data(), f_.data());
+  circuit_.rates_and_outflow(y_.data(), f_.data(), outflow_.data(), C_.data());
   publish();
 }
 
-// (2), from y_ and its rates f_
+// (2), from y_, its rates f_, outflow_ and C_
 void CircuitIntegrator::publish() noexcept {
-  circuit_.outflow_slopes(y_.data(), outflow_.data());
-  circuit_.capacities(y_.data(), C_.data());
   for (std::size_t j = 0; j < m_; ++j) {
     const Actuator& actuator = circuit_.actuators()[j];
     const auto a = static_cast<std::size_t>(actuator.port_a), b = static_cast<std::size_t>(actuator.port_b);

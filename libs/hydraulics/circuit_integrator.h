@@ -96,7 +96,10 @@ class CircuitIntegrator final : private math::StiffSystem {
  private:
   void derivative(const double* y, double* f) noexcept override;
   const double* jacobian(const double* y, const double* f) noexcept override;
+  const double* linearise(const double* y, double* f) noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
+  void add_accelerations(const double* y, double* f) noexcept;
+  void stamp_accelerations(const double* y, double* J) noexcept;
   void publish() noexcept;
   void close_quadrature(const double* y, const double* f) noexcept;
   void choose_quasi_static();

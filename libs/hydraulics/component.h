@@ -107,6 +107,11 @@ class HydraulicComponent {
   virtual void declare_dependencies(DependencyList& dependencies) const = 0;
   virtual void add_rates(const CircuitView& view, Rates& rates) const noexcept = 0;
   virtual void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept = 0;
+  // Both at once, for laws whose flow and slopes share work; the same bits as one after the other.
+  virtual void add_rates_and_jacobian(const CircuitView& view, Rates& rates, JacobianStamp& jacobian) const noexcept {
+    add_rates(view, rates);
+    add_jacobian(view, jacobian);
+  }
 
   // Load-sensing pressure above tank and its derivatives, for components that have one; called in an order in which
   // every source comes before its consumers.
@@ -117,7 +122,7 @@ class HydraulicComponent {
 
   // Raises outflow_slope[volume] (-dQ/dp) to the steeper side where a unilateral element is about to switch.
   virtual void raise_outflow_slopes(const CircuitView&, double* /*outflow_slope*/) const noexcept {}
-  // StepFlag bits that hold now.
+  // StepFlag bits that hold now; load-sensing pressures are those of the last evaluation.
   [[nodiscard]] virtual std::uint32_t flags(const CircuitView&) const noexcept { return 0; }
 
   // Variables in a fixed order, names with the element's name in front; read() writes as many values and returns the

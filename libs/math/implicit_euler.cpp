@@ -58,9 +58,10 @@ ImplicitEuler::Newton ImplicitEuler::try_step(StiffSystem& system, const double*
   std::copy(y, y + size_, new_.begin());
   std::copy(f_.begin(), f_.end(), slope_.begin());
   for (int k = 0; k < kMostIterations; ++k) {
-    if (k > 0) system.derivative(new_.data(), slope_.data());
+    const double* const J =
+        k > 0 ? system.linearise(new_.data(), slope_.data()) : system.jacobian(new_.data(), slope_.data());
     for (std::size_t i = 0; i < size_; ++i) d_[i] = slope_[i] - mass_[i] * (c * (new_[i] - y[i]));
-    newton.is_finite = solve(system.jacobian(new_.data(), slope_.data()), c, report);
+    newton.is_finite = solve(J, c, report);
     newton.last = 0;
     for (std::size_t i = 0; i < size_; ++i) {
       new_[i] += d_[i];

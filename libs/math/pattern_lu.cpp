@@ -60,54 +60,56 @@ void PatternLu::choose_order(const SparsityPattern& pattern) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) filled[i * n + j] = a[order_[i] * n + order_[j]];
   }
-  list_operations(filled);
-  std::size_t slot = 0;
+  number_slots(filled);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
       if (!filled[i * n + j]) continue;
+      const Slot slot = slot_[i * n + j];
       if (pattern.has(order_[i], order_[j])) {
-        gather_.push_back({static_cast<std::uint32_t>(order_[i] * stride_ + order_[j]), static_cast<Slot>(slot)});
+        gather_.push_back({static_cast<std::uint32_t>(order_[i] * stride_ + order_[j]), slot});
+      } else {
+        fill_.push_back(slot);
       }
-      ++slot;
     }
   }
+  list_operations(filled);
+  slot_.clear();
+}
+
+void PatternLu::number_slots(const std::vector<char>& filled) {
+  const std::size_t n = size_;
+  slot_.assign(n * n, 0);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < n; ++k) slot_[k * n + k] = static_cast<Slot>(count++);
+  const auto number = [&](std::size_t i, std::size_t begin, std::size_t end, std::vector<Row>& rows,
+                          std::vector<Slot>& columns) {
+    const std::size_t before = columns.size();
+    for (std::size_t j = begin; j < end; ++j) {
+      if (!filled[i * n + j]) continue;
+      slot_[i * n + j] = static_cast<Slot>(count++);
+      columns.push_back(static_cast<Slot>(j));
+    }
+    if (columns.size() == before) return;
+    rows.push_back({static_cast<Slot>(i), static_cast<Slot>(columns.size() - before)});
+  };
+  for (std::size_t i = 0; i < n; ++i) number(i, 0, i, lower_row_, lower_column_);
+  for (std::size_t i = n; i-- > 0;) number(i, i + 1, n, upper_row_, upper_column_);
+  value_.assign(count, 0);
 }
 
 void PatternLu::list_operations(const std::vector<char>& filled) {
   const std::size_t n = size_;
-  // slots row by row
-  std::vector<Slot> slot(n * n, 0);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < n * n; ++i) {
-    if (filled[i]) slot[i] = static_cast<Slot>(count++);
-  }
-  value_.assign(count, 0);
   for (std::size_t k = 0; k < n; ++k) {
-    diagonal_.push_back(slot[k * n + k]);
-    std::uint16_t eliminated = 0;
+    const std::size_t eliminated = elimination_.size();
     for (std::size_t i = k + 1; i < n; ++i) {
       if (!filled[i * n + k]) continue;
       const std::size_t before = update_.size();
       for (std::size_t j = k + 1; j < n; ++j) {
-        if (filled[k * n + j]) update_.push_back({slot[i * n + j], slot[k * n + j]});
+        if (filled[k * n + j]) update_.push_back({slot_[i * n + j], slot_[k * n + j]});
       }
-      elimination_.push_back({slot[i * n + k], static_cast<Slot>(update_.size() - before)});
-      ++eliminated;
+      elimination_.push_back({slot_[i * n + k], static_cast<Slot>(update_.size() - before)});
     }
-    eliminations_.push_back(eliminated);
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    Row row{};
-    row.begin = static_cast<Slot>(term_.size());
-    for (std::size_t j = 0; j < i; ++j) {
-      if (filled[i * n + j]) term_.push_back({slot[i * n + j], static_cast<Slot>(j)});
-    }
-    row.diagonal = static_cast<Slot>(term_.size());
-    for (std::size_t j = i + 1; j < n; ++j) {
-      if (filled[i * n + j]) term_.push_back({slot[i * n + j], static_cast<Slot>(j)});
-    }
-    row.end = static_cast<Slot>(term_.size());
-    row_.push_back(row);
+    eliminations_.push_back(static_cast<Slot>(elimination_.size() - eliminated));
   }
 }
 
@@ -117,15 +119,15 @@ void PatternLu::set_mass(std::span<const double> mass) noexcept {
 
 bool PatternLu::factorise(const double* J, double c) noexcept {
   double* const a = value_.data();
-  for (double& value : value_) value = 0;
+  for (const Slot slot : fill_) a[slot] = 0;
   for (const Gather& g : gather_) a[g.slot] = -J[g.source];
-  for (std::size_t k = 0; k < size_; ++k) a[diagonal_[k]] += c * mass_[k];
+  for (std::size_t k = 0; k < size_; ++k) a[k] += c * mass_[k];
 
   const Elimination* entry = elimination_.data();
   const Update* update = update_.data();
   const double smallest = kSmallestPivot * c;
   for (std::size_t k = 0; k < size_; ++k) {
-    const double pivot = a[diagonal_[k]];
+    const double pivot = a[k];
     if (!(std::fabs(pivot) >= smallest) || !std::isfinite(pivot)) return false;
     const double inverse = 1 / pivot;
     inverse_pivot_[k] = inverse;
@@ -137,23 +139,33 @@ bool PatternLu::factorise(const double* J, double c) noexcept {
       }
     }
   }
+  // rows of U over their pivots
+  double* upper = a + size_ + lower_column_.size();
+  for (const Row& row : upper_row_) {
+    const double inverse = inverse_pivot_[row.pivot];
+    for (const double* const end = upper + row.entries; upper != end; ++upper) *upper *= inverse;
+  }
   return true;
+}
+
+// Unknowns of a factor with a diagonal of ones, in work_.
+void PatternLu::substitute(const std::vector<Row>& rows, const Slot* column, const double* entry) noexcept {
+  double* const w = work_.data();
+  for (const Row& row : rows) {
+    double sum = w[row.pivot];
+    for (const double* const end = entry + row.entries; entry != end; ++entry, ++column) sum -= *entry * w[*column];
+    w[row.pivot] = sum;
+  }
 }
 
 void PatternLu::solve(double* b) noexcept {
   double* const w = work_.data();
-  const double* const a = value_.data();
-  for (std::size_t i = 0; i < size_; ++i) {
-    double sum = b[order_[i]];
-    for (Slot t = row_[i].begin; t != row_[i].diagonal; ++t) sum -= a[term_[t].entry] * w[term_[t].column];
-    w[i] = sum;
-  }
-  for (std::size_t i = size_; i-- > 0;) {
-    double sum = w[i];
-    for (Slot t = row_[i].diagonal; t != row_[i].end; ++t) sum -= a[term_[t].entry] * w[term_[t].column];
-    w[i] = sum * inverse_pivot_[i];
-    b[order_[i]] = w[i];
-  }
+  const double* const lower = value_.data() + size_;
+  for (std::size_t k = 0; k < size_; ++k) w[k] = b[order_[k]];
+  substitute(lower_row_, lower_column_.data(), lower);
+  for (std::size_t k = 0; k < size_; ++k) w[k] *= inverse_pivot_[k];
+  substitute(upper_row_, upper_column_.data(), lower + lower_column_.size());
+  for (std::size_t k = 0; k < size_; ++k) b[order_[k]] = w[k];
 }
 
 }  // namespace slew::math

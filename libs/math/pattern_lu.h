@@ -2,9 +2,10 @@
 // chosen once.
 //
 // The order is the greedy Markowitz order (fewest operations next, the lowest index of equals); the elimination becomes
-// flat lists of slots, so a factorisation is a few hundred multiply-adds without index search. Diagonal pivots are safe
-// for the matrices of stiff integrators as long as they stay near or above c; factorise() says when one does not,
-// and the caller then pivots densely (DenseLu).
+// flat lists of slots, so a factorisation is a few hundred multiply-adds without index search. Factors are stored
+// column by column: a solution subtracts each known unknown from the rows that need it, which do not wait for one
+// another. Diagonal pivots are safe for the matrices of stiff integrators as long as they stay near or above c;
+// factorise() says when one does not, and the caller then pivots densely (DenseLu).
 #pragma once
 
 #include <cstddef>
@@ -47,35 +48,37 @@ class PatternLu {
     std::uint32_t source;  // in J
     Slot slot;
   };
-  struct Elimination {  // of one entry (i, k) below the diagonal
+  struct Elimination {  // of one entry (i, k) of L
     Slot entry;
     Slot updates;  // how many of update_ follow
   };
   struct Update {
     Slot target, source;
   };
-  struct Term {
-    Slot entry, column;
-  };
+  // A row of a factor with entries beside the diagonal.
   struct Row {
-    Slot begin, diagonal, end;  // in term_: [begin, diagonal) of L, [diagonal, end) of U without the diagonal
+    Slot pivot;
+    Slot entries;
   };
 
   void choose_order(const SparsityPattern& pattern);
+  void number_slots(const std::vector<char>& filled);
   void list_operations(const std::vector<char>& filled);
+  void substitute(const std::vector<Row>& rows, const Slot* column, const double* entry) noexcept;
 
   std::size_t size_;
   std::size_t stride_;
   std::vector<std::size_t> order_;  // order_[k]: index eliminated k-th
+  std::vector<Slot> slot_;          // of entry (i, k) in elimination order, while the lists are made
   std::vector<Gather> gather_;
-  std::vector<Slot> diagonal_;               // slot of pivot k
-  std::vector<std::uint16_t> eliminations_;  // how many of elimination_ belong to pivot k
+  std::vector<Slot> fill_;          // slots that only the elimination fills
+  std::vector<Slot> eliminations_;  // how many of elimination_ belong to pivot k
   std::vector<Elimination> elimination_;
   std::vector<Update> update_;
-  std::vector<Row> row_;
-  std::vector<Term> term_;
-  std::vector<double> mass_;  // by pivot
-  std::vector<double> value_;
+  std::vector<Row> lower_row_, upper_row_;         // ascending; descending
+  std::vector<Slot> lower_column_, upper_column_;  // of each entry, row by row
+  std::vector<double> mass_;                       // by pivot
+  std::vector<double> value_;                      // diagonal | L by rows ascending | U by rows descending
   std::vector<double> inverse_pivot_;
   std::vector<double> work_;
 };

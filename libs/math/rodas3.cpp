@@ -149,10 +149,7 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     // two equal steps rather than a long and a short one
     const bool is_last = h >= rest * (1 - kStretch);
     const double used = is_last ? rest : std::min(h, std::max(0.5 * rest, options_.minimum_step));
-    if (J == nullptr) {
-      system.derivative(y.data(), f_.data());
-      J = system.jacobian(y.data(), f_.data());
-    }
+    if (J == nullptr) J = system.linearise(y.data(), f_.data());
     const bool is_solvable = factorise(J, 1 / (used * kGamma), report);
     const double error = is_solvable ? try_step(system, y.data(), used) : kInfinity;
     const double factor = std::clamp(kSafety / std::cbrt(std::max(error, 1e-12)), kShrink, kGrow);

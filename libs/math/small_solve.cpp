@@ -23,6 +23,7 @@ bool solve_in_place(double* A, double* B, std::size_t n, std::size_t columns) no
     if (pivot != k) swap_rows(A, B, n, columns, k, pivot);
     if (A[k * n + k] == 0 || !std::isfinite(A[k * n + k])) return false;
     const double inverse = 1 / A[k * n + k];
+    A[k * n + k] = inverse;
     for (std::size_t i = k + 1; i < n; ++i) {
       const double factor = A[i * n + k] * inverse;
       if (factor == 0) continue;
@@ -34,7 +35,7 @@ bool solve_in_place(double* A, double* B, std::size_t n, std::size_t columns) no
     for (std::size_t column = 0; column < columns; ++column) {
       double sum = B[k * columns + column];
       for (std::size_t j = k + 1; j < n; ++j) sum -= A[k * n + j] * B[j * columns + column];
-      B[k * columns + column] = sum / A[k * n + k];
+      B[k * columns + column] = sum * A[k * n + k];
     }
   }
   return true;

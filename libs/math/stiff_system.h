@@ -23,6 +23,11 @@ class StiffSystem {
   virtual void derivative(const double* y, double* f) noexcept = 0;
   // J = df/dy at y, f = f(y) given; row-major with the stride stated to the integrator. Valid until the next call.
   virtual const double* jacobian(const double* y, const double* f) noexcept = 0;
+  // Both at once, for a system that shares work between them; the same bits as one after the other.
+  virtual const double* linearise(const double* y, double* f) noexcept {
+    derivative(y, f);
+    return jacobian(y, f);
+  }
   // A sub-step from y_before (derivative f_before) to y was accepted; may move y back into its bounds.
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
 };

@@ -86,6 +86,7 @@ double bristle_rate_part(const JointLaw& law, double v, double s, double z) noex
 }
 
 JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
+  if (law.coulomb == 0) return without_dry_friction(law, x, v);
   JointForce result;
   const double t = std::tanh(v / law.friction_speed);
   result.force = -law.coulomb * t - law.viscous * v;

@@ -29,12 +29,39 @@ struct ReturnFlow {
   double Q, d_opening, d_drop;
 };
 
-[[nodiscard]] SupplyFlow supply(const L90Side& side, double opening, double drop, double load) noexcept;
-[[nodiscard]] ReturnFlow to_tank(const L90Side& side, double opening, double drop) noexcept;
-
 // Parts of to_tank(), over the drop: shock valve (>= 0), anti-cavitation valve (<= 0: into the port).
 [[nodiscard]] ValueSlope shock(const L90Side& side, double drop) noexcept;
 [[nodiscard]] ValueSlope anti_cavitation(const L90Side& side, double drop) noexcept;
+
+inline constexpr double kLeakWidth = 1e4;  // Pa, smoothing of the leak behind the lock-hold
+
+// (2) to (4), of an open edge with drop > 0, without the leak.
+[[nodiscard]] SupplyFlow metered(const L90Side& side, double opening, double drop, double load) noexcept;
+
+[[nodiscard]] inline SupplyFlow supply(const L90Side& side, double opening, double drop, double load) noexcept {
+  // leak past the closed edge, out of P only: the lock-hold lies before it
+  const ValueSlope forward = ramp(drop, kLeakWidth);
+  const double leak = side.G_leak * forward.value, d_leak = side.G_leak * forward.slope;
+  if (opening <= 0 || drop <= 0) return {leak, 0, d_leak, 0};
+  const SupplyFlow flow = metered(side, opening, drop, load);
+  return {leak + flow.Q, flow.d_opening, d_leak + flow.d_drop, flow.d_load};
+}
+
+[[nodiscard]] inline ReturnFlow to_tank(const L90Side& side, double opening, double drop) noexcept {
+  ReturnFlow flow{side.G_leak * drop, 0, side.G_leak};
+  if (drop > side.shock_setting || drop < -side.crack) {
+    const ValueSlope valve = drop > 0 ? shock(side, drop) : anti_cavitation(side, drop);
+    flow.Q += valve.value;
+    flow.d_drop += valve.slope;
+  }
+  if (opening > 0) {
+    const ValueSlope r = root(drop, side.transition);
+    flow.Q += opening * side.K_return * r.value;
+    flow.d_opening = side.K_return * r.value;
+    flow.d_drop += opening * side.K_return * r.slope;
+  }
+  return flow;
+}
 
 // By how much the slope of to_tank() grows on the steeper side of a switch closer than `margin`.
 [[nodiscard]] double steeper_return_slope(const L90Side& side, double drop, double margin) noexcept;

@@ -157,16 +157,22 @@ class L90lsValve final : public HydraulicComponent {
     jacobian.add(spool_, spool_, -rate_);
     const Openings x = openings(view);
     for (int s = kA; s < kSides; ++s) {
-      const StateIndex port = port_[s];
+      stamp_supply(jacobian, s, supply_flow(view, s, x.supply[s].value), x.supply[s].slope);
+      stamp_return(jacobian, s, return_flow(view, s, x.supply[1 - s].value), x.supply[1 - s].slope);
+    }
+  }
+
+  void add_rates_and_jacobian(const CircuitView& view, Rates& rates, JacobianStamp& jacobian) const noexcept override {
+    rates.set_rate(spool_, rate_ * (command(view) - view[spool_]));
+    jacobian.add(spool_, spool_, -rate_);
+    const Openings x = openings(view);
+    for (int s = kA; s < kSides; ++s) {
       const SupplyFlow in = supply_flow(view, s, x.supply[s].value);
-      jacobian.move(p_, port, spool_, in.d_opening * x.supply[s].slope);
-      jacobian.move(p_, port, p_, in.d_drop);
-      jacobian.move(p_, port, port, in.d_load - in.d_drop);
-      jacobian.move(p_, port, t_, -in.d_load);
       const ReturnFlow out = return_flow(view, s, x.supply[1 - s].value);
-      jacobian.move(port, t_, spool_, out.d_opening * x.supply[1 - s].slope);
-      jacobian.move(port, t_, port, out.d_drop);
-      jacobian.move(port, t_, t_, -out.d_drop);
+      rates.move(p_, port_[s], in.Q);
+      rates.move(port_[s], t_, out.Q);
+      stamp_supply(jacobian, s, in, x.supply[s].slope);
+      stamp_return(jacobian, s, out, x.supply[1 - s].slope);
     }
   }
 
@@ -174,7 +180,10 @@ class L90lsValve final : public HydraulicComponent {
   [[nodiscard]] double ls_pressure(const CircuitView& view) const noexcept override {
     const Openings x = openings(view);
     double ls = 0;
-    for (int s = kA; s < kSides; ++s) ls += ls_share(x.supply[s].value).value * sensed(view, s).value;
+    for (int s = kA; s < kSides; ++s) {
+      // a closed side is not connected
+      if (x.supply[s].value > 0) ls += ls_share(x.supply[s].value).value * sensed(view, s).value;
+    }
     return ls;
   }
   void declare_ls_dependencies(DependencyList& dependencies) const override {
@@ -184,6 +193,7 @@ class L90lsValve final : public HydraulicComponent {
     const StateIndex row = jacobian.ls_row(ls_);
     const Openings x = openings(view);
     for (int s = kA; s < kSides; ++s) {
+      if (!(x.supply[s].value > 0)) continue;
       const ValueSlope share = ls_share(x.supply[s].value), pressure = sensed(view, s);
       jacobian.add(row, port_[s], share.value * pressure.slope);
       jacobian.add(row, t_, -share.value * pressure.slope);
@@ -246,6 +256,19 @@ class L90lsValve final : public HydraulicComponent {
   }
   [[nodiscard]] SupplyFlow supply_flow(const CircuitView& view, int s, double opening) const noexcept {
     return supply(law_[s], opening, view[p_] - view[port_[s]], view[port_[s]] - view[t_]);
+  }
+  void stamp_supply(JacobianStamp& jacobian, int s, const SupplyFlow& in, double opening_slope) const noexcept {
+    const StateIndex port = port_[s];
+    jacobian.move(p_, port, spool_, in.d_opening * opening_slope);
+    jacobian.move(p_, port, p_, in.d_drop);
+    jacobian.move(p_, port, port, in.d_load - in.d_drop);
+    jacobian.move(p_, port, t_, -in.d_load);
+  }
+  void stamp_return(JacobianStamp& jacobian, int s, const ReturnFlow& out, double opening_slope) const noexcept {
+    const StateIndex port = port_[s];
+    jacobian.move(port, t_, spool_, out.d_opening * opening_slope);
+    jacobian.move(port, t_, port, out.d_drop);
+    jacobian.move(port, t_, t_, -out.d_drop);
   }
   [[nodiscard]] ReturnFlow return_flow(const CircuitView& view, int s, double opening) const noexcept {
     return to_tank(law_[s], opening, view[port_[s]] - view[t_]);

@@ -99,6 +99,7 @@ class ReliefValve final : public HydraulicComponent {
     return unit_clip((view[pilot_] - view[p_2_] - def_.setting_pressure) * per_pressure_, kClipWidth);
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
+    if (view[u_] == 0) return 0;
     return view[u_] * K_ * root(view[p_1_] - view[p_2_], transition_).value;
   }
 

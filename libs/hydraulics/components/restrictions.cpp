@@ -90,9 +90,12 @@ class Restriction final : public HydraulicComponent {
     rates.move(p_1_, p_2_, flow(view).value);
   }
   void add_jacobian(const CircuitView& view, JacobianStamp& jacobian) const noexcept override {
-    const double slope = flow(view).slope;
-    jacobian.move(p_1_, p_2_, p_1_, slope);
-    jacobian.move(p_1_, p_2_, p_2_, -slope);
+    stamp(jacobian, flow(view).slope);
+  }
+  void add_rates_and_jacobian(const CircuitView& view, Rates& rates, JacobianStamp& jacobian) const noexcept override {
+    const ValueSlope Q = flow(view);
+    rates.move(p_1_, p_2_, Q.value);
+    stamp(jacobian, Q.slope);
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("flow", Dimension::volume_flow));
@@ -105,6 +108,10 @@ class Restriction final : public HydraulicComponent {
   void apply_parameters() noexcept override { c_ = conductance(def_, oil_); }
 
  private:
+  void stamp(JacobianStamp& jacobian, double slope) const noexcept {
+    jacobian.move(p_1_, p_2_, p_1_, slope);
+    jacobian.move(p_1_, p_2_, p_2_, -slope);
+  }
   [[nodiscard]] ValueSlope flow(const CircuitView& view) const noexcept {
     const double drop = view[p_1_] - view[p_2_];
     const ValueSlope r = root(drop, transition_);
