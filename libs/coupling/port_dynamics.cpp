@@ -94,7 +94,8 @@ double PortDynamics::bracketed(std::size_t row, double step, double narrow) noex
     return next;
   }
   const double half = 0.5 * (high - low);
-  if (is_inside && (!std::isfinite(half) || std::fabs(step) <= 0.5 * last_step_[row])) {
+  // a step too short to move the speed lies on an edge
+  if (!std::isfinite(half) || next == v_stage_[row] || (is_inside && std::fabs(step) <= 0.5 * last_step_[row])) {
     last_step_[row] = std::fabs(step);
     return next;
   }
