@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "cli_support/failure.h"
 #include "coupling/static_forces.h"
+#include "scene/deep_starts.h"
 #include "scene/ports.h"
 
 namespace slew::hydraulic_node {
@@ -117,12 +119,37 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
         !coupling::static_forces(mechanism.W.span(), mechanism.a_free.span(), {F.data(), m_})) {
       return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
     }
+    if (scene_.hydraulics.start == hydraulics::StartState::equilibrium) {
+      if (Status status = check_pressures({F.data(), m_}); !status.is_ok()) return status;
+    }
   }
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
   apply_levels();
   integrator_->refresh();
   publish(sample.actuators, 0, false);
   return check_stability(partners.mechanism);
+}
+
+// A load that the circuit cannot hold at rest is refused: its pressures would not be those of this machine.
+Status HydraulicsSubsystem::check_pressures(std::span<const double> F) const {
+  const std::optional<hydraulics::StartDemand> demand = circuit_->demand_beyond_limits(F);
+  if (!demand) return Status::ok();
+  constexpr double kBar = 1e5, kKilo = 1e3;
+  const auto actuator = static_cast<std::size_t>(demand->actuator);
+  std::string limit = "no oil has a pressure below 0";
+  if (demand->pressure >= 0) {
+    limit = demand->valve.empty()
+                ? fmt::format("a chamber without a relief valve is taken to hold {:.0f} bar", demand->limit / kBar)
+                : fmt::format("{} lets its oil out from {:.4g} bar on", demand->valve, demand->limit / kBar);
+  }
+  const std::string contacts = scene::deep_starts(scene_);
+  return Status::error(
+      ExitCode::failed,
+      fmt::format("hydraulics.start: equilibrium asks for {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
+                  demand->pressure / kBar, circuit_->volume_name(demand->volume), F[actuator] / kKilo,
+                  port_names_[actuator], limit,
+                  contacts.empty() ? "Lighten the load or begin in another pose, or set hydraulics.start: table13"
+                                   : contacts + ". Move these bodies apart, or set hydraulics.start: table13"));
 }
 
 // An explicit solver beyond its limit at the very start is refused; later it is flagged.

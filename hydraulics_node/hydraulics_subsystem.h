@@ -98,6 +98,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   };
 
   void apply_levels() noexcept;
+  [[nodiscard]] Status check_pressures(std::span<const double> F) const;
   [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,

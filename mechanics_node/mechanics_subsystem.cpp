@@ -293,7 +293,8 @@ coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coup
     if (row_is_active_[row] != 0) active_.push_back(row);
   }
   const std::size_t rows = model_.rows.size();
-  const Rows of = has_long_substeps_ ? rows_over(h) : rows_now();
+  const bool takes_step = touches() || (has_long_substeps_ && is_soft_behind_ports_);
+  const Rows of = takes_step ? rows_over(h) : rows_now();
   dynamics_.set_rows(active_.size());
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const std::size_t row = active_[k];
@@ -303,6 +304,7 @@ coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coup
     dynamics_.a_free()[k] = ratio * of.a_free[row];
     // that over a sub-step is a mean already
     const bool is_mean = of.kind == coupling::MobilityKind::step;
+    if (is_mean) a_free_trends_.forget(row);
     dynamics_.a_free_rate()[k] = is_mean ? 0.0 : a_free_trends_.next(row, ratio * of.a_free[row]) / h;
     for (std::size_t j = 0; j < active_.size(); ++j) {
       dynamics_.W()[k * active_.size() + j] = ratio * of.W[row * rows + active_[j]] * ratio_of(active_[j]);
@@ -507,24 +509,33 @@ void MechanicsSubsystem::choose_mobility() {
   auto rows_of_step = std::make_unique<multibody::StepRows>(model_);
   evaluate();
   is_evaluated_ = false;
-  if (!rows_of_step->evaluate(model_, state_, workspace_, exchange_interval())) return;
+  is_soft_behind_ports_ = rows_of_step->evaluate(model_, state_, workspace_, exchange_interval()) &&
+                          differ(multibody::row_mobility(workspace_), rows_of_step->mobility());
+  if (is_soft_behind_ports_ || model_.contact != nullptr) step_rows_ = std::move(rows_of_step);
+}
+
+// Whether a port's mobility is worth the rows of the step.
+bool MechanicsSubsystem::differ(std::span<const double> W, std::span<const double> W_H) const noexcept {
   const std::size_t rows = model_.rows.size();
-  const std::span<const double> W = multibody::row_mobility(workspace_), W_H = rows_of_step->mobility();
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const double scale = std::sqrt(W[i * rows + i] * W[j * rows + j]);
-      if (!(std::fabs(W_H[i * rows + j] - W[i * rows + j]) > kWorthAStep * scale)) continue;
-      step_rows_ = std::move(rows_of_step);
-      return;
+      if (std::fabs(W_H[i * rows + j] - W[i * rows + j]) > kWorthAStep * scale) return true;
     }
   }
+  return false;
+}
+
+// Where something touches, its force at the instant is no free acceleration of a step: it lasts for a fraction of it.
+bool MechanicsSubsystem::touches() const noexcept {
+  return workspace_.contact != nullptr && workspace_.contact->force_count > 0;
 }
 
 MechanicsSubsystem::Rows MechanicsSubsystem::rows_now() const noexcept {
   return {multibody::row_free_accelerations(workspace_), multibody::row_mobility(workspace_)};
 }
 
-// Over an interval where that is worth it; where its matrix is singular, which W_kind shows, at the instant.
+// Where the matrix is singular, which W_kind shows, at the instant.
 MechanicsSubsystem::Rows MechanicsSubsystem::rows_over(double h) noexcept {
   if (step_rows_ == nullptr || !step_rows_->evaluate(model_, state_, workspace_, h)) return rows_now();
   return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
@@ -538,7 +549,8 @@ void MechanicsSubsystem::publish(coupling::OwnSample& own) noexcept {
   multibody::observe(model_, state_, workspace_);
   const std::size_t m = ports_.size();
   const std::size_t rows = model_.rows.size();
-  const Rows published = rows_over(exchange_interval());
+  const bool takes_step = is_soft_behind_ports_ || touches();
+  const Rows published = takes_step ? rows_over(exchange_interval()) : rows_now();
   for (std::size_t i = 0; i < m; ++i) {
     const double ratio = ports_[i].ratio;
     sample.x[i] = ports_[i].offset + ratio * workspace_.row_x[i];

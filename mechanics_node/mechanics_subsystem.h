@@ -100,6 +100,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
     std::span<const double> a_free, W;  // of all rows, on their own coordinates
     coupling::MobilityKind kind = coupling::MobilityKind::instant;
   };
+  [[nodiscard]] bool differ(std::span<const double> W, std::span<const double> W_H) const noexcept;
+  [[nodiscard]] bool touches() const noexcept;
   [[nodiscard]] Rows rows_now() const noexcept;
   [[nodiscard]] Rows rows_over(double h) noexcept;
   void condense_joints(const Rows& of, coupling::MechanismSample& sample) noexcept;
@@ -151,7 +153,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   std::vector<char> row_is_active_;
   std::vector<std::size_t> active_;                 // rows of the port problem, ascending
   coupling::Trends a_free_trends_;                  // by row, from sub-step to sub-step
-  std::unique_ptr<multibody::StepRows> step_rows_;  // none: the rows at the instant are published
+  std::unique_ptr<multibody::StepRows> step_rows_;  // none: the rows at the instant hold over any step
+  bool is_soft_behind_ports_ = false;               // they do not, whether anything touches or not
   std::unique_ptr<Laws> laws_;
   coupling::PortDynamics dynamics_;
   std::vector<double> force_mean_, force_slope_;  // by row, for the Runge-Kutta step

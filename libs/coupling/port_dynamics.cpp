@@ -14,11 +14,15 @@ namespace {
 // Alexander (1977), SIAM J. Numer. Anal. 14, 1006: gamma = 1 - 1/sqrt(2)
 constexpr double kGamma = 0.29289321881345247560;
 
-// a piecewise linear law needs one iteration per kink that is crossed; more means that the step is too long for it
-constexpr int kMaxIterations = 40;
+// A piecewise linear law needs one iteration per kink that is crossed. More are left for the halvings of two rows that
+// come to a jump at once.
+constexpr int kMaxIterations = 80;
 // from here on the speed with the widest step is kept between its last two values with steps to either side, which ends
 // the cycles that narrow steep parts of a law can cause, such as friction about rest
 constexpr int kBracketedAfter = 12;
+// A bracket that is this narrow, of the speed scale, holds a jump of its law, such as a stop's damping where it is
+// touched: no speed has a force that fits, so that the force is one between the two sides'.
+constexpr double kJumpWidth = 1e-9;
 // speeds are converged below this fraction of the speed scale: well under any physical resolution, above round-off
 constexpr double kRelativeTolerance = 1e-12;
 constexpr double kAbsoluteTolerance = 1e-15;
@@ -29,16 +33,17 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
   SLEW_CHECK(capacity <= kMaxRows);
   for (std::vector<double>* values :
-       {&x_,    &v_,      &z_,      &a_free_,  &a_free_rate_, &weighted_a_, &shrink_,   &drive_,
-        &pull_, &x_base_, &v_base_, &z_base_,  &x_stage_,     &v_stage_,    &z_stage_,  &pressure_force_,
-        &f_,    &slope_,  &f_mean_, &f_slope_, &work_,        &impulse_,    &residual_, &low_,
-        &high_, &k_x_,    &k_v_,    &k_z_}) {
+       {&x_,    &v_,      &z_,      &a_free_,    &a_free_rate_, &weighted_a_, &shrink_,   &drive_,
+        &pull_, &x_base_, &v_base_, &z_base_,    &x_stage_,     &v_stage_,    &z_stage_,  &pressure_force_,
+        &f_,    &slope_,  &f_mean_, &f_slope_,   &work_,        &impulse_,    &residual_, &low_,
+        &high_, &f_low_,  &f_high_, &last_step_, &k_x_,         &k_v_,        &k_z_}) {
     values->assign(capacity, 0.0);
   }
   law_.assign(capacity, RowForce{});
   W_.assign(capacity * capacity, 0.0);
   weighted_W_.assign(capacity * capacity, 0.0);
   A_.assign(capacity * capacity, 0.0);
+  is_at_jump_.assign(capacity, 0);
   partner_.assign(capacity, RowPartner{});
 }
 
@@ -71,24 +76,49 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
     const RowForce& law = law_[i];
     f_[i] = law.force;
     slope_[i] = law.d_v + weight * law.d_x - law.d_z * (pull_[i] + partner_[i].D);
+    if (is_at_jump_[i] != 0 && low_[i] <= v_stage_[i] && v_stage_[i] <= high_[i]) {
+      slope_[i] = (f_high_[i] - f_low_[i]) / (high_[i] - low_[i]);
+      f_[i] = f_low_[i] + slope_[i] * (v_stage_[i] - low_[i]);
+    }
   }
 }
 
-// the stage speed after a Newton step that must not leave the bracket; without one, or where it proves wrong because
-// other rows moved, half of the step
-double PortDynamics::bracketed(std::size_t row, double step) noexcept {
-  const double v = v_stage_[row];
-  double& low = low_[row];
-  double& high = high_[row];
-  (step > 0 ? low : high) = v;
-  if (low > high) {
-    low = -kUnbounded;
-    high = kUnbounded;
-    return v + 0.5 * step;
+void PortDynamics::forget_bracket(std::size_t row) noexcept {
+  low_[row] = -kUnbounded;
+  high_[row] = kUnbounded;
+  last_step_[row] = kUnbounded;
+  is_at_jump_[row] = 0;
+}
+
+// The answer lies beyond the present speed, to the side of the step. False where the bracket proves wrong because other
+// rows moved.
+bool PortDynamics::note_side(std::size_t row, double step) noexcept {
+  if (is_at_jump_[row] != 0) return true;
+  (step > 0 ? low_ : high_)[row] = v_stage_[row];
+  (step > 0 ? f_low_ : f_high_)[row] = f_[row];
+  if (low_[row] <= high_[row]) return true;
+  forget_bracket(row);
+  return false;
+}
+
+// The stage speed after a Newton step that must not leave the bracket and must be at most half as long as the one
+// before; the bracket is halved otherwise.
+double PortDynamics::bracketed(std::size_t row, double step, double narrow) noexcept {
+  const double low = low_[row], high = high_[row], next = v_stage_[row] + step;
+  const bool is_inside = low < next && next < high;
+  if (is_at_jump_[row] != 0) {
+    if (!is_inside) forget_bracket(row);
+    return next;
   }
-  const double next = v + step;
-  if (low < next && next < high) return next;
-  return 0.5 * (low + high);
+  const double half = 0.5 * (high - low);
+  // a step too short to move the speed lies on an edge
+  if (!std::isfinite(half) || next == v_stage_[row] || (is_inside && std::fabs(step) <= 0.5 * last_step_[row])) {
+    last_step_[row] = std::fabs(step);
+    return next;
+  }
+  is_at_jump_[row] = low < high && high - low <= narrow ? 1 : 0;
+  last_step_[row] = half;
+  return low + half;
 }
 
 // v = v_base + weight (a_free + time a_free' + W f(v)) for the stage speeds
@@ -96,6 +126,7 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
   const std::size_t m = rows_;
   largest_a_ = 0;
   for (std::size_t i = 0; i < m; ++i) {
+    forget_bracket(i);
     weighted_a_[i] = weight * (a_free_[i] + time * a_free_rate_[i]);
     largest_a_ = std::max(largest_a_, std::fabs(weighted_a_[i]));
   }
@@ -122,10 +153,6 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
       if (!(largest <= report.residual)) report.residual = largest;
       return has_converged;
     }
-    if (iteration == kBracketedAfter) {
-      std::fill(low_.begin(), low_.end(), -kUnbounded);
-      std::fill(high_.begin(), high_.end(), kUnbounded);
-    }
     if (iteration < kBracketedAfter) {
       for (std::size_t i = 0; i < m; ++i) v_stage_[i] += residual_[i];
       continue;
@@ -134,8 +161,15 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
     for (std::size_t i = 1; i < m; ++i) {
       if (std::fabs(residual_[i]) > std::fabs(residual_[widest])) widest = i;
     }
-    for (std::size_t i = 0; i < m; ++i)
-      v_stage_[i] = i == widest ? bracketed(i, residual_[i]) : v_stage_[i] + residual_[i];
+    for (std::size_t i = 0; i < m; ++i) {
+      const double step = residual_[i];
+      const bool is_known = note_side(i, step);
+      if (is_at_jump_[i] != 0 || (is_known && i == widest)) {
+        v_stage_[i] = bracketed(i, step, kJumpWidth * scale);
+      } else {
+        v_stage_[i] += i == widest ? 0.5 * step : step;
+      }
+    }
   }
 }
 

@@ -7,8 +7,9 @@
 //   z' = F_dot - K (v - v_ref) - lambda (z - F_n)                                                  (2)
 // (K = lambda = F_dot = 0 for rows without partner). (1), (2) are integrated with micro-steps of the L-stable,
 // stiffly accurate two-stage SDIRK method (Alexander 1977, gamma = 1 - 1/sqrt(2), order 2); each stage is a Newton
-// iteration on the m speeds. Friction slopes of 4e4 1/s and end stops are thus inside the implicit solve, while the
-// mechanism itself sees only the mean and the slope in time of f.
+// iteration on the m speeds; where a law jumps, as a stop's damping does when it is touched, and no speed fits, the
+// force is the one between its two sides that holds the speed at the jump. Friction slopes of 4e4 1/s and end stops are
+// thus inside the implicit solve, while the mechanism itself sees only the mean and the slope in time of f.
 #pragma once
 
 #include <cstddef>
@@ -93,7 +94,9 @@ class PortDynamics {
   void prepare(double weight) noexcept;
   bool solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
-  double bracketed(std::size_t row, double step) noexcept;
+  void forget_bracket(std::size_t row) noexcept;
+  bool note_side(std::size_t row, double step) noexcept;
+  double bracketed(std::size_t row, double step, double narrow) noexcept;
 
   std::size_t capacity_;
   std::size_t rows_;
@@ -108,6 +111,9 @@ class PortDynamics {
   std::vector<double> f_, slope_, f_mean_, f_slope_, work_, impulse_;
   std::vector<double> residual_, A_;
   std::vector<double> low_, high_;       // speeds of the stage between which the iteration's answer lies
+  std::vector<double> f_low_, f_high_;   // forces there
+  std::vector<double> last_step_;        // of the iteration, inside the bracket
+  std::vector<char> is_at_jump_;         // the bracket holds a jump
   std::vector<double> k_x_, k_v_, k_z_;  // slopes of the first stage
   double largest_a_ = 0;                 // of weighted_a_
 };

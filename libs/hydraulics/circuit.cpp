@@ -40,6 +40,7 @@ Circuit::Circuit(const HydraulicsDef& def)
   states_ = builder.states();
   control_name_ = builder.controls();
   supply_ = builder.supply();
+  reliefs_ = builder.reliefs();
   add_contents(builder);
 
   scale_.assign(at(volume_count()), def.pressure_scale);

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,6 +36,17 @@ struct LiveParameter {
   double* value = nullptr;
   std::size_t component = 0;
 };
+
+// What an equilibrium start asks of a volume that cannot hold it.
+struct StartDemand {
+  int volume = 0, actuator = 0;  // the actuator that asks
+  double pressure = 0;           // Pa absolute
+  double limit = 0;              // Pa absolute: what the volume can hold
+  std::string_view valve;        // that lets the oil out above it; empty: none does
+};
+
+// What a volume without a relief or shock valve of its own is taken to hold: hoses and cylinders burst.
+inline constexpr double kMostHeld = 1000e5;  // Pa absolute
 
 enum class ParameterResult { ok, unknown, out_of_range };
 
@@ -71,6 +83,9 @@ class Circuit {
   // Equilibrium: linear cylinders hold F with the rod side at the return pressure, slew cylinders around their mean
   // pressure; when a pressure would fall below 1 bar the pair is raised. Volumes of parallel cylinders take the mean.
   void start_in_equilibrium(std::span<const double> F, std::span<double> y) const;
+  // The volume whose pressure there is farthest beyond what it can hold: above the pressure at which the relief and
+  // shock valves on it are fully open, above kMostHeld without any, or below zero. None: all hold.
+  [[nodiscard]] std::optional<StartDemand> demand_beyond_limits(std::span<const double> F) const;
   void start_at_initial_pressures(std::span<double> y) const;
   // The start that the Def asks for.
   void start(std::span<const double> F, std::span<double> y) const;
@@ -169,6 +184,14 @@ class Circuit {
     std::size_t begin = 0, end = 0;  // in pieces_
   };
 
+  // Mean of the pressures that the actuators on a volume ask for, and how many do; absolute, of any size.
+  struct Asked {
+    double sum = 0;
+    int actuators = 0;
+    int last = 0;  // of them
+    [[nodiscard]] double pressure() const noexcept { return sum / actuators; }
+  };
+  [[nodiscard]] std::vector<Asked> asked_in_equilibrium(std::span<const double> F) const;
   void add_contents(const CircuitBuilder& builder);
   void order_ls_sources(const CircuitBuilder& builder);
   void declare_pattern();
@@ -202,6 +225,7 @@ class Circuit {
   std::vector<char> is_fixed_;
   std::vector<double> initial_pressure_;
   std::vector<StateIndex> supply_;
+  std::vector<Relief> reliefs_;
   StartState start_;
   double start_return_, start_slew_, start_pump_;
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hydraulics/component.h"
@@ -43,6 +44,13 @@ struct Actuator {
   StartRule start = StartRule::return_pressure;
 };
 
+// A valve that lets oil out of a volume whatever else is closed.
+struct Relief {
+  std::string valve;  // component
+  StateIndex volume = 0, outlet = 0;
+  double fully_open = 0;  // Pa above the outlet
+};
+
 struct ComponentState {
   double initial = 0;
   double scale = 1;  // typical size, for the error measure
@@ -66,6 +74,7 @@ class CircuitBuilder {
   [[nodiscard]] StateIndex speed(int actuator) const noexcept { return volume_count_ + actuator_count_ + actuator; }
   // The volume starts at the pump pressure in an equilibrium start.
   void mark_supply(StateIndex volume) { supply_.push_back(volume); }
+  void add_relief(Relief relief) { reliefs_.push_back(std::move(relief)); }
 
   // results, taken by the circuit
   [[nodiscard]] int state_count() const noexcept {
@@ -77,6 +86,7 @@ class CircuitBuilder {
   [[nodiscard]] const std::vector<std::string>& controls() const noexcept { return controls_; }
   [[nodiscard]] const std::vector<std::string>& ls_names() const noexcept { return ls_names_; }
   [[nodiscard]] const std::vector<StateIndex>& supply() const noexcept { return supply_; }
+  [[nodiscard]] const std::vector<Relief>& reliefs() const noexcept { return reliefs_; }
 
  private:
   const HydraulicsDef& def_;
@@ -87,6 +97,7 @@ class CircuitBuilder {
   std::vector<std::string> controls_;
   std::vector<std::string> ls_names_;
   std::vector<StateIndex> supply_;
+  std::vector<Relief> reliefs_;
 };
 
 }  // namespace slew::hydraulics

@@ -1,6 +1,7 @@
 // Start states of a circuit, and the volume-consistent motion of its pistons.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hydraulics/circuit.h"
 
@@ -40,14 +41,8 @@ void Circuit::start_at_initial_pressures(std::span<double> y) const {
   for (std::size_t k = 0; k < states_.size(); ++k) y[first + k] = states_[k].initial;
 }
 
-void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> y) const {
-  start_at_initial_pressures(y);
-  for (const StateIndex volume : supply_) {
-    if (!is_fixed(volume)) y[static_cast<std::size_t>(volume)] = start_pump_;
-  }
-  // volumes that several cylinders share take the mean of what each asks for
-  std::vector<double> sum(volume_name_.size(), 0);
-  std::vector<int> count(volume_name_.size(), 0);
+std::vector<Circuit::Asked> Circuit::asked_in_equilibrium(std::span<const double> F) const {
+  std::vector<Asked> asked(volume_name_.size());
   for (std::size_t j = 0; j < actuators_.size(); ++j) {
     const Actuator& actuator = actuators_[j];
     const std::size_t a = static_cast<std::size_t>(actuator.port_a), b = static_cast<std::size_t>(actuator.port_b);
@@ -56,12 +51,47 @@ void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> 
     // a chamber on a fixed volume keeps its pressure, the other one holds
     if (is_fixed_[b]) p.a = (F[j] + initial_pressure_[b] * actuator.area_b) / actuator.area_a;
     if (is_fixed_[a] && actuator.area_b > 0) p.b = (initial_pressure_[a] * actuator.area_a - F[j]) / actuator.area_b;
-    sum[a] += p.a, ++count[a];
-    sum[b] += p.b, ++count[b];
+    for (const auto& [volume, pressure] : {std::pair(a, p.a), std::pair(b, p.b)}) {
+      asked[volume].sum += pressure;
+      ++asked[volume].actuators;
+      asked[volume].last = static_cast<int>(j);
+    }
   }
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    if (count[i] > 0 && is_fixed_[i] == 0) y[i] = std::max(sum[i] / count[i], floor_);
+  return asked;
+}
+
+void Circuit::start_in_equilibrium(std::span<const double> F, std::span<double> y) const {
+  start_at_initial_pressures(y);
+  for (const StateIndex volume : supply_) {
+    if (!is_fixed(volume)) y[static_cast<std::size_t>(volume)] = start_pump_;
   }
+  // volumes that several cylinders share take the mean of what each asks for
+  const std::vector<Asked> asked = asked_in_equilibrium(F);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (asked[i].actuators > 0 && is_fixed_[i] == 0) y[i] = std::max(asked[i].pressure(), floor_);
+  }
+}
+
+std::optional<StartDemand> Circuit::demand_beyond_limits(std::span<const double> F) const {
+  std::optional<StartDemand> worst;
+  double farthest = 0;
+  const std::vector<Asked> asked = asked_in_equilibrium(F);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (asked[i].actuators == 0 || is_fixed_[i] != 0) continue;
+    StartDemand demand{static_cast<int>(i), asked[i].last, asked[i].pressure(), kMostHeld, {}};
+    for (const Relief& relief : reliefs_) {
+      if (relief.volume != static_cast<int>(i)) continue;
+      const double limit = initial_pressure_[static_cast<std::size_t>(relief.outlet)] + relief.fully_open;
+      if (limit < demand.limit) demand.limit = limit, demand.valve = relief.valve;
+    }
+    if (demand.pressure < 0) demand.limit = 0, demand.valve = {};
+    const double beyond = std::fabs(demand.pressure - demand.limit);
+    const bool is_held = demand.pressure >= 0 && demand.pressure <= demand.limit;
+    if (is_held || beyond <= farthest) continue;
+    farthest = beyond;
+    worst = demand;
+  }
+  return worst;
 }
 
 void Circuit::start(std::span<const double> F, std::span<double> y) const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "multibody/element_speeds.h"
 #include "multibody/model.h"
 #include "multibody/validate.h"
 #include "scene/assets.h"
@@ -15,6 +16,7 @@
 #include "scene/mesh_assets.h"
 #include "scene/mesh_inertia.h"
 #include "scene/names.h"
+#include "scene/parameters.h"
 #include "scene/place_map.h"
 #include "scene/ports.h"
 #include "scene/scene.h"
@@ -256,6 +258,9 @@ class SceneReader {
       if (lacks_flexible_files()) return;
       if (errors.empty()) multibody::validate(scene_.mechanics, errors);
       if (errors.empty()) check_motion_ends(errors);
+      if (errors.empty() && scene_.session.solution == Solution::split) {
+        multibody::check_element_speeds(scene_.mechanics, mechanics_substep(scene_.session, scene_.mechanics), errors);
+      }
       if (errors.empty()) {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);
         multibody::find_start_changes(scene_.mechanics, warnings);

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "multibody/element_speeds.h"
 #include "multibody/joint_axes.h"
 #include "multibody/model.h"
+#include "multibody/parameters.h"
 #include "scene/field_reader.h"
 #include "scene/sections.h"
 #include "scene/suggestion.h"
@@ -132,7 +134,15 @@ std::vector<ParameterInfo> parameters(const Scene& scene) {
   return all;
 }
 
+double mechanics_substep(const SessionDef& session, const multibody::MechanicsDef& mechanics) {
+  constexpr double kRounding = 1e-9;
+  return session.step / std::max(1.0, std::ceil(session.step / mechanics.max_substep * (1 - kRounding)));
+}
+
 ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.session), parameters_(parameters(scene)) {
+  if (scene.has_mechanics() && session_.solution == Solution::split) {
+    mechanics_ = std::make_shared<const multibody::MechanicsDef>(scene.mechanics);
+  }
   for (std::size_t i = 0; i < parameters_.size(); ++i) index_.emplace(parameters_[i].path, i);
   for (const ElementRef& element : everything(scene)) {
     for (const Field& field : element.fields) {
@@ -145,6 +155,24 @@ ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.sess
 const ParameterInfo* ParameterDirectory::find(std::string_view path) const {
   const auto found = index_.find(path);
   return found == index_.end() ? nullptr : &parameters_[found->second];
+}
+
+// Only for what makes the mechanism faster than the scene has it, which costs some hundred evaluations of it.
+std::string ParameterDirectory::obstacle_of_speed(const ParameterInfo& parameter, double value) const {
+  if (mechanics_ == nullptr) return {};
+  const multibody::Integrator rule = multibody::step_rule(*mechanics_).integrator;
+  if (!multibody::is_explicit(rule)) return {};
+  const bool is_mass = parameter.path.ends_with(".mass");
+  if (is_mass ? value >= parameter.value : value <= parameter.value) return {};
+  multibody::Model model = multibody::build_model(*mechanics_);
+  const std::optional<multibody::Parameter> found = multibody::find_parameter(model, parameter.path);
+  if (!found || !multibody::may_speed_up(found->kind)) return {};
+  multibody::set_parameter(model, *found, value);
+  const double h = mechanics_substep(session_, *mechanics_);
+  const std::optional<multibody::TooFast> fast = multibody::find_too_fast_element(model, rule, h);
+  if (!fast) return {};
+  const Problem problem = multibody::problem_of(*fast, rule, h);
+  return problem.path + ": " + problem.what + "; expected " + problem.expected;
 }
 
 Assignment ParameterDirectory::check(std::string_view path, double value, std::optional<SimDuration> over) const {
@@ -181,6 +209,9 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
     const std::string range = range_text(parameter->range, parameter->dimension);
     return refused(fmt::format("{}: {} is out of range; expected {}", name, with_unit(value, parameter->dimension),
                                range.empty() ? "a finite number" : range));
+  }
+  if (const std::string speed = obstacle_of_speed(*parameter, value); !speed.empty()) {
+    return refused(fmt::format("{}: {} is refused: {}", name, with_unit(value, parameter->dimension), speed));
   }
   Assignment assignment;
   assignment.path = name;

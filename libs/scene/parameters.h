@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +36,9 @@ struct ParameterInfo {
   std::string_view doc;
 };
 
+// Length of the mechanics' sub-steps [s].
+[[nodiscard]] double mechanics_substep(const SessionDef& session, const multibody::MechanicsDef& mechanics);
+
 // All parameters of a scene in canonical order. Triples give three, .x .y .z; texts and tables none.
 [[nodiscard]] std::vector<ParameterInfo> parameters(const Scene& scene);
 
@@ -56,7 +60,8 @@ class ParameterDirectory {
   [[nodiscard]] const ParameterInfo* find(std::string_view path) const;
 
   // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused when unknown (with a suggestion), not live, of a wrong
-  // dimension, out of range, or none of the choices.
+  // dimension, out of range, none of the choices, or a mass, spring or damper with which the mechanics' explicit
+  // integrator could not follow what it moves (multibody/element_speeds.h; at the start, the rest as the scene has it).
   [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {});
   // The same for a value that is already in SI, as it comes over the wire. over: the time that is asked for; without
   // one it is the parameter's own. A choice is made at once, or refused.
@@ -66,7 +71,10 @@ class ParameterDirectory {
   [[nodiscard]] Assignment parse_choice(const ParameterInfo& parameter, std::string_view name,
                                         std::optional<SimDuration> over) const;
 
+  [[nodiscard]] std::string obstacle_of_speed(const ParameterInfo& parameter, double value) const;
+
   SessionDef session_;
+  std::shared_ptr<const multibody::MechanicsDef> mechanics_;  // null: no bodies, or nobody integrates in sub-steps
   std::vector<ParameterInfo> parameters_;
   std::map<std::string, std::size_t, std::less<>> index_;
   std::map<std::string, std::string, std::less<>> not_numeric_;  // path of a field that is no parameter: its type

@@ -172,7 +172,11 @@ class ScriptReader {
     read_value(node, row, &change, path + ".value", context_);
     if (context_.report.size() > problems) return false;
     change.choice = parameter->choice_of(change.value);
-    return true;
+    // of a scene that is sound so far, whose mechanism can be built
+    if (context_.report.size() > 0 || parameter->is_choice()) return true;
+    const Status status = directory().check(change.set, change.value).status;
+    if (!status.is_ok()) complain(node.mark, path + ".value", {status.text, "", ""});
+    return status.is_ok();
   }
 
   const ParameterDirectory& directory() {

@@ -55,6 +55,8 @@ class DirectReliefValve final : public HydraulicComponent {
         transition_(builder.def().orifice_transition),
         root_2_rho_(std::sqrt(2 / builder.def().oil_density)) {
     apply_parameters();
+    const double lifted = def.spring_constant * def.maximum_lift / seat_area_;
+    builder.add_relief({.valve = def.name, .volume = p_1_, .outlet = p_2_, .fully_open = def.crack_pressure + lifted});
   }
   void declare_dependencies(DependencyList& dependencies) const override { dependencies.add_restriction(p_1_, p_2_); }
   void add_rates(const CircuitView& view, Rates& rates) const noexcept override {

@@ -133,6 +133,11 @@ class L90lsValve final : public HydraulicComponent {
         ls_(builder.ls_index(def.name)),
         transition_(builder.def().orifice_transition) {
     apply_parameters();
+    for (const Side side : {kA, kB}) {
+      const double setting = side == kA ? def.shock_pressure_a : def.shock_pressure_b;
+      builder.add_relief(
+          {.valve = def.name, .volume = port_[side], .outlet = t_, .fully_open = setting + def.shock_pressure_rise});
+    }
   }
 
   void declare_dependencies(DependencyList& d) const override {

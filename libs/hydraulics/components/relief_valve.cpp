@@ -53,6 +53,11 @@ class ReliefValve final : public HydraulicComponent {
         u_(builder.add_state({.initial = 0, .scale = 1})),
         transition_(builder.def().orifice_transition) {
     apply_parameters();
+    if (pilot_ != p_1_) return;
+    builder.add_relief({.valve = def.name,
+                        .volume = p_1_,
+                        .outlet = p_2_,
+                        .fully_open = def.setting_pressure + def.opening_pressure_rise});
   }
   void declare_dependencies(DependencyList& dependencies) const override {
     dependencies.add_restriction(p_1_, p_2_);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "multibody/dynamics.h"
+#include "multibody/element_speeds.h"
 #include "multibody/field_tables.h"
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
@@ -80,10 +81,6 @@ LongestStep longest_step(Integrator rule, double omega, double decay) {
   const double swing = (is_rk4 ? 2.828 : 2.0) / omega;
   const double fading = decay > 0 ? (is_rk4 ? 2.785 : 2.0) / decay : std::numeric_limits<double>::infinity();
   return {std::min(swing, fading), swing <= fading};
-}
-
-bool is_explicit(Integrator rule) {
-  return rule == Integrator::rk4 || rule == Integrator::semi_implicit_euler;
 }
 
 // Largest eigenvalue of M^-1 A, M^-1 that of the mechanism in the modal coordinates and A a matrix of each body, and

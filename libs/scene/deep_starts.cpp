@@ -1,0 +1,15 @@
+#include "scene/deep_starts.h"
+
+#include "multibody/validate.h"
+
+namespace slew::scene {
+
+std::string deep_starts(const Scene& scene) {
+  Problems found;
+  multibody::find_unlikely_contacts(scene.mechanics, found);
+  std::string text;
+  for (const Problem& one : found) text += (text.empty() ? "" : "; ") + one.path + ": " + one.what;
+  return text;
+}
+
+}  // namespace slew::scene
