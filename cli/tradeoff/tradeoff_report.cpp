@@ -146,7 +146,7 @@ svg{background:#fff;border:1px solid #ccc;width:100%;max-width:1000px;height:aut
 #tip{position:fixed;pointer-events:none;background:#222;color:#fff;padding:.5em .7em;border-radius:4px;font-size:13px;
  white-space:pre;display:none;z-index:2}
 table{border-collapse:collapse;font-size:13px;margin-top:1em}
-td,th{padding:.2em .6em;text-align:right;border-bottom:1px solid #ddd}
+td,th{padding:.2em .6em;text-align:right;border-bottom:1px solid #ddd;white-space:nowrap}
 td:nth-child(2),td:last-child,th:nth-child(2),th:last-child,td:first-child{text-align:left}
 th{cursor:pointer;position:sticky;top:0;background:#f4f4f4}
 tr.now{font-weight:bold}tr.best td:first-child{color:#0a6}tr.chosen{background:#fff3c4}tr.hot{background:#e8f1ff}
@@ -195,7 +195,7 @@ function draw(){const W=1000,H=560,L=80,R=20,T=30,B=60,svg=document.getElementBy
   c.onmousemove=e=>show(e,p.r,p.i);c.onmouseleave=()=>hide(p.i);
   c.onclick=()=>document.getElementById('row'+p.i).scrollIntoView({block:'center'});svg.append(c);
   if(p.i==0)svg.append(el('circle',{cx:px(p.x),cy:py(p.y),r:12,fill:'none',stroke:'#222','stroke-width':2,'pointer-events':'none'}),el('text',{x:px(p.x)+16,y:py(p.y)-10,'font-size':13,'font-weight':'bold'},'now'));
-  if(D.answer&&D.answer.row==p.i)svg.append(el('rect',{x:px(p.x)-14,y:py(p.y)-14,width:28,height:28,fill:'none',stroke:'#d90','stroke-width':2.5,'pointer-events':'none'}),el('text',{x:px(p.x)+18,y:py(p.y)+18,'font-size':13,'font-weight':'bold',fill:'#a60'},'answer'))}
+  if(D.answer&&D.answer.row==p.i)svg.append(el('rect',{x:px(p.x)-14,y:py(p.y)-14,width:28,height:28,fill:'none',stroke:'#d90','stroke-width':2.5,'pointer-events':'none'}),el('text',{x:px(p.x)-14,y:py(p.y)+29,'font-size':13,'font-weight':'bold',fill:'#a60'},'answer'))}
  const shown=groups.filter(g=>P.some(p=>(p.r.settings[path]||'as the scene')==g)),n=shown.length;
  shown.forEach((g,k)=>svg.append(el('circle',{cx:W-R-170,cy:T+14+k*18,r:5,fill:colours[groups.indexOf(g)%colours.length]}),el('text',{x:W-R-158,y:T+18+k*18,'font-size':13},path.split('.').pop()+' '+g)));
  svg.append(el('line',{x1:W-R-176,x2:W-R-164,y1:T+14+n*18,y2:T+14+n*18,stroke:'#0a6','stroke-width':2}),el('text',{x:W-R-158,y:T+18+n*18,'font-size':13},'Pareto front'))}
