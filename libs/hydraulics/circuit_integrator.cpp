@@ -157,8 +157,10 @@ bool CircuitIntegrator::make_consistent() noexcept {
       y_[row] += std::clamp(outflow_[i], -kLargestCorrection * size, kLargestCorrection * size);
       largest = std::max(largest, std::fabs(outflow_[i]) / size);
     }
-    was_clamped_ = circuit_.bound(y_.data()) || was_clamped_;
-    if (largest <= kConsistent * options_.relative_tolerance) return true;
+    const bool is_bound = circuit_.bound(y_.data());
+    if (largest > kConsistent * options_.relative_tolerance) continue;
+    was_clamped_ = was_clamped_ || is_bound;
+    return true;
   }
   return false;
 }
