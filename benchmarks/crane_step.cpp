@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "build_paths.h"
+#include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
@@ -171,7 +172,18 @@ void BM_Session(benchmark::State& state, Boom boom) {
                                    built.subsystem = hydraulic_node::make_hydraulics_subsystem(crane(boom));
                                    return Status::ok();
                                  });
-    node::Node* nodes[] = {&io, &mechanics, &hydraulics};
+    std::vector<node::Node*> nodes = {&io, &mechanics, &hydraulics};
+    std::unique_ptr<transport::InProcessEndpoint> flex_end;
+    std::unique_ptr<node::PhysicsNode> flex;
+    if (crane(boom).has_modes()) {
+      flex_end = endpoint("flex");
+      flex = std::make_unique<node::PhysicsNode>(wire::Role::flex, *flex_end,
+                                                 [boom](const wire::SessionDescription&, node::BuiltSubsystem& built) {
+                                                   built.subsystem = flexible::make_flex_subsystem(crane(boom));
+                                                   return Status::ok();
+                                                 });
+      nodes.push_back(flex.get());
+    }
     if (node::run_together(nodes, {}) != ExitCode::ok) state.SkipWithError("the session failed");
   }
   report(state, kSteps);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "cli_support/failure.h"
@@ -45,6 +46,12 @@ void ReducedMechanics::accelerations(const double* F, const double* x, const dou
     for (std::size_t j = 0; j < m; ++j) sum += W_[i * m + j] * line[j];
     a[i] = sum;
   }
+}
+
+double ReducedMechanics::time_to_rest(const double* v, const double* a, const double* j) const noexcept {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < laws_.size(); ++i) shortest = std::min(shortest, laws_[i].time_to_rest(v[i], a[i], j[i]));
+  return shortest;
 }
 
 void ReducedMechanics::slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,

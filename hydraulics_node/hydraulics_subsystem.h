@@ -43,6 +43,7 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   void accelerations(const double* F, const double* x, const double* v, double* a) const noexcept override;
   void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
               double* da_dv) const noexcept override;
+  [[nodiscard]] double time_to_rest(const double* v, const double* a, const double* j) const noexcept override;
   [[nodiscard]] const coupling::LineForceLaw& law(std::size_t port) const noexcept { return laws_[port]; }
 
  private:

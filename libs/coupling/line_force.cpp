@@ -1,6 +1,19 @@
 #include "coupling/line_force.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace slew::coupling {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+// Of a speed, before the edge: so far the extrapolation may be wrong, for what is tried must not lie behind the edge.
+constexpr double kMargin = 0.02;
+// of the edge's speed: behind it for sure, and not so far that the steep part has changed the speed by much on the way
+constexpr double kInside = 0.97;
+
+}  // namespace
 
 LineForceLaw::LineForceLaw(const LineForceDef& def)
     : def_(def),
@@ -14,6 +27,24 @@ LineForceLaw::LineForceLaw(const LineForceDef& def)
     const double slope = is_last ? 0 : (curve[i + 1][1] - curve[i][1]) / (curve[i + 1][0] - curve[i][0]);
     segments_.push_back({curve[i][0], curve[i][1], slope});
   }
+  if (curve.size() > 1 && curve[0][0] == 0 && curve[0][1] == 0 && loss_ > 0) curve_edge_ = curve[1][0];
+  if (def_.seal_friction > 0) seal_edge_ = def_.seal_speed;
+}
+
+double LineForceLaw::time_to_rest(double v, double a, double j) const noexcept {
+  if (!(v * a < 0)) return kNever;
+  const double speed = std::fabs(v);
+  double edge = 0;
+  for (const double next : {curve_edge_, seal_edge_}) {
+    if (speed > next) edge = std::max(edge, next);
+  }
+  if (edge == 0) return kNever;
+  const double margin = kMargin * speed;
+  const double way = speed - edge > 2 * margin ? speed - edge - margin : speed - kInside * edge;
+  // way = b t - c t^2/2, the earlier time
+  const double b = std::fabs(a), c = a > 0 ? -j : j;
+  const double root = b * b - 2 * c * way;
+  return root >= 0 ? 2 * way / (b + std::sqrt(root)) : kNever;
 }
 
 double LineForceLaw::friction(double F, double v) const noexcept {

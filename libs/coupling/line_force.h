@@ -47,7 +47,11 @@ class LineForceLaw {
   [[nodiscard]] LineForce evaluate(double F, double x, double v) const noexcept;
   [[nodiscard]] double friction(double F, double v) const noexcept;    // F_mu of (2) [N]
   [[nodiscard]] double stop_force(double x, double v) const noexcept;  // F_stop of (3) [N]
-  [[nodiscard]] double friction_scale(double F) const noexcept;        // |F| (1 - eta) [N]
+  // Time until a falling speed v with the acceleration a and its rate j [m/s3] is just before the edge of the steep
+  // part of the friction about rest, or just behind it for a speed that is there [s]; infinite where it does not get
+  // there or where there is no such part.
+  [[nodiscard]] double time_to_rest(double v, double a, double j) const noexcept;
+  [[nodiscard]] double friction_scale(double F) const noexcept;  // |F| (1 - eta) [N]
   [[nodiscard]] bool touches_stop(double x) const noexcept { return x < def_.stroke_min || x > def_.stroke_max; }
   [[nodiscard]] const LineForceDef& def() const noexcept { return def_; }
 
@@ -70,6 +74,8 @@ class LineForceLaw {
   std::vector<Segment> segments_;  // the last one holds its value
   double loss_;                    // 1 - eta
   double seal_slope_;              // F_seal / v_seal [N s/m]
+  double curve_edge_ = 0;          // speeds below which the curve and the seal go to zero [m/s]; 0: none
+  double seal_edge_ = 0;
   bool has_friction_;
 };
 

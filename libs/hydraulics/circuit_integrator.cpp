@@ -70,6 +70,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
       F_(m_),
       F_dot_(m_),
       F_mean_(m_),
+      jerk_(m_),
       da_dF_(m_ * m_),
       da_dx_(m_ * m_),
       da_dv_(m_ * m_),
@@ -222,6 +223,13 @@ const double* CircuitIntegrator::linearise(const double* y, double* f) noexcept 
   add_accelerations(y, f);
   stamp_accelerations(y, J);
   return J;
+}
+
+// y'' = J y'
+double CircuitIntegrator::time_to_bend(const double* y, const double* f, const double* J) noexcept {
+  const std::size_t n = y_.size(), first = static_cast<std::size_t>(circuit_.speed(0));
+  for (std::size_t j = 0; j < m_; ++j) jerk_[j] = fixed_dot({J + (first + j) * n, n}, {f, n});
+  return motion_->time_to_rest(y + first, f + first, jerk_.data());
 }
 
 void CircuitIntegrator::add_accelerations(const double* y, double* f) noexcept {

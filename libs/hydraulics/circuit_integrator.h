@@ -97,6 +97,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   void derivative(const double* y, double* f) noexcept override;
   const double* jacobian(const double* y, const double* f) noexcept override;
   const double* linearise(const double* y, double* f) noexcept override;
+  [[nodiscard]] double time_to_bend(const double* y, const double* f, const double* J) noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
   void add_accelerations(const double* y, double* f) noexcept;
   void stamp_accelerations(const double* y, double* J) noexcept;
@@ -113,7 +114,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   const PistonMotion* motion_ = nullptr;  // during step()
   std::size_t m_;
   std::vector<double> y_, y_start_, f_;
-  std::vector<double> F_, F_dot_, F_mean_, da_dF_, da_dx_, da_dv_, C_, outflow_;
+  std::vector<double> F_, F_dot_, F_mean_, jerk_, da_dF_, da_dx_, da_dv_, C_, outflow_;
   std::vector<double> pressure_integral_;  // Pa s, by line
   std::vector<ActuatorLinearisation> published_;
   double open_quadrature_ = 0;  // h^2/12 of the last sub-step, whose end slope is not known yet

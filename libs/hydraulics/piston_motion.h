@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 namespace slew::hydraulics {
 
@@ -18,6 +19,12 @@ class PistonMotion {
   // da/dF [1/kg], da/dx [1/s2], da/dv [1/s]; every element is written.
   virtual void slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
                       double* da_dv) const noexcept = 0;
+  // Time to the edge of the steep part of a piston's friction about rest, from speeds v, accelerations a and their
+  // rates j [m/s3]: to just before it, from there to just behind it [s].
+  [[nodiscard]] virtual double time_to_rest(const double* /*v*/, const double* /*a*/,
+                                            const double* /*j*/) const noexcept {
+    return std::numeric_limits<double>::infinity();
+  }
 };
 
 // Pistons keep the speed they have: test rigs.

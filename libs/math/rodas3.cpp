@@ -19,6 +19,21 @@ constexpr double kFirstFraction = 0.1;  // of the interval, first step ever
 constexpr double kStretch = 1e-9;       // relative: a rest this small is taken with the step before it
 constexpr int kUncheckedSteps = 10;     // for the rest of an interval once the budget is used up
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLowestOrder = 0.1;  // that two rejections may show
+
+// A step that was not accepted.
+struct Rejected {
+  double h = 0, error = 0;  // s; 0: none
+};
+
+// Of a second rejection: a very stiff transient lets the error fall far slower than h^3, by the order k that both show
+// (Gustafsson 1994), and the next size is h err^(-1/k).
+double shorter(const Rejected& before, const Rejected& now, double factor) noexcept {
+  if (!(before.h > now.h) || !(before.error < kInfinity) || !(now.error < kInfinity)) return factor;
+  const double order = std::log(before.error / now.error) / std::log(before.h / now.h);
+  if (order >= 3) return factor;
+  return std::clamp(kSafety * std::pow(now.error, -1 / std::max(order, kLowestOrder)), kShrink, factor);
+}
 
 }  // namespace
 
@@ -140,6 +155,7 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
   double h = step_size_ > 0 ? step_size_ : kFirstFraction * duration;
   double rest = duration;
   const double* J = nullptr;
+  Rejected rejected;
   while (rest > 0) {
     // budget used up: a few more steps, whatever their error
     if (!report.is_over_budget && report.accepted + report.rejected >= options_.substep_budget) {
@@ -147,9 +163,12 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
       h = std::max(options_.minimum_step, rest / kUncheckedSteps);
     }
     // two equal steps rather than a long and a short one
-    const bool is_last = h >= rest * (1 - kStretch);
-    const double used = is_last ? rest : std::min(h, std::max(0.5 * rest, options_.minimum_step));
+    const bool reaches_end = h >= rest * (1 - kStretch);
+    double used = reaches_end ? rest : std::min(h, std::max(0.5 * rest, options_.minimum_step));
     if (J == nullptr) J = system.linearise(y.data(), f_.data());
+    const double bend = system.time_to_bend(y.data(), f_.data(), J);
+    const bool ends_at_bend = bend < used && bend > options_.minimum_step && !report.is_over_budget;
+    if (ends_at_bend) used = bend;
     const bool is_solvable = factorise(J, 1 / (used * kGamma), report);
     const double error = is_solvable ? try_step(system, y.data(), used) : kInfinity;
     const double factor = std::clamp(kSafety / std::cbrt(std::max(error, 1e-12)), kShrink, kGrow);
@@ -163,7 +182,8 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
         return report;
       }
       ++report.rejected;
-      h = std::max(options_.minimum_step, used * std::min(factor, 0.9));
+      h = std::max(options_.minimum_step, used * std::min(shorter(rejected, {used, error}, factor), 0.9));
+      rejected = {used, error};
       continue;
     }
     if (error > 1 && is_shortest) report.is_at_minimum_step = true;
@@ -175,8 +195,10 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     system.accepted(used, y.data(), f_.data(), new_.data());
     std::copy(new_.begin(), new_.end(), y.begin());
     J = nullptr;
-    rest = is_last ? 0 : rest - used;
-    if (!report.is_over_budget) h = next_step(h, used, factor, duration);
+    rejected = {};
+    rest = reaches_end && !ends_at_bend ? 0 : rest - used;
+    // behind a bend the size before it is tried again
+    if (!report.is_over_budget && !ends_at_bend) h = next_step(h, used, factor, duration);
   }
   step_size_ = report.is_over_budget ? options_.minimum_step : h;
   return report;

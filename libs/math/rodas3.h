@@ -5,11 +5,13 @@
 //   c_21 = 4;  c_31 = 1, c_32 = -1;  c_41 = 1, c_42 = -1, c_43 = -8/3                                        (3)
 //   y_new = y + 2 K_1 + K_3 + K_4,   error = K_4                                                             (4)
 // A step needs three f, one J, one LU and four solves. A step is accepted when max |K_4,i| / (rtol (s_i + r_i |y_i|))
-// <= 1; the next size is h clip(0.9 err^(-1/3), 0.2, 6).
+// <= 1; the next size is h clip(0.9 err^(-1/3), 0.2, 6), after two rejections by the order that they show.
 //
-// Source: A. Sandu et al. 1997, Atmos. Environ. 31, 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7.
-// M = I unless set_mass() makes rows algebraic: the method is stiffly accurate, so they need no further treatment.
-// The step size is carried over from one interval to the next and is part of the state. Real-time safe.
+// Sources: K. Gustafsson 1994, ACM Trans. Math. Softw. 20, 496 (rejections); A. Sandu et al. 1997, Atmos. Environ. 31,
+// 3459 (RODAS3); form (1) as in Hairer and Wanner 1996, IV.7. M = I unless set_mass() makes rows algebraic: the method
+// is stiffly accurate, so they need no further treatment. A step ends where the system expects a bend
+// (StiffSystem::time_to_bend()); the size before it is kept for the next. The step size is carried over from one
+// interval to the next and is part of the state. Real-time safe.
 #pragma once
 
 #include <cstddef>

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,12 @@ class StiffSystem {
   virtual const double* linearise(const double* y, double* f) noexcept {
     derivative(y, f);
     return jacobian(y, f);
+  }
+  // Time from y, with f = f(y) and J there, to where a law has a sharp bend, as far as can be told [s]; a sub-step that
+  // jumps over a bend into something much stiffer is found out by its error and taken again several times. An adaptive
+  // method ends a sub-step there; what is accepted is still decided by the error.
+  [[nodiscard]] virtual double time_to_bend(const double* /*y*/, const double* /*f*/, const double* /*J*/) noexcept {
+    return std::numeric_limits<double>::infinity();
   }
   // A sub-step from y_before (derivative f_before) to y was accepted; may move y back into its bounds.
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;

@@ -127,6 +127,35 @@ TEST(HydraulicJacobian, of_the_remaining_component_types_equals_central_differen
   expect_jacobian_matches(bench_circuit(), 2);
 }
 
+void expect_same_bits_at_once(const HydraulicsDef& def, std::uint64_t seed) {
+  Circuit circuit(def);
+  const auto n = static_cast<std::size_t>(circuit.state_count());
+  const auto volumes = static_cast<std::size_t>(circuit.volume_count());
+  std::mt19937_64 random(seed);
+  std::vector<double> f(n), f_at_once(n), J(n * n), slope(n), slope_at_once(n), C(volumes), C_at_once(volumes);
+  for (int c = 0; c < static_cast<int>(circuit.controls().size()); ++c) circuit.set_control(c, 500);
+  for (int trial = 0; trial < kStates; ++trial) {
+    const std::vector<double> y = random_state(circuit, random);
+    circuit.rates(y.data(), f.data());
+    const double* stamped = circuit.jacobian(y.data(), f.data());
+    std::copy(stamped, stamped + n * n, J.begin());
+    circuit.outflow_slopes(y.data(), slope.data());
+    circuit.capacities(y.data(), C.data());
+    stamped = circuit.linearise(y.data(), f_at_once.data());
+    ASSERT_EQ(f, f_at_once);
+    ASSERT_TRUE(std::equal(J.begin(), J.end(), stamped)) << trial;
+    circuit.rates_and_outflow(y.data(), f_at_once.data(), slope_at_once.data(), C_at_once.data());
+    ASSERT_EQ(f, f_at_once);
+    ASSERT_EQ(slope, slope_at_once);
+    ASSERT_EQ(C, C_at_once);
+  }
+}
+
+TEST(HydraulicJacobian, at_once_with_the_rates_is_the_same_to_the_bit) {
+  expect_same_bits_at_once(crane_circuit(), 3);
+  expect_same_bits_at_once(bench_circuit(), 4);
+}
+
 TEST(HydraulicJacobian, test_circuits_hold_every_component_type) {
   const HydraulicsDef circuits[] = {crane_circuit(), bench_circuit()};
   for (const ComponentType& type : component_types()) {

@@ -79,6 +79,22 @@ TEST(Indicator, CouplingFrequencySeesEveryPartOfTheMachine) {
   EXPECT_NEAR(coupling_frequency(W, K, 1e-3), 1e-3 * std::sqrt(7e-5 * 1.5e8), 1e-6);
 }
 
+TEST(Indicator, CouplingFrequencyHasTwoDigitsWhateverTheSecondEigenvalue) {
+  // two ports whose matrix has the eigenvalues 1 and `second`, turned by 0.3 rad
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  for (const double second : {0.0, 0.5, 0.9, 0.95, 0.99, 1.0}) {
+    PortMatrix W;
+    for (const double w :
+         {c * c + second * s * s, c * s * (1 - second), c * s * (1 - second), s * s + second * c * c}) {
+      W.push_back(w);
+    }
+    EXPECT_NEAR(coupling_frequency(W, PortArray{1.0, 1.0}, 1), 1, 5e-3) << second;
+  }
+  PortMatrix nothing;
+  for (int i = 0; i < 4; ++i) nothing.push_back(0);
+  EXPECT_EQ(coupling_frequency(nothing, PortArray{1.0, 1.0}, 1), 0);
+}
+
 TEST(Indicator, AnIdlePortIsGreen) {
   // an actuator that carries nothing: forces and energies of rounding
   Indicator indicator(1, milliseconds(1));

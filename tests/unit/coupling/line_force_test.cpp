@@ -91,5 +91,35 @@ TEST(LineForce, SlopesAgreeWithDifferences) {
   }
 }
 
+TEST(LineForce, TimeToRestReachesTheEdgeOfTheSteepPart) {
+  const LineForceLaw law(crane_lift());
+  const double edge = 1e-4;
+  for (const double sign : {-1.0, 1.0}) {
+    // just before the edge, on the parabola of speed, acceleration and jerk
+    for (const double j : {-500.0, 0.0, 500.0}) {
+      const double v = 1e-3, a = -2, t = law.time_to_rest(sign * v, sign * a, sign * j);
+      const double there = v + a * t + 0.5 * j * t * t;
+      EXPECT_GT(there, edge);
+      EXPECT_LT(there, 1.5 * edge);
+    }
+    // from there to just behind it
+    const double t = law.time_to_rest(sign * 1.01 * edge, -sign * 2, 0);
+    EXPECT_LT(1.01 * edge - 2 * t, edge);
+    EXPECT_GT(1.01 * edge - 2 * t, 0.9 * edge);
+  }
+}
+
+TEST(LineForce, TimeToRestIsInfiniteWhereRestIsNotReached) {
+  const LineForceLaw law(crane_lift());
+  EXPECT_TRUE(std::isinf(law.time_to_rest(1e-3, 2, 0)));     // faster
+  EXPECT_TRUE(std::isinf(law.time_to_rest(5e-5, -2, 0)));    // inside already
+  EXPECT_TRUE(std::isinf(law.time_to_rest(1e-3, -2, 1e4)));  // turns before it
+  EXPECT_TRUE(std::isinf(law.time_to_rest(0, 0, 0)));
+  LineForceDef smooth = crane_lift();
+  smooth.friction_curve.clear();
+  smooth.seal_friction = 0;
+  EXPECT_TRUE(std::isinf(LineForceLaw(smooth).time_to_rest(1e-3, -2, 0)));
+}
+
 }  // namespace
 }  // namespace slew::coupling

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "math/dense_lu.h"
@@ -128,6 +129,73 @@ TEST(Rodas3, covers_the_interval_exactly_and_carries_its_step_size_on) {
   EXPECT_GT(solver.step_size(), 1e-4);
   EXPECT_LT(solver.step_size(), 0.1);
   EXPECT_EQ(report.dense_factorisations, 0u);
+}
+
+// A speed that falls by 2 m/s2 into friction that is linear with a slope of 4e5 1/s below 1e-4 m/s, as a cylinder's is.
+class ComesToRest final : public StiffSystem {
+ public:
+  explicit ComesToRest(bool foresees) : foresees_(foresees) {}
+  void derivative(const double* y, double* f) noexcept override {
+    f[0] = -2 + (std::fabs(y[0]) < kEdge ? kSlope * (kEdge - y[0]) : 0);
+  }
+  const double* jacobian(const double* y, const double*) noexcept override {
+    J_ = std::fabs(y[0]) < kEdge ? -kSlope : 0;
+    return &J_;
+  }
+  void accepted(double h, const double*, const double*, double* y) noexcept override {
+    time += h;
+    if (y[0] < kEdge && first_inside == 0) first_inside = time;
+  }
+  double time_to_bend(const double* y, const double* f, const double*) noexcept override {
+    if (!foresees_ || y[0] < kEdge) return std::numeric_limits<double>::infinity();
+    return (y[0] > 1.01 * kEdge ? y[0] - 1.005 * kEdge : y[0] - 0.97 * kEdge) / -f[0];
+  }
+  static constexpr double kEdge = 1e-4, kSlope = 4e5;
+  double time = 0, first_inside = 0;
+
+ private:
+  bool foresees_;
+  double J_ = 0;
+};
+
+Rodas3 rest_solver() {
+  return Rodas3(SparsityPattern(1), 1,
+                {.relative_tolerance = 1e-4, .minimum_step = 1e-8, .scale = {0.1}, .relative = {1}});
+}
+
+TEST(Rodas3, ends_a_step_before_a_bend_that_the_system_foresees) {
+  std::uint32_t tried[2];
+  for (const bool foresees : {false, true}) {
+    ComesToRest system(foresees);
+    Rodas3 solver = rest_solver();
+    solver.set_step_size(1e-3);
+    double y[] = {1e-3};
+    const StiffReport report = solver.advance(system, y, 1e-3);
+    tried[foresees] = report.accepted + report.rejected;
+    EXPECT_NEAR(system.time, 1e-3, 1e-12);
+    EXPECT_NEAR(y[0], ComesToRest::kEdge - 2 / ComesToRest::kSlope, 1e-6);
+    EXPECT_NEAR(system.first_inside, (1e-3 - ComesToRest::kEdge) / 2, 1e-4);
+    EXPECT_FALSE(report.is_at_minimum_step);
+    // the size before the bend is kept
+    if (foresees) {
+      EXPECT_GT(solver.step_size(), 5e-4);
+    }
+  }
+  EXPECT_LE(tried[1], 6u);
+  EXPECT_GE(tried[0], 2 * tried[1]);
+}
+
+TEST(Rodas3, shrinks_by_the_order_that_two_rejections_show) {
+  // far from rest inside the steep part: the error hardly falls until the step resolves 2.5 us
+  ComesToRest system(false);
+  Rodas3 solver = rest_solver();
+  solver.set_step_size(1e-3);
+  double y[] = {2e-5};
+  const StiffReport report = solver.advance(system, y, 1e-3);
+  EXPECT_NEAR(y[0], ComesToRest::kEdge - 2 / ComesToRest::kSlope, 1e-6);
+  // 0.7 of the step each time took 10
+  EXPECT_GE(report.rejected, 1u);
+  EXPECT_LE(report.rejected, 5u);
 }
 
 // Growth so strong that 1/(h gamma) - J vanishes on the diagonal at the first step tried.
