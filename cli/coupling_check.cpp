@@ -23,6 +23,9 @@ constexpr double kLeastDamping = 0.02;
 // a tenth more mass than the machine has
 constexpr double kLargestParasiticMass = 0.1;
 
+// of omega_H by the steps that samples are late (coupling study, section 6)
+constexpr double kMostLate = 0.3;
+
 constexpr std::string_view kNames[coupling::kLevels] = {"hold", "linear", "two", "tlm"};
 
 // The ports of one level at the start: their mobilities and oil columns, as if there were no others.
@@ -96,6 +99,20 @@ std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) 
       safe_step(H * std::sqrt(kLargestParasiticMass / share)));
 }
 
+// free-running sides have samples that are a step old, or older
+std::string running_late(const Ports& ports, const std::string& name, double H) {
+  const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
+  if (!(omega_H > kMostLate)) return {};
+  const double safe = H * kMostLate / omega_H;
+  const std::string step = safe < scene::kMinStep ? "" : "session.step " + safe_step(safe) + " or less, or ";
+  return fmt::format(
+      "{}: free_running works with samples that are a step or more late, and the machine swings by omega_H {:.2g} on "
+      "its "
+      "oil in a step of {}; that is right up to {:.2g} by the steps that are late or lost; the run may be wrong or "
+      "unstable: use {}session.mode lockstep",
+      name, omega_H, duration_text(H), kMostLate, step);
+}
+
 }  // namespace
 
 std::vector<std::string> coupling_warnings(const scene::Scene& scene, const DirectSession& session) {
@@ -114,6 +131,9 @@ std::vector<std::string> coupling_warnings(const scene::Scene& scene, const Dire
     std::string warning =
         level == Level::tlm ? heavy_line(ports, scene, H) : swinging(ports, level, name, actuators, H);
     if (!warning.empty()) warnings.push_back(std::move(warning));
+    if (level == Level::tlm || scene.session.mode != scene::ExchangeMode::free_running) continue;
+    std::string late = running_late(ports, name, H);
+    if (!late.empty()) warnings.push_back(std::move(late));
   }
   return warnings;
 }

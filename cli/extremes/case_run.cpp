@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "cli/coupling_check.h"
 #include "cli/direct_session.h"
 #include "cli_support/failure.h"
 #include "core/arithmetic_self_test.h"
@@ -165,10 +166,13 @@ class Stepper {
   Run run() {
     run_.measures.H = H_.seconds();
     set_floating_point_mode();
+    run_.measures.refusal = refusal_of_changes();
+    if (!run_.measures.refusal.empty()) return std::move(run_);
     if (const Status status = session_.start(); !status.is_ok()) {
       run_.measures.refusal = status.text;
       return std::move(run_);
     }
+    run_.measures.warnings = coupling_warnings(scene_, session_);
     const auto ports = scene_.ports.size();
     nets_.resize(hydraulics_ != nullptr ? ports : 0);
     run_.trace.columns = ports > 0 ? ports : pressures_.size();
@@ -196,6 +200,17 @@ class Stepper {
     std::size_t index;
     std::string volume;
   };
+
+  // as whoever changes a parameter of a session is refused
+  [[nodiscard]] std::string refusal_of_changes() const {
+    if (case_.changes.empty()) return {};
+    const scene::ParameterDirectory directory(scene_);
+    for (const SuddenChange& change : case_.changes) {
+      const Status status = directory.check(change.path, change.value).status;
+      if (!status.is_ok()) return status.text;
+    }
+    return {};
+  }
 
   void drive(StepIndex k) {
     const double t = static_cast<double>(k) * H_.seconds();
@@ -225,6 +240,9 @@ class Stepper {
     m.at_limit += count(StepFlag::limit_hit);
     m.too_late += count(StepFlag::late_input);
     m.creates_energy += count(StepFlag::coupling_creates_energy);
+    const bool is_flagged =
+        count(StepFlag::not_converged) + count(StepFlag::late_input) + count(StepFlag::coupling_creates_energy) > 0;
+    m.course.is_flagged.push_back(is_flagged || has_red_lamp() ? 1 : 0);
     if (count(StepFlag::non_finite) != 0) {
       m.failure = session_.failure();
       if (m.failure.empty()) m.failure = "the state";
@@ -233,6 +251,14 @@ class Stepper {
     }
     look_at_circuit(k);
     if (k % std::max<std::int64_t>(1, milliseconds(1).ns / H_.ns) == 0) look_at_joints();
+    if (m.gap) m.course.gap.push_back(*m.gap);
+  }
+
+  [[nodiscard]] bool has_red_lamp() const {
+    for (std::size_t i = 0; i < nets_.size(); ++i) {
+      if (coupling::lamp_of(hydraulics_->indicator().port(i)) == coupling::Lamp::red) return true;
+    }
+    return false;
   }
 
   void look_at_circuit(StepIndex k) {
@@ -248,6 +274,7 @@ class Stepper {
       m.lowest_pressure = std::min(m.lowest_pressure.value_or(p), p);
       if (nets_.empty()) run_.trace.values.push_back(p);
     }
+    if (m.highest_pressure) m.course.highest_pressure.push_back(*m.highest_pressure);
     if (nets_.empty()) return;
     const coupling::Indicator& indicator = hydraulics_->indicator();
     for (std::size_t i = 0; i < nets_.size(); ++i) {
@@ -275,8 +302,12 @@ class Stepper {
     if (m.highest_pressure) m.ceiling = ceiling_.value();
     const auto lasting = static_cast<std::size_t>(std::lround(kNetLasts / H_.seconds()));
     for (const std::vector<double>& net : nets_) {
-      const std::optional<double> least = lasting_minimum(net, std::max<std::size_t>(1, lasting));
-      if (least) m.net = std::min(m.net.value_or(0), *least);
+      const std::vector<double> largest = largest_of_last(net, std::max<std::size_t>(1, lasting));
+      m.course.energy_made.resize(largest.size());
+      for (std::size_t i = 0; i < largest.size(); ++i) {
+        m.course.energy_made[i] = std::max(m.course.energy_made[i], -largest[i]);
+        m.net = std::min(m.net.value_or(0), largest[i]);
+      }
     }
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
       const coupling::Subsystem* subsystem = session_.subsystem(role);
@@ -305,19 +336,25 @@ class Stepper {
   Run run_;
 };
 
-// Largest difference of any column over the largest range of any column in the second.
-double difference(const Trace& a, const Trace& b) {
-  double largest = 0, range = 0;
+// Largest difference of any column over the largest range of any column in the second, by entry.
+std::vector<double> differences(const Trace& a, const Trace& b) {
+  double range = 0;
+  std::vector<double> largest;
   for (std::size_t c = 0; c < b.columns; ++c) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t i = c; i < b.values.size(); i += b.columns) {
       low = std::min(low, b.values[i]);
       high = std::max(high, b.values[i]);
-      largest = std::max(largest, i < a.values.size() ? std::fabs(a.values[i] - b.values[i]) : 0.0);
     }
     range = std::max(range, high - low);
   }
-  return range > 0 ? largest / range : largest;
+  const std::size_t both = std::min(a.values.size(), b.values.size());
+  for (std::size_t i = 0; i + b.columns <= both && b.columns > 0; i += b.columns) {
+    double of_entry = 0;
+    for (std::size_t c = i; c < i + b.columns; ++c) of_entry = std::max(of_entry, std::fabs(a.values[c] - b.values[c]));
+    largest.push_back(range > 0 ? of_entry / range : of_entry);
+  }
+  return largest;
 }
 
 bool is_same(const Trace& a, const Trace& b) {
@@ -345,7 +382,7 @@ class Case {
     CaseOutcome outcome;
     try {
       prepare();
-      outcome.measures = measure({});
+      outcome.measures = measure();
     } catch (const scene::LoadError& error) {
       outcome.measures.refusal = reason_of(error);
     }
@@ -415,7 +452,12 @@ class Case {
         const auto at = [&](std::size_t axis) { return ground->position[axis] - up * g[axis] / size; };
         return {fmt::format("{}.position=[{:.17g}, {:.17g}, {:.17g}]", ground->name, at(0), at(1), at(2))};
       };
-      const auto depth = [&](double up) { return depth_at_start(load(moved(up)), pair.name); };
+      // whatever a circuit at rest would say to it
+      const auto depth = [&](double up) {
+        scene::Overrides at = moved(up);
+        if (base_.has_hydraulics()) at.emplace_back("hydraulics.start=table13");
+        return depth_at_start(load(at), pair.name);
+      };
       // roughly to the first touch, then on in fine steps
       double up = kLift;
       while (up < kMostLift && !(depth(up) > 0)) up += kLift;
@@ -445,15 +487,29 @@ class Case {
     return 0;
   }
 
-  [[nodiscard]] Measures measure(const scene::Overrides& more) const {
-    const scene::Scene scene = load(more);
+  // The bound of the error is that of the machine and the lateness together.
+  [[nodiscard]] Measures measure() {
+    const scene::Scene scene = load({});
     Run run = Stepper(case_, scene, Strictness::whole).run();
     if (case_.compared_with != ComparedWith::none && run.measures.refusal.empty()) {
       const Run other = Stepper(case_, scene, Strictness::compared).run();
-      run.measures.difference = difference(run.trace, other.trace);
+      Course& course = run.measures.course;
+      course.difference = differences(run.trace, other.trace);
+      run.measures.difference = 0;
+      for (const double one : course.difference) {
+        if (!(one <= *run.measures.difference)) run.measures.difference = one;
+      }
+      bound_error(std::sqrt(other.measures.stiffness.value_or(0)));
       run.measures.is_same = is_same(run.trace, other.trace);
     }
     return std::move(run.measures);
+  }
+
+  void bound_error(double omega_H) {
+    if (case_.compared_with != ComparedWith::on_time) return;
+    const double w = omega_H * static_cast<double>(std::max(case_.delay, case_.lost));
+    case_.bounds.difference = case_.delay > 0 ? error_of_late_samples(w) : error_of_lost_samples(w);
+    notes_.push_back(fmt::format("omega_H k of {:.2g}", w));
   }
 
   // The bounds without those of comparisons: an error grows with the step long before anything is unstable.
@@ -508,6 +564,7 @@ class Case {
     }
     if (m.not_converged > 0) m.notes.push_back(fmt::format("not converged in {} steps", m.not_converged));
     if (m.over_budget > 0) m.notes.push_back(fmt::format("sub-step budget used up in {} steps", m.over_budget));
+    for (const std::string& warning : m.warnings) m.notes.push_back("warned before the run: " + warning);
     if (case_.stiffness > 0) m.notes.push_back(fmt::format("K H^2 W reached {:.3g}", m.stiffness.value_or(0)));
   }
 

@@ -20,7 +20,6 @@ constexpr double kSoftOil = 70e6, kHardOil = 2e9;          // Pa
 constexpr double kFullStroke = 12;                         // s of full input one way
 constexpr std::int64_t kLateTime = std::int64_t{1} << 62;  // ns
 constexpr std::int64_t kLateStep = std::int64_t{1} << 32;
-constexpr double kTwoPercent = 0.02;
 
 std::string set(const std::string& path, double value) {
   return fmt::format("{}={:.17g}", path, value);
@@ -205,8 +204,8 @@ void add_coupling(const Parts& parts, Cases& cases) {
          .what = fmt::format("K H^2 W of {:g}, by the step, then by stiffer oil", stiffness),
          .stiffness = stiffness});
   }
-  // bounds of the error: a copy of the partner is good while omega t is small
-  const auto late = [&](StepIndex delay, StepIndex lost, double bound) {
+  // the bound of the error comes with the machine's omega_H
+  const auto late = [&](StepIndex delay, StepIndex lost) {
     ExtremeCase one{.name = delay > 0 ? fmt::format("delay_{}", delay) : fmt::format("lost_{}", lost),
                     .what = delay > 0 ? fmt::format("every sample comes {} steps late", delay)
                                       : fmt::format("{} samples in a row are lost of every {}", lost, kLossPeriod),
@@ -214,17 +213,10 @@ void add_coupling(const Parts& parts, Cases& cases) {
                     .delay = delay,
                     .lost = lost,
                     .compared_with = ComparedWith::on_time};
-    one.bounds.difference = bound;
     add(std::move(one));
   };
-  late(1, 0, kTwoPercent);
-  late(2, 0, kTwoPercent);
-  late(5, 0, 0.1);
-  late(10, 0, 0.3);
-  late(0, 1, kTwoPercent);
-  late(0, 10, kTwoPercent);
-  late(0, 20, 0.1);
-  late(0, 50, 1);
+  for (const StepIndex delay : {1, 2, 5, 10}) late(delay, 0);
+  for (const StepIndex lost : {1, 10, 20, 50}) late(0, lost);
   ExtremeCase hold{.name = "hold_10_s",
                    .what = "no step for 10 s of wall time in mid-motion; nothing may change",
                    .hold_at = 0.7,

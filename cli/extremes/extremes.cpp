@@ -118,7 +118,8 @@ bool ExtremesRow::is_good() const {
   if (!obstacle.empty()) return true;
   if (!result.is_object()) return false;
   const std::string verdict = result.at("verdict");
-  return verdict == to_text(Verdict::within) || verdict == to_text(Verdict::refused);
+  return verdict == to_text(Verdict::within) || verdict == to_text(Verdict::refused) ||
+         verdict == to_text(Verdict::flagged);
 }
 
 bool Extremes::is_complete() const {

@@ -63,7 +63,7 @@ std::vector<std::string> cells_of(const ExtremesRow& row) {
 
 std::string report_text(const Extremes& extremes) {
   std::string text;
-  std::size_t good = 0, bad = 0, not_for = 0, left = 0;
+  std::size_t good = 0, flagged = 0, bad = 0, not_for = 0, left = 0;
   for (std::size_t i = 0; i < extremes.rows.size();) {
     const std::string& scene = extremes.rows[i].scene;
     std::vector<std::vector<std::string>> table = {
@@ -71,11 +71,20 @@ std::string report_text(const Extremes& extremes) {
     for (; i < extremes.rows.size() && extremes.rows[i].scene == scene; ++i) {
       const ExtremesRow& row = extremes.rows[i];
       table.push_back(cells_of(row));
-      ++(!row.obstacle.empty() ? not_for : !row.is_done ? left : row.is_good() ? good : bad);
+      const bool is_flagged = row.result.is_object() && row.result.at("verdict") == to_text(Verdict::flagged);
+      ++(!row.obstacle.empty() ? not_for : !row.is_done ? left : is_flagged ? flagged : row.is_good() ? good : bad);
     }
     text += scene + "\n" + table_text(table) + "\n";
   }
-  text += fmt::format("{} within bounds or refused by name, {} not, {} not for their scene", good, bad, not_for);
+  text += fmt::format(
+      "within: finite and inside all bounds. refused: by the scene or its start, by name. flagged: beyond a bound, and "
+      "the session itself\n"
+      "said so: it warned before the run, naming a port and a safe step, or its steps flagged it within {:g} s. "
+      "EXCEEDED: "
+      "nobody said\nso. DIVERGED: not finite, and not warned of before the run.\n",
+      kFlagTime);
+  text += fmt::format("{} within bounds or refused by name, {} flagged, {} not, {} not for their scene", good, flagged,
+                      bad, not_for);
   if (left > 0) text += fmt::format(", {} not run: the same command goes on from here", left);
   if (extremes.kept > 0) text += fmt::format("; {} kept from {}", extremes.kept, extremes.folder);
   return text + "\n";

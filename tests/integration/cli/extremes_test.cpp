@@ -48,6 +48,25 @@ TEST_F(Extremes, JudgesCasesAndKeepsThem) {
   EXPECT_EQ(parsed(second).at("kept"), 2);
 }
 
+TEST_F(Extremes, RefusalsNameWhatIsWrongAndAreGood) {
+  const CommandResult result = run("slewring",
+                                   {"extremes", scene_file("truck_crane.yaml"), "--quiet", "--json", "--only",
+                                    "start_in_penetration", "--only", "load_0_kg"},
+                                   work_.path());
+  ASSERT_EQ(result.code, 0) << result.err << result.out;
+  const nlohmann::json report = parsed(result);
+  const nlohmann::json& start = row(report, "start_in_penetration").at("result");
+  EXPECT_EQ(start.at("verdict"), "refused");
+  const std::string why = start.at("refusal");
+  for (const char* part : {"hydraulics.start: equilibrium asks for", "Vol_LiftCyl", "Cyl_Lift", "L90Lift", "Ground_Bag",
+                           "deep", "hydraulics.start: table13"}) {
+    EXPECT_NE(why.find(part), std::string::npos) << part << " in " << why;
+  }
+  const nlohmann::json& load = row(report, "load_0_kg").at("result");
+  EXPECT_EQ(load.at("verdict"), "refused");
+  EXPECT_NE(load.at("refusal").get<std::string>().find("ForceR_Friction"), std::string::npos) << load.at("refusal");
+}
+
 TEST_F(Extremes, RunsNothingOfASceneThatIsWrong) {
   const CommandResult result = extremes({"--json", "--only", "step_10_us", "--set", "mechanics.max_substep=3"});
   EXPECT_EQ(result.code, 2) << result.out;

@@ -53,6 +53,17 @@ TEST(CouplingCheck, LooksAtEveryLevelForItself) {
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.coupling=tlm", "session.step=0.2 ms"}).size(), 0u);
 }
 
+TEST(CouplingCheck, FreeRunningIsToldOfTheStepThatItsLateSamplesBear) {
+  // omega_H of the flexible crane is 0.5 at 1 ms, of the rigid one 0.1
+  EXPECT_EQ(warnings("truck_crane.yaml", {"session.mode=free_running"}).size(), 0u);
+  const auto flexible = warnings("truck_crane_flexible.yaml", {"session.mode=free_running"});
+  ASSERT_EQ(flexible.size(), 1u);
+  EXPECT_NE(flexible[0].find("free_running works with samples that are a step or more late"), std::string::npos)
+      << flexible[0];
+  EXPECT_NE(flexible[0].find("use session.step 0."), std::string::npos) << flexible[0];
+  EXPECT_EQ(warnings("truck_crane_flexible.yaml", {"session.mode=free_running", "session.step=0.5 ms"}).size(), 0u);
+}
+
 TEST(OmegaLimit, GrowsFromHoldToTlm) {
   using coupling::Level;
   EXPECT_LT(coupling::omega_limit(Level::hold, 0.02), coupling::omega_limit(Level::linear, 0.02));

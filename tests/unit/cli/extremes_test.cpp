@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -78,11 +79,71 @@ TEST(Judge, RefusalIsGoodAndDivergenceIsNot) {
   EXPECT_NE(advice(diverged, judge(diverged, {}), {true, std::nullopt}).find("no step"), std::string::npos);
 }
 
-TEST(Judge, LastingMinimumOverlooksWhatIsShort) {
-  EXPECT_EQ(lasting_minimum({0, -5, 0, -1, -2, -1, 0}, 3), -1.0);
-  EXPECT_EQ(lasting_minimum({0, -5, 0}, 1), -5.0);
-  EXPECT_EQ(lasting_minimum({-3, -4}, 2), -3.0);
-  EXPECT_EQ(lasting_minimum({0, 1}, 3), std::nullopt);
+TEST(Judge, LargestOfTheLastOverlooksWhatIsShort) {
+  const double none = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(largest_of_last({0, -5, 0, -1, -2, -1, 0}, 3), (std::vector<double>{none, none, 0, 0, 0, -1, 0}));
+  EXPECT_EQ(largest_of_last({0, -5, 0}, 1), (std::vector<double>{0, -5, 0}));
+  EXPECT_EQ(largest_of_last({0, 1}, 3), (std::vector<double>{none, none}));
+}
+
+// 2 s in steps of 1 ms; beyond 3e-3 from 1 s on, flagged in one step
+Measures energetic(double flagged_at, double grown = 4e-3) {
+  Measures measures = good_run();
+  measures.net = -grown;
+  measures.course.energy_made.assign(2000, 1e-3);
+  std::fill(measures.course.energy_made.begin() + 1000, measures.course.energy_made.end(), grown);
+  measures.course.is_flagged.assign(2000, 0);
+  if (flagged_at >= 0) measures.course.is_flagged[static_cast<std::size_t>(flagged_at * 1e3)] = 1;
+  return measures;
+}
+
+TEST(Judge, WhatTheSessionFlagsInTimeIsFlagged) {
+  EXPECT_EQ(judge(energetic(-1), {}).verdict, Verdict::exceeded);
+  EXPECT_EQ(judge(energetic(0.4), {}).verdict, Verdict::exceeded);  // of something else
+  EXPECT_EQ(judge(energetic(0.6), {}).verdict, Verdict::flagged);
+  EXPECT_EQ(judge(energetic(1.4), {}).verdict, Verdict::flagged);
+  EXPECT_EQ(judge(energetic(1.6), {}).verdict, Verdict::exceeded);
+  // ten times the bound and more at once
+  EXPECT_EQ(judge(energetic(1.4, 40e-3), {}).verdict, Verdict::exceeded);
+  EXPECT_EQ(judge(energetic(1.0, 40e-3), {}).verdict, Verdict::flagged);
+}
+
+TEST(Judge, OneViolationThatNobodyFlagsIsEnough) {
+  Measures measures = energetic(1.1);
+  measures.lowest_pressure = -1.0;
+  EXPECT_EQ(judge(measures, {}).verdict, Verdict::exceeded);
+}
+
+TEST(Judge, WarningBeforeTheRunCoversTheCouplingAlone) {
+  Measures measures = energetic(-1);
+  measures.warnings = {"Cyl_Jib: omega_H is 2"};
+  EXPECT_EQ(judge(measures, {}).verdict, Verdict::flagged);
+  measures.failure = "Bag.position";
+  EXPECT_EQ(judge(measures, {}).verdict, Verdict::flagged);
+  measures.warnings.clear();
+  EXPECT_EQ(judge(measures, {}).verdict, Verdict::diverged);
+  Measures open = good_run();
+  open.warnings = {"Cyl_Jib: omega_H is 2"};
+  open.gap = 1e-3;
+  EXPECT_EQ(judge(open, {}).verdict, Verdict::exceeded);
+  Bounds same;
+  same.asks_same = true;
+  Measures differs = good_run();
+  differs.warnings = open.warnings;
+  differs.is_same = false;
+  EXPECT_EQ(judge(differs, same).verdict, Verdict::exceeded);
+}
+
+// coupling study, section 6: the boom with friction, omega 61.6 rad/s, steps of 1 ms, of a range of 45 kN
+TEST(Judge, BoundsOfLateSamplesAreThoseOfTheStudy) {
+  const double omega_H = 0.0616, range = 45;
+  for (const auto& [late, error] : {std::pair(2, 0.88), std::pair(5, 4.1), std::pair(10, 14.0)}) {
+    EXPECT_NEAR(error_of_late_samples(omega_H * late), error / range, 0.1 * error / range) << late;
+  }
+  EXPECT_EQ(error_of_lost_samples(omega_H * 10), 0.02);
+  EXPECT_NEAR(error_of_lost_samples(omega_H * 20), 8.0 / range, 0.1 * 8.0 / range);
+  EXPECT_EQ(error_of_lost_samples(omega_H * 50), 1);
+  EXPECT_EQ(error_of_late_samples(0), 0.02);
 }
 
 TEST(ExtremeCases, InputsHoldTheirLastPoint) {
@@ -143,6 +204,8 @@ TEST(Extremes, UnfinishedAndDivergedRowsAreNotGood) {
                            .result = to_json(diverged, judge(diverged, {}))});
   EXPECT_FALSE(extremes.is_good());
   extremes.rows.back().result = to_json(good_run(), judge(good_run(), {}));
+  EXPECT_TRUE(extremes.is_good());
+  extremes.rows.back().result = to_json(energetic(1.1), judge(energetic(1.1), {}));
   EXPECT_TRUE(extremes.is_good());
   extremes.rows.push_back({.scene = "a", .name = "three", .what = {}, .obstacle = {}, .failure = {}, .result = {}});
   EXPECT_FALSE(extremes.is_good());

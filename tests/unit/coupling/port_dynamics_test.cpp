@@ -108,6 +108,35 @@ TEST(PortDynamics, EndStopBringsAMovingMassToRest) {
 }
 
 // a force that is linear in time, by a partner without stiffness: z' = F_dot
+// a stop that pushes with f while v is below its speed, and not above: no speed has a force between the two
+class Jump final : public RowLaws {
+ public:
+  RowForce evaluate(std::size_t row, double, double, double v) const noexcept override {
+    return {v < speed[row] ? push[row] : 0.0, 0, 0, 0};
+  }
+  double speed[2] = {0.13, -0.2}, push[2] = {2.7e5, 1e4};
+};
+
+TEST(PortDynamics, TakesAForceBetweenTheSidesOfAJump) {
+  // each row is pulled down and held at its jump by what the pull asks for
+  PortDynamics ports(2);
+  const double a_free[2] = {-90, -40}, W[4] = {0.02, 0.004, 0.004, 0.03};
+  const Jump laws;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ports.v()[i] = laws.speed[i];
+    ports.a_free()[i] = a_free[i];
+    for (std::size_t j = 0; j < 2; ++j) ports.W()[2 * i + j] = W[2 * i + j];
+  }
+  const PortStep step = ports.solve(1e-3, 4, laws);
+  EXPECT_TRUE(step.has_converged) << step.residual;
+  const double determinant = W[0] * W[3] - W[1] * W[2];
+  const double holding[2] = {(90 * W[3] - 40 * W[1]) / determinant, (40 * W[0] - 90 * W[2]) / determinant};
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(ports.v()[i], laws.speed[i], 1e-8) << i;
+    EXPECT_NEAR(ports.f_mean()[i], holding[i], 1e-3 * holding[i]) << i;
+  }
+}
+
 TEST(PortDynamics, GivesMeanAndSlopeOfALinearForce) {
   PortDynamics ports(1);
   ports.W()[0] = 3e-5;
@@ -164,17 +193,21 @@ TEST(PortDynamics, SaysThatANumberWasLost) {
 }
 
 TEST(PortDynamics, StatesTheResidualThatItStoppedAt) {
-  // a force that jumps with the speed: no speed solves v = h (1 - 5 sgn v)
-  class Jump final : public RowLaws {
+  // a force that is another at every look: no speed solves v = h (1 + f)
+  class Restless final : public RowLaws {
    public:
-    RowForce evaluate(std::size_t, double, double, double v) const noexcept override {
-      return {v > 0 ? -5.0 : 5.0, 0, 0, 0};
+    RowForce evaluate(std::size_t, double, double, double) const noexcept override {
+      side_ = -side_;
+      return {side_, 0, 0, 0};
     }
+
+   private:
+    mutable double side_ = 5;
   };
   PortDynamics ports(1);
   ports.W()[0] = 1;
   ports.a_free()[0] = 1;
-  const PortStep step = ports.solve(1e-3, 1, Jump());
+  const PortStep step = ports.solve(1e-3, 1, Restless());
   EXPECT_FALSE(step.has_converged);
   EXPECT_GT(step.residual, 1e-4);
 }

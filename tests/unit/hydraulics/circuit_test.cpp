@@ -457,5 +457,30 @@ TEST(CircuitIntegrator, an_exhausted_budget_is_flagged_and_the_step_is_finished)
   EXPECT_FALSE(all.has(StepFlag::non_finite));
 }
 
+TEST(Circuit, equilibrium_beyond_its_shock_valves_names_volume_and_valve) {
+  const HydraulicsDef def = crane_circuit();
+  const Circuit circuit(def);
+  EXPECT_FALSE(circuit.demand_beyond_limits(kCraneForces));
+  const auto* valve = dynamic_cast<const L90lsValveDef*>(def.components[0].get());
+  for (const auto& component : def.components) {
+    if (component->name == "L90Lift") valve = dynamic_cast<const L90lsValveDef*>(component.get());
+  }
+  ASSERT_NE(valve, nullptr);
+  const double limit = 1e5 + valve->shock_pressure_a + valve->shock_pressure_rise;
+  const Actuator& lift = circuit.actuators()[1];
+  // F of the lift cylinder that asks for just this much, and for a little more
+  const double holds = limit * lift.area_a - def.start_return_pressure * lift.area_b;
+  double F[] = {kCraneForces[0], 0.999 * holds, kCraneForces[2]};
+  EXPECT_FALSE(circuit.demand_beyond_limits(F));
+  F[1] = 1.001 * holds;
+  const auto demand = circuit.demand_beyond_limits(F);
+  ASSERT_TRUE(demand);
+  EXPECT_EQ(circuit.volume_name(demand->volume), "Vol_LiftCyl_A");
+  EXPECT_EQ(demand->actuator, 1);
+  EXPECT_EQ(demand->valve, "L90Lift");
+  EXPECT_DOUBLE_EQ(demand->limit, limit);
+  EXPECT_NEAR(demand->pressure, 1.001 * limit, 1e-3 * limit);
+}
+
 }  // namespace
 }  // namespace slew::hydraulics::test

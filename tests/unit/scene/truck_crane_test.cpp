@@ -140,6 +140,18 @@ TEST_F(TruckCrane, WarnsThatTheLawOfTheHosesHasNoEffect) {
   }
 }
 
+TEST_F(TruckCrane, RefusesABagThatItsDampersWouldThrow) {
+  const ParameterDirectory directory(*scene_);
+  const Status status = directory.check("Bag.mass", 1e-3).status;
+  EXPECT_EQ(status.code, ExitCode::bad_input);
+  for (const char* part : {"Bag.mass", "ForceR_Friction", "rk4", "mechanics.max_substep of at most", "trapezoidal"}) {
+    EXPECT_NE(status.text.find(part), std::string::npos) << part << " in " << status.text;
+  }
+  EXPECT_TRUE(directory.check("Bag.mass", 50).status.is_ok());
+  EXPECT_FALSE(directory.check("ForceR_FrictionX.damping_constant", 5e9).status.is_ok());
+  EXPECT_TRUE(directory.check("ForceR_FrictionX.damping_constant", 5e4).status.is_ok());
+}
+
 TEST_F(TruckCrane, TakesALiveChangeOfTheBagsMass) {
   ParameterDirectory directory(*scene_);
   const Assignment assignment = directory.parse_assignment("Bag.mass=1500kg");

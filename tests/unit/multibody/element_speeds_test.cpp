@@ -1,0 +1,85 @@
+// Limits of the explicit rules on springs and dampers, against their stability regions (Hairer and Wanner, IV.2).
+#include "multibody/element_speeds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace slew::multibody {
+namespace {
+
+constexpr double kInertia = 2;        // kg m2, about the hinge
+constexpr double kRk4OnReal = 2.785;  // h |lambda|
+constexpr double kRk4OnImaginary = 2.828;
+
+// an arm on a hinge with a rotational spring and damper towards Ground
+MechanicsDef arm(double spring, double damping) {
+  MechanicsDef def;
+  def.bodies = {{.name = "Arm", .mass = 1, .inertia = {kInertia, kInertia, kInertia}}};
+  def.joints = {{.name = "Hinge", .body1 = "Ground", .body2 = "Arm"}};
+  def.rotational_forces = {
+      {.name = "Spring", .body1 = "Ground", .body2 = "Arm", .spring_constant = spring, .damping_constant = damping}};
+  return def;
+}
+
+std::optional<TooFast> found(const MechanicsDef& def, double h, Integrator rule = Integrator::rk4) {
+  return find_too_fast_element(build_model(def), rule, h);
+}
+
+TEST(ElementSpeeds, DamperIsFollowedUpToTheRealAxis) {
+  const double damping = 4000, limit = kRk4OnReal * kInertia / damping;
+  EXPECT_FALSE(found(arm(0, damping), 0.99 * limit));
+  const auto beyond = found(arm(0, damping), 1.1 * limit);
+  ASSERT_TRUE(beyond);
+  EXPECT_EQ(beyond->element, "Spring");
+  EXPECT_GT(beyond->growth, 1.25);
+  EXPECT_NEAR(beyond->longest_step, limit, 0.07 * limit);
+}
+
+TEST(ElementSpeeds, SpringIsFollowedUpToTheImaginaryAxis) {
+  const double spring = 2e6, omega = std::sqrt(spring / kInertia), limit = kRk4OnImaginary / omega;
+  EXPECT_FALSE(found(arm(spring, 0), 0.99 * limit));
+  const auto beyond = found(arm(spring, 0), 1.1 * limit);
+  ASSERT_TRUE(beyond);
+  EXPECT_NEAR(beyond->longest_step, limit, 0.04 * limit);
+  EXPECT_FALSE(found(arm(spring, 0), 0.99 * 2 / omega, Integrator::semi_implicit_euler));
+  EXPECT_TRUE(found(arm(spring, 0), 1.1 * 2 / omega, Integrator::semi_implicit_euler));
+}
+
+TEST(ElementSpeeds, SpringAndDamperTogetherHaveTheirOwnRoots) {
+  // a double root at -omega: d / I = 2 omega, which a limit by d alone would halve
+  const double omega = 1000, spring = kInertia * omega * omega, damping = 2 * kInertia * omega;
+  EXPECT_FALSE(found(arm(spring, damping), 0.95 * kRk4OnReal / omega));
+  EXPECT_TRUE(found(arm(spring, damping), 1.15 * kRk4OnReal / omega));
+}
+
+TEST(ElementSpeeds, ExtremeRatesAreNamedWithAStepThatSuits) {
+  const double damping = 5e9;
+  const auto beyond = found(arm(0, damping), 1e-3);
+  ASSERT_TRUE(beyond);
+  const double limit = kRk4OnReal * kInertia / damping;
+  EXPECT_NEAR(beyond->longest_step, limit, 0.07 * limit);
+  EXPECT_FALSE(found(arm(0, damping), 0.95 * beyond->longest_step));
+}
+
+TEST(ElementSpeeds, NamesTheElementThatIsTooFast) {
+  MechanicsDef def = arm(10, 1);
+  def.rotational_forces.push_back({.name = "Brake", .body1 = "Ground", .body2 = "Arm", .damping_constant = 1e6});
+  Problems problems;
+  check_element_speeds(def, 1e-3, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].path, "Brake");
+  EXPECT_NE(problems[0].what.find("rk4 in sub-steps of 0.001 s"), std::string::npos) << problems[0].what;
+  EXPECT_NE(problems[0].expected.find("mechanics.max_substep of at most 5."), std::string::npos)
+      << problems[0].expected;
+}
+
+TEST(ElementSpeeds, LeavesImplicitRulesAndSaturatingTablesAlone) {
+  EXPECT_FALSE(found(arm(0, 1e9), 1e-3, Integrator::trapezoidal));
+  MechanicsDef def = arm(0, 0);
+  def.rotational_forces[0].damper_table = {{-1, -100}, {-1e-4, -90}, {0, 0}, {1e-4, 90}, {1, 100}};
+  EXPECT_FALSE(found(def, 1e-3));
+}
+
+}  // namespace
+}  // namespace slew::multibody
