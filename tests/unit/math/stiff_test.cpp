@@ -1,6 +1,7 @@
 // The linear solvers and the Rosenbrock method that the circuit stands on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -136,7 +137,7 @@ class ComesToRest final : public StiffSystem {
  public:
   explicit ComesToRest(bool foresees) : foresees_(foresees) {}
   void derivative(const double* y, double* f) noexcept override {
-    f[0] = -2 + (std::fabs(y[0]) < kEdge ? kSlope * (kEdge - y[0]) : 0);
+    f[0] = kSlope * (kEdge - std::clamp(y[0], -kEdge, kEdge)) - 2;
   }
   const double* jacobian(const double* y, const double*) noexcept override {
     J_ = std::fabs(y[0]) < kEdge ? -kSlope : 0;
@@ -158,9 +159,9 @@ class ComesToRest final : public StiffSystem {
   double J_ = 0;
 };
 
-Rodas3 rest_solver() {
+Rodas3 rest_solver(double tolerance = 1e-4) {
   return Rodas3(SparsityPattern(1), 1,
-                {.relative_tolerance = 1e-4, .minimum_step = 1e-8, .scale = {0.1}, .relative = {1}});
+                {.relative_tolerance = tolerance, .minimum_step = 1e-8, .scale = {0.1}, .relative = {1}});
 }
 
 TEST(Rodas3, ends_a_step_before_a_bend_that_the_system_foresees) {
@@ -188,12 +189,12 @@ TEST(Rodas3, ends_a_step_before_a_bend_that_the_system_foresees) {
 TEST(Rodas3, shrinks_by_the_order_that_two_rejections_show) {
   // far from rest inside the steep part: the error hardly falls until the step resolves 2.5 us
   ComesToRest system(false);
-  Rodas3 solver = rest_solver();
+  Rodas3 solver = rest_solver(1e-5);
   solver.set_step_size(1e-3);
   double y[] = {2e-5};
   const StiffReport report = solver.advance(system, y, 1e-3);
   EXPECT_NEAR(y[0], ComesToRest::kEdge - 2 / ComesToRest::kSlope, 1e-6);
-  // 0.7 of the step each time took 10
+  // not one by one by what h^3 would ask for
   EXPECT_GE(report.rejected, 1u);
   EXPECT_LE(report.rejected, 5u);
 }
