@@ -7,7 +7,7 @@
 namespace slew::math {
 namespace {
 
-constexpr int kFirstIterations = 60;  // from an arbitrary vector
+constexpr int kFirstIterations = 60;  // from an arbitrary vector, and where something is suspicious
 constexpr int kMostSuspicions = 4;    // looked into per interval
 constexpr int kNextIterations = 4;    // from the vector of the interval before
 
@@ -28,8 +28,9 @@ void RungeKutta4::restart() noexcept {
   is_first_ = true;
 }
 
-void RungeKutta4::watch(StiffSystem& system, const double* y, const double* f, double h, StiffReport& report) noexcept {
-  const double lambda = radius_.update(system.jacobian(y, f), is_first_ ? kFirstIterations : kNextIterations);
+void RungeKutta4::watch(StiffSystem& system, const double* y, const double* f, double h, int iterations,
+                        StiffReport& report) noexcept {
+  const double lambda = radius_.update(system.jacobian(y, f), iterations);
   is_first_ = false;
   const double ratio = h * lambda / kExplicitLimit;
   if (ratio < report.largest_error) return;
@@ -58,14 +59,14 @@ StiffReport RungeKutta4::advance(StiffSystem& system, std::span<double> y, doubl
   int suspicions = 0;
   for (double part = 0; part < parts; ++part) {
     system.derivative(y.data(), f_.data());
-    if (part == 0) watch(system, y.data(), f_.data(), h, report);
+    if (part == 0) watch(system, y.data(), f_.data(), h, is_first_ ? kFirstIterations : kNextIterations, report);
     for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + 0.5 * h * f_[i];
     system.derivative(stage_.data(), k2_.data());
     for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + 0.5 * h * k2_[i];
     system.derivative(stage_.data(), k3_.data());
     if (suspicions < kMostSuspicions && is_suspicious()) {
       ++suspicions;
-      watch(system, stage_.data(), k3_.data(), h, report);
+      watch(system, stage_.data(), k3_.data(), h, kFirstIterations, report);
     }
     for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + h * k3_[i];
     system.derivative(stage_.data(), k4_.data());

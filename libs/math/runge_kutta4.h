@@ -27,7 +27,8 @@ class RungeKutta4 final : public StiffIntegrator {
   void set_step_size(double) noexcept override {}
 
  private:
-  void watch(StiffSystem& system, const double* y, const double* f, double h, StiffReport& report) noexcept;
+  void watch(StiffSystem& system, const double* y, const double* f, double h, int iterations,
+             StiffReport& report) noexcept;
   [[nodiscard]] bool is_suspicious() const noexcept;
 
   StiffOptions options_;
