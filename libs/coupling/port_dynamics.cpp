@@ -23,6 +23,7 @@ constexpr int kBracketedAfter = 12;
 // A bracket that is this narrow, of the speed scale, holds a jump of its law, such as a stop's damping where it is
 // touched: no speed has a force that fits, so that the force is one between the two sides'.
 constexpr double kJumpWidth = 1e-9;
+constexpr double kNarrow = 1e-3;  // of the step that leads out of it
 // speeds are converged below this fraction of the speed scale: well under any physical resolution, above round-off
 constexpr double kRelativeTolerance = 1e-12;
 constexpr double kAbsoluteTolerance = 1e-15;
@@ -33,10 +34,10 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
   SLEW_CHECK(capacity <= kMaxRows);
   for (std::vector<double>* values :
-       {&x_,    &v_,      &z_,      &a_free_,    &a_free_rate_, &weighted_a_, &shrink_,   &drive_,
-        &pull_, &x_base_, &v_base_, &z_base_,    &x_stage_,     &v_stage_,    &z_stage_,  &pressure_force_,
-        &f_,    &slope_,  &f_mean_, &f_slope_,   &work_,        &impulse_,    &residual_, &low_,
-        &high_, &f_low_,  &f_high_, &last_step_, &k_x_,         &k_v_,        &k_z_}) {
+       {&x_,    &v_,      &z_,      &a_free_,  &a_free_rate_, &weighted_a_, &shrink_,   &drive_,
+        &pull_, &x_base_, &v_base_, &z_base_,  &x_stage_,     &v_stage_,    &z_stage_,  &pressure_force_,
+        &f_,    &slope_,  &f_mean_, &f_slope_, &work_,        &impulse_,    &residual_, &low_,
+        &high_, &f_low_,  &f_held_, &f_high_,  &last_step_,   &k_x_,        &k_v_,      &k_z_}) {
     values->assign(capacity, 0.0);
   }
   law_.assign(capacity, RowForce{});
@@ -76,9 +77,9 @@ void PortDynamics::evaluate_rows(double weight, const RowLaws& laws) noexcept {
     const RowForce& law = law_[i];
     f_[i] = law.force;
     slope_[i] = law.d_v + weight * law.d_x - law.d_z * (pull_[i] + partner_[i].D);
-    if (is_at_jump_[i] != 0 && low_[i] <= v_stage_[i] && v_stage_[i] <= high_[i]) {
+    if (is_at_jump_[i] != 0) {
       slope_[i] = (f_high_[i] - f_low_[i]) / (high_[i] - low_[i]);
-      f_[i] = f_low_[i] + slope_[i] * (v_stage_[i] - low_[i]);
+      f_[i] = f_held_[i];
     }
   }
 }
@@ -103,11 +104,19 @@ bool PortDynamics::note_side(std::size_t row, double step) noexcept {
 
 // The stage speed after a Newton step that must not leave the bracket and must be at most half as long as the one
 // before; the bracket is halved otherwise.
-double PortDynamics::bracketed(std::size_t row, double step, double narrow) noexcept {
+double PortDynamics::bracketed(std::size_t row, double step, double sway, double narrow) noexcept {
   const double low = low_[row], high = high_[row], next = v_stage_[row] + step;
   const bool is_inside = low < next && next < high;
   if (is_at_jump_[row] != 0) {
-    if (!is_inside) forget_bracket(row);
+    // by the step itself: the speed has too few digits to tell forces in so narrow a bracket apart
+    f_held_[row] += slope_[row] * step;
+    const auto [least, most] = std::minmax(f_low_[row], f_high_[row]);
+    if (!(least <= f_held_[row] && f_held_[row] <= most)) forget_bracket(row);
+    return next;
+  }
+  // so narrow a bracket holds a jump that the step comes from, or is wrong because other rows moved
+  if (high - low < kNarrow * std::fabs(step) && sway * std::fabs(f_low_[row] - f_high_[row]) < 0.5 * std::fabs(step)) {
+    forget_bracket(row);
     return next;
   }
   const double half = 0.5 * (high - low);
@@ -117,6 +126,7 @@ double PortDynamics::bracketed(std::size_t row, double step, double narrow) noex
     return next;
   }
   is_at_jump_[row] = low < high && high - low <= narrow ? 1 : 0;
+  f_held_[row] = 0.5 * (f_low_[row] + f_high_[row]);
   last_step_[row] = half;
   return low + half;
 }
@@ -164,8 +174,11 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
     for (std::size_t i = 0; i < m; ++i) {
       const double step = residual_[i];
       const bool is_known = note_side(i, step);
-      if (is_at_jump_[i] != 0 || (is_known && i == widest)) {
-        v_stage_[i] = bracketed(i, step, kJumpWidth * scale);
+      // what the widest step is taken for must not throw the others out of theirs
+      const bool is_thrown = is_known && std::isfinite(high_[i] - low_[i]) &&
+                             !(low_[i] < v_stage_[i] + step && v_stage_[i] + step < high_[i]);
+      if (is_at_jump_[i] != 0 || is_thrown || (is_known && i == widest)) {
+        v_stage_[i] = bracketed(i, step, weighted_W_[i * m + i], kJumpWidth * scale);
       } else {
         v_stage_[i] += i == widest ? 0.5 * step : step;
       }

@@ -96,7 +96,8 @@ class PortDynamics {
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
   void forget_bracket(std::size_t row) noexcept;
   bool note_side(std::size_t row, double step) noexcept;
-  double bracketed(std::size_t row, double step, double narrow) noexcept;
+  // sway: what the row's own force moves it by [m/s per N]
+  double bracketed(std::size_t row, double step, double sway, double narrow) noexcept;
 
   std::size_t capacity_;
   std::size_t rows_;
@@ -112,6 +113,7 @@ class PortDynamics {
   std::vector<double> residual_, A_;
   std::vector<double> low_, high_;       // speeds of the stage between which the iteration's answer lies
   std::vector<double> f_low_, f_high_;   // forces there
+  std::vector<double> f_held_;           // force in a bracket that holds a jump
   std::vector<double> last_step_;        // of the iteration, inside the bracket
   std::vector<char> is_at_jump_;         // the bracket holds a jump
   std::vector<double> k_x_, k_v_, k_z_;  // slopes of the first stage

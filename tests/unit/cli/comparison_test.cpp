@@ -118,7 +118,8 @@ bodies:
 joints:
   Slide: {type: prismatic, body1: Ground, body2: Mass}
 forces:
-  Spring: {type: bushing, body1: Ground, body2: Mass, stiffness: [0, 0, 1.56e6]}
+  Spring: {type: translational, body1: Ground, point1: [0, 0, -1 m], body2: Mass, free_length: 1 m,
+           spring_table: [[-1 m, -1.56e6 N], [0 m, 0 N], [1 m, 1.56e6 N]]}
 mechanics: {gravity: [0, 0, 1]}
 session: {duration: 2 s, step: 8 ms}
 )");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -108,32 +109,50 @@ TEST(PortDynamics, EndStopBringsAMovingMassToRest) {
 }
 
 // a force that is linear in time, by a partner without stiffness: z' = F_dot
-// a stop that pushes with f while v is below its speed, and not above: no speed has a force between the two
-class Jump final : public RowLaws {
+// a stop that pushes while v is below its speed, and not above: no speed has a force between the two; beside it a
+// damper
+class JumpAndDamper final : public RowLaws {
  public:
   RowForce evaluate(std::size_t row, double, double, double v) const noexcept override {
-    return {v < speed[row] ? push[row] : 0.0, 0, 0, 0};
+    if (row == 0) return {v < kSpeed ? 2.7e5 : 0.0, 0, 0, 0};
+    return {-kDamping * v, 0, 0, -kDamping};
   }
-  double speed[2] = {0.13, -0.2}, push[2] = {2.7e5, 1e4};
+  static constexpr double kSpeed = 0.13, kDamping = 1e4;
 };
 
 TEST(PortDynamics, TakesAForceBetweenTheSidesOfAJump) {
-  // each row is pulled down and held at its jump by what the pull asks for
+  // the first row is pulled down and held at its jump
   PortDynamics ports(2);
-  const double a_free[2] = {-90, -40}, W[4] = {0.02, 0.004, 0.004, 0.03};
-  const Jump laws;
-  for (std::size_t i = 0; i < 2; ++i) {
-    ports.v()[i] = laws.speed[i];
-    ports.a_free()[i] = a_free[i];
-    for (std::size_t j = 0; j < 2; ++j) ports.W()[2 * i + j] = W[2 * i + j];
-  }
-  const PortStep step = ports.solve(1e-3, 4, laws);
+  const double W[4] = {0.02, 0.004, 0.004, 0.03}, pull = 90;
+  ports.v()[0] = JumpAndDamper::kSpeed;
+  ports.v()[1] = 0.2;
+  ports.a_free()[0] = -pull;
+  ports.a_free()[1] = 10;
+  std::copy(W, W + 4, ports.W().begin());
+  const PortStep step = ports.solve(1e-3, 4, JumpAndDamper());
   EXPECT_TRUE(step.has_converged) << step.residual;
-  const double determinant = W[0] * W[3] - W[1] * W[2];
-  const double holding[2] = {(90 * W[3] - 40 * W[1]) / determinant, (40 * W[0] - 90 * W[2]) / determinant};
+  EXPECT_NEAR(ports.v()[0], JumpAndDamper::kSpeed, 1e-8);
+  // W f = pull keeps it there
+  EXPECT_NEAR(W[0] * ports.f_mean()[0] + W[1] * ports.f_mean()[1], pull, 1e-4 * pull);
+}
+
+TEST(PortDynamics, SettlesTwoJumpsThatMoveEachOther) {
+  class Jumps final : public RowLaws {
+   public:
+    RowForce evaluate(std::size_t row, double, double, double v) const noexcept override {
+      return row == 0 ? RowForce{v < 0.13 ? 2.7e5 : 0.0, 0, 0, 0} : RowForce{v < -0.2 ? 1e4 : 0.0, 0, 0, 0};
+    }
+  };
+  PortDynamics ports(2);
+  const double W[4] = {0.02, 0.004, 0.004, 0.03}, pull[2] = {90, 40};
+  std::copy(W, W + 4, ports.W().begin());
+  ports.v()[0] = 0.13;
+  ports.v()[1] = -0.2;
+  for (std::size_t i = 0; i < 2; ++i) ports.a_free()[i] = -pull[i];
+  const PortStep step = ports.solve(1e-3, 4, Jumps());
+  EXPECT_TRUE(step.has_converged) << step.residual;
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_NEAR(ports.v()[i], laws.speed[i], 1e-8) << i;
-    EXPECT_NEAR(ports.f_mean()[i], holding[i], 1e-3 * holding[i]) << i;
+    EXPECT_NEAR(W[2 * i] * ports.f_mean()[0] + W[2 * i + 1] * ports.f_mean()[1], pull[i], 1e-4 * pull[i]) << i;
   }
 }
 
@@ -193,21 +212,17 @@ TEST(PortDynamics, SaysThatANumberWasLost) {
 }
 
 TEST(PortDynamics, StatesTheResidualThatItStoppedAt) {
-  // a force that is another at every look: no speed solves v = h (1 + f)
-  class Restless final : public RowLaws {
+  // a jump so high that the halvings from its throw of 3e16 m/s down to it are more than the iterations
+  class Wall final : public RowLaws {
    public:
-    RowForce evaluate(std::size_t, double, double, double) const noexcept override {
-      side_ = -side_;
-      return {side_, 0, 0, 0};
+    RowForce evaluate(std::size_t, double, double, double v) const noexcept override {
+      return {v < 0 ? 1e20 : 0.0, 0, 0, 0};
     }
-
-   private:
-    mutable double side_ = 5;
   };
   PortDynamics ports(1);
   ports.W()[0] = 1;
-  ports.a_free()[0] = 1;
-  const PortStep step = ports.solve(1e-3, 1, Restless());
+  ports.a_free()[0] = -1;
+  const PortStep step = ports.solve(1e-3, 1, Wall());
   EXPECT_FALSE(step.has_converged);
   EXPECT_GT(step.residual, 1e-4);
 }

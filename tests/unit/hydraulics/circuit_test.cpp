@@ -467,16 +467,16 @@ TEST(Circuit, equilibrium_beyond_its_shock_valves_names_volume_and_valve) {
   }
   ASSERT_NE(valve, nullptr);
   const double limit = 1e5 + valve->shock_pressure_a + valve->shock_pressure_rise;
-  const Actuator& lift = circuit.actuators()[1];
+  const Actuator& lift = circuit.actuators()[0];
   // F of the lift cylinder that asks for just this much, and for a little more
   const double holds = limit * lift.area_a - def.start_return_pressure * lift.area_b;
-  double F[] = {kCraneForces[0], 0.999 * holds, kCraneForces[2]};
+  double F[] = {0.999 * holds, kCraneForces[1], kCraneForces[2]};
   EXPECT_FALSE(circuit.demand_beyond_limits(F));
-  F[1] = 1.001 * holds;
+  F[0] = 1.001 * holds;
   const auto demand = circuit.demand_beyond_limits(F);
   ASSERT_TRUE(demand);
   EXPECT_EQ(circuit.volume_name(demand->volume), "Vol_LiftCyl_A");
-  EXPECT_EQ(demand->actuator, 1);
+  EXPECT_EQ(demand->actuator, 0);
   EXPECT_EQ(demand->valve, "L90Lift");
   EXPECT_DOUBLE_EQ(demand->limit, limit);
   EXPECT_NEAR(demand->pressure, 1.001 * limit, 1e-3 * limit);

@@ -17,8 +17,11 @@ MechanicsDef arm(double spring, double damping) {
   MechanicsDef def;
   def.bodies = {{.name = "Arm", .mass = 1, .inertia = {kInertia, kInertia, kInertia}}};
   def.joints = {{.name = "Hinge", .body1 = "Ground", .body2 = "Arm"}};
-  def.rotational_forces = {
-      {.name = "Spring", .body1 = "Ground", .body2 = "Arm", .spring_constant = spring, .damping_constant = damping}};
+  RotationalForceDef force{.name = "Spring", .body1 = "Ground", .f1 = {1, 0, 0}, .g1 = {0, 1, 0}, .body2 = "Arm"};
+  force.f2 = {1, 0, 0};
+  force.spring_constant = spring;
+  force.damping_constant = damping;
+  def.rotational_forces = {force};
   return def;
 }
 
@@ -64,7 +67,10 @@ TEST(ElementSpeeds, ExtremeRatesAreNamedWithAStepThatSuits) {
 
 TEST(ElementSpeeds, NamesTheElementThatIsTooFast) {
   MechanicsDef def = arm(10, 1);
-  def.rotational_forces.push_back({.name = "Brake", .body1 = "Ground", .body2 = "Arm", .damping_constant = 1e6});
+  RotationalForceDef brake = def.rotational_forces[0];
+  brake.name = "Brake";
+  brake.damping_constant = 1e6;
+  def.rotational_forces.push_back(brake);
   Problems problems;
   check_element_speeds(def, 1e-3, problems);
   ASSERT_EQ(problems.size(), 1u);
