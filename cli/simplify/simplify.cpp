@@ -220,7 +220,7 @@ class Simplifier {
     }
     if (is_stopped_) return;
     if (!run.failure.empty()) {
-      trial.refusal = fmt::format("its run ends at {} s: {} is not finite", run.failed_at, run.failure);
+      trial.refusal = fmt::format("its run ends at {:.6g} s: {} is not finite", run.failed_at, run.failure);
       return;
     }
     for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -271,7 +271,9 @@ class Simplifier {
     if (result_.settings.empty()) return;
     result_.combined = attempt({.title = "all that are taken", .group = "", .settings = result_.settings});
     // measured once more: what does not repeat is not handed out
-    if (!pays(result_.combined, result_.base_cost)) result_.settings.clear();
+    if (pays(result_.combined, result_.base_cost)) return;
+    result_.settings.clear();
+    for (Trial& trial : result_.trials) trial.is_taken = false;
   }
 
   const SimplifyWish& wish_;

@@ -25,7 +25,8 @@ std::string verdict_text(const Simplification& result, const Trial& trial) {
   if (!trial.has_run()) return "cannot: " + trial.refusal;
   if (!holds(result.watched, trial)) return "changes too much";
   if (trial.is_taken) return "taken";
-  return trial.cost < (1 - kLeastSaving) * result.base_cost ? "not beside those taken" : "saves nothing";
+  if (trial.cost >= (1 - kLeastSaving) * result.base_cost) return "saves nothing";
+  return result.helps() ? "not beside those taken" : "its saving did not repeat";
 }
 
 std::vector<std::string> row(const Simplification& result, const Trial& trial) {
