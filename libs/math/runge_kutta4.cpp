@@ -8,6 +8,7 @@ namespace slew::math {
 namespace {
 
 constexpr int kFirstIterations = 60;  // from an arbitrary vector, and where something is suspicious
+constexpr double kGrossError = 0.1;   // of a state and its scale, in one sub-step
 constexpr int kMostSuspicions = 4;    // looked into per interval
 constexpr int kNextIterations = 4;    // from the vector of the interval before
 
@@ -51,6 +52,18 @@ bool RungeKutta4::is_suspicious() const noexcept {
   return 4 * later > kExplicitLimit * kExplicitLimit * earlier;
 }
 
+// The last two stages differ by the third order of the step: where that is a good part of a state, the step is too long
+// for what happens in it, whether it grows or not.
+void RungeKutta4::watch_error(const double* y, double h, StiffReport& report) const noexcept {
+  for (std::size_t i = 0; i < f_.size(); ++i) {
+    const double share =
+        h / 6 * std::fabs(k4_[i] - k3_[i]) / (options_.scale[i] + std::max(std::fabs(y[i]), std::fabs(new_[i])));
+    if (!(share > kGrossError)) continue;
+    report.is_unstable = true;
+    report.worst_state = static_cast<std::int32_t>(i);
+  }
+}
+
 StiffReport RungeKutta4::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
   StiffReport report;
   const std::size_t n = y.size();
@@ -71,6 +84,7 @@ StiffReport RungeKutta4::advance(StiffSystem& system, std::span<double> y, doubl
     for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + h * k3_[i];
     system.derivative(stage_.data(), k4_.data());
     for (std::size_t i = 0; i < n; ++i) new_[i] = y[i] + h / 6 * (f_[i] + 2 * k2_[i] + 2 * k3_[i] + k4_[i]);
+    watch_error(y.data(), h, report);
     const auto bad = std::find_if(new_.begin(), new_.end(), [](double x) { return !std::isfinite(x); });
     if (bad != new_.end()) {
       report.is_finite = false;

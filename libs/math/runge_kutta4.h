@@ -7,6 +7,8 @@
 // limit: 2.79 on the real axis, 2.83 on the imaginary one), at the start of every interval and at sub-steps, four an
 // interval at most, where the stages themselves are suspicious:
 //   2 |k_3 - k_2| / |k_2 - k_1| > 2                       h times the growth of J along k_2 - k_1               (2)
+// A sub-step that is too long for what happens in it without growing, such as a jump of a pressure, shows in
+//   h/6 |k_4 - k_3| > 0.1 (scale + max |y|, |y_new|)      of any state                                          (3)
 // Source: Hairer, Norsett and Wanner 1993, II.1; limits: Hairer and Wanner 1996, IV.2. Real-time safe.
 #pragma once
 
@@ -27,6 +29,7 @@ class RungeKutta4 final : public StiffIntegrator {
   void set_step_size(double) noexcept override {}
 
  private:
+  void watch_error(const double* y, double h, StiffReport& report) const noexcept;
   void watch(StiffSystem& system, const double* y, const double* f, double h, int iterations,
              StiffReport& report) noexcept;
   [[nodiscard]] bool is_suspicious() const noexcept;

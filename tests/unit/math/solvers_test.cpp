@@ -49,9 +49,20 @@ TEST(RungeKutta4, is_of_fourth_order) {
   EXPECT_NEAR(std::log2(error_after_one_second(coarse) / error_after_one_second(fine)), 4, 0.1);
 }
 
+TEST(RungeKutta4, says_when_a_state_moves_by_more_than_a_step_follows) {
+  for (const double step : {0.03, 0.15}) {
+    Oscillator system;
+    double y[] = {1000, 0};
+    RungeKutta4 solver(2, options(1, step));
+    const StiffReport report = solver.advance(system, y, step);
+    EXPECT_LT(report.largest_error, 1) << step;  // of the limit
+    EXPECT_EQ(report.is_unstable, step > 0.1);
+  }
+}
+
 TEST(RungeKutta4, says_when_its_step_is_beyond_the_limit) {
   Oscillator system;
-  double y[] = {1, 0};
+  double y[] = {0.01, 0};  // small beside its scale: what moves is followed well enough
   RungeKutta4 stable(2, options(1, 0.15)), unstable(2, options(1, 0.25));
   const StiffReport good = stable.advance(system, y, 0.3), bad = unstable.advance(system, y, 0.5);
   EXPECT_FALSE(good.is_unstable);
