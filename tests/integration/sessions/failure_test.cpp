@@ -440,11 +440,15 @@ TEST(Storage, ThatIsFullEndsTheSessionWithCode6AndAValidRecording) {
 
 // ---- divergence -----------------------------------------------------------------------------------------------
 
-// a damper that no explicit sub-step can follow
-const char* const kUnstable = "ForceR_FrictionX.damping_constant=1e9 Nms/rad";
+// a coupling that grows until nothing is finite
+const std::vector<std::string> kUnstable = {"--pace",     "free",
+                                            "--duration", "5s",
+                                            "--set",      "session.step=20ms",
+                                            "--set",      "mechanics.max_substep=20ms",
+                                            "--set",      "session.coupling=hold"};
 
 TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5) {
-  Session session({"--pace", "free", "--duration", "5s", "--set", kUnstable});
+  Session session(kUnstable);
   session.start_all();
   for (const auto& [role, code] : session.wait_all())
     EXPECT_EQ(code, 5) << node::to_text(role) << "\n" << session.said();
@@ -456,7 +460,7 @@ TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5) {
 }
 
 TEST(Divergence, KeepsTheLastGoodStateInTheRecording) {
-  Session session({"--pace", "free", "--duration", "5s", "--set", kUnstable});
+  Session session(kUnstable);
   session.start_all();
   static_cast<void>(session.wait_all());
   const std::vector<wire::MechanismMessage> samples = session.recorded().mechanisms;
