@@ -9,12 +9,12 @@
 #include <set>
 
 #include "cli/plotting/csv_export.h"
+#include "cli/plotting/html_plot.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
 #include "cli/run_report.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
-#include "node/identity.h"
 
 namespace slew::cli {
 namespace {
@@ -79,6 +79,15 @@ std::vector<plotting::Series> read_beside(const Readers& readers, const std::vec
   return curves;
 }
 
+// As the file's name says: a page for .html, a picture otherwise.
+ExitCode draw(std::span<const plotting::Plot> plots, const plotting::PlotOptions& look, const std::string& output) {
+  const std::string path = output.empty() ? "plot.svg" : output;
+  const bool is_page = std::filesystem::path(path).extension() == ".html";
+  write_text(path, is_page ? plotting::plot_html(plots, look) : plotting::plot_svg(plots, look));
+  if (path != "-") fmt::print("{}\n", path);
+  return ExitCode::ok;
+}
+
 ExitCode plot_beside(const Options& options) {
   if (options.variables.empty()) {
     throw Failure(ExitCode::bad_input, "--with compares variables; nothing was written; name those to plot");
@@ -91,33 +100,26 @@ ExitCode plot_beside(const Options& options) {
   for (const std::string& label : labels_of(readers)) {
     if (options.title.empty()) look.title += (look.title.empty() ? "" : ", ") + label;
   }
-  const std::string path = options.output.empty() ? "plot.svg" : options.output;
-  write_text(path, plotting::plot_svg(read_beside(readers, options.variables), look));
-  if (path != "-") fmt::print("{}\n", path);
-  return ExitCode::ok;
+  const plotting::Plot plot{.title = "", .series = read_beside(readers, options.variables)};
+  return draw({&plot, 1}, look, options.output);
 }
 
 ExitCode plot(const Options& options) {
   if (!options.others.empty()) return plot_beside(options);
   const auto reader = open_recording(options.recording);
-  if (options.variables.empty()) {
-    const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
-    const std::string path = write_plots(scene, reader->path().string());
-    if (path.empty()) {
-      throw Failure(ExitCode::bad_input,
-                    "the scene of this recording has no plots; nothing was written; name the "
-                    "variables to plot");
-    }
-    fmt::print("{}\n", path);
-    return ExitCode::ok;
+  plotting::PlotOptions look = plot_heading(*reader);
+  if (!options.title.empty()) look.title = options.title;
+  if (!options.variables.empty()) {
+    const plotting::Plot plot{.title = "", .series = read_series(*reader, options.variables, Units::display)};
+    return draw({&plot, 1}, look, options.output);
   }
-  const std::vector<plotting::Series> curves = read_series(*reader, options.variables, Units::display);
-  plotting::PlotOptions look;
-  look.title = options.title.empty() ? reader->identity().scene : options.title;
-  look.subtitle = "session " + reader->identity().session_name + ", " + node::time_text(reader->identity().started_ns);
-  const std::string path = options.output.empty() ? "plot.svg" : options.output;
-  write_text(path, plotting::plot_svg(curves, look));
-  if (path != "-") fmt::print("{}\n", path);
+  const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
+  if (scene.plots.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "the scene of this recording has no plots; nothing was written; name the variables to plot");
+  }
+  if (!options.output.empty()) return draw(read_plots(scene, *reader), look, options.output);
+  fmt::print("{}\n", write_plots(scene, reader->path().string()));
   return ExitCode::ok;
 }
 
@@ -171,12 +173,14 @@ ExitCode export_table(const Options& options) {
 }  // namespace
 
 void add_plot(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("plot", "draw variables of a recording as SVG");
+  CLI::App* verb =
+      program.add_subcommand("plot", "draw variables of a recording: a picture, or a page to look around in");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
   verb->add_option("variables", options->variables, "names, or patterns with * and ?; without them the scene's plots")
       ->type_name("VAR");
-  verb->add_option("-o,--output", options->output, "file to write, - for standard output; without it plot.svg")
+  verb->add_option("-o,--output", options->output,
+                   "file to write: .svg, .html, or - for standard output; without it plot.svg")
       ->type_name("FILE");
   verb->add_option("--title", options->title, "heading; without it the scene's name")->type_name("TEXT");
   verb->add_option("--with", options->others, "another recording whose variables are drawn beside; repeat for more")
@@ -186,6 +190,7 @@ void add_plot(CLI::App& program, Action& action) {
   verb->footer(
       "Examples:\n"
       "  slewring plot runs/truck_crane-20260501-102030 'Cyl_*.force' Bag.position.y -o lift.svg\n"
+      "  slewring plot runs/truck_crane-20260501-102030 -o run.html\n"
       "  slewring plot runs/truck_crane-20260501-102030 Bag.position.y --with "
       "runs/truck_crane_flexible-20260501-103000");
   verb->callback([&action, options] { action = [options] { return plot(*options); }; });

@@ -88,27 +88,35 @@ nlohmann::json number(double value) {
 
 }  // namespace
 
-std::string write_plots(const scene::Scene& scene, const std::string& recording) {
-  const auto reader = open_recording(recording);
+std::vector<plotting::Plot> read_plots(const scene::Scene& scene, const recording::Reader& reader) {
   std::vector<plotting::Plot> plots;
   for (const scene::PlotDef& plot : scene.plots) {
     try {
       plots.push_back(
-          {plot.title.empty() ? plot.name : plot.title, read_series(*reader, plot.variables, Units::display)});
+          {plot.title.empty() ? plot.name : plot.title, read_series(reader, plot.variables, Units::display)});
     } catch (const cli_support::Failure& failure) {
       throw cli_support::Failure(
           failure.code(), "no plots were drawn; the recording is complete; plot " + plot.name + ": " + failure.what());
     }
   }
-  if (plots.empty()) return "";
+  return plots;
+}
+
+plotting::PlotOptions plot_heading(const recording::Reader& reader) {
   plotting::PlotOptions options;
-  options.title = scene.name;
-  options.subtitle =
-      "session " + reader->identity().session_name + ", " + node::time_text(reader->identity().started_ns);
+  options.title = reader.identity().scene;
+  options.subtitle = "session " + reader.identity().session_name + ", " + node::time_text(reader.identity().started_ns);
+  return options;
+}
+
+std::string write_plots(const scene::Scene& scene, const std::string& recording) {
+  const auto reader = open_recording(recording);
+  const std::vector<plotting::Plot> plots = read_plots(scene, *reader);
+  if (plots.empty()) return "";
   const std::filesystem::path path =
       std::filesystem::path(recording).parent_path() / (recording::file_name(scene.name) + ".svg");
   std::ofstream file(path, std::ios::binary);
-  file << plotting::plot_svg(std::span<const plotting::Plot>(plots), options);
+  file << plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(*reader));
   if (!file.flush()) {
     throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
                                                       "; the recording is complete; free some space and use 'slewring "

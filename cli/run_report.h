@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/plotting/svg_plot.h"
 #include "cli/run_outcome.h"
+#include "recording/reader.h"
 #include "scene/scene.h"
 
 namespace slew::cli {
@@ -58,7 +60,11 @@ struct RunReport {
 void print(const RunReport& report);
 [[nodiscard]] std::string to_json_text(const RunReport& report);
 
-// Writes the scene's plots of a recording as one picture. Returns its path; empty when the scene has none.
+// The scene's plots of a recording, and what stands above pictures of it.
+[[nodiscard]] std::vector<plotting::Plot> read_plots(const scene::Scene& scene, const recording::Reader& reader);
+[[nodiscard]] plotting::PlotOptions plot_heading(const recording::Reader& reader);
+
+// Writes these plots as one picture beside the recording. Returns its path; empty when the scene has none.
 [[nodiscard]] std::string write_plots(const scene::Scene& scene, const std::string& recording);
 
 }  // namespace slew::cli

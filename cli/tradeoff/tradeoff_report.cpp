@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
+#include "cli/plotting/html_text.h"
 #include "cli/plotting/svg_text.h"
 
 namespace slew::cli {
@@ -213,12 +214,6 @@ function table(){const head=['','settings',...names.slice(1),'eta','net','joints
 pick.onchange=draw;kind.onchange=()=>{draw();table()};draw();table();
 )";
 
-// nothing in the data can end the element that holds them
-std::string in_script(std::string text) {
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
-  return text;
-}
-
 }  // namespace
 
 std::string answer_text(const Tradeoff& tradeoff, const Answer& answer) {
@@ -319,7 +314,7 @@ std::string report_html(const Tradeoff& tradeoff, const std::optional<Answer>& a
       "<table id=\"rows\"></table>\n<script id=\"data\" type=\"application/json\">{3}</script>\n"
       "<script>{4}</script>\n</body>\n</html>\n",
       plotting::escaped(tradeoff.scene), kPageStyle, plotting::escaped(note),
-      in_script(to_json(tradeoff, answer).dump()), kPageScript);
+      plotting::in_script(to_json(tradeoff, answer).dump()), kPageScript);
 }
 
 }  // namespace slew::cli

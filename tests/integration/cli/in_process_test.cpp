@@ -174,6 +174,13 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_NE(svg.str().find("Cyl_Lift.force"), std::string::npos);
   EXPECT_NE(svg.str().find("kN"), std::string::npos);
 
+  // without names the scene's plots, as a page where the file is one
+  ASSERT_EQ(slewring({"plot", recording, "-o", "run.html"}).code, 0);
+  std::ostringstream page;
+  page << std::ifstream(work_.path() / "run.html").rdbuf();
+  EXPECT_TRUE(page.str().starts_with("<!DOCTYPE html>"));
+  EXPECT_NE(page.str().find("Height of the bag"), std::string::npos);
+
   const CommandResult table = slewring({"export", recording, "Bag.position.y", "--csv"});
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_TRUE(table.out.starts_with("time [s],Bag.position.y [m]")) << table.out.substr(0, 100);
