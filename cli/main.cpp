@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   cli::add_control(app, action);
   cli::add_info(app, action);
   cli::add_plot(app, action);
+  cli::add_animate(app, action);
   cli::add_export(app, action);
   cli::add_replay(app, action);
   cli::add_compare(app, action);

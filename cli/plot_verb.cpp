@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <set>
@@ -13,6 +12,7 @@
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
 #include "cli/run_report.h"
+#include "cli/text_output.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 
@@ -30,18 +30,6 @@ struct Options {
   bool is_csv = false;
   bool is_input = false;
 };
-
-void write_text(const std::string& path, const std::string& text) {
-  if (path == "-") {
-    std::cout << text << std::flush;
-    return;
-  }
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  if (!file.flush()) {
-    throw Failure(ExitCode::storage, "cannot write " + path + "; nothing was kept; name another file with -o");
-  }
-}
 
 using Readers = std::vector<std::unique_ptr<recording::Reader>>;
 

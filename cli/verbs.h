@@ -24,6 +24,7 @@ void add_variables(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_plot(CLI::App& program, Action& action);
+void add_animate(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);

@@ -181,6 +181,11 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_TRUE(page.str().starts_with("<!DOCTYPE html>"));
   EXPECT_NE(page.str().find("Height of the bag"), std::string::npos);
 
+  ASSERT_EQ(slewring({"animate", recording, "-o", "crane.html"}).code, 0);
+  ASSERT_EQ(slewring({"animate", recording, "-o", "crane.svg"}).code, 0);
+  EXPECT_GT(std::filesystem::file_size(work_.path() / "crane.html"), 10'000u);
+  EXPECT_EQ(slewring({"animate", recording, "-o", "crane.gif"}).code, 2);
+
   const CommandResult table = slewring({"export", recording, "Bag.position.y", "--csv"});
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_TRUE(table.out.starts_with("time [s],Bag.position.y [m]")) << table.out.substr(0, 100);

@@ -1,0 +1,35 @@
+// A recorded motion as a page with a time slider, or as a picture of some instants: side view and top view of the
+// machine's lines.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "cli/animation/machine_drawing.h"
+#include "math/rotation.h"
+#include "math/vector3.h"
+
+namespace slew::cli {
+
+struct Pose {
+  math::Vec3 position{};           // m, in Ground
+  math::Quaternion orientation{};  // of the body in Ground
+};
+
+struct Motion {
+  std::string title, subtitle;
+  std::vector<double> time;              // s
+  std::vector<std::vector<Pose>> poses;  // by body of the drawing without Ground, then by instant
+};
+
+// At most `instants` of them, evenly, the first and the last among them.
+[[nodiscard]] Motion thinned(const Motion& motion, std::size_t instants);
+
+// One file that asks for nothing else: play, slider, speed, direction of the side view.
+[[nodiscard]] std::string animation_html(const MachineDrawing& machine, const Motion& motion);
+
+// All instants of the motion over each other, the last one darkest. Pre-condition: at least one.
+[[nodiscard]] std::string animation_svg(const MachineDrawing& machine, const Motion& motion);
+
+}  // namespace slew::cli
