@@ -9,6 +9,7 @@
 
 #include "cli/display.h"
 #include "coupling/indicator.h"
+#include "coupling/own_past.h"
 #include "scene/defs.h"
 #include "scene/ports.h"
 
@@ -22,9 +23,6 @@ using wire::Role;
 constexpr double kLeastDamping = 0.02;
 // a tenth more mass than the machine has
 constexpr double kLargestParasiticMass = 0.1;
-
-// of omega_H by the steps that samples are late (coupling study, section 6)
-constexpr double kMostLate = 0.3;
 
 constexpr std::string_view kNames[coupling::kLevels] = {"hold", "linear", "two", "tlm"};
 
@@ -93,8 +91,8 @@ std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) 
   if (!(share > kLargestParasiticMass)) return {};
   return fmt::format(
       "{}: level 'tlm' gives it a parasitic mass of {:.3g} kg, {:.0f} % of what it moves, at a step of {}; the run "
-      "will be "
-      "too slow and too damped: use session.step {} or less, or coupling 'two'",
+      "will "
+      "be too slow and too damped: use session.step {} or less, or coupling 'two'",
       scene.ports[ports.port[i]].name, mass, 100 * share, duration_text(H),
       safe_step(H * std::sqrt(kLargestParasiticMass / share)));
 }
@@ -102,15 +100,15 @@ std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) 
 // free-running sides have samples that are a step old, or older
 std::string running_late(const Ports& ports, const std::string& name, double H) {
   const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
-  if (!(omega_H > kMostLate)) return {};
-  const double safe = H * kMostLate / omega_H;
+  if (!(omega_H > coupling::kMostLate)) return {};
+  const double safe = H * coupling::kMostLate / omega_H;
   const std::string step = safe < scene::kMinStep ? "" : "session.step " + safe_step(safe) + " or less, or ";
   return fmt::format(
       "{}: free_running works with samples that are a step or more late, and the machine swings by omega_H {:.2g} on "
-      "its "
-      "oil in a step of {}; that is right up to {:.2g} by the steps that are late or lost; the run may be wrong or "
+      "its oil "
+      "in a step of {}; that is right up to {:.2g} by the steps that are late or lost; the run may be wrong or "
       "unstable: use {}session.mode lockstep",
-      name, omega_H, duration_text(H), kMostLate, step);
+      name, omega_H, duration_text(H), coupling::kMostLate, step);
 }
 
 }  // namespace

@@ -77,10 +77,8 @@ void add_extremes(CLI::App& program, Action& action) {
   verb->footer(
       "Each case is a process of its own, two at once. Ctrl-C keeps what is done; the same command goes on from "
       "there.\n"
-      "Exit code 0: every case ended within its bounds, was refused by name, or was flagged: beyond a bound, and the "
-      "session\nitself said so, by a warning before the run that names a port and a safe step or by a flag of its "
-      "steps "
-      "within 0.5 s;\n1: one was not.\n"
+      "Exit code 0: every case ended within its bounds or was refused by name, before it ran or by the session's own "
+      "alarm;\n1: one was not.\n"
       "The cases, their bounds and the suite's table: docs/extremes.md.\n\n"
       "Examples:\n"
       "  slewring extremes scenes/truck_crane.yaml\n"

@@ -74,6 +74,7 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
       levels_(scene::port_levels(scene)),
       H_(scene.session.step_duration()),
       is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
+      ends_on_alarm_(scene.session.coupling_alarm == scene::CouplingAlarm::stop),
       exchange_every_(scene.session.exchange_every),
       past_(m_),
       said_(is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
@@ -95,6 +96,7 @@ void HydraulicsSubsystem::reset() {
   ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
   levels_.reset();
   failure_ = StepReport{};
+  failure_text_length_ = 0;
   past_.clear();
   std::fill(said_.begin(), said_.end(), Said{});
   used_step_ = -1;
@@ -134,6 +136,9 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
   apply_levels();
   integrator_->refresh();
   publish(sample.actuators, 0, false);
+  if (m_ > 0 && ends_on_alarm_) {
+    if (Status status = check_coupling(*partners.mechanism); !status.is_ok()) return status;
+  }
   return check_stability(partners.mechanism);
 }
 
@@ -171,6 +176,29 @@ Status HydraulicsSubsystem::check_stability(const coupling::MechanismSample* mec
           "for it. Set hydraulics.max_substep below {:.3g} ms, or solver: rodas3",
           1e3 * stability.substep, offender_name(stability.owner), stability.ratio,
           1e3 * stability.substep / stability.ratio));
+}
+
+// A machine that swings on its oil further than any exchange can follow is refused, and earlier with samples that are
+// late by a step at least.
+Status HydraulicsSubsystem::check_coupling(const coupling::MechanismSample& mechanism) const {
+  const double H = H_.seconds() * static_cast<double>(exchange_every_);
+  coupling::PortArray K = published_.K;
+  for (std::size_t i = 0; i < m_; ++i) {
+    if (!is_kept_in_balance(i)) K[i] = 0;
+  }
+  const double omega_H = coupling::coupling_frequency(mechanism.W, K, H);
+  const double limit = is_free_running_ ? coupling::kMostLate : coupling::kMostSampled;
+  if (!(omega_H > limit)) return Status::ok();
+  const char* const why = is_free_running_ ? "which samples that are a step late, as those of free_running, do not bear"
+                                           : "so that there are less than two exchanges to a swing";
+  return Status::error(
+      ExitCode::failed,
+      fmt::format(
+          "session.coupling: the machine swings on its oil by omega_H = {:.2g} from one exchange to the next in "
+          "{:.3g} ms, {}: at most {:.2g}. Nothing was run. Set {} below {:.2g} ms{}, or session.coupling_alarm: "
+          "warn to run it all the same",
+          omega_H, 1e3 * H, why, limit, exchange_every_ > 1 ? "the time between two exchanges" : "session.step",
+          1e3 * H * limit / omega_H, is_free_running_ ? ", or session.mode: lockstep" : ""));
 }
 
 // ---- step -----------------------------------------------------------------------------------------------------
@@ -262,6 +290,10 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   StepReport report = integrator_->step(H_.seconds(), reduced_);
   report.flags |= taken.flags;
   if (indicator_.creates_energy()) report.raise(StepFlag::coupling_creates_energy);
+  if (const std::optional<std::size_t> port = ends_on_alarm_ ? maker_of_energy() : std::nullopt) {
+    report.raise(StepFlag::ended);
+    end_at(*port);
+  }
   if (report.has_failed()) {
     failure_ = report;
     sample.actuators = published_;
@@ -270,6 +302,33 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   publish(sample.actuators, report.flags, n % exchange_every_ != 0);
   if (is_free_running_ && m_ > 0) keep_end(n + 1);
   return report;
+}
+
+// Only of levels that are meant not to: hold makes energy on any machine that swings, and a line of level tlm has work
+// under way, which the indicator takes for made.
+bool HydraulicsSubsystem::is_kept_in_balance(std::size_t port) const noexcept {
+  return levels_[port] == coupling::Level::linear || levels_[port] == coupling::Level::two;
+}
+
+std::optional<std::size_t> HydraulicsSubsystem::maker_of_energy() const noexcept {
+  for (std::size_t i = 0; i < m_; ++i) {
+    if (indicator_.port(i).creates_energy && is_kept_in_balance(i)) return i;
+  }
+  return std::nullopt;
+}
+
+void HydraulicsSubsystem::end_at(std::size_t port) noexcept {
+  const coupling::PortDefects& defects = indicator_.port(port);
+  const char* const remedy = levels_[port] != coupling::Level::two ? "a shorter session.step or coupling: two"
+                             : is_free_running_                    ? "a shorter session.step or session.mode: lockstep"
+                                                                   : "a shorter session.step";
+  const auto written = fmt::format_to_n(
+      failure_text_.data(), failure_text_.size(),
+      "{}: the coupling has made energy for {:g} s, {:.2g} % of the work of the last second, and the machine swings on "
+      "its oil by {:.2g} from one exchange to the next; use {}, or session.coupling_alarm: warn to go on with red "
+      "lamps",
+      port_names_[port], coupling::kNetAlarmAfter.seconds(), -1e2 * defects.net, indicator_.omega_H(), remedy);
+  failure_text_length_ = std::min(written.size, failure_text_.size());
 }
 
 // parameters on their way, and the controls of the step

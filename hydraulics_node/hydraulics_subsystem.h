@@ -6,10 +6,13 @@
 // F_line_j is that of F, x^h, v^h of port j whatever its level, since a held port's force moves the others too; of
 // level tlm F is what the lines do to the piston (hydraulics/line_chambers.h), as in the mechanics.
 //
-// Also follows the coupling's error per port (coupling/indicator.h), since it is where both samples of a step meet.
+// Also follows the coupling's error per port (coupling/indicator.h), since it is where both samples of a step meet, and
+// ends a session whose coupling makes energy (session.coupling_alarm).
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +87,9 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
+  [[nodiscard]] std::string_view failure_text() const noexcept override {
+    return {failure_text_.data(), failure_text_length_};
+  }
 
   [[nodiscard]] const coupling::Indicator& indicator() const noexcept { return indicator_; }
   [[nodiscard]] const hydraulics::Circuit& circuit() const noexcept { return *circuit_; }
@@ -101,6 +107,10 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   void apply_levels() noexcept;
   [[nodiscard]] Status check_pressures(std::span<const double> F) const;
   [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
+  [[nodiscard]] Status check_coupling(const coupling::MechanismSample& mechanism) const;
+  [[nodiscard]] bool is_kept_in_balance(std::size_t port) const noexcept;
+  [[nodiscard]] std::optional<std::size_t> maker_of_energy() const noexcept;
+  void end_at(std::size_t port) noexcept;
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                       StepReport& report) noexcept;
@@ -117,6 +127,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   coupling::PortLevels levels_;
   SimDuration H_;
   bool is_free_running_;
+  bool ends_on_alarm_;  // when the coupling makes energy
   StepIndex exchange_every_;
   coupling::OwnPast past_;     // free-running: position and speed by port
   std::vector<Said> said_;     // free-running: the last steps
@@ -131,6 +142,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   coupling::ActuatorSample published_;
   coupling::PortArray stiffness_;  // N/m, of the oil columns, also of ports that publish none
   StepReport failure_;
+  std::array<char, 512> failure_text_{};  // of a session that ends by its alarm; no allocation in a step
+  std::size_t failure_text_length_ = 0;
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene);

@@ -26,8 +26,7 @@ namespace {
 using cli_support::Failure;
 using wire::Role;
 
-constexpr double kRunLimit = 60;   // s of processor time: a busy machine is no verdict
-constexpr double kNetLasts = 0.2;  // s, as the indicator's alarm
+constexpr double kRunLimit = 60;  // s of processor time: a busy machine is no verdict
 constexpr double kCeilingMargin = 1.1;
 constexpr double kSwing = 2;                                    // of a load that is put on at once, about its rest
 constexpr double kStiffnessRun = 0.5;                           // s, to measure K H^2 W
@@ -138,6 +137,22 @@ SampleAges ages_of(const ExtremeCase& one) {
   return {};
 }
 
+// What the coupling made of a port's energy since the start.
+struct PortEnergy {
+  double gained = 0, made = 0;  // J: sum of dE*, the least it was
+  double work = 0, stored = 0;  // J: done by the mechanics' side; in the oil at its largest force
+  void add(double dE_star, double done, double F, double K) {
+    gained += dE_star;
+    made = std::max(made, -gained);
+    work += std::fabs(done);
+    if (K > 0) stored = std::max(stored, 0.5 * F * F / K);
+  }
+  [[nodiscard]] double share() const {
+    const double scale = std::max(work, stored);
+    return scale > 0 ? made / scale : 0;
+  }
+};
+
 class Stepper {
  public:
   Stepper(const ExtremeCase& one, const scene::Scene& scene, Strictness strictness)
@@ -175,13 +190,13 @@ class Stepper {
     }
     run_.measures.warnings = coupling_warnings(scene_, session_);
     const auto ports = scene_.ports.size();
-    nets_.resize(hydraulics_ != nullptr ? ports : 0);
+    if (has_ports()) energy_.resize(ports);
     run_.trace.columns = ports > 0 ? ports : pressures_.size();
     const StepIndex steps = duration_of_seconds(case_.duration).ns / H_.ns;
     const StepIndex first = is_whole_ ? case_.begin_ns / H_.ns : 0;
     const StepIndex hold = is_whole_ && case_.hold_at >= 0 ? duration_of_seconds(case_.hold_at).ns / H_.ns : -1;
     const std::clock_t limit = std::clock() + static_cast<std::clock_t>(kRunLimit * CLOCKS_PER_SEC);
-    for (StepIndex k = 0; k < steps && run_.measures.failure.empty(); ++k) {
+    for (StepIndex k = 0; k < steps && run_.measures.failure.empty() && run_.measures.alarm.empty(); ++k) {
       if (k == hold) sleep_until_monotonic(monotonic_ns() + kHold.ns);
       drive(k);
       session_.step(first + k, commands_, controls_);
@@ -189,7 +204,7 @@ class Stepper {
       look(k);
       if (k % kStepsBetweenQuestions == 0 && std::clock() > limit) {
         run_.measures.failure = fmt::format("it takes more than {} s of processor time", kRunLimit);
-        run_.measures.failed_at = run_.measures.H * static_cast<double>(k);
+        run_.measures.ended_at = run_.measures.H * static_cast<double>(k);
       }
     }
     finish();
@@ -201,6 +216,8 @@ class Stepper {
     std::size_t index;
     std::string volume;
   };
+
+  [[nodiscard]] bool has_ports() const { return hydraulics_ != nullptr && !scene_.ports.empty(); }
 
   // as whoever changes a parameter of a session is refused
   [[nodiscard]] std::string refusal_of_changes() const {
@@ -241,25 +258,18 @@ class Stepper {
     m.at_limit += count(StepFlag::limit_hit);
     m.too_late += count(StepFlag::late_input);
     m.creates_energy += count(StepFlag::coupling_creates_energy);
-    const bool is_flagged =
-        count(StepFlag::not_converged) + count(StepFlag::late_input) + count(StepFlag::coupling_creates_energy) > 0;
-    m.course.is_flagged.push_back(is_flagged || has_red_lamp() ? 1 : 0);
     if (count(StepFlag::non_finite) != 0) {
       m.failure = session_.failure();
       if (m.failure.empty()) m.failure = "the state";
-      m.failed_at = static_cast<double>(k + 1) * H_.seconds();
+      m.ended_at = static_cast<double>(k + 1) * H_.seconds();
       return;
+    }
+    if (count(StepFlag::ended) != 0) {
+      m.alarm = session_.failure();
+      m.ended_at = static_cast<double>(k + 1) * H_.seconds();
     }
     look_at_circuit(k);
     if (k % std::max<std::int64_t>(1, milliseconds(1).ns / H_.ns) == 0) look_at_joints();
-    if (m.gap) m.course.gap.push_back(*m.gap);
-  }
-
-  [[nodiscard]] bool has_red_lamp() const {
-    for (std::size_t i = 0; i < nets_.size(); ++i) {
-      if (coupling::lamp_of(hydraulics_->indicator().port(i)) == coupling::Lamp::red) return true;
-    }
-    return false;
   }
 
   void look_at_circuit(StepIndex k) {
@@ -273,13 +283,13 @@ class Stepper {
         m.highest_at = pressure.volume;
       }
       m.lowest_pressure = std::min(m.lowest_pressure.value_or(p), p);
-      if (nets_.empty()) run_.trace.values.push_back(p);
+      if (!has_ports()) run_.trace.values.push_back(p);
     }
-    if (m.highest_pressure) m.course.highest_pressure.push_back(*m.highest_pressure);
-    if (nets_.empty()) return;
+    if (!has_ports()) return;
     const coupling::Indicator& indicator = hydraulics_->indicator();
-    for (std::size_t i = 0; i < nets_.size(); ++i) {
-      nets_[i].push_back(indicator.port(i).net);
+    for (std::size_t i = 0; i < scene_.ports.size(); ++i) {
+      energy_[i].add(indicator.port(i).dE_star, session_.mechanism().work[i], session_.actuators().F[i],
+                     session_.actuators().K[i]);
       m.eta = std::max(m.eta.value_or(0), indicator.port(i).eta);
       run_.trace.values.push_back(session_.actuators().F[i]);
     }
@@ -301,15 +311,7 @@ class Stepper {
   void finish() {
     Measures& m = run_.measures;
     if (m.highest_pressure) m.ceiling = ceiling_.value();
-    const auto lasting = static_cast<std::size_t>(std::lround(kNetLasts / H_.seconds()));
-    for (const std::vector<double>& net : nets_) {
-      const std::vector<double> largest = largest_of_last(net, std::max<std::size_t>(1, lasting));
-      m.course.energy_made.resize(largest.size());
-      for (std::size_t i = 0; i < largest.size(); ++i) {
-        m.course.energy_made[i] = std::max(m.course.energy_made[i], -largest[i]);
-        m.net = std::min(m.net.value_or(0), largest[i]);
-      }
-    }
+    for (const PortEnergy& port : energy_) m.made = std::max(m.made.value_or(0), port.share());
     for (const Role role : {Role::mechanics, Role::hydraulics}) {
       const coupling::Subsystem* subsystem = session_.subsystem(role);
       if (subsystem == nullptr) continue;
@@ -331,16 +333,15 @@ class Stepper {
   std::optional<multibody::Workspace> ws_;
   std::vector<double> values_;
   std::vector<Pressure> pressures_;
-  std::vector<std::vector<double>> nets_;  // by port, by step
+  std::vector<PortEnergy> energy_;  // by port
   std::vector<double> controls_;
   std::vector<wire::Command> commands_;
   Run run_;
 };
 
-// Largest difference of any column over the largest range of any column in the second, by entry.
-std::vector<double> differences(const Trace& a, const Trace& b) {
-  double range = 0;
-  std::vector<double> largest;
+// Largest difference of any column over the largest range of any column in the second, as far as both go.
+double difference(const Trace& a, const Trace& b) {
+  double range = 0, largest = 0;
   for (std::size_t c = 0; c < b.columns; ++c) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t i = c; i < b.values.size(); i += b.columns) {
@@ -349,13 +350,11 @@ std::vector<double> differences(const Trace& a, const Trace& b) {
     }
     range = std::max(range, high - low);
   }
-  const std::size_t both = std::min(a.values.size(), b.values.size());
-  for (std::size_t i = 0; i + b.columns <= both && b.columns > 0; i += b.columns) {
-    double of_entry = 0;
-    for (std::size_t c = i; c < i + b.columns; ++c) of_entry = std::max(of_entry, std::fabs(a.values[c] - b.values[c]));
-    largest.push_back(range > 0 ? of_entry / range : of_entry);
+  for (std::size_t i = 0; i < std::min(a.values.size(), b.values.size()); ++i) {
+    const double one = std::fabs(a.values[i] - b.values[i]);
+    if (!(one <= largest)) largest = one;
   }
-  return largest;
+  return range > 0 ? largest / range : largest;
 }
 
 bool is_same(const Trace& a, const Trace& b) {
@@ -390,7 +389,8 @@ class Case {
     outcome.measures.notes.insert(outcome.measures.notes.begin(), notes_.begin(), notes_.end());
     note_aim(outcome.measures);
     outcome.judgement = judge(outcome.measures, case_.bounds);
-    if (case_.seeks_edge && outcome.judgement.verdict != Verdict::refused) seek_edge(outcome);
+    // without a step there was nothing to run: the scene itself was refused
+    if (case_.seeks_edge && outcome.measures.H > 0) seek_edge(outcome);
     return outcome;
   }
 
@@ -494,12 +494,7 @@ class Case {
     Run run = Stepper(case_, scene, Strictness::whole).run();
     if (case_.compared_with != ComparedWith::none && run.measures.refusal.empty()) {
       const Run other = Stepper(case_, scene, Strictness::compared).run();
-      Course& course = run.measures.course;
-      course.difference = differences(run.trace, other.trace);
-      run.measures.difference = 0;
-      for (const double one : course.difference) {
-        if (!(one <= *run.measures.difference)) run.measures.difference = one;
-      }
+      run.measures.difference = difference(run.trace, other.trace);
       bound_error(std::sqrt(other.measures.stiffness.value_or(0)));
       run.measures.is_same = is_same(run.trace, other.trace);
     }
@@ -509,7 +504,9 @@ class Case {
   void bound_error(double omega_H) {
     if (case_.compared_with != ComparedWith::on_time) return;
     const double w = omega_H * static_cast<double>(std::max(case_.delay, case_.lost));
-    case_.bounds.difference = case_.delay > 0 ? error_of_late_samples(w) : error_of_lost_samples(w);
+    double& error = case_.bounds.difference;
+    error = case_.delay > 0 ? error_of_late_samples(w) : error_of_lost_samples(w);
+    case_.bounds.made = std::max(case_.bounds.made, error * error);
     notes_.push_back(fmt::format("omega_H k of {:.2g}", w));
   }
 

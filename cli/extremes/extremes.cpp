@@ -118,8 +118,7 @@ bool ExtremesRow::is_good() const {
   if (!obstacle.empty()) return true;
   if (!result.is_object()) return false;
   const std::string verdict = result.at("verdict");
-  return verdict == to_text(Verdict::within) || verdict == to_text(Verdict::refused) ||
-         verdict == to_text(Verdict::flagged);
+  return verdict == to_text(Verdict::within) || verdict == to_text(Verdict::refused);
 }
 
 bool Extremes::is_complete() const {

@@ -29,7 +29,7 @@ struct ExtremesRow {
   std::string failure;    // of its process
   nlohmann::json result;  // of case_run.h; null: none
 
-  // within its bounds, refused by name, flagged by the session itself, or not for this scene
+  // within its bounds, refused by name, or not for this scene
   [[nodiscard]] bool is_good() const;
 };
 

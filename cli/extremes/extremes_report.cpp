@@ -22,8 +22,9 @@ std::string value_text(double value, const std::string& unit) {
 std::string nearest_text(const nlohmann::json& result) {
   if (!result.at("refusal").get<std::string>().empty()) return result.at("refusal");
   std::string text;
-  if (!result.at("failure").get<std::string>().empty()) {
-    text = fmt::format("{} at {:.4g} s; ", result.at("failure").get<std::string>(), number(result.at("failed_at")));
+  for (const char* end : {"failure", "alarm"}) {
+    const std::string why = result.at(end);
+    if (!why.empty()) text += fmt::format("at {:.4g} s: {}; ", number(result.at("ended_at")), why);
   }
   const nlohmann::json& checks = result.at("checks");
   if (checks.empty()) return text + "finite";
@@ -63,7 +64,7 @@ std::vector<std::string> cells_of(const ExtremesRow& row) {
 
 std::string report_text(const Extremes& extremes) {
   std::string text;
-  std::size_t good = 0, flagged = 0, bad = 0, not_for = 0, left = 0;
+  std::size_t within = 0, refused = 0, bad = 0, not_for = 0, left = 0;
   for (std::size_t i = 0; i < extremes.rows.size();) {
     const std::string& scene = extremes.rows[i].scene;
     std::vector<std::vector<std::string>> table = {
@@ -71,20 +72,17 @@ std::string report_text(const Extremes& extremes) {
     for (; i < extremes.rows.size() && extremes.rows[i].scene == scene; ++i) {
       const ExtremesRow& row = extremes.rows[i];
       table.push_back(cells_of(row));
-      const bool is_flagged = row.result.is_object() && row.result.at("verdict") == to_text(Verdict::flagged);
-      ++(!row.obstacle.empty() ? not_for : !row.is_done ? left : is_flagged ? flagged : row.is_good() ? good : bad);
+      const bool is_refused = row.result.is_object() && row.result.at("verdict") == to_text(Verdict::refused);
+      ++(!row.obstacle.empty() ? not_for : !row.is_done ? left : is_refused ? refused : row.is_good() ? within : bad);
     }
     text += scene + "\n" + table_text(table) + "\n";
   }
-  text += fmt::format(
-      "within: finite and inside all bounds. refused: by the scene or its start, by name. flagged: beyond a bound, and "
-      "the session itself\n"
-      "said so: it warned before the run, naming a port and a safe step, or its steps flagged it within {:g} s. "
-      "EXCEEDED: "
-      "nobody said\nso. DIVERGED: not finite, and not warned of before the run.\n",
-      kFlagTime);
-  text += fmt::format("{} within bounds or refused by name, {} flagged, {} not, {} not for their scene", good, flagged,
-                      bad, not_for);
+  text +=
+      "within: finite and inside all bounds to the end. refused: by name, before it ran, or by the session's own alarm "
+      "(session.coupling_alarm)\nat the time that is named, with all bounds kept until then. EXCEEDED: beyond a bound. "
+      "DIVERGED: not finite.\n";
+  text +=
+      fmt::format("{} within, {} refused by name, {} neither, {} not for their scene", within, refused, bad, not_for);
   if (left > 0) text += fmt::format(", {} not run: the same command goes on from here", left);
   if (extremes.kept > 0) text += fmt::format("; {} kept from {}", extremes.kept, extremes.folder);
   return text + "\n";

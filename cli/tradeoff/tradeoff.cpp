@@ -53,6 +53,8 @@ class Trader {
   Trader(const TradeoffWish& wish, const TradeoffProgress& progress) : wish_(wish), progress_(progress) {
     options_ = wish.scene;
     options_.overrides.emplace_back("session.solution=split");
+    // how wrong a setting is beyond its limit is what is measured
+    options_.overrides.emplace_back("session.coupling_alarm=warn");
     options_.is_recording = false;
     base_ = cli_support::load_scene(options_);
     if (!(base_.session.duration > 0)) {

@@ -16,7 +16,8 @@ enum class StepFlag : std::uint32_t {
   coupling_creates_energy = 1u << 7,
   cavitating = 1u << 8,
   relief_open = 1u << 9,
-  large_deflection = 1u << 10  // a flexible body is bent beyond what its theory is good for
+  large_deflection = 1u << 10,  // a flexible body is bent beyond what its theory is good for
+  ended = 1u << 11              // the scene's own rule ends the session (session.coupling_alarm): latched
 };
 
 struct StepReport {
@@ -28,7 +29,8 @@ struct StepReport {
 
   void raise(StepFlag flag) noexcept { flags |= static_cast<std::uint32_t>(flag); }
   [[nodiscard]] bool has(StepFlag flag) const noexcept { return (flags & static_cast<std::uint32_t>(flag)) != 0; }
-  [[nodiscard]] bool has_failed() const noexcept { return has(StepFlag::non_finite); }
+  // The session ends with this step.
+  [[nodiscard]] bool has_failed() const noexcept { return has(StepFlag::non_finite) || has(StepFlag::ended); }
 };
 
 }  // namespace slew

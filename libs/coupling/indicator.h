@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "core/time.h"
@@ -89,6 +90,9 @@ class Indicator {
   std::vector<PortDefects> defects_;
   double omega_H_ = 0;
 };
+
+// omega_H of two exchanges to a swing: whatever is said at the exchanges, a faster swing cannot be told from a slower.
+inline constexpr double kMostSampled = std::numbers::pi;
 
 // Largest omega_H at which a level is used without a warning (coupling study, sections 3, 4 and 10); zeta: damping
 // ratio of the port. Level tlm has none: what it costs is a parasitic mass K H^2.

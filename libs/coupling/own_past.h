@@ -19,6 +19,8 @@ inline constexpr StepIndex kRememberedSteps = 128;
 // From here on a copy of the partner's model that is continued over the time t is good for little: omega t of the
 // fastest oscillation at the ports (study, section 6: unstable at about 0.6 for constant delays).
 inline constexpr double kDegradedAbove = 0.5;
+// Up to here a session may work with samples that are always late (study, section 6: without friction 0.3 to 0.4).
+inline constexpr double kMostLate = 0.3;
 
 class OwnPast {
  public:

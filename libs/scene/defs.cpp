@@ -31,6 +31,7 @@ constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_
 constexpr std::string_view kPaces[] = {"real", "free"};
 constexpr std::string_view kModes[] = {"lockstep", "free_running"};
 constexpr std::string_view kLevels[] = {"hold", "linear", "two", "tlm"};
+constexpr std::string_view kCouplingAlarms[] = {"stop", "warn"};
 constexpr std::string_view kContactUses[] = {"tested", "off"};
 constexpr std::string_view kSolutions[] = {"split", "monolithic"};
 constexpr std::string_view kElasticExchanges[] = {"once", "every_step", "condensed"};
@@ -71,6 +72,12 @@ constexpr Field kSessionFields[] = {
         {.range = kExchangeRange,
          .doc = "steps between two exchanges of mechanics and hydraulics; in between each continues its copy of the "
                 "other's model, while ticks and inputs come at every step"}),
+    field<&SessionDef::coupling_alarm>(
+        "coupling_alarm",
+        {.choices = kCouplingAlarms,
+         .doc = "what becomes of a session whose coupling is beyond what it is good for. stop: it ends, with the port, "
+                "when level linear or two has made energy for 0.2 s, and a free-running one whose machine "
+                "swings too far in a step does not start; warn: it goes on with red lamps and flags"}),
     field<&SessionDef::wait_budget>("wait_budget",
                                     {.dimension = Dimension::time,
                                      .range = kBudgetRange,

@@ -23,6 +23,12 @@ enum class ExchangeMode : int {
   free_running  // it waits for a while, then continues its copy of the partner's model
 };
 
+// What becomes of a session whose coupling makes energy, or swings too far for samples that come late.
+enum class CouplingAlarm : int {
+  stop,  // refused at the start, or ended with the port's name
+  warn   // lamps and flags alone
+};
+
 // How the parts of a session are solved: each node its own, coupled once a step, or all physics as one system
 // (docs/models/coupling_reference_monolith.md).
 enum class Solution : int { split, monolithic };
@@ -39,7 +45,8 @@ struct SessionDef {
   coupling::ElasticExchange flexible = coupling::ElasticExchange::once;  // when elastic forces of modes are stated
   ExchangeMode mode = ExchangeMode::lockstep;
   std::int64_t exchange_every = 1;  // steps between two exchanges of mechanics and hydraulics
-  double wait_budget = 0;           // s, longest wait of a free-running node; 0: half a step
+  CouplingAlarm coupling_alarm = CouplingAlarm::stop;
+  double wait_budget = 0;  // s, longest wait of a free-running node; 0: half a step
   Solution solution = Solution::split;
   double rtol = 1e-9;  // of a monolithic solution: relative tolerance of its integration
   ContactUse contact = ContactUse::tested;

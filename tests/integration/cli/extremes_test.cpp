@@ -67,6 +67,25 @@ TEST_F(Extremes, RefusalsNameWhatIsWrongAndAreGood) {
   EXPECT_NE(load.at("refusal").get<std::string>().find("ForceR_Friction"), std::string::npos) << load.at("refusal");
 }
 
+TEST_F(Extremes, WhatTheCouplingCannotFollowIsRefusedAndTheStepThatSuitsIsFound) {
+  const CommandResult result =
+      extremes({"--json", "--only", "stiffness_1", "--only", "stiffness_100", "--only", "lost_50"});
+  ASSERT_EQ(result.code, 0) << result.err << result.out;
+  const nlohmann::json report = parsed(result);
+  EXPECT_EQ(row(report, "stiffness_1").at("result").at("verdict"), "within");
+  const nlohmann::json& stiff = row(report, "stiffness_100").at("result");
+  EXPECT_EQ(stiff.at("verdict"), "refused");
+  const std::string refusal = stiff.at("refusal");
+  EXPECT_NE(refusal.find("less than two exchanges to a swing"), std::string::npos) << refusal;
+  EXPECT_LT(stiff.at("largest_step").get<double>(), stiff.at("step").get<double>());
+  const nlohmann::json& lost = row(report, "lost_50").at("result");
+  EXPECT_EQ(lost.at("verdict"), "refused");
+  const std::string alarm = lost.at("alarm");
+  EXPECT_EQ(alarm.rfind("Cyl_Lift: the coupling has made energy for 0.2 s", 0), 0u) << alarm;
+  EXPECT_NE(alarm.find("session.mode: lockstep"), std::string::npos) << alarm;
+  EXPECT_GT(lost.at("ended_at").get<double>(), 0.2);
+}
+
 TEST_F(Extremes, RunsNothingOfASceneThatIsWrong) {
   const CommandResult result = extremes({"--json", "--only", "step_10_us", "--set", "mechanics.max_substep=3"});
   EXPECT_EQ(result.code, 2) << result.out;

@@ -285,6 +285,15 @@ TEST_F(InProcess, AnUnstableHoldIsFlagged) {
   EXPECT_NE(result.out.find("the coupling created energy"), std::string::npos) << result.out;
 }
 
+TEST_F(InProcess, CouplingThatMakesEnergyEndsTheSessionByItsPort) {
+  const CommandResult ended = run_scene("truck_crane.yaml", {"--step", "20ms", "--duration", "12"});
+  EXPECT_EQ(ended.code, 5) << ended.out << ended.err;
+  EXPECT_NE(ended.err.find("the coupling has made energy for 0.2 s"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("session.coupling_alarm: warn"), std::string::npos) << ended.err;
+  const CommandResult replayed = slewring({"replay", work_.recording().string(), "--verify"});
+  EXPECT_NE(replayed.out.find(" 0 different"), std::string::npos) << replayed.out << replayed.err;
+}
+
 TEST_F(InProcess, CtrlCEndsTheSessionInOrder) {
   Command command("slewring", {"run", scene_file("truck_crane.yaml"), "--in-process", "--duration", "0"}, work_.path());
   ASSERT_TRUE(wait_until([&] { return command.out().find(" running") != std::string::npos; })) << command.err();

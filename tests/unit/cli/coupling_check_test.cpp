@@ -56,13 +56,41 @@ TEST(CouplingCheck, LooksAtEveryLevelForItself) {
 TEST(CouplingCheck, FreeRunningIsToldOfTheStepThatItsLateSamplesBear) {
   // omega_H of the flexible crane is 0.37 at its start in steps of 1 ms, of the rigid one 0.1
   EXPECT_EQ(warnings("truck_crane.yaml", {"session.mode=free_running"}).size(), 0u);
-  const auto flexible = warnings("truck_crane_flexible.yaml", {"session.mode=free_running"});
+  const auto flexible =
+      warnings("truck_crane_flexible.yaml", {"session.mode=free_running", "session.coupling_alarm=warn"});
   ASSERT_EQ(flexible.size(), 1u);
   EXPECT_NE(flexible[0].find("free_running works with samples that are a step or more late"), std::string::npos)
       << flexible[0];
   EXPECT_NE(flexible[0].find("use session.step 800 us or less, or session.mode lockstep"), std::string::npos)
       << flexible[0];
   EXPECT_EQ(warnings("truck_crane_flexible.yaml", {"session.mode=free_running", "session.step=0.5 ms"}).size(), 0u);
+}
+
+std::string refusal(const std::string& file, const scene::Overrides& overrides) {
+  const scene::Scene scene = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides);
+  return DirectSession(scene).start().text;
+}
+
+TEST(CouplingCheck, WhatNoExchangeCanFollowDoesNotStart) {
+  const char* const crane = "two_dof_crane.yaml";  // 210 rad/s on its oil
+  const std::string fast = refusal(crane, {"session.step=20 ms"});
+  EXPECT_NE(fast.find("session.coupling: the machine swings on its oil by omega_H = 4.2"), std::string::npos) << fast;
+  EXPECT_NE(fast.find("less than two exchanges to a swing"), std::string::npos) << fast;
+  EXPECT_EQ(refusal(crane, {"session.step=10 ms"}), "");
+  EXPECT_EQ(refusal(crane, {"session.step=20 ms", "session.coupling_alarm=warn"}), "");
+  for (const char* level : {"hold", "tlm"}) {
+    EXPECT_EQ(refusal(crane, {"session.step=20 ms", std::string("session.coupling=") + level}), "") << level;
+  }
+  const std::string seldom = refusal(crane, {"session.step=1 ms", "session.exchange_every=20"});
+  EXPECT_NE(seldom.find("Set the time between two exchanges below 15 ms"), std::string::npos) << seldom;
+}
+
+TEST(CouplingCheck, FreeRunningDoesNotStartWhereCopiesAreNoGood) {
+  const std::string late = refusal("truck_crane_flexible.yaml", {"session.mode=free_running"});
+  EXPECT_NE(late.find("omega_H = 0.37"), std::string::npos) << late;
+  EXPECT_NE(late.find("session.mode: lockstep"), std::string::npos) << late;
+  EXPECT_EQ(refusal("truck_crane_flexible.yaml", {"session.mode=free_running", "session.step=0.5 ms"}), "");
+  EXPECT_EQ(refusal("truck_crane.yaml", {"session.mode=free_running"}), "");
 }
 
 TEST(OmegaLimit, GrowsFromHoldToTlm) {

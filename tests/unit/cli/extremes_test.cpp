@@ -18,7 +18,7 @@ Measures good_run() {
   measures.highest_pressure = 200e5;
   measures.lowest_pressure = 2e3;
   measures.ceiling = 400e5;
-  measures.net = -1e-4;
+  measures.made = 1e-4;
   measures.gap = 1e-12;
   return measures;
 }
@@ -52,7 +52,7 @@ TEST(Judge, EachBoundThatIsBrokenIsTheOneNamed) {
   };
   EXPECT_EQ(broken([](Measures& m) { m.highest_pressure = 401e5; }), "highest pressure");
   EXPECT_EQ(broken([](Measures& m) { m.lowest_pressure = -1.0; }), "tension of the oil");
-  EXPECT_EQ(broken([](Measures& m) { m.net = -3.1e-3; }), "energy made");
+  EXPECT_EQ(broken([](Measures& m) { m.made = 1.1e-2; }), "energy made");
   EXPECT_EQ(broken([](Measures& m) { m.gap = 1.1e-5; }), "joints open");
   Bounds compared;
   compared.difference = 0.02;
@@ -79,59 +79,25 @@ TEST(Judge, RefusalIsGoodAndDivergenceIsNot) {
   EXPECT_NE(advice(diverged, judge(diverged, {}), {true, std::nullopt}).find("no step"), std::string::npos);
 }
 
-TEST(Judge, LargestOfTheLastOverlooksWhatIsShort) {
-  const double none = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(largest_of_last({0, -5, 0, -1, -2, -1, 0}, 3), (std::vector<double>{none, none, 0, 0, 0, -1, 0}));
-  EXPECT_EQ(largest_of_last({0, -5, 0}, 1), (std::vector<double>{0, -5, 0}));
-  EXPECT_EQ(largest_of_last({0, 1}, 3), (std::vector<double>{none, none}));
+TEST(Judge, SessionThatItsAlarmEndedIsRefusedWhileItKeptItsBounds) {
+  Measures ended = good_run();
+  ended.alarm = "Cyl_Jib: the coupling has made energy";
+  ended.ended_at = 0.9;
+  const Judgement refused = judge(ended, {});
+  EXPECT_EQ(refused.verdict, Verdict::refused);
+  EXPECT_NE(advice(ended, refused, {true, 5e-3}).find("5 ms"), std::string::npos);
+  ended.made = 0.5;  // before anybody said so
+  EXPECT_EQ(judge(ended, {}).verdict, Verdict::exceeded);
+  ended.failure = "Bag.position";
+  EXPECT_EQ(judge(ended, {}).verdict, Verdict::diverged);
 }
 
-// 2 s in steps of 1 ms; beyond 3e-3 from 1 s on, flagged in one step
-Measures energetic(double flagged_at, double grown = 4e-3) {
+TEST(Judge, WarningBeforeTheRunExcusesNothing) {
   Measures measures = good_run();
-  measures.net = -grown;
-  measures.course.energy_made.assign(2000, 1e-3);
-  std::fill(measures.course.energy_made.begin() + 1000, measures.course.energy_made.end(), grown);
-  measures.course.is_flagged.assign(2000, 0);
-  if (flagged_at >= 0) measures.course.is_flagged[static_cast<std::size_t>(flagged_at * 1e3)] = 1;
-  return measures;
-}
-
-TEST(Judge, WhatTheSessionFlagsInTimeIsFlagged) {
-  EXPECT_EQ(judge(energetic(-1), {}).verdict, Verdict::exceeded);
-  EXPECT_EQ(judge(energetic(0.4), {}).verdict, Verdict::exceeded);  // of something else
-  EXPECT_EQ(judge(energetic(0.6), {}).verdict, Verdict::flagged);
-  EXPECT_EQ(judge(energetic(1.4), {}).verdict, Verdict::flagged);
-  EXPECT_EQ(judge(energetic(1.6), {}).verdict, Verdict::exceeded);
-  // ten times the bound and more at once
-  EXPECT_EQ(judge(energetic(1.4, 40e-3), {}).verdict, Verdict::exceeded);
-  EXPECT_EQ(judge(energetic(1.0, 40e-3), {}).verdict, Verdict::flagged);
-}
-
-TEST(Judge, OneViolationThatNobodyFlagsIsEnough) {
-  Measures measures = energetic(1.1);
-  measures.lowest_pressure = -1.0;
-  EXPECT_EQ(judge(measures, {}).verdict, Verdict::exceeded);
-}
-
-TEST(Judge, WarningBeforeTheRunCoversTheCouplingAlone) {
-  Measures measures = energetic(-1);
   measures.warnings = {"Cyl_Jib: omega_H is 2"};
-  EXPECT_EQ(judge(measures, {}).verdict, Verdict::flagged);
-  measures.failure = "Bag.position";
-  EXPECT_EQ(judge(measures, {}).verdict, Verdict::flagged);
-  measures.warnings.clear();
-  EXPECT_EQ(judge(measures, {}).verdict, Verdict::diverged);
-  Measures open = good_run();
-  open.warnings = {"Cyl_Jib: omega_H is 2"};
-  open.gap = 1e-3;
-  EXPECT_EQ(judge(open, {}).verdict, Verdict::exceeded);
-  Bounds same;
-  same.asks_same = true;
-  Measures differs = good_run();
-  differs.warnings = open.warnings;
-  differs.is_same = false;
-  EXPECT_EQ(judge(differs, same).verdict, Verdict::exceeded);
+  measures.too_late = measures.creates_energy = 5;
+  measures.made = 0.5;
+  EXPECT_EQ(judge(measures, {}).verdict, Verdict::exceeded);
 }
 
 // coupling study, section 6: the boom with friction, omega 61.6 rad/s, steps of 1 ms, of a range of 45 kN
@@ -205,7 +171,9 @@ TEST(Extremes, UnfinishedAndDivergedRowsAreNotGood) {
   EXPECT_FALSE(extremes.is_good());
   extremes.rows.back().result = to_json(good_run(), judge(good_run(), {}));
   EXPECT_TRUE(extremes.is_good());
-  extremes.rows.back().result = to_json(energetic(1.1), judge(energetic(1.1), {}));
+  Measures ended = good_run();
+  ended.alarm = "Cyl_Jib: the coupling has made energy";
+  extremes.rows.back().result = to_json(ended, judge(ended, {}));
   EXPECT_TRUE(extremes.is_good());
   extremes.rows.push_back({.scene = "a", .name = "three", .what = {}, .obstacle = {}, .failure = {}, .result = {}});
   EXPECT_FALSE(extremes.is_good());
