@@ -95,10 +95,11 @@ bool RecorderNode::poll(std::int64_t now_ns) {
 }
 
 std::int64_t RecorderNode::next_deadline(std::int64_t now_ns) const {
-  const bool has_gap = std::any_of(streams_.steps.begin(), streams_.steps.end(),
-                                   [](const auto& entry) { return entry.second.has_gap(); });
-  if (has_gap) return std::max(now_ns, resend_.due_ns());
-  return now_ns + (is_ending() ? node::kResendAfter.ns : node::kProbeInterval.ns);
+  std::int64_t deadline_ns = now_ns + (is_ending() ? node::kResendAfter.ns : node::kProbeInterval.ns);
+  for (const auto& [key, stream] : streams_.steps) {
+    if (stream.gaps.has_gap()) deadline_ns = std::min(deadline_ns, stream.resend.due_ns());
+  }
+  return std::max(now_ns, deadline_ns);
 }
 
 void RecorderNode::request_stop(ExitCode code) {
@@ -205,7 +206,6 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
   member_.set_state(member_.requires_role(Role::recorder) ? NodeState::joining : NodeState::ready);
   stage_ = Stage::recording;
   deadline_ns_ = 0;
-  resend_.restart(now_ns);
 }
 
 Status RecorderNode::create(const wire::SessionDescription& session) {
@@ -287,8 +287,9 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
   const bool is_of_flexible_bodies = message.topic == Topic::flexible || message.topic == Topic::elastic;
   if (is_of_flexible_bodies) return record_block(message, header, {message.topic, header.role, 0}, streams);
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
-  StreamGaps& stream = streams.steps.try_emplace({message.topic, header.role}).first->second;
-  switch (stream.arrived(header.step)) {
+  StepStream& stream = streams.steps.try_emplace({message.topic, header.role}).first->second;
+  const StepIndex expected = stream.gaps.next();
+  switch (stream.gaps.arrived(header.step)) {
     case StreamGaps::Arrival::duplicate:
       ++counts.duplicates;
       return;
@@ -298,7 +299,7 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
     case StreamGaps::Arrival::new_step:
       break;
   }
-  if (!stream.has_gap()) resend_.restart(now_ns);
+  if (stream.gaps.next() > expected) stream.resend.restart(now_ns);
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
 }
 
@@ -395,7 +396,7 @@ StepIndex RecorderNode::complete_up_to() const noexcept {
   StepIndex least = -1;
   bool is_first = true;
   for (const auto& [key, stream] : streams_.steps) {
-    least = is_first ? stream.next() - 1 : std::min(least, stream.next() - 1);
+    least = is_first ? stream.gaps.next() - 1 : std::min(least, stream.gaps.next() - 1);
     is_first = false;
   }
   return least;
@@ -428,7 +429,7 @@ bool RecorderNode::has_everything() const noexcept {
          std::all_of(streams_.steps.begin(), streams_.steps.end(),
                      [&](const auto& entry) {
                        const auto& [key, stream] = entry;
-                       return stream.next() > final_step(key.second, stream.newest());
+                       return stream.gaps.next() > final_step(key.second, stream.gaps.newest());
                      }) &&
          std::all_of(streams_.blocks.begin(), streams_.blocks.end(), [&](const auto& entry) {
            const auto& [source, stream] = entry;
@@ -448,24 +449,22 @@ void RecorderNode::report_progress(std::int64_t now_ns) {
 }
 
 void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
-  if (!resend_.is_due(now_ns)) return;
-  bool any = false;
-  for (const auto& [key, stream] : streams_.steps) {
-    const StepIndex last = stream.has_gap() ? stream.gap_end() : final_step(key.second, stream.newest());
-    if (stream.next() > last) continue;
+  for (auto& [key, stream] : streams_.steps) {
+    const StreamGaps& gaps = stream.gaps;
+    if (!stream.resend.is_due(now_ns)) continue;
+    const StepIndex last = gaps.has_gap() ? gaps.gap_end() : final_step(key.second, gaps.newest());
+    if (gaps.next() > last) {
+      stream.resend.restart(now_ns);
+      continue;
+    }
     wire::ResendRequest request;
-    request.header = member_.header(Phase::running, stream.next());
+    request.header = member_.header(Phase::running, gaps.next());
     request.role = key.second;
     request.topic = static_cast<std::uint8_t>(key.first);
     request.last_step = last;
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
-    any = true;
-  }
-  if (any) {
-    resend_.asked(now_ns);
-  } else {
-    resend_.restart(now_ns);
+    stream.resend.asked(now_ns);
   }
 }
 
@@ -527,8 +526,9 @@ void RecorderNode::count_all_losses() {
 void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
   if (is_present) last_step_ = complete_up_to();
   for (auto& [key, stream] : streams.steps) {
-    stream.close_at(is_present ? final_step(key.second, stream.newest()) : stream.newest());
-    counts_[static_cast<std::size_t>(key.first)].lost += stream.lost();
+    StreamGaps& gaps = stream.gaps;
+    gaps.close_at(is_present ? final_step(key.second, gaps.newest()) : gaps.newest());
+    counts_[static_cast<std::size_t>(key.first)].lost += gaps.lost();
   }
   for (const auto& [source, stream] : streams.blocks) {
     const StepIndex last = is_present ? last_block(source, stream.newest) : stream.newest;

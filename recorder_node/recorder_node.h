@@ -38,9 +38,15 @@ struct BlockStream {
   std::uint64_t arrived = 0;
 };
 
+// Ticks or samples of one writer, and when to ask it for the first gap: a stream in order must not put off another's.
+struct StepStream {
+  StreamGaps gaps;
+  node::ResendClock resend;
+};
+
 // What has come of one epoch, by writer.
 struct EpochStreams {
-  std::map<std::pair<wire::Topic, wire::Role>, StreamGaps> steps;  // ticks and samples
+  std::map<std::pair<wire::Topic, wire::Role>, StepStream> steps;  // ticks and samples
   std::map<BlockSource, BlockStream> blocks;
 };
 
@@ -133,7 +139,6 @@ class RecorderNode final : public node::Node {
   };
   std::vector<Early> early_;     // of the next epoch, heard before the tick that begins it
   std::uint64_t unstepped_ = 0;  // running number of messages without a step of their own
-  node::ResendClock resend_;
 };
 
 }  // namespace slew::recorder

@@ -138,6 +138,30 @@ TEST_F(Recorder, AsksForAGapAsSoonAsItIsDue) {
   EXPECT_GT(node->next_deadline(now_ns), now_ns);
 }
 
+TEST_F(Recorder, AsksForAGapWhileAllElseComesInOrder) {
+  join();
+  say_steps(0, 5);
+  static_cast<void>(played.said<wire::ResendRequest>(Topic::resend));
+  const auto say_step = [&](StepIndex step, bool has_mechanism) {
+    played.say_tick(step);
+    if (has_mechanism) played.say_mechanism(step);
+    played.say_actuators(step);
+    poll(kMs);
+  };
+  // samples 6 and 9 of the mechanics are lost
+  for (StepIndex step = 6; step <= 20; ++step) say_step(step, step != 6 && step != 9);
+  const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+  ASSERT_GE(asked.size(), 2u);
+  EXPECT_EQ(asked[0].header.step, 6);
+  // once a gap is filled the next one is asked for as fast as the first
+  played.say_mechanism(6);
+  poll();
+  for (StepIndex step = 21; step <= 25; ++step) say_step(step, true);
+  const auto next = played.said<wire::ResendRequest>(Topic::resend);
+  ASSERT_GE(next.size(), 1u);
+  EXPECT_EQ(next[0].header.step, 9);
+}
+
 TEST_F(Recorder, NamesNoFileThatItCouldNotCreate) {
   played.session.step_ns = 0;
   played.say(Topic::session, played.session);
