@@ -1,0 +1,194 @@
+#include "virtual_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "build_paths.h"
+#include "cli_support/carrier.h"
+#include "cli_support/subsystem_factory.h"
+#include "core/arithmetic_self_test.h"
+#include "flex_node/flex_subsystem.h"
+#include "hydraulics_node/hydraulics_subsystem.h"
+#include "io_node/scene_config.h"
+#include "mechanics_node/mechanics_subsystem.h"
+#include "node/identity.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::Role;
+using wire::Topic;
+
+constexpr std::int64_t kRound = kMs / 4;
+constexpr int kMostPolls = 10'000;  // at one instant: a node that never comes to rest is a failure of its own
+
+cli_support::MakeSubsystem maker_of(Role role) {
+  if (role == Role::mechanics) return mechanics::make_mechanics_subsystem;
+  if (role == Role::flex) return flexible::make_flex_subsystem;
+  return hydraulic_node::make_hydraulics_subsystem;
+}
+
+}  // namespace
+
+// ---- auditor ---------------------------------------------------------------------------------------------------
+
+Auditor::Auditor(transport::InProcessBus& bus)
+    : carrier_(std::make_unique<transport::InProcessEndpoint>(
+          bus, transport::InProcessOptions{"auditor", {}, transport::TopicSet::all()})) {}
+
+template <typename Message>
+void Auditor::hear(const transport::Received& message) {
+  Message heard;
+  if (!transport::decode(message.bytes, heard)) {
+    contradiction_ = fmt::format("{} says what cannot be read", node::to_text(message.topic));
+    return;
+  }
+  // JOIN repeats its step -1 until it is heard
+  if (heard.header.phase == wire::Phase::join) return;
+  const auto [said, is_new] = said_.try_emplace({message.topic, heard.header.phase, heard.header.step},
+                                                message.bytes.begin(), message.bytes.end());
+  const bool is_same = std::equal(said->second.begin(), said->second.end(), message.bytes.begin(), message.bytes.end());
+  if (!is_new && !is_same && contradiction_.empty()) {
+    contradiction_ = fmt::format("{} says two things of step {}", node::to_text(message.topic), heard.header.step);
+  }
+  std::uint64_t hash = 0;
+  if constexpr (requires { heard.state.state_hash; }) {
+    hash = heard.state.state_hash;
+  } else {
+    hash = heard.state_hash;
+  }
+  chain_[{message.topic, heard.header.step}] = hash;
+}
+
+void Auditor::listen() {
+  transport::Received message;
+  while (carrier_->take(message)) {
+    switch (message.topic) {
+      case Topic::tick:
+        hear<wire::Tick>(message);
+        break;
+      case Topic::mechanism:
+        hear<wire::MechanismMessage>(message);
+        break;
+      case Topic::actuators:
+        hear<wire::ActuatorMessage>(message);
+        break;
+      case Topic::elastic:
+        hear<wire::ElasticMessage>(message);
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+// ---- session ---------------------------------------------------------------------------------------------------
+
+VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& runs, FaultPlan plan)
+    : plan_(std::move(plan)), auditor_(bus_) {
+  set_floating_point_mode();
+  io::SessionWish wish;
+  wish.session_name = "faults";
+  io::IoConfig config = io::make_config(scene, wish);
+  config.name_check = {};
+  auto io_node = std::make_unique<io::IoNode>(place_for(Role::io), std::move(config));
+  io_ = io_node.get();
+  places_.back().node = std::move(io_node);
+  for (const Role role : roles_of(scene)) {
+    if (std::find(std::begin(wire::kPhysicsRoles), std::end(wire::kPhysicsRoles), role) !=
+        std::end(wire::kPhysicsRoles)) {
+      add_physics(role);
+    }
+  }
+  recorder::RecorderConfig recording;
+  recording.runs_directory = runs;
+  auto recorder_node = std::make_unique<recorder::RecorderNode>(place_for(Role::recorder), std::move(recording));
+  recorder_ = recorder_node.get();
+  places_.back().node = std::move(recorder_node);
+  for (Place& place : places_) place.health = std::make_unique<node::HealthReport>(*place.node);
+}
+
+std::vector<Role> VirtualSession::roles_of(const scene::Scene& scene) {
+  const std::uint32_t required = io::required_roles(scene, io::Recording::required);
+  std::vector<Role> roles;
+  for (const Role role : wire::kNodeRoles) {
+    if ((required & wire::bit(role)) != 0) roles.push_back(role);
+  }
+  return roles;
+}
+
+FaultyCarrier& VirtualSession::place_for(Role role) {
+  Place& place = places_.emplace_back();
+  place.role = role;
+  place.endpoint = cli_support::open_carrier(role, bus_);
+  place.carrier = std::make_unique<FaultyCarrier>(*place.endpoint, role, clock_, plan_, count_);
+  return *place.carrier;
+}
+
+void VirtualSession::add_physics(Role role) {
+  FaultyCarrier& carrier = place_for(role);
+  places_.back().node = std::make_unique<node::PhysicsNode>(
+      role, carrier, cli_support::subsystem_factory(maker_of(role), SLEWRING_SOURCE_DIR "/scenes"));
+}
+
+void VirtualSession::run_until(std::int64_t virtual_ns) {
+  while (clock_.now_ns < virtual_ns && !is_finished()) {
+    if (clock_.now_ns >= next_health_ns_) {
+      next_health_ns_ = clock_.now_ns + node::kHealthInterval.ns;
+      send_health();
+    }
+    poll_all();
+    clock_.now_ns += kRound;
+  }
+}
+
+void VirtualSession::send_health() {
+  for (Place& place : places_) {
+    const bool is_there = !place.node->is_finished() && !plan_.is_stalled(place.role, clock_.now_ns);
+    if (is_there) place.health->send();
+  }
+}
+
+void VirtualSession::poll_all() {
+  bool any = true;
+  for (int polls = 0; any && polls < kMostPolls; ++polls) {
+    any = false;
+    for (Place& place : places_) {
+      if (place.node->is_finished() || plan_.is_stalled(place.role, clock_.now_ns)) continue;
+      any |= place.node->poll(clock_.now_ns);
+    }
+    auditor_.listen();
+  }
+}
+
+bool VirtualSession::is_finished() const {
+  return std::all_of(places_.begin(), places_.end(), [](const Place& place) { return place.node->is_finished(); });
+}
+
+bool VirtualSession::has_ended_well() const {
+  const bool may_lose = plan_.cut_off_ns(Role::recorder) > node::kLinger.ns / 2;
+  return is_finished() && std::all_of(places_.begin(), places_.end(), [may_lose](const Place& place) {
+           const ExitCode code = place.node->member().exit_code();
+           return code == ExitCode::ok || (code == ExitCode::losses && place.role == Role::recorder && may_lose);
+         });
+}
+
+std::uint64_t VirtualSession::resends() const {
+  std::uint64_t asked = 0;
+  for (const Place& place : places_) asked += place.node->health().resends_asked;
+  return asked;
+}
+
+std::string VirtualSession::text() const {
+  std::string text = fmt::format("{} lost, {} doubled, {} late, {} asked for again", count_.lost, count_.doubled,
+                                 count_.late, resends());
+  for (const Place& place : places_) {
+    const node::SessionMember& member = place.node->member();
+    text += fmt::format("; {} {} at step {} code {} {}", node::to_text(place.role), node::to_text(member.state()),
+                        place.node->health().step.load(), static_cast<int>(member.exit_code()), member.reason());
+  }
+  return text;
+}
+
+}  // namespace slew::testing
