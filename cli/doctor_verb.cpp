@@ -16,6 +16,7 @@
 #include "cli_support/failure.h"
 #include "core/arithmetic_self_test.h"
 #include "node/identity.h"
+#include "transport/cyclone_domain.h"
 
 namespace slew::cli {
 namespace {
@@ -73,10 +74,15 @@ Finding check_pidfd() {
   return {"process watch", Verdict::good, "a lost node on this machine is noticed at once"};
 }
 
-Finding check_network(const cli_support::SessionOptions& options) {
+Finding check_network(cli_support::SessionOptions options) {
+  // a look at the network says nothing there that keys would have to protect
+  const bool lacks_keys = options.keys.empty() && transport::leaves_machine(options.interface);
+  options.is_insecure_lan = lacks_keys;
   try {
     static_cast<void>(cli_support::open_survey(options));
-    return {"network", Verdict::good, fmt::format("interface {}, domain {}", options.interface, options.domain)};
+    const std::string text = fmt::format("interface {}, domain {}", options.interface, options.domain);
+    if (!lacks_keys) return {"network", Verdict::good, text};
+    return {"network", Verdict::warning, text + "; sessions on it need --keys (slewring keys) or --insecure-lan"};
   } catch (const cli_support::Failure& failure) {
     return {"network", Verdict::bad, failure.what()};
   }

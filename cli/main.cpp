@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   cli::add_extremes(app, action);
   cli::add_extremes_case(app, action);
   cli::add_node(app, action);
+  cli::add_keys(app, action);
   cli::add_doctor(app, action);
   int exit_code = 0;
   if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;

@@ -104,8 +104,8 @@ std::unique_ptr<Observer> find_session(cli_support::SessionOptions options) {
     throw Failure(static_cast<ExitCode>(stop), "interrupted");
   throw Failure(ExitCode::failed, "no session '" + options.session + "' was found on domain " +
                                       std::to_string(options.domain) +
-                                      " within 3 s; see 'slewring sessions', and compare --domain, --interface and "
-                                      "--peer with those of the session");
+                                      " within 3 s; see 'slewring sessions', and compare --domain, --interface, "
+                                      "--peer and --keys with those of the session");
 }
 
 }  // namespace slew::cli

@@ -90,7 +90,7 @@ std::string only_session(const cli_support::SessionOptions& options) {
   if (sessions.empty()) {
     throw Failure(ExitCode::failed,
                   "no session runs on domain " + std::to_string(options.domain) +
-                      "; start one with 'slewring run SCENE', or name its --domain, --interface and --peer");
+                      "; start one with 'slewring run SCENE', or name its --domain, --interface, --peer and --keys");
   }
   std::string names;
   for (const FoundSession& session : sessions) names += (names.empty() ? "" : ", ") + session.description.name;

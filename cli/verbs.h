@@ -33,6 +33,7 @@ void add_tradeoff(CLI::App& program, Action& action);
 void add_tradeoff_row(CLI::App& program, Action& action);
 void add_extremes(CLI::App& program, Action& action);
 void add_extremes_case(CLI::App& program, Action& action);
+void add_keys(CLI::App& program, Action& action);
 void add_doctor(CLI::App& program, Action& action);
 
 // `slewring node ROLE ...` in the place of this program; gives a code only when that fails.

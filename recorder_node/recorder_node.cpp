@@ -76,7 +76,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
     if (now_ns > deadline_ns_) {
       member_.fail(ExitCode::failed,
                    "no session was found; start the io node first, and compare --session, --domain, "
-                   "--interface and --peer on both sides");
+                   "--interface, --peer and --keys on both sides");
       stage_ = Stage::finished;
     }
   } else if (stage_ != Stage::finished) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cli_support/failure.h"
+#include "cli_support/key_store_files.h"
 #include "node/identity.h"
 #include "transport/cyclone_transport.h"
 
@@ -61,8 +62,20 @@ TopicSet topics_read(Role role) noexcept {
 
 namespace {
 
-std::unique_ptr<transport::Transport> open(const SessionOptions& options, transport::CycloneOptions endpoint) {
-  const transport::CycloneNetwork network{options.domain, options.interface, options.peers};
+// Whose keys a role of this process has: who only reads is an observer.
+std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role role,
+                                           transport::CycloneOptions endpoint) {
+  transport::CycloneNetwork network{options.domain, options.interface, options.peers};
+  if (!options.keys.empty()) {
+    const std::string own = options.identity.empty() ? std::string(node::to_text(role)) : options.identity;
+    network.security = readable_key_files(options.keys, own);
+  } else if (!options.is_insecure_lan && transport::leaves_machine(options.interface)) {
+    throw Failure(ExitCode::bad_input,
+                  "--interface " + options.interface +
+                      " leaves this machine, and without keys whoever is on that network can read and steer the "
+                      "session; nothing was started; name a key store with --keys ('slewring keys create' makes one), "
+                      "or say --insecure-lan");
+  }
   std::unique_ptr<transport::CycloneTransport> carrier;
   require(transport::CycloneTransport::open(network, endpoint, carrier));
   return carrier;
@@ -71,18 +84,21 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, transp
 }  // namespace
 
 std::unique_ptr<transport::Transport> open_carrier(Role role, const SessionOptions& options) {
-  return open(options, {options.session, std::string(node::to_text(role)), topics_written(role), topics_read(role)});
+  return open(options, role,
+              {options.session, std::string(node::to_text(role)), topics_written(role), topics_read(role)});
 }
 
 std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options) {
-  return open(options, {options.session,
-                        "observer",
-                        topics_written(Role::observer),
-                        {Topic::session, Topic::node_status, Topic::control_reply, Topic::health}});
+  return open(options, Role::observer,
+              {options.session,
+               "observer",
+               topics_written(Role::observer),
+               {Topic::session, Topic::node_status, Topic::control_reply, Topic::health}});
 }
 
 std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options) {
-  return open(options, {transport::kAnySession, "survey", {}, {Topic::session, Topic::node_status, Topic::health}});
+  return open(options, Role::observer,
+              {transport::kAnySession, "survey", {}, {Topic::session, Topic::node_status, Topic::health}});
 }
 
 std::unique_ptr<transport::Transport> open_carrier(Role role, transport::InProcessBus& bus) {

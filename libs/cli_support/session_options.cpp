@@ -49,6 +49,20 @@ void add_network_options(CLI::App& app, SessionOptions& options) {
       ->allow_extra_args(false)
       ->delimiter(',')
       ->group("Network");
+  CLI::Option* keys =
+      app.add_option("--keys", options.keys,
+                     "key store (slewring keys): only who holds its keys takes part, and nobody else can "
+                     "read what is said")
+          ->type_name("DIR")
+          ->group("Network");
+  app.add_option("--identity", options.identity, "which of its keys to use; without it those of the role")
+      ->type_name("NAME")
+      ->needs(keys)
+      ->group("Network");
+  app.add_flag("--insecure-lan", options.is_insecure_lan,
+               "send beyond this machine without keys: whoever is on that network can read and steer the session")
+      ->excludes(keys)
+      ->group("Network");
 }
 
 void add_session_options(CLI::App& app, SessionOptions& options, bool is_required) {
@@ -109,6 +123,9 @@ std::vector<std::string> network_arguments(const SessionOptions& options) {
     arguments.push_back("--peer");
     arguments.push_back(peer);
   }
+  if (!options.keys.empty()) arguments.insert(arguments.end(), {"--keys", options.keys});
+  if (!options.identity.empty()) arguments.insert(arguments.end(), {"--identity", options.identity});
+  if (options.is_insecure_lan) arguments.emplace_back("--insecure-lan");
   return arguments;
 }
 

@@ -19,6 +19,9 @@ struct SessionOptions {
   std::uint32_t domain = 0;        // DDS domain
   std::string interface = "lo";    // network interface that messages are sent on
   std::vector<std::string> peers;  // addresses of the other machines; empty: this machine only
+  std::string keys;                // folder of a key store, see key_store_files.h; empty: none
+  std::string identity;            // which of its keys; empty: those of the role
+  bool is_insecure_lan = false;    // sends beyond this machine without keys
 };
 
 struct NodeOptions {
@@ -34,7 +37,7 @@ struct NodeOptions {
   [[nodiscard]] node::JoinOptions join() const;
 };
 
-// --domain, --interface, --peer.
+// --domain, --interface, --peer, --keys, --identity, --insecure-lan.
 void add_network_options(CLI::App& app, SessionOptions& options);
 // --session and the network; a session is named or the verb takes its scene's name.
 void add_session_options(CLI::App& app, SessionOptions& options, bool is_required);

@@ -245,8 +245,8 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
       if (session_deadline_ns_ == 0) session_deadline_ns_ = now_ns + session_timeout_.ns;
       if (now_ns > session_deadline_ns_) {
         member_.fail(ExitCode::failed, "no session was found within " + seconds_text(session_timeout_) +
-                                           "; start the io node first, and compare --session, --domain, --interface "
-                                           "and --peer on both sides");
+                                           "; start the io node first, and compare --session, --domain, --interface, "
+                                           "--peer and --keys on both sides");
         stage_ = Stage::finished;
       }
       return false;

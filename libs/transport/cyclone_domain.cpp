@@ -8,6 +8,10 @@
 #include <netinet/in.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <utility>
 
 namespace slew::transport {
@@ -16,7 +20,7 @@ namespace {
 struct Interface {
   std::string name;
   std::string address;  // IPv4
-  bool is_up;
+  bool is_up, is_loopback;
 };
 
 // interfaces with an IPv4 address
@@ -28,7 +32,7 @@ std::vector<Interface> interfaces_of_host() {
     if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
     char text[INET_ADDRSTRLEN] = "";
     inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr, text, sizeof text);
-    found.push_back({i->ifa_name, text, (i->ifa_flags & IFF_UP) != 0});
+    found.push_back({i->ifa_name, text, (i->ifa_flags & IFF_UP) != 0, (i->ifa_flags & IFF_LOOPBACK) != 0});
   }
   freeifaddrs(first);
   return found;
@@ -68,7 +72,73 @@ bool is_host(const std::string& text) {
   });
 }
 
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+// the plugins lie beside the library, which finds them by these names
+std::string security_xml(const CycloneSecurity& security) {
+  const auto library = [](const char* name, const char* function) {
+    return fmt::format(R"(<Library path="{0}" initFunction="init_{1}" finalizeFunction="finalize_{1}"/>)", name,
+                       function);
+  };
+  const auto file = [](const char* element, const std::string& path) {
+    return fmt::format("<{0}>file:{1}</{0}>", element, escaped(path));
+  };
+  return fmt::format(
+      "\n <Security><Authentication>{}{}{}{}</Authentication>\n"
+      "  <AccessControl>{}{}{}{}</AccessControl>\n"
+      "  <Cryptographic>{}</Cryptographic></Security>",
+      library("dds_security_auth", "authentication"), file("IdentityCA", security.authority),
+      file("IdentityCertificate", security.certificate), file("PrivateKey", security.private_key),
+      library("dds_security_ac", "access_control"), file("PermissionsCA", security.authority),
+      file("Governance", security.governance), file("Permissions", security.permissions),
+      library("dds_security_crypto", "crypto"));
+}
+
+// Cyclone binds what it receives with to all addresses. Those sockets of this process hear loopback alone from now on.
+Status confine_to_loopback(const std::string& interface) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const int fd = std::atoi(entry.path().filename().c_str());
+    sockaddr_in address{};
+    socklen_t size = sizeof address;
+    int type = 0;
+    socklen_t type_size = sizeof type;
+    if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &type_size) != 0 || type != SOCK_DGRAM) continue;
+    if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) continue;
+    if (address.sin_family != AF_INET || address.sin_addr.s_addr != htonl(INADDR_ANY)) continue;
+    if (setsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(), static_cast<socklen_t>(interface.size())) == 0) {
+      continue;
+    }
+    return Status::error(
+        ExitCode::resources,
+        fmt::format("cannot keep port {} to {}: {}; other machines could reach this process; Linux 5.7 "
+                    "or later is needed",
+                    ntohs(address.sin_port), interface, std::strerror(errno)));
+  }
+  return Status::ok();
+}
+
 }  // namespace
+
+bool leaves_machine(const std::string& interface) {
+  const std::vector<Interface> interfaces = interfaces_of_host();
+  const auto found = std::ranges::find(interfaces, interface, &Interface::name);
+  return found != interfaces.end() && !found->is_loopback;
+}
 
 std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_address) {
   std::string peers = fmt::format(R"(<Peer Address="{}"/>)", own_address);
@@ -97,9 +167,9 @@ std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_ad
   <PrimaryReorderMaxSamples>1024</PrimaryReorderMaxSamples><SecondaryReorderMaxSamples>1024</SecondaryReorderMaxSamples>
   <WriterLingerDuration>0ms</WriterLingerDuration>
   <Watermarks><WhcHigh>64 MB</WhcHigh><WhcHighInit>64 MB</WhcHighInit><WhcAdaptive>false</WhcAdaptive></Watermarks>
- </Internal>
+ </Internal>{}
 </Domain></CycloneDDS>)",
-      network.interface, kMaxProcesses, peers);
+      network.interface, kMaxProcesses, peers, network.security ? security_xml(*network.security) : "");
 }
 
 Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<CycloneDomain>& domain) {
@@ -133,6 +203,9 @@ Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<Cyclon
                           kMaxProcesses, network.domain);
     return Status::error(ExitCode::resources, fmt::format("cannot join DDS domain {} on {}: {}{}", network.domain,
                                                           network.interface, reason, remedy));
+  }
+  if (!leaves_machine(network.interface)) {
+    if (Status status = confine_to_loopback(network.interface); !status.is_ok()) return status;
   }
   opened->log_.set_echo(CycloneLog::Echo::on);
   domain = std::move(opened);

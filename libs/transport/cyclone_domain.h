@@ -1,13 +1,15 @@
 // A DDS domain of this process: the one place that configures Cyclone.
 //
-// Unicast only, on one interface; nothing is sent beyond loopback unless another interface is named (the sockets
-// themselves are bound to all addresses: this is no firewall). Loss is repaired within 8 to 15 ms. UDP ports:
+// Unicast only, on one interface; nothing is sent beyond loopback unless another interface is named. On loopback the
+// sockets hear that interface alone; on another one they are bound to all addresses (Cyclone's way, and processes of
+// one host reach each other through loopback): that is no firewall. Loss is repaired within 8 to 15 ms. UDP ports:
 // 7400 + 250 domain + 10 .. 129, two per process.
 // CYCLONEDDS_URI is not consulted. One domain per number and process; several transports share it.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,11 +21,24 @@ namespace slew::transport {
 inline constexpr std::uint32_t kMaxDomain = 230;
 inline constexpr int kMaxProcesses = 60;  // of one domain on one host
 
-struct CycloneNetwork {
-  std::uint32_t domain = 0;        // 0 .. kMaxDomain
-  std::string interface = "lo";    // name of the network interface, as in `ip link`
-  std::vector<std::string> peers;  // addresses or names of the other hosts; this host is always among them
+// Files of DDS Security: who may take part, and what this process may say and hear (docs/security.md).
+struct CycloneSecurity {
+  std::string authority;    // certificate that signed all the others, PEM
+  std::string governance;   // what is protected and how, signed (S/MIME)
+  std::string certificate;  // of this process, PEM
+  std::string private_key;  // PEM
+  std::string permissions;  // of this process, signed (S/MIME)
 };
+
+struct CycloneNetwork {
+  std::uint32_t domain = 0;                   // 0 .. kMaxDomain
+  std::string interface = "lo";               // name of the network interface, as in `ip link`
+  std::vector<std::string> peers;             // addresses or names of the other hosts; this host is always among them
+  std::optional<CycloneSecurity> security{};  // none: whoever reaches the ports takes part
+};
+
+// What is sent on it goes beyond this machine. False too when there is no such interface.
+[[nodiscard]] bool leaves_machine(const std::string& interface);
 
 class CycloneDomain {
  public:

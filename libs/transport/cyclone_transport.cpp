@@ -77,6 +77,13 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
 }
 
 [[nodiscard]] Status creation_error(const char* what, dds_return_t code, CycloneDomain& domain) {
+  if (code == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY) {
+    return Status::error(ExitCode::bad_input,
+                         fmt::format("the keys of this process do not allow it the DDS {} of this session; nothing was "
+                                     "started; 'slewring keys check' tells whether they are good; keys for other "
+                                     "sessions and roles are made with 'slewring keys add'; {}",
+                                     what, domain.log().last_line()));
+  }
   return Status::error(ExitCode::resources, fmt::format("cannot create the DDS {}: {}; {}", what, dds_strretcode(code),
                                                         domain.log().last_line()));
 }

@@ -70,6 +70,21 @@ bool NamespacePair::lose(int percent) {
   return true;
 }
 
+bool NamespacePair::count_sent() {
+  return access(kNft, X_OK) == 0 && filter(left_, {"add", "table", "ip", "sent"}) &&
+         filter(left_, {"add", "chain", "ip", "sent", "output", "{ type filter hook output priority 0; }"}) &&
+         filter(left_, {"add", "rule", "ip", "sent", "output", "oifname", left_.interface, "meta", "l4proto", "udp",
+                        "counter"});
+}
+
+std::uint64_t NamespacePair::sent() {
+  const ScratchFolder folder;
+  Program program(kIp, {"netns", "exec", left_.name, kNft, "list", "table", "ip", "sent"}, folder.path() / "nft");
+  if (program.wait() != 0) throw std::runtime_error("nft: " + program.err());
+  const std::string said = program.out();
+  return std::stoull(said.substr(said.find("packets ") + 8));
+}
+
 bool NamespacePair::filter(const Side& side, const std::vector<std::string>& arguments) {
   std::vector<std::string> all = {"netns", "exec", side.name, kNft};
   all.insert(all.end(), arguments.begin(), arguments.end());

@@ -1,6 +1,7 @@
 // Two network namespaces joined by a veth pair: two machines as far as the network is concerned.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ class NamespacePair {
   void unplug();
   // From now on each side loses this share of the datagrams that come to it [%]. False where that is not possible.
   [[nodiscard]] bool lose(int percent);
+  // From now on the datagrams that leave the left side are counted. False where that is not possible.
+  [[nodiscard]] bool count_sent();
+  [[nodiscard]] std::uint64_t sent();
 
  private:
   [[nodiscard]] bool ip(const std::vector<std::string>& arguments);

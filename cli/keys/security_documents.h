@@ -1,0 +1,24 @@
+// The documents of DDS Security 1.1 that a key store signs: what a domain protects, and what a holder of keys may do.
+#pragma once
+
+#include <string>
+
+#include "transport/topics.h"
+
+namespace slew::cli {
+
+// Only participants with a certificate of the store take part; discovery and data are encrypted (AES-GCM).
+[[nodiscard]] std::string governance_xml();
+
+struct Grant {
+  std::string name;     // of the identity
+  std::string subject;  // of its certificate, RFC 2253
+  std::string session;  // name of the sessions it may take part in, with * and ?
+  transport::TopicSet writes, reads;
+  std::string not_before, not_after;  // 2026-11-23T00:00:00, UTC
+};
+
+// All that is not named is denied.
+[[nodiscard]] std::string permissions_xml(const Grant& grant);
+
+}  // namespace slew::cli

@@ -1,0 +1,152 @@
+// Key stores: made, checked, exported, revoked; sessions with keys, and those who have none.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "tests/support/test_domain.h"
+
+namespace slew::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Keys : public ::testing::Test {
+ protected:
+  CommandResult keys(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "keys");
+    return run("slewring", arguments, folder());
+  }
+  // what check says by identity; empty: good
+  std::map<std::string, std::string> problems(const std::string& store = "plant") {
+    const CommandResult result = keys({"check", store, "--json"});
+    std::map<std::string, std::string> said;
+    for (const auto& one : nlohmann::json::parse(result.out, nullptr, false)) said[one.at("what")] = one.at("problem");
+    return said;
+  }
+  const fs::path& folder() const { return work_.path(); }
+  [[nodiscard]] std::string domain() const { return std::to_string(domain_.number()); }
+
+  WorkFolder work_;
+  TestDomain domain_;
+};
+
+TEST_F(Keys, StoreHasKeysForEveryRoleThatOthersCannotRead) {
+  const CommandResult made = keys({"create", "plant"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const CommandResult checked = keys({"check", "plant"});
+  EXPECT_EQ(checked.code, 0) << checked.out << checked.err;
+  for (const char* role : {"io", "mechanics", "hydraulics", "flex", "recorder", "observer", "controller"}) {
+    EXPECT_NE(checked.out.find(std::string("ok  ") + role), std::string::npos) << checked.out;
+    const fs::perms mode = fs::status(folder() / "plant" / role / "private_key.pem").permissions();
+    EXPECT_EQ(mode & (fs::perms::group_all | fs::perms::others_all), fs::perms::none) << role;
+  }
+  const std::string authority = text_of(folder() / "plant/ca.pem");
+  const CommandResult again = keys({"create", "plant"});
+  EXPECT_EQ(again.code, 2);
+  EXPECT_NE(again.err.find("nothing was changed"), std::string::npos) << again.err;
+  EXPECT_EQ(text_of(folder() / "plant/ca.pem"), authority);
+}
+
+TEST_F(Keys, CheckFindsWhatIsNotInOrder) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  ASSERT_EQ(keys({"create", "other"}).code, 0);
+  const auto copy = [&](const char* from, const char* to) {
+    fs::copy_file(folder() / from, folder() / to, fs::copy_options::overwrite_existing);
+  };
+  copy("plant/flex/private_key.pem", "plant/io/private_key.pem");
+  copy("other/mechanics/certificate.pem", "plant/mechanics/certificate.pem");
+  copy("plant/flex/permissions.p7s", "plant/hydraulics/permissions.p7s");
+  copy("other/recorder/permissions.p7s", "plant/recorder/permissions.p7s");
+  fs::permissions(folder() / "plant/observer/private_key.pem", fs::perms::others_read, fs::perm_options::add);
+  // a permission that was widened by hand
+  std::string granted = text_of(folder() / "plant/controller/permissions.p7s");
+  granted.replace(granted.find("slewring/controller_input"), 25, "slewring/control_requests");
+  std::ofstream(folder() / "plant/controller/permissions.p7s", std::ios::binary) << granted;
+  auto found = problems();
+  EXPECT_EQ(found["io"], "the private key is not that of the certificate");
+  EXPECT_NE(found["mechanics"].find("the certificate is not good"), std::string::npos) << found["mechanics"];
+  EXPECT_EQ(found["hydraulics"], "the permissions are those of another certificate");
+  EXPECT_NE(found["recorder"].find("is not signed by"), std::string::npos) << found["recorder"];
+  EXPECT_NE(found["observer"].find("other users may read"), std::string::npos) << found["observer"];
+  EXPECT_NE(found["controller"].find("is not signed by"), std::string::npos) << found["controller"];
+  EXPECT_EQ(found["flex"], "");
+  EXPECT_EQ(keys({"check", "plant"}).code, 1);
+  EXPECT_EQ(keys({"check", "nowhere"}).code, 2);
+}
+
+TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  ASSERT_EQ(keys({"add", "plant", "--name", "joystick", "--session", "truck_*"}).code, 0);
+  EXPECT_EQ(keys({"add", "plant", "--name", "joystick"}).code, 2);
+  EXPECT_EQ(keys({"add", "plant", "--name", "a/b"}).code, 2);
+  EXPECT_EQ(keys({"export", "plant", "nobody", "--to", "out"}).code, 2);
+  EXPECT_FALSE(fs::exists(folder() / "out"));
+  ASSERT_EQ(keys({"export", "plant", "joystick", "hydraulics", "--to", "out"}).code, 0);
+  EXPECT_FALSE(fs::exists(folder() / "out/ca.key"));
+  EXPECT_FALSE(fs::exists(folder() / "out/mechanics"));
+  EXPECT_EQ(problems("out")["joystick"], "");
+  const CommandResult revoked = keys({"revoke", "plant", "joystick"});
+  ASSERT_EQ(revoked.code, 0) << revoked.err;
+  EXPECT_FALSE(fs::exists(folder() / "plant/joystick"));
+  EXPECT_EQ(keys({"check", "plant"}).code, 0);
+  // what was exported is of the former authority
+  const CommandResult mixed = keys({"export", "plant", "hydraulics", "--to", "out"});
+  EXPECT_EQ(mixed.code, 2);
+  EXPECT_NE(mixed.err.find("before a revocation"), std::string::npos) << mixed.err;
+  EXPECT_EQ(keys({"revoke", "plant", "joystick"}).code, 2);
+}
+
+TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  const CommandResult result = run("slewring",
+                                   {"run", scene_file("truck_crane.yaml"), "--keys", "plant", "--domain", domain(),
+                                    "--duration", "1", "--pace", "free", "--json"},
+                                   folder());
+  ASSERT_EQ(result.code, 0) << result.err;
+  const CommandResult replayed = run("slewring", {"replay", work_.recording().string(), "--verify"}, folder());
+  EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+}
+
+TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  ASSERT_EQ(keys({"create", "other"}).code, 0);
+  ASSERT_EQ(keys({"add", "plant", "--role", "hydraulics", "--name", "guest", "--session", "foo_*"}).code, 0);
+  Command session("slewring",
+                  {"run", scene_file("truck_crane.yaml"), "--keys", "plant", "--domain", domain(), "--session", "t",
+                   "--remote", "hydraulics", "--duration", "1", "--pace", "free", "--json"},
+                  folder());
+  const auto hydraulics = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"node", "hydraulics", "--session", "t", "--domain", domain(), "--session-timeout", "2"});
+    return run("slewring", more, folder());
+  };
+  const CommandResult none = hydraulics({});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_NE(none.err.find("no session was found within 2 s"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("--keys"), std::string::npos) << none.err;
+  const CommandResult wrong = hydraulics({"--keys", "other"});
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_NE(wrong.err.find("Certificate not valid"), std::string::npos) << wrong.err;
+  const CommandResult guest = hydraulics({"--keys", "plant", "--identity", "guest"});
+  EXPECT_EQ(guest.code, 2);
+  EXPECT_NE(guest.err.find("the keys of this process do not allow it"), std::string::npos) << guest.err;
+  const CommandResult unknown = hydraulics({"--keys", "plant", "--identity", "nobody"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.err.find("has no keys of 'nobody'"), std::string::npos) << unknown.err;
+  const CommandResult ended = session.wait();
+  EXPECT_EQ(ended.code, 1) << ended.err;
+  EXPECT_NE(ended.err.find("no hydraulics node has been heard"), std::string::npos) << ended.err;
+  // the one that came with a certificate is named
+  EXPECT_NE(ended.err.find("/O=Slewring/CN=hydraulics"), std::string::npos) << ended.err;
+}
+
+}  // namespace
+}  // namespace slew::testing
