@@ -31,7 +31,7 @@ struct Options {
 
 ExitCode create(const Options& options) {
   const KeyStore store = KeyStore::create(options.store, options.session, options.days);
-  fmt::print("{}: an authority, and keys for {} roles, valid for {} days\n", options.store, store.identities().size(),
+  fmt::print("{}: authorities, and keys for {} roles, valid for {} days\n", options.store, store.identities().size(),
              options.days);
   fmt::print("next: slewring keys export {} hydraulics --to DIR, and DIR to the machine that computes the hydraulics\n",
              options.store);
@@ -52,7 +52,7 @@ ExitCode revoke(const Options& options) {
   KeyStore store = KeyStore::open(options.store);
   store.revoke(options.name);
   fmt::print(
-      "{}: '{}' is revoked: there is a new authority, and the keys of the {} others are new\n"
+      "{}: '{}' is revoked: there are new authorities, and the keys of the {} others are new\n"
       "next: export them to every machine again; sessions that run go on with the old ones until they end\n",
       options.store, options.name, store.identities().size());
   return ExitCode::ok;
@@ -64,7 +64,7 @@ ExitCode check(const Options& options) {
   nlohmann::json json = nlohmann::json::array();
   bool is_good = true;
   for (const KeyFinding& finding : findings) {
-    const std::string what = finding.identity.empty() ? "authority" : finding.identity;
+    const std::string what = finding.identity.empty() ? "authorities" : finding.identity;
     is_good = is_good && finding.problem.empty();
     json.push_back({{"what", what}, {"problem", finding.problem}, {"expires", finding.expires}});
     const std::string text = finding.problem.empty() ? "until " + finding.expires : finding.problem;
@@ -76,7 +76,7 @@ ExitCode check(const Options& options) {
 
 ExitCode export_keys(const Options& options) {
   KeyStore::open(options.store).export_to(options.to, options.names);
-  fmt::print("{}: {} for --keys there; the authority's own key stays in {}\n", options.to,
+  fmt::print("{}: {} for --keys there; the authorities' own keys stay in {}\n", options.to,
              fmt::join(options.names, ", "), options.store);
   return ExitCode::ok;
 }

@@ -71,7 +71,8 @@ std::string utc(std::chrono::system_clock::time_point time) {
 
 void sign(const fs::path& document, const fs::path& to, const fs::path& store) {
   run_openssl({"smime", "-sign", "-in", document.string(), "-text", "-out", to.string(), "-signer",
-               (store / cli_support::kAuthority).string(), "-inkey", (store / cli_support::kAuthorityKey).string()});
+               (store / cli_support::kPermissionsAuthority).string(), "-inkey",
+               (store / cli_support::kPermissionsAuthorityKey).string()});
 }
 
 void make_key(const fs::path& to) {
@@ -148,7 +149,7 @@ KeyStore KeyStore::create(const fs::path& folder, const std::string& session, in
   make_private_folder(folder);
   try {
     KeyStore store(folder);
-    store.make_authority(days);
+    store.make_authorities(days);
     for (const Role role : kAllRoles) {
       store.identities_.push_back({std::string(node::to_text(role)), role, session, days});
       store.make_identity(store.identities_.back());
@@ -163,12 +164,12 @@ KeyStore KeyStore::create(const fs::path& folder, const std::string& session, in
 
 KeyStore KeyStore::open(const fs::path& folder) {
   const nlohmann::json list = nlohmann::json::parse(read_file(folder / kList), nullptr, false);
-  if (!list.is_array() || !fs::exists(folder / cli_support::kAuthorityKey)) {
+  if (!list.is_array() || !fs::exists(folder / cli_support::kIdentityAuthorityKey)) {
     throw Failure(
         ExitCode::bad_input,
         fmt::format("{} is no key store ({} and {} make one); nothing was changed; make one with 'slewring keys "
                     "create'",
-                    folder.string(), kList, cli_support::kAuthorityKey));
+                    folder.string(), kList, cli_support::kIdentityAuthorityKey));
   }
   KeyStore store(folder);
   for (const nlohmann::json& one : list) {
@@ -185,13 +186,17 @@ const KeyIdentity* KeyStore::find(const std::string& name) const {
   return found != identities_.end() ? &*found : nullptr;
 }
 
-void KeyStore::make_authority(int days) const {
-  const fs::path key = folder_ / cli_support::kAuthorityKey, config = folder_ / "openssl.cnf";
-  make_key(key);
+void KeyStore::make_authorities(int days) const {
+  const fs::path config = folder_ / "openssl.cnf";
   write_file(config, kOpensslConfig);
-  run_openssl({"req", "-x509", "-new", "-config", config.string(), "-key", key.string(), "-out",
-               (folder_ / cli_support::kAuthority).string(), "-days", std::to_string(days), "-set_serial",
-               random_serial(), "-subj", fmt::format("/O=Slewring/CN=authority {}", random_serial().substr(2, 16))});
+  const auto make = [&](const char* what, const char* certificate, const char* key) {
+    make_key(folder_ / key);
+    run_openssl({"req", "-x509", "-new", "-config", config.string(), "-key", (folder_ / key).string(), "-out",
+                 (folder_ / certificate).string(), "-days", std::to_string(days), "-set_serial", random_serial(),
+                 "-subj", fmt::format("/O=Slewring/CN=authority of {} {}", what, random_serial().substr(2, 16))});
+  };
+  make("identities", cli_support::kIdentityAuthority, cli_support::kIdentityAuthorityKey);
+  make("permissions", cli_support::kPermissionsAuthority, cli_support::kPermissionsAuthorityKey);
   const fs::path governance = folder_ / "governance.xml";
   write_file(governance, governance_xml());
   sign(governance, folder_ / cli_support::kGovernance, folder_);
@@ -205,9 +210,9 @@ void KeyStore::make_identity(const KeyIdentity& identity) const {
   run_openssl({"req", "-new", "-config", (folder_ / "openssl.cnf").string(), "-key",
                (folder / cli_support::kPrivateKey).string(), "-out", request.string(), "-subj",
                "/O=Slewring/CN=" + identity.name});
-  run_openssl({"x509", "-req", "-in", request.string(), "-CA", (folder_ / cli_support::kAuthority).string(), "-CAkey",
-               (folder_ / cli_support::kAuthorityKey).string(), "-set_serial", random_serial(), "-days",
-               std::to_string(identity.days), "-out", certificate.string()});
+  run_openssl({"x509", "-req", "-in", request.string(), "-CA", (folder_ / cli_support::kIdentityAuthority).string(),
+               "-CAkey", (folder_ / cli_support::kIdentityAuthorityKey).string(), "-set_serial", random_serial(),
+               "-days", std::to_string(identity.days), "-out", certificate.string()});
   fs::remove(request);
   // clocks of other machines may be behind
   const auto now = std::chrono::system_clock::now();
@@ -270,7 +275,7 @@ void KeyStore::revoke(const std::string& name) {
   }
   try {
     make_private_folder(next.folder_);
-    next.make_authority(days);
+    next.make_authorities(days);
     for (const KeyIdentity& one : next.identities_) next.make_identity(one);
     next.write_list();
   } catch (...) {
@@ -293,8 +298,8 @@ void KeyStore::export_to(const fs::path& folder, const std::vector<std::string>&
           fmt::format("there is no identity '{}'; nothing was copied; 'slewring keys check' lists them", name));
     }
   }
-  const fs::path authority = folder / cli_support::kAuthority;
-  if (fs::exists(authority) && read_file(authority) != read_file(folder_ / cli_support::kAuthority)) {
+  const fs::path authority = folder / cli_support::kIdentityAuthority;
+  if (fs::exists(authority) && read_file(authority) != read_file(folder_ / cli_support::kIdentityAuthority)) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("{} holds keys of another authority, or of this one before a revocation; nothing was "
                               "copied; remove it, or name another folder",
@@ -306,7 +311,8 @@ void KeyStore::export_to(const fs::path& folder, const std::vector<std::string>&
     fs::copy_file(folder_ / file, folder / file, fs::copy_options::overwrite_existing, error);
     if (error) throw storage(folder / file, error.message());
   };
-  copy(cli_support::kAuthority);
+  copy(cli_support::kIdentityAuthority);
+  copy(cli_support::kPermissionsAuthority);
   copy(cli_support::kGovernance);
   for (const std::string& name : names) {
     make_private_folder(folder / name);
@@ -344,7 +350,7 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   KeyFinding finding{name, "", ""};
   const transport::CycloneSecurity files = cli_support::readable_key_files(folder, name);
   std::string said;
-  if (!try_openssl({"verify", "-CAfile", files.authority, files.certificate}, said)) {
+  if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, said)) {
     finding.problem = fmt::format("the certificate is not good: {}", reason_of(said));
     return finding;
   }
@@ -357,7 +363,7 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   } else if (others_may_read(files.private_key)) {
     finding.problem = fmt::format("other users may read the private key; chmod 600 {}", files.private_key);
   } else {
-    finding.problem = problem_of_signature(files.permissions, files.authority);
+    finding.problem = problem_of_signature(files.permissions, files.permissions_authority);
   }
   if (!finding.problem.empty()) return finding;
   const std::string subject = "<subject_name>" + subject_of(files.certificate) + "</subject_name>";
@@ -370,7 +376,7 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
 }  // namespace
 
 std::vector<KeyFinding> check_keys(const fs::path& folder) {
-  const fs::path authority = folder / cli_support::kAuthority, own_key = folder / cli_support::kAuthorityKey;
+  const fs::path authority = folder / cli_support::kIdentityAuthority;
   std::vector<std::string> names;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
@@ -378,14 +384,17 @@ std::vector<KeyFinding> check_keys(const fs::path& folder) {
   }
   if (!fs::exists(authority) || names.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("{} holds no keys: {} and a folder for each identity are expected",
-                                                   folder.string(), cli_support::kAuthority));
+                                                   folder.string(), cli_support::kIdentityAuthority));
   }
   std::sort(names.begin(), names.end());
   KeyFinding whole{"", "", ""};
-  if (fs::exists(own_key) && others_may_read(own_key)) {
-    whole.problem = fmt::format("other users may read the authority's key; chmod 600 {}", own_key.string());
-  } else {
-    whole.problem = problem_of_signature((folder / cli_support::kGovernance).string(), authority.string());
+  for (const char* key : {cli_support::kIdentityAuthorityKey, cli_support::kPermissionsAuthorityKey}) {
+    if (!others_may_read(folder / key)) continue;
+    whole.problem = fmt::format("other users may read an authority's key; chmod 600 {}", (folder / key).string());
+  }
+  if (whole.problem.empty()) {
+    whole.problem = problem_of_signature((folder / cli_support::kGovernance).string(),
+                                         (folder / cli_support::kPermissionsAuthority).string());
   }
   whole.expires = trimmed(run_openssl({"x509", "-in", authority.string(), "-noout", "-enddate"}));
   whole.expires = whole.expires.substr(whole.expires.find('=') + 1);

@@ -1,8 +1,8 @@
-// A key store: the authority of a set of machines, and an identity with keys for every role that takes part. Made and
+// A key store: the authorities of a set of machines, and an identity with keys for every role that takes part. Made and
 // changed with the openssl command line; read by nodes through cli_support/key_store_files.h.
 //
-// The packaged DDS knows no list of revoked certificates: to revoke an identity the authority is made anew, and with it
-// all other identities, whose holders need them again.
+// The packaged DDS knows no list of revoked certificates: to revoke an identity the authorities are made anew, and with
+// them all other identities, whose holders need them again.
 #pragma once
 
 #include <filesystem>
@@ -28,8 +28,8 @@ struct KeyFinding {
 
 class KeyStore {
  public:
-  // Makes an authority and an identity for every role. Throws Failure when the folder holds anything; nothing is left
-  // behind then.
+  // Makes the authorities and an identity for every role. Throws Failure when the folder holds anything; nothing is
+  // left behind then.
   static KeyStore create(const std::filesystem::path& folder, const std::string& session, int days);
   // Throws Failure (bad_input) when there is no store.
   static KeyStore open(const std::filesystem::path& folder);
@@ -38,15 +38,15 @@ class KeyStore {
 
   // Throws Failure (bad_input) when there is one of the name.
   void add(const KeyIdentity& identity);
-  // Makes the authority and all other identities anew. Until that is done, the store is as it was.
+  // Makes the authorities and all other identities anew. Until that is done, the store is as it was.
   void revoke(const std::string& name);
   // Copies what holders of these identities need into a folder, which may hold others of the same authority. Never the
-  // authority's own key. Throws Failure when the folder belongs to another authority or an identity is unknown.
+  // authorities' own keys. Throws Failure when the folder belongs to another authority or an identity is unknown.
   void export_to(const std::filesystem::path& folder, const std::vector<std::string>& names) const;
 
  private:
   explicit KeyStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  void make_authority(int days) const;
+  void make_authorities(int days) const;
   void make_identity(const KeyIdentity& identity) const;
   void write_list() const;
   [[nodiscard]] const KeyIdentity* find(const std::string& name) const;

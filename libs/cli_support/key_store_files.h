@@ -1,8 +1,11 @@
 // Where the files of a key store are; the same in the store and in what was exported of it.
 //
-//   DIR/ca.pem, DIR/governance.p7s              whom to believe, and what is protected how
+//   DIR/identity_ca.pem, DIR/permissions_ca.pem, DIR/governance.p7s    whom to believe, and what is protected how
 //   DIR/<identity>/certificate.pem, private_key.pem, permissions.p7s
-//   DIR/ca.key                                  in the store alone: makes and renews identities
+//   DIR/identity_ca.key, DIR/permissions_ca.key                        in the store alone: make and renew identities
+//
+// Two authorities, since the packaged DDS (Cyclone 0.10.2, CVE-2023-24011) takes permissions that are signed by any
+// certificate of the authority of permissions: with one for both, every holder of keys could grant itself anything.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +15,10 @@
 
 namespace slew::cli_support {
 
-inline constexpr const char* kAuthority = "ca.pem";
-inline constexpr const char* kAuthorityKey = "ca.key";
+inline constexpr const char* kIdentityAuthority = "identity_ca.pem";
+inline constexpr const char* kIdentityAuthorityKey = "identity_ca.key";
+inline constexpr const char* kPermissionsAuthority = "permissions_ca.pem";
+inline constexpr const char* kPermissionsAuthorityKey = "permissions_ca.key";
 inline constexpr const char* kGovernance = "governance.p7s";
 inline constexpr const char* kCertificate = "certificate.pem";
 inline constexpr const char* kPrivateKey = "private_key.pem";

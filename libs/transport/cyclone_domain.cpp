@@ -102,9 +102,9 @@ std::string security_xml(const CycloneSecurity& security) {
       "\n <Security><Authentication>{}{}{}{}</Authentication>\n"
       "  <AccessControl>{}{}{}{}</AccessControl>\n"
       "  <Cryptographic>{}</Cryptographic></Security>",
-      library("dds_security_auth", "authentication"), file("IdentityCA", security.authority),
+      library("dds_security_auth", "authentication"), file("IdentityCA", security.identity_authority),
       file("IdentityCertificate", security.certificate), file("PrivateKey", security.private_key),
-      library("dds_security_ac", "access_control"), file("PermissionsCA", security.authority),
+      library("dds_security_ac", "access_control"), file("PermissionsCA", security.permissions_authority),
       file("Governance", security.governance), file("Permissions", security.permissions),
       library("dds_security_crypto", "crypto"));
 }
@@ -187,7 +187,7 @@ Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<Cyclon
   std::string own_address;
   if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;
 
-  std::shared_ptr<CycloneDomain> opened(new CycloneDomain(network.domain));
+  std::shared_ptr<CycloneDomain> opened(new CycloneDomain(network.domain, network.security.has_value()));
   opened->log_.set_echo(CycloneLog::Echo::off);
   opened->handle_ = dds_create_domain(network.domain, cyclone_xml(network, own_address).c_str());
   if (opened->handle_ == DDS_RETCODE_PRECONDITION_NOT_MET) {

@@ -23,11 +23,12 @@ inline constexpr int kMaxProcesses = 60;  // of one domain on one host
 
 // Files of DDS Security: who may take part, and what this process may say and hear (docs/security.md).
 struct CycloneSecurity {
-  std::string authority;    // certificate that signed all the others, PEM
-  std::string governance;   // what is protected and how, signed (S/MIME)
-  std::string certificate;  // of this process, PEM
-  std::string private_key;  // PEM
-  std::string permissions;  // of this process, signed (S/MIME)
+  std::string identity_authority;     // certificate that signed those of all processes, PEM
+  std::string permissions_authority;  // certificate that signed governance and permissions, PEM
+  std::string governance;             // what is protected and how, signed (S/MIME)
+  std::string certificate;            // of this process, PEM
+  std::string private_key;            // PEM
+  std::string permissions;            // of this process, signed (S/MIME)
 };
 
 struct CycloneNetwork {
@@ -50,13 +51,15 @@ class CycloneDomain {
   CycloneDomain& operator=(const CycloneDomain&) = delete;
 
   [[nodiscard]] std::uint32_t number() const noexcept { return number_; }
+  [[nodiscard]] bool is_secured() const noexcept { return is_secured_; }
   [[nodiscard]] CycloneLog& log() noexcept { return log_; }
 
  private:
-  explicit CycloneDomain(std::uint32_t number) : number_(number) {}
+  CycloneDomain(std::uint32_t number, bool is_secured) : number_(number), is_secured_(is_secured) {}
 
   CycloneLog log_;
   std::uint32_t number_;
+  bool is_secured_;
   std::int32_t handle_ = 0;
 };
 

@@ -126,6 +126,13 @@ Status CycloneTransport::open(std::shared_ptr<CycloneDomain> domain, const Cyclo
 
 Status CycloneTransport::create() {
   participant_ = dds_create_participant(domain_->number(), nullptr, nullptr);
+  if (participant_ < 0 && domain_->is_secured()) {
+    return Status::error(
+        ExitCode::bad_input,
+        fmt::format("the keys of this process are not good; nothing was started; 'slewring keys check' "
+                    "tells what is wrong with them; {}",
+                    domain_->log().last_line()));
+  }
   if (participant_ < 0) return creation_error("participant", participant_, *domain_);
   const Qos partition = partition_qos(options_.session);
   const dds_entity_t publisher = dds_create_publisher(participant_, partition.get(), nullptr);

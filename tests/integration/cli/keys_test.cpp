@@ -49,11 +49,11 @@ TEST_F(Keys, StoreHasKeysForEveryRoleThatOthersCannotRead) {
     const fs::perms mode = fs::status(folder() / "plant" / role / "private_key.pem").permissions();
     EXPECT_EQ(mode & (fs::perms::group_all | fs::perms::others_all), fs::perms::none) << role;
   }
-  const std::string authority = text_of(folder() / "plant/ca.pem");
+  const std::string authority = text_of(folder() / "plant/identity_ca.pem");
   const CommandResult again = keys({"create", "plant"});
   EXPECT_EQ(again.code, 2);
   EXPECT_NE(again.err.find("nothing was changed"), std::string::npos) << again.err;
-  EXPECT_EQ(text_of(folder() / "plant/ca.pem"), authority);
+  EXPECT_EQ(text_of(folder() / "plant/identity_ca.pem"), authority);
 }
 
 TEST_F(Keys, CheckFindsWhatIsNotInOrder) {
@@ -91,7 +91,8 @@ TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
   EXPECT_EQ(keys({"export", "plant", "nobody", "--to", "out"}).code, 2);
   EXPECT_FALSE(fs::exists(folder() / "out"));
   ASSERT_EQ(keys({"export", "plant", "joystick", "hydraulics", "--to", "out"}).code, 0);
-  EXPECT_FALSE(fs::exists(folder() / "out/ca.key"));
+  EXPECT_FALSE(fs::exists(folder() / "out/identity_ca.key"));
+  EXPECT_FALSE(fs::exists(folder() / "out/permissions_ca.key"));
   EXPECT_FALSE(fs::exists(folder() / "out/mechanics"));
   EXPECT_EQ(problems("out")["joystick"], "");
   const CommandResult revoked = keys({"revoke", "plant", "joystick"});
@@ -114,6 +115,34 @@ TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {
   ASSERT_EQ(result.code, 0) << result.err;
   const CommandResult replayed = run("slewring", {"replay", work_.recording().string(), "--verify"}, folder());
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+}
+
+// CVE-2023-24011: Cyclone 0.10.2 takes permissions that any certificate of the authority has signed
+TEST_F(Keys, HoldersCannotGrantThemselvesMore) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  ASSERT_EQ(keys({"add", "plant", "--role", "io", "--name", "guest", "--session", "foo_*"}).code, 0);
+  const fs::path guest = folder() / "plant/guest";
+  std::string wider = text_of(guest / "permissions.xml");
+  for (std::size_t at = wider.find("foo_*"); at != std::string::npos; at = wider.find("foo_*"))
+    wider.replace(at, 5, "*");
+  std::ofstream(guest / "wider.xml", std::ios::binary) << wider;
+  const auto start = [&] {
+    return run("slewring",
+               {"node", "io", scene_file("first_steps.yaml"), "--session", "t", "--domain", domain(), "--keys", "plant",
+                "--identity", "guest", "--join-timeout", "1"},
+               folder());
+  };
+  EXPECT_EQ(start().code, 2);
+  const CommandResult signs = run(
+      "/usr/bin/openssl",
+      {"smime", "-sign", "-in", (guest / "wider.xml").string(), "-text", "-out", (guest / "permissions.p7s").string(),
+       "-signer", (guest / "certificate.pem").string(), "-inkey", (guest / "private_key.pem").string()},
+      folder());
+  ASSERT_EQ(signs.code, 0) << signs.err;
+  EXPECT_NE(problems()["guest"].find("is not signed by"), std::string::npos);
+  const CommandResult forged = start();
+  EXPECT_EQ(forged.code, 2) << forged.err;
+  EXPECT_NE(forged.err.find("the keys of this process are not good"), std::string::npos) << forged.err;
 }
 
 TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
