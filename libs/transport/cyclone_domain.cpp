@@ -2,12 +2,16 @@
 
 #include <arpa/inet.h>
 #include <dds/dds.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +20,9 @@
 
 namespace slew::transport {
 namespace {
+
+constexpr std::size_t kFiles = 16;
+constexpr std::size_t kSpace = std::size_t{256} << 20;  // bytes of addresses
 
 struct Interface {
   std::string name;
@@ -109,6 +116,32 @@ std::string security_xml(const CycloneSecurity& security) {
       library("dds_security_crypto", "crypto"));
 }
 
+// What Cyclone does not survive to be without: files for its sockets, address space for its threads and caches.
+Status enough_resources() {
+  std::array<int, kFiles> files{};
+  std::size_t opened = 0;
+  while (opened < files.size() && (files[opened] = ::open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0) ++opened;
+  const int why = errno;
+  for (std::size_t i = 0; i < opened; ++i) ::close(files[i]);
+  if (opened < files.size()) {
+    return Status::error(
+        ExitCode::resources,
+        fmt::format("this process can open {} more files ({}), a session needs {}; nothing was started; "
+                    "raise the limit (ulimit -n) or end other programs",
+                    opened, std::strerror(why), files.size()));
+  }
+  void* const space = ::mmap(nullptr, kSpace, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (space == MAP_FAILED) {
+    return Status::error(
+        ExitCode::resources,
+        fmt::format("this process cannot have {} MB more memory ({}), a session needs that; nothing was "
+                    "started; raise the limit (ulimit -v) or end other programs",
+                    kSpace >> 20, std::strerror(errno)));
+  }
+  ::munmap(space, kSpace);
+  return Status::ok();
+}
+
 // Cyclone binds what it receives with to all addresses. Those sockets of this process hear loopback alone from now on.
 Status confine_to_loopback(const std::string& interface) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
@@ -184,6 +217,7 @@ Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<Cyclon
           fmt::format("'{}' is not the address or name of a peer; expected for example 10.0.0.2", peer));
     }
   }
+  if (Status status = enough_resources(); !status.is_ok()) return status;
   std::string own_address;
   if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;
 

@@ -166,6 +166,18 @@ TEST_F(Distributed, APauseIsNeitherRunningTimeNorSlip) {
   for (const auto& [role, node] : report.at("nodes").items()) EXPECT_EQ(node.at("refused_messages"), 0) << role;
 }
 
+TEST_F(Distributed, WithoutFilesOrMemoryNothingIsStarted) {
+  const std::string command = program_file("slewring").string() + " run " + scene_file("truck_crane.yaml") +
+                              " --duration 1 --pace free --quiet --domain " + std::to_string(domain_.number());
+  for (const auto& [limit, what] : {std::pair("ulimit -n 12; ", "more files"), {"ulimit -v 160000; ", "more memory"}}) {
+    const CommandResult result = run("/bin/bash", {"-c", limit + command}, work_.path());
+    EXPECT_EQ(result.code, 7) << limit << result.out << result.err;
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("nothing was started"), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs")) << limit;
+  }
+}
+
 TEST_F(Distributed, AFailedStartPrintsItsReasonAndNothingElse) {
   const CommandResult result =
       slewring({"run", scene_file("first_steps.yaml"), "--remote", "recorder", "--quiet", "--out", "runs"});
