@@ -1,9 +1,9 @@
-// The example controller, built as a user builds it (a project of its own, from idl/ and Cyclone DDS alone), closes its
-// loop on a real session.
+// The example controllers, built as a user builds them (projects of their own), close their loop on a real session.
 #include <gtest/gtest.h>
 
 #include "build_paths.h"
 #include "direct_chain.h"
+#include "example_programs.h"
 #include "session.h"
 
 namespace slew::testing {
@@ -11,39 +11,25 @@ namespace {
 
 using wire::Role;
 
-constexpr std::int64_t kBuildNs = 120'000'000'000;
-
-// kept between runs, so that a second one has nothing to compile
-constexpr const char* kFolder = SLEWRING_BINARY_DIR "/example_controller";
-
-void build_example() {
-  const ScratchFolder output;
-  Program configure(SLEWRING_CMAKE, {"-S", SLEWRING_SOURCE_DIR "/examples/controller", "-B", kFolder},
-                    output.path() / "configure");
-  ASSERT_EQ(configure.wait(kBuildNs), 0) << configure.out() << configure.err();
-  Program build(SLEWRING_CMAKE, {"--build", kFolder}, output.path() / "build");
-  ASSERT_EQ(build.wait(kBuildNs), 0) << build.out() << build.err();
-}
-
 // The example alone, without a session.
-class ControllerExampleOptions : public ::testing::Test {
+class ControllerExampleOptions : public ::testing::TestWithParam<ExampleFolder> {
  protected:
-  void SetUp() override { build_example(); }
+  void SetUp() override { path = build_example(GetParam()); }
   std::unique_ptr<Program> controller(const std::vector<std::string>& arguments) {
-    return std::make_unique<Program>(std::string(kFolder) + "/position_controller", arguments,
-                                     output.path() / "controller");
+    return std::make_unique<Program>(path, arguments, output.path() / "controller");
   }
+  std::string path;
   ScratchFolder output;
 };
 
-TEST_F(ControllerExampleOptions, HelpHasAnExample) {
+TEST_P(ControllerExampleOptions, HelpHasAnExample) {
   const auto program = controller({"--help"});
   EXPECT_EQ(program->wait(), 0) << program->err();
   EXPECT_NE(program->out().find("usage: position_controller --session"), std::string::npos) << program->out();
   EXPECT_NE(program->out().find("Example"), std::string::npos) << program->out();
 }
 
-TEST_F(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
+TEST_P(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
   for (const char* option : {"--target", "--tolerance", "--gain", "--overlap", "--seconds", "--domain"}) {
     for (const char* value : {"abc", "", "0.8m", "nan", "inf"}) {
       const auto program = controller({"--session", "nobody", option, value});
@@ -54,7 +40,7 @@ TEST_F(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
   }
 }
 
-TEST_F(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
+TEST_P(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
   const struct {
     std::vector<std::string> arguments;
     const char* problem;
@@ -70,11 +56,10 @@ TEST_F(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
   }
 }
 
-class ControllerExample : public ::testing::Test {
+class ControllerExample : public ::testing::TestWithParam<ExampleFolder> {
  protected:
   void SetUp() override {
-    build_example();
-    if (HasFatalFailure()) return;
+    path = build_example(GetParam());
     session.start_all();
     ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
   }
@@ -83,18 +68,18 @@ class ControllerExample : public ::testing::Test {
         "--session",   session.name(), "--domain",  std::to_string(session.domain()),
         "--target",    "0.84",         "--gain",    "80",
         "--tolerance", "0.002",        "--seconds", "25"};
-    return std::make_unique<Program>(std::string(kFolder) + "/position_controller", arguments,
-                                     session.folder() / "controller");
+    return std::make_unique<Program>(path, arguments, session.folder() / "controller");
   }
   void stop() {
     EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
     EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
   }
 
+  std::string path;
   Session session{{"--pace", "real", "--duration", "60s", "--input", "none"}};
 };
 
-TEST_F(ControllerExample, ReachesItsTargetAndTheTicksReproduceTheRun) {
+TEST_P(ControllerExample, ReachesItsTargetAndTheTicksReproduceTheRun) {
   const std::optional<double> before = [this] {
     static_cast<void>(
         session.observer().wait_until([this] { return session.observer().variable("Cyl_Lift.stroke").has_value(); }));
@@ -111,13 +96,17 @@ TEST_F(ControllerExample, ReachesItsTargetAndTheTicksReproduceTheRun) {
   EXPECT_EQ(first_difference(chain_of_ticks(scene, recorded.ticks.at(0)), physics_only(recorded.chain())), "");
 }
 
-TEST_F(ControllerExample, SaysWhoHoldsTheChannelWhenItIsRefused) {
+TEST_P(ControllerExample, SaysWhoHoldsTheChannelWhenItIsRefused) {
   ASSERT_TRUE(session.observer().acquire("somebody_else", "Input_Lift").is_granted);
   const auto program = controller();
   EXPECT_EQ(program->wait(), 1) << program->out();
   EXPECT_NE(program->err().find("held by 'somebody_else'"), std::string::npos) << program->err();
   stop();
 }
+
+const auto name_of = [](const auto& folder) { return std::string(folder.param.name); };
+INSTANTIATE_TEST_SUITE_P(Examples, ControllerExampleOptions, ::testing::ValuesIn(kControllerExamples), name_of);
+INSTANTIATE_TEST_SUITE_P(Examples, ControllerExample, ::testing::ValuesIn(kControllerExamples), name_of);
 
 }  // namespace
 }  // namespace slew::testing

@@ -1,10 +1,11 @@
 // Closes a position loop on a cylinder of a running session, from outside: it reads the variables that the nodes
-// publish and writes one input channel. It knows idl/slewring.idl and Cyclone DDS, nothing else.
+// publish and writes one input channel. It knows idl/slewring.idl and Cyclone DDS, nothing else; examples/controller is
+// the same with Slewring's client library.
 //
 //   position_controller --session crane --variable Cyl_Lift.stroke --channel Input_Lift --target 0.86
 //
-// Steps: find the variable's owner and index in the directory, acquire the channel, then answer every new value of the
-// variable with a stick value; release the channel at the end.
+// Steps: find the variable's owner and index in the directory, acquire the channel, then answer every value of the
+// variable, in order, with a stick value; release the channel at the end. A lockstep channel needs no more than that.
 #include <dds/dds.h>
 
 #include <algorithm>
@@ -15,6 +16,9 @@
 #include <cstring>
 #include <iterator>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "slewring.h"
 
@@ -133,7 +137,7 @@ Endpoints connect(const Options& options) {
   dds_qset_durability(lasting, DDS_DURABILITY_TRANSIENT_LOCAL);
   dds_qos_t* streaming = dds_create_qos();
   dds_qset_reliability(streaming, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-  dds_qset_history(streaming, DDS_HISTORY_KEEP_LAST, 64);
+  dds_qset_history(streaming, DDS_HISTORY_KEEP_LAST, 1024);
 
   const auto topic = [&](const dds_topic_descriptor_t* type, const char* name) {
     return checked(dds_create_topic(e.participant, type, name, nullptr, nullptr), name);
@@ -142,8 +146,10 @@ Endpoints connect(const Options& options) {
       checked(dds_create_reader(subscriber, topic(&slewring_VariableDirectory_desc, "slewring/variable_directory"),
                                 lasting, nullptr),
               "the directory's reader");
+  // also the last blocks of before this reader was found: those of step 0, which a lockstep channel's first tick needs
+  dds_qset_history(lasting, DDS_HISTORY_KEEP_LAST, 1024);
   e.variables = checked(
-      dds_create_reader(subscriber, topic(&slewring_VariableBlock_desc, "slewring/variables"), streaming, nullptr),
+      dds_create_reader(subscriber, topic(&slewring_VariableBlock_desc, "slewring/variables"), lasting, nullptr),
       "the variables' reader");
   e.lease = checked(dds_create_reader(subscriber, topic(&slewring_ControllerLease_desc, "slewring/controller_lease"),
                                       streaming, nullptr),
@@ -186,17 +192,24 @@ class Loop {
     });
   }
 
-  // newest value of the variable; false when nothing new has come
-  bool read_variable() {
-    bool is_new = false;
+  // keeps the new values of the variable with their steps, until they are answered
+  void read_variable() {
     take_all<slewring_VariableBlock>(e_.variables, [&](const slewring_VariableBlock& block) {
       if (!place_.is_known || block.header.role != place_.role) return;
       if (place_.index < block.first || place_.index >= block.first + block.values._length) return;
-      value_ = block.values._buffer[place_.index - block.first];
-      step_ = block.header.step;
-      is_new = true;
+      waiting_.emplace_back(block.header.step, block.values._buffer[place_.index - block.first]);
     });
-    return is_new;
+    // without the channel only the newest is of use
+    if (!has_lease_ && waiting_.size() > 1) waiting_.erase(waiting_.begin(), waiting_.end() - 1);
+  }
+
+  // answers the oldest value that waits; false when none does
+  bool answer() {
+    if (waiting_.empty()) return false;
+    std::tie(step_, value_) = waiting_.front();
+    waiting_.erase(waiting_.begin());
+    send(slewring_CONTROLLER_WRITE, stick());
+    return true;
   }
 
   void read_lease() {
@@ -244,6 +257,7 @@ class Loop {
   Place place_;
   bool has_lease_ = false;
   std::string refusal_;
+  std::vector<std::pair<std::int64_t, double>> waiting_;  // step and value
   double value_ = 0;
   std::int64_t step_ = -1;
   std::uint64_t sequence_ = 0;
@@ -280,7 +294,7 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "position_controller: refused: %s\n", loop.refusal().c_str());
       return 1;
     }
-    const bool is_new = loop.read_variable();
+    loop.read_variable();
     had_lease |= loop.has_lease();
     if (!loop.has_lease()) {
       // ask until the session answers
@@ -290,9 +304,7 @@ int main(int argc, char** argv) {
       }
       continue;
     }
-    if (!is_new) continue;
-    loop.send(slewring_CONTROLLER_WRITE, loop.stick());
-    steady = loop.is_there() ? steady + 1 : 0;
+    while (steady < 100 && loop.answer()) steady = loop.is_there() ? steady + 1 : 0;
   }
   if (loop.has_lease()) loop.send(slewring_CONTROLLER_RELEASE, 0);
   dds_delete(endpoints.participant);

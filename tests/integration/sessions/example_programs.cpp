@@ -1,0 +1,29 @@
+#include "example_programs.h"
+
+#include <stdexcept>
+
+#include "build_paths.h"
+#include "program.h"
+
+namespace slew::testing {
+namespace {
+
+constexpr std::int64_t kBuildNs = 120'000'000'000;
+
+void run_cmake(const std::vector<std::string>& arguments) {
+  const ScratchFolder output;
+  Program cmake(SLEWRING_CMAKE, arguments, output.path() / "cmake");
+  if (cmake.wait(kBuildNs) != 0) throw std::runtime_error(cmake.out() + cmake.err());
+}
+
+}  // namespace
+
+std::string build_example(const ExampleFolder& folder) {
+  const std::string build = std::string(SLEWRING_BINARY_DIR "/examples/") + folder.name;
+  std::vector<std::string> configure = {"-S", std::string(SLEWRING_SOURCE_DIR "/examples/") + folder.name, "-B", build};
+  run_cmake(configure);
+  run_cmake({"--build", build});
+  return build + "/position_controller";
+}
+
+}  // namespace slew::testing
