@@ -14,7 +14,8 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-constexpr std::size_t kEarlyBlocks = 4096;
+constexpr std::size_t kNewBlocks = 4096;
+constexpr std::size_t kBeforeSession = 4096;
 constexpr std::size_t kWaitingSteps = 4096;
 constexpr std::int64_t kAskAgainNs = 200'000'000;
 constexpr std::int64_t kLongestSleepNs = 50'000'000;
@@ -106,21 +107,25 @@ bool ClientSession::wait_for(Done done, SimDuration timeout) {
 
 void ClientSession::drain() {
   transport::Received message;
-  while (carrier_->take(message)) take(message);
+  while (carrier_->take(message)) take(message.topic, message.bytes);
 }
 
-void ClientSession::take(const transport::Received& message) {
-  switch (message.topic) {
+void ClientSession::take(Topic topic, std::span<const std::byte> bytes) {
+  if (!has_session_ && topic != Topic::session) {
+    if (before_session_.size() < kBeforeSession) before_session_.push_back({topic, {bytes.begin(), bytes.end()}});
+    return;
+  }
+  switch (topic) {
     case Topic::session:
-      return take_session(message.bytes);
+      return take_session(bytes);
     case Topic::node_status:
-      return take_status(message.bytes);
+      return take_status(bytes);
     case Topic::variable_directory:
-      return take_directory(message.bytes);
+      return take_directory(bytes);
     case Topic::controller_lease:
-      return take_lease(message.bytes);
+      return take_lease(bytes);
     case Topic::variables:
-      return take_block(message.bytes);
+      return take_block(bytes);
     default:
       return;
   }
@@ -135,12 +140,13 @@ void ClientSession::take_session(std::span<const std::byte> bytes) {
   description.scene_text.clear();
   description_ = std::move(description);
   has_session_ = true;
+  for (const Early& message : std::exchange(before_session_, {})) take(message.topic, message.bytes);
 }
 
 // io says when it is over and why; of one that was lost the others do
 void ClientSession::take_status(std::span<const std::byte> bytes) {
   wire::NodeStatus status;
-  if (!transport::decode(bytes, status) || !has_session_ || !is_ours(status.header)) return;
+  if (!transport::decode(bytes, status) || !is_ours(status.header)) return;
   if (status.state < wire::NodeState::ended || status.header.role == Role::recorder) return;
   is_over_ = true;
   if (end_reason_.empty()) end_reason_ = status.reason;
@@ -171,7 +177,7 @@ void ClientSession::take_directory(std::span<const std::byte> bytes) {
 // of a reset: steps begin at 0 again, and what was computed before is of no use
 void ClientSession::begin_epoch(std::uint32_t epoch) {
   epoch_ = epoch;
-  early_.clear();
+  new_blocks_.clear();
   blocks_.clear();
   only_newest_ = false;
   step_ = kJoinStep;
@@ -205,8 +211,8 @@ void ClientSession::take_block(std::span<const std::byte> bytes) {
   if (!transport::decode(bytes, block) || !is_ours(block.header)) return;
   if (block.header.phase != Phase::running || block.header.epoch < epoch_) return;
   if (block.header.epoch > epoch_) begin_epoch(block.header.epoch);
-  if (early_.size() == kEarlyBlocks) early_.pop_front();
-  early_.push_back(std::move(block));
+  if (new_blocks_.size() == kNewBlocks) new_blocks_.pop_front();
+  new_blocks_.push_back(std::move(block));
 }
 
 // ---- variables ------------------------------------------------------------------------------------------------
@@ -280,8 +286,8 @@ bool ClientSession::can_never_be_complete(std::map<StepIndex, Block>::const_iter
 
 // Makes the next or the newest complete step the present one; false when there is none.
 bool ClientSession::choose(Which which) {
-  for (const wire::VariableBlock& block : early_) place(block);
-  early_.clear();
+  for (const wire::VariableBlock& block : new_blocks_) place(block);
+  new_blocks_.clear();
   auto chosen = blocks_.end();
   for (auto block = blocks_.begin(); block != blocks_.end();) {
     if (is_complete(block->second)) {

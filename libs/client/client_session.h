@@ -8,6 +8,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,11 @@ class ClientSession {
     std::string reason;
     std::string holder;
   };
+  // A message that came before the session was known: its writer was found before io's.
+  struct Early {
+    wire::Topic topic;
+    std::vector<std::byte> bytes;
+  };
   // Values of one step as they come.
   struct Block {
     std::vector<double> values;
@@ -89,7 +95,7 @@ class ClientSession {
 
   template <typename Done>
   bool wait_for(Done done, SimDuration timeout);
-  void take(const transport::Received& message);
+  void take(wire::Topic topic, std::span<const std::byte> bytes);
   void take_session(std::span<const std::byte> bytes);
   void take_status(std::span<const std::byte> bytes);
   void take_directory(std::span<const std::byte> bytes);
@@ -108,17 +114,18 @@ class ClientSession {
   JoinOptions options_;
   std::unique_ptr<transport::CycloneTransport> carrier_;
   bool has_session_ = false;
+  std::vector<Early> before_session_;
   wire::SessionDescription description_;
   bool is_over_ = false;
   std::string end_reason_;
   std::uint32_t epoch_ = 0;
   std::vector<Named> directory_;
-  bool has_own_directory_ = false;         // io's, which comes after the others'
-  std::vector<Named> wanted_;              // by handle
-  std::deque<wire::VariableBlock> early_;  // that came before step() was called
-  std::map<StepIndex, Block> blocks_;      // not handed out yet
-  bool only_newest_ = false;               // of the next step: a channel was acquired in mid-run
-  std::vector<double> values_;             // of step_, by handle
+  bool has_own_directory_ = false;              // io's, which comes after the others'
+  std::vector<Named> wanted_;                   // by handle
+  std::deque<wire::VariableBlock> new_blocks_;  // that came before step() was called
+  std::map<StepIndex, Block> blocks_;           // not handed out yet
+  bool only_newest_ = false;                    // of the next step: a channel was acquired in mid-run
+  std::vector<double> values_;                  // of step_, by handle
   StepIndex step_ = kJoinStep;
   StepIndex steps_per_block_ = 0;
   std::uint64_t missed_ = 0;

@@ -18,12 +18,20 @@ void run_cmake(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-std::string build_example(const ExampleFolder& folder) {
+std::string installed_prefix() {
+  return SLEWRING_BINARY_DIR "/examples/installed";
+}
+
+std::string build_example(const ExampleFolder& folder, const std::string& program) {
   const std::string build = std::string(SLEWRING_BINARY_DIR "/examples/") + folder.name;
   std::vector<std::string> configure = {"-S", std::string(SLEWRING_SOURCE_DIR "/examples/") + folder.name, "-B", build};
+  if (folder.needs_install) {
+    run_cmake({"--install", SLEWRING_BINARY_DIR, "--component", "client", "--prefix", installed_prefix()});
+    configure.push_back("-DCMAKE_PREFIX_PATH=" + installed_prefix());
+  }
   run_cmake(configure);
   run_cmake({"--build", build});
-  return build + "/position_controller";
+  return build + "/" + program;
 }
 
 }  // namespace slew::testing

@@ -10,10 +10,14 @@ struct ExampleFolder {
   bool needs_install;  // finds Slewring's client library as a package
 };
 
-inline constexpr ExampleFolder kControllerExamples[] = {{"controller_dds", false}};
+inline constexpr ExampleFolder kControllerExamples[] = {{"controller", true}, {"controller_dds", false}};
 
 // Configures and builds the example once a process; kept between runs, so that a second one has nothing to compile.
-// The path of its program position_controller. Throws with the output of what failed.
-[[nodiscard]] std::string build_example(const ExampleFolder& folder);
+// The path of its program. Throws with the output of what failed.
+[[nodiscard]] std::string build_example(const ExampleFolder& folder,
+                                        const std::string& program = "position_controller");
+
+// Where the client library was installed for them.
+[[nodiscard]] std::string installed_prefix();
 
 }  // namespace slew::testing
