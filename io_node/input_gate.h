@@ -30,6 +30,14 @@
 
 namespace slew::io {
 
+// Variables of every input, in this order: quantity and unit.
+struct ChannelVariable {
+  const char* quantity;
+  const char* unit;
+};
+inline constexpr ChannelVariable kChannelVariables[] = {
+    {".raw", "1"}, {".control", "1"}, {".age", "1"}, {".loop_delay", "1"}, {".loop_time_ms", "ms"}};
+
 enum class Exchange : std::uint8_t { sampled, lockstep };
 
 // One input of thesis table 22 as the gate needs it.

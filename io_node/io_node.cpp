@@ -707,12 +707,9 @@ void IoNode::publish_directory() {
   wire::VariableDirectory directory;
   directory.header = member_.header(Phase::running, 0);
   for (std::size_t i = 0; i < gate_.size(); ++i) {
-    const std::string& name = gate_.config(i).name;
-    directory.entries.push_back({name + ".raw", "1"});
-    directory.entries.push_back({name + ".control", "1"});
-    directory.entries.push_back({name + ".age", "1"});
-    directory.entries.push_back({name + ".loop_delay", "1"});
-    directory.entries.push_back({name + ".loop_time_ms", "ms"});
+    for (const ChannelVariable& variable : kChannelVariables) {
+      directory.entries.push_back({gate_.config(i).name + variable.quantity, variable.unit});
+    }
   }
   directory.entries.push_back({"session.slip", "s"});
   directory.entries.push_back({"session.rejected_inputs", "1"});

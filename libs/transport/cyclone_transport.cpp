@@ -17,6 +17,8 @@ namespace {
 
 static_assert(wire::kTopics < 31);
 
+constexpr std::int32_t kWriters = 4;  // of variables: io, mechanics, hydraulics, flex; of inputs: as many controllers
+
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
 };
@@ -68,6 +70,11 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
   const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
   dds_qset_data_representation(qos.get(), 1, &representation);
   return qos;
+}
+
+// step by step, at full rate
+[[nodiscard]] bool has_several_writers(wire::Topic topic) {
+  return topic == wire::Topic::variables || topic == wire::Topic::controller_input;
 }
 
 // "role:host:pid", told to others with every writer
@@ -153,6 +160,8 @@ Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publis
     bells_[i] = {&doorbell_, 1u << i};
     dds_listener_t* listener = dds_create_listener(nullptr);
     dds_lset_data_available_arg(listener, on_data_available, &bells_[i], /*reset_on_invoke=*/true);
+    // without keys a reader's depth is that of all its writers together
+    if (has_several_writers(topic)) dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kWriters * traits(topic).depth);
     if (!hears_kept(topic)) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     readers_[i] = dds_create_reader(subscriber, handle, qos.get(), listener);
     dds_delete_listener(listener);

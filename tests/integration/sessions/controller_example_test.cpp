@@ -104,6 +104,62 @@ TEST_P(ControllerExample, SaysWhoHoldsTheChannelWhenItIsRefused) {
   stop();
 }
 
+// The other programs of the client library's example, on a session of their own.
+class ClientExamples : public ::testing::Test {
+ protected:
+  void start(std::vector<std::string> arguments = {}) {
+    arguments.insert(arguments.end(), {"--pace", "real", "--duration", "60s", "--input", "none"});
+    session = std::make_unique<Session>(arguments);
+    session->start_all();
+    ASSERT_TRUE(session->observer().wait_for_step(50)) << session->said();
+  }
+  void stop() {
+    EXPECT_TRUE(session->observer().request(wire::ControlAction::stop).is_accepted);
+    EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+  }
+  [[nodiscard]] std::string domain() const { return std::to_string(session->domain()); }
+  std::unique_ptr<Session> session;
+};
+
+TEST_F(ClientExamples, ThePidControllerStaysAtItsTarget) {
+  const std::string path = build_example(kControllerExamples[0], "pid_controller");
+  start();
+  Program pid(path, {"--session", session->name(), "--domain", domain(), "--target", "0.84", "--seconds", "8"},
+              session->folder() / "pid");
+  EXPECT_EQ(pid.wait(), 0) << pid.out() << pid.err();
+  EXPECT_NE(pid.out().find(": reached"), std::string::npos) << pid.out();
+  stop();
+}
+
+TEST_F(ClientExamples, TheShortestOneMovesTheCylinderAndGivesTheChannelBack) {
+  const std::string path = build_example(kControllerExamples[0], "first_controller");
+  start();
+  Program first(path, {session->name(), domain()}, session->folder() / "first");
+  EXPECT_EQ(first.wait(), 0) << first.out() << first.err();
+  EXPECT_NE(first.out().find("Cyl_Lift.stroke = 0.8"), std::string::npos) << first.out();
+  EXPECT_TRUE(session->observer().acquire("other", "Input_Lift").is_granted);
+  stop();
+}
+
+TEST_F(ClientExamples, TheSameLoopInPython) {
+  start();
+  const std::string script = SLEWRING_SOURCE_DIR "/examples/python/position_controller.py";
+  const std::string library = "SLEWRING_CLIENT=" SLEWRING_BINARY_DIR "/lib/libslewring_client.so";
+  const std::vector<std::string> arguments = {library,    SLEWRING_PYTHON, script,     "--session", session->name(),
+                                              "--domain", domain(),        "--target", "0.84",      "--gain",
+                                              "80",       "--tolerance",   "0.002"};
+  Program python("/usr/bin/env", arguments, session->folder() / "python");
+  EXPECT_EQ(python.wait(), 0) << python.out() << python.err();
+  EXPECT_NE(python.out().find(": reached"), std::string::npos) << python.out();
+
+  ASSERT_TRUE(session->observer().acquire("somebody_else", "Input_Lift").is_granted);
+  Program refused("/usr/bin/env", arguments, session->folder() / "refused");
+  EXPECT_EQ(refused.wait(), 1);
+  EXPECT_NE(refused.err().find("refused: channel Input_Lift is held by 'somebody_else'"), std::string::npos)
+      << refused.err();
+  stop();
+}
+
 const auto name_of = [](const auto& folder) { return std::string(folder.param.name); };
 INSTANTIATE_TEST_SUITE_P(Examples, ControllerExampleOptions, ::testing::ValuesIn(kControllerExamples), name_of);
 INSTANTIATE_TEST_SUITE_P(Examples, ControllerExample, ::testing::ValuesIn(kControllerExamples), name_of);
