@@ -1,7 +1,7 @@
 // A PID controller on one input of a running session: the integral stops at the stick's ends, the derivative is of the
 // measured value and filtered. Its sample time is the time between two blocks of variables, as the session tells it.
 //
-//   pid_controller --session crane --variable Cyl_Lift.stroke --channel Input_Lift --target 0.86 --kp 20 --ki 5
+//   pid_controller --session crane --variable Cyl_Lift.stroke --channel Input_Lift --target 0.86 --kp 60 --ki 40
 #include <slewring_client.hpp>
 
 #include <algorithm>
@@ -14,15 +14,15 @@ namespace {
 
 constexpr char kUsage[] =
     "usage: pid_controller --session NAME [--variable Cyl_Lift.stroke] [--channel Input_Lift] [--target 0.86]\n"
-    "         [--kp 20] [--ki 5] [--kd 0] [--filter 0.02] [--overlap 0.32] [--tolerance 0.001] [--seconds 15]\n"
+    "         [--kp 60] [--ki 40] [--kd 2] [--filter 0.02] [--overlap 0.32] [--tolerance 0.001] [--seconds 15]\n"
     "         [--name pid] [--domain 0] [--interface lo] [--peers ADDRESS,ADDRESS]\n"
     "--seconds is time of the session. Example, with `slewring run scenes/truck_crane.yaml --input none --duration 0`\n"
     "in another terminal:\n"
-    "  pid_controller --session truck_crane --target 0.86 --kp 20 --ki 5\n";
+    "  pid_controller --session truck_crane --target 0.86 --kp 60 --ki 40\n";
 
 struct Pid {
-  double kp = 20, ki = 5, kd = 0;  // stick per unit of error, per unit and second, per unit a second
-  double filter = 0.02;            // s, time constant of the derivative
+  double kp = 60, ki = 40, kd = 2;  // stick per unit of error, per unit and second, per unit a second
+  double filter = 0.02;             // s, time constant of the derivative
 
   // u = kp e + I - kd dy/dt, I = ki * integral of e while u is inside -1 .. 1
   double update(double target, double value, double dt) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -113,6 +114,7 @@ TEST_F(ClientLibrary, TwoControllersMoveTwoChannelsOneOfThemDigital) {
   const ScratchFolder folder;
   const std::string path = (folder.path() / "truck_crane.yaml").string();
   std::ofstream(path) << scene;
+  std::filesystem::create_directory_symlink(SLEWRING_SOURCE_DIR "/scenes/meshes", folder.path() / "meshes");
 
   start({}, path);
   const Client stick = join("stick"), button = join("button");
