@@ -205,7 +205,7 @@ void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t n
                                                           : gate_.acquire(index, input.controller, now_ns);
     lease.is_granted = answer.is_granted;
     lease.holder = std::move(answer.holder);
-    lease.reason = std::move(answer.reason);
+    lease.reason = answer.reason.substr(0, wire::kMaxReasonLength);
     tell_notices();
   }
   lease.header = member_.header(Phase::running, n_);
@@ -506,7 +506,7 @@ bool IoNode::has_its_controllers(std::int64_t now_ns) {
     begin_ending(ExitCode::failed,
                  "no controller took channel " + name + " within " + node::seconds_text(config_.join_timeout) +
                      ", and the scene has it as controller: lockstep; nothing was computed; start the controller with "
-                     "the session, wait longer with --join-timeout, or run with --set " +
+                     "the session (--join-timeout of io_node waits longer), or run with --set " +
                      name + ".controller=sampled",
                  now_ns);
   }

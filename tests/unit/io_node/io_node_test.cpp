@@ -308,6 +308,27 @@ TEST_F(Io, AStandstillOfTheSessionIsNoSilenceOfAController) {
   }
 }
 
+TEST_F(Io, AnswersInNamesOfAnyLengthAreCutToWhatTheWireBears) {
+  const std::string channel(32, 'c'), supervisor(100, 's');
+  const std::string holder(wire::kMaxNameLength, 'h'), stranger(wire::kMaxNameLength, 'x');
+  IoConfig lever = config();
+  lever.channels.push_back({.name = channel, .supervisor = supervisor});
+  restart(std::move(lever));
+  get_running();
+  const auto acquire = [&](const std::string& who, double how) {
+    played.say(Topic::controller_input,
+               wire::ControllerInput{"s", who, channel, wire::ControllerAction::acquire, how, 1, kJoinStep});
+    poll();
+    const auto leases = played.said<wire::ControllerLease>(Topic::controller_lease);
+    EXPECT_FALSE(leases.empty());
+    return leases.empty() ? wire::ControllerLease{} : leases.back();
+  };
+  EXPECT_TRUE(acquire(holder, 0).is_granted);
+  const wire::ControllerLease refused = acquire(stranger, wire::kTakeOver);
+  EXPECT_FALSE(refused.is_granted);
+  EXPECT_EQ(refused.reason.size(), wire::kMaxReasonLength);
+}
+
 // ---- lockstep controllers -------------------------------------------------------------------------------------
 
 class LockstepController : public Io {
@@ -358,10 +379,11 @@ TEST_F(LockstepController, ASessionWhoseControllerNeverComesEndsSayingSo) {
   live(1200);
   EXPECT_EQ(node->next_step(), 0);
   EXPECT_EQ(node->member().exit_code(), ExitCode::failed);
-  EXPECT_EQ(node->member().reason(),
-            "no controller took channel Lever within 1 s, and the scene has it as controller: lockstep; nothing was "
-            "computed; start the controller with the session, wait longer with --join-timeout, or run with --set "
-            "Lever.controller=sampled");
+  EXPECT_EQ(
+      node->member().reason(),
+      "no controller took channel Lever within 1 s, and the scene has it as controller: lockstep; nothing was "
+      "computed; start the controller with the session (--join-timeout of io_node waits longer), or run with --set "
+      "Lever.controller=sampled");
 }
 
 TEST_F(LockstepController, APausedSessionWaitsForItWithoutEnd) {
