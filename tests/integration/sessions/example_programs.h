@@ -1,6 +1,7 @@
 // The example controllers, built as a user builds them: projects of their own.
 #pragma once
 
+#include <ostream>
 #include <string>
 
 namespace slew::testing {
@@ -9,6 +10,10 @@ struct ExampleFolder {
   const char* name;    // of the folder under examples/
   bool needs_install;  // finds Slewring's client library as a package
 };
+// in the names of tests
+inline void PrintTo(const ExampleFolder& folder, std::ostream* out) {
+  *out << folder.name;
+}
 
 inline constexpr ExampleFolder kControllerExamples[] = {{"controller", true}, {"controller_dds", false}};
 
