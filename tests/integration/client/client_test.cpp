@@ -166,7 +166,8 @@ TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
 }
 
 TEST_F(ClientLibrary, AfterAResetALockstepControllerAcquiresAgainAndBeginsAtStepZero) {
-  start({"--set", "Input_Lift.controller=lockstep", "--set", "recording.every=1"});
+  start({"--set", "Input_Lift.controller=lockstep", "--set", "Input_Lift.controller_wait=4 s", "--set",
+         "recording.every=1"});
   const Client client = join("pid");
   const int stroke = slewring_find(client.get(), "Cyl_Lift.stroke", kSoon);
   const int late = slewring_find(client.get(), "session.late_controllers", kSoon);

@@ -9,6 +9,7 @@
 #include "build_paths.h"
 #include "direct_chain.h"
 #include "example_programs.h"
+#include "namespaces.h"
 #include "session.h"
 #include "tests/support/nightly.h"
 
@@ -51,13 +52,22 @@ class Burners {
   std::vector<std::thread> threads_;
 };
 
+// Where a controller runs: in front of its program, and its own arguments.
+struct Place {
+  std::vector<std::string> command;
+  std::vector<std::string> network;
+};
+
 // A controller of the examples on a session.
 std::unique_ptr<Program> start_controller(const Session& session, const std::string& program, const std::string& name,
-                                          const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"--session", session.name(), "--domain",  std::to_string(session.domain()),
-                                        "--name",    name,           "--seconds", "60"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return std::make_unique<Program>(program, arguments, session.folder() / name);
+                                          const std::vector<std::string>& more, const Place& place = {}) {
+  std::vector<std::string> words = place.command;
+  words.insert(words.end(), {program, "--session", session.name(), "--domain", std::to_string(session.domain()),
+                             "--name", name, "--seconds", "60"});
+  words.insert(words.end(), place.network.begin(), place.network.end());
+  words.insert(words.end(), more.begin(), more.end());
+  return std::make_unique<Program>(words.front(), std::vector<std::string>(words.begin() + 1, words.end()),
+                                   session.folder() / name);
 }
 
 struct LoopRun {
@@ -66,18 +76,22 @@ struct LoopRun {
 };
 
 // One run with both loops closed by this program.
-LoopRun run_loops(const std::string& program) {
-  Session session(lockstep_arguments("free", "3s"));
+LoopRun run_loops(Session& session, const std::string& program, const Place& place = {}) {
   session.start_all();
-  const auto lift =
-      start_controller(session, program, "lift_loop", {"--target", "0.84", "--gain", "80", "--tolerance", "0.002"});
+  const auto lift = start_controller(session, program, "lift_loop",
+                                     {"--target", "0.84", "--gain", "80", "--tolerance", "0.002"}, place);
   const auto slew = start_controller(
       session, program, "slew_loop",
-      {"--variable", "Body_Pillar.position", "--channel", "Input_Slew", "--target", "-0.2", "--gain", "8"});
+      {"--variable", "Body_Pillar.position", "--channel", "Input_Slew", "--target", "-0.2", "--gain", "8"}, place);
   EXPECT_EQ(session.wait_all(60'000'000'000), all_ok()) << session.said();
   EXPECT_TRUE(lift->wait().has_value());
   EXPECT_EQ(session.said().find("warning"), std::string::npos) << session.said();
   return {session.recorded(), lift->out() + lift->err()};
+}
+
+LoopRun run_loops(const std::string& program) {
+  Session session(lockstep_arguments("free", "3s"));
+  return run_loops(session, program);
 }
 
 class LockstepLoop : public ::testing::TestWithParam<ExampleFolder> {};
@@ -114,6 +128,26 @@ TEST(LockstepLoops, TheLibraryAndTheExampleWithoutItGiveTheSameBits) {
   EXPECT_EQ(first_difference(by_library.recorded.chain(), by_hand.recorded.chain()), "");
 }
 
+TEST(LockstepLoops, OverACableThatLosesPacketsGiveTheSameBits) {
+  NamespacePair cable;
+  if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
+  const std::string program = build_example(kControllerExamples[0]);
+  Session session(lockstep_arguments("free", "3s"));
+  const auto network = [](const NamespacePair::Side& here, const NamespacePair::Side& there, const char* peer) {
+    return std::vector<std::string>{"--interface", here.interface, peer, there.address};
+  };
+  for (const Role role : kAllNodes) {
+    const bool is_left = role == Role::mechanics || role == Role::recorder;
+    const NamespacePair::Side& here = is_left ? cable.left() : cable.right();
+    session.run_under(role, here.command(), network(here, is_left ? cable.right() : cable.left(), "--peer"));
+  }
+  if (!cable.lose(1)) GTEST_SKIP() << "packets cannot be lost here: " << cable.problem();
+  const Place left{cable.left().command(), network(cable.left(), cable.right(), "--peers")};
+  const LoopRun over_the_cable = run_loops(session, program, left);
+  const LoopRun here = run_loops(program);
+  EXPECT_EQ(first_difference(over_the_cable.recorded.chain(), here.recorded.chain()), "");
+}
+
 class LockstepFault : public ::testing::Test {
  protected:
   void SetUp() override { program_ = build_example(kControllerExamples[0]); }
@@ -123,6 +157,7 @@ class LockstepFault : public ::testing::Test {
             "--duration", "30s",
             "--input",    "none",
             "--set",      "Input_Lift.controller=lockstep",
+            "--set",      "Input_Lift.controller_wait=400 ms",
             "--set",      "recording.every=1"};
   }
   [[nodiscard]] std::unique_ptr<Program> lift_loop(const Session& session) const {
@@ -167,7 +202,7 @@ TEST_F(LockstepFault, AControllerThatIsKilledIsHeldPutToNeutralAndNamed) {
   stop(session);
   const std::vector<std::string> reasons = told(session, "lift_loop");
   ASSERT_EQ(reasons.size(), 2u);
-  EXPECT_NE(reasons[0].find("waited 100 ms for the value of 'lift_loop' from step"), std::string::npos) << reasons[0];
+  EXPECT_NE(reasons[0].find("waited 400 ms for the value of 'lift_loop' from step"), std::string::npos) << reasons[0];
   EXPECT_EQ(reasons[1], "'lift_loop' has been out of step for 500 ms: channel Input_Lift goes to neutral");
   EXPECT_NE(session.said().find("warning: " + reasons[1]), std::string::npos) << session.said();
 }
