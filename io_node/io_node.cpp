@@ -17,6 +17,7 @@ using wire::Role;
 using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
+constexpr double kNoLoop = -1;  // loop delay of a channel that no controller moves
 constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -723,7 +724,7 @@ void IoNode::publish_directory() {
 // From the tick of the step that a channel's value was computed from to this one.
 double IoNode::loop_time_ms(std::size_t channel, std::int64_t now_ns) const noexcept {
   const StepIndex based_on = gate_.based_on(channel);
-  if (based_on < 0) return 0;
+  if (based_on < 0) return kNoLoop;
   const StepIndex delay = n_ - based_on;
   const std::int64_t spent_ns = delay < kLoopMemory
                                     ? now_ns - tick_ns_[static_cast<std::size_t>(based_on % kLoopMemory)]
@@ -739,7 +740,7 @@ void IoNode::publish_variables(std::int64_t now_ns) {
     block_.values.push_back(gate_.control(i));
     block_.values.push_back(gate_.age(i));
     const StepIndex based_on = gate_.based_on(i);
-    block_.values.push_back(based_on < 0 ? 0 : static_cast<double>(n_ - based_on));
+    block_.values.push_back(based_on < 0 ? kNoLoop : static_cast<double>(n_ - based_on));
     block_.values.push_back(loop_time_ms(i, now_ns));
   }
   block_.values.push_back(static_cast<double>(slip_ns_) * 1e-9);

@@ -281,6 +281,8 @@ TEST_F(Io, PublishesWhatItHeldAtABoundAndWhoFellSilent) {
     values[directory.back().entries[i].name] = blocks.back().values[i];
   }
   EXPECT_EQ(values.at("session.clamped_inputs"), 1);
+  EXPECT_EQ(values.at("Lever.loop_delay"), -1) << "it did not say what its value was computed from";
+  EXPECT_EQ(values.at("Lever.loop_time_ms"), -1);
   EXPECT_EQ(values.at("session.silent_controllers"), 1);
   EXPECT_EQ(values.at("Lever.raw"), 0);
 }
