@@ -22,7 +22,7 @@ inline constexpr ExampleFolder kControllerExamples[] = {{"controller", true}, {"
 [[nodiscard]] std::string build_example(const ExampleFolder& folder,
                                         const std::string& program = "position_controller");
 
-// Where the client library was installed for them.
-[[nodiscard]] std::string installed_prefix();
+// The library has a sanitizer in it: a program that cannot have it too does not load it.
+[[nodiscard]] bool is_sanitized();
 
 }  // namespace slew::testing
