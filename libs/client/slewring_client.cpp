@@ -49,7 +49,8 @@ std::string text_of(const char* text) {
 template <typename Action>
 int guarded(slewring_session* session, Action action) {
   if (session == nullptr) {
-    join_error() = "the session is NULL";
+    // after a join that failed its reason is what one wants to read
+    if (join_error().empty()) join_error() = "the session is NULL";
     return SLEWRING_BAD_ARGUMENT;
   }
   Answer answer;

@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
+
+#include "tests/support/nightly.h"
 
 namespace slew::io {
 namespace {
+
+using testing::rounds;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMs = 1'000'000;
@@ -269,6 +275,65 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   EXPECT_EQ(gate.raw(0), 0.3) << "the script's";
   EXPECT_TRUE(gate.acquire(0, "other", 0).is_granted);
   EXPECT_TRUE(gate.take_notices().empty());
+}
+
+TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
+  std::mt19937_64 random(1);
+  const auto below = [&random](std::uint64_t n) { return static_cast<std::int64_t>(random() % n); };
+  const std::string names[] = {"a", "b", "c", ""};
+  for (int session = rounds(30, 1000); session > 0; --session) {
+    std::vector<ChannelConfig> channels(3);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      channels[i].name = "C" + std::to_string(i);
+      channels[i].is_digital = i == 2;
+      channels[i].exchange = below(2) == 0 ? Exchange::sampled : Exchange::lockstep;
+      channels[i].delay = 1 + below(5);
+      channels[i].supervisor = below(2) == 0 ? "" : "b";
+    }
+    GateConfig config;
+    config.variables_every = 1 + below(4);
+    InputGate gate(channels, config, milliseconds(1));
+    std::int64_t now_ns = 0;
+    StepIndex n = 0;
+    for (int call = 0; call < 2000; ++call) {
+      now_ns += below(50) * kMs;
+      const auto channel = static_cast<std::size_t>(below(3));
+      const std::string& who = names[below(4)];
+      const double value = below(10) == 0 ? kNan : static_cast<double>(below(5) - 2);
+      switch (below(8)) {
+        case 0:
+          static_cast<void>(gate.acquire(channel, who, now_ns));
+          break;
+        case 1:
+          static_cast<void>(gate.take_over(channel, who, now_ns));
+          break;
+        case 2:
+          static_cast<void>(gate.release(channel, who, n + below(8) - 6));
+          break;
+        case 3:
+          if (below(100) == 0) {
+            gate.reset();
+            n = 0;
+          }
+          gate.excuse(milliseconds(below(100)));
+          break;
+        case 4:
+        case 5:
+          gate.write(channel, who, value, n, now_ns, n + below(10) - 8);
+          break;
+        default:
+          gate.advance(n, std::vector<double>{0, 0.5, 1}, now_ns);
+          for (std::size_t i = 0; i < gate.size(); ++i) {
+            ASSERT_GE(gate.raw(i), i == 2 ? 0 : -1);
+            ASSERT_LE(gate.raw(i), 1);
+            const StepIndex newest = channels[i].exchange == Exchange::lockstep ? n - channels[i].delay : n;
+            ASSERT_LE(gate.based_on(i), std::max(newest, kJoinStep)) << "channel " << i << " tick " << n;
+          }
+          ++n;
+      }
+      if (call % 100 == 0) static_cast<void>(gate.take_notices());
+    }
+  }
 }
 
 }  // namespace
