@@ -277,6 +277,31 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   EXPECT_TRUE(gate.take_notices().empty());
 }
 
+TEST(InputGate, ALockstepChannelThatIsTakenOverKeepsItsValueUntilTheNewHolderIsInStep) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.exchange = Exchange::lockstep;
+  lever.supervisor = "instructor";
+  InputGate gate({lever}, GateConfig{}, milliseconds(1));
+  const auto advance = [&gate](StepIndex n) { gate.advance(n, std::vector<double>{0}, n * kMs); };
+  ASSERT_TRUE(gate.acquire(0, "trainee", 0).is_granted);
+  for (StepIndex n = 0; n < 5; ++n) {
+    advance(n);
+    gate.write(0, "trainee", 0.5, n + 1, n * kMs, n);
+  }
+  ASSERT_TRUE(gate.take_over(0, "instructor", 5 * kMs).is_granted);
+  EXPECT_EQ(gate.awaited(5).ns, 0) << "what the old holder sent is not the new one's";
+  advance(5);
+  EXPECT_EQ(gate.raw(0), 0.5);
+  static_cast<void>(gate.take_notices());
+  gate.write(0, "instructor", -0.5, 6, 6 * kMs, 5);
+  advance(6);
+  EXPECT_EQ(gate.raw(0), -0.5);
+  EXPECT_GT(gate.awaited(7).ns, 0);
+  const std::vector<Notice> told = gate.take_notices();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].reason, "'instructor' is in step from tick 6 on; channel Lever had been without it since tick 5");
+}
+
 TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
   std::mt19937_64 random(1);
   const auto below = [&random](std::uint64_t n) { return static_cast<std::int64_t>(random() % n); };
