@@ -11,6 +11,7 @@
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "io_node/input_gate.h"
 
 namespace slew::cli {
 namespace {
@@ -45,7 +46,7 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
     for (const ElementVariable& variable : session.subsystem(role)->variables()) names.push_back(variable.name);
   }
   for (const scene::InputDef& input : scene.inputs) {
-    for (const char* quantity : {".raw", ".control", ".age"}) names.push_back(input.name + quantity);
+    for (const io::ChannelVariable& variable : io::kChannelVariables) names.push_back(input.name + variable.quantity);
   }
   for (const scene::PlotDef& plot : scene.plots) {
     try {

@@ -22,6 +22,8 @@ constexpr std::int64_t kAcquirePeriodNs = 1'000'000'000;  // a channel that was 
 Levers::Levers(const std::vector<scene::InputDef>& inputs) {
   for (const scene::InputDef& input : inputs) {
     if (levers_.size() == kUp.size()) break;
+    // who types is not in step with anything
+    if (input.controller == scene::ControllerMode::lockstep) continue;
     levers_.push_back({input.name, input.type == scene::InputType::digital});
   }
 }

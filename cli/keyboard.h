@@ -2,7 +2,8 @@
 //
 // The first channels of the scene get a pair of keys each (q/a, w/s, e/d, r/f, t/g, y/h) that move the lever by a tenth
 // up and down; left/right are the first channel too, up/down the second. A digital channel is toggled by its upper key.
-// Space puts everything to neutral. Levers stay where they are put, as a terminal tells no key releases.
+// Inputs with a lockstep controller are left to it. Space puts everything to neutral. Levers stay where they are put,
+// as a terminal tells no key releases.
 #pragma once
 
 #include <termios.h>

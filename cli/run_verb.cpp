@@ -27,6 +27,18 @@ void check_monolithic(const CLI::App& verb) {
   }
 }
 
+// One process has no place for a controller, which step 0 would wait for.
+void check_controllers(const scene::Scene& scene) {
+  for (const scene::InputDef& input : scene.inputs) {
+    if (input.controller == scene::ControllerMode::sampled) continue;
+    throw cli_support::Failure(
+        ExitCode::bad_input, fmt::format("a run in one process has no place for a controller, and input {0} waits for "
+                                         "one in every step (controller: lockstep); nothing was started; run it as "
+                                         "processes, or without the controller: --set {0}.controller=sampled",
+                                         input.name));
+  }
+}
+
 ExitCode run(RunOptions options, const CLI::App& verb) {
   if (options.is_monolithic) options.scene.overrides.emplace_back("session.solution=monolithic");
   if (!options.rtol.empty()) options.scene.overrides.push_back("session.rtol=" + options.rtol);
@@ -42,6 +54,7 @@ ExitCode run(RunOptions options, const CLI::App& verb) {
     throw cli_support::Failure(ExitCode::bad_input,
                                "--in-process and --remote exclude each other; nothing was started; leave one out");
   }
+  if (options.is_in_process) check_controllers(scene);
   const RunOutcome outcome = options.is_in_process ? run_in_process(options, scene) : run_distributed(options, scene);
   if (!outcome.has_begun) {
     for (const std::string& message : without_echoes(outcome.messages)) std::fprintf(stderr, "%s\n", message.c_str());

@@ -9,6 +9,7 @@
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
+#include "io_node/input_gate.h"
 #include "scene/names.h"
 
 namespace slew::cli {
@@ -32,7 +33,9 @@ std::vector<Named> of_scene(const std::string& file) {
   std::vector<Named> all;
   SubsystemFamily family;
   for (const scene::InputDef& input : scene.inputs) {
-    for (const char* quantity : {".raw", ".control", ".age"}) all.push_back({input.name + quantity, "1", "io"});
+    for (const io::ChannelVariable& variable : io::kChannelVariables) {
+      all.push_back({input.name + variable.quantity, variable.unit, "io"});
+    }
   }
   for (const Role role : wire::kPhysicsRoles) {
     const auto subsystem = family.make(role, scene);

@@ -8,6 +8,10 @@ namespace {
 
 constexpr double kFullSwing = 2;  // of a raw value, from -1 to 1
 
+std::string milliseconds_text(SimDuration time) {
+  return std::to_string(time.ns / 1'000'000) + " ms";
+}
+
 }  // namespace
 
 InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, SimDuration communication_step)
@@ -15,6 +19,10 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
   for (ChannelConfig& channel : channels) {
     Channel state;
     state.config = std::move(channel);
+    // the steps of (1) from the awaited one to the present one
+    if (state.config.exchange == Exchange::lockstep) {
+      state.early.resize(static_cast<std::size_t>(state.config.delay / config_.variables_every + 2));
+    }
     channels_.push_back(std::move(state));
   }
   reset();
@@ -23,10 +31,11 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
 void InputGate::take_lease(std::size_t index, std::string reason) {
   Channel& channel = channels_[index];
   if (channel.holder.empty()) return;
-  lost_.push_back({index, std::exchange(channel.holder, {}), std::move(reason)});
+  notices_.push_back({index, std::exchange(channel.holder, {}), false, std::move(reason)});
 }
 
 void InputGate::reset() {
+  next_step_ = 0;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
     take_lease(i, "the session was reset: channel " + channel.config.name +
@@ -36,6 +45,7 @@ void InputGate::reset() {
     channel.ramped = channel.config.neutral;
     channel.control = channel.config.scale * channel.config.neutral;
     channel.age = 0;
+    channel.based_on = kJoinStep;
   }
 }
 
@@ -46,28 +56,65 @@ int InputGate::find(std::string_view name) const noexcept {
   return -1;
 }
 
+// to a new holder; a lockstep channel is in step from the first tick on, or when its controller has caught up
+void InputGate::give(Channel& channel, const std::string& controller, std::int64_t now_ns) {
+  channel.holder = controller;
+  channel.based_on = channel.last_sent = channel.last_value = kJoinStep;
+  std::fill(channel.early.begin(), channel.early.end(), Early{});
+  channel.pace = next_step_ == 0 ? Pace::in_step : Pace::neutral;
+  channel.out_since = next_step_;
+  channel.out_since_ns = now_ns;
+}
+
 LeaseAnswer InputGate::acquire(std::size_t index, const std::string& controller, std::int64_t now_ns) {
   Channel& channel = channels_[index];
   if (!channel.holder.empty() && channel.holder != controller) {
     return {false, channel.holder,
             "channel " + channel.config.name + " is held by '" + channel.holder +
                 "'; wait until it releases it, or until it has been silent for " +
-                std::to_string(config_.release_after.ns / 1'000'000) + " ms"};
+                milliseconds_text(config_.release_after)};
   }
   // asking again is a sign of life and moves nothing: the answer to the first time may still be on its way
-  if (channel.holder != controller) channel.controller_raw = channel.config.neutral;
-  channel.holder = controller;
+  if (channel.holder != controller) {
+    channel.controller_raw = channel.config.neutral;
+    give(channel, controller, now_ns);
+  }
+  channel.written_ns = now_ns;
+  channel.is_silent = false;
+  channel.last_value = kJoinStep;
+  return {true, controller, ""};
+}
+
+LeaseAnswer InputGate::take_over(std::size_t index, const std::string& controller, std::int64_t now_ns) {
+  Channel& channel = channels_[index];
+  if (channel.holder.empty() || channel.holder == controller) return acquire(index, controller, now_ns);
+  const std::string& name = channel.config.name;
+  if (channel.config.supervisor != controller) {
+    const std::string who = channel.config.supervisor.empty()
+                                ? "nobody may take it over: name a controller in " + name + ".supervisor of the scene"
+                                : "only '" + channel.config.supervisor + "' may take it over (" + name + ".supervisor)";
+    return {false, channel.holder, "channel " + name + " is held by '" + channel.holder + "', and " + who};
+  }
+  take_lease(index, "'" + controller + "' has taken over channel " + name);
+  // the value stays until the new holder writes
+  give(channel, controller, now_ns);
+  if (channel.pace == Pace::neutral) channel.pace = Pace::holding;
   channel.written_ns = now_ns;
   channel.is_silent = false;
   return {true, controller, ""};
 }
 
-LeaseAnswer InputGate::release(std::size_t index, const std::string& controller) {
+LeaseAnswer InputGate::release(std::size_t index, const std::string& controller, StepIndex based_on) {
   Channel& channel = channels_[index];
   if (channel.holder != controller) {
     return {false, channel.holder, "'" + controller + "' does not hold channel " + channel.config.name};
   }
-  channel.holder.clear();
+  const bool is_in_step = channel.config.exchange == Exchange::lockstep && channel.pace == Pace::in_step;
+  if (is_in_step && based_on >= 0) {
+    channel.last_value = based_on;
+  } else {
+    channel.holder.clear();
+  }
   return {true, "", ""};
 }
 
@@ -79,48 +126,169 @@ double InputGate::accepted(Channel& channel, double raw) noexcept {
 }
 
 bool InputGate::write(std::size_t index, const std::string& controller, double raw, StepIndex now_step,
-                      std::int64_t now_ns) {
+                      std::int64_t now_ns, StepIndex based_on) {
   Channel& channel = channels_[index];
-  if (channel.holder != controller || controller.empty()) {
+  if (channel.holder != controller || controller.empty() || channel.last_value >= 0) {
     ++rejected_no_lease_;
     return false;
   }
   // even a wrong value is a sign of life, but it moves nothing
   channel.written_ns = now_ns;
-  if (!std::isfinite(raw)) {
-    ++rejected_not_finite_;
-    return false;
-  }
+  if (!std::isfinite(raw)) ++rejected_not_finite_;
+  if (channel.config.exchange == Exchange::lockstep) return keep_early(channel, raw, now_step, based_on);
+  if (!std::isfinite(raw)) return false;
   channel.controller_raw = accepted(channel, raw);
   channel.written_step = now_step;
+  channel.based_on = based_on <= now_step ? based_on : kJoinStep;
   channel.is_silent = false;
   return true;
 }
 
+// ---- lockstep -------------------------------------------------------------------------------------------------
+
+// (1); -1: the tick is earlier than the loop's delay
+StepIndex InputGate::needed(const Channel& channel, StepIndex n) const noexcept {
+  const StepIndex m = n - channel.config.delay;
+  return m < 0 ? kJoinStep : m - m % config_.variables_every;
+}
+
+// A value for a tick to come. The first one for a step counts: which of two is in time must not depend on the clock.
+bool InputGate::keep_early(Channel& channel, double raw, StepIndex now_step, StepIndex based_on) {
+  channel.last_sent = std::max(channel.last_sent, based_on);
+  const StepIndex need = needed(channel, now_step);
+  if (based_on < 0 || based_on < need || based_on > now_step || based_on % config_.variables_every != 0) {
+    ++rejected_late_;
+    return false;
+  }
+  Early* place = nullptr;
+  for (Early& early : channel.early) {
+    if (early.based_on == based_on) return true;
+    if (early.based_on < need || early.based_on < 0) place = &early;
+  }
+  if (place == nullptr) return false;  // there is one for every step that passed the check
+  const bool is_finite = std::isfinite(raw);
+  *place = {based_on, is_finite ? accepted(channel, raw) : 0.0, is_finite};
+  return is_finite;
+}
+
+// its controller has sent the last value that it wants to send
+bool InputGate::is_through(const Channel& channel, StepIndex n) const noexcept {
+  return channel.last_value >= 0 && needed(channel, n) > channel.last_value;
+}
+
+int InputGate::vacant() const noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if (channels_[i].config.exchange == Exchange::lockstep && channels_[i].holder.empty()) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+SimDuration InputGate::awaited(StepIndex n) const noexcept {
+  SimDuration longest{};
+  for (const Channel& channel : channels_) {
+    if (channel.config.exchange == Exchange::sampled || channel.holder.empty()) continue;
+    const StepIndex need = needed(channel, n);
+    if (channel.pace != Pace::in_step || need < 0 || is_through(channel, n)) continue;
+    const bool is_there = std::any_of(channel.early.begin(), channel.early.end(),
+                                      [need](const Early& early) { return early.based_on == need; });
+    if (!is_there) longest.ns = std::max(longest.ns, channel.config.wait.ns);
+  }
+  return longest;
+}
+
+void InputGate::fall_out_of_step(std::size_t index, StepIndex n, std::int64_t now_ns) {
+  Channel& channel = channels_[index];
+  channel.pace = Pace::holding;
+  channel.out_since = n;
+  channel.out_since_ns = now_ns;
+  ++fell_out_of_step_;
+  const std::string last = channel.last_sent < 0 ? "none with its step has come yet"
+                                                 : "its last one is from step " + std::to_string(channel.last_sent);
+  notices_.push_back({index, channel.holder, true,
+                      "tick " + std::to_string(n) + " waited " + milliseconds_text(channel.config.wait) +
+                          " for the value of '" + channel.holder + "' from step " + std::to_string(needed(channel, n)) +
+                          ", " + last + "; channel " + channel.config.name +
+                          " holds its value until it is in step again, for " +
+                          milliseconds_text(config_.neutral_after)});
+}
+
+void InputGate::advance_lockstep(std::size_t index, StepIndex n, std::int64_t now_ns) {
+  Channel& channel = channels_[index];
+  const StepIndex need = needed(channel, n);
+  if (need < 0) return;
+  const auto early = std::find_if(channel.early.begin(), channel.early.end(),
+                                  [need](const Early& value) { return value.based_on == need; });
+  if (early != channel.early.end()) {
+    if (channel.pace != Pace::in_step) {
+      channel.pace = Pace::in_step;
+      notices_.push_back({index, channel.holder, true,
+                          "'" + channel.holder + "' is in step from tick " + std::to_string(n) + " on; channel " +
+                              channel.config.name + " had been without it since tick " +
+                              std::to_string(channel.out_since)});
+    }
+    if (early->is_finite) channel.controller_raw = early->raw;
+    channel.based_on = need;
+    channel.age = static_cast<std::uint32_t>(n - need);
+    return;
+  }
+  if (channel.pace == Pace::in_step) fall_out_of_step(index, n, now_ns);
+  channel.age = static_cast<std::uint32_t>(channel.based_on < 0 ? 0 : n - channel.based_on);
+  if (channel.pace == Pace::holding && now_ns - channel.out_since_ns > config_.neutral_after.ns) {
+    channel.pace = Pace::neutral;
+    channel.controller_raw = channel.config.neutral;
+    channel.based_on = kJoinStep;
+    ++went_neutral_;
+    notices_.push_back({index, channel.holder, true,
+                        "'" + channel.holder + "' has been out of step for " +
+                            milliseconds_text(config_.neutral_after) + ": channel " + channel.config.name +
+                            " goes to neutral"});
+  }
+}
+
+// ---- the tick -------------------------------------------------------------------------------------------------
+
+void InputGate::advance_sampled(std::size_t index, StepIndex n, std::int64_t now_ns) {
+  Channel& channel = channels_[index];
+  if (now_ns - channel.written_ns > config_.neutral_after.ns && !channel.is_silent) {
+    channel.is_silent = true;
+    channel.controller_raw = channel.config.neutral;
+    channel.based_on = kJoinStep;
+    ++went_neutral_;
+    notices_.push_back({index, channel.holder, true,
+                        "no value of '" + channel.holder + "' came for " + milliseconds_text(config_.neutral_after) +
+                            ": channel " + channel.config.name + " goes to neutral"});
+  }
+  channel.age = static_cast<std::uint32_t>(std::max<StepIndex>(0, n - channel.written_step));
+}
+
 void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns) {
+  next_step_ = n + 1;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
-    // a silent holder first goes to neutral, then loses the channel
-    const std::int64_t silent_ns = channel.holder.empty() ? 0 : now_ns - channel.written_ns;
-    if (silent_ns > config_.release_after.ns) {
-      take_lease(i, "no value came for " + std::to_string(config_.release_after.ns / 1'000'000) + " ms: channel " +
+    const bool is_lockstep = channel.config.exchange == Exchange::lockstep;
+    // who is in step has sent what was asked of it, however long ago
+    const std::int64_t silent_since_ns =
+        is_lockstep ? std::max(channel.written_ns, channel.out_since_ns) : channel.written_ns;
+    const bool may_be_silent = is_lockstep && channel.pace == Pace::in_step;
+    if (!may_be_silent && now_ns - silent_since_ns > config_.release_after.ns) {
+      take_lease(i, "no value came for " + milliseconds_text(config_.release_after) + ": channel " +
                         channel.config.name + " is free; acquire it again to go on");
     }
-    if (!channel.holder.empty() && silent_ns > config_.neutral_after.ns && !channel.is_silent) {
-      channel.is_silent = true;
-      channel.controller_raw = channel.config.neutral;
-      ++went_neutral_;
+    if (is_through(channel, n)) {
+      channel.holder.clear();
+      channel.last_value = kJoinStep;
     }
     // source
     double raw = channel.config.neutral;
     if (!channel.holder.empty()) {
+      is_lockstep ? advance_lockstep(i, n, now_ns) : advance_sampled(i, n, now_ns);
       raw = channel.controller_raw;
-      channel.age = static_cast<std::uint32_t>(std::max<StepIndex>(0, n - channel.written_step));
-    } else if (i < script_raw.size()) {
+    } else {
       channel.age = 0;
-      if (std::isfinite(script_raw[i])) {
+      channel.based_on = kJoinStep;
+      if (i < script_raw.size() && std::isfinite(script_raw[i])) {
         raw = accepted(channel, script_raw[i]);
-      } else {
+      } else if (i < script_raw.size()) {
         ++rejected_not_finite_;
       }
     }
@@ -131,6 +299,13 @@ void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::in
     if (channel.config.rate_limit > 0) most = std::min(most, H_ * channel.config.rate_limit);
     channel.ramped += std::clamp(wanted - channel.ramped, -most, most);
     channel.control = channel.config.scale * channel.ramped;
+  }
+}
+
+void InputGate::excuse(SimDuration standstill) noexcept {
+  for (Channel& channel : channels_) {
+    channel.written_ns += standstill.ns;
+    channel.out_since_ns += standstill.ns;
   }
 }
 

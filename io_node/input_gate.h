@@ -6,7 +6,16 @@
 //
 // Who may move a channel is a lease: the first controller that asks holds it until it releases it or falls silent. A
 // silent holder's channel goes to neutral after `neutral_after` and is free again after `release_after`; a reset frees
-// all channels. Who loses a channel so is to be told.
+// all channels. A channel's supervisor may take it from its holder; the channel then keeps its value until the new one
+// writes. Who loses a channel so is to be told.
+//
+// A `sampled` channel takes the latest value that has come. A `lockstep` channel takes, in the tick of step n, the
+// value that was computed from the variables of step
+//   b(n) = m - m mod k,  m = n - d                                                                        (1)
+// (d: delay, k: steps between two blocks of variables; b < 0: neutral), so that the ticks do not depend on when values
+// come. The caller holds the tick back while awaited(n) says so. A tick that is made without the value finds the
+// channel out of step: it holds its last value for `neutral_after`, then goes to neutral, and no tick waits for it
+// until its controller has sent b(n) in time for some tick n. Each of these changes is a notice.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +30,16 @@
 
 namespace slew::io {
 
+// Variables of every input, in this order: quantity and unit.
+struct ChannelVariable {
+  const char* quantity;
+  const char* unit;
+};
+inline constexpr ChannelVariable kChannelVariables[] = {
+    {".raw", "1"}, {".control", "1"}, {".age", "1"}, {".loop_delay", "1"}, {".loop_time_ms", "ms"}};
+
+enum class Exchange : std::uint8_t { sampled, lockstep };
+
 // One input of thesis table 22 as the gate needs it.
 struct ChannelConfig {
   std::string name;  // "Input_Lift"
@@ -30,11 +49,16 @@ struct ChannelConfig {
   double ramp = 0;        // s for a full stroke 0..1; 0: none
   double rate_limit = 0;  // 1/s, of the raw value; 0: none
   double neutral = 0;     // raw value of a channel that nobody moves
+  Exchange exchange = Exchange::sampled;
+  StepIndex delay = 1;                   // d of a lockstep channel, steps, >= 1
+  SimDuration wait = milliseconds(100);  // longest time that a tick waits for its controller
+  std::string supervisor{};              // controller that may take the channel from its holder; empty: nobody may
 };
 
 struct GateConfig {
   SimDuration neutral_after = milliseconds(200);
   SimDuration release_after = milliseconds(5000);
+  StepIndex variables_every = 1;  // k of (1)
 };
 
 struct LeaseAnswer {
@@ -43,10 +67,12 @@ struct LeaseAnswer {
   std::string reason;
 };
 
-// A controller that holds a channel no longer, without having released it.
-struct LostLease {
+// What a controller is to be told without having asked: it has lost its channel, or a lockstep channel has fallen out
+// of step or is back in it.
+struct Notice {
   std::size_t channel = 0;
   std::string controller;
+  bool has_channel = false;
   std::string reason;
 };
 
@@ -59,29 +85,53 @@ class InputGate {
   [[nodiscard]] int find(std::string_view name) const noexcept;
 
   [[nodiscard]] LeaseAnswer acquire(std::size_t channel, const std::string& controller, std::int64_t now_ns);
-  [[nodiscard]] LeaseAnswer release(std::size_t channel, const std::string& controller);
-  // A controller's value; false when it was rejected (no lease, not finite), counted.
-  bool write(std::size_t channel, const std::string& controller, double raw, StepIndex now_step, std::int64_t now_ns);
+  // Takes the channel from its holder, which only the supervisor may; a free channel is acquired.
+  [[nodiscard]] LeaseAnswer take_over(std::size_t channel, const std::string& controller, std::int64_t now_ns);
+  // A lockstep channel that is in step keeps its controller's values up to that of step based_on and is free after it.
+  [[nodiscard]] LeaseAnswer release(std::size_t channel, const std::string& controller, StepIndex based_on = kJoinStep);
+  // A controller's value, computed from the variables of step based_on (-1: it does not say), when the tick of now_step
+  // is the next. False when it was rejected, counted: no lease, not finite, or on a lockstep channel too late.
+  bool write(std::size_t channel, const std::string& controller, double raw, StepIndex now_step, std::int64_t now_ns,
+             StepIndex based_on = kJoinStep);
 
+  // First lockstep channel without a holder; -1: none.
+  [[nodiscard]] int vacant() const noexcept;
+  // How long the tick of step n may be held back for values that have not come; 0: it need not wait.
+  [[nodiscard]] SimDuration awaited(StepIndex n) const noexcept;
   // Values for the tick of step n. script_raw: the scripted source's raw values, used on channels without a holder.
   void advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns);
+  // Time in which the session stood still for another reason: no controller is blamed for its silence.
+  void excuse(SimDuration standstill) noexcept;
   [[nodiscard]] double control(std::size_t channel) const noexcept { return channels_[channel].control; }
   [[nodiscard]] double raw(std::size_t channel) const noexcept { return channels_[channel].raw; }
   [[nodiscard]] std::uint32_t age(std::size_t channel) const noexcept { return channels_[channel].age; }
+  // Step whose variables the value in use was computed from; -1: unknown, or no controller holds the channel.
+  [[nodiscard]] StepIndex based_on(std::size_t channel) const noexcept { return channels_[channel].based_on; }
   [[nodiscard]] const ChannelConfig& config(std::size_t channel) const noexcept { return channels_[channel].config; }
 
   // Back to neutral without holders.
   void reset();
-  // The leases that silence or a reset has taken since the last call.
-  [[nodiscard]] std::vector<LostLease> take_lost_leases() { return std::exchange(lost_, {}); }
+  // What controllers are to be told since the last call.
+  [[nodiscard]] std::vector<Notice> take_notices() { return std::exchange(notices_, {}); }
   void add_to(StateHash& hash) const noexcept;
 
   [[nodiscard]] std::uint64_t rejected_not_finite() const noexcept { return rejected_not_finite_; }
   [[nodiscard]] std::uint64_t rejected_no_lease() const noexcept { return rejected_no_lease_; }
   [[nodiscard]] std::uint64_t clamped() const noexcept { return clamped_; }
   [[nodiscard]] std::uint64_t went_neutral() const noexcept { return went_neutral_; }
+  // Values of lockstep channels that came after their tick, or for no step that is awaited.
+  [[nodiscard]] std::uint64_t rejected_late() const noexcept { return rejected_late_; }
+  // How often a lockstep channel fell out of step.
+  [[nodiscard]] std::uint64_t fell_out_of_step() const noexcept { return fell_out_of_step_; }
 
  private:
+  // A value that a lockstep channel has before its tick.
+  struct Early {
+    StepIndex based_on = kJoinStep;  // -1: the place is free
+    double raw = 0;
+    bool is_finite = false;
+  };
+  enum class Pace : std::uint8_t { in_step, holding, neutral };
   struct Channel {
     ChannelConfig config;
     std::string holder;
@@ -89,6 +139,14 @@ class InputGate {
     StepIndex written_step = 0;
     std::int64_t written_ns = 0;  // wall clock of the last sign of life
     bool is_silent = false;
+    // of a lockstep channel with a holder
+    Pace pace = Pace::in_step;
+    std::vector<Early> early;
+    StepIndex last_value = kJoinStep;  // step of the value after which it is released; -1: it is not
+    StepIndex last_sent = kJoinStep;   // step of the newest value that came
+    StepIndex out_since = kJoinStep;   // tick that fell out of step
+    std::int64_t out_since_ns = 0;
+    StepIndex based_on = kJoinStep;
     double raw = 0;     // after range, before dead zone
     double ramped = 0;  // after dead zone and ramp
     double control = 0;
@@ -96,16 +154,26 @@ class InputGate {
   };
 
   double accepted(Channel& channel, double raw) noexcept;
+  [[nodiscard]] bool is_through(const Channel& channel, StepIndex n) const noexcept;
+  void give(Channel& channel, const std::string& controller, std::int64_t now_ns);
   void take_lease(std::size_t channel, std::string reason);
+  [[nodiscard]] StepIndex needed(const Channel& channel, StepIndex n) const noexcept;
+  bool keep_early(Channel& channel, double raw, StepIndex now_step, StepIndex based_on);
+  void advance_sampled(std::size_t channel, StepIndex n, std::int64_t now_ns);
+  void advance_lockstep(std::size_t channel, StepIndex n, std::int64_t now_ns);
+  void fall_out_of_step(std::size_t channel, StepIndex n, std::int64_t now_ns);
 
   std::vector<Channel> channels_;
-  std::vector<LostLease> lost_;
+  std::vector<Notice> notices_;
+  StepIndex next_step_ = 0;  // the tick that is made next
   GateConfig config_;
   double H_;
   std::uint64_t rejected_not_finite_ = 0;
   std::uint64_t rejected_no_lease_ = 0;
   std::uint64_t clamped_ = 0;
   std::uint64_t went_neutral_ = 0;
+  std::uint64_t rejected_late_ = 0;
+  std::uint64_t fell_out_of_step_ = 0;
 };
 
 }  // namespace slew::io

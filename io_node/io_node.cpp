@@ -17,6 +17,7 @@ using wire::Role;
 using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
+constexpr double kNoLoop = -1;  // loop delay of a channel that no controller moves
 constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -27,6 +28,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       gate_(config_.channels, config_.gate, config_.step),
       parameters_(config_.parameters, config_.step),
       is_paused_(config_.starts_paused),
+      tick_ns_(static_cast<std::size_t>(kLoopMemory)),
       script_raw_(config_.channels.size(), kSaysNothing) {
   description_.name = config_.session_name;
   description_.scene_name = config_.scene_name;
@@ -66,6 +68,8 @@ std::int64_t IoNode::next_deadline(std::int64_t now_ns) const {
   if (stage_ == Stage::joining) return now_ns + node::kProbeInterval.ns / 2;
   if (stage_ != Stage::ticking) return now_ns + node::kProbeInterval.ns;
   if (is_withheld()) return now_ns + node::kProbeInterval.ns;
+  if (controllers_due_ns_ != 0) return now_ns + node::kProbeInterval.ns;
+  if (controllers_wait_ns_ != 0) return std::max(now_ns, controllers_wait_ns_ + gate_.awaited(n_).ns);
   if (partners_allow(n_)) return std::max(now_ns, due_ns(n_));
   return std::max(now_ns, resend_.due_ns());
 }
@@ -82,8 +86,10 @@ void IoNode::update_health() noexcept {
   h.epoch = member_.epoch();
   h.slip_ns = slip_ns_;
   h.refused = member_.refusals().refused();
-  h.is_waiting = stage_ == Stage::ticking && !partners_allow(n_);
-  h.waiting_for = static_cast<std::uint8_t>(holds_back(n_).value_or(Role::recorder));
+  const bool waits_for_controller = controllers_due_ns_ != 0 || controllers_wait_ns_ != 0;
+  h.is_waiting = stage_ == Stage::ticking && (waits_for_controller || !partners_allow(n_));
+  h.waiting_for =
+      static_cast<std::uint8_t>(waits_for_controller ? Role::controller : holds_back(n_).value_or(Role::recorder));
   h.waiting_step = n_;
   h.has_session.store(stage_ != Stage::checking_name, std::memory_order_release);
 }
@@ -190,16 +196,18 @@ void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t n
   if (channel < 0 || input.controller.empty()) {
     lease.reason = channel < 0 ? "the scene has no input '" + input.channel + "'" : "a controller needs a name";
   } else if (input.action == wire::ControllerAction::write) {
-    gate_.write(static_cast<std::size_t>(channel), input.controller, input.value, n_, now_ns);
+    gate_.write(static_cast<std::size_t>(channel), input.controller, input.value, n_, now_ns, input.based_on_step);
     return;
   } else {
     const auto index = static_cast<std::size_t>(channel);
-    LeaseAnswer answer = input.action == wire::ControllerAction::acquire
-                             ? gate_.acquire(index, input.controller, now_ns)
-                             : gate_.release(index, input.controller);
+    LeaseAnswer answer = input.action == wire::ControllerAction::release
+                             ? gate_.release(index, input.controller, input.based_on_step)
+                         : input.value == wire::kTakeOver ? gate_.take_over(index, input.controller, now_ns)
+                                                          : gate_.acquire(index, input.controller, now_ns);
     lease.is_granted = answer.is_granted;
     lease.holder = std::move(answer.holder);
-    lease.reason = std::move(answer.reason);
+    lease.reason = answer.reason.substr(0, wire::kMaxReasonLength);
+    tell_notices();
   }
   lease.header = member_.header(Phase::running, n_);
   member_.publish(Topic::controller_lease, lease);
@@ -436,6 +444,9 @@ void IoNode::show_running() {
     member_.hold(member_.silence_text(*silent));
   } else if (is_withheld()) {
     member_.hold("");
+  } else if (controllers_due_ns_ != 0) {
+    member_.hold("step 0 waits for a controller on channel " +
+                 gate_.config(static_cast<std::size_t>(gate_.vacant())).name);
   } else {
     member_.set_state(NodeState::running);
   }
@@ -456,7 +467,11 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
       begin_ending(ExitCode::ok, "", now_ns);
       return true;
     }
-    if (is_withheld()) return any;
+    if (is_withheld()) {
+      controllers_wait_ns_ = 0;
+      return any;
+    }
+    if (!has_its_controllers(now_ns)) return any;
     if (!partners_allow(n_)) {
       ask_for_missing(now_ns);
       return any;
@@ -465,10 +480,46 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
       if (!is_paused_) keep_time(now_ns);
       if (now_ns < due_ns(n_)) return any;
     }
+    if (may_wait_for_controllers(now_ns)) return any;
     issue_tick(now_ns);
     any = true;
   }
   return any;
+}
+
+// Step 0 of a session, and again after a reset, is not done before every lockstep channel has a holder.
+bool IoNode::has_its_controllers(std::int64_t now_ns) {
+  const int vacant = n_ == 0 ? gate_.vacant() : -1;
+  if (vacant < 0) {
+    if (controllers_due_ns_ == 0) return true;
+    // the wait for them is no slip
+    base_ns_ = std::max(base_ns_, now_ns);
+    controllers_due_ns_ = 0;
+    show_running();
+    return true;
+  }
+  if (controllers_due_ns_ == 0) {
+    controllers_due_ns_ = now_ns + config_.join_timeout.ns;
+    show_running();
+  } else if (now_ns > controllers_due_ns_) {
+    const std::string& name = gate_.config(static_cast<std::size_t>(vacant)).name;
+    controllers_due_ns_ = 0;
+    begin_ending(ExitCode::failed,
+                 "no controller took channel " + name + " within " + node::seconds_text(config_.join_timeout) +
+                     ", and the scene has it as controller: lockstep; nothing was computed; start the controller with "
+                     "the session (--join-timeout of io_node waits longer), or run with --set " +
+                     name + ".controller=sampled",
+                 now_ns);
+  }
+  return false;
+}
+
+// The tick could go out but for values of lockstep controllers, and the time for them is not over.
+bool IoNode::may_wait_for_controllers(std::int64_t now_ns) noexcept {
+  const SimDuration longest = gate_.awaited(n_);
+  if (longest.ns == 0) return false;
+  if (controllers_wait_ns_ == 0) controllers_wait_ns_ = now_ns;
+  return now_ns - controllers_wait_ns_ < longest.ns;
 }
 
 void IoNode::ask_for_missing(std::int64_t now_ns) {
@@ -505,8 +556,12 @@ void IoNode::issue_tick(std::int64_t now_ns) {
     const auto channel = static_cast<std::size_t>(&raw - script_raw_.data());
     if (std::isnan(raw)) raw = gate_.config(channel).neutral;
   }
+  const std::int64_t waited_ns = controllers_wait_ns_ == 0 ? 0 : now_ns - controllers_wait_ns_;
+  const SimDuration standstill{now_ns - last_tick_ns_ - waited_ns};
+  if (standstill > kStandstill) gate_.excuse(standstill);
+  controllers_wait_ns_ = 0;
   gate_.advance(n_, script_raw_, now_ns);
-  tell_lost_leases();
+  tell_notices();
   // commands of this step; what does not fit waits for the next tick
   while (!waiting_commands_.empty() && tick_.commands.size() < wire::kMaxCommandsPerTick) {
     parameters_.begin(waiting_commands_.front(), n_);
@@ -527,8 +582,9 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   hash.add(n_);
   gate_.add_to(hash);
   tick_.state_hash = hash.digest();
+  tick_ns_[static_cast<std::size_t>(n_ % kLoopMemory)] = now_ns;
   send_tick(n_);
-  if (n_ % config_.variables_every == 0) publish_variables();
+  if (n_ % config_.variables_every == 0) publish_variables(now_ns);
 
   ++n_;
   ++health().steps_done;
@@ -553,11 +609,12 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   single_steps_ = 0;
   sent_.clear();
   n_ = 0;
+  controllers_due_ns_ = controllers_wait_ns_ = 0;
   mechanics_at_ = hydraulics_at_ = flex_at_ = kJoinStep;
   tick_ = wire::Tick{};
   tick_.header = member_.header(Phase::init, kJoinStep);
   send_tick(kJoinStep);
-  tell_lost_leases();
+  tell_notices();
   member_.set_step(kJoinStep);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
@@ -565,14 +622,18 @@ void IoNode::start_epoch(std::int64_t now_ns) {
   deadline_ns_ = now_ns + config_.join_timeout.ns;
 }
 
-void IoNode::tell_lost_leases() {
-  for (LostLease& lost : gate_.take_lost_leases()) {
+void IoNode::tell_notices() {
+  for (Notice& notice : gate_.take_notices()) {
     wire::ControllerLease lease;
     lease.header = member_.header(Phase::running, n_);
-    lease.controller = std::move(lost.controller);
-    lease.channel = gate_.config(lost.channel).name;
-    lease.reason = std::move(lost.reason);
+    lease.controller = std::move(notice.controller);
+    lease.channel = gate_.config(notice.channel).name;
+    lease.is_granted = notice.has_channel;
+    if (notice.has_channel) lease.holder = lease.controller;
+    lease.reason = notice.reason.substr(0, wire::kMaxReasonLength);
     member_.publish(Topic::controller_lease, lease);
+    if (!notice.has_channel || warnings_left_ == 0) continue;
+    member_.warn(notice.reason + (--warnings_left_ > 0 ? "" : "; what follows of this kind is in the recording alone"));
   }
 }
 
@@ -647,31 +708,47 @@ void IoNode::publish_directory() {
   wire::VariableDirectory directory;
   directory.header = member_.header(Phase::running, 0);
   for (std::size_t i = 0; i < gate_.size(); ++i) {
-    const std::string& name = gate_.config(i).name;
-    directory.entries.push_back({name + ".raw", "1"});
-    directory.entries.push_back({name + ".control", "1"});
-    directory.entries.push_back({name + ".age", "1"});
+    for (const ChannelVariable& variable : kChannelVariables) {
+      directory.entries.push_back({gate_.config(i).name + variable.quantity, variable.unit});
+    }
   }
   directory.entries.push_back({"session.slip", "s"});
   directory.entries.push_back({"session.rejected_inputs", "1"});
   directory.entries.push_back({"session.clamped_inputs", "1"});
   directory.entries.push_back({"session.silent_controllers", "1"});
+  directory.entries.push_back({"session.late_controllers", "1"});
   directory.total = static_cast<std::uint32_t>(directory.entries.size());
   member_.publish(Topic::variable_directory, directory);
 }
 
-void IoNode::publish_variables() {
+// From the tick of the step that a channel's value was computed from to this one.
+double IoNode::loop_time_ms(std::size_t channel, std::int64_t now_ns) const noexcept {
+  const StepIndex based_on = gate_.based_on(channel);
+  if (based_on < 0) return kNoLoop;
+  const StepIndex delay = n_ - based_on;
+  const std::int64_t spent_ns = delay < kLoopMemory
+                                    ? now_ns - tick_ns_[static_cast<std::size_t>(based_on % kLoopMemory)]
+                                    : delay * config_.step.ns;
+  return static_cast<double>(spent_ns) * 1e-6;
+}
+
+void IoNode::publish_variables(std::int64_t now_ns) {
   block_.header = member_.header(Phase::running, n_);
   block_.values.clear();
   for (std::size_t i = 0; i < gate_.size(); ++i) {
     block_.values.push_back(gate_.raw(i));
     block_.values.push_back(gate_.control(i));
     block_.values.push_back(gate_.age(i));
+    const StepIndex based_on = gate_.based_on(i);
+    block_.values.push_back(based_on < 0 ? kNoLoop : static_cast<double>(n_ - based_on));
+    block_.values.push_back(loop_time_ms(i, now_ns));
   }
   block_.values.push_back(static_cast<double>(slip_ns_) * 1e-9);
-  block_.values.push_back(static_cast<double>(gate_.rejected_not_finite() + gate_.rejected_no_lease()));
+  block_.values.push_back(
+      static_cast<double>(gate_.rejected_not_finite() + gate_.rejected_no_lease() + gate_.rejected_late()));
   block_.values.push_back(static_cast<double>(gate_.clamped()));
   block_.values.push_back(static_cast<double>(gate_.went_neutral()));
+  block_.values.push_back(static_cast<double>(gate_.fell_out_of_step()));
   member_.publish(Topic::variables, block_);
 }
 

@@ -2,8 +2,9 @@
 //
 // Tick n goes out when every physics node has published its sample n-W+1 (window W: 1 in `real` pace, 4 in `free`),
 // when a required recorder is less than 512 steps behind (`free` pace), and in `real` pace not before wall time n H.
-// After a hold, `real` pace catches up at no more than twice real time while the lag is below 50 ms; beyond that the
-// time base is moved and the slip counted. INIT and the ticks reproduce a lock-step run exactly.
+// A tick is also held back for the values of lockstep controllers (input_gate.h), tick 0 until each of their channels
+// has a holder. After a hold, `real` pace catches up at no more than twice real time while the lag is below 50 ms;
+// beyond that the time base is moved and the slip counted. INIT and the ticks reproduce a lock-step run exactly.
 #pragma once
 
 #include <deque>
@@ -66,6 +67,9 @@ struct IoConfig {
 // Recorder window of architecture section 2.
 inline constexpr StepIndex kRecorderWindow = 512;
 inline constexpr SimDuration kLagLimit = milliseconds(50);
+inline constexpr SimDuration kStandstill = milliseconds(100);     // between two ticks: nobody's silence counts
+inline constexpr int kControllerWarnings = 20;                    // on standard error, of one session
+inline constexpr StepIndex kLoopMemory = 1024;                    // steps for which the loop time is measured
 inline constexpr SimDuration kFaultGathering = milliseconds(20);  // others may have gone wrong in the same step
 
 class IoNode final : public node::Node {
@@ -116,11 +120,14 @@ class IoNode final : public node::Node {
   [[nodiscard]] std::string not_ready_text() const;
   void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step,
               double value = 0);
+  [[nodiscard]] bool has_its_controllers(std::int64_t now_ns);
+  [[nodiscard]] bool may_wait_for_controllers(std::int64_t now_ns) noexcept;
   void set_parameter(const wire::ControlRequest& request);
   void tell_parameter(const wire::ControlRequest& request);
-  void tell_lost_leases();
+  void tell_notices();
+  [[nodiscard]] double loop_time_ms(std::size_t channel, std::int64_t now_ns) const noexcept;
   void publish_directory();
-  void publish_variables();
+  void publish_variables(std::int64_t now_ns);
   void update_health() noexcept;
 
   node::SessionMember member_;
@@ -139,7 +146,11 @@ class IoNode final : public node::Node {
   std::int64_t base_ns_ = 0;    // wall time of tick 0 less slips
   std::int64_t last_tick_ns_ = 0;
   std::int64_t slip_ns_ = 0;
-  std::int64_t deadline_ns_ = 0;  // of the stage
+  std::int64_t controllers_due_ns_ = 0;   // 0: no step 0 waits for a controller to take its channel
+  std::int64_t controllers_wait_ns_ = 0;  // since when tick n_ waits for controllers alone; 0: it does not
+  std::vector<std::int64_t> tick_ns_;     // wall time of the last ticks, by step modulo their number
+  std::int64_t deadline_ns_ = 0;          // of the stage
+  int warnings_left_ = kControllerWarnings;
   node::ResendClock resend_;
   std::int64_t fault_seen_ns_ = 0;
   std::vector<double> script_raw_;

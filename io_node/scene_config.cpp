@@ -52,9 +52,15 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
     channel.dead_zone = input.dead_zone;
     channel.ramp = input.ramp;
     channel.rate_limit = input.rate_limit;
+    const bool is_lockstep = input.controller == scene::ControllerMode::lockstep;
+    channel.exchange = is_lockstep ? Exchange::lockstep : Exchange::sampled;
+    channel.delay = input.controller_delay;
+    channel.wait = duration_of_seconds(input.controller_wait);
+    channel.supervisor = input.supervisor;
     config.channels.push_back(std::move(channel));
   }
   config.gate.neutral_after = duration_of_seconds(scene.session.controller_timeout);
+  config.gate.variables_every = scene.recording.every;
   if (wish.operating == Operator::script && !scene.script.is_empty()) {
     config.source = std::make_unique<ScriptSource>(scene);
   }

@@ -149,7 +149,9 @@ class SessionMember {
   [[nodiscard]] std::string describe_peer(wire::Role role) const;
   // The named role has been silent for 0.3 s, for NodeStatus and logs.
   [[nodiscard]] std::string silence_text(wire::Role role) const;
-  // What differs between this program and a peer's that may change the last bit of a result; empty: nothing. Once.
+  // What the user is to be told while the session goes on: warn()'s, and what differs between this program and a peer's
+  // that may change the last bit of a result. Each once.
+  void warn(std::string text) { warnings_.push_back(std::move(text)); }
   [[nodiscard]] std::vector<std::string> take_warnings();
   [[nodiscard]] bool all_required(wire::NodeState at_least) const noexcept;
 

@@ -22,6 +22,8 @@ constexpr Range kBlockRange{.min = 0, .max = 15, .min_is_open = false, .max_is_o
 constexpr Range kChannelRange{.min = 0, .max = 63, .min_is_open = false, .max_is_open = false};
 constexpr Range kDeadZoneRange{.min = 0, .max = 1, .min_is_open = false};
 constexpr Range kRampRange{.min = 0, .max = 60, .min_is_open = false, .max_is_open = false};
+constexpr Range kDelayRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
+constexpr Range kWaitRange{.min = 0.001, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
 constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
 constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
@@ -35,6 +37,7 @@ constexpr std::string_view kCouplingAlarms[] = {"stop", "warn"};
 constexpr std::string_view kContactUses[] = {"tested", "off"};
 constexpr std::string_view kSolutions[] = {"split", "monolithic"};
 constexpr std::string_view kElasticExchanges[] = {"once", "every_step", "condensed"};
+constexpr std::string_view kControllerModes[] = {"sampled", "lockstep"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
 constexpr std::string_view kInterpolations[] = {"linear", "step"};
 
@@ -97,10 +100,10 @@ constexpr Field kSessionFields[] = {
         {.range = kWindowRange,
          .doc = "ticks that may be ahead of the slowest node; 0: 1 in real pace, 4 in free pace, free-running "
                 "as many as fit into 100 ms"}),
-    field<&SessionDef::controller_timeout>("controller_timeout",
-                                           {.dimension = Dimension::time,
-                                            .range = kTimeoutRange,
-                                            .doc = "silence after which a controller's channel goes to neutral"}),
+    field<&SessionDef::controller_timeout>("controller_timeout", {.dimension = Dimension::time,
+                                                                  .range = kTimeoutRange,
+                                                                  .doc = "silence, or time out of step, after which a "
+                                                                         "controller's channel goes to neutral"}),
 };
 
 constexpr Field kInputFields[] = {
@@ -127,6 +130,25 @@ constexpr Field kInputFields[] = {
                                  {.dimension = Dimension::frequency,
                                   .range = kNotNegative,
                                   .doc = "largest change of the raw value per second that is let in; 0: any"}),
+    field<&InputDef::controller>(
+        "controller",
+        {.choices = kControllerModes,
+         .doc = "what a tick takes from a controller of this input. sampled: the latest value there is; lockstep: the "
+                "tick waits for the value that was computed from a certain step's variables, so that the closed loop "
+                "gives the same bits on any machine; step 0 waits until a controller has the channel"}),
+    field<&InputDef::controller_delay>(
+        "controller_delay",
+        {.range = kDelayRange,
+         .doc = "lockstep: tick n takes the value computed from the variables of step n less this, or of the last step "
+                "up to it that has variables (recording.every)"}),
+    field<&InputDef::controller_wait>(
+        "controller_wait",
+        {.dimension = Dimension::time,
+         .range = kWaitRange,
+         .doc = "lockstep: longest time that a tick waits; then the input holds its value, and goes to neutral after "
+                "session.controller_timeout"}),
+    field<&InputDef::supervisor>(
+        "supervisor", {.doc = "name of the controller that may take the input from its holder; without it nobody may"}),
 };
 
 constexpr Field kScriptFields[] = {

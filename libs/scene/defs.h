@@ -51,7 +51,7 @@ struct SessionDef {
   double rtol = 1e-9;  // of a monolithic solution: relative tolerance of its integration
   ContactUse contact = ContactUse::tested;
   std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free, see window_steps()
-  double controller_timeout = 0.5;  // s of silence after which a controller's channel goes to neutral
+  double controller_timeout = 0.5;  // s of silence, or out of step, after which a controller's channel goes to neutral
 
   [[nodiscard]] SimDuration step_duration() const noexcept;
   [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped
@@ -62,6 +62,8 @@ struct SessionDef {
 
 enum class InputType : int { analog, digital };
 enum class InputSub : int { control_voltage };
+// sampled: the latest value of a controller when a tick is made; lockstep: ticks wait for the value of a certain step
+enum class ControllerMode : int { sampled, lockstep };
 
 // One channel from the operator to a component or a load. Applied in this order to the raw value r (-1..1, digital 0 or
 // 1):
@@ -79,6 +81,11 @@ struct InputDef {
   double dead_zone = 0;                      // of the raw value
   double ramp = 0;                           // s, from neutral to full stick; 0: none
   double rate_limit = 0;                     // 1/s, largest change of the raw value that a source may send; 0: none
+  ControllerMode controller = ControllerMode::sampled;
+  std::int64_t controller_delay =
+      1;                         // steps, lockstep: tick n takes the value computed from the variables of n - delay
+  double controller_wait = 0.1;  // s, lockstep: longest time that a tick waits for that value
+  std::string supervisor;        // controller that may take the channel from its holder; empty: nobody may
 };
 
 enum class ScriptInterpolation : int { linear, step };

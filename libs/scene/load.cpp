@@ -308,8 +308,18 @@ class SceneReader {
     if (report_.size() > problems) return;
     check_problems([&](Problems& errors, Problems&) {
       validate(scene_.inputs, errors);
-      for (const InputDef& input : scene_.inputs) check_primitive(input, errors);
+      for (const InputDef& input : scene_.inputs) {
+        check_primitive(input, errors);
+        check_controller(input, errors);
+      }
     });
+  }
+
+  void check_controller(const InputDef& input, Problems& errors) const {
+    if (input.controller == ControllerMode::sampled || scene_.session.mode == ExchangeMode::lockstep) return;
+    errors.push_back({input.name + ".controller",
+                      "a controller cannot be in step with a free-running session, whose nodes do not wait for ticks",
+                      "sampled, or session.mode: lockstep", ""});
   }
 
   void check_primitive(const InputDef& input, Problems& errors) const {

@@ -17,6 +17,8 @@ namespace {
 
 static_assert(wire::kTopics < 31);
 
+constexpr std::int32_t kWriters = 4;  // of variables: io, mechanics, hydraulics, flex; of inputs: as many controllers
+
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
 };
@@ -54,19 +56,25 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
 }
 
 [[nodiscard]] Qos endpoint_qos(const TopicTraits& topic) {
+  const std::int32_t kept = topic.topic == wire::Topic::variables ? kLastBlocks : topic.kept;
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking.ns);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth);
-  if (topic.kept > 0) {
+  if (kept > 0) {
     dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
-    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, topic.kept, DDS_LENGTH_UNLIMITED,
-                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, kept, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED);
   }
   dds_qset_writer_data_lifecycle(qos.get(), /*autodispose=*/false);
   dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
   const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
   dds_qset_data_representation(qos.get(), 1, &representation);
   return qos;
+}
+
+// step by step, at full rate
+[[nodiscard]] bool has_several_writers(wire::Topic topic) {
+  return topic == wire::Topic::variables || topic == wire::Topic::controller_input;
 }
 
 // "role:host:pid", told to others with every writer
@@ -147,6 +155,10 @@ Status CycloneTransport::create() {
   return Status::ok();
 }
 
+bool CycloneTransport::hears_kept(wire::Topic topic) const noexcept {
+  return topic != (options_.is_controller ? wire::Topic::controller_lease : wire::Topic::variables);
+}
+
 Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber) {
   const auto i = static_cast<std::size_t>(topic);
   const dds_entity_t handle = create_raw_topic(participant_, *kDescriptors[i], traits(topic).name, types_[i]);
@@ -162,6 +174,9 @@ Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publis
     bells_[i] = {&doorbell_, 1u << i};
     dds_listener_t* listener = dds_create_listener(nullptr);
     dds_lset_data_available_arg(listener, on_data_available, &bells_[i], /*reset_on_invoke=*/true);
+    // without keys a reader's depth is that of all its writers together
+    if (has_several_writers(topic)) dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kWriters * traits(topic).depth);
+    if (!hears_kept(topic)) dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     readers_[i] = dds_create_reader(subscriber, handle, qos.get(), listener);
     dds_delete_listener(listener);
     if (readers_[i] < 0) return creation_error(traits(topic).name, readers_[i], *domain_);

@@ -27,13 +27,18 @@ namespace slew::transport {
 
 inline constexpr SimDuration kMaxBlocking = milliseconds(20);
 inline constexpr SimDuration kFarewell = milliseconds(250);  // for the last messages to arrive, at the end
-inline constexpr const char* kAnySession = "*";              // of a pure reader: messages of all sessions of the domain
+// blocks of variables that a writer keeps for a controller that finds it after the first ticks of its loop's delay
+inline constexpr std::int32_t kLastBlocks = 128;
+inline constexpr const char* kAnySession = "*";  // of a pure reader: messages of all sessions of the domain
 
 struct CycloneOptions {
   std::string session;  // name, or kAnySession
   std::string role;     // how others name this endpoint in messages, "mechanics"
   TopicSet writes;
   TopicSet reads;
+  // Hears also the last blocks of variables of before it was found, since it answers each, and of the answers to
+  // controllers none of before, since they were another one's.
+  bool is_controller = false;
 };
 
 // What the receiving thread needs to ring for a topic.
@@ -68,6 +73,7 @@ class CycloneTransport final : public Transport {
 
   CycloneTransport(std::shared_ptr<CycloneDomain> domain, CycloneOptions options);
   [[nodiscard]] Status create();
+  [[nodiscard]] bool hears_kept(wire::Topic topic) const noexcept;
   [[nodiscard]] Status create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber);
   [[nodiscard]] bool refill();
 

@@ -211,6 +211,7 @@ struct VariableBlock {
 };
 
 enum class ControllerAction : std::uint8_t { acquire, write, release };
+inline constexpr double kTakeOver = 1;  // value of an `acquire` that takes the channel from its holder
 
 // From a controller to one input channel. Only the lease holder's values are used.
 struct ControllerInput {
@@ -218,7 +219,7 @@ struct ControllerInput {
   std::string controller;  // its name, unique in the session
   std::string channel;     // input name, "Input_Lift"
   ControllerAction action = ControllerAction::write;
-  double value = 0;                     // -1 .. 1 for analog, 0 or 1 for digital
+  double value = 0;                     // -1 .. 1 for analog, 0 or 1 for digital; `acquire`: 0 or kTakeOver
   std::uint64_t sequence = 0;           // `sequence_number` in the IDL, where the short word is reserved
   StepIndex based_on_step = kJoinStep;  // step of the variables it was computed from; -1: unknown
   bool operator==(const ControllerInput&) const = default;

@@ -41,6 +41,16 @@ TEST_F(InProcess, FirstStepsAreRunRecordedDrawnAndReplayed) {
   EXPECT_EQ(replay.at("unrecorded"), 0);
 }
 
+TEST_F(InProcess, HasNoPlaceForALockstepControllerAndSaysSo) {
+  const CommandResult result = run_scene("truck_crane.yaml", {"--set", "Input_Lift.controller=lockstep"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("slewring: a run in one process has no place for a controller, and input Input_Lift waits "
+                            "for one in every step (controller: lockstep); nothing was started; run it as processes, "
+                            "or without the controller: --set Input_Lift.controller=sampled"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(InProcess, EachPlotOfTheSceneHasItsHeadingAndItsOwnPanel) {
   std::ofstream(work_.path() / "rod.yaml") << "bodies:\n  Rod: {mass: 2 kg, inertia: [1, 1, 1]}\n"
                                               "joints:\n  Hinge: {type: revolute, body2: Rod}\n"

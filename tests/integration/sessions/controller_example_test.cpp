@@ -1,9 +1,9 @@
-// The example controller, built as a user builds it (a project of its own, from idl/ and Cyclone DDS alone), closes its
-// loop on a real session.
+// The example controllers, built as a user builds them (projects of their own), close their loop on a real session.
 #include <gtest/gtest.h>
 
 #include "build_paths.h"
 #include "direct_chain.h"
+#include "example_programs.h"
 #include "session.h"
 
 namespace slew::testing {
@@ -11,39 +11,25 @@ namespace {
 
 using wire::Role;
 
-constexpr std::int64_t kBuildNs = 120'000'000'000;
-
-// kept between runs, so that a second one has nothing to compile
-constexpr const char* kFolder = SLEWRING_BINARY_DIR "/example_controller";
-
-void build_example() {
-  const ScratchFolder output;
-  Program configure(SLEWRING_CMAKE, {"-S", SLEWRING_SOURCE_DIR "/examples/controller", "-B", kFolder},
-                    output.path() / "configure");
-  ASSERT_EQ(configure.wait(kBuildNs), 0) << configure.out() << configure.err();
-  Program build(SLEWRING_CMAKE, {"--build", kFolder}, output.path() / "build");
-  ASSERT_EQ(build.wait(kBuildNs), 0) << build.out() << build.err();
-}
-
 // The example alone, without a session.
-class ControllerExampleOptions : public ::testing::Test {
+class ControllerExampleOptions : public ::testing::TestWithParam<ExampleFolder> {
  protected:
-  void SetUp() override { build_example(); }
+  void SetUp() override { path = build_example(GetParam()); }
   std::unique_ptr<Program> controller(const std::vector<std::string>& arguments) {
-    return std::make_unique<Program>(std::string(kFolder) + "/position_controller", arguments,
-                                     output.path() / "controller");
+    return std::make_unique<Program>(path, arguments, output.path() / "controller");
   }
+  std::string path;
   ScratchFolder output;
 };
 
-TEST_F(ControllerExampleOptions, HelpHasAnExample) {
+TEST_P(ControllerExampleOptions, HelpHasAnExample) {
   const auto program = controller({"--help"});
   EXPECT_EQ(program->wait(), 0) << program->err();
   EXPECT_NE(program->out().find("usage: position_controller --session"), std::string::npos) << program->out();
   EXPECT_NE(program->out().find("Example"), std::string::npos) << program->out();
 }
 
-TEST_F(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
+TEST_P(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
   for (const char* option : {"--target", "--tolerance", "--gain", "--overlap", "--seconds", "--domain"}) {
     for (const char* value : {"abc", "", "0.8m", "nan", "inf"}) {
       const auto program = controller({"--session", "nobody", option, value});
@@ -54,7 +40,7 @@ TEST_F(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
   }
 }
 
-TEST_F(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
+TEST_P(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
   const struct {
     std::vector<std::string> arguments;
     const char* problem;
@@ -70,11 +56,10 @@ TEST_F(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
   }
 }
 
-class ControllerExample : public ::testing::Test {
+class ControllerExample : public ::testing::TestWithParam<ExampleFolder> {
  protected:
   void SetUp() override {
-    build_example();
-    if (HasFatalFailure()) return;
+    path = build_example(GetParam());
     session.start_all();
     ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
   }
@@ -83,18 +68,18 @@ class ControllerExample : public ::testing::Test {
         "--session",   session.name(), "--domain",  std::to_string(session.domain()),
         "--target",    "0.84",         "--gain",    "80",
         "--tolerance", "0.002",        "--seconds", "25"};
-    return std::make_unique<Program>(std::string(kFolder) + "/position_controller", arguments,
-                                     session.folder() / "controller");
+    return std::make_unique<Program>(path, arguments, session.folder() / "controller");
   }
   void stop() {
     EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
     EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
   }
 
+  std::string path;
   Session session{{"--pace", "real", "--duration", "60s", "--input", "none"}};
 };
 
-TEST_F(ControllerExample, ReachesItsTargetAndTheTicksReproduceTheRun) {
+TEST_P(ControllerExample, ReachesItsTargetAndTheTicksReproduceTheRun) {
   const std::optional<double> before = [this] {
     static_cast<void>(
         session.observer().wait_until([this] { return session.observer().variable("Cyl_Lift.stroke").has_value(); }));
@@ -111,13 +96,74 @@ TEST_F(ControllerExample, ReachesItsTargetAndTheTicksReproduceTheRun) {
   EXPECT_EQ(first_difference(chain_of_ticks(scene, recorded.ticks.at(0)), physics_only(recorded.chain())), "");
 }
 
-TEST_F(ControllerExample, SaysWhoHoldsTheChannelWhenItIsRefused) {
+TEST_P(ControllerExample, SaysWhoHoldsTheChannelWhenItIsRefused) {
   ASSERT_TRUE(session.observer().acquire("somebody_else", "Input_Lift").is_granted);
   const auto program = controller();
   EXPECT_EQ(program->wait(), 1) << program->out();
   EXPECT_NE(program->err().find("held by 'somebody_else'"), std::string::npos) << program->err();
   stop();
 }
+
+// The other programs of the client library's example, on a session of their own.
+class ClientExamples : public ::testing::Test {
+ protected:
+  void start(std::vector<std::string> arguments = {}) {
+    arguments.insert(arguments.end(), {"--pace", "real", "--duration", "60s", "--input", "none"});
+    session = std::make_unique<Session>(arguments);
+    session->start_all();
+    ASSERT_TRUE(session->observer().wait_for_step(50)) << session->said();
+  }
+  void stop() {
+    EXPECT_TRUE(session->observer().request(wire::ControlAction::stop).is_accepted);
+    EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+  }
+  [[nodiscard]] std::string domain() const { return std::to_string(session->domain()); }
+  std::unique_ptr<Session> session;
+};
+
+TEST_F(ClientExamples, ThePidControllerStaysAtItsTarget) {
+  const std::string path = build_example(kControllerExamples[0], "pid_controller");
+  start();
+  Program pid(path, {"--session", session->name(), "--domain", domain(), "--target", "0.84", "--seconds", "8"},
+              session->folder() / "pid");
+  EXPECT_EQ(pid.wait(), 0) << pid.out() << pid.err();
+  EXPECT_NE(pid.out().find(": reached"), std::string::npos) << pid.out();
+  stop();
+}
+
+TEST_F(ClientExamples, TheShortestOneMovesTheCylinderAndGivesTheChannelBack) {
+  const std::string path = build_example(kControllerExamples[0], "first_controller");
+  start();
+  Program first(path, {session->name(), domain()}, session->folder() / "first");
+  EXPECT_EQ(first.wait(), 0) << first.out() << first.err();
+  EXPECT_NE(first.out().find("Cyl_Lift.stroke = 0.8"), std::string::npos) << first.out();
+  EXPECT_TRUE(session->observer().acquire("other", "Input_Lift").is_granted);
+  stop();
+}
+
+TEST_F(ClientExamples, TheSameLoopInPython) {
+  if (is_sanitized()) GTEST_SKIP() << "the interpreter cannot load a library with a sanitizer in it";
+  start();
+  const std::string script = SLEWRING_SOURCE_DIR "/examples/python/position_controller.py";
+  const std::string library = "SLEWRING_CLIENT=" SLEWRING_BINARY_DIR "/lib/libslewring_client.so";
+  const std::vector<std::string> arguments = {library,    SLEWRING_PYTHON, script,     "--session", session->name(),
+                                              "--domain", domain(),        "--target", "0.84",      "--gain",
+                                              "80",       "--tolerance",   "0.002"};
+  Program python("/usr/bin/env", arguments, session->folder() / "python");
+  EXPECT_EQ(python.wait(), 0) << python.out() << python.err();
+  EXPECT_NE(python.out().find(": reached"), std::string::npos) << python.out();
+
+  ASSERT_TRUE(session->observer().acquire("somebody_else", "Input_Lift").is_granted);
+  Program refused("/usr/bin/env", arguments, session->folder() / "refused");
+  EXPECT_EQ(refused.wait(), 1);
+  EXPECT_NE(refused.err().find("refused: channel Input_Lift is held by 'somebody_else'"), std::string::npos)
+      << refused.err();
+  stop();
+}
+
+const auto name_of = [](const auto& folder) { return std::string(folder.param.name); };
+INSTANTIATE_TEST_SUITE_P(Examples, ControllerExampleOptions, ::testing::ValuesIn(kControllerExamples), name_of);
+INSTANTIATE_TEST_SUITE_P(Examples, ControllerExample, ::testing::ValuesIn(kControllerExamples), name_of);
 
 }  // namespace
 }  // namespace slew::testing

@@ -70,6 +70,8 @@ void take(RecordedSession& session, const recording::RecordedMessage& recorded) 
         {decoded<wire::NodeStatus>(recorded), static_cast<std::int64_t>(recorded.publish_time_ns)});
   } else if (topic == "control_reply") {
     session.replies.push_back(decoded<wire::ControlReply>(recorded));
+  } else if (topic == "controller_lease") {
+    session.leases.push_back(decoded<wire::ControllerLease>(recorded));
   }
 }
 

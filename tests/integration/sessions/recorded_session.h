@@ -36,6 +36,7 @@ struct RecordedSession {
   std::vector<wire::ActuatorMessage> actuators;        // likewise
   std::vector<SaidStatus> statuses;
   std::vector<wire::ControlReply> replies;
+  std::vector<wire::ControllerLease> leases;
   std::map<std::string, std::string> summary;  // what the recorder counted
   std::map<std::string, double> largest;       // value of each variable
   std::string problem;                         // why the file is not valid; empty: every byte is as it was written

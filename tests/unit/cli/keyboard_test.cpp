@@ -60,5 +60,13 @@ TEST(Levers, TellWhichKeysMoveWhat) {
   EXPECT_EQ(two_levers_and_a_button().help(), "keyboard: q/a Slew  w/s Lift  e/d Horn  space neutral  Ctrl-C end");
 }
 
+TEST(Levers, LeaveLockstepInputsToTheirControllers) {
+  std::vector<scene::InputDef> inputs(2);
+  inputs[0].name = "Slew";
+  inputs[0].controller = scene::ControllerMode::lockstep;
+  inputs[1].name = "Lift";
+  EXPECT_EQ(Levers(inputs).help(), "keyboard: q/a Lift  space neutral  Ctrl-C end");
+}
+
 }  // namespace
 }  // namespace slew::cli

@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
+
+#include "tests/support/nightly.h"
 
 namespace slew::io {
 namespace {
+
+using testing::rounds;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMs = 1'000'000;
@@ -117,18 +123,18 @@ TEST(InputGate, WhoeverLosesAChannelWithoutReleasingItIsNamedOnce) {
   ASSERT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   ASSERT_TRUE(gate.release(0, "joystick").is_granted);
-  EXPECT_TRUE(gate.take_lost_leases().empty());
+  EXPECT_TRUE(gate.take_notices().empty());
   gate.advance(0, std::vector<double>{0, 0}, 5001 * kMs);
-  std::vector<LostLease> lost = gate.take_lost_leases();
+  std::vector<Notice> lost = gate.take_notices();
   ASSERT_EQ(lost.size(), 1u);
   EXPECT_EQ(lost[0].controller, "pid");
   EXPECT_EQ(lost[0].channel, 1u);
   EXPECT_NE(lost[0].reason.find("no value came for 5000 ms"), std::string::npos) << lost[0].reason;
-  EXPECT_TRUE(gate.take_lost_leases().empty());
+  EXPECT_TRUE(gate.take_notices().empty());
 
   ASSERT_TRUE(gate.acquire(0, "joystick", 0).is_granted);
   gate.reset();
-  lost = gate.take_lost_leases();
+  lost = gate.take_notices();
   ASSERT_EQ(lost.size(), 1u);
   EXPECT_EQ(lost[0].controller, "joystick");
   EXPECT_NE(lost[0].reason.find("reset"), std::string::npos) << lost[0].reason;
@@ -155,6 +161,204 @@ TEST(InputGate, DigitalInputIsZeroOrOne) {
   EXPECT_EQ(gate.control(0), 1);
   gate.advance(2, std::vector<double>{-1}, 0);
   EXPECT_EQ(gate.control(0), 0);
+}
+
+// ---- taking over ----------------------------------------------------------------------------------------------
+
+TEST(InputGate, OnlyTheSupervisorTakesAChannelFromItsHolder) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.supervisor = "instructor";
+  ChannelConfig other = channel("Other", 1, 0);
+  InputGate gate({lever, other}, GateConfig{}, milliseconds(1));
+  ASSERT_TRUE(gate.acquire(0, "trainee", 0).is_granted);
+  ASSERT_TRUE(gate.acquire(1, "trainee", 0).is_granted);
+  gate.write(0, "trainee", 0.5, 0, 0);
+
+  EXPECT_FALSE(gate.acquire(0, "instructor", 0).is_granted) << "it did not ask to take over";
+  const LeaseAnswer stranger = gate.take_over(0, "stranger", 0);
+  EXPECT_FALSE(stranger.is_granted);
+  EXPECT_EQ(stranger.holder, "trainee");
+  EXPECT_EQ(stranger.reason,
+            "channel Lever is held by 'trainee', and only 'instructor' may take it over (Lever.supervisor)");
+  EXPECT_EQ(gate.take_over(1, "instructor", 0).reason,
+            "channel Other is held by 'trainee', and nobody may take it over: name a controller in Other.supervisor of "
+            "the scene");
+  EXPECT_TRUE(gate.take_notices().empty());
+
+  EXPECT_TRUE(gate.take_over(0, "instructor", 0).is_granted);
+  const std::vector<Notice> lost = gate.take_notices();
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(lost[0].controller, "trainee");
+  EXPECT_FALSE(lost[0].has_channel);
+  EXPECT_EQ(lost[0].reason, "'instructor' has taken over channel Lever");
+  gate.advance(0, std::vector<double>{0, 0}, 0);
+  EXPECT_EQ(gate.raw(0), 0.5) << "the value stays until the new holder writes";
+  EXPECT_FALSE(gate.write(0, "trainee", 1, 0, 0));
+  EXPECT_TRUE(gate.write(0, "instructor", -0.5, 0, 0));
+  gate.advance(1, std::vector<double>{0, 0}, 0);
+  EXPECT_EQ(gate.raw(0), -0.5);
+}
+
+TEST(InputGate, TakingOverAFreeChannelIsAcquiringIt) {
+  InputGate gate = crane_gate();
+  EXPECT_TRUE(gate.take_over(0, "anybody", 0).is_granted);
+  EXPECT_TRUE(gate.take_over(0, "anybody", 0).is_granted);
+}
+
+// ---- lockstep -------------------------------------------------------------------------------------------------
+
+TEST(InputGate, OfTwoValuesForOneStepTheFirstCountsSinceTheClockMustNotDecide) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.exchange = Exchange::lockstep;
+  InputGate gate({lever}, GateConfig{}, milliseconds(1));
+  ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
+  gate.advance(0, std::vector<double>{0}, 0);
+  EXPECT_GT(gate.awaited(1).ns, 0);
+  gate.write(0, "pid", 0.5, 1, 0, 0);
+  gate.write(0, "pid", -1, 1, 0, 0);
+  EXPECT_EQ(gate.awaited(1).ns, 0);
+  gate.advance(1, std::vector<double>{0}, 0);
+  EXPECT_EQ(gate.raw(0), 0.5);
+  EXPECT_EQ(gate.based_on(0), 0);
+}
+
+TEST(InputGate, ValuesOfStepsThatNoTickTakesAreCountedAndNotKept) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.exchange = Exchange::lockstep;
+  lever.delay = 3;
+  GateConfig every_fifth;
+  every_fifth.variables_every = 5;
+  InputGate gate({lever}, every_fifth, milliseconds(1));
+  ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
+  for (const StepIndex based_on : {-1, 0, 4, 7, 15, 1000}) EXPECT_FALSE(gate.write(0, "pid", 1, 12, 0, based_on));
+  EXPECT_EQ(gate.rejected_late(), 6u);
+  EXPECT_TRUE(gate.write(0, "pid", 1, 12, 0, 5));
+  EXPECT_TRUE(gate.write(0, "pid", 1, 12, 0, 10));
+}
+
+TEST(InputGate, TwoLockstepChannelsAreAwaitedEach) {
+  ChannelConfig slew = channel("Slew", 1, 0), lift = channel("Lift", 1, 0);
+  slew.exchange = lift.exchange = Exchange::lockstep;
+  slew.wait = milliseconds(30);
+  lift.wait = milliseconds(70);
+  lift.delay = 2;
+  InputGate gate({slew, lift}, GateConfig{}, milliseconds(1));
+  EXPECT_EQ(gate.vacant(), 0);
+  ASSERT_TRUE(gate.acquire(0, "a", 0).is_granted);
+  EXPECT_EQ(gate.vacant(), 1);
+  ASSERT_TRUE(gate.acquire(1, "b", 0).is_granted);
+  EXPECT_EQ(gate.vacant(), -1);
+  EXPECT_EQ(gate.awaited(0).ns, 0);
+  EXPECT_EQ(gate.awaited(1).ns, 30 * kMs);
+  EXPECT_EQ(gate.awaited(2).ns, 70 * kMs);
+  gate.write(1, "b", 0.5, 2, 0, 0);
+  EXPECT_EQ(gate.awaited(2).ns, 30 * kMs);
+}
+
+TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.exchange = Exchange::lockstep;
+  lever.delay = 2;
+  InputGate gate({lever}, GateConfig{}, milliseconds(1));
+  ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
+  gate.advance(0, std::vector<double>{0.3}, 0);
+  gate.write(0, "pid", 0.5, 1, 0, 0);
+  gate.write(0, "pid", 0.6, 1, 0, 1);
+  EXPECT_TRUE(gate.release(0, "pid", 1).is_granted);
+  EXPECT_FALSE(gate.write(0, "pid", 0.7, 1, 0, 1)) << "it has said that this was the last";
+  for (StepIndex n = 1; n < 4; ++n) {
+    EXPECT_EQ(gate.awaited(n).ns, 0);
+    gate.advance(n, std::vector<double>{0.3}, 0);
+    EXPECT_EQ(gate.raw(0), n == 1 ? 0 : n == 2 ? 0.5 : 0.6) << n;
+  }
+  gate.advance(4, std::vector<double>{0.3}, 0);
+  EXPECT_EQ(gate.raw(0), 0.3) << "the script's";
+  EXPECT_TRUE(gate.acquire(0, "other", 0).is_granted);
+  EXPECT_TRUE(gate.take_notices().empty());
+}
+
+TEST(InputGate, ALockstepChannelThatIsTakenOverKeepsItsValueUntilTheNewHolderIsInStep) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.exchange = Exchange::lockstep;
+  lever.supervisor = "instructor";
+  InputGate gate({lever}, GateConfig{}, milliseconds(1));
+  const auto advance = [&gate](StepIndex n) { gate.advance(n, std::vector<double>{0}, n * kMs); };
+  ASSERT_TRUE(gate.acquire(0, "trainee", 0).is_granted);
+  for (StepIndex n = 0; n < 5; ++n) {
+    advance(n);
+    gate.write(0, "trainee", 0.5, n + 1, n * kMs, n);
+  }
+  ASSERT_TRUE(gate.take_over(0, "instructor", 5 * kMs).is_granted);
+  EXPECT_EQ(gate.awaited(5).ns, 0) << "what the old holder sent is not the new one's";
+  advance(5);
+  EXPECT_EQ(gate.raw(0), 0.5);
+  static_cast<void>(gate.take_notices());
+  gate.write(0, "instructor", -0.5, 6, 6 * kMs, 5);
+  advance(6);
+  EXPECT_EQ(gate.raw(0), -0.5);
+  EXPECT_GT(gate.awaited(7).ns, 0);
+  const std::vector<Notice> told = gate.take_notices();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].reason, "'instructor' is in step from tick 6 on; channel Lever had been without it since tick 5");
+}
+
+TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
+  std::mt19937_64 random(1);
+  const auto below = [&random](std::uint64_t n) { return static_cast<std::int64_t>(random() % n); };
+  const std::string names[] = {"a", "b", "c", ""};
+  for (int session = rounds(30, 1000); session > 0; --session) {
+    std::vector<ChannelConfig> channels(3);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      channels[i].name = "C" + std::to_string(i);
+      channels[i].is_digital = i == 2;
+      channels[i].exchange = below(2) == 0 ? Exchange::sampled : Exchange::lockstep;
+      channels[i].delay = 1 + below(5);
+      channels[i].supervisor = below(2) == 0 ? "" : "b";
+    }
+    GateConfig config;
+    config.variables_every = 1 + below(4);
+    InputGate gate(channels, config, milliseconds(1));
+    std::int64_t now_ns = 0;
+    StepIndex n = 0;
+    for (int call = 0; call < 2000; ++call) {
+      now_ns += below(50) * kMs;
+      const auto channel = static_cast<std::size_t>(below(3));
+      const std::string& who = names[below(4)];
+      const double value = below(10) == 0 ? kNan : static_cast<double>(below(5) - 2);
+      switch (below(8)) {
+        case 0:
+          static_cast<void>(gate.acquire(channel, who, now_ns));
+          break;
+        case 1:
+          static_cast<void>(gate.take_over(channel, who, now_ns));
+          break;
+        case 2:
+          static_cast<void>(gate.release(channel, who, n + below(8) - 6));
+          break;
+        case 3:
+          if (below(100) == 0) {
+            gate.reset();
+            n = 0;
+          }
+          gate.excuse(milliseconds(below(100)));
+          break;
+        case 4:
+        case 5:
+          gate.write(channel, who, value, n, now_ns, n + below(10) - 8);
+          break;
+        default:
+          gate.advance(n, std::vector<double>{0, 0.5, 1}, now_ns);
+          for (std::size_t i = 0; i < gate.size(); ++i) {
+            ASSERT_GE(gate.raw(i), i == 2 ? 0 : -1);
+            ASSERT_LE(gate.raw(i), 1);
+            const StepIndex newest = channels[i].exchange == Exchange::lockstep ? n - channels[i].delay : n;
+            ASSERT_LE(gate.based_on(i), std::max(newest, kJoinStep)) << "channel " << i << " tick " << n;
+          }
+          ++n;
+      }
+      if (call % 100 == 0) static_cast<void>(gate.take_notices());
+    }
+  }
 }
 
 }  // namespace

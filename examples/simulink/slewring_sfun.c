@@ -1,0 +1,151 @@
+/* A Simulink block that is a controller's end of a Slewring session: its outputs are variables of the session at the
+ * present block, its inputs go to input channels as computed from that block. One major step is one block of variables,
+ * in order, so that a lockstep channel is served; the model waits for the session, which is its clock.
+ *
+ * Parameters of the block, in this order:
+ *   session     'truck_crane'
+ *   controller  'simulink'
+ *   domain      0
+ *   variables   'Cyl_Lift.stroke,Cyl_Lift.force'   one output element each
+ *   channels    'Input_Lift'                       one input element each
+ *   period      0.01                               session.step x recording.every [s]
+ *
+ * Build:  mex slewring_sfun.c -IPREFIX/include -LPREFIX/lib -lslewring_client
+ * Model:  fixed-step solver with the same period; the inputs have no direct feed-through: what the session says in a
+ * step does not depend on what the model answers in it. */
+#define S_FUNCTION_NAME slewring_sfun
+#define S_FUNCTION_LEVEL 2
+
+#include <stdio.h>
+#include <string.h>
+
+#include "simstruc.h"
+#include "slewring_client.h"
+
+#define MAX_NAMES 64
+#define MAX_TEXT 4096
+#define TIMEOUT 10.0 /* s */
+
+enum { SESSION, CONTROLLER, DOMAIN, VARIABLES, CHANNELS, PERIOD, PARAMETERS };
+
+/* number of names in a list with commas; each name is cut off in place */
+static int split(char* list, char* names[MAX_NAMES]) {
+  int count = 0;
+  char* name = strtok(list, ",");
+  for (; name != NULL && count < MAX_NAMES; name = strtok(NULL, ",")) names[count++] = name;
+  return count;
+}
+
+static int read_list(SimStruct* S, int parameter, char text[MAX_TEXT], char* names[MAX_NAMES]) {
+  text[0] = '\0';
+  mxGetString(ssGetSFcnParam(S, parameter), text, MAX_TEXT);
+  return split(text, names);
+}
+
+/* the sentence of the library ends the simulation */
+static void fail(SimStruct* S, slewring_session* session) {
+  static char text[1024];
+  snprintf(text, sizeof text, "%s", slewring_error(session));
+  ssSetErrorStatus(S, text);
+}
+
+static void mdlInitializeSizes(SimStruct* S) {
+  static char text[MAX_TEXT];
+  char* names[MAX_NAMES];
+  int variables, channels;
+  ssSetNumSFcnParams(S, PARAMETERS);
+  if (ssGetNumSFcnParams(S) != ssGetSFcnParamsCount(S)) return;
+  variables = read_list(S, VARIABLES, text, names);
+  channels = read_list(S, CHANNELS, text, names);
+  if (!ssSetNumOutputPorts(S, 1) || !ssSetNumInputPorts(S, 1)) return;
+  ssSetOutputPortWidth(S, 0, variables);
+  ssSetInputPortWidth(S, 0, channels);
+  ssSetInputPortRequiredContiguous(S, 0, 1);
+  ssSetInputPortDirectFeedThrough(S, 0, 0);
+  ssSetNumSampleTimes(S, 1);
+  ssSetNumPWork(S, 1);                    /* the session */
+  ssSetNumIWork(S, variables + channels); /* its handles */
+  ssSetOptions(S, SS_OPTION_CALL_TERMINATE_ON_EXIT);
+}
+
+static void mdlInitializeSampleTimes(SimStruct* S) {
+  ssSetSampleTime(S, 0, mxGetScalar(ssGetSFcnParam(S, PERIOD)));
+  ssSetOffsetTime(S, 0, 0.0);
+}
+
+#define MDL_START
+static void mdlStart(SimStruct* S) {
+  static char text[MAX_TEXT], name[MAX_TEXT], controller[MAX_TEXT];
+  char* names[MAX_NAMES];
+  slewring_session* session;
+  int i, count, handle, next = 0;
+  mxGetString(ssGetSFcnParam(S, SESSION), name, MAX_TEXT);
+  mxGetString(ssGetSFcnParam(S, CONTROLLER), controller, MAX_TEXT);
+  session = slewring_join(name, controller, (unsigned)mxGetScalar(ssGetSFcnParam(S, DOMAIN)), "lo", "", TIMEOUT);
+  ssSetPWorkValue(S, 0, session);
+  if (session == NULL) {
+    fail(S, NULL);
+    return;
+  }
+  count = read_list(S, VARIABLES, text, names);
+  for (i = 0; i < count; ++i) {
+    handle = slewring_find(session, names[i], TIMEOUT);
+    if (handle < 0) {
+      fail(S, session);
+      return;
+    }
+    ssSetIWorkValue(S, next++, handle);
+  }
+  count = read_list(S, CHANNELS, text, names);
+  for (i = 0; i < count; ++i) {
+    handle = slewring_acquire(session, names[i], TIMEOUT);
+    if (handle < 0) {
+      fail(S, session);
+      return;
+    }
+    ssSetIWorkValue(S, next++, handle);
+  }
+}
+
+/* waits for the next block */
+static void mdlOutputs(SimStruct* S, int_T task) {
+  slewring_session* session = (slewring_session*)ssGetPWorkValue(S, 0);
+  real_T* y = ssGetOutputPortRealSignal(S, 0);
+  const int width = ssGetOutputPortWidth(S, 0);
+  const int code = slewring_step(session, TIMEOUT);
+  int i;
+  (void)task;
+  if (code == SLEWRING_ENDED) {
+    ssSetStopRequested(S, 1);
+    return;
+  }
+  if (code != SLEWRING_OK) {
+    fail(S, session);
+    return;
+  }
+  for (i = 0; i < width; ++i) y[i] = slewring_value(session, ssGetIWorkValue(S, i));
+}
+
+/* answers it */
+#define MDL_UPDATE
+static void mdlUpdate(SimStruct* S, int_T task) {
+  slewring_session* session = (slewring_session*)ssGetPWorkValue(S, 0);
+  const real_T* u = ssGetInputPortRealSignal(S, 0);
+  const int first = ssGetOutputPortWidth(S, 0), width = ssGetInputPortWidth(S, 0);
+  int i;
+  (void)task;
+  for (i = 0; i < width; ++i) {
+    if (slewring_write(session, ssGetIWorkValue(S, first + i), u[i]) != SLEWRING_OK) fail(S, session);
+  }
+}
+
+static void mdlTerminate(SimStruct* S) {
+  slewring_leave((slewring_session*)ssGetPWorkValue(S, 0));
+  ssSetPWorkValue(S, 0, NULL);
+}
+
+#ifdef MATLAB_MEX_FILE
+#include "simulink.c"
+#else
+#include "cg_sfun.h"
+#endif

@@ -1,0 +1,418 @@
+#include "client/client_session.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "transport/codec.h"
+
+namespace slew::client {
+namespace {
+
+using wire::Phase;
+using wire::Role;
+using wire::Topic;
+
+constexpr std::size_t kNewBlocks = 4096;
+constexpr std::size_t kBeforeSession = 4096;
+constexpr std::size_t kWaitingSteps = 4096;
+constexpr std::int64_t kAskAgainNs = 200'000'000;
+constexpr std::int64_t kLongestSleepNs = 50'000'000;
+constexpr SimDuration kDirectoryGrace = milliseconds(300);  // of other nodes after io's, which is the last
+
+std::string in_seconds(SimDuration time) {
+  std::string text = std::to_string(time.seconds());
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + " s";
+}
+
+// Cyclone bears one domain of a number in a process; a program may join several sessions in it.
+Status shared_domain(const transport::CycloneNetwork& network, std::shared_ptr<transport::CycloneDomain>& domain) {
+  static std::mutex mutex;
+  static std::map<std::uint32_t, std::weak_ptr<transport::CycloneDomain>> open;
+  const std::lock_guard lock(mutex);
+  domain = open[network.domain].lock();
+  if (domain != nullptr) return Status::ok();
+  const Status status = transport::CycloneDomain::open(network, domain);
+  if (status.is_ok()) open[network.domain] = domain;
+  return status;
+}
+
+bool is_name(const std::string& text) {
+  return !text.empty() && text.size() <= wire::kMaxNameLength;
+}
+
+}  // namespace
+
+// ---- joining --------------------------------------------------------------------------------------------------
+
+Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std::unique_ptr<ClientSession>& session) {
+  if (!is_name(options.controller)) {
+    return {Code::bad_argument, "'" + options.controller + "' is no name of a controller; expected 1 to " +
+                                    std::to_string(wire::kMaxNameLength) + " characters"};
+  }
+  std::unique_ptr<ClientSession> opened(new ClientSession(options));
+  std::shared_ptr<transport::CycloneDomain> domain;
+  Status status = shared_domain(options.network, domain);
+  if (status.is_ok()) {
+    transport::CycloneOptions endpoint;
+    endpoint.session = options.session;
+    endpoint.role = "controller";
+    endpoint.writes = {Topic::controller_input};
+    endpoint.reads = {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
+                      Topic::controller_lease};
+    endpoint.is_controller = true;
+    status = transport::CycloneTransport::open(std::move(domain), endpoint, opened->carrier_);
+  }
+  if (!status.is_ok()) return {status.code == ExitCode::bad_input ? Code::bad_argument : Code::failed, status.text};
+  if (!opened->wait_for([&] { return opened->has_session_; }, timeout)) {
+    return {Code::timeout, "no session '" + options.session + "' was heard in domain " +
+                               std::to_string(options.network.domain) + " on " + options.network.interface +
+                               " within " + in_seconds(timeout) +
+                               "; start it first, and compare its name, domain, interface and peers"};
+  }
+  if (opened->description_.protocol != wire::kProtocolVersion) {
+    return {Code::refused, "session '" + options.session + "' speaks protocol version " +
+                               std::to_string(opened->description_.protocol) + ", this client library " +
+                               std::to_string(wire::kProtocolVersion) + "; use one version on both sides"};
+  }
+  session = std::move(opened);
+  return {};
+}
+
+ClientSession::~ClientSession() {
+  if (carrier_ == nullptr) return;
+  for (const Channel& channel : channels_) {
+    if (channel.lease == Lease::held && !is_over_) {
+      static_cast<void>(send(channel.name, wire::ControllerAction::release, 0));
+    }
+  }
+}
+
+// ---- receiving ------------------------------------------------------------------------------------------------
+
+template <typename Done>
+bool ClientSession::wait_for(Done done, SimDuration timeout) {
+  const std::int64_t deadline_ns = monotonic_ns() + timeout.ns;
+  while (true) {
+    drain();
+    if (done()) return true;
+    const std::int64_t now_ns = monotonic_ns();
+    if (now_ns >= deadline_ns) return false;
+    carrier_->wait_until(std::min(deadline_ns, now_ns + kLongestSleepNs));
+  }
+}
+
+void ClientSession::drain() {
+  transport::Received message;
+  while (carrier_->take(message)) take(message.topic, message.bytes);
+}
+
+void ClientSession::take(Topic topic, std::span<const std::byte> bytes) {
+  if (!has_session_ && topic != Topic::session) {
+    if (before_session_.size() < kBeforeSession) before_session_.push_back({topic, {bytes.begin(), bytes.end()}});
+    return;
+  }
+  switch (topic) {
+    case Topic::session:
+      return take_session(bytes);
+    case Topic::node_status:
+      return take_status(bytes);
+    case Topic::variable_directory:
+      return take_directory(bytes);
+    case Topic::controller_lease:
+      return take_lease(bytes);
+    case Topic::variables:
+      return take_block(bytes);
+    default:
+      return;
+  }
+}
+
+void ClientSession::take_session(std::span<const std::byte> bytes) {
+  wire::SessionDescription description;
+  if (!transport::decode(bytes, description) || description.name != options_.session) return;
+  const bool is_this_one = has_session_ && description.header.session == description_.header.session;
+  if (is_this_one && description.header.phase == Phase::ended) is_over_ = true;
+  if (has_session_ || description.header.phase != Phase::running) return;
+  description.scene_text.clear();
+  description_ = std::move(description);
+  has_session_ = true;
+  for (const Early& message : std::exchange(before_session_, {})) take(message.topic, message.bytes);
+}
+
+// io says when it is over and why; of one that was lost the others do
+void ClientSession::take_status(std::span<const std::byte> bytes) {
+  wire::NodeStatus status;
+  if (!transport::decode(bytes, status) || !is_ours(status.header)) return;
+  if (status.state < wire::NodeState::ended || status.header.role == Role::recorder) return;
+  is_over_ = true;
+  if (end_reason_.empty()) end_reason_ = status.reason;
+}
+
+bool ClientSession::is_ours(const wire::Header& header) const noexcept {
+  return has_session_ && header.session == description_.header.session;
+}
+
+const ClientSession::Named* ClientSession::named(const std::string& name) const noexcept {
+  const auto found =
+      std::find_if(directory_.begin(), directory_.end(), [&](const Named& entry) { return entry.name == name; });
+  return found == directory_.end() ? nullptr : &*found;
+}
+
+void ClientSession::take_directory(std::span<const std::byte> bytes) {
+  wire::VariableDirectory message;
+  if (!transport::decode(bytes, message) || !is_ours(message.header)) return;
+  has_own_directory_ = has_own_directory_ || message.header.role == Role::io;
+  // the same again after a reset
+  if (message.entries.empty() || named(message.entries.front().name) != nullptr) return;
+  for (std::size_t i = 0; i < message.entries.size(); ++i) {
+    directory_.push_back({message.entries[i].name, message.entries[i].unit, message.header.role,
+                          message.first + static_cast<std::uint32_t>(i)});
+  }
+}
+
+// of a reset: steps begin at 0 again, and what was computed before is of no use
+void ClientSession::begin_epoch(std::uint32_t epoch) {
+  epoch_ = epoch;
+  new_blocks_.clear();
+  blocks_.clear();
+  only_newest_ = false;
+  step_ = kJoinStep;
+  std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN());
+}
+
+void ClientSession::take_lease(std::span<const std::byte> bytes) {
+  wire::ControllerLease message;
+  if (!transport::decode(bytes, message) || !is_ours(message.header)) return;
+  if (message.controller != options_.controller) return;
+  const auto channel =
+      std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == message.channel; });
+  if (channel == channels_.end()) return;
+  if (message.header.epoch > epoch_) begin_epoch(message.header.epoch);
+  const bool has_it = message.is_granted && message.holder == options_.controller;
+  if (has_it && channel->lease == Lease::asked) {
+    channel->lease = Lease::held;
+    if (message.header.step > 0) only_newest_ = true;
+  } else if (channel->lease == Lease::asked && !message.is_granted) {
+    channel->lease = Lease::refused;
+  } else if (channel->lease == Lease::held && !message.is_granted) {
+    channel->lease = Lease::lost;
+  }
+  channel->reason = message.reason;
+  channel->holder = message.holder;
+  if (has_it && !message.reason.empty()) notices_.push_back(message.reason);
+}
+
+void ClientSession::take_block(std::span<const std::byte> bytes) {
+  wire::VariableBlock block;
+  if (!transport::decode(bytes, block) || !is_ours(block.header)) return;
+  if (block.header.phase != Phase::running || block.header.epoch < epoch_) return;
+  if (block.header.epoch > epoch_) begin_epoch(block.header.epoch);
+  if (new_blocks_.size() == kNewBlocks) new_blocks_.pop_front();
+  new_blocks_.push_back(std::move(block));
+}
+
+// ---- variables ------------------------------------------------------------------------------------------------
+
+Answer ClientSession::find(const std::string& variable, SimDuration timeout, int& handle) {
+  const auto wanted =
+      std::find_if(wanted_.begin(), wanted_.end(), [&](const Named& entry) { return entry.name == variable; });
+  if (wanted != wanted_.end()) {
+    handle = static_cast<int>(wanted - wanted_.begin());
+    return {};
+  }
+  std::int64_t all_known_ns = 0;
+  const auto is_decided = [&] {
+    if (has_own_directory_ && all_known_ns == 0) all_known_ns = monotonic_ns() + kDirectoryGrace.ns;
+    return named(variable) != nullptr || is_over_ || (all_known_ns != 0 && monotonic_ns() > all_known_ns);
+  };
+  static_cast<void>(wait_for(is_decided, timeout));
+  const Named* found = named(variable);
+  if (found == nullptr) {
+    if (is_over_) return ended();
+    return {has_own_directory_ ? Code::refused : Code::timeout,
+            "session '" + options_.session + "' has told no variable '" + variable + "' within " + in_seconds(timeout) +
+                ", " + std::to_string(directory_.size()) +
+                " others; `slewring variables SCENE` lists them, recording.variables of the scene chooses among them"};
+  }
+  handle = static_cast<int>(wanted_.size());
+  wanted_.push_back(*found);
+  values_.push_back(std::numeric_limits<double>::quiet_NaN());
+  blocks_.clear();
+  return {};
+}
+
+double ClientSession::value(int handle) const noexcept {
+  const bool is_known = handle >= 0 && static_cast<std::size_t>(handle) < values_.size();
+  return is_known ? values_[static_cast<std::size_t>(handle)] : std::numeric_limits<double>::quiet_NaN();
+}
+
+void ClientSession::place(const wire::VariableBlock& message) {
+  const StepIndex step = message.header.step;
+  if (step <= step_) return;
+  if (blocks_.size() >= kWaitingSteps) blocks_.erase(blocks_.begin());
+  Block& block = blocks_[step];
+  block.values.resize(wanted_.size());
+  block.has.resize(wanted_.size());
+  block.has_own = block.has_own || message.header.role == Role::io;
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const Named& wanted = wanted_[i];
+    if (wanted.role != message.header.role || wanted.index < message.first) continue;
+    const std::size_t at = wanted.index - message.first;
+    if (at >= message.values.size()) continue;
+    block.values[i] = message.values[at];
+    block.count += block.has[i] ? 0 : 1;
+    block.has[i] = true;
+  }
+}
+
+bool ClientSession::is_complete(const Block& block) const noexcept {
+  return wanted_.empty() ? block.has_own : block.count == wanted_.size();
+}
+
+// each node's blocks come in order: what a later step has and this one lacks was lost
+bool ClientSession::can_never_be_complete(std::map<StepIndex, Block>::const_iterator block) const noexcept {
+  for (auto later = std::next(block); later != blocks_.end(); ++later) {
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (later->second.has[i] && !block->second.has[i]) return true;
+    }
+    if (wanted_.empty() && later->second.has_own) return true;
+  }
+  return false;
+}
+
+// Makes the next or the newest complete step the present one; false when there is none.
+bool ClientSession::choose(Which which) {
+  for (const wire::VariableBlock& block : new_blocks_) place(block);
+  new_blocks_.clear();
+  auto chosen = blocks_.end();
+  for (auto block = blocks_.begin(); block != blocks_.end();) {
+    if (is_complete(block->second)) {
+      chosen = block;
+      if (which == Which::next && !only_newest_) break;
+      ++block;
+    } else if (chosen == blocks_.end() && can_never_be_complete(block)) {
+      block = blocks_.erase(block);
+      ++missed_;
+    } else if (which == Which::next && !only_newest_) {
+      break;
+    } else {
+      ++block;
+    }
+  }
+  if (chosen == blocks_.end()) return false;
+  if (step_ >= 0 && which == Which::next) steps_per_block_ = chosen->first - step_;
+  step_ = chosen->first;
+  values_ = chosen->second.values;
+  blocks_.erase(blocks_.begin(), std::next(chosen));
+  only_newest_ = false;
+  return true;
+}
+
+Answer ClientSession::step(Which which, SimDuration timeout) {
+  const auto lost = [&] {
+    return std::find_if(channels_.begin(), channels_.end(), [](const Channel& c) { return c.lease == Lease::lost; });
+  };
+  bool has_come = false;
+  const auto is_done = [&] {
+    if (lost() != channels_.end()) return true;
+    has_come = has_come || choose(which);
+    return has_come || is_over_;
+  };
+  const bool in_time = wait_for(is_done, timeout);
+  if (const auto channel = lost(); channel != channels_.end()) {
+    channel->lease = Lease::none;
+    return {Code::lost, channel->reason};
+  }
+  if (has_come) return {};
+  if (is_over_) return ended();
+  if (in_time) return {};
+  return {Code::timeout, "no block of variables came within " + in_seconds(timeout) + " after step " +
+                             std::to_string(step_) +
+                             "; the session is paused, waits for somebody or is gone: see `slewring sessions`"};
+}
+
+Answer ClientSession::ended() const {
+  return {Code::ended,
+          "session '" + options_.session + "' has ended" + (end_reason_.empty() ? std::string() : ": " + end_reason_)};
+}
+
+// ---- channels -------------------------------------------------------------------------------------------------
+
+Answer ClientSession::send(const std::string& channel, wire::ControllerAction action, double value) {
+  wire::ControllerInput input;
+  input.session = options_.session;
+  input.controller = options_.controller;
+  input.channel = channel;
+  input.action = action;
+  input.value = value;
+  input.sequence = ++sequence_;
+  input.based_on_step = step_;
+  if (!transport::encode(input, buffer_)) return {Code::bad_argument, "'" + channel + "' is no name of a channel"};
+  const Status status = carrier_->publish(Topic::controller_input, buffer_);
+  return status.is_ok() ? Answer{} : Answer{Code::failed, status.text};
+}
+
+Answer ClientSession::acquire(const std::string& name, double how, SimDuration timeout, int& handle) {
+  if (!is_name(name)) return {Code::bad_argument, "'" + name + "' is no name of a channel"};
+  auto channel = std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == name; });
+  if (channel == channels_.end()) channel = channels_.insert(channels_.end(), Channel{name, Lease::none, {}, {}});
+  const auto index = static_cast<std::size_t>(channel - channels_.begin());
+  if (channels_[index].lease != Lease::held) channels_[index].lease = Lease::asked;
+  // asked again until it is answered: the first may go before the session is found
+  std::int64_t ask_ns = 0;
+  Answer sent;
+  const auto is_decided = [&] {
+    if (channels_[index].lease != Lease::asked || is_over_) return true;
+    if (monotonic_ns() < ask_ns) return false;
+    ask_ns = monotonic_ns() + kAskAgainNs;
+    sent = send(name, wire::ControllerAction::acquire, how);
+    return sent.code != Code::ok;
+  };
+  const bool in_time = wait_for(is_decided, timeout);
+  if (sent.code != Code::ok) return sent;
+  if (channels_[index].lease == Lease::held) {
+    handle = static_cast<int>(index);
+    return {};
+  }
+  if (is_over_) return ended();
+  channels_[index].lease = Lease::none;
+  if (in_time) return {Code::refused, channels_[index].reason};
+  return {Code::timeout, "session '" + options_.session + "' did not answer for channel " + name + " within " +
+                             in_seconds(timeout) + "; nothing was moved"};
+}
+
+Answer ClientSession::release(int channel) {
+  if (channel < 0 || static_cast<std::size_t>(channel) >= channels_.size()) {
+    return {Code::bad_argument, std::to_string(channel) + " is no handle of a channel"};
+  }
+  Channel& released = channels_[static_cast<std::size_t>(channel)];
+  if (released.lease != Lease::held) return {Code::lost, "channel " + released.name + " is not held"};
+  released.lease = Lease::none;
+  return send(released.name, wire::ControllerAction::release, 0);
+}
+
+Answer ClientSession::write(int channel, double value) {
+  if (channel < 0 || static_cast<std::size_t>(channel) >= channels_.size()) {
+    return {Code::bad_argument, std::to_string(channel) + " is no handle of a channel"};
+  }
+  const Channel& written = channels_[static_cast<std::size_t>(channel)];
+  if (written.lease != Lease::held) {
+    return {Code::lost, "channel " + written.name + " is not held" +
+                            (written.reason.empty() ? std::string() : ": " + written.reason)};
+  }
+  return send(written.name, wire::ControllerAction::write, value);
+}
+
+bool ClientSession::take_notice(std::string& text) {
+  drain();
+  if (notices_.empty()) return false;
+  text = std::move(notices_.front());
+  notices_.pop_front();
+  return true;
+}
+
+}  // namespace slew::client

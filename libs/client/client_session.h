@@ -1,0 +1,138 @@
+// A controller's view of one session: what slewring_client.h does, in C++ and without handles that may be wrong.
+//
+// Blocks of variables are put together by step: a step is complete when every variable that was asked for has come of
+// it. Messages of an older epoch or of another session are passed over. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+#include "core/time.h"
+#include "transport/cyclone_transport.h"
+#include "transport/wire.h"
+
+namespace slew::client {
+
+// As the codes of slewring_client.h.
+enum class Code : int { ok = 0, timeout = -1, refused = -2, lost = -3, ended = -4, bad_argument = -5, failed = -6 };
+
+struct Answer {
+  Code code = Code::ok;
+  std::string text;
+};
+
+struct JoinOptions {
+  std::string session;
+  std::string controller;
+  transport::CycloneNetwork network;
+};
+
+enum class Which : std::uint8_t { next, newest };
+
+class ClientSession {
+ public:
+  // Fills `session`, or says why not.
+  static Answer join(const JoinOptions& options, SimDuration timeout, std::unique_ptr<ClientSession>& session);
+  ~ClientSession();
+  ClientSession(const ClientSession&) = delete;
+  ClientSession& operator=(const ClientSession&) = delete;
+
+  struct Named {
+    std::string name;
+    std::string unit;
+    wire::Role role = wire::Role::io;
+    std::uint32_t index = 0;  // among the variables of the role
+  };
+  [[nodiscard]] const std::vector<Named>& directory() const noexcept { return directory_; }
+  void drain();
+
+  Answer find(const std::string& variable, SimDuration timeout, int& handle);
+  [[nodiscard]] double value(int handle) const noexcept;
+  Answer acquire(const std::string& channel, double how, SimDuration timeout, int& handle);
+  Answer release(int channel);
+  Answer step(Which which, SimDuration timeout);
+  Answer write(int channel, double value);
+  // Next sentence that nobody asked for; false: none.
+  bool take_notice(std::string& text);
+
+  [[nodiscard]] StepIndex present_step() const noexcept { return step_; }
+  [[nodiscard]] SimDuration step_size() const noexcept { return {description_.step_ns}; }
+  [[nodiscard]] StepIndex steps_per_block() const noexcept { return steps_per_block_; }
+  [[nodiscard]] std::uint64_t blocks_missed() const noexcept { return missed_; }
+
+  // The text of the last failure, and the last notice, for the C functions that hand out pointers.
+  std::string error;
+  std::string notice;
+
+ private:
+  enum class Lease : std::uint8_t { none, asked, held, refused, lost };
+  struct Channel {
+    std::string name;
+    Lease lease = Lease::none;
+    std::string reason;
+    std::string holder;
+  };
+  // A message that came before the session was known: its writer was found before io's.
+  struct Early {
+    wire::Topic topic;
+    std::vector<std::byte> bytes;
+  };
+  // Values of one step as they come.
+  struct Block {
+    std::vector<double> values;
+    std::vector<bool> has;
+    std::size_t count = 0;
+    bool has_own = false;  // the session's own block of the step
+  };
+
+  explicit ClientSession(JoinOptions options) : options_(std::move(options)) {}
+
+  template <typename Done>
+  bool wait_for(Done done, SimDuration timeout);
+  void take(wire::Topic topic, std::span<const std::byte> bytes);
+  void take_session(std::span<const std::byte> bytes);
+  void take_status(std::span<const std::byte> bytes);
+  void take_directory(std::span<const std::byte> bytes);
+  void take_lease(std::span<const std::byte> bytes);
+  void take_block(std::span<const std::byte> bytes);
+  [[nodiscard]] bool is_ours(const wire::Header& header) const noexcept;
+  void begin_epoch(std::uint32_t epoch);
+  void place(const wire::VariableBlock& block);
+  bool choose(Which which);
+  [[nodiscard]] bool is_complete(const Block& block) const noexcept;
+  [[nodiscard]] bool can_never_be_complete(std::map<StepIndex, Block>::const_iterator block) const noexcept;
+  Answer send(const std::string& channel, wire::ControllerAction action, double value);
+  [[nodiscard]] const Named* named(const std::string& name) const noexcept;
+  [[nodiscard]] Answer ended() const;
+
+  JoinOptions options_;
+  std::unique_ptr<transport::CycloneTransport> carrier_;
+  bool has_session_ = false;
+  std::vector<Early> before_session_;
+  wire::SessionDescription description_;
+  bool is_over_ = false;
+  std::string end_reason_;
+  std::uint32_t epoch_ = 0;
+  std::vector<Named> directory_;
+  bool has_own_directory_ = false;              // io's, which comes after the others'
+  std::vector<Named> wanted_;                   // by handle
+  std::deque<wire::VariableBlock> new_blocks_;  // that came before step() was called
+  std::map<StepIndex, Block> blocks_;           // not handed out yet
+  bool only_newest_ = false;                    // of the next step: a channel was acquired in mid-run
+  std::vector<double> values_;                  // of step_, by handle
+  StepIndex step_ = kJoinStep;
+  StepIndex steps_per_block_ = 0;
+  std::uint64_t missed_ = 0;
+  std::vector<Channel> channels_;
+  std::deque<std::string> notices_;
+  std::uint64_t sequence_ = 0;
+  std::vector<std::byte> buffer_;
+};
+
+}  // namespace slew::client

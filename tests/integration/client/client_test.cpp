@@ -1,0 +1,276 @@
+// The client library against sessions of real processes: several controllers on different channels, digital inputs,
+// taking over, a reset, the end, and every refusal.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "build_paths.h"
+#include "client/slewring_client.h"
+#include "client/slewring_client.hpp"
+#include "session.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::Role;
+
+constexpr double kSoon = 20;  // s
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+
+struct Leave {
+  void operator()(slewring_session* session) const { slewring_leave(session); }
+};
+using Client = std::unique_ptr<slewring_session, Leave>;
+
+class ClientLibrary : public ::testing::Test {
+ protected:
+  void start(std::vector<std::string> arguments = {}, const std::string& scene = kScene) {
+    arguments.insert(arguments.end(), {"--pace", "real", "--duration", "60s", "--input", "none"});
+    session = std::make_unique<Session>(arguments, scene);
+    session->start_all();
+  }
+  [[nodiscard]] Client join(const char* controller) const {
+    Client client(slewring_join(session->name().c_str(), controller, session->domain(), "lo", "", kSoon));
+    EXPECT_NE(client, nullptr) << slewring_error(nullptr) << session->said();
+    return client;
+  }
+  // a verb of the program on this session
+  void control(const std::string& verb) {
+    Program program(program_path("slewring"),
+                    {"control", verb, "--session", session->name(), "--domain", std::to_string(session->domain())},
+                    session->folder() / ("control_" + verb));
+    EXPECT_EQ(program.wait(), 0) << program.out() << program.err();
+  }
+  // steps until a variable has a value
+  [[nodiscard]] static bool reaches(slewring_session* client, int variable, double value) {
+    for (int i = 0; i < 2000; ++i) {
+      if (slewring_step(client, kSoon) != SLEWRING_OK) return false;
+      if (slewring_value(client, variable) == value) return true;
+    }
+    return false;
+  }
+  void stop() {
+    control("stop");
+    EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+  }
+
+  std::unique_ptr<Session> session;
+};
+
+TEST_F(ClientLibrary, ReadsEveryBlockInOrderWithNamesAndUnits) {
+  start();
+  const Client client = join("reader");
+  EXPECT_DOUBLE_EQ(slewring_step_size(client.get()), 1e-3);
+  const int stroke = slewring_find(client.get(), "Cyl_Lift.stroke", kSoon);
+  const int slip = slewring_find(client.get(), "session.slip", kSoon);  // of another node
+  ASSERT_GE(stroke, 0) << slewring_error(client.get());
+  ASSERT_GE(slip, 0) << slewring_error(client.get());
+  EXPECT_EQ(slewring_find(client.get(), "Cyl_Lift.stroke", 0), stroke);
+  EXPECT_TRUE(std::isnan(slewring_value(client.get(), stroke)));
+  EXPECT_TRUE(std::isnan(slewring_value(client.get(), 77)));
+  EXPECT_EQ(slewring_present_step(client.get()), -1);
+  bool is_named = false;
+  const int count = slewring_variable_count(client.get());
+  for (int i = 0; i < count; ++i) {
+    if (std::string(slewring_variable_name(client.get(), i)) != "Cyl_Lift.force") continue;
+    is_named = true;
+    EXPECT_STREQ(slewring_variable_unit(client.get(), i), "N");
+  }
+  EXPECT_TRUE(is_named);
+  EXPECT_EQ(slewring_variable_name(client.get(), count), nullptr);
+  EXPECT_EQ(slewring_variable_name(client.get(), -1), nullptr);
+  ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
+  for (int i = 0; i < 50; ++i) {
+    const long long before = slewring_present_step(client.get());
+    ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
+    EXPECT_EQ(slewring_present_step(client.get()), before + 10);
+    EXPECT_GT(slewring_value(client.get(), stroke), 0.5);
+  }
+  EXPECT_EQ(slewring_steps_per_block(client.get()), 10);
+  EXPECT_DOUBLE_EQ(slewring_time(client.get()), static_cast<double>(slewring_present_step(client.get())) * 1e-3);
+  EXPECT_EQ(slewring_blocks_missed(client.get()), 0);
+  stop();
+  int code = SLEWRING_OK;
+  while (code == SLEWRING_OK) code = slewring_step(client.get(), kSoon);
+  EXPECT_EQ(code, SLEWRING_ENDED);
+  EXPECT_NE(std::string(slewring_error(client.get())).find("session 's' has ended"), std::string::npos);
+}
+
+TEST_F(ClientLibrary, TwoControllersMoveTwoChannelsOneOfThemDigital) {
+  // the jib's lever as a button
+  std::ifstream file(kScene);
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string scene = text.str();
+  const std::string analog = "{type: analog, primitive: L90Jib";
+  const std::size_t at = scene.find(analog);
+  ASSERT_NE(at, std::string::npos);
+  scene.replace(at, analog.size(), "{type: digital, primitive: L90Jib");
+  const ScratchFolder folder;
+  const std::string path = (folder.path() / "truck_crane.yaml").string();
+  std::ofstream(path) << scene;
+  std::filesystem::create_directory_symlink(SLEWRING_SOURCE_DIR "/scenes/meshes", folder.path() / "meshes");
+
+  start({}, path);
+  const Client stick = join("stick"), button = join("button");
+  const int lift = slewring_acquire(stick.get(), "Input_Lift", kSoon);
+  const int jib = slewring_acquire(button.get(), "Input_Jib", kSoon);
+  ASSERT_GE(lift, 0) << slewring_error(stick.get());
+  ASSERT_GE(jib, 0) << slewring_error(button.get());
+  EXPECT_EQ(slewring_acquire(button.get(), "Input_Lift", kSoon), SLEWRING_REFUSED);
+  EXPECT_NE(std::string(slewring_error(button.get())).find("is held by 'stick'"), std::string::npos)
+      << slewring_error(button.get());
+  const int lift_raw = slewring_find(stick.get(), "Input_Lift.raw", kSoon);
+  const int jib_raw = slewring_find(button.get(), "Input_Jib.raw", kSoon);
+  const auto write_until = [](slewring_session* client, int channel, double value, int variable, double wanted) {
+    for (int i = 0; i < 500; ++i) {
+      if (slewring_latest(client, kSoon) != SLEWRING_OK) return false;
+      if (slewring_value(client, variable) == wanted) return true;
+      if (slewring_write(client, channel, value) != SLEWRING_OK) return false;
+    }
+    return false;
+  };
+  EXPECT_TRUE(write_until(stick.get(), lift, 0.5, lift_raw, 0.5)) << slewring_error(stick.get());
+  EXPECT_TRUE(write_until(button.get(), jib, 0.7, jib_raw, 1)) << slewring_error(button.get());
+  EXPECT_TRUE(write_until(button.get(), jib, 0.3, jib_raw, 0)) << slewring_error(button.get());
+  EXPECT_TRUE(write_until(stick.get(), lift, -3, lift_raw, -1)) << slewring_error(stick.get());
+  EXPECT_EQ(slewring_release(stick.get(), lift), SLEWRING_OK);
+  EXPECT_EQ(slewring_write(stick.get(), lift, 1), SLEWRING_LOST);
+  stop();
+}
+
+TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
+  start({"--set", "Input_Lift.supervisor=instructor"});
+  const Client trainee = join("trainee"), instructor = join("instructor");
+  const int of_trainee = slewring_acquire(trainee.get(), "Input_Lift", kSoon);
+  ASSERT_GE(of_trainee, 0) << slewring_error(trainee.get());
+  EXPECT_EQ(slewring_acquire(instructor.get(), "Input_Lift", kSoon), SLEWRING_REFUSED);
+  const int of_instructor = slewring_take_over(instructor.get(), "Input_Lift", kSoon);
+  ASSERT_GE(of_instructor, 0) << slewring_error(instructor.get());
+  int code = SLEWRING_OK;
+  while (code == SLEWRING_OK) code = slewring_step(trainee.get(), kSoon);
+  EXPECT_EQ(code, SLEWRING_LOST);
+  EXPECT_STREQ(slewring_error(trainee.get()), "'instructor' has taken over channel Input_Lift");
+  EXPECT_EQ(slewring_write(trainee.get(), of_trainee, 1), SLEWRING_LOST);
+  EXPECT_EQ(slewring_take_over(trainee.get(), "Input_Lift", kSoon), SLEWRING_REFUSED);
+  EXPECT_STREQ(slewring_error(trainee.get()),
+               "channel Input_Lift is held by 'instructor', and only 'instructor' may take it over "
+               "(Input_Lift.supervisor)");
+  EXPECT_EQ(slewring_write(instructor.get(), of_instructor, 0), SLEWRING_OK);
+  stop();
+}
+
+TEST_F(ClientLibrary, AfterAResetALockstepControllerAcquiresAgainAndBeginsAtStepZero) {
+  start({"--set", "Input_Lift.controller=lockstep", "--set", "Input_Lift.controller_wait=4 s", "--set",
+         "recording.every=1"});
+  const Client client = join("pid");
+  const int stroke = slewring_find(client.get(), "Cyl_Lift.stroke", kSoon);
+  const int late = slewring_find(client.get(), "session.late_controllers", kSoon);
+  ASSERT_GE(stroke, 0) << slewring_error(client.get());
+  const auto answer = [&](int channel, long long until) {
+    int code = SLEWRING_OK;
+    while (code == SLEWRING_OK && slewring_present_step(client.get()) < until) {
+      code = slewring_step(client.get(), kSoon);
+      if (code == SLEWRING_OK) code = slewring_write(client.get(), channel, 0.5);
+    }
+    return code;
+  };
+  int lift = slewring_acquire(client.get(), "Input_Lift", kSoon);
+  ASSERT_GE(lift, 0) << slewring_error(client.get());
+  ASSERT_EQ(answer(lift, 0), SLEWRING_OK);
+  EXPECT_EQ(slewring_present_step(client.get()), 0) << "the first block is that of step 0";
+  ASSERT_EQ(answer(lift, 300), SLEWRING_OK);
+  control("reset");
+  ASSERT_EQ(answer(lift, 1'000'000), SLEWRING_LOST);
+  EXPECT_NE(std::string(slewring_error(client.get())).find("the session was reset"), std::string::npos);
+  EXPECT_EQ(slewring_present_step(client.get()), -1);
+  lift = slewring_acquire(client.get(), "Input_Lift", kSoon);
+  ASSERT_GE(lift, 0) << slewring_error(client.get());
+  ASSERT_EQ(answer(lift, 0), SLEWRING_OK);
+  EXPECT_EQ(slewring_present_step(client.get()), 0);
+  ASSERT_EQ(answer(lift, 100), SLEWRING_OK);
+  EXPECT_EQ(slewring_value(client.get(), late), 0);
+  EXPECT_EQ(slewring_notice(client.get()), nullptr);
+  stop();
+}
+
+TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
+  EXPECT_EQ(slewring_join("nobody", "pid", 3, "lo", "", 0.2), nullptr);
+  EXPECT_STREQ(slewring_error(nullptr),
+               "no session 'nobody' was heard in domain 3 on lo within 0.2 s; start it first, and compare its name, "
+               "domain, interface and peers");
+  // who goes on without looking reads that, and no other sentence
+  EXPECT_EQ(slewring_find(nullptr, "Cyl_Lift.stroke", 0), SLEWRING_BAD_ARGUMENT);
+  EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'nobody' was heard"), std::string::npos);
+  EXPECT_EQ(slewring_join("nobody", "", 3, "lo", "", 0.2), nullptr);
+  EXPECT_NE(std::string(slewring_error(nullptr)).find("is no name of a controller"), std::string::npos);
+  EXPECT_EQ(slewring_join("no*body", "pid", 3, "lo", "", 0.2), nullptr);
+  EXPECT_NE(std::string(slewring_error(nullptr)).find("is no session name"), std::string::npos);
+  EXPECT_EQ(slewring_join("nobody", "pid", 231, "lo", "", 0.2), nullptr);
+  EXPECT_NE(std::string(slewring_error(nullptr)).find("DDS domain 231 is out of range"), std::string::npos);
+  EXPECT_EQ(slewring_join(nullptr, nullptr, 0, nullptr, nullptr, 0), nullptr);
+  EXPECT_EQ(slewring_step(nullptr, 0), SLEWRING_BAD_ARGUMENT);
+  EXPECT_EQ(slewring_variable_name(nullptr, 0), nullptr);
+  EXPECT_EQ(slewring_notice(nullptr), nullptr);
+  slewring_leave(nullptr);
+
+  start();
+  const Client client = join("pid");
+  EXPECT_EQ(slewring_find(client.get(), "Cyl_Lift.strok", kSoon), SLEWRING_REFUSED);
+  EXPECT_NE(std::string(slewring_error(client.get())).find("has told no variable 'Cyl_Lift.strok'"), std::string::npos)
+      << slewring_error(client.get());
+  EXPECT_EQ(slewring_acquire(client.get(), "Input_Foo", kSoon), SLEWRING_REFUSED);
+  EXPECT_STREQ(slewring_error(client.get()), "the scene has no input 'Input_Foo'");
+  EXPECT_EQ(slewring_acquire(client.get(), "", kSoon), SLEWRING_BAD_ARGUMENT);
+  EXPECT_EQ(slewring_write(client.get(), 5, 0), SLEWRING_BAD_ARGUMENT);
+  EXPECT_STREQ(slewring_error(client.get()), "5 is no handle of a channel");
+  EXPECT_EQ(slewring_release(client.get(), -1), SLEWRING_BAD_ARGUMENT);
+  control("pause");
+  int code = SLEWRING_OK;
+  while (code == SLEWRING_OK) code = slewring_step(client.get(), 0.5);
+  EXPECT_EQ(code, SLEWRING_TIMEOUT);
+  EXPECT_NE(std::string(slewring_error(client.get())).find("no block of variables came within 0.5 s"),
+            std::string::npos)
+      << slewring_error(client.get());
+  control("resume");
+  EXPECT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
+  stop();
+}
+
+TEST_F(ClientLibrary, TheHeaderForCxxThrowsAndReleasesAtTheEnd) {
+  start();
+  const auto options = [this](const char* controller) {
+    slewring::Options join;
+    join.session = session->name();
+    join.controller = controller;
+    join.domain = session->domain();
+    join.timeout = kSoon;
+    return join;
+  };
+  {
+    slewring::Session first(options("first"));
+    static_cast<void>(first.acquire("Input_Lift"));
+    slewring::Session second(options("second"));
+    try {
+      static_cast<void>(second.acquire("Input_Lift"));
+      ADD_FAILURE() << "it was granted twice";
+    } catch (const slewring::Error& error) {
+      EXPECT_EQ(error.code(), SLEWRING_REFUSED);
+    }
+  }
+  slewring::Session third(options("third"));
+  const slewring::Channel lift = third.acquire("Input_Lift");
+  ASSERT_TRUE(third.step());
+  third.write(lift, 0);
+  stop();
+  while (third.step()) {
+  }
+}
+
+}  // namespace
+}  // namespace slew::testing
