@@ -14,9 +14,9 @@
 #include "cli/keys/security_documents.h"
 #include "cli_support/carrier.h"
 #include "cli_support/failure.h"
-#include "cli_support/key_store_files.h"
 #include "cli_support/session_options.h"
 #include "node/identity.h"
+#include "transport/protection.h"
 
 namespace slew::cli {
 namespace {
@@ -71,8 +71,8 @@ std::string utc(std::chrono::system_clock::time_point time) {
 
 void sign(const fs::path& document, const fs::path& to, const fs::path& store) {
   run_openssl({"smime", "-sign", "-in", document.string(), "-text", "-out", to.string(), "-signer",
-               (store / cli_support::kPermissionsAuthority).string(), "-inkey",
-               (store / cli_support::kPermissionsAuthorityKey).string()});
+               (store / transport::kPermissionsAuthority).string(), "-inkey",
+               (store / transport::kPermissionsAuthorityKey).string()});
 }
 
 void make_key(const fs::path& to) {
@@ -164,12 +164,12 @@ KeyStore KeyStore::create(const fs::path& folder, const std::string& session, in
 
 KeyStore KeyStore::open(const fs::path& folder) {
   const nlohmann::json list = nlohmann::json::parse(read_file(folder / kList), nullptr, false);
-  if (!list.is_array() || !fs::exists(folder / cli_support::kIdentityAuthorityKey)) {
+  if (!list.is_array() || !fs::exists(folder / transport::kIdentityAuthorityKey)) {
     throw Failure(
         ExitCode::bad_input,
         fmt::format("{} is no key store ({} and {} make one); nothing was changed; make one with 'slewring keys "
                     "create'",
-                    folder.string(), kList, cli_support::kIdentityAuthorityKey));
+                    folder.string(), kList, transport::kIdentityAuthorityKey));
   }
   KeyStore store(folder);
   for (const nlohmann::json& one : list) {
@@ -195,24 +195,24 @@ void KeyStore::make_authorities(int days) const {
                  (folder_ / certificate).string(), "-days", std::to_string(days), "-set_serial", random_serial(),
                  "-subj", fmt::format("/O=Slewring/CN=authority of {} {}", what, random_serial().substr(2, 16))});
   };
-  make("identities", cli_support::kIdentityAuthority, cli_support::kIdentityAuthorityKey);
-  make("permissions", cli_support::kPermissionsAuthority, cli_support::kPermissionsAuthorityKey);
+  make("identities", transport::kIdentityAuthority, transport::kIdentityAuthorityKey);
+  make("permissions", transport::kPermissionsAuthority, transport::kPermissionsAuthorityKey);
   const fs::path governance = folder_ / "governance.xml";
   write_file(governance, governance_xml());
-  sign(governance, folder_ / cli_support::kGovernance, folder_);
+  sign(governance, folder_ / transport::kGovernance, folder_);
 }
 
 void KeyStore::make_identity(const KeyIdentity& identity) const {
   const fs::path folder = folder_ / identity.name, request = folder / "request.pem",
-                 certificate = folder / cli_support::kCertificate, permissions = folder / "permissions.xml";
+                 certificate = folder / transport::kCertificate, permissions = folder / "permissions.xml";
   make_private_folder(folder);
-  make_key(folder / cli_support::kPrivateKey);
+  make_key(folder / transport::kPrivateKey);
   run_openssl({"req", "-new", "-config", (folder_ / "openssl.cnf").string(), "-key",
-               (folder / cli_support::kPrivateKey).string(), "-out", request.string(), "-subj",
+               (folder / transport::kPrivateKey).string(), "-out", request.string(), "-subj",
                "/O=Slewring/CN=" + identity.name});
-  run_openssl({"x509", "-req", "-in", request.string(), "-CA", (folder_ / cli_support::kIdentityAuthority).string(),
-               "-CAkey", (folder_ / cli_support::kIdentityAuthorityKey).string(), "-set_serial", random_serial(),
-               "-days", std::to_string(identity.days), "-out", certificate.string()});
+  run_openssl({"x509", "-req", "-in", request.string(), "-CA", (folder_ / transport::kIdentityAuthority).string(),
+               "-CAkey", (folder_ / transport::kIdentityAuthorityKey).string(), "-set_serial", random_serial(), "-days",
+               std::to_string(identity.days), "-out", certificate.string()});
   fs::remove(request);
   // clocks of other machines may be behind
   const auto now = std::chrono::system_clock::now();
@@ -224,7 +224,7 @@ void KeyStore::make_identity(const KeyIdentity& identity) const {
               utc(now - std::chrono::hours(24)),
               utc(now + std::chrono::hours(24) * identity.days)};
   write_file(permissions, permissions_xml(grant));
-  sign(permissions, folder / cli_support::kPermissions, folder_);
+  sign(permissions, folder / transport::kPermissions, folder_);
 }
 
 void KeyStore::write_list() const {
@@ -298,8 +298,8 @@ void KeyStore::export_to(const fs::path& folder, const std::vector<std::string>&
           fmt::format("there is no identity '{}'; nothing was copied; 'slewring keys check' lists them", name));
     }
   }
-  const fs::path authority = folder / cli_support::kIdentityAuthority;
-  if (fs::exists(authority) && read_file(authority) != read_file(folder_ / cli_support::kIdentityAuthority)) {
+  const fs::path authority = folder / transport::kIdentityAuthority;
+  if (fs::exists(authority) && read_file(authority) != read_file(folder_ / transport::kIdentityAuthority)) {
     throw Failure(ExitCode::bad_input,
                   fmt::format("{} holds keys of another authority, or of this one before a revocation; nothing was "
                               "copied; remove it, or name another folder",
@@ -311,12 +311,12 @@ void KeyStore::export_to(const fs::path& folder, const std::vector<std::string>&
     fs::copy_file(folder_ / file, folder / file, fs::copy_options::overwrite_existing, error);
     if (error) throw storage(folder / file, error.message());
   };
-  copy(cli_support::kIdentityAuthority);
-  copy(cli_support::kPermissionsAuthority);
-  copy(cli_support::kGovernance);
+  copy(transport::kIdentityAuthority);
+  copy(transport::kPermissionsAuthority);
+  copy(transport::kGovernance);
   for (const std::string& name : names) {
     make_private_folder(folder / name);
-    for (const char* file : {cli_support::kCertificate, cli_support::kPrivateKey, cli_support::kPermissions}) {
+    for (const char* file : {transport::kCertificate, transport::kPrivateKey, transport::kPermissions}) {
       copy(fs::path(name) / file);
     }
   }
@@ -348,7 +348,9 @@ std::string problem_of_signature(const std::string& document, const std::string&
 
 KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   KeyFinding finding{name, "", ""};
-  const transport::CycloneSecurity files = cli_support::readable_key_files(folder, name);
+  transport::CycloneNetwork network;
+  cli_support::require(transport::protect(network, {folder.string(), name}));
+  const transport::CycloneSecurity& files = *network.security;
   std::string said;
   if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, said)) {
     finding.problem = fmt::format("the certificate is not good: {}", reason_of(said));
@@ -376,25 +378,25 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
 }  // namespace
 
 std::vector<KeyFinding> check_keys(const fs::path& folder) {
-  const fs::path authority = folder / cli_support::kIdentityAuthority;
+  const fs::path authority = folder / transport::kIdentityAuthority;
   std::vector<std::string> names;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (fs::exists(entry.path() / cli_support::kCertificate)) names.push_back(entry.path().filename().string());
+    if (fs::exists(entry.path() / transport::kCertificate)) names.push_back(entry.path().filename().string());
   }
   if (!fs::exists(authority) || names.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("{} holds no keys: {} and a folder for each identity are expected",
-                                                   folder.string(), cli_support::kIdentityAuthority));
+                                                   folder.string(), transport::kIdentityAuthority));
   }
   std::sort(names.begin(), names.end());
   KeyFinding whole{"", "", ""};
-  for (const char* key : {cli_support::kIdentityAuthorityKey, cli_support::kPermissionsAuthorityKey}) {
+  for (const char* key : {transport::kIdentityAuthorityKey, transport::kPermissionsAuthorityKey}) {
     if (!others_may_read(folder / key)) continue;
     whole.problem = fmt::format("other users may read an authority's key; chmod 600 {}", (folder / key).string());
   }
   if (whole.problem.empty()) {
-    whole.problem = problem_of_signature((folder / cli_support::kGovernance).string(),
-                                         (folder / cli_support::kPermissionsAuthority).string());
+    whole.problem = problem_of_signature((folder / transport::kGovernance).string(),
+                                         (folder / transport::kPermissionsAuthority).string());
   }
   whole.expires = trimmed(run_openssl({"x509", "-in", authority.string(), "-noout", "-enddate"}));
   whole.expires = whole.expires.substr(whole.expires.find('=') + 1);

@@ -1,5 +1,5 @@
 // A key store: the authorities of a set of machines, and an identity with keys for every role that takes part. Made and
-// changed with the openssl command line; read by nodes through cli_support/key_store_files.h.
+// changed with the openssl command line; read by nodes through transport/protection.h.
 //
 // The packaged DDS knows no list of revoked certificates: to revoke an identity the authorities are made anew, and with
 // them all other identities, whose holders need them again.

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "cli_support/failure.h"
-#include "cli_support/key_store_files.h"
 #include "node/identity.h"
 #include "transport/cyclone_transport.h"
+#include "transport/protection.h"
 
 namespace slew::cli_support {
 
@@ -66,16 +66,9 @@ namespace {
 std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role role,
                                            transport::CycloneOptions endpoint) {
   transport::CycloneNetwork network{options.domain, options.interface, options.peers};
-  if (!options.keys.empty()) {
-    const std::string own = options.identity.empty() ? std::string(node::to_text(role)) : options.identity;
-    network.security = readable_key_files(options.keys, own);
-  } else if (!options.is_insecure_lan && transport::leaves_machine(options.interface)) {
-    throw Failure(ExitCode::bad_input,
-                  "--interface " + options.interface +
-                      " leaves this machine, and without keys whoever is on that network can read and steer the "
-                      "session; nothing was started; name a key store with --keys ('slewring keys create' makes one), "
-                      "or say --insecure-lan");
-  }
+  require(transport::protect(
+      network, {options.keys, options.identity.empty() ? std::string(node::to_text(role)) : options.identity,
+                options.is_insecure_lan}));
   std::unique_ptr<transport::CycloneTransport> carrier;
   require(transport::CycloneTransport::open(network, endpoint, carrier));
   return carrier;

@@ -19,7 +19,7 @@ struct SessionOptions {
   std::uint32_t domain = 0;        // DDS domain
   std::string interface = "lo";    // network interface that messages are sent on
   std::vector<std::string> peers;  // addresses of the other machines; empty: this machine only
-  std::string keys;                // folder of a key store, see key_store_files.h; empty: none
+  std::string keys;                // folder of a key store, see transport/protection.h; empty: none
   std::string identity;            // which of its keys; empty: those of the role
   bool is_insecure_lan = false;    // sends beyond this machine without keys
 };

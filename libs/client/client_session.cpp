@@ -1,11 +1,13 @@
 #include "client/client_session.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <mutex>
 #include <utility>
 
 #include "transport/codec.h"
+#include "transport/protection.h"
 
 namespace slew::client {
 namespace {
@@ -40,6 +42,16 @@ Status shared_domain(const transport::CycloneNetwork& network, std::shared_ptr<t
   return status;
 }
 
+// of a program whose command line is its own
+transport::Protection protection_of_environment() {
+  const auto value = [](const char* name, const char* otherwise) {
+    const char* const text = std::getenv(name);
+    return std::string(text != nullptr ? text : otherwise);
+  };
+  return {value("SLEWRING_KEYS", ""), value("SLEWRING_IDENTITY", "controller"),
+          value("SLEWRING_INSECURE_LAN", "") == "1"};
+}
+
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= wire::kMaxNameLength;
 }
@@ -55,7 +67,9 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
   }
   std::unique_ptr<ClientSession> opened(new ClientSession(options));
   std::shared_ptr<transport::CycloneDomain> domain;
-  Status status = shared_domain(options.network, domain);
+  transport::CycloneNetwork network = options.network;
+  Status status = transport::protect(network, protection_of_environment());
+  if (status.is_ok()) status = shared_domain(network, domain);
   if (status.is_ok()) {
     transport::CycloneOptions endpoint;
     endpoint.session = options.session;
@@ -71,7 +85,7 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
     return {Code::timeout, "no session '" + options.session + "' was heard in domain " +
                                std::to_string(options.network.domain) + " on " + options.network.interface +
                                " within " + in_seconds(timeout) +
-                               "; start it first, and compare its name, domain, interface and peers"};
+                               "; start it first, and compare its name, domain, interface, peers and keys"};
   }
   if (opened->description_.protocol != wire::kProtocolVersion) {
     return {Code::refused, "session '" + options.session + "' speaks protocol version " +

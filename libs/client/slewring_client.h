@@ -44,6 +44,9 @@ enum {
 
 // Joins a session by its name and waits until it is heard. controller: own name, unique in the session. interface_name:
 // network interface, NULL or "": "lo"; peers: addresses of other hosts, separated by commas, NULL or "": none.
+// A session with keys needs SLEWRING_KEYS=DIR in the environment, and SLEWRING_IDENTITY=NAME when that is not
+// "controller" (`slewring keys`); an interface that leaves this machine is refused without, unless
+// SLEWRING_INSECURE_LAN=1 is there.
 // NULL on failure; slewring_error(NULL) then has the reason, on the same thread.
 SLEWRING_API slewring_session* slewring_join(const char* session, const char* controller, unsigned domain,
                                              const char* interface_name, const char* peers, double timeout_s);

@@ -1,5 +1,6 @@
-// Where the files of a key store are; the same in the store and in what was exported of it.
+// What keeps strangers out of a session: the keys of a store, or a network that nobody else is on.
 //
+// Files of a key store, the same in the store and in what was exported of it:
 //   DIR/identity_ca.pem, DIR/permissions_ca.pem, DIR/governance.p7s    whom to believe, and what is protected how
 //   DIR/<identity>/certificate.pem, private_key.pem, permissions.p7s
 //   DIR/identity_ca.key, DIR/permissions_ca.key                        in the store alone: make and renew identities
@@ -11,9 +12,10 @@
 #include <filesystem>
 #include <string>
 
+#include "core/status.h"
 #include "transport/cyclone_domain.h"
 
-namespace slew::cli_support {
+namespace slew::transport {
 
 inline constexpr const char* kIdentityAuthority = "identity_ca.pem";
 inline constexpr const char* kIdentityAuthorityKey = "identity_ca.key";
@@ -24,10 +26,16 @@ inline constexpr const char* kCertificate = "certificate.pem";
 inline constexpr const char* kPrivateKey = "private_key.pem";
 inline constexpr const char* kPermissions = "permissions.p7s";
 
-[[nodiscard]] transport::CycloneSecurity key_files(const std::filesystem::path& store, const std::string& identity);
+[[nodiscard]] CycloneSecurity key_files(const std::filesystem::path& store, const std::string& identity);
 
-// The same when all of them can be read. Throws Failure (bad_input) with the file that cannot.
-[[nodiscard]] transport::CycloneSecurity readable_key_files(const std::filesystem::path& store,
-                                                            const std::string& identity);
+struct Protection {
+  std::string keys;              // folder of a key store; empty: none
+  std::string identity;          // which of its keys
+  bool is_insecure_lan = false;  // sends beyond this machine without keys
+};
 
-}  // namespace slew::cli_support
+// Gives the network its keys. Error bad_input: a file cannot be read; or there are no keys, and the network's interface
+// leaves this machine without leave.
+[[nodiscard]] Status protect(CycloneNetwork& network, const Protection& protection);
+
+}  // namespace slew::transport
