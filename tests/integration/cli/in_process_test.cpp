@@ -196,6 +196,40 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_NE(typo.err.find("did you mean 'Cyl_Lift.force'?"), std::string::npos) << typo.err;
 }
 
+TEST_F(InProcess, AnExportTakesAPartAndNeverReplacesAFileByItself) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.5"}).code, 0);
+  const std::string recording = work_.recording().string();
+  const CommandResult part =
+      slewring({"export", recording, "--only", "Cyl_Lift.force", "--from", "100ms", "--to", "0.2"});
+  ASSERT_EQ(part.code, 0) << part.err;
+  EXPECT_EQ(std::count(part.out.begin(), part.out.end(), '\n'), 12);  // heading, then every 10 ms
+  EXPECT_TRUE(part.out.starts_with("time [s],Cyl_Lift.force [N]\n0.1,")) << part.out;
+
+  ASSERT_EQ(slewring({"export", recording, "Cyl_*", "-o", "crane.mat"}).out, "crane.mat\n");
+  const auto refused = [&](std::vector<std::string> arguments, int code, const std::string& said) {
+    arguments.insert(arguments.begin(), {"export", recording});
+    const CommandResult result = slewring(arguments);
+    EXPECT_EQ(result.code, code) << result.err;
+    EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+  };
+  const auto size = std::filesystem::file_size(work_.path() / "crane.mat");
+  refused({"-o", "crane.mat"}, 2, "crane.mat: the file exists already; it was left as it is;");
+  EXPECT_EQ(std::filesystem::file_size(work_.path() / "crane.mat"), size);
+  ASSERT_EQ(slewring({"export", recording, "-o", "crane.mat", "--force"}).code, 0);
+  EXPECT_GT(std::filesystem::file_size(work_.path() / "crane.mat"), size);
+  refused({"--mat"}, 2, "a MAT-file needs a name");
+  refused({"--mat", "--csv", "-o", "b.mat"}, 2, "--csv excludes --mat");
+  refused({"Cyl_Lft.force", "-o", "b.mat"}, 2, "there is no variable 'Cyl_Lft.force'; did you mean 'Cyl_Lift.force'?");
+  refused({"--from", "2s", "-o", "b.mat"}, 2, "no value of these variables in this time; it goes from 0 to 0.5 s");
+  refused({"--from", "soon", "-o", "b.mat"}, 2, "--from 'soon' is not a time of the recording");
+  refused({"--from", "2s", "--to", "1s", "-o", "b.mat"}, 2, "--to 1s lies before --from 2s");
+  refused({"-o", "nowhere/b.mat"}, 6, "nowhere/b.mat: the MAT-file cannot be written");
+  refused({"-o", "nowhere/b.csv"}, 6, "nowhere/b.csv: cannot write the table (No such file or directory)");
+  for (const auto& entry : std::filesystem::directory_iterator(work_.path())) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with("b.")) << entry.path() << " was left behind";
+  }
+}
+
 // what an operator did on one crane, done again on another, and both in one picture
 TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
   const auto run_into = [&](const std::string& scene, const std::string& out, const std::string& input) {
