@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "node/identity.h"
+#include "recording/recovery.h"
 
 namespace slew::cli {
 namespace {
@@ -41,6 +42,16 @@ std::map<std::string, Counts> counts_of(const recording::Reader& reader) {
 // How the file ends, and how the session did when that was not in order.
 std::string end_of(const recording::Reader& reader) {
   if (!reader.has_all_messages()) return "cut: " + reader.damage_text();
+  const recording::TextMap* recovered = reader.find_metadata(recording::kRecoveryName);
+  if (recovered != nullptr) {
+    const auto entry = [recovered](const char* key) {
+      const auto found = recovered->find(key);
+      return found == recovered->end() ? std::string("?") : found->second;
+    };
+    return fmt::format("recovered from {} ({} bytes){}; lost {}", entry("from"), entry("from_bytes"),
+                       entry("was_cut") == "yes" ? ", whose end was missing" : "",
+                       entry("lost").empty() ? "nothing in front of it" : entry("lost"));
+  }
   const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
   if (summary == nullptr || summary->count("end") == 0 || summary->at("exit_code") == "0") return "closed in order";
   return fmt::format("closed in order; the session ended with code {}: {}", summary->at("exit_code"),

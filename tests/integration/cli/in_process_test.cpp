@@ -230,6 +230,40 @@ TEST_F(InProcess, AnExportTakesAPartAndNeverReplacesAFileByItself) {
   }
 }
 
+TEST_F(InProcess, ADamagedRecordingIsRecoveredAndReplays) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "3"}).code, 0);
+  const std::string recording = work_.recording().string();
+  const CommandResult whole = slewring({"recover", recording});
+  EXPECT_EQ(whole.code, 0) << whole.err;
+  EXPECT_NE(whole.out.find("there is nothing to recover and nothing was written"), std::string::npos) << whole.out;
+
+  // the recorder was killed in mid-write
+  const auto size = std::filesystem::file_size(recording);
+  std::filesystem::copy_file(recording, work_.path() / "cut.mcap");
+  std::filesystem::resize_file(work_.path() / "cut.mcap", size * 2 / 3);
+  const CommandResult cut = slewring({"recover", "cut.mcap", "--json"});
+  EXPECT_EQ(cut.code, 3) << cut.err;
+  const nlohmann::json saved = nlohmann::json::parse(cut.out);
+  EXPECT_EQ(saved.at("recovered"), "cut.recovered.mcap");
+  EXPECT_TRUE(saved.at("was_cut").get<bool>());
+  EXPECT_EQ(saved.at("lost_steps"), 0);
+  ASSERT_EQ(saved.at("lost").size(), 1u);
+  EXPECT_LT(saved.at("lost").at(0).at("byte"), size * 2 / 3);
+  const int last = saved.at("last_step");
+  EXPECT_GT(last, 100);
+  const CommandResult info = slewring({"info", "cut.recovered.mcap", "--verify"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_NE(info.out.find("recovered from cut.mcap"), std::string::npos) << info.out;
+  const CommandResult replayed = slewring({"replay", "cut.recovered.mcap", "--json"});
+  ASSERT_EQ(replayed.code, 0) << replayed.err;
+  EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0);
+  EXPECT_EQ(nlohmann::json::parse(replayed.out).at("steps"), last + 1);
+  // what is there is never replaced
+  const CommandResult again = slewring({"recover", "cut.mcap"});
+  EXPECT_EQ(again.code, 6);
+  EXPECT_NE(again.err.find("cut.recovered.mcap: the file exists already"), std::string::npos) << again.err;
+}
+
 // what an operator did on one crane, done again on another, and both in one picture
 TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
   const auto run_into = [&](const std::string& scene, const std::string& out, const std::string& input) {

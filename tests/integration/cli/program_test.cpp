@@ -47,6 +47,7 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
                                                        {"info"},
                                                        {"plot"},
                                                        {"export"},
+                                                       {"recover"},
                                                        {"replay"},
                                                        {"compare"},
                                                        {"node"},
@@ -267,7 +268,7 @@ TEST_F(Program, DoctorJudgesThisMachine) {
 
 TEST_F(Program, WhatIsNoRecordingIsRefused) {
   std::ofstream(work_.path() / "text.mcap") << "this is no recording\n";
-  for (const char* verb : {"info", "replay", "export", "plot"}) {
+  for (const char* verb : {"info", "recover", "replay", "export", "plot"}) {
     const CommandResult result = slewring({verb, "text.mcap"});
     EXPECT_EQ(result.code, 2) << verb << result.err;
     EXPECT_TRUE(contains(result.err, "text.mcap")) << verb << result.err;
