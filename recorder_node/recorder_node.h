@@ -1,7 +1,8 @@
 // Takes everything that is said in a session and puts it, ordered by step, into one recording.
 //
 // Ticks and samples must be complete: a gap is asked for by number after 3 ms and answered from the writers' caches;
-// what never comes is counted per topic. The recording is closed after every node's END, after a fault, or on a signal.
+// what never comes is counted per topic. The recording is closed after every node's END, after a fault, or on a signal;
+// and when the disk fails or its room gets short: the session goes on without it, and the recorder ends with code 6.
 #pragma once
 
 #include <array>
@@ -19,9 +20,14 @@
 
 namespace slew::recorder {
 
+inline constexpr std::uint64_t kKeepFreeBytes = 256'000'000;
+
 struct RecorderConfig {
   std::filesystem::path runs_directory = "runs";
   node::JoinOptions join;
+  std::uint64_t keep_free = kKeepFreeBytes;  // bytes on the recording's file system that are left to others
+  recording::WriterLimits limits;
+  recording::FileCalls* file_calls = &recording::system_file_calls();
 };
 
 // A writer's messages that come every k-th step: blocks of variables of one place in its list, samples of or for
@@ -106,7 +112,11 @@ class RecorderNode final : public node::Node {
   void finish(const SessionEnd& session, ExitCode own_code, const std::string& own_reason);
   void count_losses(EpochStreams& streams, bool is_present);
   void count_all_losses();
+  void stop_recording(const Status& why);
+  void stop_when_room_is_short(std::int64_t now_ns);
+  [[nodiscard]] Status problem_of_room(const std::filesystem::path& place) const;
   void close(const SessionEnd& session);
+  void close_file(SessionEnd session);
   void update_health() noexcept;
 
   node::SessionMember member_;
@@ -114,6 +124,8 @@ class RecorderNode final : public node::Node {
   Stage stage_ = Stage::waiting_for_session;
   std::filesystem::path path_;
   std::unique_ptr<recording::Writer> writer_;
+  Status stopped_;  // why nothing is written any more, while the session goes on; ok: it is being recorded
+  std::int64_t room_checked_ns_ = 0;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;

@@ -13,9 +13,23 @@
 
 namespace slew::recording {
 
+// What a recording asks of the operating system, as pwrite, ftruncate, fdatasync and close have it. Tests put a disk in
+// their place that fails.
+class FileCalls {
+ public:
+  virtual ~FileCalls() = default;
+  [[nodiscard]] virtual std::int64_t write(int descriptor, ByteSpan bytes, std::uint64_t offset);
+  [[nodiscard]] virtual int truncate(int descriptor, std::uint64_t size);
+  [[nodiscard]] virtual int synchronise(int descriptor);
+  [[nodiscard]] virtual int close(int descriptor);
+  // Room on the file system of a path for this user; all there is when that cannot be known.
+  [[nodiscard]] virtual std::uint64_t free_bytes(const std::filesystem::path& path);
+};
+[[nodiscard]] FileCalls& system_file_calls() noexcept;
+
 class OutputFile {
  public:
-  OutputFile() = default;
+  explicit OutputFile(FileCalls& calls = system_file_calls()) noexcept : calls_(calls) {}
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -40,6 +54,7 @@ class OutputFile {
  private:
   [[nodiscard]] Status write_all(ByteSpan bytes, std::uint32_t crc_after);
 
+  FileCalls& calls_;
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;

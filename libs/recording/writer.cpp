@@ -17,9 +17,10 @@ constexpr std::int64_t kMostNanoseconds = std::int64_t{1} << 62;
 
 }  // namespace
 
-Writer::Writer(const SessionIdentity& identity, const WriterLimits& limits)
+Writer::Writer(const SessionIdentity& identity, const WriterLimits& limits, FileCalls& calls)
     : limits_(limits),
       communication_step_(identity.communication_step),
+      file_(calls),
       window_(limits.window_steps, limits.window_bytes, limits.window_messages),
       chunk_(limits.chunk_bytes, limits.compression_level) {}
 
@@ -28,13 +29,13 @@ Writer::~Writer() {
 }
 
 Status Writer::create(const std::filesystem::path& path, const SessionIdentity& identity, const WriterLimits& limits,
-                      std::unique_ptr<Writer>& writer) {
+                      std::unique_ptr<Writer>& writer, FileCalls& calls) {
   if (identity.communication_step.ns < 1) {
     return Status::error(ExitCode::bad_input, fmt::format("{}: a recording needs the session's communication step; "
                                                           "nothing was written; give a step of at least 1 ns",
                                                           path.string()));
   }
-  std::unique_ptr<Writer> created(new Writer(identity, limits));
+  std::unique_ptr<Writer> created(new Writer(identity, limits, calls));
   Status status = created->file_.create(path);
   if (!status.is_ok()) return status;
   status = created->write_front(identity);
@@ -196,10 +197,30 @@ Status Writer::write_chunk() {
       index_.statistics.channel_message_counts[static_cast<std::uint16_t>(channel)] += count;
     }
   }
-  if (!is_written) return status;
+  if (!is_written) {
+    note_lost(chunk.start_time);
+    return status;
+  }
   index_.chunks.push_back(std::move(chunk));
   ++counts_.chunks;
   return status;
+}
+
+void Writer::note_lost(std::uint64_t log_time) {
+  if (first_lost_step_) return;
+  // in the newest epoch that begins at or before that time
+  std::uint64_t epoch_start = 0;
+  for (const auto& [epoch, start] : epoch_start_) {
+    if (start <= log_time) epoch_start = std::max(epoch_start, start);
+  }
+  first_lost_step_ =
+      static_cast<StepIndex>((log_time - epoch_start) / static_cast<std::uint64_t>(communication_step_.ns));
+}
+
+std::uint64_t Writer::messages_in_file(ChannelId channel) const {
+  const auto& counts = index_.statistics.channel_message_counts;
+  const auto found = counts.find(static_cast<std::uint16_t>(channel));
+  return found == counts.end() ? 0 : found->second;
 }
 
 Status Writer::flush_if_due(std::int64_t monotonic_ns) {

@@ -67,7 +67,8 @@ class Writer {
   // Creates the file with the session's identity in front. A file that exists is never touched.
   // Errors: storage; bad_input when the identity has no communication step.
   [[nodiscard]] static Status create(const std::filesystem::path& path, const SessionIdentity& identity,
-                                     const WriterLimits& limits, std::unique_ptr<Writer>& writer);
+                                     const WriterLimits& limits, std::unique_ptr<Writer>& writer,
+                                     FileCalls& calls = system_file_calls());
   // Closes as close({}) does, when nobody closed it.
   ~Writer();
 
@@ -94,12 +95,16 @@ class Writer {
   // complete the file and returns the first failure.
   [[nodiscard]] Status close(const TextMap& summary);
 
+  // Of one channel, handed to the file.
+  [[nodiscard]] std::uint64_t messages_in_file(ChannelId channel) const;
+  // After a failed write: every message of an earlier step that had come is in the file. None: no write has failed.
+  [[nodiscard]] std::optional<StepIndex> first_lost_step() const noexcept { return first_lost_step_; }
   [[nodiscard]] const WriterCounts& counts() const noexcept { return counts_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
   [[nodiscard]] std::uint64_t file_bytes() const noexcept { return file_.size(); }
 
  private:
-  Writer(const SessionIdentity& identity, const WriterLimits& limits);
+  Writer(const SessionIdentity& identity, const WriterLimits& limits, FileCalls& calls);
 
   [[nodiscard]] Status write_front(const SessionIdentity& identity);
   [[nodiscard]] Status append_marked();
@@ -109,6 +114,7 @@ class Writer {
   [[nodiscard]] Status write_chunk();
   [[nodiscard]] Status write_end(const TextMap& summary);
   [[nodiscard]] Status remember(Status status);
+  void note_lost(std::uint64_t log_time);
   [[nodiscard]] std::uint64_t log_time_of(const MessageStamp& stamp);
 
   WriterLimits limits_;
@@ -129,6 +135,7 @@ class Writer {
   StepIndex flushed_step_ = kJoinStep - 1;
 
   WriterCounts counts_;
+  std::optional<StepIndex> first_lost_step_;
   Status failure_;
 };
 

@@ -230,6 +230,17 @@ TEST_F(InProcess, AnExportTakesAPartAndNeverReplacesAFileByItself) {
   }
 }
 
+TEST_F(InProcess, WithoutRoomForARecordingNothingBeginsAndTheRemedyIsNamed) {
+  const CommandResult result = run_scene("truck_crane.yaml", {"--duration", "1", "--keep-free", "1000000000"});
+  EXPECT_EQ(result.code, 6) << result.out;
+  EXPECT_NE((result.out + result.err)
+                .find("and 1000000000 MB are to be left to others; nothing was recorded; free "
+                      "space, record elsewhere with --out DIR, or leave less with --keep-free MB"),
+            std::string::npos)
+      << result.out << result.err;
+  EXPECT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.1", "--keep-free", "0"}).code, 0);
+}
+
 TEST_F(InProcess, ADamagedRecordingIsRecoveredAndReplays) {
   ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "3"}).code, 0);
   const std::string recording = work_.recording().string();

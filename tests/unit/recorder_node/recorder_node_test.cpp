@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <set>
 
 #include "recording/reader.h"
@@ -19,16 +21,17 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-class Recorder : public ::testing::Test {
- protected:
-  Recorder() {
+class RecorderBench {
+ public:
+  explicit RecorderBench(RecorderConfig config = {}) {
     std::string name = (std::filesystem::temp_directory_path() / "slewring_recorder_XXXXXX").string();
     folder = ::mkdtemp(name.data());
-    RecorderConfig config;
     config.runs_directory = folder;
     node = std::make_unique<RecorderNode>(played.carrier(), std::move(config));
   }
-  ~Recorder() override { std::filesystem::remove_all(folder); }
+  ~RecorderBench() { std::filesystem::remove_all(folder); }
+  RecorderBench(const RecorderBench&) = delete;
+  RecorderBench& operator=(const RecorderBench&) = delete;
 
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
   void say_probe() {
@@ -109,6 +112,8 @@ class Recorder : public ::testing::Test {
   std::unique_ptr<RecorderNode> node;
   std::int64_t now_ns = 1000 * kMs;
 };
+
+class Recorder : public ::testing::Test, public RecorderBench {};
 
 TEST_F(Recorder, RecordsEveryStepUpToTheEndThatEachNodeNamed) {
   join();
@@ -276,6 +281,166 @@ TEST_F(Recorder, RecordsAnInitThatComesBeforeIosProbe) {
   say_end(9);
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
   EXPECT_EQ(recorded(Topic::mechanism).size(), 11u) << "INIT and ten samples";
+}
+
+// ---- storage --------------------------------------------------------------------------------------------------
+
+// A disk on which a write fails, by its number: this one alone or all from there on, some after half of their bytes.
+class FailingDisk final : public recording::FileCalls {
+ public:
+  enum class Failure { once, from_then_on, half_way };
+
+  std::int64_t write(int descriptor, recording::ByteSpan bytes, std::uint64_t offset) override {
+    ++writes;
+    const bool is_half = failure == Failure::half_way && bytes.size() > 1;
+    if (is_half && writes == fails_at) return FileCalls::write(descriptor, bytes.first(bytes.size() / 2), offset);
+    const bool fails = is_half ? writes == fails_at + 1 : writes == fails_at;
+    if (!fails && !(failure == Failure::from_then_on && writes > fails_at && fails_at > 0)) {
+      return FileCalls::write(descriptor, bytes, offset);
+    }
+    errno = error;
+    return -1;
+  }
+  int synchronise(int descriptor) override {
+    if (!fails_to_synchronise) return FileCalls::synchronise(descriptor);
+    errno = EIO;
+    return -1;
+  }
+  std::uint64_t free_bytes(const std::filesystem::path&) override { return room; }
+
+  int fails_at = 0;  // 0: never
+  Failure failure = Failure::once;
+  int error = ENOSPC;
+  bool fails_to_synchronise = false;
+  std::uint64_t room = 1'000'000'000;
+  int writes = 0;
+};
+
+RecorderConfig on(FailingDisk& disk) {
+  RecorderConfig config;
+  config.file_calls = &disk;
+  config.limits.flush_period = milliseconds(1);  // whatever has come is written at the next look
+  config.limits.window_steps = 2;
+  return config;
+}
+
+// Ten steps and an end. False when the session was refused, because not even the front of the file could be written.
+bool play(RecorderBench& bench) {
+  bench.played.say(Topic::session, bench.played.session);
+  bench.poll();
+  if (bench.node->is_finished()) return false;
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
+    bench.played.say_status(role, NodeState::joining);
+  }
+  bench.poll(kMs);
+  bench.say_probe();
+  bench.poll(kMs);
+  for (StepIndex step = 0; step < 10; step += 2) bench.say_steps(step, step + 1);
+  EXPECT_FALSE(bench.node->is_finished()) << "the session was not let go on";
+  bench.say_end(9);
+  EXPECT_TRUE(bench.node->is_finished());
+  return true;
+}
+
+void expect_valid(const RecorderBench& bench, bool has_end) {
+  std::unique_ptr<recording::Reader> reader;
+  ASSERT_EQ(recording::Reader::open(bench.node->recording(), reader).text, "");
+  const std::set<StepIndex> ticks = bench.recorded(Topic::tick);
+  if (has_end) {
+    ASSERT_EQ(reader->verify().text, "");
+    ASSERT_EQ(bench.summary("exit_code"), "6");
+    if (!ticks.empty()) {
+      ASSERT_EQ(bench.summary("tick.recorded"), std::to_string(ticks.size()));
+    }
+    // no step up to the last one is missing
+    const StepIndex last = std::stoll(bench.summary("last_step"));
+    for (StepIndex step = 0; step <= last; ++step) {
+      ASSERT_TRUE(ticks.contains(step) && bench.recorded(Topic::mechanism).contains(step) &&
+                  bench.recorded(Topic::actuators).contains(step))
+          << step << " of " << last;
+    }
+  }
+  ASSERT_TRUE(ticks.empty() || *ticks.rbegin() < static_cast<StepIndex>(ticks.size())) << "a gap in the middle";
+}
+
+TEST(RecorderStorage, AFailureOfAnyWriteEndsTheRecordingAndNotTheSession) {
+  FailingDisk whole;
+  RecorderBench clean(on(whole));
+  ASSERT_TRUE(play(clean));
+  ASSERT_EQ(clean.node->member().exit_code(), ExitCode::ok) << clean.node->member().reason();
+  ASSERT_GT(whole.writes, 20);
+  int refused = 0;
+  for (int n = 1; n <= whole.writes; ++n) {
+    for (const auto failure :
+         {FailingDisk::Failure::once, FailingDisk::Failure::from_then_on, FailingDisk::Failure::half_way}) {
+      for (const int error : {ENOSPC, EIO, EDQUOT}) {
+        SCOPED_TRACE(std::to_string(n) + " " + std::strerror(error) + " " + std::to_string(static_cast<int>(failure)));
+        FailingDisk disk;
+        disk.fails_at = n;
+        disk.failure = failure;
+        disk.error = error;
+        RecorderBench bench(on(disk));
+        const bool took_place = play(bench);
+        ASSERT_EQ(bench.node->member().exit_code(), ExitCode::storage) << bench.node->member().reason();
+        ASSERT_NE(bench.node->member().reason().find(std::strerror(error)), std::string::npos);
+        if (!took_place) {
+          ++refused;
+          ASSERT_TRUE(std::filesystem::is_empty(bench.folder)) << "a session that did not begin leaves nothing";
+          continue;
+        }
+        // the end itself is the last thing to be written
+        const bool is_end_there = failure != FailingDisk::Failure::from_then_on && n < whole.writes - 1;
+        expect_valid(bench, is_end_there);
+        if (::testing::Test::HasFatalFailure()) return;
+      }
+    }
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_LT(refused, 9 * whole.writes);
+}
+
+TEST(RecorderStorage, ADiskThatDoesNotConfirmIsTold) {
+  FailingDisk disk;
+  disk.fails_to_synchronise = true;
+  RecorderBench bench(on(disk));
+  ASSERT_TRUE(play(bench));
+  EXPECT_EQ(bench.node->member().exit_code(), ExitCode::storage);
+  EXPECT_NE(bench.node->member().reason().find("the disk did not confirm the recording"), std::string::npos);
+}
+
+TEST(RecorderStorage, WhenRoomGetsShortAllThatCameIsKeptAndTheSessionGoesOn) {
+  FailingDisk disk;
+  RecorderBench bench(on(disk));
+  bench.join();
+  bench.say_steps(0, 9);
+  disk.room = kKeepFreeBytes - 1;
+  bench.poll(2 * kMs);
+  bench.say_steps(10, 19);
+  EXPECT_FALSE(bench.node->is_finished());
+  EXPECT_EQ(bench.recorded(Topic::tick).size(), 10u);
+  expect_valid(bench, true);
+  EXPECT_EQ(bench.summary("last_step"), "9");
+  bench.say_end(19);
+  EXPECT_TRUE(bench.node->is_finished());
+  EXPECT_EQ(bench.node->member().exit_code(), ExitCode::storage);
+  EXPECT_NE(bench.node->member().reason().find(
+                ": 256 MB are free on this file system and 256 MB are to be left to others; the recording was closed; "
+                "free space, record elsewhere with --out DIR, or leave less with --keep-free MB"),
+            std::string::npos)
+      << bench.node->member().reason();
+}
+
+TEST(RecorderStorage, WithoutRoomNoSessionBegins) {
+  FailingDisk disk;
+  disk.room = 1'000'000;
+  RecorderBench bench(on(disk));
+  EXPECT_FALSE(play(bench));
+  EXPECT_EQ(bench.node->member().exit_code(), ExitCode::storage);
+  EXPECT_NE(bench.node->member().reason().find(": 1 MB are free on this file system and 256 MB are to be left to "
+                                               "others; nothing was recorded;"),
+            std::string::npos)
+      << bench.node->member().reason();
+  EXPECT_TRUE(std::filesystem::is_empty(bench.folder));
 }
 
 // ---- a second recorder ----------------------------------------------------------------------------------------
