@@ -58,6 +58,27 @@ std::string end_of(const recording::Reader& reader) {
                      summary->at("end"));
 }
 
+// What the recorder left out, a sentence for each time.
+std::vector<std::string> gaps_of(const recording::Reader& reader) {
+  constexpr std::string_view kLeftOut = "left_out.";
+  std::vector<std::string> gaps;
+  for (const recording::MetadataRecord& record : reader.metadata()) {
+    if (record.name != recording::kGapName) continue;
+    const auto entry = [&](const char* key) {
+      const auto found = record.entries.find(key);
+      return found == record.entries.end() ? std::string("?") : found->second;
+    };
+    std::string counts;
+    for (const auto& [key, count] : record.entries) {
+      if (key.starts_with(kLeftOut))
+        counts += (counts.empty() ? "" : ", ") + count + " of " + key.substr(kLeftOut.size());
+    }
+    gaps.push_back(fmt::format("steps {} to {}{}: {} left out, {}", entry("from_step"), entry("to_step"),
+                               entry("epoch") == "0" ? "" : " of epoch " + entry("epoch"), counts, entry("cause")));
+  }
+  return gaps;
+}
+
 nlohmann::json to_json(const recording::Reader& reader, double simulated) {
   const recording::SessionIdentity& identity = reader.identity();
   nlohmann::json topics = nlohmann::json::object();
@@ -76,6 +97,7 @@ nlohmann::json to_json(const recording::Reader& reader, double simulated) {
           {"complete", reader.has_all_messages()},
           {"damage", reader.damage_text()},
           {"end", end_of(reader)},
+          {"gaps", gaps_of(reader)},
           {"notes", explain_flags(reader)},
           {"topics", topics}};
 }
@@ -98,6 +120,7 @@ void print(const recording::Reader& reader, double simulated) {
     rows.push_back(
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
   }
+  for (std::string& gap : gaps_of(reader)) rows.push_back({"gap", std::move(gap)});
   for (std::string& flagged : explain_flags(reader)) rows.push_back({"note", std::move(flagged)});
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
     rows.push_back({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "recorder_node/idl_text.h"
@@ -247,7 +248,8 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
         std::string(to_text(static_cast<Topic>(i))), transport::traits(static_cast<Topic>(i)).type_name, kIdlText, {}};
     status = writer_->add_channel(channel, channels_[i]);
   }
-  return status;
+  // a session whose front cannot be written does not begin
+  return status.is_ok() ? writer_->settle() : status;
 }
 
 Status RecorderNode::add_attachments(const wire::SessionDescription& session) {
@@ -392,6 +394,10 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
     ++counts_[topic].lost;
     return;
   }
+  if (is_left_out(message.topic, step, epoch)) {
+    ++counts_[topic].lost;
+    return;
+  }
   const Status status = writer_->write(channels_[topic], {epoch, step, sequence, message.source_ns}, message.bytes);
   if (status.is_ok()) {
     ++counts_[topic].recorded;
@@ -405,6 +411,48 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
 }
 
 // ---- storage --------------------------------------------------------------------------------------------------
+
+// In real pace nothing waits for the recorder: what the disk cannot take is left out, variables and health first.
+bool RecorderNode::is_left_out(Topic topic, StepIndex step, std::uint32_t epoch) {
+  const std::size_t most = config_.limits.backlog_bytes;
+  if (most == 0 || member_.session().pace == wire::Pace::free) return false;
+  const std::size_t waiting = writer_->backlog_bytes();
+  const bool is_full = waiting + config_.limits.chunk_bytes > most;
+  const bool is_slow = is_full || waiting > most / 2 || (gap_ && waiting > most / 4);
+  if (!is_slow) {
+    end_gap();
+    return false;
+  }
+  const bool is_visual = topic == Topic::variables || topic == Topic::health;
+  if (!is_visual && !is_full) return false;
+  if (!gap_) {
+    gap_ = Gap{epoch, step, step, {}};
+    std::fprintf(stderr,
+                 "recorder: warning: the disk is slower than the session; from step %lld on variables are left out of "
+                 "the recording, and steps too when that is not enough; record elsewhere with --out DIR, or less with "
+                 "recording.every\n",
+                 static_cast<long long>(step));
+  }
+  if (gap_->epoch == epoch) gap_->to = std::max(gap_->to, step);
+  ++gap_->messages[static_cast<std::size_t>(topic)];
+  return true;
+}
+
+void RecorderNode::end_gap() {
+  if (!gap_) return;
+  recording::TextMap entries;
+  entries["cause"] = "the disk was slower than the session";
+  entries["epoch"] = std::to_string(gap_->epoch);
+  entries["from_step"] = std::to_string(gap_->from);
+  entries["to_step"] = std::to_string(gap_->to);
+  for (std::size_t i = 0; i < wire::kTopics; ++i) {
+    if (gap_->messages[i] > 0)
+      entries["left_out." + std::string(to_text(static_cast<Topic>(i)))] = std::to_string(gap_->messages[i]);
+  }
+  gap_.reset();
+  // a failure is told by the next write
+  std::ignore = writer_->add_metadata(recording::kGapName, entries);
+}
 
 // The session goes on without its recording; what comes from now on is counted as lost.
 void RecorderNode::stop_recording(const Status& why) {
@@ -600,6 +648,7 @@ void RecorderNode::close(const SessionEnd& session) {
 }
 
 void RecorderNode::close_file(SessionEnd session) {
+  end_gap();
   // what fails only now is told in the summary too
   const Status flushed = writer_->flush();
   if (stopped_.is_ok()) stopped_ = flushed;

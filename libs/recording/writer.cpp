@@ -20,7 +20,7 @@ constexpr std::int64_t kMostNanoseconds = std::int64_t{1} << 62;
 Writer::Writer(const SessionIdentity& identity, const WriterLimits& limits, FileCalls& calls)
     : limits_(limits),
       communication_step_(identity.communication_step),
-      file_(calls),
+      file_(calls, limits.backlog_bytes),
       window_(limits.window_steps, limits.window_bytes, limits.window_messages),
       chunk_(limits.chunk_bytes, limits.compression_level) {}
 
@@ -53,7 +53,10 @@ Status Writer::write_front(const SessionIdentity& identity) {
 }
 
 Status Writer::remember(Status status) {
-  if (!status.is_ok() && failure_.is_ok()) failure_ = status;
+  if (!status.is_ok() && failure_.is_ok()) {
+    failure_ = status;
+    roll_back();
+  }
   return status;
 }
 
@@ -190,6 +193,10 @@ Status Writer::write_chunk() {
   Status status = remember(chunk_.finish(buffer_, file_.size(), chunk));
   if (status.is_ok()) status = append_marked();
   const bool is_written = status.is_ok();
+  if (is_written && limits_.backlog_bytes > 0) {
+    forget_written();
+    handed_over_.push_back({file_.size(), chunk.start_time, pending_counts_});
+  }
   for (std::size_t channel = 0; channel < pending_counts_.size(); ++channel) {
     const std::uint64_t count = std::exchange(pending_counts_[channel], 0);
     (is_written ? counts_.messages : counts_.lost_messages) += count;
@@ -204,6 +211,32 @@ Status Writer::write_chunk() {
   index_.chunks.push_back(std::move(chunk));
   ++counts_.chunks;
   return status;
+}
+
+void Writer::forget_written() {
+  const std::uint64_t written = file_.written();
+  while (!handed_over_.empty() && handed_over_.front().end <= written) handed_over_.pop_front();
+}
+
+// what was handed over and did not come into the file
+void Writer::roll_back() {
+  forget_written();
+  for (const HandedOver& chunk : handed_over_) {
+    note_lost(chunk.start_time);
+    for (std::size_t channel = 0; channel < chunk.counts.size(); ++channel) {
+      counts_.messages -= chunk.counts[channel];
+      counts_.lost_messages += chunk.counts[channel];
+      if (chunk.counts[channel] > 0) {
+        index_.statistics.channel_message_counts[static_cast<std::uint16_t>(channel)] -= chunk.counts[channel];
+      }
+    }
+    --counts_.chunks;
+  }
+  handed_over_.clear();
+  const auto is_lost = [this](const auto& entry) { return entry.offset >= file_.size(); };
+  std::erase_if(index_.chunks, is_lost);
+  std::erase_if(index_.metadata, is_lost);
+  std::erase_if(index_.attachments, is_lost);
 }
 
 void Writer::note_lost(std::uint64_t log_time) {
@@ -240,7 +273,12 @@ Status Writer::flush() {
   if (!failure_.is_ok()) return failure_;
   Status status;
   while (status.is_ok() && !window_.is_empty()) status = emit_first();
-  return status.is_ok() ? write_chunk() : status;
+  if (status.is_ok()) status = write_chunk();
+  return status.is_ok() ? settle() : status;
+}
+
+Status Writer::settle() {
+  return failure_.is_ok() ? remember(file_.drain()) : failure_;
 }
 
 Status Writer::close(const TextMap& summary) {

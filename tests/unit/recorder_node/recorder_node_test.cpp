@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <cmath>
+#include <condition_variable>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <set>
 
 #include "recording/reader.h"
@@ -441,6 +444,130 @@ TEST(RecorderStorage, WithoutRoomNoSessionBegins) {
             std::string::npos)
       << bench.node->member().reason();
   EXPECT_TRUE(std::filesystem::is_empty(bench.folder));
+}
+
+// A disk that takes nothing while it is held.
+class HeldDisk final : public recording::FileCalls {
+ public:
+  std::int64_t write(int descriptor, recording::ByteSpan bytes, std::uint64_t offset) override {
+    std::unique_lock lock(mutex_);
+    released_.wait(lock, [this] { return !is_held_; });
+    return FileCalls::write(descriptor, bytes, offset);
+  }
+  void hold() {
+    const std::lock_guard lock(mutex_);
+    is_held_ = true;
+  }
+  void release() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_held_ = false;
+    }
+    released_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable released_;
+  bool is_held_ = false;
+};
+
+class SlowDisk : public ::testing::Test {
+ protected:
+  SlowDisk() {
+    RecorderConfig config;
+    config.file_calls = &disk_;
+    config.keep_free = 0;
+    config.limits.flush_period = milliseconds(1);
+    config.limits.window_steps = 2;
+    config.limits.chunk_bytes = 1'000;
+    config.limits.backlog_bytes = 40'000;
+    bench_ = std::make_unique<RecorderBench>(std::move(config));
+    bench_->played.session.pace = wire::Pace::real;
+    bench_->join();
+  }
+  ~SlowDisk() override { disk_.release(); }
+
+  // one step with a block of variables that do not compress
+  void say_step(StepIndex step) {
+    bench_->played.say_tick(step);
+    bench_->played.say_mechanism(step);
+    bench_->played.say_actuators(step);
+    wire::VariableBlock block;
+    block.header = bench_->played.header(Role::mechanics, step);
+    for (int i = 0; i < 20; ++i) block.values.push_back(std::sin(1.7 * static_cast<double>(step) + i));
+    bench_->played.say(Topic::variables, block);
+    bench_->poll(2 * kMs);
+    // the others are alive, whatever the clock says
+    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) {
+      bench_->played.say_status(role, NodeState::running, step);
+    }
+  }
+  void finish(StepIndex last) {
+    bench_->say_end(last);
+    ASSERT_TRUE(bench_->node->is_finished());
+    ASSERT_EQ(recording::Reader::open(bench_->node->recording(), reader_).text, "");
+    ASSERT_EQ(reader_->verify().text, "");
+  }
+  [[nodiscard]] std::vector<recording::TextMap> gaps() const {
+    std::vector<recording::TextMap> found;
+    for (const recording::MetadataRecord& record : reader_->metadata()) {
+      if (record.name == recording::kGapName) found.push_back(record.entries);
+    }
+    return found;
+  }
+
+  HeldDisk disk_;
+  std::unique_ptr<RecorderBench> bench_;
+  std::unique_ptr<recording::Reader> reader_;
+};
+
+TEST_F(SlowDisk, CostsVariablesBeforeSteps) {
+  StepIndex step = 0;
+  for (; step < 10; ++step) say_step(step);
+  disk_.hold();
+  // until variables are left out, and a little longer
+  while (bench_->node->lost() == 0 && step < 5'000) say_step(step++);
+  ASSERT_LT(step, 5'000);
+  const StepIndex first_lost = step - 1;
+  for (int i = 0; i < 5; ++i) say_step(step++);
+  disk_.release();
+  // all that waited is written soon; then variables are recorded again
+  for (const StepIndex until = step + 50; step < until; ++step) say_step(step);
+  finish(step - 1);
+  EXPECT_EQ(bench_->recorded(Topic::tick).size(), static_cast<std::size_t>(step)) << "no step was left out";
+  EXPECT_EQ(bench_->recorded(Topic::mechanism).size(), static_cast<std::size_t>(step));
+  const std::size_t variables = bench_->recorded(Topic::variables).size();
+  EXPECT_LE(variables, static_cast<std::size_t>(step) - 6);
+  EXPECT_EQ(bench_->summary("variables.lost"), std::to_string(static_cast<std::size_t>(step) - variables));
+  EXPECT_EQ(bench_->node->member().exit_code(), ExitCode::losses);
+  ASSERT_GE(gaps().size(), 1u);
+  const recording::TextMap gap = gaps().front();
+  EXPECT_EQ(gap.at("from_step"), std::to_string(first_lost));
+  EXPECT_GE(std::stoll(gap.at("to_step")), first_lost + 5);
+  EXPECT_GE(std::stoi(gap.at("left_out.variables")), 6);
+  EXPECT_EQ(gap.count("left_out.tick"), 0u);
+  EXPECT_EQ(gap.at("cause"), "the disk was slower than the session");
+}
+
+TEST_F(SlowDisk, ThatStandsStillCostsStepsTooAndNeverMoreMemory) {
+  disk_.hold();
+  StepIndex step = 0;
+  for (; step < 3'000; ++step) {
+    say_step(step);
+    ASSERT_LE(bench_->node->backlog_bytes(), 40'000u);
+  }
+  EXPECT_FALSE(bench_->node->is_finished());
+  disk_.release();
+  finish(step - 1);
+  EXPECT_EQ(bench_->node->member().exit_code(), ExitCode::losses);
+  const std::set<StepIndex> ticks = bench_->recorded(Topic::tick);
+  EXPECT_LT(ticks.size(), 3'000u);
+  EXPECT_EQ(*ticks.begin(), 0);
+  ASSERT_GE(gaps().size(), 1u);
+  EXPECT_GE(std::stoi(gaps().front().at("left_out.tick")), 1);
+  // variables had gone before
+  EXPECT_LT(bench_->recorded(Topic::variables).size(), ticks.size());
 }
 
 // ---- a second recorder ----------------------------------------------------------------------------------------
