@@ -54,6 +54,10 @@ std::string end_of(const recording::Reader& reader) {
   }
   const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
   if (summary == nullptr || summary->count("end") == 0 || summary->at("exit_code") == "0") return "closed in order";
+  // the recorder ends with 6, the session goes on
+  if (summary->at("exit_code") == std::to_string(static_cast<int>(ExitCode::storage))) {
+    return "closed before the session's end, which went on: " + summary->at("end");
+  }
   return fmt::format("closed in order; the session ended with code {}: {}", summary->at("exit_code"),
                      summary->at("end"));
 }
