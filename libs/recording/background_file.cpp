@@ -34,9 +34,9 @@ Status BackgroundFile::take_failure(std::unique_lock<std::mutex>&) {
   return std::exchange(failure_, Status::ok());
 }
 
-Status BackgroundFile::append(ByteSpan records) {
+Status BackgroundFile::append(ByteSpan records, std::uint64_t room_behind) {
   if (!thread_.joinable()) {
-    const Status status = file_.append(records);
+    const Status status = file_.append(records, room_behind);
     size_ = written_ = file_.size();
     crc_ = file_.crc();
     return status;
@@ -52,7 +52,7 @@ Status BackgroundFile::append(ByteSpan records) {
   }
   block.assign(records.begin(), records.end());
   waiting_bytes_ += block.size();
-  waiting_.push_back(std::move(block));
+  waiting_.push_back({std::move(block), room_behind});
   size_ += records.size();
   crc_ = crc32_of(records, crc_);
   lock.unlock();
@@ -60,9 +60,9 @@ Status BackgroundFile::append(ByteSpan records) {
   return Status::ok();
 }
 
-Status BackgroundFile::append_marked(Bytes& records) {
+Status BackgroundFile::append_marked(Bytes& records, std::uint64_t room_behind) {
   encode_mark(records, crc32_of(records, crc_));
-  return append(records);
+  return append(records, room_behind);
 }
 
 Status BackgroundFile::drain() {
@@ -99,13 +99,13 @@ void BackgroundFile::run() {
   while (true) {
     wakes_thread_.wait(lock, [this] { return is_closing_ || !waiting_.empty(); });
     if (waiting_.empty()) return;
-    const Bytes& block = waiting_.front();
+    const Block& block = waiting_.front();
     lock.unlock();
-    Status status = file_.append(block);
+    Status status = file_.append(block.records, block.room_behind);
     lock.lock();
     if (status.is_ok()) {
-      waiting_bytes_ -= block.size();
-      if (spare_.size() < kMostSpare) spare_.push_back(std::move(waiting_.front()));
+      waiting_bytes_ -= block.records.size();
+      if (spare_.size() < kMostSpare) spare_.push_back(std::move(waiting_.front().records));
       waiting_.pop_front();
     } else {
       failure_ = std::move(status);

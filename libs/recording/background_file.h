@@ -28,8 +28,8 @@ class BackgroundFile {
 
   // As of OutputFile. append_marked lets the buffer grow by the Mark.
   [[nodiscard]] Status create(const std::filesystem::path& path);
-  [[nodiscard]] Status append(ByteSpan records);
-  [[nodiscard]] Status append_marked(Bytes& records);
+  [[nodiscard]] Status append(ByteSpan records, std::uint64_t room_behind = 0);
+  [[nodiscard]] Status append_marked(Bytes& records, std::uint64_t room_behind = 0);
   // Waits until everything is written. Errors: storage, the first failure since the last call that told one.
   [[nodiscard]] Status drain();
   [[nodiscard]] Status close();
@@ -54,7 +54,11 @@ class BackgroundFile {
   mutable std::mutex mutex_;
   std::condition_variable wakes_thread_;
   std::condition_variable wakes_owner_;
-  std::deque<Bytes> waiting_;  // the first one is being written
+  struct Block {
+    Bytes records;
+    std::uint64_t room_behind = 0;
+  };
+  std::deque<Block> waiting_;  // the first one is being written
   std::vector<Bytes> spare_;   // written blocks, whose memory is used again
   std::size_t waiting_bytes_ = 0;
   std::uint64_t written_ = 0;

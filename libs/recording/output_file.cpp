@@ -45,6 +45,10 @@ int FileCalls::truncate(int descriptor, std::uint64_t size) {
   return ::ftruncate(descriptor, static_cast<off_t>(size));
 }
 
+int FileCalls::reserve(int descriptor, std::uint64_t offset, std::uint64_t size) {
+  return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset), static_cast<off_t>(size));
+}
+
 int FileCalls::synchronise(int descriptor) {
   return ::fdatasync(descriptor);
 }
@@ -83,8 +87,25 @@ Status OutputFile::create(const std::filesystem::path& path) {
                                                       path.string(), std::strerror(error), remedy_of(error)));
 }
 
-Status OutputFile::append(ByteSpan records) {
+Status OutputFile::append(ByteSpan records, std::uint64_t room_behind) {
+  if (room_behind > 0) {
+    has_reserved_ = true;
+    const std::uint64_t needed = records.size() + room_behind;
+    if (calls_.reserve(descriptor_, size_, needed) != 0 && (errno == ENOSPC || errno == EDQUOT)) {
+      return failed(errno, records.size(), size_);
+    }
+  }
   return write_all(records, crc32_of(records, crc_));
+}
+
+// back to the last whole record; if even that fails, the reader stops at the same place
+Status OutputFile::failed(int error, std::size_t bytes, std::uint64_t at) {
+  const bool is_cut_back = at == size_ || calls_.truncate(descriptor_, size_) == 0;
+  return Status::error(
+      ExitCode::storage,
+      fmt::format("{}: cannot write {} bytes at byte {} ({}); {} {} bytes that are readable; {}", path_.string(), bytes,
+                  at, std::strerror(error), is_cut_back ? "the file was cut back to" : "the file begins with", size_,
+                  remedy_of(error)));
 }
 
 Status OutputFile::append_marked(Bytes& records) {
@@ -105,13 +126,7 @@ Status OutputFile::write_all(ByteSpan bytes, std::uint32_t crc_after) {
     }
     const int error = written == 0 ? EIO : errno;
     if (error == EINTR) continue;
-    // back to the last whole record; if even that fails, the reader stops at the same place
-    const bool is_cut_back = calls_.truncate(descriptor_, size_) == 0;
-    return Status::error(
-        ExitCode::storage,
-        fmt::format("{}: cannot write {} bytes at byte {} ({}); {} {} bytes that are readable; {}", path_.string(),
-                    bytes.size(), at, std::strerror(error),
-                    is_cut_back ? "the file was cut back to" : "the file begins with", size_, remedy_of(error)));
+    return failed(error, bytes.size(), at);
   }
   size_ = at;
   crc_ = crc_after;
@@ -120,6 +135,7 @@ Status OutputFile::write_all(ByteSpan bytes, std::uint32_t crc_after) {
 
 Status OutputFile::close() {
   if (!is_open()) return Status::ok();
+  if (has_reserved_) std::ignore = calls_.truncate(descriptor_, size_);  // gives back what was reserved
   const bool is_synchronised = calls_.synchronise(descriptor_) == 0;
   const int sync_error = errno;
   const bool is_closed = calls_.close(descriptor_) == 0;

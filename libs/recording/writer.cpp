@@ -60,8 +60,15 @@ Status Writer::remember(Status status) {
   return status;
 }
 
-Status Writer::append_marked() {
-  return remember(file_.append_marked(buffer_));
+Status Writer::append_marked(std::uint64_t room_behind) {
+  return remember(file_.append_marked(buffer_, room_behind));
+}
+
+// An upper bound: what the last chunk leaves no room for is an end that a full disk would cost.
+std::uint64_t Writer::room_for_end() const noexcept {
+  constexpr std::uint64_t kSummaryBytes = 16 * 1024;  // metadata, statistics, offsets, footer
+  const std::uint64_t chunk_index = 128 + 10 * index_.channels.size();
+  return declared_bytes_ + kSummaryBytes + (index_.chunks.size() + 1) * chunk_index;
 }
 
 Status Writer::add_attachment(std::string_view name, std::string_view media_type, ByteSpan content) {
@@ -104,6 +111,7 @@ Status Writer::schema_of(const ChannelDef& channel, std::uint16_t& id) {
   buffer_.clear();
   encode_schema(buffer_, schema);
   Status status = append_marked();
+  declared_bytes_ += buffer_.size();
   if (status.is_ok()) index_.schemas.push_back(std::move(schema));
   return status;
 }
@@ -122,6 +130,7 @@ Status Writer::add_channel(const ChannelDef& channel, ChannelId& id) {
   encode_channel(buffer_, record);
   status = append_marked();
   if (!status.is_ok()) return status;
+  declared_bytes_ += buffer_.size();
   id = ChannelId{record.id};
   index_.channels.push_back(std::move(record));
   pending_counts_.push_back(0);
@@ -191,7 +200,7 @@ Status Writer::write_chunk() {
   ChunkIndexRecord chunk;
   buffer_.clear();
   Status status = remember(chunk_.finish(buffer_, file_.size(), chunk));
-  if (status.is_ok()) status = append_marked();
+  if (status.is_ok()) status = append_marked(room_for_end());
   const bool is_written = status.is_ok();
   if (is_written && limits_.backlog_bytes > 0) {
     forget_written();

@@ -114,7 +114,8 @@ class Writer {
   Writer(const SessionIdentity& identity, const WriterLimits& limits, FileCalls& calls);
 
   [[nodiscard]] Status write_front(const SessionIdentity& identity);
-  [[nodiscard]] Status append_marked();
+  [[nodiscard]] Status append_marked(std::uint64_t room_behind = 0);
+  [[nodiscard]] std::uint64_t room_for_end() const noexcept;
   [[nodiscard]] Status schema_of(const ChannelDef& channel, std::uint16_t& id);
   [[nodiscard]] Status emit_first();
   [[nodiscard]] Status emit(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload);
@@ -134,6 +135,7 @@ class Writer {
   ChunkBuilder chunk_;
 
   FileIndex index_;                            // channel id = position in index_.channels
+  std::uint64_t declared_bytes_ = 0;           // schemas and channels, which the end repeats
   std::vector<std::uint64_t> pending_counts_;  // messages of each channel in the open chunk
 
   std::map<std::uint32_t, std::uint64_t> epoch_start_;  // ns, log time of step 0 of each epoch

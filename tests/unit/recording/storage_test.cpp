@@ -155,6 +155,8 @@ int record_onto_a_full_disk(const std::filesystem::path& where) {
   std::unique_ptr<Reader> reader;
   if (!Reader::open(where / "a.mcap", reader).is_ok()) return 4;
   if (read_all(*reader).size() != counts.messages || counts.messages == 0) return 5;
+  // room for the end was kept
+  if (!reader->verify().is_ok() || reader->find_metadata(kSummaryName) == nullptr) return 7;
   return counts.messages + counts.lost_messages == 3'000 ? 0 : 6;
 }
 
