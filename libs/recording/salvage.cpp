@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* kRefuted = "the bytes differ from what was written";
 constexpr std::uint64_t kChunkHeadBytes = kRecordHeadBytes + 40;  // up to the length of its compressed records
-constexpr std::uint64_t kSearchBytes = 1u << 20;                  // that are looked through at once
+constexpr std::uint64_t kFirstSearchBytes = 4 * 1024;             // that are looked through at once: the next place
+constexpr std::uint64_t kSearchBytes = 1u << 20;                  // to go on at is near or far
 
 class Salvager {
  public:
@@ -161,11 +162,12 @@ class Salvager {
 
   // Moves on to what looks like a Mark, Data End or a chunk; to the end of the file when there is none.
   Status find(std::uint64_t& from) {
-    for (; from < file_.size(); from += kSearchBytes) {
-      const std::uint64_t size = std::min(kSearchBytes + kChunkHeadBytes, file_.size() - from);
+    std::uint64_t block = kFirstSearchBytes;
+    for (; from < file_.size(); from += block, block = std::min(2 * block, kSearchBytes)) {
+      const std::uint64_t size = std::min(block + kChunkHeadBytes, file_.size() - from);
       const Status status = file_.read(from, size, searched_);
       if (!status.is_ok()) return status;
-      for (std::size_t i = 0; i < std::min<std::size_t>(size, kSearchBytes); ++i) {
+      for (std::size_t i = 0; i < std::min(size, block); ++i) {
         if (!looks_like_a_record(ByteSpan(searched_).subspan(i))) continue;
         from += i;
         return status;

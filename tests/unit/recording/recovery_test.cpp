@@ -119,6 +119,29 @@ TEST_F(RecoveredRecording, LosesNoMoreThanTheChunkInWhichABitChanged) {
   }
 }
 
+// The next place to go on at is behind hundreds of kilobytes of bytes that say nothing.
+TEST_F(RecoveredRecording, GoesOnBehindALargeChunk) {
+  std::unique_ptr<Writer> writer;
+  ASSERT_EQ(Writer::create(scratch_ / "large.mcap", sample_identity(), WriterLimits{}, writer).text, "");
+  ChannelId channel{};
+  ASSERT_EQ(writer->add_channel({kStateTopic, "t::T", "", {}}, channel).text, "");
+  for (StepIndex step = 0; step < 5'000; ++step) {
+    const std::string payload = sample_payload(static_cast<std::uint64_t>(step), 1'000);
+    ASSERT_EQ(writer->write(channel, {0, step, 0, 0}, as_byte_span(payload)).text, "");
+  }
+  ASSERT_EQ(writer->close({}).text, "");
+  const std::vector<ChunkPlace> chunks = chunks_of(scratch_ / "large.mcap");
+  ASSERT_GE(chunks.size(), 4u);
+  std::string damaged = file_content(scratch_ / "large.mcap");
+  damaged[chunks[1].begin + 100] ^= 1;
+  ASSERT_EQ(recover_content(damaged).text, "");
+  EXPECT_EQ(recovery_.messages, 5'000 - chunks[1].messages);
+  ASSERT_EQ(recovery_.lost.size(), 1u);
+  EXPECT_EQ(recovery_.lost[0].offset, chunks[1].begin);
+  EXPECT_GT(recovery_.lost[0].size, 500'000u);
+  EXPECT_FALSE(recovery_.was_cut);
+}
+
 TEST_F(RecoveredRecording, KeepsMessagesOfALostChannelUnderItsNumber) {
   // the second channel's record: one letter of its topic
   std::string damaged = whole_;
