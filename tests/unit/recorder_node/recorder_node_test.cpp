@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <set>
+#include <thread>
 
 #include "recording/reader.h"
 #include "tests/support/played_session.h"
@@ -509,6 +511,12 @@ class SlowDisk : public ::testing::Test {
     ASSERT_EQ(recording::Reader::open(bench_->node->recording(), reader_).text, "");
     ASSERT_EQ(reader_->verify().text, "");
   }
+  // Waits until nothing waits for the disk.
+  [[nodiscard]] bool is_written() const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (bench_->node->backlog_bytes() > 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    return bench_->node->backlog_bytes() == 0;
+  }
   [[nodiscard]] std::vector<recording::TextMap> gaps() const {
     std::vector<recording::TextMap> found;
     for (const recording::MetadataRecord& record : reader_->metadata()) {
@@ -532,8 +540,11 @@ TEST_F(SlowDisk, CostsVariablesBeforeSteps) {
   const StepIndex first_lost = step - 1;
   for (int i = 0; i < 5; ++i) say_step(step++);
   disk_.release();
-  // all that waited is written soon; then variables are recorded again
-  for (const StepIndex until = step + 50; step < until; ++step) say_step(step);
+  // when all that waited is written, variables are recorded again
+  for (const StepIndex until = step + 50; step < until; ++step) {
+    ASSERT_TRUE(is_written());
+    say_step(step);
+  }
   finish(step - 1);
   EXPECT_EQ(bench_->recorded(Topic::tick).size(), static_cast<std::size_t>(step)) << "no step was left out";
   EXPECT_EQ(bench_->recorded(Topic::mechanism).size(), static_cast<std::size_t>(step));
