@@ -1,5 +1,6 @@
 #include "cli/distributed_run.h"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -99,7 +100,9 @@ class Supervisor {
     }
     const std::vector<std::string> network = cli_support::network_arguments(options_.session);
     arguments.insert(arguments.end(), network.begin(), network.end());
-    if (role == Role::recorder) arguments.insert(arguments.end(), {"--out", options_.runs});
+    if (role == Role::recorder)
+      arguments.insert(arguments.end(),
+                       {"--out", options_.runs, "--keep-free", fmt::format("{}", options_.keep_free_mb)});
     if (options_.is_real_time) arguments.emplace_back("--rt");
     const std::string name(node::to_text(role));
     nodes_.push_back({role, std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments)});

@@ -75,6 +75,7 @@ class InProcessRun {
   void add_recorder() {
     recorder::RecorderConfig config;
     config.runs_directory = options_.runs;
+    config.keep_free = static_cast<std::uint64_t>(options_.keep_free_mb * 1e6);
     recorder_ = std::make_unique<recorder::RecorderNode>(endpoint(Role::recorder), std::move(config));
     nodes_.push_back(recorder_.get());
   }

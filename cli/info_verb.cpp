@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "node/identity.h"
+#include "recording/recovery.h"
 
 namespace slew::cli {
 namespace {
@@ -41,10 +42,45 @@ std::map<std::string, Counts> counts_of(const recording::Reader& reader) {
 // How the file ends, and how the session did when that was not in order.
 std::string end_of(const recording::Reader& reader) {
   if (!reader.has_all_messages()) return "cut: " + reader.damage_text();
+  const recording::TextMap* recovered = reader.find_metadata(recording::kRecoveryName);
+  if (recovered != nullptr) {
+    const auto entry = [recovered](const char* key) {
+      const auto found = recovered->find(key);
+      return found == recovered->end() ? std::string("?") : found->second;
+    };
+    return fmt::format("recovered from {} ({} bytes){}; lost {}", entry("from"), entry("from_bytes"),
+                       entry("was_cut") == "yes" ? ", whose end was missing" : "",
+                       entry("lost").empty() ? "nothing in front of it" : entry("lost"));
+  }
   const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
   if (summary == nullptr || summary->count("end") == 0 || summary->at("exit_code") == "0") return "closed in order";
+  // the recorder ends with 6, the session goes on
+  if (summary->at("exit_code") == std::to_string(static_cast<int>(ExitCode::storage))) {
+    return "closed before the session's end, which went on: " + summary->at("end");
+  }
   return fmt::format("closed in order; the session ended with code {}: {}", summary->at("exit_code"),
                      summary->at("end"));
+}
+
+// What the recorder left out, a sentence for each time.
+std::vector<std::string> gaps_of(const recording::Reader& reader) {
+  constexpr std::string_view kLeftOut = "left_out.";
+  std::vector<std::string> gaps;
+  for (const recording::MetadataRecord& record : reader.metadata()) {
+    if (record.name != recording::kGapName) continue;
+    const auto entry = [&](const char* key) {
+      const auto found = record.entries.find(key);
+      return found == record.entries.end() ? std::string("?") : found->second;
+    };
+    std::string counts;
+    for (const auto& [key, count] : record.entries) {
+      if (key.starts_with(kLeftOut))
+        counts += (counts.empty() ? "" : ", ") + count + " of " + key.substr(kLeftOut.size());
+    }
+    gaps.push_back(fmt::format("steps {} to {}{}: {} left out, {}", entry("from_step"), entry("to_step"),
+                               entry("epoch") == "0" ? "" : " of epoch " + entry("epoch"), counts, entry("cause")));
+  }
+  return gaps;
 }
 
 nlohmann::json to_json(const recording::Reader& reader, double simulated) {
@@ -65,6 +101,7 @@ nlohmann::json to_json(const recording::Reader& reader, double simulated) {
           {"complete", reader.has_all_messages()},
           {"damage", reader.damage_text()},
           {"end", end_of(reader)},
+          {"gaps", gaps_of(reader)},
           {"notes", explain_flags(reader)},
           {"topics", topics}};
 }
@@ -87,6 +124,7 @@ void print(const recording::Reader& reader, double simulated) {
     rows.push_back(
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
   }
+  for (std::string& gap : gaps_of(reader)) rows.push_back({"gap", std::move(gap)});
   for (std::string& flagged : explain_flags(reader)) rows.push_back({"note", std::move(flagged)});
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
     rows.push_back({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   cli::add_plot(app, action);
   cli::add_animate(app, action);
   cli::add_export(app, action);
+  cli::add_recover(app, action);
   cli::add_replay(app, action);
   cli::add_compare(app, action);
   cli::add_tradeoff(app, action);

@@ -1,13 +1,11 @@
-// `slewring plot REC VAR...` and `slewring export REC`: a recording's variables as a picture or a table.
+// `slewring plot REC VAR...`: a recording's variables as a picture or a page.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <set>
 
-#include "cli/plotting/csv_export.h"
 #include "cli/plotting/html_plot.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
@@ -27,8 +25,6 @@ struct Options {
   std::vector<std::string> others;  // recordings to compare with
   std::string output;
   std::string title;
-  bool is_csv = false;
-  bool is_input = false;
 };
 
 using Readers = std::vector<std::unique_ptr<recording::Reader>>;
@@ -111,53 +107,6 @@ ExitCode plot(const Options& options) {
   return ExitCode::ok;
 }
 
-// What the operator did, as `run --input` and scripts read it: raw values by input.
-ExitCode export_input(const Options& options) {
-  const auto reader = open_recording(options.recording);
-  if (!options.variables.empty()) {
-    throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
-  }
-  const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
-  if (scene.inputs.empty()) {
-    throw Failure(ExitCode::bad_input, "the scene of this recording has no inputs; nothing was written");
-  }
-  std::vector<std::string> names;
-  for (const scene::InputDef& input : scene.inputs) names.push_back(input.name + ".raw");
-  const std::vector<plotting::Series> curves = read_series(*reader, names, Units::si);
-  std::string text = "time";
-  for (const scene::InputDef& input : scene.inputs) text += "," + input.name;
-  const std::vector<double>& time = curves.front().time;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    if (i > 0 && time[i] <= time[i - 1]) {
-      throw Failure(ExitCode::bad_input,
-                    "the session was reset on the way, so its input is no one table over time; "
-                    "nothing was written; record it without a reset");
-    }
-    text += fmt::format("\n{}", time[i]);
-    for (const plotting::Series& curve : curves) text += fmt::format(",{}", curve.values[i]);
-  }
-  const std::string path = options.output.empty() ? "-" : options.output;
-  write_text(path, text + "\n");
-  if (path != "-") fmt::print("{}\n", path);
-  return ExitCode::ok;
-}
-
-ExitCode export_table(const Options& options) {
-  if (options.is_input) return export_input(options);
-  const auto reader = open_recording(options.recording);
-  const std::vector<std::string> all = {"*"};
-  const std::vector<plotting::Series> curves =
-      read_series(*reader, options.variables.empty() ? all : options.variables, Units::si);
-  if (options.output.empty() || options.output == "-") {
-    plotting::write_csv(curves, std::cout);
-    std::cout << std::flush;
-    return ExitCode::ok;
-  }
-  cli_support::require(plotting::export_csv(curves, options.output));
-  fmt::print("{}\n", options.output);
-  return ExitCode::ok;
-}
-
 }  // namespace
 
 void add_plot(CLI::App& program, Action& action) {
@@ -182,24 +131,6 @@ void add_plot(CLI::App& program, Action& action) {
       "  slewring plot runs/truck_crane-20260501-102030 Bag.position.y --with "
       "runs/truck_crane_flexible-20260501-103000");
   verb->callback([&action, options] { action = [options] { return plot(*options); }; });
-}
-
-void add_export(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("export", "write variables of a recording as a table");
-  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
-  verb->add_option("variables", options->variables, "names, or patterns with * and ?; without them all")
-      ->type_name("VAR");
-  verb->add_flag("--csv", options->is_csv, "comma-separated values in SI units (the only format of this version)");
-  verb->add_flag("--input", options->is_input,
-                 "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, straight "
-                 "lines between");
-  verb->add_option("-o,--output", options->output, "file to write; without it standard output")->type_name("FILE");
-  verb->footer(
-      "Examples:\n"
-      "  slewring export runs/truck_crane-20260501-102030 --csv -o crane.csv\n"
-      "  slewring export runs/truck_crane-20260501-102030 --input -o levers.csv");
-  verb->callback([&action, options] { action = [options] { return export_table(*options); }; });
 }
 
 }  // namespace slew::cli

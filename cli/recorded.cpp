@@ -152,7 +152,8 @@ SessionView view_recording(const Reader& reader, Values values) {
   return view;
 }
 
-std::vector<plotting::Series> read_series(const Reader& reader, std::span<const std::string> patterns, Units units) {
+std::vector<plotting::Series> read_series(const Reader& reader, std::span<const std::string> patterns, Units units,
+                                          const TimeRange& range) {
   // names and places
   std::map<std::string, std::pair<std::pair<wire::Role, std::uint32_t>, std::string>> known;
   std::vector<std::string> names;
@@ -179,7 +180,10 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
   }
   // values
   wire::VariableBlock block;
-  read_all(reader, only({Topic::variables}), [&](const recording::RecordedMessage& message) {
+  recording::MessageFilter blocks = only({Topic::variables});
+  blocks.from_ns = range.from_ns;
+  blocks.to_ns = range.to_ns;
+  read_all(reader, blocks, [&](const recording::RecordedMessage& message) {
     if (transport::decode(message.payload, block) && block.header.phase == wire::Phase::running) {
       add_block(block, static_cast<double>(message.log_time_ns) / 1e9, places, curves);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,10 +26,17 @@ enum class Values : std::uint8_t { none, all };
 
 enum class Units : std::uint8_t { si, display };
 
+// Times of the recording, both included.
+struct TimeRange {
+  std::uint64_t from_ns = 0;
+  std::uint64_t to_ns = std::numeric_limits<std::uint64_t>::max();
+};
+
 // Curves of the named variables. Throws Failure when one is not in the recording, with the name that was probably
 // meant.
 [[nodiscard]] std::vector<plotting::Series> read_series(const recording::Reader& reader,
-                                                        std::span<const std::string> patterns, Units units);
+                                                        std::span<const std::string> patterns, Units units,
+                                                        const TimeRange& range = {});
 
 // Steps that were done, in all epochs, and the wall time from the first tick to the last as their writer stamped them.
 // Of the time between two ticks around which the session was paused one step counts as running, the rest as paused.

@@ -16,6 +16,7 @@ struct RunOptions {
   cli_support::SceneOptions scene;
   cli_support::SessionOptions session;
   std::string runs = "runs";        // folder of the recordings
+  double keep_free_mb = 256;        // room that a recording leaves to others
   std::vector<std::string> remote;  // roles that somebody else starts
   bool is_in_process = false;
   bool is_monolithic = false;

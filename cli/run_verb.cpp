@@ -96,6 +96,11 @@ void add_run(CLI::App& program, Action& action) {
   verb->add_option("--out", options->runs, "folder in which the recording gets a folder of its own")
       ->type_name("DIR")
       ->capture_default_str();
+  verb->add_option("--keep-free", options->keep_free_mb,
+                   "room on its file system that the recording leaves to others; 0: none")
+      ->check(CLI::Range(0.0, 1e9))
+      ->type_name("MB")
+      ->capture_default_str();
   verb->add_flag("--rt", options->is_real_time, "real-time scheduling and locked memory for the nodes");
   verb->add_flag("--json", options->is_json, "print the summary as JSON and nothing else");
   verb->add_flag("--quiet", options->is_quiet, "no status line");

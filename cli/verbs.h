@@ -26,6 +26,7 @@ void add_info(CLI::App& program, Action& action);
 void add_plot(CLI::App& program, Action& action);
 void add_animate(CLI::App& program, Action& action);
 void add_export(CLI::App& program, Action& action);
+void add_recover(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_simplify(CLI::App& program, Action& action);

@@ -10,11 +10,12 @@ namespace {
 
 using namespace slew;
 
-std::optional<ExitCode> run(const cli_support::NodeOptions& options, const std::string& runs) {
+std::optional<ExitCode> run(const cli_support::NodeOptions& options, const std::string& runs, double keep_free_mb) {
   cli_support::apply_real_time(options, "recorder_node");
   const auto carrier = cli_support::open_carrier(wire::Role::recorder, options.session);
   recorder::RecorderConfig config;
   config.runs_directory = runs;
+  config.keep_free = static_cast<std::uint64_t>(keep_free_mb * 1e6);
   config.join = options.join();
   recorder::RecorderNode node(*carrier, std::move(config));
   // the path is said last, whatever the end was
@@ -40,9 +41,15 @@ int main(int argc, char** argv) {
   app.add_option("--out", runs, "folder in which the session gets a folder of its own")
       ->type_name("DIR")
       ->capture_default_str();
+  double keep_free_mb = static_cast<double>(recorder::kKeepFreeBytes) * 1e-6;
+  app.add_option("--keep-free", keep_free_mb, "room on the file system that is left to others; 0: none")
+      ->check(CLI::Range(0.0, 1e9))
+      ->type_name("MB")
+      ->capture_default_str();
   cli_support::add_version(app);
   int exit_code = 0;
   if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("recorder_node",
-                              [&] { return cli_support::run_until_in_session([&] { return run(options, runs); }); });
+  return cli_support::guarded("recorder_node", [&] {
+    return cli_support::run_until_in_session([&] { return run(options, runs, keep_free_mb); });
+  });
 }

@@ -1,7 +1,12 @@
 // Takes everything that is said in a session and puts it, ordered by step, into one recording.
 //
 // Ticks and samples must be complete: a gap is asked for by number after 3 ms and answered from the writers' caches;
-// what never comes is counted per topic. The recording is closed after every node's END, after a fault, or on a signal.
+// what never comes is counted per topic. The recording is closed after every node's END, after a fault, or on a signal;
+// and when the disk fails or its room gets short: the session goes on without it, and the recorder ends with code 6.
+//
+// While the disk is slower than the session, up to 64 MiB wait for it. In `free` pace the session then waits too. In
+// `real` pace variables and health are left out from half of that on, and what is step by step when all of it is used;
+// each such gap is marked in the file (Metadata "slewring.gap"), and the messages are counted as lost.
 #pragma once
 
 #include <array>
@@ -9,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +25,22 @@
 
 namespace slew::recorder {
 
+inline constexpr std::uint64_t kKeepFreeBytes = 256'000'000;
+inline constexpr std::size_t kBacklogBytes = 64u << 20;
+
+// Of the recorder: a slow disk holds up a thread, not the session.
+[[nodiscard]] inline recording::WriterLimits recorder_limits() {
+  recording::WriterLimits limits = recorder_limits();
+  limits.backlog_bytes = kBacklogBytes;
+  return limits;
+}
+
 struct RecorderConfig {
   std::filesystem::path runs_directory = "runs";
   node::JoinOptions join;
+  std::uint64_t keep_free = kKeepFreeBytes;  // bytes on the recording's file system that are left to others
+  recording::WriterLimits limits;
+  recording::FileCalls* file_calls = &recording::system_file_calls();
 };
 
 // A writer's messages that come every k-th step: blocks of variables of one place in its list, samples of or for
@@ -75,6 +94,10 @@ class RecorderNode final : public node::Node {
 
   // Empty before the session is known.
   [[nodiscard]] const std::filesystem::path& recording() const noexcept { return path_; }
+  // Messages that are missing in it so far.
+  [[nodiscard]] std::uint64_t lost() const noexcept;
+  // Bytes that wait for the disk.
+  [[nodiscard]] std::size_t backlog_bytes() const { return writer_ == nullptr ? 0 : writer_->backlog_bytes(); }
 
  private:
   enum class Stage : std::uint8_t { waiting_for_session, recording, finished };
@@ -102,7 +125,6 @@ class RecorderNode final : public node::Node {
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
   [[nodiscard]] StepIndex final_step(wire::Role writer, StepIndex newest) const noexcept;
   [[nodiscard]] StepIndex last_block(const BlockSource& source, StepIndex newest) const noexcept;
-  [[nodiscard]] std::uint64_t lost() const noexcept;
   [[nodiscard]] bool is_ending() const noexcept;
   [[nodiscard]] bool has_everything() const noexcept;
   void report_progress(std::int64_t now_ns);
@@ -112,7 +134,13 @@ class RecorderNode final : public node::Node {
   void finish(const SessionEnd& session, ExitCode own_code, const std::string& own_reason);
   void count_losses(EpochStreams& streams, bool is_present);
   void count_all_losses();
+  [[nodiscard]] bool is_left_out(wire::Topic topic, StepIndex step, std::uint32_t epoch);
+  void end_gap();
+  void stop_recording(const Status& why);
+  void stop_when_room_is_short(std::int64_t now_ns);
+  [[nodiscard]] Status problem_of_room(const std::filesystem::path& place) const;
   void close(const SessionEnd& session);
+  void close_file(SessionEnd session);
   void update_health() noexcept;
 
   node::SessionMember member_;
@@ -120,6 +148,15 @@ class RecorderNode final : public node::Node {
   Stage stage_ = Stage::waiting_for_session;
   std::filesystem::path path_;
   std::unique_ptr<recording::Writer> writer_;
+  Status stopped_;  // why nothing is written any more, while the session goes on; ok: it is being recorded
+  std::int64_t room_checked_ns_ = 0;
+  // messages left out while the disk is slower than the session
+  struct Gap {
+    std::uint32_t epoch = 0;
+    StepIndex from = 0, to = 0;
+    std::array<std::uint64_t, wire::kTopics> messages{};
+  };
+  std::optional<Gap> gap_;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;

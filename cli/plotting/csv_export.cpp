@@ -93,7 +93,7 @@ Status export_csv(std::span<const Series> series, const std::filesystem::path& p
   file.close();
   if (file) return Status::ok();
   return Status::error(ExitCode::storage,
-                       fmt::format("{}: cannot write the table ({}); what is there is incomplete; free space or choose "
+                       fmt::format("{}: cannot write the table ({}); nothing whole was written; free space or choose "
                                    "another place with -o",
                                    path.string(), std::strerror(errno)));
 }

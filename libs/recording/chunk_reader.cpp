@@ -23,6 +23,12 @@ bool ChunkReader::unpack(const ChunkRecord& chunk, Bytes& records, std::string& 
   if (chunk.compression.empty()) {
     records.assign(chunk.records.begin(), chunk.records.end());
   } else if (chunk.compression == kZstd) {
+    // the frame says its size again: no memory for a claim that it does not bear out
+    const unsigned long long size_in_frame = ZSTD_getFrameContentSize(chunk.records.data(), chunk.records.size());
+    if (size_in_frame != chunk.uncompressed_size && size_in_frame != ZSTD_CONTENTSIZE_UNKNOWN) {
+      problem = "the chunk cannot be decompressed: its size is not that in its header";
+      return false;
+    }
     records.resize(chunk.uncompressed_size);
     const std::size_t size = context_ ? ZSTD_decompressDCtx(context_.get(), records.data(), records.size(),
                                                             chunk.records.data(), chunk.records.size())

@@ -71,7 +71,13 @@ class Scanner {
       damage(at_, "the file ends inside a record");
       return status;
     }
-    status = file_.read(at_ + kRecordHeadBytes, length, content_);
+    status = file_.read(at_ + kRecordHeadBytes, std::min(length, kFrontBytes), content_);
+    if (!status.is_ok()) return status;
+    if (!is_length_borne_out(opcode, content_, length)) {
+      damage(at_, "the length of a record is not that of its content");
+      return status;
+    }
+    if (length > kFrontBytes) status = file_.read(at_ + kRecordHeadBytes, length, content_);
     if (!status.is_ok()) return status;
     take_record(opcode);
     if (scan_.damage) return status;

@@ -3,10 +3,13 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <limits>
+#include <tuple>
 
 #include "recording/records.h"
 
@@ -34,8 +37,39 @@ const char* remedy_of(int error) noexcept {
 
 }  // namespace
 
+std::int64_t FileCalls::write(int descriptor, ByteSpan bytes, std::uint64_t offset) {
+  return ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+}
+
+int FileCalls::truncate(int descriptor, std::uint64_t size) {
+  return ::ftruncate(descriptor, static_cast<off_t>(size));
+}
+
+int FileCalls::reserve(int descriptor, std::uint64_t offset, std::uint64_t size) {
+  return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset), static_cast<off_t>(size));
+}
+
+int FileCalls::synchronise(int descriptor) {
+  return ::fdatasync(descriptor);
+}
+
+int FileCalls::close(int descriptor) {
+  return ::close(descriptor);
+}
+
+std::uint64_t FileCalls::free_bytes(const std::filesystem::path& path) {
+  struct statvfs room {};
+  if (::statvfs(path.c_str(), &room) != 0) return std::numeric_limits<std::uint64_t>::max();
+  return std::uint64_t{room.f_bavail} * room.f_frsize;
+}
+
+FileCalls& system_file_calls() noexcept {
+  static FileCalls calls;
+  return calls;
+}
+
 OutputFile::~OutputFile() {
-  if (is_open()) ::close(descriptor_);
+  if (is_open()) std::ignore = calls_.close(descriptor_);
 }
 
 Status OutputFile::create(const std::filesystem::path& path) {
@@ -53,8 +87,25 @@ Status OutputFile::create(const std::filesystem::path& path) {
                                                       path.string(), std::strerror(error), remedy_of(error)));
 }
 
-Status OutputFile::append(ByteSpan records) {
+Status OutputFile::append(ByteSpan records, std::uint64_t room_behind) {
+  if (room_behind > 0) {
+    has_reserved_ = true;
+    const std::uint64_t needed = records.size() + room_behind;
+    if (calls_.reserve(descriptor_, size_, needed) != 0 && (errno == ENOSPC || errno == EDQUOT)) {
+      return failed(errno, records.size(), size_);
+    }
+  }
   return write_all(records, crc32_of(records, crc_));
+}
+
+// back to the last whole record; if even that fails, the reader stops at the same place
+Status OutputFile::failed(int error, std::size_t bytes, std::uint64_t at) {
+  const bool is_cut_back = at == size_ || calls_.truncate(descriptor_, size_) == 0;
+  return Status::error(
+      ExitCode::storage,
+      fmt::format("{}: cannot write {} bytes at byte {} ({}); {} {} bytes that are readable; {}", path_.string(), bytes,
+                  at, std::strerror(error), is_cut_back ? "the file was cut back to" : "the file begins with", size_,
+                  remedy_of(error)));
 }
 
 Status OutputFile::append_marked(Bytes& records) {
@@ -67,7 +118,7 @@ Status OutputFile::append_marked(Bytes& records) {
 Status OutputFile::write_all(ByteSpan bytes, std::uint32_t crc_after) {
   std::uint64_t at = size_;
   while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    const std::int64_t written = calls_.write(descriptor_, bytes, at);
     if (written > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(written));
       at += static_cast<std::uint64_t>(written);
@@ -75,13 +126,7 @@ Status OutputFile::write_all(ByteSpan bytes, std::uint32_t crc_after) {
     }
     const int error = written == 0 ? EIO : errno;
     if (error == EINTR) continue;
-    // back to the last whole record; if even that fails, the reader stops at the same place
-    const bool is_cut_back = ::ftruncate(descriptor_, static_cast<off_t>(size_)) == 0;
-    return Status::error(
-        ExitCode::storage,
-        fmt::format("{}: cannot write {} bytes at byte {} ({}); {} {} bytes that are readable; {}", path_.string(),
-                    bytes.size(), at, std::strerror(error),
-                    is_cut_back ? "the file was cut back to" : "the file begins with", size_, remedy_of(error)));
+    return failed(error, bytes.size(), at);
   }
   size_ = at;
   crc_ = crc_after;
@@ -90,9 +135,10 @@ Status OutputFile::write_all(ByteSpan bytes, std::uint32_t crc_after) {
 
 Status OutputFile::close() {
   if (!is_open()) return Status::ok();
-  const bool is_synchronised = ::fdatasync(descriptor_) == 0;
+  if (has_reserved_) std::ignore = calls_.truncate(descriptor_, size_);  // gives back what was reserved
+  const bool is_synchronised = calls_.synchronise(descriptor_) == 0;
   const int sync_error = errno;
-  const bool is_closed = ::close(descriptor_) == 0;
+  const bool is_closed = calls_.close(descriptor_) == 0;
   const int close_error = errno;
   descriptor_ = -1;
   if (is_synchronised && is_closed) return Status::ok();

@@ -13,9 +13,25 @@
 
 namespace slew::recording {
 
+// What a recording asks of the operating system, as pwrite, ftruncate, fdatasync and close have it. Tests put a disk in
+// their place that fails.
+class FileCalls {
+ public:
+  virtual ~FileCalls() = default;
+  [[nodiscard]] virtual std::int64_t write(int descriptor, ByteSpan bytes, std::uint64_t offset);
+  [[nodiscard]] virtual int truncate(int descriptor, std::uint64_t size);
+  // Sees to it that so many bytes can be written there, beyond the file's end too, whose size stays as it is.
+  [[nodiscard]] virtual int reserve(int descriptor, std::uint64_t offset, std::uint64_t size);
+  [[nodiscard]] virtual int synchronise(int descriptor);
+  [[nodiscard]] virtual int close(int descriptor);
+  // Room on the file system of a path for this user; all there is when that cannot be known.
+  [[nodiscard]] virtual std::uint64_t free_bytes(const std::filesystem::path& path);
+};
+[[nodiscard]] FileCalls& system_file_calls() noexcept;
+
 class OutputFile {
  public:
-  OutputFile() = default;
+  explicit OutputFile(FileCalls& calls = system_file_calls()) noexcept : calls_(calls) {}
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -24,7 +40,9 @@ class OutputFile {
   [[nodiscard]] Status create(const std::filesystem::path& path);
 
   // Appends whole records. Errors: storage; the file then ends where it ended before.
-  [[nodiscard]] Status append(ByteSpan records);
+  // room_behind: bytes for which there must be room behind them; without it the records are not written. A file system
+  // that cannot reserve is taken at its word.
+  [[nodiscard]] Status append(ByteSpan records, std::uint64_t room_behind = 0);
 
   // The same, and a Mark behind them; the buffer grows by the Mark.
   [[nodiscard]] Status append_marked(Bytes& records);
@@ -39,11 +57,14 @@ class OutputFile {
 
  private:
   [[nodiscard]] Status write_all(ByteSpan bytes, std::uint32_t crc_after);
+  [[nodiscard]] Status failed(int error, std::size_t bytes, std::uint64_t at);
 
+  FileCalls& calls_;
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
   std::uint32_t crc_ = 0;
+  bool has_reserved_ = false;
 };
 
 }  // namespace slew::recording

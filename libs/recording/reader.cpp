@@ -20,6 +20,27 @@ bool read_record(const InputFile& file, std::uint64_t offset, std::uint64_t leng
   return source.is_valid() && opcode == expected && content_length == content.size();
 }
 
+constexpr std::uint64_t kMarkBytes = kRecordHeadBytes + sizeof(std::uint32_t);
+
+// The Marks in front of and behind a record prove it: what the first one says, continued over the record, is what the
+// second one says. The file is not read from its beginning.
+bool is_between_marks(const InputFile& file, std::uint64_t offset, std::uint64_t length, Status& status) {
+  if (offset < kMarkBytes || offset > file.size() || length > file.size() - offset - kMarkBytes) return false;
+  Bytes bytes;
+  status = file.read(offset - kMarkBytes, length + 2 * kMarkBytes, bytes);
+  if (!status.is_ok()) return false;
+  const auto mark_at = [&bytes](std::size_t at, std::uint32_t& crc) {
+    ByteSource source(ByteSpan(bytes).subspan(at, kMarkBytes));
+    const Opcode opcode = Opcode{source.take<std::uint8_t>()};
+    const std::uint64_t content = source.take<std::uint64_t>();
+    crc = source.take<std::uint32_t>();
+    return opcode == Opcode::mark && content == sizeof crc;
+  };
+  std::uint32_t before = 0, behind = 0;
+  return mark_at(0, before) && mark_at(kMarkBytes + length, behind) &&
+         crc32_of(ByteSpan(bytes).first(kMarkBytes + length), before) == behind;
+}
+
 }  // namespace
 
 Status Reader::open(const std::filesystem::path& path, std::unique_ptr<Reader>& reader) {
@@ -39,8 +60,10 @@ Status Reader::not_a_recording(const std::string& problem) const {
 Status Reader::load() {
   Damage damage;
   Status status;
-  has_all_messages_ =
-      read_summary(file_, index_, damage, status) && load_metadata(status) && find_metadata(kIdentityName) != nullptr;
+  std::string problem;
+  has_all_messages_ = read_summary(file_, index_, damage, status) && load_metadata(status) &&
+                      find_metadata(kIdentityName) != nullptr &&
+                      (!damage_ || from_entries(*find_metadata(kIdentityName), identity_, problem));
   if (!status.is_ok()) return status;
   // no usable end: look at every byte
   if (!has_all_messages_) {
@@ -48,29 +71,35 @@ Status Reader::load() {
     status = scan_file(file_, scan);
     if (!status.is_ok()) return status;
     index_ = std::move(scan.index);
-    damage_ = std::move(scan.damage);
     has_all_messages_ = scan.has_data_end;
     const bool is_loaded = load_metadata(status);
+    damage_ = std::move(scan.damage);
     if (!status.is_ok()) return status;
     if (!is_loaded || find_metadata(kIdentityName) == nullptr) {
       return not_a_recording(damage_ ? fmt::format("at byte {} {}", damage_->offset, damage_->text)
                                      : "it does not say which session it holds");
     }
   }
-  std::string problem;
-  if (!from_entries(*find_metadata(kIdentityName), identity_, problem)) return not_a_recording(problem);
+  if (!from_entries(*find_metadata(kIdentityName), identity_, problem)) {
+    return Status::error(ExitCode::bad_input, fmt::format("{}: {}", path().string(), problem));
+  }
   list_channels();
   return status;
 }
 
 bool Reader::load_metadata(Status& status) {
   metadata_.clear();
+  damage_.reset();
   Bytes buffer;
   for (const MetadataIndexRecord& index : index_.metadata) {
     ByteSpan content;
     MetadataRecord record;
     if (!read_record(file_, index.offset, index.length, Opcode::metadata, buffer, content, status)) return false;
     if (!decode_metadata(content, record)) return false;
+    if (!damage_ && !is_between_marks(file_, index.offset, index.length, status)) {
+      damage_ = Damage{index.offset, fmt::format("the record '{}' differs from what was written", record.name)};
+    }
+    if (!status.is_ok()) return false;
     metadata_.push_back(std::move(record));
   }
   return true;

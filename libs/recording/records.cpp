@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace slew::recording {
 namespace {
@@ -68,6 +69,33 @@ std::uint32_t crc32_of(ByteSpan bytes, std::uint32_t former) noexcept {
     bytes = bytes.subspan(size);
   }
   return static_cast<std::uint32_t>(crc);
+}
+
+bool is_length_borne_out(Opcode opcode, ByteSpan front, std::uint64_t length) noexcept {
+  ByteSource source(front);
+  std::uint64_t behind = 0;  // of the bytes that the inner length counts
+  switch (opcode) {
+    case Opcode::chunk:
+      std::ignore = source.take_bytes(3 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
+      std::ignore = source.take_string();
+      break;
+    case Opcode::attachment:
+      std::ignore = source.take_bytes(2 * sizeof(std::uint64_t));
+      std::ignore = source.take_string();
+      std::ignore = source.take_string();
+      behind = sizeof(std::uint32_t);
+      break;
+    case Opcode::message_index: {
+      std::ignore = source.take_bytes(sizeof(std::uint16_t));
+      const std::uint64_t inner = source.take<std::uint32_t>();
+      return source.is_valid() && length <= kMaxPlainBytes && inner <= length - source.position();
+    }
+    default:
+      return length <= kMaxPlainBytes;
+  }
+  const std::uint64_t inner = source.take<std::uint64_t>();
+  if (!source.is_valid() || length < source.position() + behind) return false;
+  return inner == length - source.position() - behind;
 }
 
 std::size_t begin_record(Bytes& out, Opcode opcode) {

@@ -157,6 +157,15 @@ struct FooterRecord {
   std::uint32_t summary_crc = 0;
 };
 
+// Largest content of a record without a length field of its own that could bear it out: header, schema, channel,
+// metadata and what is not known.
+inline constexpr std::uint64_t kMaxPlainBytes = 64u << 20;
+
+// A record's length before anything of that size is read: whether the lengths inside of it agree. front: the first
+// bytes of the content, kFrontBytes of them or all.
+inline constexpr std::uint64_t kFrontBytes = 64 * 1024;
+[[nodiscard]] bool is_length_borne_out(Opcode opcode, ByteSpan front, std::uint64_t length) noexcept;
+
 // CRC32 (IEEE 802.3, as in zlib) continued from a former value; 0 starts.
 [[nodiscard]] std::uint32_t crc32_of(ByteSpan bytes, std::uint32_t former = 0) noexcept;
 

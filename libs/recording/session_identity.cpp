@@ -40,16 +40,18 @@ TextMap to_entries(const SessionIdentity& identity) {
 bool from_entries(const TextMap& entries, SessionIdentity& identity, std::string& problem) {
   std::int64_t version = 0;
   if (!parse(entries, kVersionKey, version) || version < 1) {
-    problem = "it names no format version";
+    problem = "the recording names no format version; nothing was read; look for an intact copy of the file";
     return false;
   }
   if (version > kFormatVersion) {
-    problem = fmt::format("it has format version {} and this program reads up to {}; use a newer slewring", version,
-                          kFormatVersion);
+    problem = fmt::format(
+        "the recording has format version {} and this program reads versions up to {}; nothing was read; use the "
+        "slewring that wrote it, or a newer one",
+        version, kFormatVersion);
     return false;
   }
   if (!parse(entries, kStepKey, identity.communication_step.ns) || identity.communication_step.ns < 1) {
-    problem = "it names no communication step";
+    problem = "the recording names no communication step; nothing was read; look for an intact copy of the file";
     return false;
   }
   if (!parse(entries, kStartedKey, identity.started_ns)) identity.started_ns = 0;

@@ -15,6 +15,7 @@ inline constexpr int kFormatVersion = 1;
 inline constexpr const char* kProfile = "slewring";
 inline constexpr const char* kIdentityName = "slewring.recording";  // first Metadata record
 inline constexpr const char* kSummaryName = "slewring.summary";     // Metadata record of an orderly end
+inline constexpr const char* kGapName = "slewring.gap";             // Metadata record of messages that were left out
 
 struct SessionIdentity {
   std::string scene;  // name of the scene

@@ -130,6 +130,21 @@ bool read_summary(const InputFile& file, FileIndex& index, Damage& damage, Statu
     damage = {footer_at, "the footer points outside of the file"};
     return false;
   }
+  // what the footer points to follows Data End: nothing is read before that is sure
+  constexpr std::size_t kDataEndBytes = kRecordHeadBytes + sizeof(std::uint32_t);
+  Bytes data_end;
+  if (footer.summary_start < kMagic.size() + kDataEndBytes) {
+    damage = {footer_at, "the footer does not point to a summary"};
+    return false;
+  }
+  status = file.read(footer.summary_start - kDataEndBytes, kDataEndBytes, data_end);
+  if (!status.is_ok()) return false;
+  ByteSource before(data_end);
+  if (Opcode{before.take<std::uint8_t>()} != Opcode::data_end ||
+      before.take<std::uint64_t>() != sizeof(std::uint32_t)) {
+    damage = {std::min(footer_at, footer.summary_start - kDataEndBytes), "here no summary begins"};
+    return false;
+  }
   Bytes summary;
   status = file.read(footer.summary_start, file.size() - kMagic.size() - footer.summary_start, summary);
   if (!status.is_ok()) return false;

@@ -17,9 +17,10 @@ constexpr std::int64_t kMostNanoseconds = std::int64_t{1} << 62;
 
 }  // namespace
 
-Writer::Writer(const SessionIdentity& identity, const WriterLimits& limits)
+Writer::Writer(const SessionIdentity& identity, const WriterLimits& limits, FileCalls& calls)
     : limits_(limits),
       communication_step_(identity.communication_step),
+      file_(calls, limits.backlog_bytes),
       window_(limits.window_steps, limits.window_bytes, limits.window_messages),
       chunk_(limits.chunk_bytes, limits.compression_level) {}
 
@@ -28,13 +29,13 @@ Writer::~Writer() {
 }
 
 Status Writer::create(const std::filesystem::path& path, const SessionIdentity& identity, const WriterLimits& limits,
-                      std::unique_ptr<Writer>& writer) {
+                      std::unique_ptr<Writer>& writer, FileCalls& calls) {
   if (identity.communication_step.ns < 1) {
     return Status::error(ExitCode::bad_input, fmt::format("{}: a recording needs the session's communication step; "
                                                           "nothing was written; give a step of at least 1 ns",
                                                           path.string()));
   }
-  std::unique_ptr<Writer> created(new Writer(identity, limits));
+  std::unique_ptr<Writer> created(new Writer(identity, limits, calls));
   Status status = created->file_.create(path);
   if (!status.is_ok()) return status;
   status = created->write_front(identity);
@@ -52,12 +53,22 @@ Status Writer::write_front(const SessionIdentity& identity) {
 }
 
 Status Writer::remember(Status status) {
-  if (!status.is_ok() && failure_.is_ok()) failure_ = status;
+  if (!status.is_ok() && failure_.is_ok()) {
+    failure_ = status;
+    roll_back();
+  }
   return status;
 }
 
-Status Writer::append_marked() {
-  return remember(file_.append_marked(buffer_));
+Status Writer::append_marked(std::uint64_t room_behind) {
+  return remember(file_.append_marked(buffer_, room_behind));
+}
+
+// An upper bound: what the last chunk leaves no room for is an end that a full disk would cost.
+std::uint64_t Writer::room_for_end() const noexcept {
+  constexpr std::uint64_t kSummaryBytes = 16 * 1024;  // metadata, statistics, offsets, footer
+  const std::uint64_t chunk_index = 128 + 10 * index_.channels.size();
+  return declared_bytes_ + kSummaryBytes + (index_.chunks.size() + 1) * chunk_index;
 }
 
 Status Writer::add_attachment(std::string_view name, std::string_view media_type, ByteSpan content) {
@@ -100,6 +111,7 @@ Status Writer::schema_of(const ChannelDef& channel, std::uint16_t& id) {
   buffer_.clear();
   encode_schema(buffer_, schema);
   Status status = append_marked();
+  declared_bytes_ += buffer_.size();
   if (status.is_ok()) index_.schemas.push_back(std::move(schema));
   return status;
 }
@@ -118,6 +130,7 @@ Status Writer::add_channel(const ChannelDef& channel, ChannelId& id) {
   encode_channel(buffer_, record);
   status = append_marked();
   if (!status.is_ok()) return status;
+  declared_bytes_ += buffer_.size();
   id = ChannelId{record.id};
   index_.channels.push_back(std::move(record));
   pending_counts_.push_back(0);
@@ -187,8 +200,12 @@ Status Writer::write_chunk() {
   ChunkIndexRecord chunk;
   buffer_.clear();
   Status status = remember(chunk_.finish(buffer_, file_.size(), chunk));
-  if (status.is_ok()) status = append_marked();
+  if (status.is_ok()) status = append_marked(room_for_end());
   const bool is_written = status.is_ok();
+  if (is_written && limits_.backlog_bytes > 0) {
+    forget_written();
+    handed_over_.push_back({file_.size(), chunk.start_time, pending_counts_});
+  }
   for (std::size_t channel = 0; channel < pending_counts_.size(); ++channel) {
     const std::uint64_t count = std::exchange(pending_counts_[channel], 0);
     (is_written ? counts_.messages : counts_.lost_messages) += count;
@@ -196,10 +213,56 @@ Status Writer::write_chunk() {
       index_.statistics.channel_message_counts[static_cast<std::uint16_t>(channel)] += count;
     }
   }
-  if (!is_written) return status;
+  if (!is_written) {
+    note_lost(chunk.start_time);
+    return status;
+  }
   index_.chunks.push_back(std::move(chunk));
   ++counts_.chunks;
   return status;
+}
+
+void Writer::forget_written() {
+  const std::uint64_t written = file_.written();
+  while (!handed_over_.empty() && handed_over_.front().end <= written) handed_over_.pop_front();
+}
+
+// what was handed over and did not come into the file
+void Writer::roll_back() {
+  forget_written();
+  for (const HandedOver& chunk : handed_over_) {
+    note_lost(chunk.start_time);
+    for (std::size_t channel = 0; channel < chunk.counts.size(); ++channel) {
+      counts_.messages -= chunk.counts[channel];
+      counts_.lost_messages += chunk.counts[channel];
+      if (chunk.counts[channel] > 0) {
+        index_.statistics.channel_message_counts[static_cast<std::uint16_t>(channel)] -= chunk.counts[channel];
+      }
+    }
+    --counts_.chunks;
+  }
+  handed_over_.clear();
+  const auto is_lost = [this](const auto& entry) { return entry.offset >= file_.size(); };
+  std::erase_if(index_.chunks, is_lost);
+  std::erase_if(index_.metadata, is_lost);
+  std::erase_if(index_.attachments, is_lost);
+}
+
+void Writer::note_lost(std::uint64_t log_time) {
+  if (first_lost_step_) return;
+  // in the newest epoch that begins at or before that time
+  std::uint64_t epoch_start = 0;
+  for (const auto& [epoch, start] : epoch_start_) {
+    if (start <= log_time) epoch_start = std::max(epoch_start, start);
+  }
+  first_lost_step_ =
+      static_cast<StepIndex>((log_time - epoch_start) / static_cast<std::uint64_t>(communication_step_.ns));
+}
+
+std::uint64_t Writer::messages_in_file(ChannelId channel) const {
+  const auto& counts = index_.statistics.channel_message_counts;
+  const auto found = counts.find(static_cast<std::uint16_t>(channel));
+  return found == counts.end() ? 0 : found->second;
 }
 
 Status Writer::flush_if_due(std::int64_t monotonic_ns) {
@@ -219,7 +282,12 @@ Status Writer::flush() {
   if (!failure_.is_ok()) return failure_;
   Status status;
   while (status.is_ok() && !window_.is_empty()) status = emit_first();
-  return status.is_ok() ? write_chunk() : status;
+  if (status.is_ok()) status = write_chunk();
+  return status.is_ok() ? settle() : status;
+}
+
+Status Writer::settle() {
+  return failure_.is_ok() ? remember(file_.drain()) : failure_;
 }
 
 Status Writer::close(const TextMap& summary) {

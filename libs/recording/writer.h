@@ -9,11 +9,13 @@
 // after their step left the sort window are written with their own time and counted (late_messages).
 // publish_time = wall clock at the publisher, or log_time when that is unknown.
 //
-// Not thread-safe. write() does not allocate once the first chunk is full; it compresses and writes in the caller's
-// thread whenever a chunk is full (about 4 ms per MiB).
+// Not thread-safe. write() does not allocate once the first chunk is full; it compresses in the caller's thread
+// whenever a chunk is full (about 3 ms per MiB), and writes there too or, with a backlog, in a thread of its own. A
+// failure of that thread is told by the next call that writes, with everything counted as lost that had waited.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -23,8 +25,8 @@
 
 #include "core/status.h"
 #include "core/time.h"
+#include "recording/background_file.h"
 #include "recording/chunk_builder.h"
-#include "recording/output_file.h"
 #include "recording/records.h"
 #include "recording/session_identity.h"
 #include "recording/sort_window.h"
@@ -45,6 +47,7 @@ struct WriterLimits {
   std::size_t window_bytes = 8u << 20;           // its memory for payloads
   std::size_t window_messages = 32'768;          // its capacity in messages
   SimDuration flush_period = milliseconds(500);  // every message is in the file after twice this time
+  std::size_t backlog_bytes = 0;                 // that may wait for a slow disk; 0: written in the caller's thread
 };
 
 struct ChannelDef {
@@ -67,7 +70,8 @@ class Writer {
   // Creates the file with the session's identity in front. A file that exists is never touched.
   // Errors: storage; bad_input when the identity has no communication step.
   [[nodiscard]] static Status create(const std::filesystem::path& path, const SessionIdentity& identity,
-                                     const WriterLimits& limits, std::unique_ptr<Writer>& writer);
+                                     const WriterLimits& limits, std::unique_ptr<Writer>& writer,
+                                     FileCalls& calls = system_file_calls());
   // Closes as close({}) does, when nobody closed it.
   ~Writer();
 
@@ -87,38 +91,51 @@ class Writer {
 
   // To be called about ten times a second, also while no message comes: hands to the file what is old enough.
   [[nodiscard]] Status flush_if_due(std::int64_t monotonic_ns);
-  // Everything, also what might still be overtaken by an earlier step.
+  // Everything, also what might still be overtaken by an earlier step; waits until it is in the file.
   [[nodiscard]] Status flush();
+  // Waits until all that was handed over is in the file.
+  [[nodiscard]] Status settle();
+  // Bytes that wait for the disk.
+  [[nodiscard]] std::size_t backlog_bytes() const { return file_.backlog(); }
 
   // Flushes, writes summary entries (if any), index and footer, waits for the disk. After a failure it still tries to
   // complete the file and returns the first failure.
   [[nodiscard]] Status close(const TextMap& summary);
 
+  // Of one channel, handed to the file.
+  [[nodiscard]] std::uint64_t messages_in_file(ChannelId channel) const;
+  // After a failed write: every message of an earlier step that had come is in the file. None: no write has failed.
+  [[nodiscard]] std::optional<StepIndex> first_lost_step() const noexcept { return first_lost_step_; }
   [[nodiscard]] const WriterCounts& counts() const noexcept { return counts_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return file_.path(); }
   [[nodiscard]] std::uint64_t file_bytes() const noexcept { return file_.size(); }
 
  private:
-  Writer(const SessionIdentity& identity, const WriterLimits& limits);
+  Writer(const SessionIdentity& identity, const WriterLimits& limits, FileCalls& calls);
 
   [[nodiscard]] Status write_front(const SessionIdentity& identity);
-  [[nodiscard]] Status append_marked();
+  [[nodiscard]] Status append_marked(std::uint64_t room_behind = 0);
+  [[nodiscard]] std::uint64_t room_for_end() const noexcept;
   [[nodiscard]] Status schema_of(const ChannelDef& channel, std::uint16_t& id);
   [[nodiscard]] Status emit_first();
   [[nodiscard]] Status emit(const MessageStamp& stamp, std::uint16_t channel, ByteSpan payload);
   [[nodiscard]] Status write_chunk();
   [[nodiscard]] Status write_end(const TextMap& summary);
   [[nodiscard]] Status remember(Status status);
+  void note_lost(std::uint64_t log_time);
+  void roll_back();
+  void forget_written();
   [[nodiscard]] std::uint64_t log_time_of(const MessageStamp& stamp);
 
   WriterLimits limits_;
   SimDuration communication_step_;
-  OutputFile file_;
+  BackgroundFile file_;
   Bytes buffer_;  // records on their way into the file
   SortWindow window_;
   ChunkBuilder chunk_;
 
   FileIndex index_;                            // channel id = position in index_.channels
+  std::uint64_t declared_bytes_ = 0;           // schemas and channels, which the end repeats
   std::vector<std::uint64_t> pending_counts_;  // messages of each channel in the open chunk
 
   std::map<std::uint32_t, std::uint64_t> epoch_start_;  // ns, log time of step 0 of each epoch
@@ -128,7 +145,16 @@ class Writer {
   std::uint32_t flushed_epoch_ = 0;  // newest epoch and step at the last flush
   StepIndex flushed_step_ = kJoinStep - 1;
 
+  // chunks that may still wait for the disk
+  struct HandedOver {
+    std::uint64_t end = 0;              // byte behind it
+    std::uint64_t start_time = 0;       // ns
+    std::vector<std::uint64_t> counts;  // by channel
+  };
+  std::deque<HandedOver> handed_over_;
+
   WriterCounts counts_;
+  std::optional<StepIndex> first_lost_step_;
   Status failure_;
 };
 

@@ -206,6 +206,85 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_NE(typo.err.find("did you mean 'Cyl_Lift.force'?"), std::string::npos) << typo.err;
 }
 
+TEST_F(InProcess, AnExportTakesAPartAndNeverReplacesAFileByItself) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.5"}).code, 0);
+  const std::string recording = work_.recording().string();
+  const CommandResult part =
+      slewring({"export", recording, "--only", "Cyl_Lift.force", "--from", "100ms", "--to", "0.2"});
+  ASSERT_EQ(part.code, 0) << part.err;
+  EXPECT_EQ(std::count(part.out.begin(), part.out.end(), '\n'), 12);  // heading, then every 10 ms
+  EXPECT_TRUE(part.out.starts_with("time [s],Cyl_Lift.force [N]\n0.1,")) << part.out;
+
+  ASSERT_EQ(slewring({"export", recording, "Cyl_*", "-o", "crane.mat"}).out, "crane.mat\n");
+  const auto refused = [&](std::vector<std::string> arguments, int code, const std::string& said) {
+    arguments.insert(arguments.begin(), {"export", recording});
+    const CommandResult result = slewring(arguments);
+    EXPECT_EQ(result.code, code) << result.err;
+    EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+  };
+  const auto size = std::filesystem::file_size(work_.path() / "crane.mat");
+  refused({"-o", "crane.mat"}, 2, "crane.mat: the file exists already; it was left as it is;");
+  EXPECT_EQ(std::filesystem::file_size(work_.path() / "crane.mat"), size);
+  ASSERT_EQ(slewring({"export", recording, "-o", "crane.mat", "--force"}).code, 0);
+  EXPECT_GT(std::filesystem::file_size(work_.path() / "crane.mat"), size);
+  refused({"--mat"}, 2, "a MAT-file needs a name");
+  refused({"--mat", "--csv", "-o", "b.mat"}, 2, "--csv excludes --mat");
+  refused({"Cyl_Lft.force", "-o", "b.mat"}, 2, "there is no variable 'Cyl_Lft.force'; did you mean 'Cyl_Lift.force'?");
+  refused({"--from", "2s", "-o", "b.mat"}, 2, "no value of these variables in this time; it goes from 0 to 0.5 s");
+  refused({"--from", "soon", "-o", "b.mat"}, 2, "--from 'soon' is not a time of the recording");
+  refused({"--from", "2s", "--to", "1s", "-o", "b.mat"}, 2, "--to 1s lies before --from 2s");
+  refused({"-o", "nowhere/b.mat"}, 6, "nowhere/b.mat: the MAT-file cannot be written");
+  refused({"-o", "nowhere/b.csv"}, 6, "nowhere/b.csv: cannot write the table (No such file or directory)");
+  for (const auto& entry : std::filesystem::directory_iterator(work_.path())) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with("b.")) << entry.path() << " was left behind";
+  }
+}
+
+TEST_F(InProcess, WithoutRoomForARecordingNothingBeginsAndTheRemedyIsNamed) {
+  const CommandResult result = run_scene("truck_crane.yaml", {"--duration", "1", "--keep-free", "1000000000"});
+  EXPECT_EQ(result.code, 6) << result.out;
+  EXPECT_NE((result.out + result.err)
+                .find("and 1000000000 MB are to be left to others; nothing was recorded; free "
+                      "space, record elsewhere with --out DIR, or leave less with --keep-free MB"),
+            std::string::npos)
+      << result.out << result.err;
+  EXPECT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.1", "--keep-free", "0"}).code, 0);
+}
+
+TEST_F(InProcess, ADamagedRecordingIsRecoveredAndReplays) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "3"}).code, 0);
+  const std::string recording = work_.recording().string();
+  const CommandResult whole = slewring({"recover", recording});
+  EXPECT_EQ(whole.code, 0) << whole.err;
+  EXPECT_NE(whole.out.find("there is nothing to recover and nothing was written"), std::string::npos) << whole.out;
+
+  // the recorder was killed in mid-write
+  const auto size = std::filesystem::file_size(recording);
+  std::filesystem::copy_file(recording, work_.path() / "cut.mcap");
+  std::filesystem::resize_file(work_.path() / "cut.mcap", size * 2 / 3);
+  const CommandResult cut = slewring({"recover", "cut.mcap", "--json"});
+  EXPECT_EQ(cut.code, 3) << cut.err;
+  const nlohmann::json saved = nlohmann::json::parse(cut.out);
+  EXPECT_EQ(saved.at("recovered"), "cut.recovered.mcap");
+  EXPECT_TRUE(saved.at("was_cut").get<bool>());
+  EXPECT_EQ(saved.at("lost_steps"), 0);
+  ASSERT_EQ(saved.at("lost").size(), 1u);
+  EXPECT_LT(saved.at("lost").at(0).at("byte"), size * 2 / 3);
+  const int last = saved.at("last_step");
+  EXPECT_GT(last, 100);
+  const CommandResult info = slewring({"info", "cut.recovered.mcap", "--verify"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_NE(info.out.find("recovered from cut.mcap"), std::string::npos) << info.out;
+  const CommandResult replayed = slewring({"replay", "cut.recovered.mcap", "--json"});
+  ASSERT_EQ(replayed.code, 0) << replayed.err;
+  EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0);
+  EXPECT_EQ(nlohmann::json::parse(replayed.out).at("steps"), last + 1);
+  // what is there is never replaced
+  const CommandResult again = slewring({"recover", "cut.mcap"});
+  EXPECT_EQ(again.code, 6);
+  EXPECT_NE(again.err.find("cut.recovered.mcap: the file exists already"), std::string::npos) << again.err;
+}
+
 // what an operator did on one crane, done again on another, and both in one picture
 TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
   const auto run_into = [&](const std::string& scene, const std::string& out, const std::string& input) {

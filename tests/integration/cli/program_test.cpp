@@ -6,6 +6,7 @@
 
 #include "build_paths.h"
 #include "command.h"
+#include "recording/writer.h"
 
 namespace slew::testing {
 namespace {
@@ -47,6 +48,7 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
                                                        {"info"},
                                                        {"plot"},
                                                        {"export"},
+                                                       {"recover"},
                                                        {"replay"},
                                                        {"compare"},
                                                        {"node"},
@@ -265,9 +267,34 @@ TEST_F(Program, DoctorJudgesThisMachine) {
   EXPECT_TRUE(contains(nowhere.out, "no_such_if")) << nowhere.out;
 }
 
+TEST_F(Program, InfoTellsWhatARecordingLacks) {
+  recording::SessionIdentity identity;
+  identity.scene = "crane";
+  identity.communication_step = milliseconds(1);
+  std::unique_ptr<recording::Writer> writer;
+  const std::filesystem::path path = work_.path() / "gaps.mcap";
+  ASSERT_EQ(recording::Writer::create(path, identity, {}, writer).text, "");
+  ASSERT_EQ(writer
+                ->add_metadata(recording::kGapName, {{"cause", "the disk was slower than the session"},
+                                                     {"epoch", "0"},
+                                                     {"from_step", "400"},
+                                                     {"to_step", "800"},
+                                                     {"left_out.health", "3"},
+                                                     {"left_out.variables", "123"}})
+                .text,
+            "");
+  ASSERT_EQ(writer->close({{"exit_code", "6"}, {"end", "no room"}}).text, "");
+  const CommandResult info = slewring({"info", "gaps.mcap"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_TRUE(contains(
+      info.out, "steps 400 to 800: 3 of health, 123 of variables left out, the disk was slower than the session"))
+      << info.out;
+  EXPECT_TRUE(contains(info.out, "closed before the session's end, which went on: no room")) << info.out;
+}
+
 TEST_F(Program, WhatIsNoRecordingIsRefused) {
   std::ofstream(work_.path() / "text.mcap") << "this is no recording\n";
-  for (const char* verb : {"info", "replay", "export", "plot"}) {
+  for (const char* verb : {"info", "recover", "replay", "export", "plot"}) {
     const CommandResult result = slewring({verb, "text.mcap"});
     EXPECT_EQ(result.code, 2) << verb << result.err;
     EXPECT_TRUE(contains(result.err, "text.mcap")) << verb << result.err;

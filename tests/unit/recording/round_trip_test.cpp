@@ -265,7 +265,9 @@ TEST(Recording, RefusesANewerFormatVersionByName) {
   SessionIdentity identity;
   std::string problem;
   EXPECT_FALSE(from_entries(entries, identity, problem));
-  EXPECT_EQ(problem, "it has format version 2 and this program reads up to 1; use a newer slewring");
+  EXPECT_EQ(problem,
+            "the recording has format version 2 and this program reads versions up to 1; nothing was read; use the "
+            "slewring that wrote it, or a newer one");
 }
 
 }  // namespace

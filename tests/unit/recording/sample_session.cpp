@@ -103,6 +103,32 @@ std::vector<KnownMessage> read_all(const Reader& reader, Status* status, const M
   return messages;
 }
 
+std::vector<ChunkPlace> chunks_of(const std::filesystem::path& path) {
+  InputFile file;
+  EXPECT_EQ(file.open(path).text, "");
+  FileScan scan;
+  EXPECT_EQ(scan_file(file, scan).text, "");
+  std::vector<ChunkPlace> places;
+  std::size_t messages = 0;
+  ChunkReader chunk_reader;
+  for (const ChunkIndexRecord& index : scan.index.chunks) {
+    Bytes record, records;
+    EXPECT_EQ(file.read(index.offset + kRecordHeadBytes, index.length - kRecordHeadBytes, record).text, "");
+    ChunkRecord chunk;
+    EXPECT_TRUE(decode_chunk(record, chunk));
+    std::string problem;
+    EXPECT_TRUE(chunk_reader.unpack(chunk, records, problem));
+    ChunkContents contents;
+    EXPECT_TRUE(examine(
+        records, [](std::uint16_t) { return true; }, contents, problem));
+    ChunkPlace place = {index.offset, index.offset + index.length, messages, 0};
+    for (const auto& [channel, count] : contents.message_counts) place.messages += count;
+    messages += place.messages;
+    places.push_back(place);
+  }
+  return places;
+}
+
 std::string file_content(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

@@ -55,6 +55,15 @@ enum class Ending { closed, open };
 [[nodiscard]] std::vector<KnownMessage> read_all(const Reader& reader, Status* status = nullptr,
                                                  const MessageFilter& filter = {});
 
+// Bytes of each chunk of an intact file, and the number of messages in front of it.
+struct ChunkPlace {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t first_message = 0;
+  std::size_t messages = 0;
+};
+[[nodiscard]] std::vector<ChunkPlace> chunks_of(const std::filesystem::path& path);
+
 [[nodiscard]] std::string file_content(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::string_view content);
 

@@ -1,14 +1,20 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <new>
+#include <random>
 
+#include "recording/recovery.h"
 #include "sample_session.h"
+#include "tests/support/nightly.h"
 
 namespace slew::recording {
 namespace {
@@ -149,6 +155,8 @@ int record_onto_a_full_disk(const std::filesystem::path& where) {
   std::unique_ptr<Reader> reader;
   if (!Reader::open(where / "a.mcap", reader).is_ok()) return 4;
   if (read_all(*reader).size() != counts.messages || counts.messages == 0) return 5;
+  // room for the end was kept
+  if (!reader->verify().is_ok() || reader->find_metadata(kSummaryName) == nullptr) return 7;
   return counts.messages + counts.lost_messages == 3'000 ? 0 : 6;
 }
 
@@ -179,6 +187,66 @@ TEST(RecordingStorage, AKilledWriterLosesNothingThatWasFlushed) {
   std::unique_ptr<Reader> reader;
   ASSERT_EQ(Reader::open(path, reader).text, "");
   EXPECT_EQ(read_all(*reader), sample_messages(25));
+}
+
+// What a writing process has said of itself before it was killed.
+struct Progress {
+  std::atomic<std::uint64_t> in_file;  // messages of chunks that were written
+  std::atomic<std::uint64_t> chunks;
+};
+
+// A process that writes for ever, killed somewhere: 5 times in CI, 100 times nightly.
+TEST(RecordingStorage, AWriterKilledInMidWriteLosesOneChunkAtMost) {
+  const ScratchDirectory scratch;
+  auto* progress = static_cast<Progress*>(
+      mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  ASSERT_NE(progress, MAP_FAILED);
+  std::mt19937_64 random(5);
+  for (int round = 0; round < testing::rounds(5, 100); ++round) {
+    SCOPED_TRACE(round);
+    const std::filesystem::path path = scratch / fmt::format("{}.mcap", round);
+    new (progress) Progress{};
+    const pid_t child = fork();
+    if (child == 0) {
+      WriterLimits limits;
+      limits.chunk_bytes = 200'000;  // most of the time is spent in write
+      std::unique_ptr<Writer> writer;
+      ChannelId channel{};
+      if (!Writer::create(path, sample_identity(), limits, writer).is_ok()) _exit(1);
+      if (!writer->add_channel({kStateTopic, "t::T", "", {}}, channel).is_ok()) _exit(1);
+      for (StepIndex step = 0;; ++step) {
+        const std::string payload = sample_payload(static_cast<std::uint64_t>(step), 10'000);
+        if (!writer->write(channel, {0, step, static_cast<std::uint32_t>(step), 0}, as_byte_span(payload)).is_ok()) {
+          _exit(1);
+        }
+        progress->in_file = writer->counts().messages;
+        progress->chunks = writer->counts().chunks;
+      }
+    }
+    const std::uint64_t chunks = 1 + random() % 30;
+    while (progress->chunks < chunks && waitpid(child, nullptr, WNOHANG) == 0) {
+    }
+    for (std::uint64_t spins = random() % 200'000; spins > 0; --spins) progress->chunks.load();
+    ASSERT_EQ(kill(child, SIGKILL), 0);
+    int result = 0;
+    ASSERT_EQ(waitpid(child, &result, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(result));
+
+    std::unique_ptr<Reader> reader;
+    ASSERT_EQ(Reader::open(path, reader).text, "");
+    const std::vector<KnownMessage> read = read_all(*reader);
+    constexpr std::uint64_t kOfAChunk = 21;
+    ASSERT_GE(read.size(), progress->in_file) << "more than the chunk in hand was lost";
+    ASSERT_LE(read.size(), progress->in_file + kOfAChunk);
+    Recovery recovery;
+    ASSERT_EQ(recover(path, scratch / "recovered.mcap", recovery).text, "");
+    ASSERT_EQ(Reader::open(scratch / "recovered.mcap", reader).text, "");
+    ASSERT_EQ(reader->verify().text, "");
+    ASSERT_EQ(read_all(*reader), read);
+    std::filesystem::remove(scratch / "recovered.mcap");
+    std::filesystem::remove(path);
+  }
+  munmap(progress, sizeof(Progress));
 }
 
 }  // namespace

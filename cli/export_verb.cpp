@@ -1,0 +1,221 @@
+// `slewring export REC`: a recording's variables as a table, or as structs for MATLAB.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <memory>
+
+#include "cli/plotting/csv_export.h"
+#include "cli/plotting/mat_export.h"
+#include "cli/recorded.h"
+#include "cli/text_output.h"
+#include "cli/verbs.h"
+#include "cli_support/failure.h"
+#include "scene/units.h"
+
+namespace slew::cli {
+namespace {
+
+using cli_support::Failure;
+
+struct Options {
+  std::string recording;
+  std::vector<std::string> variables;
+  std::vector<std::string> only;
+  std::string from, to;
+  std::string output;
+  bool is_csv = false;
+  bool is_mat = false;
+  bool is_input = false;
+  bool may_replace = false;
+};
+
+std::uint64_t time_ns(const std::string& option, const std::string& text) {
+  scene::UnitSystem units;
+  const scene::QuantityResult time = scene::read_quantity(text, scene::Writing::quoted, Dimension::time, units);
+  const bool is_bare = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
+  const double seconds = time.value ? *time.value : is_bare ? std::strtod(text.c_str(), nullptr) : -1;
+  // beyond 2^63 ns no recording goes
+  if (!(seconds >= 0) || seconds > 9e9) {
+    throw Failure(ExitCode::bad_input, option + " '" + text +
+                                           "' is not a time of the recording; nothing was written; expected one such "
+                                           "as '2.5 s', or a bare number in s, 0 or more");
+  }
+  return static_cast<std::uint64_t>(std::llround(seconds * 1e9));
+}
+
+TimeRange range_of(const Options& options) {
+  TimeRange range;
+  if (!options.from.empty()) range.from_ns = time_ns("--from", options.from);
+  if (!options.to.empty()) range.to_ns = time_ns("--to", options.to);
+  if (range.to_ns < range.from_ns) {
+    throw Failure(ExitCode::bad_input, "--to " + options.to + " lies before --from " + options.from +
+                                           "; nothing was written; name the earlier time first");
+  }
+  return range;
+}
+
+void check_values(const recording::Reader& reader, const std::vector<plotting::Series>& curves) {
+  for (const plotting::Series& curve : curves) {
+    if (!curve.time.empty()) return;
+  }
+  throw Failure(ExitCode::bad_input,
+                fmt::format("the recording has no value of these variables in this time; it goes from 0 to {:.6g} s; "
+                            "nothing was written",
+                            static_cast<double>(reader.statistics().end_time) * 1e-9));
+}
+
+// A file is replaced only when that is asked for, and never by half of another: it is written under another name first.
+// What is no file, such as /dev/stdout, is written to as it is.
+ExitCode write_file(const Options& options, const std::function<Status(const std::filesystem::path&)>& write) {
+  const std::filesystem::path path = options.output;
+  std::error_code error;
+  const std::filesystem::file_status there = std::filesystem::status(path, error);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
+    cli_support::require(write(path));
+    return ExitCode::ok;
+  }
+  const std::filesystem::path part = path.string() + ".part";
+  Status status = write(part);
+  if (status.is_ok()) {
+    std::filesystem::rename(part, path, error);
+    if (error) {
+      status = Status::error(ExitCode::storage, fmt::format("{}: cannot be written ({}); nothing was kept; choose "
+                                                            "another place with -o",
+                                                            path.string(), error.message()));
+    }
+  }
+  if (!status.is_ok()) {
+    std::filesystem::remove(part, error);
+    if (const std::size_t at = status.text.find(part.string()); at != std::string::npos) {
+      status.text.replace(at, part.string().size(), path.string());
+    }
+  }
+  cli_support::require(status);
+  fmt::print("{}\n", path.string());
+  return ExitCode::ok;
+}
+
+void check_output(const Options& options) {
+  const bool is_standard_output = options.output.empty() || options.output == "-";
+  if (is_standard_output) {
+    if (!options.is_mat) return;
+    throw Failure(ExitCode::bad_input, "a MAT-file needs a name; nothing was written; give one with -o FILE.mat");
+  }
+  std::error_code ignored;
+  if (options.may_replace || !std::filesystem::is_regular_file(options.output, ignored)) return;
+  throw Failure(ExitCode::bad_input, options.output +
+                                         ": the file exists already; it was left as it is; choose another name, or "
+                                         "replace it with --force");
+}
+
+// What the operator did, as `run --input` and scripts read it: raw values by input.
+std::string input_text(const recording::Reader& reader, const TimeRange& range) {
+  const scene::Scene scene = scene::load_text(attachment_text(reader, "scene.yaml"), reader.identity().scene);
+  if (scene.inputs.empty()) {
+    throw Failure(ExitCode::bad_input, "the scene of this recording has no inputs; nothing was written");
+  }
+  std::vector<std::string> names;
+  for (const scene::InputDef& input : scene.inputs) names.push_back(input.name + ".raw");
+  const std::vector<plotting::Series> curves = read_series(reader, names, Units::si, range);
+  check_values(reader, curves);
+  std::string text = "time";
+  for (const scene::InputDef& input : scene.inputs) text += "," + input.name;
+  const std::vector<double>& time = curves.front().time;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (i > 0 && time[i] <= time[i - 1]) {
+      throw Failure(ExitCode::bad_input,
+                    "the session was reset on the way, so its input is no one table over time; "
+                    "nothing was written; record it without a reset");
+    }
+    text += fmt::format("\n{}", time[i]);
+    for (const plotting::Series& curve : curves) text += fmt::format(",{}", curve.values[i]);
+  }
+  return text + "\n";
+}
+
+ExitCode export_input(const Options& options, const std::vector<std::string>& wishes) {
+  if (!wishes.empty()) {
+    throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
+  }
+  const auto reader = open_recording(options.recording);
+  const std::string text = input_text(*reader, range_of(options));
+  if (options.output.empty() || options.output == "-") {
+    write_text("-", text);
+    return ExitCode::ok;
+  }
+  return write_file(options, [&](const std::filesystem::path& path) {
+    try {
+      write_text(path.string(), text);
+    } catch (const Failure& failure) {
+      return Status::error(failure.code(), failure.what());
+    }
+    return Status::ok();
+  });
+}
+
+ExitCode export_variables(Options options) {
+  const bool is_named_mat = std::filesystem::path(options.output).extension() == ".mat";
+  options.is_mat = options.is_mat || (is_named_mat && !options.is_csv && !options.is_input);
+  check_output(options);
+  std::vector<std::string> wishes = options.variables;
+  wishes.insert(wishes.end(), options.only.begin(), options.only.end());
+  if (options.is_input) return export_input(options, wishes);
+  if (wishes.empty()) wishes = {"*"};
+  const TimeRange range = range_of(options);
+  const auto reader = open_recording(options.recording);
+  const std::vector<plotting::Series> curves = read_series(*reader, wishes, Units::si, range);
+  check_values(*reader, curves);
+  if (options.output.empty() || options.output == "-") {
+    plotting::write_csv(curves, std::cout);
+    std::cout << std::flush;
+    return ExitCode::ok;
+  }
+  return write_file(options, [&](const std::filesystem::path& path) {
+    if (!options.is_mat) return plotting::export_csv(curves, path);
+    const recording::SessionIdentity& identity = reader->identity();
+    return plotting::export_mat(curves,
+                                {identity.scene, identity.session_name, identity.session_id, identity.build,
+                                 identity.communication_step.seconds()},
+                                path);
+  });
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Action& action) {
+  CLI::App* verb = program.add_subcommand("export", "write variables of a recording as a table or for MATLAB");
+  const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
+  verb->add_option("variables", options->variables, "names, or patterns with * and ?; without them all")
+      ->type_name("VAR");
+  verb->add_option("--only", options->only, "the same, one at a time; repeat for more")
+      ->type_name("VAR")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  CLI::Option* csv =
+      verb->add_flag("--csv", options->is_csv, "comma-separated values in SI units; the default but for a FILE.mat");
+  CLI::Option* mat = verb->add_flag("--mat", options->is_mat,
+                                    "MAT-file for MATLAB, Octave and scipy.io: a struct with name, unit, time and "
+                                    "value for each variable, SI units");
+  CLI::Option* input =
+      verb->add_flag("--input", options->is_input,
+                     "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, "
+                     "straight lines between");
+  csv->excludes(mat);
+  input->excludes(mat);
+  verb->add_option("--from", options->from, "leave out what lies before, such as '2.5 s'")->type_name("TIME");
+  verb->add_option("--to", options->to, "leave out what lies behind")->type_name("TIME");
+  verb->add_option("-o,--output", options->output, "file to write; without it standard output")->type_name("FILE");
+  verb->add_flag("--force", options->may_replace, "replace a file that exists");
+  verb->footer(
+      "Examples:\n"
+      "  slewring export runs/truck_crane-20260501-102030 --csv -o crane.csv\n"
+      "  slewring export runs/truck_crane-20260501-102030 --mat --only 'Cyl_*' --from 2s --to 5s -o lift.mat\n"
+      "  slewring export runs/truck_crane-20260501-102030 --input -o levers.csv");
+  verb->callback([&action, options] { action = [options] { return export_variables(*options); }; });
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Recordings of sessions of every protocol version, kept in golden/: this and every later program reads the same values
+# from them as the one that wrote them did.
+#   golden_session_test.sh BIN_FOLDER
+#
+# Each <name>.mcap.gz has its values beside it, as `slewring export` wrote them then. A pair is added with each new
+# protocol version, and none is ever changed.
+set -euo pipefail
+
+bin=$1
+golden=$(cd "$(dirname "${BASH_SOURCE[0]}")/golden" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+count=0
+for packed in "$golden"/*.mcap.gz; do
+  count=$((count + 1))
+  name=$(basename "$packed" .mcap.gz)
+  gzip -dc "$packed" > "$scratch/session.mcap"
+  "$bin/slewring" info "$scratch/session.mcap" --verify > "$scratch/info" || { cat "$scratch/info" >&2; exit 1; }
+  grep -q '^end *closed in order$' "$scratch/info" || { cat "$scratch/info" >&2; exit 1; }
+  # the names in the heading, without "time [s]" and without units
+  mapfile -t names < <(head -n 1 "$golden/$name.csv" | tr ',' '\n' | tail -n +2 | sed 's/ \[.*//')
+  "$bin/slewring" export "$scratch/session.mcap" "${names[@]}" > "$scratch/values"
+  cmp "$golden/$name.csv" "$scratch/values" || { echo "$name is read to other values" >&2; exit 1; }
+done
+[ $count -ge 1 ] || { echo "no golden recording was found in $golden" >&2; exit 1; }
