@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -24,10 +25,11 @@ void on_signal(int signal) {
 
 // the loop wakes at least this often, for the stop flag and the watch over the others
 constexpr std::int64_t kLongestWaitNs = 20'000'000;
+constexpr int kHealthsBetweenLooks = 10;  // of one second: who does not fit is named within two
 
 class HealthThread {
  public:
-  explicit HealthThread(Node& node) : report_(node), thread_([this] { run(); }) {}
+  explicit HealthThread(Node& node) : node_(node), report_(node), thread_([this] { run(); }) {}
   ~HealthThread() {
     {
       const std::lock_guard lock(mutex_);
@@ -40,12 +42,24 @@ class HealthThread {
  private:
   void run() {
     std::unique_lock lock(mutex_);
+    int sent = 0;
     while (!condition_.wait_for(lock, std::chrono::nanoseconds(kHealthInterval.ns), [this] { return is_stopping_; })) {
       report_.send();
+      if (++sent % kHealthsBetweenLooks == 0) name_misfits();
     }
   }
 
+  // each once
+  void name_misfits() {
+    for (const std::string& misfit : node_.member().transport().misfits()) {
+      if (!named_.insert(misfit).second) continue;
+      std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node_.member().role())).c_str(), misfit.c_str());
+    }
+  }
+
+  Node& node_;
   HealthReport report_;
+  std::set<std::string> named_;
   std::mutex mutex_;
   std::condition_variable condition_;
   bool is_stopping_ = false;

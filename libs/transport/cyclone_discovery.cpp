@@ -1,4 +1,4 @@
-// Who writes a topic, from Cyclone's builtin topic of publications.
+// Who writes and reads topics, from Cyclone's builtin topics.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/ddsi_typelib.h>
@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 
 #include "transport/cyclone_sertype.h"
 #include "transport/cyclone_transport.h"
@@ -14,7 +15,8 @@
 namespace slew::transport {
 namespace {
 
-constexpr std::uint32_t kMaxWriters = 1024;  // of all topics in the domain
+constexpr std::uint32_t kMaxEndpoints = 2048;  // of all topics in the domain, written or read
+constexpr const char* kOtherLayout = " of another layout (built from another idl/slewring.idl)";
 
 // whether one of the endpoint's partitions is the session's
 bool is_in_session(const dds_qos_t* qos, const std::string& session) {
@@ -61,32 +63,114 @@ bool has_other_layout(const dds_builtintopic_endpoint_t& endpoint, const ddsi_se
   return differs;
 }
 
+// Visits what others in the session write (or read), of this and other processes.
+template <typename Visit>
+void for_each_endpoint(dds_entity_t participant, dds_entity_t builtin_topic, const std::string& session,
+                       Visit&& visit) {
+  dds_guid_t own{};
+  if (dds_get_guid(participant, &own) != DDS_RETCODE_OK) return;
+  const dds_entity_t reader = dds_create_reader(participant, builtin_topic, nullptr, nullptr);
+  if (reader < 0) return;
+  std::vector<void*> samples(kMaxEndpoints, nullptr);
+  std::vector<dds_sample_info_t> about(kMaxEndpoints);
+  const dds_return_t count = dds_take(reader, samples.data(), about.data(), kMaxEndpoints, kMaxEndpoints);
+  for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
+    if (!about[i].valid_data || about[i].instance_state != DDS_ALIVE_INSTANCE_STATE) continue;
+    const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
+    if (std::memcmp(&endpoint.participant_key, &own, sizeof own) == 0) continue;
+    if (is_in_session(endpoint.qos, session)) visit(endpoint);
+  }
+  if (count > 0) dds_return_loan(reader, samples.data(), count);
+  dds_delete(reader);
+}
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+Qos qos_of(dds_entity_t endpoint) {
+  Qos qos(dds_create_qos());
+  return dds_get_qos(endpoint, qos.get()) == DDS_RETCODE_OK ? std::move(qos) : nullptr;
+}
+
+std::vector<dds_data_representation_id_t> representations(const dds_qos_t* qos) {
+  std::uint32_t count = 0;
+  dds_data_representation_id_t* ids = nullptr;
+  std::vector<dds_data_representation_id_t> found;
+  if (dds_qget_data_representation(qos, &count, &ids)) found.assign(ids, ids + count);
+  dds_free(ids);
+  // who says nothing speaks XCDR1
+  if (found.empty()) found.push_back(DDS_DATA_REPRESENTATION_XCDR1);
+  return found;
+}
+
+// Why a reader that asks for `requested` does not hear a writer that offers `offered`; empty: it does.
+std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested) {
+  dds_reliability_kind_t offers{}, asks{};
+  dds_duration_t ignored = 0;
+  dds_qget_reliability(offered, &offers, &ignored);
+  dds_qget_reliability(requested, &asks, &ignored);
+  if (offers < asks) return "reliability best effort, and reliable is asked for";
+  dds_durability_kind_t keeps{}, wants{};
+  dds_qget_durability(offered, &keeps);
+  dds_qget_durability(requested, &wants);
+  if (keeps < wants) return "a durability below the one that is asked for (transient local)";
+  const dds_data_representation_id_t written = representations(offered).front();
+  const auto read = representations(requested);
+  if (std::ranges::find(read, written) == read.end()) return "another data representation (XCDR1 is expected)";
+  dds_ownership_kind_t of_writer{}, of_reader{};
+  dds_qget_ownership(offered, &of_writer);
+  dds_qget_ownership(requested, &of_reader);
+  if (of_writer != of_reader) return "another kind of ownership (shared is expected)";
+  dds_duration_t every = DDS_INFINITY, within = DDS_INFINITY;
+  dds_qget_deadline(offered, &every);
+  dds_qget_deadline(requested, &within);
+  if (every > within) return "a deadline longer than the one that is asked for (none is expected)";
+  return "";
+}
+
 }  // namespace
 
 std::vector<std::string> CycloneTransport::discovered_writers(wire::Topic topic) {
   std::vector<std::string> writers;
-  dds_guid_t own{};
-  if (dds_get_guid(participant_, &own) != DDS_RETCODE_OK) return writers;
-  const dds_entity_t reader = dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr);
-  if (reader < 0) return writers;
-  std::vector<void*> samples(kMaxWriters, nullptr);
-  std::vector<dds_sample_info_t> about(kMaxWriters);
-  const dds_return_t count = dds_take(reader, samples.data(), about.data(), kMaxWriters, kMaxWriters);
-  for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
-    if (!about[i].valid_data || about[i].instance_state != DDS_ALIVE_INSTANCE_STATE) continue;
-    const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
-    if (std::strcmp(endpoint.topic_name, traits(topic).name) != 0) continue;
-    if (std::memcmp(&endpoint.participant_key, &own, sizeof own) == 0) continue;
-    if (!is_in_session(endpoint.qos, options_.session)) continue;
-    const ddsi_sertype* type = types_[static_cast<std::size_t>(topic)];
-    const bool differs = type != nullptr && has_other_layout(endpoint, *type);
-    writers.push_back(fmt::format("{}, type {}{}", description(endpoint.qos), endpoint.type_name,
-                                  differs ? " of another layout (built from another idl/slewring.idl)" : ""));
-  }
-  if (count > 0) dds_return_loan(reader, samples.data(), count);
-  dds_delete(reader);
+  for_each_endpoint(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, options_.session,
+                    [&](const dds_builtintopic_endpoint_t& endpoint) {
+                      if (std::strcmp(endpoint.topic_name, traits(topic).name) != 0) return;
+                      const ddsi_sertype* type = types_[static_cast<std::size_t>(topic)];
+                      const bool differs = type != nullptr && has_other_layout(endpoint, *type);
+                      writers.push_back(fmt::format("{}, type {}{}", description(endpoint.qos), endpoint.type_name,
+                                                    differs ? kOtherLayout : ""));
+                    });
   std::ranges::sort(writers);
   return writers;
+}
+
+std::vector<std::string> CycloneTransport::misfits() {
+  std::vector<std::string> found;
+  const auto look = [&](dds_entity_t builtin_topic, const auto& own_endpoints, bool is_writer) {
+    for_each_endpoint(participant_, builtin_topic, options_.session, [&](const dds_builtintopic_endpoint_t& endpoint) {
+      for (std::size_t i = 0; i < wire::kTopics; ++i) {
+        const TopicTraits& topic = traits(static_cast<wire::Topic>(i));
+        if (own_endpoints[i] <= 0 || std::strcmp(endpoint.topic_name, topic.name) != 0) continue;
+        std::string problem;
+        if (std::strcmp(endpoint.type_name, topic.type_name) != 0) {
+          problem = fmt::format("type {}, which is {} here", endpoint.type_name, topic.type_name);
+        } else if (types_[i] != nullptr && has_other_layout(endpoint, *types_[i])) {
+          problem = fmt::format("type {}{}", endpoint.type_name, kOtherLayout);
+        } else if (const Qos own = qos_of(own_endpoints[i]); own != nullptr) {
+          problem = is_writer ? qos_problem(endpoint.qos, own.get()) : qos_problem(own.get(), endpoint.qos);
+        }
+        if (problem.empty()) continue;
+        found.push_back(fmt::format("{} {} topic '{}' with {}; it is not heard; see idl/README.md",
+                                    description(endpoint.qos), is_writer ? "writes" : "reads", topic.name, problem));
+      }
+    });
+  };
+  look(DDS_BUILTIN_TOPIC_DCPSPUBLICATION, readers_, true);
+  look(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, writers_, false);
+  std::ranges::sort(found);
+  return found;
 }
 
 }  // namespace slew::transport

@@ -64,6 +64,9 @@ class CycloneTransport final : public Transport {
   void wait_until(std::int64_t monotonic_deadline_ns) override;
   // "mechanics on host crane2, pid 812, type slewring::Tick"; of all vendors, in this session's partition
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
+  // Of all vendors: types by name, and by layout where it is told; QoS by reliability, durability, representation,
+  // ownership and deadline.
+  [[nodiscard]] std::vector<std::string> misfits() override;
 
   // Readers of other participants that match the writer of this topic now.
   [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const;

@@ -39,6 +39,10 @@ class Transport {
   // For messages about a JOIN that does not come about: who writes a topic as the carrier sees it, e.g.
   // "host:pid type slewring::Tick"; empty when the carrier cannot tell.
   [[nodiscard]] virtual std::vector<std::string> discovered_writers(wire::Topic topic) = 0;
+
+  // Who is in this session with a type or QoS that keeps them and this endpoint from hearing each other, a sentence
+  // each; without this they would only be silent. Thread-safe.
+  [[nodiscard]] virtual std::vector<std::string> misfits() { return {}; }
 };
 
 }  // namespace slew::transport

@@ -46,6 +46,7 @@ class TypedProgram {
   TypedProgram(const TypedProgram&) = delete;
   TypedProgram& operator=(const TypedProgram&) = delete;
 
+  [[nodiscard]] dds_qos_t* qos() const noexcept { return qos_; }
   dds_entity_t reader(const dds_topic_descriptor_t& type, const char* name) const {
     return dds_create_reader(subscriber_, dds_create_topic(participant_, &type, name, nullptr, nullptr), qos_, nullptr);
   }
@@ -190,6 +191,60 @@ TEST(CycloneInterop, AWriterOfAnotherLayoutIsNamedAsSuch) {
   }));
   ASSERT_EQ(writers.size(), 1u);
   EXPECT_NE(writers[0].find("type slewring::Tick of another layout"), std::string::npos) << writers[0];
+}
+
+// other program: endpoints that can not match, and one that can
+bool take_part_wrongly(std::uint32_t domain) {
+  TypedProgram program(domain);
+  const dds_entity_t fits = program.writer(slewring_ActuatorMessage_desc, "slewring/actuators");
+  static_cast<void>(program.writer(slewring_NodeStatus_desc, "slewring/tick"));
+  // reliable, but volatile where what was said is kept for late readers
+  static_cast<void>(program.writer(slewring_SessionDescription_desc, "slewring/session"));
+  dds_qset_durability(program.qos(), DDS_DURABILITY_TRANSIENT_LOCAL);
+  static_cast<void>(program.reader(slewring_ControlRequest_desc, "slewring/control_request"));
+  dds_qset_durability(program.qos(), DDS_DURABILITY_VOLATILE);
+  dds_qset_reliability(program.qos(), DDS_RELIABILITY_BEST_EFFORT, 0);
+  static_cast<void>(program.writer(slewring_MechanismMessage_desc, "slewring/mechanism"));
+  const dds_entity_t done = program.reader(slewring_Health_desc, "slewring/health");
+  if (!eventually([&] { return has_reader(fits) && has_match(done); })) return false;
+  void* sample = nullptr;
+  dds_sample_info_t about{};
+  return eventually([&] { return dds_take(done, &sample, &about, 1, 1) == 1; });
+}
+
+TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
+  const testing::TestDomain domain;
+  ChildProcess program([&] { return take_part_wrongly(domain.number()); });
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+                                               {kSession,
+                                                "observer",
+                                                {Topic::control_request, Topic::health},
+                                                {Topic::tick, Topic::mechanism, Topic::actuators, Topic::session}},
+                                               transport);
+  ASSERT_TRUE(status.is_ok()) << status.text;
+  std::vector<std::string> misfits;
+  ASSERT_TRUE(eventually([&] {
+    misfits = transport->misfits();
+    return misfits.size() >= 4;
+  }));
+  const std::string who = "a program that is not of Slewring ";
+  EXPECT_EQ(
+      misfits,
+      (std::vector<std::string>{
+          who + "reads topic 'slewring/control_request' with a durability below the one that is asked for (transient "
+                "local); it is not heard; see idl/README.md",
+          who + "writes topic 'slewring/mechanism' with reliability best effort, and reliable is asked for; it is "
+                "not heard; see idl/README.md",
+          who + "writes topic 'slewring/session' with a durability below the one that is asked for (transient "
+                "local); it is not heard; see idl/README.md",
+          who + "writes topic 'slewring/tick' with type slewring::NodeStatus, which is slewring::Tick here; it is "
+                "not heard; see idl/README.md"}));
+  ASSERT_TRUE(eventually([&] { return transport->matched_readers(Topic::health) > 0; }));
+  ByteBuffer bytes;
+  ASSERT_TRUE(encode(wire::Health{}, bytes));
+  ASSERT_TRUE(transport->publish(Topic::health, bytes).is_ok());
+  EXPECT_EQ(program.wait(), 0);
 }
 
 }  // namespace
