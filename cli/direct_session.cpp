@@ -110,6 +110,16 @@ const coupling::Subsystem* DirectSession::subsystem(Role role) const noexcept {
   }
 }
 
+std::vector<ElementVariable> DirectSession::variables() const {
+  std::vector<ElementVariable> all;
+  for (const Role role : {Role::mechanics, Role::hydraulics}) {
+    if (subsystem(role) == nullptr) continue;
+    const std::span<const ElementVariable> own = subsystem(role)->variables();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
 std::uint64_t DirectSession::state_hash(Role role) const noexcept {
   const coupling::Subsystem* found = subsystem(role);
   return found != nullptr ? found->state_hash() : 0;

@@ -34,6 +34,8 @@ class DirectSession {
   void step(StepIndex n, std::span<const wire::Command> commands, std::span<const double> controls) noexcept;
 
   [[nodiscard]] const coupling::Subsystem* subsystem(wire::Role role) const noexcept;
+  // Those of mechanics and hydraulics, of each in its order.
+  [[nodiscard]] std::vector<ElementVariable> variables() const;
   // Hash of the role's state now, 0 when the scene has no such role.
   [[nodiscard]] std::uint64_t state_hash(wire::Role role) const noexcept;
   // What the role published last; of mechanics, hydraulics or flex.

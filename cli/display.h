@@ -34,4 +34,7 @@ struct DisplayUnit {
 // UTF-8.
 [[nodiscard]] std::string table_text(const std::vector<std::vector<std::string>>& rows, std::string_view indent = "  ");
 
+// A line of comma-separated values with its CR LF (RFC 4180).
+[[nodiscard]] std::string csv_line(const std::vector<std::string>& cells);
+
 }  // namespace slew::cli

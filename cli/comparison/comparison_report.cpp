@@ -160,19 +160,6 @@ nlohmann::json json_of(const Comparison& comparison, const ComparedRow& row) {
   return json;
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
-std::string csv_line(const Cells& cells) {
-  std::string line;
-  for (const std::string& cell : cells) line += (line.empty() ? "" : ",") + quoted(cell);
-  return line + "\r\n";
-}
-
 Cells csv_cells(const Comparison& comparison, const ComparedRow& row) {
   const Configuration& c = row.configuration;
   const auto exact = [&](double value) { return row.has_run() ? fmt::format("{}", value) : std::string(); };

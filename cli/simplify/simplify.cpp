@@ -99,16 +99,9 @@ class Simplifier {
 
   // names, dimensions and limits of what must not change
   void watch() {
-    const DirectSession session(*base_);
+    const std::vector<ElementVariable> variables = DirectSession(*base_).variables();
     std::vector<std::string> names;
-    std::vector<Dimension> dimensions;
-    for (const Role role : {Role::mechanics, Role::hydraulics}) {
-      if (session.subsystem(role) == nullptr) continue;
-      for (const ElementVariable& variable : session.subsystem(role)->variables()) {
-        names.push_back(variable.name);
-        dimensions.push_back(variable.dimension);
-      }
-    }
+    for (const ElementVariable& variable : variables) names.push_back(variable.name);
     for (const std::string& text : wish_.errors) {
       const ErrorWish wish = parse(text);
       // a vector by its name: all of its parts
@@ -125,11 +118,12 @@ class Simplifier {
       }
       for (const std::string& name : chosen) {
         const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-        Watched watched{.name = name, .unit = std::string(info(dimensions[at]).si_unit), .tolerance = 0, .range = 0};
+        Watched watched{
+            .name = name, .unit = std::string(info(variables[at].dimension).si_unit), .tolerance = 0, .range = 0};
         if (wish.limit.ends_with('%')) {
           fraction_.push_back(read_option("--error", wish.limit, Dimension::none));
         } else {
-          watched.tolerance = read_option("--error", wish.limit, dimensions[at]);
+          watched.tolerance = read_option("--error", wish.limit, variables[at].dimension);
           fraction_.push_back(0);
         }
         if (!(watched.tolerance > 0 || fraction_.back() > 0)) {

@@ -21,7 +21,6 @@ namespace slew::cli {
 namespace {
 
 using cli_support::Failure;
-using wire::Role;
 
 constexpr double kReferenceTolerance = 1e-9, kLooserTolerance = 1e-8;
 constexpr double kReferenceLimit = 600;       // s of wall time
@@ -95,16 +94,9 @@ class Trader {
   }
 
   void choose_variables() {
-    const DirectSession session(base_);
+    const std::vector<ElementVariable> variables = DirectSession(base_).variables();
     std::vector<std::string> names;
-    std::vector<Dimension> dimensions;
-    for (const Role role : {Role::mechanics, Role::hydraulics}) {
-      if (session.subsystem(role) == nullptr) continue;
-      for (const ElementVariable& variable : session.subsystem(role)->variables()) {
-        names.push_back(variable.name);
-        dimensions.push_back(variable.dimension);
-      }
-    }
+    for (const ElementVariable& variable : variables) names.push_back(variable.name);
     std::vector<std::string> patterns = wish_.variables;
     if (patterns.empty()) {
       for (const scene::PortDef& port : base_.ports) patterns.push_back(port.name + ".force");
@@ -119,8 +111,10 @@ class Trader {
     }
     for (const std::string& name : cli_support::choose(patterns, names)) {
       const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-      result_.variables.push_back(
-          {.name = name, .unit = std::string(info(dimensions[at]).si_unit), .dimension = dimensions[at], .spread = {}});
+      result_.variables.push_back({.name = name,
+                                   .unit = std::string(info(variables[at].dimension).si_unit),
+                                   .dimension = variables[at].dimension,
+                                   .spread = {}});
       names_.push_back(name);
     }
   }

@@ -60,23 +60,6 @@ Cells cells_of(const Tradeoff& tradeoff, std::size_t index) {
   return cells;
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
-std::string csv_line(const Cells& cells) {
-  std::string line;
-  bool is_first = true;
-  for (const std::string& cell : cells) {
-    line += (is_first ? "" : ",") + quoted(cell);
-    is_first = false;
-  }
-  return line + "\r\n";
-}
-
 nlohmann::json json_number(std::optional<double> value) {
   return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json();
 }

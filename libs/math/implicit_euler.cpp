@@ -16,11 +16,8 @@ constexpr double kConverged = 0.1;   // of the tolerance: the iteration's error 
 
 ImplicitEuler::ImplicitEuler(const SparsityPattern& pattern, std::size_t jacobian_stride, StiffOptions options)
     : size_(pattern.size()),
-      stride_(jacobian_stride),
       options_(std::move(options)),
-      lu_(pattern, jacobian_stride),
-      dense_(size_),
-      mass_(size_, 1),
+      matrix_(pattern, jacobian_stride),
       f_(size_),
       new_(size_),
       slope_(size_),
@@ -28,27 +25,12 @@ ImplicitEuler::ImplicitEuler(const SparsityPattern& pattern, std::size_t jacobia
   SLEW_CHECK(options_.scale.size() == size_ && options_.relative.size() == size_);
 }
 
-void ImplicitEuler::set_mass(std::span<const double> mass) noexcept {
-  SLEW_CHECK(mass.size() == size_);
-  std::copy(mass.begin(), mass.end(), mass_.begin());
-  lu_.set_mass(mass);
-}
-
 // d_ of (2) in place of its right-hand side.
 bool ImplicitEuler::solve(const double* J, double c, StiffReport& report) noexcept {
-  if (lu_.factorise(J, c)) {
-    lu_.solve(d_.data());
-    return true;
-  }
-  ++report.dense_factorisations;
-  const std::span<double> a = dense_.matrix();
-  for (std::size_t i = 0; i < size_; ++i) {
-    for (std::size_t j = 0; j < size_; ++j) a[i * size_ + j] = -J[i * stride_ + j];
-    a[i * size_ + i] += c * mass_[i];
-  }
-  if (!dense_.factorise()) return false;
-  dense_.solve(d_);
-  return true;
+  const bool is_regular = matrix_.factorise(J, c);
+  if (matrix_.is_dense()) ++report.dense_factorisations;
+  if (is_regular) matrix_.solve(d_);
+  return is_regular;
 }
 
 ImplicitEuler::Newton ImplicitEuler::try_step(StiffSystem& system, const double* y, double h,
@@ -60,7 +42,7 @@ ImplicitEuler::Newton ImplicitEuler::try_step(StiffSystem& system, const double*
   for (int k = 0; k < kMostIterations; ++k) {
     const double* const J =
         k > 0 ? system.linearise(new_.data(), slope_.data()) : system.jacobian(new_.data(), slope_.data());
-    for (std::size_t i = 0; i < size_; ++i) d_[i] = slope_[i] - mass_[i] * (c * (new_[i] - y[i]));
+    for (std::size_t i = 0; i < size_; ++i) d_[i] = slope_[i] - matrix_.mass()[i] * (c * (new_[i] - y[i]));
     newton.is_finite = solve(J, c, report);
     newton.last = 0;
     for (std::size_t i = 0; i < size_; ++i) {

@@ -9,8 +9,7 @@
 // said. Source: Hairer and Wanner 1996, IV.8. Real-time safe.
 #pragma once
 
-#include "math/dense_lu.h"
-#include "math/pattern_lu.h"
+#include "math/stage_matrix.h"
 #include "math/stiff_system.h"
 
 namespace slew::math {
@@ -28,7 +27,7 @@ class ImplicitEuler final : public StiffIntegrator {
     return h * y[state];
   }
   [[nodiscard]] bool takes_algebraic_rows() const noexcept override { return true; }
-  void set_mass(std::span<const double> mass) noexcept override;
+  void set_mass(std::span<const double> mass) noexcept override { matrix_.set_mass(mass); }
 
  private:
   struct Newton {
@@ -41,11 +40,9 @@ class ImplicitEuler final : public StiffIntegrator {
   [[nodiscard]] bool solve(const double* J, double c, StiffReport& report) noexcept;
 
   std::size_t size_;
-  std::size_t stride_;
   StiffOptions options_;
-  PatternLu lu_;
-  DenseLu dense_;
-  std::vector<double> mass_, f_, new_, slope_, d_;
+  StageMatrix matrix_;
+  std::vector<double> f_, new_, slope_, d_;
 };
 
 }  // namespace slew::math

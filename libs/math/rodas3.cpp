@@ -39,11 +39,8 @@ double shorter(const Rejected& before, const Rejected& now, double factor) noexc
 
 Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, StiffOptions options)
     : size_(pattern.size()),
-      stride_(jacobian_stride),
       options_(std::move(options)),
-      lu_(pattern, jacobian_stride),
-      dense_(size_),
-      mass_(size_, 1),
+      matrix_(pattern, jacobian_stride),
       f_(size_),
       k1_(size_),
       k2_(size_),
@@ -54,53 +51,27 @@ Rodas3::Rodas3(const SparsityPattern& pattern, std::size_t jacobian_stride, Stif
   SLEW_CHECK(options_.scale.size() == size_ && options_.relative.size() == size_);
 }
 
-void Rodas3::set_mass(std::span<const double> mass) noexcept {
-  SLEW_CHECK(mass.size() == size_);
-  std::copy(mass.begin(), mass.end(), mass_.begin());
-  lu_.set_mass(mass);
-}
-
-bool Rodas3::factorise(const double* J, double c, StiffReport& report) noexcept {
-  uses_dense_ = !lu_.factorise(J, c);
-  if (!uses_dense_) return true;
-  // rare: a pivot on the diagonal nearly vanished
-  ++report.dense_factorisations;
-  const std::span<double> a = dense_.matrix();
-  for (std::size_t i = 0; i < size_; ++i) {
-    for (std::size_t j = 0; j < size_; ++j) a[i * size_ + j] = -J[i * stride_ + j];
-    a[i * size_ + i] += c * mass_[i];
-  }
-  return dense_.factorise();
-}
-
-void Rodas3::solve(double* b) noexcept {
-  if (uses_dense_) {
-    dense_.solve({b, size_});
-  } else {
-    lu_.solve(b);
-  }
-}
-
 // Stages (2) and the new state (4) into new_; returns the error measure, infinite when it is not a number.
 double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept {
   const std::size_t n = size_;
   const double c = 1 / h;
+  const std::vector<double>& M = matrix_.mass();
   std::copy(f_.begin(), f_.end(), k1_.begin());
-  solve(k1_.data());
-  for (std::size_t i = 0; i < n; ++i) k2_[i] = f_[i] + mass_[i] * (c * kC21 * k1_[i]);
-  solve(k2_.data());
+  matrix_.solve(k1_);
+  for (std::size_t i = 0; i < n; ++i) k2_[i] = f_[i] + M[i] * (c * kC21 * k1_[i]);
+  matrix_.solve(k2_);
 
   for (std::size_t i = 0; i < n; ++i) stage_[i] = y[i] + 2 * k1_[i];
   system.derivative(stage_.data(), k3_.data());
-  for (std::size_t i = 0; i < n; ++i) k3_[i] += mass_[i] * (c * (kC31 * k1_[i] + kC32 * k2_[i]));
-  solve(k3_.data());
+  for (std::size_t i = 0; i < n; ++i) k3_[i] += M[i] * (c * (kC31 * k1_[i] + kC32 * k2_[i]));
+  matrix_.solve(k3_);
 
   for (std::size_t i = 0; i < n; ++i) stage_[i] += k3_[i];
   system.derivative(stage_.data(), k4_.data());
   for (std::size_t i = 0; i < n; ++i) {
-    k4_[i] += mass_[i] * (c * (kC41 * k1_[i] + kC42 * k2_[i] + kC43 * k3_[i]));
+    k4_[i] += M[i] * (c * (kC41 * k1_[i] + kC42 * k2_[i] + kC43 * k3_[i]));
   }
-  solve(k4_.data());
+  matrix_.solve(k4_);
 
   double error = 0;
   bool is_number = true;
@@ -169,7 +140,8 @@ StiffReport Rodas3::advance(StiffSystem& system, std::span<double> y, double dur
     const double bend = system.time_to_bend(y.data(), f_.data(), J);
     const bool ends_at_bend = bend < used && bend > options_.minimum_step && !report.is_over_budget;
     if (ends_at_bend) used = bend;
-    const bool is_solvable = factorise(J, 1 / (used * kGamma), report);
+    const bool is_solvable = matrix_.factorise(J, 1 / (used * kGamma));
+    if (matrix_.is_dense()) ++report.dense_factorisations;
     const double error = is_solvable ? try_step(system, y.data(), used) : kInfinity;
     const double factor = std::clamp(kSafety / std::cbrt(std::max(error, 1e-12)), kShrink, kGrow);
 

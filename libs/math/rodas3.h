@@ -19,8 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "math/dense_lu.h"
-#include "math/pattern_lu.h"
+#include "math/stage_matrix.h"
 #include "math/stiff_system.h"
 
 namespace slew::math {
@@ -36,24 +35,18 @@ class Rodas3 final : public StiffIntegrator {
   [[nodiscard]] double integral(std::size_t state, double h, const double* y_before, const double* f_before,
                                 const double* y) const noexcept override;
   [[nodiscard]] bool takes_algebraic_rows() const noexcept override { return true; }
-  void set_mass(std::span<const double> mass) noexcept override;
+  void set_mass(std::span<const double> mass) noexcept override { matrix_.set_mass(mass); }
 
  private:
-  [[nodiscard]] bool factorise(const double* J, double c, StiffReport& report) noexcept;
-  void solve(double* b) noexcept;
   [[nodiscard]] std::int32_t first_non_finite() const noexcept;
   [[nodiscard]] double next_step(double wanted_before, double used, double factor, double longest) const noexcept;
   [[nodiscard]] double try_step(StiffSystem& system, const double* y, double h) noexcept;
 
   std::size_t size_;
-  std::size_t stride_;
   StiffOptions options_;
-  PatternLu lu_;
-  DenseLu dense_;
-  bool uses_dense_ = false;
+  StageMatrix matrix_;
   std::int32_t worst_ = -1;  // of the last step tried
   double step_size_ = 0;
-  std::vector<double> mass_;  // diagonal of M
   std::vector<double> f_, k1_, k2_, k3_, k4_, stage_, new_;
 };
 
