@@ -203,7 +203,7 @@ TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
   EXPECT_EQ(slewring_join("nobody", "pid", 3, "lo", "", 0.2), nullptr);
   EXPECT_STREQ(slewring_error(nullptr),
                "no session 'nobody' was heard in domain 3 on lo within 0.2 s; start it first, and compare its name, "
-               "domain, interface and peers");
+               "domain, interface, peers and keys");
   // who goes on without looking reads that, and no other sentence
   EXPECT_EQ(slewring_find(nullptr, "Cyl_Lift.stroke", 0), SLEWRING_BAD_ARGUMENT);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'nobody' was heard"), std::string::npos);
