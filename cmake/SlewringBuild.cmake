@@ -26,7 +26,9 @@ target_compile_options(slewring_flags INTERFACE -march=${SLEWRING_MARCH} -ffp-co
 target_compile_options(slewring_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion -Werror>
   # g++ 12 reports overlaps inside std::string's operator+ that do not exist (GCC bug 105651)
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  # clang takes the C macro INFINITY for a float
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion>)
 target_include_directories(slewring_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
 if(SLEWRING_SANITIZE)
   target_compile_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE} -fno-omit-frame-pointer)

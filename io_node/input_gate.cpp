@@ -160,13 +160,13 @@ bool InputGate::keep_early(Channel& channel, double raw, StepIndex now_step, Ste
     ++rejected_late_;
     return false;
   }
+  const bool is_finite = std::isfinite(raw);
   Early* place = nullptr;
   for (Early& early : channel.early) {
-    if (early.based_on == based_on) return true;
+    if (early.based_on == based_on) return is_finite;
     if (early.based_on < need || early.based_on < 0) place = &early;
   }
   if (place == nullptr) return false;  // there is one for every step that passed the check
-  const bool is_finite = std::isfinite(raw);
   *place = {based_on, is_finite ? accepted(channel, raw) : 0.0, is_finite};
   return is_finite;
 }

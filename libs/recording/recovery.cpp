@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "recording/chunk_reader.h"
 #include "recording/output_file.h"
@@ -72,6 +73,8 @@ class Copy {
     if (!decode_metadata(content, record) || record.name == kSummaryName || record.name == kRecoveryName) {
       return Status::ok();
     }
+    // of several the first is the one that was read
+    if (record.name == kIdentityName && std::exchange(has_identity_, true)) return Status::ok();
     index_.metadata.push_back({to_.size(), buffer_.size(), record.name});
     return to_.append_marked(buffer_);
   }
@@ -169,6 +172,7 @@ class Copy {
   ChunkReader reader_;
   Bytes buffer_;
   Bytes unpacked_;
+  bool has_identity_ = false;
   std::size_t lost_channels_ = 0;
 };
 

@@ -205,24 +205,20 @@ Complaint unknown_unit(std::string_view text, Dimension dimension, UnitSystem& u
   return {fmt::format("unknown unit '{}'", text), expected_quantity(dimension), std::move(suggestion)};
 }
 
-}  // namespace
-
-struct UnitSystem::Database {
-  ut_system* system = nullptr;
-  ~Database() {
-    const std::lock_guard lock(udunits_mutex());
-    if (system != nullptr) ut_free_system(system);
-  }
-
-  void add(const AddedUnit& added) {
-    const UnitHandle unit(ut_parse(system, added.definition, UT_UTF8));
-    if (!unit) throw std::runtime_error(std::string("the unit database lacks ") + added.definition);
-    // as a symbol it also takes the short prefixes: kNm
-    ut_map_symbol_to_unit(added.name, UT_ASCII, unit.get());
+// UDUNITS' units and ours, read once in a process. Under udunits_mutex().
+class Database {
+ public:
+  Database() {
+    ut_set_error_message_handler(ut_ignore);
+    system_.reset(ut_read_xml(nullptr));
+    if (system_ == nullptr) {
+      throw std::runtime_error("the unit database of UDUNITS-2 cannot be read; install libudunits2-data");
+    }
+    for (const AddedUnit& added : kAddedUnits) add(added);
   }
 
   [[nodiscard]] std::optional<Unit> parse(const std::string& text) const {
-    const UnitHandle handle(ut_parse(system, text.c_str(), UT_UTF8));
+    const UnitHandle handle(ut_parse(system_.get(), text.c_str(), UT_UTF8));
     if (!handle) return std::nullopt;
     Visit visit;
     if (ut_accept_visitor(handle.get(), &kVisitor, &visit) != UT_SUCCESS) return std::nullopt;
@@ -231,21 +227,33 @@ struct UnitSystem::Database {
     visit.unit.offset = visit.unit.scale * exact_offset(visit.offset);
     return visit.unit;
   }
+
+ private:
+  struct SystemDeleter {
+    void operator()(ut_system* system) const { ut_free_system(system); }
+  };
+
+  void add(const AddedUnit& added) {
+    const UnitHandle unit(ut_parse(system_.get(), added.definition, UT_UTF8));
+    if (!unit) throw std::runtime_error(std::string("the unit database lacks ") + added.definition);
+    // as a symbol it also takes the short prefixes: kNm
+    ut_map_symbol_to_unit(added.name, UT_ASCII, unit.get());
+  }
+
+  std::unique_ptr<ut_system, SystemDeleter> system_;
 };
 
-UnitSystem::UnitSystem() : database_(std::make_unique<Database>()) {
-  const std::lock_guard lock(udunits_mutex());
-  ut_set_error_message_handler(ut_ignore);
-  database_->system = ut_read_xml(nullptr);
-  if (database_->system == nullptr) {
-    throw std::runtime_error("the unit database of UDUNITS-2 cannot be read; install libudunits2-data");
-  }
-  for (const AddedUnit& added : kAddedUnits) database_->add(added);
+const Database& database() {
+  static const Database database;
+  return database;
 }
 
-UnitSystem::~UnitSystem() = default;
-UnitSystem::UnitSystem(UnitSystem&&) noexcept = default;
-UnitSystem& UnitSystem::operator=(UnitSystem&&) noexcept = default;
+}  // namespace
+
+UnitSystem::UnitSystem() {
+  const std::lock_guard lock(udunits_mutex());
+  static_cast<void>(database());
+}
 
 const Unit* UnitSystem::find(std::string_view text) {
   auto found = known_.find(text);
@@ -253,7 +261,7 @@ const Unit* UnitSystem::find(std::string_view text) {
     std::optional<Unit> unit;
     if (looks_like_unit(text)) {
       const std::lock_guard lock(udunits_mutex());
-      unit = database_->parse(std::string(text));
+      unit = database().parse(std::string(text));
     }
     found = known_.emplace(std::string(text), unit).first;
   }

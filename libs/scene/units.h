@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,20 +25,16 @@ struct Unit {
   bool has_other_base = false;            // mole, ampere, candela, ...
 };
 
-// Not for use by two threads at once; the instances of one process share nothing but UDUNITS' own locks.
+// Not for use by two threads at once; the instances of one process share UDUNITS' database, under a lock.
 class UnitSystem {
  public:
+  // Throws std::runtime_error when the database cannot be read.
   UnitSystem();
-  ~UnitSystem();
-  UnitSystem(UnitSystem&&) noexcept;
-  UnitSystem& operator=(UnitSystem&&) noexcept;
 
   // Null when there is no such unit.
   [[nodiscard]] const Unit* find(std::string_view text);
 
  private:
-  struct Database;
-  std::unique_ptr<Database> database_;
   std::map<std::string, std::optional<Unit>, std::less<>> known_;
 };
 

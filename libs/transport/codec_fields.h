@@ -26,6 +26,12 @@ struct List {
   std::size_t cap;
 };
 
+// clang 14 deduces no arguments of an aggregate by itself
+template <typename S>
+Text(S&, std::size_t) -> Text<S>;
+template <typename V>
+List(V&, std::size_t) -> List<V>;
+
 // A number that indexes or counts something: outside [least, most] it is a fault of its writer.
 template <typename N>
 struct Bounded {

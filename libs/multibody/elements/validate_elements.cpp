@@ -63,7 +63,8 @@ class ElementValidator {
   }
 
   void check_connector(const std::string& name, const ConnectorFrames& frames) {
-    const bool is_known = check_body(name, "body1", frames.body1) & check_body(name, "body2", frames.body2);
+    const bool is_first_known = check_body(name, "body1", frames.body1);
+    const bool is_known = check_body(name, "body2", frames.body2) && is_first_known;
     if (!is_known || frames.body1 != frames.body2) return;
     names_hold_ = false;
     add(name + ".body2", fmt::format("both bodies are '{}'", frames.body1), "two different bodies");

@@ -122,7 +122,7 @@ missing_as_root() {
 
 package_lists() {
   local list
-  for list in run test peers; do
+  for list in run test peers fuzz; do
     awk -v list="$list" '
       /^#/ || NF == 0 { next }
       NF != 3 || ($2 != "command" && $2 != "header") { print list ": " $0; wrong = 1 }

@@ -234,6 +234,7 @@ TEST(InputGate, ValuesOfStepsThatNoTickTakesAreCountedAndNotKept) {
   EXPECT_EQ(gate.rejected_late(), 6u);
   EXPECT_TRUE(gate.write(0, "pid", 1, 12, 0, 5));
   EXPECT_TRUE(gate.write(0, "pid", 1, 12, 0, 10));
+  EXPECT_FALSE(gate.write(0, "pid", kNan, 12, 0, 10));  // neither the first one nor a number
 }
 
 TEST(InputGate, TwoLockstepChannelsAreAwaitedEach) {

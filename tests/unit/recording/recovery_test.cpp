@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "recording/records.h"
 #include "sample_session.h"
 #include "tests/support/nightly.h"
 
@@ -63,6 +64,21 @@ class RecoveredRecording : public ::testing::Test {
   const std::vector<KnownMessage> messages_ = sample_messages(kSteps);
   Recovery recovery_;
 };
+
+TEST_F(RecoveredRecording, SaysWhichSessionItIsAsTheFirstOfSeveralRecords) {
+  // cut behind the first chunk's Mark, and another record of the name behind that
+  std::string content = whole_.substr(0, chunks_[1].begin);
+  Bytes more;
+  encode_metadata(more, {kIdentityName, {{"format_version", "1"}}});
+  content += as_text(more);
+  Bytes mark;
+  encode_mark(mark, crc32_of(as_byte_span(content)));
+  content += as_text(mark);
+  ASSERT_EQ(recover_content(content).text, "");
+  std::vector<KnownMessage> expected = sample_messages(kSteps);
+  expected.resize(chunks_[1].first_message);
+  expect_messages(expected);
+}
 
 TEST_F(RecoveredRecording, OfAWholeFileIsNotNeededAndNothingIsWritten) {
   ASSERT_EQ(recover_content(whole_).text, "");
