@@ -24,7 +24,8 @@ class ContactBuilder {
     std::vector<ContactPairElement> pairs;
     std::vector<int> pair_of_tested;
     for (const ContactPairDef& pair : mechanics_.contacts) {
-      ContactPairElement& element = pairs.emplace_back(ContactPairElement{pair.name, static_cast<std::size_t>(pair.point_variables)});
+      ContactPairElement& element =
+          pairs.emplace_back(ContactPairElement{pair.name, static_cast<std::size_t>(pair.point_variables)});
       const ShapeDef& a = named(mechanics_.shapes, pair.shape_a);
       const ShapeDef& b = named(mechanics_.shapes, pair.shape_b);
       if (link_of(a) == link_of(b) || !pair.tested) continue;
