@@ -148,6 +148,37 @@ void BM_Coupled(benchmark::State& state, Boom boom) {
 BENCHMARK_CAPTURE(BM_Coupled, rigid, Boom::rigid)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_Coupled, two_modes, Boom::two_modes)->Unit(benchmark::kMillisecond);
 
+// The state after a second of the manoeuvre as bytes, and put back into the same subsystems.
+enum class Saving { save, load };
+
+void BM_SavedState(benchmark::State& state, Boom boom, Saving saving) {
+  const Tape& t = tape(boom);
+  mechanics::MechanicsSubsystem mechanics(crane(boom));
+  hydraulic_node::HydraulicsSubsystem hydraulics(crane(boom));
+  coupling::OwnSample m, h;
+  start(mechanics, hydraulics, m, h);
+  for (StepIndex n = 0; n < 1000; ++n) step_both(mechanics, hydraulics, n, t, m, h);
+  std::vector<std::byte> of_mechanics, of_hydraulics;
+  mechanics.save(of_mechanics);
+  hydraulics.save(of_hydraulics);
+  for (auto _ : state) {
+    if (saving == Saving::save) {
+      of_mechanics.clear();
+      of_hydraulics.clear();
+      mechanics.save(of_mechanics);
+      hydraulics.save(of_hydraulics);
+    } else if (!mechanics.load(of_mechanics, m).is_ok() || !hydraulics.load(of_hydraulics, h).is_ok()) {
+      state.SkipWithError("refused");
+    }
+  }
+  state.counters["mechanics_bytes"] = static_cast<double>(of_mechanics.size());
+  state.counters["hydraulics_bytes"] = static_cast<double>(of_hydraulics.size());
+}
+BENCHMARK_CAPTURE(BM_SavedState, save_rigid, Boom::rigid, Saving::save)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(BM_SavedState, save_two_modes, Boom::two_modes, Saving::save)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(BM_SavedState, load_rigid, Boom::rigid, Saving::load)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(BM_SavedState, load_two_modes, Boom::two_modes, Saving::load)->Unit(benchmark::kMicrosecond);
+
 void BM_Session(benchmark::State& state, Boom boom) {
   for (auto _ : state) {
     transport::InProcessBus bus;

@@ -146,6 +146,16 @@ class Part : public coupling::Subsystem {
   }
 
   std::uint64_t state_hash() const noexcept override { return shown_.state_hash(); }
+  Status can_save() const override {
+    return Status::error(ExitCode::bad_input,
+                         "session.solution: monolithic is integrated by CVODE, whose past cannot be put back, so that "
+                         "its state is not saved. Set session.solution: split for a session that is to go on later");
+  }
+  void save(std::vector<std::byte>&) const override {}
+  Status load(std::span<const std::byte>, OwnSample&) override {
+    reset();
+    return can_save();
+  }
   coupling::Level level() const noexcept override { return shown_.level(); }
   std::span<const ElementVariable> variables() const noexcept override { return shown_.variables(); }
   void read_variables(std::span<double> values) const noexcept override { shown_.read_variables(values); }

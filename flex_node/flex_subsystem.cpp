@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/state_hash.h"
+#include "coupling/saved_model.h"
 #include "scene/ports.h"
 
 namespace slew::flexible {
@@ -13,6 +14,12 @@ namespace slew::flexible {
 using coupling::ElasticExchange;
 using coupling::ElasticSample;
 using coupling::ModeArray;
+
+namespace {
+
+constexpr std::uint32_t kLayout = 1;  // of a saved state
+
+}  // namespace
 
 FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
     : levels_(scene::port_levels(scene)),
@@ -35,6 +42,8 @@ FlexSubsystem::FlexSubsystem(const scene::Scene& scene)
   published_ = constant_;
   normal_.resize(points);
   shear_.resize(points);
+  saved_model_ =
+      coupling::saved_model(variables_, {scene.session.step_duration().ns, static_cast<std::int64_t>(exchange_)});
 }
 
 void FlexSubsystem::list_variables(const Body& body) {
@@ -160,6 +169,39 @@ std::uint64_t FlexSubsystem::state_hash() const noexcept {
     for (const double value : values) hash.add(value);
   }
   return hash.digest();
+}
+
+// ---- saved state ----------------------------------------------------------------------------------------------
+
+Status FlexSubsystem::can_save() const {
+  return Status::ok();
+}
+
+void FlexSubsystem::save(std::vector<std::byte>& state) const {
+  StateWriter bytes(state, {kLayout, saved_model_});
+  levels_.save(bytes);
+  bytes.numbers(q_.span());
+  bytes.numbers(u_.span());
+  bytes.finish();
+}
+
+// What is published follows from the coordinates.
+Status FlexSubsystem::load(std::span<const std::byte> state, coupling::OwnSample& sample) {
+  reset();
+  StateReader bytes(state, {kLayout, saved_model_});
+  levels_.load(bytes);
+  bytes.numbers(q_.span());
+  bytes.numbers(u_.span());
+  if (Status status = bytes.finish("flexible bodies"); !status.is_ok()) {
+    reset();
+    return status;
+  }
+  sample = {};
+  coupling::FlexibleSample here;
+  here.q = q_;
+  here.u = u_;
+  see(here, sample.elastic);
+  return Status::ok();
 }
 
 void FlexSubsystem::read_variables(std::span<double> values) const noexcept {

@@ -35,6 +35,9 @@ class FlexSubsystem final : public coupling::Subsystem {
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
+  [[nodiscard]] Status can_save() const override;
+  void save(std::vector<std::byte>& state) const override;
+  Status load(std::span<const std::byte> state, coupling::OwnSample& sample) override;
   [[nodiscard]] coupling::Level level() const noexcept override { return levels_.lowest(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
@@ -65,6 +68,7 @@ class FlexSubsystem final : public coupling::Subsystem {
   coupling::ModeArray q_, u_;
   std::vector<ElementVariable> variables_;
   mutable std::vector<double> normal_, shear_;  // Pa, by point: scratch of read_variables()
+  std::uint64_t saved_model_ = 0;               // what a saved state belongs to
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_flex_subsystem(const scene::Scene& scene);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "cli_support/failure.h"
+#include "coupling/saved_model.h"
 #include "coupling/static_forces.h"
 #include "scene/deep_starts.h"
 #include "scene/ports.h"
@@ -86,6 +87,8 @@ HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
     control_of_channel_.push_back(circuit_->find_control(input.primitive));
   }
   list_variables();
+  saved_model_ = coupling::saved_model(
+      variables_, {H_.ns, exchange_every_, is_free_running_, static_cast<int>(scene.hydraulics.solver)});
 }
 
 void HydraulicsSubsystem::reset() {

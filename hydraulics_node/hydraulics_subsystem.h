@@ -40,6 +40,9 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
     hash.add(std::span<const double>(W_.span()));
     hash.add(std::span<const double>(a_free_.span()));
   }
+  // The sample and the ports as bytes.
+  void save(StateWriter& bytes) const { visit(*this, bytes); }
+  void load(StateReader& bytes) noexcept { visit(*this, bytes); }
   void set_level(std::size_t port, coupling::Level level) noexcept { ports_[port].level = level; }
   // Of a port of level tlm, for the coming step [N].
   void set_thrust(std::size_t port, double F) noexcept { ports_[port].thrust = F; }
@@ -54,6 +57,15 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
     coupling::Level level = coupling::Level::two;
     double thrust = 0;  // N
   };
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes) {
+    visit_sized(bytes, self.W_, self.ports_.size() * self.ports_.size());
+    visit_sized(bytes, self.a_free_, self.ports_.size());
+    for (auto& port : self.ports_) {
+      bytes.choice(port.level, coupling::Level::tlm);
+      bytes.number(port.thrust);
+    }
+  }
   [[nodiscard]] coupling::LineForce line_force(std::size_t port, double F, double x, double v) const noexcept;
 
   std::vector<coupling::LineForceLaw> laws_;
@@ -83,6 +95,9 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
+  [[nodiscard]] Status can_save() const override;
+  void save(std::vector<std::byte>& state) const override;
+  Status load(std::span<const std::byte> state, coupling::OwnSample& sample) override;
   [[nodiscard]] coupling::Level level() const noexcept override { return levels_.lowest(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
@@ -104,6 +119,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
     coupling::PortArray way;  // by port, of the circuit's own piston in the step [m]
   };
 
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes);
   void apply_levels() noexcept;
   [[nodiscard]] Status check_pressures(std::span<const double> F) const;
   [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
@@ -144,6 +161,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   StepReport failure_;
   std::array<char, 512> failure_text_{};  // of a session that ends by its alarm; no allocation in a step
   std::size_t failure_text_length_ = 0;
+  std::uint64_t saved_model_ = 0;  // what a saved state belongs to
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene);

@@ -5,8 +5,10 @@
 
 #include "cli_support/failure.h"
 #include "coupling/indicator.h"
+#include "coupling/saved_model.h"
 #include "coupling/static_forces.h"
 #include "math/small_solve.h"
+#include "mechanics_node/parameter_handle.h"
 #include "mechanics_node/payload.h"
 #include "multibody/joint_law.h"
 #include "multibody/parameters.h"
@@ -28,15 +30,6 @@ constexpr double kLimitLookAhead = 4;
 // A change of W over a step, of sqrt(W_ii W_jj), from which on the step's is published: an error of a tenth in W is far
 // inside of what level two bears (coupling study, section 3), and the step's rows cost a factorisation a step.
 constexpr double kWorthAStep = 0.1;
-
-// a multibody parameter as the one number that ParameterRamps keeps
-int handle_of(multibody::Parameter parameter) {
-  return (static_cast<int>(parameter.kind) << 24) | (parameter.element << 8) | parameter.member;
-}
-
-multibody::Parameter parameter_of(int handle) {
-  return {static_cast<multibody::ParameterKind>(handle >> 24), (handle >> 8) & 0xffff, handle & 0xff};
-}
 
 multibody::MechanicsDef as_moved(multibody::MechanicsDef mechanics, Motion motion) {
   if (motion == Motion::followed) mechanics.formulation = multibody::Formulation::recursive;
@@ -146,6 +139,9 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
   payload_ = payload_of(def_, model_);
   choose_mobility();
   list_variables();
+  saved_model_ =
+      coupling::saved_model(variables_, {H_.ns, exchange_every_, is_free_running_, static_cast<int>(def_.formulation),
+                                         static_cast<int>(integrator), static_cast<int>(scene.session.flexible)});
 }
 
 MechanicsSubsystem::~MechanicsSubsystem() = default;
@@ -416,7 +412,10 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     report.offender = first_not_finite();
     failure_ = report;
     multibody::copy_state(last_good_, state_);
+    // variables are the last good ones as well
     is_evaluated_ = false;
+    evaluate();
+    multibody::observe(model_, state_, workspace_);
     sample = published_;
     return report;
   }

@@ -54,6 +54,9 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   bool change_parameter(StepIndex n, const coupling::ParameterChange& change) noexcept override;
   void reset() override;
   [[nodiscard]] std::uint64_t state_hash() const noexcept override;
+  [[nodiscard]] Status can_save() const override;
+  void save(std::vector<std::byte>& state) const override;
+  Status load(std::span<const std::byte> state, coupling::OwnSample& sample) override;
   [[nodiscard]] coupling::Level level() const noexcept override { return levels_.lowest(); }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
@@ -77,6 +80,9 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   class Laws;
   using PortPositions = coupling::PortArray;
 
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes);
+  void show_loaded() noexcept;
   [[nodiscard]] PortPositions port_positions() const noexcept;
   void evaluate() noexcept;
   void apply_ramps(StepIndex n) noexcept;
@@ -173,6 +179,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   bool has_failed_ = false;
   StepReport failure_;
   coupling::OwnSample published_;
+  std::uint64_t saved_model_ = 0;  // what a saved state belongs to
 };
 
 [[nodiscard]] std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene);

@@ -19,6 +19,8 @@ class ModalExchange {
   // Pre-condition: the model is that of the scene's mechanics.
   ModalExchange(const scene::Scene& scene, const multibody::Model& model);
 
+  [[nodiscard]] std::size_t body_count() const noexcept { return bodies_.size(); }
+  [[nodiscard]] std::size_t mode_count() const noexcept { return modes_; }
   [[nodiscard]] bool is_empty() const noexcept { return bodies_.empty(); }
 
   // Where the bodies are.

@@ -112,4 +112,28 @@ void ContactMemory::add_to_hash(StateHash& hash) const noexcept {
   }
 }
 
+template <typename Self, typename Bytes>
+void ContactMemory::visit(Self& self, Bytes& bytes) {
+  bytes.count(self.count_, self.states_.size());
+  for (std::size_t i = 0; i < self.count_; ++i) {
+    bytes.count(self.places_[i].pair, self.states_.size() / kMaxPointsPerPair - 1);
+    visit_vector(bytes, self.places_[i].p_A);
+    visit_vector(bytes, self.places_[i].n_W);
+    bytes.number(self.states_[i].normal.impact_speed);
+    visit_vector(bytes, self.states_[i].friction.z_W);
+  }
+  if (self.count_ == 0) return;
+  for (auto& R : self.old_R_WF_) {
+    for (auto& column : R.c) visit_vector(bytes, column);
+  }
+}
+
+void ContactMemory::save(StateWriter& bytes) const {
+  visit(*this, bytes);
+}
+
+void ContactMemory::load(StateReader& bytes) noexcept {
+  visit(*this, bytes);
+}
+
 }  // namespace slew::contact

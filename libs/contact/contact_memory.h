@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "contact/contact_model.h"
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 
 namespace slew::contact {
@@ -41,6 +42,9 @@ class ContactMemory {
 
   // Raw bits of all that is remembered; nothing while nothing touches.
   void add_to_hash(StateHash& hash) const noexcept;
+  // The same as bytes. What is loaded belongs to the same model.
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
 
   [[nodiscard]] std::span<RememberedContact> states() noexcept { return {states_.data(), count_}; }
   [[nodiscard]] std::span<const RememberedContact> states() const noexcept { return {states_.data(), count_}; }
@@ -51,6 +55,8 @@ class ContactMemory {
     math::Vec3 p_A;  // m, in the frame of shape A
     math::Vec3 n_W;
   };
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes);
   void match(const ContactModel& model, std::span<const Pose> poses, const ContactSet& set) noexcept;
   [[nodiscard]] RememberedContact taken_over(const ContactModel& model, std::span<const Pose> poses,
                                              const Place& place) noexcept;

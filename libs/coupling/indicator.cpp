@@ -104,6 +104,33 @@ void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& a
   omega_H_ = coupling_frequency(mechanism.W, stiffness, H_);
 }
 
+template <typename Self, typename Bytes>
+void Indicator::visit(Self& self, Bytes& bytes) {
+  const auto visit_bucket = [&bytes](auto& bucket) {
+    for (auto* x : {&bucket.residual, &bucket.net, &bucket.work, &bucket.force, &bucket.stiffness}) bytes.number(*x);
+  };
+  bytes.count(self.steps_in_bucket_, self.steps_per_bucket_);
+  bytes.count(self.current_, kBuckets - 1);
+  for (auto& buckets : self.window_) {
+    for (auto& bucket : buckets) visit_bucket(bucket);
+  }
+  for (auto& others : self.others_) visit_bucket(others);
+  for (auto& steps : self.steps_below_alarm_) bytes.count(steps, kLastStep);
+  for (auto& d : self.defects_) {
+    for (auto* x : {&d.e_x, &d.e_v, &d.e_F, &d.dE, &d.dE_star, &d.eta, &d.net}) bytes.number(*x);
+    bytes.flag(d.creates_energy);
+  }
+  bytes.number(self.omega_H_);
+}
+
+void Indicator::save(StateWriter& bytes) const {
+  visit(*this, bytes);
+}
+
+void Indicator::load(StateReader& bytes) noexcept {
+  visit(*this, bytes);
+}
+
 bool Indicator::creates_energy() const noexcept {
   return std::any_of(defects_.begin(), defects_.end(), [](const PortDefects& d) { return d.creates_energy; });
 }

@@ -19,6 +19,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/time.h"
 #include "coupling/level.h"
 #include "coupling/samples.h"
@@ -56,6 +57,10 @@ class Indicator {
   void update(const MechanismSample& mechanism, const ActuatorSample& actuators, const PortArray& stiffness) noexcept;
   void reset() noexcept;
 
+  // The window and what was shown last.
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
+
   [[nodiscard]] const PortDefects& port(std::size_t i) const noexcept { return defects_[i]; }
   [[nodiscard]] double omega_H() const noexcept { return omega_H_; }  // of the last update [-]
   [[nodiscard]] bool creates_energy() const noexcept;
@@ -74,6 +79,8 @@ class Indicator {
   };
   static constexpr std::size_t kBuckets = 20;  // of whole steps; the oldest is dropped as a whole
 
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes);
   void start_bucket() noexcept;
   void add_others(std::size_t port) noexcept;
   void evaluate_window(std::size_t port) noexcept;

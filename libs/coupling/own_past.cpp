@@ -52,4 +52,25 @@ void OwnPast::correct(StepIndex since, std::size_t port, double first, double se
   }
 }
 
+void OwnPast::save(StateWriter& bytes) const {
+  bytes.number(latest_);
+  bytes.numbers(std::span<const StepIndex>(steps_));
+  bytes.numbers(values_);
+}
+
+void OwnPast::load(StateReader& bytes) noexcept {
+  bytes.number(latest_);
+  bytes.numbers(std::span<StepIndex>(steps_));
+  bytes.numbers(values_);
+  // each step in its place, none older than what is remembered
+  bool can_be = latest_ >= kNone && latest_ <= kLastStep;
+  for (std::size_t i = 0; can_be && i < steps_.size(); ++i) {
+    const StepIndex step = steps_[i];
+    can_be = step == kNone || (step >= 0 && slot(step) == i && step <= latest_ && step > latest_ - kRememberedSteps);
+  }
+  if (can_be) return;
+  clear();
+  bytes.refuse();
+}
+
 }  // namespace slew::coupling

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/time.h"
 
 namespace slew::coupling {
@@ -35,6 +36,9 @@ class OwnPast {
   [[nodiscard]] double second(StepIndex n, std::size_t port) const noexcept { return row(n)[2 * port + 1]; }
   // Equation (1) for one port, from step `since` to the latest.
   void correct(StepIndex since, std::size_t port, double first, double second) noexcept;
+
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
 
  private:
   [[nodiscard]] const double* row(StepIndex n) const noexcept;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "core/time.h"
 
@@ -65,12 +66,38 @@ class ParameterRamps {
     }
   }
 
+  void save(StateWriter& bytes) const {
+    bytes.count(ramps_.size(), ramps_.capacity());
+    for (const Ramp& ramp : ramps_) visit(ramp, bytes);
+  }
+  // is_handle(handle): whether the owner has such a parameter. Does not allocate.
+  template <typename IsHandle>
+  void load(StateReader& bytes, IsHandle&& is_handle) noexcept {
+    std::size_t count = 0;
+    bytes.count(count, ramps_.capacity());
+    ramps_.clear();
+    for (std::size_t i = 0; i < count && bytes.is_sound(); ++i) {
+      Ramp ramp;
+      visit(ramp, bytes);
+      if (!is_handle(ramp.handle) || is_under_way(ramp.handle) || ramp.steps < 1) return bytes.refuse();
+      ramps_.push_back(ramp);
+    }
+  }
+
  private:
   struct Ramp {
     int handle = 0;
     double from = 0, to = 0;
     StepIndex begin = 0, steps = 1;
   };
+  template <typename AnyRamp, typename Bytes>
+  static void visit(AnyRamp& ramp, Bytes& bytes) {
+    bytes.number(ramp.handle);
+    bytes.number(ramp.from);
+    bytes.number(ramp.to);
+    bytes.count(ramp.begin, kLastStep);
+    bytes.count(ramp.steps, kLastStep);
+  }
   std::vector<Ramp> ramps_;
 };
 

@@ -232,4 +232,12 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
   return report;
 }
 
+void PortDynamics::save(StateWriter& bytes) const {
+  for (const std::vector<double>* slopes : {&k_x_, &k_v_, &k_z_}) bytes.numbers(*slopes);
+}
+
+void PortDynamics::load(StateReader& bytes) noexcept {
+  for (std::vector<double>* slopes : {&k_x_, &k_v_, &k_z_}) bytes.numbers(*slopes);
+}
+
 }  // namespace slew::coupling

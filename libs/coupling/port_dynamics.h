@@ -16,6 +16,8 @@
 #include <span>
 #include <vector>
 
+#include "core/state_bytes.h"
+
 namespace slew::coupling {
 
 inline constexpr std::size_t kMaxRows = 32;
@@ -82,6 +84,11 @@ class PortDynamics {
 
   // Integrates over h in `micro_steps` equal steps.
   PortStep solve(double h, int micro_steps, const RowLaws& laws) noexcept;
+
+  // What a solve() takes over from the one before: slopes that it multiplies by zero, whose signs and whether they are
+  // finite can be told from what comes out.
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
 
   // results of the last solve(): force over the sub-step is f_mean + (t - h/2) f_slope to first order; of a force that
   // is linear in time the mean is exact, the slope too large by 24 % over the square of micro_steps (the quadrature's)

@@ -72,4 +72,15 @@ void PortLevels::add_to(StateHash& hash) const noexcept {
   }
 }
 
+void PortLevels::save(StateWriter& bytes) const {
+  bytes.choice(session_, Level::tlm);
+  for (const Port& port : ports_) bytes.choice(port.level, PortLevel::tlm);
+}
+
+void PortLevels::load(StateReader& bytes) noexcept {
+  bytes.choice(session_, Level::tlm);
+  for (Port& port : ports_) bytes.choice(port.level, PortLevel::tlm);
+  follow();
+}
+
 }  // namespace slew::coupling

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "coupling/level.h"
 
@@ -36,6 +37,8 @@ class PortLevels {
 
   // What differs from the construction.
   void add_to(StateHash& hash) const noexcept;
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
 
  private:
   void follow() noexcept;

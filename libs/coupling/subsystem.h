@@ -1,14 +1,17 @@
 // A physics subsystem: what a node steps, hashes, records and changes. One implementation per physics role.
 //
 // Life: built from a scene -> first_sample() -> start() -> step(), step(), ... ; reset() returns to before
-// first_sample(). Everything from start() on neither allocates nor locks nor throws.
+// first_sample(). Everything from start() on neither allocates nor locks nor throws. A run that was saved goes on with
+// load() in the place of first_sample() and start().
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/element_variable.h"
 #include "core/status.h"
@@ -70,6 +73,18 @@ class Subsystem {
 
   // Hash of the raw bits of all state that influences the future.
   [[nodiscard]] virtual std::uint64_t state_hash() const noexcept = 0;
+
+  // Whether the whole state can be saved and loaded. Error (bad_input): why not, with the key of the scene.
+  [[nodiscard]] virtual Status can_save() const = 0;
+  // Appends the state at t_n, after step n-1 and its sample: all that later samples, reports, hashes, variables and
+  // failures depend on, as raw bits of this architecture (core/state_bytes.h). Nothing where can_save() refuses. No
+  // allocation once `state` has the capacity. A caller compares state_hash() after load() with that of when it saved.
+  virtual void save(std::vector<std::byte>& state) const = 0;
+  // In the place of first_sample() and start(), any time: the state that save() gave on a subsystem of the same scene,
+  // and sample n again. Error (bad_input): the bytes are cut, damaged or of another scene, or can_save() refuses; the
+  // subsystem is then as after reset(). Any bytes may come; what is told apart by the scene's numbers alone (a mass, a
+  // tolerance) is the caller's to compare. Allocates.
+  virtual Status load(std::span<const std::byte> state, OwnSample& sample) = 0;
 
   [[nodiscard]] virtual Level level() const noexcept = 0;
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/state_bytes.h"
+
 namespace slew::coupling {
 
 // The last change goes on, limited to twice the one before it, and not where the two differ in sign (the limiter of
@@ -21,11 +23,21 @@ class Trends {
   void forget(std::size_t index) noexcept { last_[index] = {}; }
   void clear() noexcept { last_.assign(last_.size(), {}); }
 
+  void save(StateWriter& bytes) const { visit(last_, bytes); }
+  void load(StateReader& bytes) noexcept { visit(last_, bytes); }
+
  private:
   struct Last {
     double value = std::numeric_limits<double>::quiet_NaN();
     double change = 0;
   };
+  template <typename Values, typename Bytes>
+  static void visit(Values& values, Bytes& bytes) {
+    for (auto& last : values) {
+      bytes.number(last.value);
+      bytes.number(last.change);
+    }
+  }
   std::vector<Last> last_;
 };
 

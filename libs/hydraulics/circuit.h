@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/element_variable.h"
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
@@ -143,6 +144,11 @@ class Circuit {
   [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return lines_; }  // for tests
   void add_lines_to(StateHash& hash) const noexcept;
 
+  // All that changes here beside y: live parameters, signals, line forces and load-sensing pressures for display,
+  // lines.
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
+
   // Holds pressures at or above the lowest pressure; true when one had to be moved.
   bool bound(double* y) const noexcept;
 
@@ -156,6 +162,9 @@ class Circuit {
   void read_variables(const double* y, std::span<double> values) noexcept;
 
  private:
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes);
+
   struct Capacity {
     double value, d_pressure, content, oil;
   };

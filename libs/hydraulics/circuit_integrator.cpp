@@ -91,6 +91,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
     may_be_quasi_static_.push_back(!is_chamber && !circuit.is_fixed(i) ? 1 : 0);
     is_marked_.push_back(def.volumes[static_cast<std::size_t>(i)].quasi_static ? 1 : 0);
   }
+  is_quasi_static_.resize(may_be_quasi_static_.size());
   circuit_.start_at_initial_pressures(y_);
   choose_quasi_static();
   is_consistent_ = make_consistent();
@@ -116,16 +117,22 @@ void CircuitIntegrator::start(std::span<const double> x, std::span<const double>
 
 // Those that the Def marks, and those whose rate at the present state is above the limit.
 void CircuitIntegrator::choose_quasi_static() {
-  quasi_static_.clear();
   if (quasi_static_above_ > 0) {
     circuit_.outflow_slopes(y_.data(), outflow_.data());
     circuit_.capacities(y_.data(), C_.data());
   }
   for (std::size_t i = 0; i < may_be_quasi_static_.size(); ++i) {
     const bool is_fast = quasi_static_above_ > 0 && outflow_[i] > quasi_static_above_ * C_[i];
-    const bool is_chosen = may_be_quasi_static_[i] && (is_marked_[i] || is_fast);
-    mass_[i] = is_chosen ? 0 : 1;
-    if (is_chosen) quasi_static_.push_back(static_cast<StateIndex>(i));
+    is_quasi_static_[i] = may_be_quasi_static_[i] && (is_marked_[i] || is_fast) ? 1 : 0;
+  }
+  list_quasi_static();
+}
+
+void CircuitIntegrator::list_quasi_static() {
+  quasi_static_.clear();
+  for (std::size_t i = 0; i < is_quasi_static_.size(); ++i) {
+    mass_[i] = is_quasi_static_[i] != 0 ? 0 : 1;
+    if (is_quasi_static_[i] != 0) quasi_static_.push_back(static_cast<StateIndex>(i));
   }
   if (solver_->takes_algebraic_rows()) solver_->set_mass(mass_);
   algebraic_ = math::DenseLu(quasi_static_.size());

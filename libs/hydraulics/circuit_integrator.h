@@ -24,6 +24,7 @@
 #include <span>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "core/step_report.h"
 #include "hydraulics/circuit.h"
@@ -92,8 +93,15 @@ class CircuitIntegrator final : private math::StiffSystem {
 
   // Raw bits of all that the future depends on: y, the solver's memory, failure latch, live parameters.
   void add_to(StateHash& hash) const noexcept;
+  // The same as bytes, the circuit's and actuators() with it. Pre-condition: can_save(). load() allocates; what comes
+  // next is align() or step().
+  [[nodiscard]] bool can_save() const noexcept { return solver_->can_save(); }
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes);
 
  private:
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes);
   void derivative(const double* y, double* f) noexcept override;
   const double* jacobian(const double* y, const double* f) noexcept override;
   const double* linearise(const double* y, double* f) noexcept override;
@@ -104,6 +112,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   void publish() noexcept;
   void close_quadrature(const double* y, const double* f) noexcept;
   void choose_quasi_static();
+  void list_quasi_static();
   void note_inputs() noexcept;
   [[nodiscard]] bool make_consistent() noexcept;
   void report_flags(StepReport& report) noexcept;
@@ -127,7 +136,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   math::StiffReport report_;
   std::vector<double> inputs_;  // controls and live parameters of the last step; empty when nobody asks
   double quasi_static_above_;   // 1/s
-  std::vector<char> may_be_quasi_static_, is_marked_;  // by volume
+  std::vector<char> may_be_quasi_static_, is_marked_, is_quasi_static_;  // by volume
   std::vector<StateIndex> quasi_static_;
   std::vector<double> mass_;
   math::DenseLu algebraic_;  // of the quasi-static rows and columns

@@ -67,6 +67,8 @@ class BlockLdl {
   }
   // Of all closing rows: pivot over what it is compared with, at most 1. Small near a singular matrix.
   [[nodiscard]] double smallest_pivot() const noexcept { return smallest_pivot_; }
+  // As a factorisation of another time left it, for who goes by the last one.
+  void set_smallest_pivot(double pivot) noexcept { smallest_pivot_ = pivot; }
   [[nodiscard]] int redundant_rows() const noexcept { return redundant_rows_; }
 
   // K x = b in place; b by first_row().

@@ -30,6 +30,7 @@ class CvodeStepper final : public StiffIntegrator {
   void restart() noexcept override { has_history_ = false; }
   [[nodiscard]] double step_size() const noexcept override;
   void set_step_size(double) noexcept override {}
+  [[nodiscard]] bool can_save() const noexcept override { return false; }
   // Time since the restart, the offset o, step sizes, order, and the derivatives of z up to it.
   void add_to(StateHash& hash) const noexcept override;
 

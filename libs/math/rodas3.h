@@ -32,6 +32,8 @@ class Rodas3 final : public StiffIntegrator {
   void restart() noexcept override { step_size_ = 0; }
   [[nodiscard]] double step_size() const noexcept override { return step_size_; }
   void set_step_size(double h) noexcept override { step_size_ = h; }
+  void save(StateWriter& bytes) const override { bytes.number(step_size_); }
+  void load(StateReader& bytes) noexcept override { bytes.number(step_size_); }
   [[nodiscard]] double integral(std::size_t state, double h, const double* y_before, const double* f_before,
                                 const double* y) const noexcept override;
   [[nodiscard]] bool takes_algebraic_rows() const noexcept override { return true; }

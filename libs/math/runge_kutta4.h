@@ -27,6 +27,14 @@ class RungeKutta4 final : public StiffIntegrator {
   void restart() noexcept override;
   [[nodiscard]] double step_size() const noexcept override { return options_.maximum_step; }
   void set_step_size(double) noexcept override {}
+  void save(StateWriter& bytes) const override {
+    bytes.flag(is_first_);
+    radius_.save(bytes);
+  }
+  void load(StateReader& bytes) noexcept override {
+    bytes.flag(is_first_);
+    radius_.load(bytes);
+  }
 
  private:
   void watch_error(const double* y, double h, StiffReport& report) const noexcept;

@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "core/state_bytes.h"
+
 namespace slew::math {
 
 class SpectralRadius {
@@ -25,6 +27,9 @@ class SpectralRadius {
   // The state with the largest part in the last vector.
   [[nodiscard]] std::int32_t owner() const noexcept;
   void restart() noexcept;
+  // The vector, for an update to go on from.
+  void save(StateWriter& bytes) const { bytes.numbers(v_); }
+  void load(StateReader& bytes) noexcept { bytes.numbers(v_); }
 
  private:
   double multiply(const double* A) noexcept;

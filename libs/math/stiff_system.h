@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 
 namespace slew::math {
@@ -80,6 +81,11 @@ class StiffIntegrator {
   virtual void set_step_size(double h) noexcept = 0;
   // Raw bits of all that the future depends on beside y.
   virtual void add_to(StateHash& hash) const noexcept { hash.add(step_size()); }
+  // The same, to be put back; the interval to come is then the one that would have come.
+  // False: of a method whose past cannot be put back.
+  [[nodiscard]] virtual bool can_save() const noexcept { return true; }
+  virtual void save(StateWriter& bytes) const { static_cast<void>(bytes); }
+  virtual void load(StateReader& bytes) noexcept { static_cast<void>(bytes); }
 
   // Integral of a state over the sub-step that is being accepted; for StiffSystem::accepted() only. As the method
   // itself would integrate it where that differs from a parabola: what flows out of one state and into another is the

@@ -261,4 +261,32 @@ void Dynamics::add_to_hash(StateHash& hash) const noexcept {
   }
 }
 
+template <typename Self, typename Bytes>
+void Dynamics::visit(Self& self, Bytes& bytes) {
+  const auto visit_bodies = [&](auto& bodies) {
+    bytes.numbers(bodies.q);
+    bytes.numbers(bodies.u);
+  };
+  if (self.bodies_ != nullptr) visit_bodies(self.bodies_->state);
+  if (self.held_ != nullptr) visit_bodies(self.held_->state);
+  if (self.stages_ == nullptr) return;
+  auto& ws = self.stages_->ws;
+  bytes.flag(ws.has_algorithmic);
+  bytes.numbers(ws.algorithmic);
+  for (auto& turn : ws.algorithmic_turn) visit_vector(bytes, turn);
+  // an implicit stage in joint coordinates begins with how near to singular the last one was
+  if (!self.stages_->matrix) return;
+  double pivot = self.stages_->matrix->ldl.smallest_pivot();
+  bytes.number(pivot);
+  if constexpr (Bytes::kIsReading) self.stages_->matrix->ldl.set_smallest_pivot(pivot);
+}
+
+void Dynamics::save(StateWriter& bytes) const {
+  visit(*this, bytes);
+}
+
+void Dynamics::load(StateReader& bytes) noexcept {
+  visit(*this, bytes);
+}
+
 }  // namespace slew::multibody

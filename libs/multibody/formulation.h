@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "multibody/defs.h"
 #include "multibody/integrators.h"
@@ -51,10 +52,15 @@ class Dynamics {
 
   // Raw bits of what is integrated beside the State.
   void add_to_hash(StateHash& hash) const noexcept;
+  // The same as bytes, and what a sub-step takes over from the one before. evaluate() comes next.
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
 
  private:
   // none: recursive
   [[nodiscard]] const BodyState* own_state() const noexcept;
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes);
   [[nodiscard]] StepKind contact_step() const noexcept;
   [[nodiscard]] bool advance_part(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;

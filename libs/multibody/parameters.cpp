@@ -111,6 +111,31 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
   return member_of(static_cast<ParameterKind>(kind), static_cast<std::size_t>(value.element), value.member);
 }
 
+bool has_parameter(const Model& model, Parameter p) noexcept {
+  const auto is_below = [&p](std::size_t elements, std::size_t members) {
+    return p.element >= 0 && at(p.element) < elements && p.member >= 0 && at(p.member) < members;
+  };
+  switch (p.kind) {
+    case ParameterKind::body_mass:
+      return p.element > 0 && is_below(model.bodies.size(), 1) && model.bodies[at(p.element)].lumped >= 0;
+    case ParameterKind::line_law:
+      return is_below(model.lines.size(), kLineMembers.size());
+    case ParameterKind::angle_law:
+      return is_below(model.angles.size(), kAngleMembers.size());
+    case ParameterKind::joint_law:
+      return is_below(model.rows.size(), kJointMembers.size());
+    case ParameterKind::gravity:
+      return is_below(kGravityKeys.size(), 1);
+    case ParameterKind::load:
+    case ParameterKind::bushing:
+    case ParameterKind::beam:
+    case ParameterKind::rope:
+    case ParameterKind::tyre:
+      return has_value(model.elements, element_value(p));
+  }
+  return false;
+}
+
 std::size_t parameter_count(const Model& model) noexcept {
   const auto joint_rows =
       static_cast<std::size_t>(std::count_if(model.rows.begin(), model.rows.end(), [](const Row& row) {

@@ -38,6 +38,9 @@ struct Parameter {
 // Empty when the path names nothing that can change here while running.
 [[nodiscard]] std::optional<Parameter> find_parameter(const Model& model, std::string_view path) noexcept;
 
+// Whether the model has it: of a number that came from outside.
+[[nodiscard]] bool has_parameter(const Model& model, Parameter parameter) noexcept;
+
 // How many there are.
 [[nodiscard]] std::size_t parameter_count(const Model& model) noexcept;
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
+
+#include "multibody/flexible/elastic_law.h"
 
 namespace slew::multibody {
 
@@ -74,24 +77,72 @@ void copy_state(const State& from, State& to) noexcept {
   to.contacts.assign(from.contacts);
 }
 
+namespace {
+
+// live parameters in id order: gravity, masses, laws, elements by `visit_elements`, joints
+template <typename AnyModel, typename Visit, typename VisitElements>
+void for_each_parameter(AnyModel& model, Visit visit, VisitElements visit_elements) {
+  Triple gravity = model.gravity.array();
+  for (double& g : gravity) visit(g);
+  if constexpr (!std::is_const_v<AnyModel>) model.gravity = math::Vec3(gravity);
+  for (auto& part : model.lumped) visit(part.mass);
+  const auto visit_law = [&visit](auto& law) {
+    for (auto* x : {&law.spring, &law.damping, &law.free, &law.end_spring, &law.end_damping}) visit(*x);
+  };
+  for (auto& line : model.lines) visit_law(line.law);
+  for (auto& angle : model.angles) visit_law(angle.law);
+  visit_elements(model.elements);
+  for (auto& row : model.rows) {
+    auto& law = row.law;
+    for (auto* x : {&law.coulomb, &law.viscous, &law.limit_stiffness, &law.limit_damping}) visit(*x);
+  }
+}
+
+template <typename AnyModel, typename AnyState, typename Bytes>
+void visit(AnyModel& model, AnyState& state, Bytes& bytes) {
+  bytes.numbers(state.q);
+  bytes.numbers(state.u);
+  bytes.number(state.time);
+  bytes.numbers(state.bristles);
+  if constexpr (Bytes::kIsReading) {
+    state.contacts.load(bytes);
+    for_each_parameter(
+        model, [&](double& value) { bytes.number(value); }, [&](ElementSet& set) { load(set, bytes); });
+  } else {
+    state.contacts.save(bytes);
+    for_each_parameter(
+        model, [&](double value) { bytes.number(value); }, [&](const ElementSet& set) { save(set, bytes); });
+  }
+  for (auto& part : model.parts) {
+    bytes.numbers(part.stiffness);
+    bytes.numbers(part.damping);
+    bytes.numbers(part.preload);
+    bytes.numbers(part.mass_matrix);
+  }
+}
+
+}  // namespace
+
 void add_to_hash(const Model& model, const State& state, StateHash& hash) noexcept {
   hash.add(std::span<const double>(state.q));
   hash.add(std::span<const double>(state.u));
   state.contacts.add_to_hash(hash);
   for (const double z : state.bristles) hash.add(z);
   if (depends_on_time(model.elements) || !model.drives.empty()) hash.add(state.time);
-  for (const double g : model.gravity.array()) hash.add(g);
-  for (const LumpedMass& part : model.lumped) hash.add(part.mass);
-  const auto add_law = [&hash](const ElementLaw& law) {
-    for (const double x : {law.spring, law.damping, law.free, law.end_spring, law.end_damping}) hash.add(x);
-  };
-  for (const LineElement& line : model.lines) add_law(line.law);
-  for (const AngleElement& angle : model.angles) add_law(angle.law);
-  add_to_hash(model.elements, hash);
-  for (const Row& row : model.rows) {
-    const JointLaw& law = row.law;
-    for (const double x : {law.coulomb, law.viscous, law.limit_stiffness, law.limit_damping}) hash.add(x);
-  }
+  for_each_parameter(
+      model, [&](double value) { hash.add(value); }, [&](const ElementSet& set) { add_to_hash(set, hash); });
+}
+
+void save(const Model& model, const State& state, StateWriter& bytes) {
+  visit(model, state, bytes);
+}
+
+void load(Model& model, State& state, StateReader& bytes) {
+  visit(model, state, bytes);
+  if (!bytes.is_sound()) return;
+  for (std::size_t link = 1; link < model.links.size(); ++link) lump_link(model, static_cast<int>(link));
+  mark_used_elements(model);
+  for (FlexiblePart& part : model.parts) part.is_diagonal = has_diagonal_law(part);
 }
 
 }  // namespace slew::multibody

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "math/semidefinite.h"
 #include "multibody/contact_workspace.h"
@@ -148,5 +149,10 @@ void copy_state(const State& from, State& to) noexcept;
 
 // Raw bits of coordinates, speeds, contacts and live parameters in id order.
 void add_to_hash(const Model& model, const State& state, StateHash& hash) noexcept;
+
+// The same as bytes, time and the elastic laws of flexible parts with them. load() works out what follows from the
+// parameters; where the bytes are not sound, model and state are no longer to be used.
+void save(const Model& model, const State& state, StateWriter& bytes);
+void load(Model& model, State& state, StateReader& bytes);
 
 }  // namespace slew::multibody

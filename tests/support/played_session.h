@@ -29,6 +29,11 @@ class StillSubsystem : public coupling::Subsystem {
   bool change_parameter(StepIndex, const coupling::ParameterChange&) noexcept override { return false; }
   void reset() override {}
   [[nodiscard]] std::uint64_t state_hash() const noexcept override { return 1; }
+  [[nodiscard]] Status can_save() const override { return Status::ok(); }
+  void save(std::vector<std::byte>&) const override {}
+  Status load(std::span<const std::byte> state, coupling::OwnSample&) override {
+    return state.empty() ? Status::ok() : Status::error(ExitCode::bad_input, "what does not move has no state");
+  }
   [[nodiscard]] coupling::Level level() const noexcept override { return coupling::Level::two; }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return {}; }
   void read_variables(std::span<double>) const noexcept override {}

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/element_variable.h"
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "multibody/elements/beam.h"
 #include "multibody/elements/bushing.h"
@@ -86,6 +87,10 @@ struct ElementValue {
 [[nodiscard]] ElementValue find_value(const ElementSet& set, std::string_view element, std::string_view key) noexcept;
 [[nodiscard]] double& value_of(ElementSet& set, ElementValue value) noexcept;
 [[nodiscard]] std::size_t value_count(const ElementSet& set) noexcept;
+// Whether the set has it.
+[[nodiscard]] bool has_value(const ElementSet& set, ElementValue value) noexcept;
 void add_to_hash(const ElementSet& set, StateHash& hash) noexcept;
+void save(const ElementSet& set, StateWriter& bytes);
+void load(ElementSet& set, StateReader& bytes) noexcept;
 
 }  // namespace slew::multibody

@@ -109,20 +109,57 @@ std::size_t value_count(const ElementSet& set) noexcept {
          set.ropes.size() * kRopeMembers.size() + set.tyres.size() * kTyreMembers.size();
 }
 
-void add_to_hash(const ElementSet& set, StateHash& hash) noexcept {
-  for (const PointLoad& load : set.loads) hash.add(load.constant);
-  for (const Bushing& bushing : set.bushings) {
-    for (const Six* values : {&bushing.spring, &bushing.damping, &bushing.preload}) {
-      for (const double value : *values) hash.add(value);
+bool has_value(const ElementSet& set, ElementValue value) noexcept {
+  const auto is_in = [&](const auto& elements, std::size_t members) {
+    return value.element >= 0 && static_cast<std::size_t>(value.element) < elements.size() && value.member >= 0 &&
+           static_cast<std::size_t>(value.member) < members;
+  };
+  switch (value.kind) {
+    case ElementKind::load:
+      return is_in(set.loads, 1);
+    case ElementKind::bushing:
+      return is_in(set.bushings, kBushingKeys.size());
+    case ElementKind::beam:
+      return is_in(set.beams, kBeamKeys.size());
+    case ElementKind::rope:
+      return is_in(set.ropes, kRopeMembers.size());
+    case ElementKind::tyre:
+      return is_in(set.tyres, kTyreMembers.size());
+  }
+  return false;
+}
+
+namespace {
+
+template <typename Set, typename Visit>
+void for_each_value(Set& set, Visit visit) {
+  for (auto& load : set.loads) visit(load.constant);
+  for (auto& bushing : set.bushings) {
+    for (auto* values : {&bushing.spring, &bushing.damping, &bushing.preload}) {
+      for (auto& value : *values) visit(value);
     }
   }
-  for (const Beam& beam : set.beams) hash.add(beam.damping_time);
-  for (const Rope& rope : set.ropes) {
-    for (const auto& member : kRopeMembers) hash.add(rope.*member.value);
+  for (auto& beam : set.beams) visit(beam.damping_time);
+  for (auto& rope : set.ropes) {
+    for (const auto& member : kRopeMembers) visit(rope.*member.value);
   }
-  for (const Tyre& tyre : set.tyres) {
-    for (const auto& member : kTyreMembers) hash.add(tyre.*member.value);
+  for (auto& tyre : set.tyres) {
+    for (const auto& member : kTyreMembers) visit(tyre.*member.value);
   }
+}
+
+}  // namespace
+
+void add_to_hash(const ElementSet& set, StateHash& hash) noexcept {
+  for_each_value(set, [&](double value) { hash.add(value); });
+}
+
+void save(const ElementSet& set, StateWriter& bytes) {
+  for_each_value(set, [&](double value) { bytes.number(value); });
+}
+
+void load(ElementSet& set, StateReader& bytes) noexcept {
+  for_each_value(set, [&](double& value) { bytes.number(value); });
 }
 
 }  // namespace slew::multibody

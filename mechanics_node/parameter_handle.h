@@ -1,0 +1,16 @@
+// A multibody parameter as the one number that coupling::ParameterRamps keeps.
+#pragma once
+
+#include "multibody/parameters.h"
+
+namespace slew::mechanics {
+
+[[nodiscard]] inline int handle_of(multibody::Parameter parameter) noexcept {
+  return (static_cast<int>(parameter.kind) << 24) | (parameter.element << 8) | parameter.member;
+}
+
+[[nodiscard]] inline multibody::Parameter parameter_of(int handle) noexcept {
+  return {static_cast<multibody::ParameterKind>(handle >> 24), (handle >> 8) & 0xffff, handle & 0xff};
+}
+
+}  // namespace slew::mechanics
