@@ -1,12 +1,19 @@
-// `slewring control pause|resume|step|reset|stop`: commands to a running session.
+// `slewring control pause|resume|step|reset|stop|save|load`: commands to a running session.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
+#include "io_node/saved_session.h"
 #include "node/driver.h"
+#include "node/identity.h"
+#include "scene/canonical.h"
+#include "scene/scene.h"
 
 namespace slew::cli {
 namespace {
@@ -16,6 +23,8 @@ using wire::ControlAction;
 struct Options {
   cli_support::SessionOptions session;
   std::int64_t steps = 1;
+  std::string file;
+  bool may_replace = false;
   bool is_json = false;
 };
 
@@ -33,39 +42,186 @@ constexpr Command kCommands[] = {
     {"stop", "end the session in order; the recording is closed", ControlAction::stop},
 };
 
-ExitCode send(const Options& options, const Command& command) {
-  node::install_signal_handlers();
-  const auto observer = find_session(options.session);
-  wire::ControlRequest request;
-  request.action = command.action;
-  request.value = command.action == ControlAction::step ? static_cast<double>(options.steps) : 0;
-  const wire::ControlReply reply = observer->ask(request);
+// What io_node said to a command, on standard output.
+void tell(const Options& options, const std::string& command, const Observer& observer, const wire::ControlReply& reply,
+          const std::string& more = "") {
   if (options.is_json) {
-    fmt::print("{}\n", nlohmann::json({{"session", observer->session_name()},
-                                       {"action", command.name},
+    fmt::print("{}\n", nlohmann::json({{"session", observer.session_name()},
+                                       {"action", command},
                                        {"accepted", reply.is_accepted},
                                        {"step", reply.header.step},
                                        {"reason", reply.reason}})
                            .dump(2));
   }
   if (!reply.is_accepted) {
-    throw cli_support::Failure(ExitCode::bad_input, "refused, nothing was changed: " + std::string(command.name) +
-                                                        " of session '" + observer->session_name() +
-                                                        "': " + reply.reason);
+    throw cli_support::Failure(ExitCode::bad_input, "refused, nothing was changed: " + command + " of session '" +
+                                                        observer.session_name() + "': " + reply.reason);
   }
   if (!options.is_json) {
-    fmt::print("accepted({}): {} of session '{}'\n", reply.header.step, command.name, observer->session_name());
+    fmt::print("accepted({}): {} of session '{}'{}\n", reply.header.step, command, observer.session_name(), more);
   }
+}
+
+ExitCode send(const Options& options, const Command& command) {
+  node::install_signal_handlers();
+  const auto observer = find_session(options.session);
+  wire::ControlRequest request;
+  request.action = command.action;
+  request.value = command.action == ControlAction::step ? static_cast<double>(options.steps) : 0;
+  tell(options, command.name, *observer, observer->ask(request));
   return ExitCode::ok;
+}
+
+// ---- save and load --------------------------------------------------------------------------------------------
+
+constexpr SimDuration kSaveAnswer = milliseconds(10'000);   // io_node waits for its nodes
+constexpr SimDuration kStatesArrive = milliseconds(2'000);  // behind its answer
+constexpr int kSaveAttempts = 3;
+
+std::vector<wire::Role> roles_with_state(const wire::SessionDescription& session) {
+  std::vector<wire::Role> roles = {wire::Role::io};
+  for (const wire::Role role : wire::kPhysicsRoles) {
+    if ((session.required_roles & wire::bit(role)) != 0) roles.push_back(role);
+  }
+  return roles;
+}
+
+ExitCode save(const Options& options) {
+  node::install_signal_handlers();
+  std::error_code ignored;
+  if (!options.may_replace && std::filesystem::exists(options.file, ignored)) {
+    throw cli_support::Failure(ExitCode::bad_input,
+                               options.file +
+                                   ": the file exists already; it was left as it is; choose another name, or "
+                                   "replace it with --force");
+  }
+  const auto observer = find_session(options.session);
+  const std::vector<wire::Role> roles = roles_with_state(observer->view().session());
+  wire::ControlRequest request;
+  request.action = ControlAction::save;
+  wire::ControlReply reply;
+  bool is_whole = false;
+  // what io_node says before it knows this reader is lost
+  for (int attempt = 0; attempt < kSaveAttempts && !is_whole; ++attempt) {
+    reply = observer->ask(request, kSaveAnswer);
+    if (!reply.is_accepted) tell(options, "save", *observer, reply);
+    is_whole = observer->wait_for(
+        [&] {
+          return std::all_of(roles.begin(), roles.end(),
+                             [&](wire::Role role) { return observer->state(reply.request, role) != nullptr; });
+        },
+        kStatesArrive);
+  }
+  if (!is_whole) {
+    throw cli_support::Failure(ExitCode::failed, "the states of session '" + observer->session_name() +
+                                                     "' did not arrive; nothing was written, the session goes on; try "
+                                                     "again, and compare --interface and --peer with those of the "
+                                                     "session");
+  }
+  const wire::SessionDescription& session = observer->view().session();
+  io::SavedSession saved;
+  saved.build = session.build;
+  saved.session_name = session.name;
+  saved.scene_name = session.scene_name;
+  saved.scene_text = session.scene_text;
+  saved.assets = session.assets;
+  saved.communication_step = {session.step_ns};
+  saved.step = reply.header.step;
+  for (const wire::Role role : roles) saved.states.push_back({role, *observer->state(reply.request, role)});
+  cli_support::require(
+      io::write_saved(options.file, saved, options.may_replace ? io::Replace::existing : io::Replace::never));
+  tell(options, "save", *observer, reply, fmt::format(", t = {:.6g} s: {}", saved.time(), options.file));
+  return ExitCode::ok;
+}
+
+// Empty when both are the same machine; else what differs first. Duration, pace, script, and what is recorded and
+// plotted are no part of the machine.
+std::string difference_of(const io::SavedSession& saved, const wire::SessionDescription& running) {
+  scene::Scene a = scene::load_text(saved.scene_text, saved.scene_name);
+  scene::Scene b = scene::load_text(running.scene_text, running.scene_name);
+  b.session.duration = a.session.duration;
+  b.session.pace = a.session.pace;
+  b.session.window = a.session.window;
+  b.session.rejoin = a.session.rejoin;
+  b.session.controller_timeout = a.session.controller_timeout;
+  b.script = a.script;
+  b.recording.variables = a.recording.variables;
+  b.plots = a.plots;
+  std::istringstream of_a(scene::canonical_text(a)), of_b(scene::canonical_text(b));
+  std::string line_a, line_b, element;
+  while (true) {
+    const bool has_a = static_cast<bool>(std::getline(of_a, line_a)),
+               has_b = static_cast<bool>(std::getline(of_b, line_b));
+    if (!has_a && !has_b) return "";
+    if (!has_a || !has_b || line_a != line_b) break;
+    if (line_a.ends_with(":")) element = line_a.substr(line_a.find_first_not_of(' '));
+  }
+  const auto trimmed = [](const std::string& line) {
+    const std::size_t first = line.find_first_not_of(' ');
+    return first == std::string::npos ? std::string("nothing") : "'" + line.substr(first) + "'";
+  };
+  return element + " it has " + trimmed(line_a) + ", the session " + trimmed(line_b);
+}
+
+ExitCode load(const Options& options) {
+  node::install_signal_handlers();
+  io::SavedSession saved;
+  cli_support::require(io::read_saved(options.file, saved));
+  const auto observer = find_session(options.session);
+  const wire::SessionDescription& session = observer->view().session();
+  const auto refuse = [&](const std::string& why) {
+    throw cli_support::Failure(ExitCode::bad_input, options.file + ": refused, nothing was changed: " + why);
+  };
+  if (const std::string differs = difference_of(saved, session); !differs.empty()) {
+    refuse("it was saved of another scene than that of session '" + observer->session_name() + "': " + differs);
+  }
+  if (saved.assets != session.assets) refuse("the files of its scene are not those of the session's");
+  if (saved.build != session.build) {
+    refuse("it was saved by build '" + saved.build + "', the session is of '" + session.build +
+           "'; begin a new one with 'slewring run --from'");
+  }
+  wire::ControlRequest request;
+  request.action = ControlAction::load;
+  request.request = Observer::draw_number();
+  if (!observer->wait_until_heard()) refuse("the session does not hear this program within 3 s");
+  for (const wire::Role role : roles_with_state(session)) {
+    const node::Checkpoint* state = saved.find(role);
+    if (state == nullptr) refuse("the file has no state of " + std::string(node::to_text(role)));
+    observer->give_state(request.request, role, *state);
+  }
+  tell(options, "load", *observer, observer->ask(request, kSaveAnswer), fmt::format(", t = {:.6g} s", saved.time()));
+  return ExitCode::ok;
+}
+
+void add_save_and_load(CLI::App& verb, Action& action, const std::shared_ptr<Options>& options) {
+  CLI::App* saving = verb.add_subcommand("save", "write the session's whole state at the next step into a file");
+  saving->add_option("file", options->file, "file to write")->required()->type_name("FILE");
+  saving->add_flag("--force", options->may_replace, "replace a file that exists");
+  cli_support::add_session_options(*saving, options->session, false);
+  saving->add_flag("--json", options->is_json, "for machines");
+  saving->footer(
+      "The session stands for some milliseconds and goes on. 'slewring run --from FILE' goes on from there.\n\n"
+      "Example:\n  slewring control save crane.saved --session truck_crane");
+  saving->callback([&action, options] { action = [options] { return save(*options); }; });
+  CLI::App* loading = verb.add_subcommand("load", "put the session into the state of a file, saved of the same scene");
+  loading->add_option("file", options->file, "file of 'control save'")->required()->type_name("FILE");
+  cli_support::add_session_options(*loading, options->session, false);
+  loading->add_flag("--json", options->is_json, "for machines");
+  loading->footer(
+      "As after a reset all channels are free: controllers acquire them again. The script goes on at that time.\n\n"
+      "Example:\n  slewring control load crane.saved --session truck_crane");
+  loading->callback([&action, options] { action = [options] { return load(*options); }; });
 }
 
 }  // namespace
 
 void add_control(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("control", "pause, resume, step, reset or stop a running session");
+  CLI::App* verb =
+      program.add_subcommand("control", "pause, resume, step, reset, stop, save or load a running session");
   verb->require_subcommand(1);
   verb->footer("Example:\n  slewring control pause --session truck_crane");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
+  add_save_and_load(*verb, action, options);
   for (const Command& command : kCommands) {
     CLI::App* part = verb->add_subcommand(command.name, command.doc);
     if (command.action == ControlAction::step) {

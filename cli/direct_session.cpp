@@ -1,6 +1,9 @@
 #include "cli/direct_session.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "node/identity.h"
 
 namespace slew::cli {
 
@@ -51,6 +54,52 @@ void DirectSession::reset() {
   if (flex_ != nullptr) flex_->reset();
 }
 
+Status DirectSession::load(std::span<const io::SavedState> states) {
+  mechanics_report_ = hydraulics_report_ = {};
+  for (const Role role : wire::kPhysicsRoles) {
+    coupling::Subsystem* const subsystem = part(role);
+    if (subsystem == nullptr) continue;
+    const auto found =
+        std::find_if(states.begin(), states.end(), [role](const io::SavedState& state) { return state.role == role; });
+    if (found == states.end()) {
+      return Status::error(ExitCode::bad_input, "there is no state of " + std::string(node::to_text(role)));
+    }
+    wire::SampleState said;
+    coupling::OwnSample& sample = role == Role::mechanics    ? mechanics_sample_
+                                  : role == Role::hydraulics ? hydraulics_sample_
+                                                             : flex_sample_;
+    if (Status status = node::load_node(found->state, *subsystem, said, sample); !status.is_ok()) return status;
+  }
+  return Status::ok();
+}
+
+Status DirectSession::can_save() const {
+  for (const Role role : wire::kPhysicsRoles) {
+    const coupling::Subsystem* const own = subsystem(role);
+    if (own == nullptr) continue;
+    if (Status status = own->can_save(); !status.is_ok()) return status;
+  }
+  return Status::ok();
+}
+
+std::vector<io::SavedState> DirectSession::save(StepIndex n) const {
+  std::vector<io::SavedState> states;
+  for (const Role role : wire::kPhysicsRoles) {
+    const coupling::Subsystem* const own = subsystem(role);
+    if (own == nullptr) continue;
+    const StepReport last = role == Role::flex ? StepReport{} : report(role);
+    wire::SampleState said;
+    said.level = own->level();
+    said.used_step = role == Role::flex ? n : n - 1 - (n - 1) % exchange_every_;
+    said.state_hash = own->state_hash();
+    said.flags = last.flags;
+    said.offender = last.offender;
+    said.substeps = last.substeps;
+    node::save_node(*own, said, n, states.emplace_back(io::SavedState{role, {}}).state);
+  }
+  return states;
+}
+
 void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
                          std::span<const double> controls) noexcept {
   const auto advance = [&](coupling::Subsystem& subsystem, const PartnerSamples& partners, coupling::OwnSample& next) {
@@ -98,6 +147,10 @@ void DirectSession::step(StepIndex n, std::span<const wire::Command> commands,
 }
 
 const coupling::Subsystem* DirectSession::subsystem(Role role) const noexcept {
+  return part(role);
+}
+
+coupling::Subsystem* DirectSession::part(Role role) const noexcept {
   switch (role) {
     case Role::mechanics:
       return mechanics_.get();

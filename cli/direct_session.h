@@ -11,6 +11,7 @@
 
 #include "cli/monolithic_session.h"
 #include "coupling/subsystem.h"
+#include "io_node/saved_session.h"
 #include "scene/scene.h"
 #include "transport/wire.h"
 
@@ -29,6 +30,12 @@ class DirectSession {
   // INIT: start states and samples 0. After reset() again.
   Status start();
   void reset();
+  // In the place of start(): the states of one step, at which mechanics and hydraulics have exchanged. Error
+  // (bad_input): a state is missing or not this scene's.
+  Status load(std::span<const io::SavedState> states);
+  // The states after step n-1, in the place of the nodes'. Pre-condition: can_save().
+  [[nodiscard]] std::vector<io::SavedState> save(StepIndex n) const;
+  [[nodiscard]] Status can_save() const;
 
   // Applies the commands, then advances all subsystems from t_n to t_{n+1}.
   void step(StepIndex n, std::span<const wire::Command> commands, std::span<const double> controls) noexcept;
@@ -56,6 +63,8 @@ class DirectSession {
   [[nodiscard]] std::string failure() const;
 
  private:
+  [[nodiscard]] coupling::Subsystem* part(wire::Role role) const noexcept;
+
   SubsystemFamily family_;
   std::unique_ptr<coupling::Subsystem> mechanics_;
   std::unique_ptr<coupling::Subsystem> hydraulics_;

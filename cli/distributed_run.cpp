@@ -30,15 +30,22 @@ constexpr int kRoundMs = 20;
 // after io is through, or a node is lost, the others have this long: their own linger and some more
 constexpr std::int64_t kGraceNs = 4'000'000'000;
 constexpr std::int64_t kTermNs = 1'500'000'000;
+// a node that is killed again and again has a cause that a restart does not remove
+constexpr int kMostRestarts = 3;
 
 class Supervisor {
  public:
-  Supervisor(const RunOptions& options, const scene::Scene& scene)
+  Supervisor(const RunOptions& options, const io::SessionScene& session)
+      : Supervisor(options, session.scene, session.beginning ? session.beginning->step : 0) {}
+
+  Supervisor(const RunOptions& options, const scene::Scene& scene, StepIndex begin)
       : options_(options),
+        begin_(begin),
         status_(status_mode(options.is_quiet || options.is_json)),
         text_(scene),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
-        name_(scene.name) {
+        name_(scene.name),
+        is_place_held_(scene.session.rejoin > 0) {
     if (options.scene.input == "keyboard") keyboard_.emplace(scene);
   }
 
@@ -52,6 +59,7 @@ class Supervisor {
       wait_for_output();
       observer_->drain();
       look_after_children();
+      start_again();
       start_others_when_io_is_there();
       obey_interrupts();
       enforce_deadlines();
@@ -68,6 +76,9 @@ class Supervisor {
     std::unique_ptr<ChildProcess> process;
     bool is_reported = false;
     bool is_asked_to_end = false;  // a signal is then no accident, even for one that does not catch it yet
+    int restarts = 0;
+    int given_up_before = 0;  // processes of its role, when it was started
+    bool is_awaited = false;  // it was killed, and is started again when io holds its place
   };
 
   // values are needed for the status line, and for the summary of a run that is not recorded here
@@ -87,7 +98,9 @@ class Supervisor {
     return (roles_ & bit(role)) != 0 && !is_remote;
   }
 
-  void start(Role role) {
+  void start(Role role) { nodes_.push_back({role, make(role)}); }
+
+  [[nodiscard]] std::unique_ptr<ChildProcess> make(Role role) const {
     std::vector<std::string> arguments;
     if (role == Role::io) arguments = cli_support::scene_arguments(options_.scene);
     arguments.insert(arguments.end(), {"--session", options_.session.session});
@@ -105,7 +118,7 @@ class Supervisor {
                        {"--out", options_.runs, "--keep-free", fmt::format("{}", options_.keep_free_mb)});
     if (options_.is_real_time) arguments.emplace_back("--rt");
     const std::string name(node::to_text(role));
-    nodes_.push_back({role, std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments)});
+    return std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments);
   }
 
   void start_others() {
@@ -122,6 +135,37 @@ class Supervisor {
     const NodeView& io = observer_->view().node(Role::io);
     const bool is_our_io = io.is_known && io.status.pid == static_cast<std::uint32_t>(nodes_.front().process->pid());
     if (is_our_io && io.status.state < wire::NodeState::ended && interrupts() == 0) start_others();
+  }
+
+  // ---- starting again -----------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool may_start_again(const Node& node) const {
+    const bool is_physics = node.role != Role::io && node.role != Role::recorder;
+    const bool runs = observer_->view().step() >= 0 && !observer_->view().is_over() && interrupts() == 0;
+    return is_place_held_ && is_physics && runs && deadline_ns_ == 0 && node.restarts < kMostRestarts;
+  }
+
+  // Processes of the role that io has given up: it holds the place of the last one.
+  [[nodiscard]] int places_given_up(Role role) const {
+    if (!observer_->view().has_session()) return 0;
+    const std::vector<wire::GivenUp>& gone = observer_->view().session().given_up;
+    return static_cast<int>(
+        std::count_if(gone.begin(), gone.end(), [role](const wire::GivenUp& g) { return g.role == role; }));
+  }
+
+  void start_again() {
+    for (Node& node : nodes_) {
+      if (!node.is_awaited) continue;
+      if (observer_->view().is_over() || deadline_ns_ != 0) {
+        node.is_awaited = false;
+        report_kill(node, "; the others end with code 4 and close the recording; run the session again");
+      } else if (places_given_up(node.role) > node.given_up_before) {
+        node.given_up_before = places_given_up(node.role);
+        node.process = make(node.role);
+        node.is_awaited = node.is_reported = false;
+        ++node.restarts;
+      }
+    }
   }
 
   // ---- watching -----------------------------------------------------------------------------------------------
@@ -161,15 +205,28 @@ class Supervisor {
     (is_consequence ? consequences_ : causes_).push_back(line);
   }
 
+  void say_kill(const Node& node, const std::string& what_follows) {
+    status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                ") " + node.process->poll_end()->text() + what_follows);
+  }
+
+  void report_kill(const Node& node, const std::string& what_follows) {
+    is_node_killed_ = true;
+    say_kill(node, what_follows);
+    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+  }
+
   void report_end(Node& node) {
     node.is_reported = true;
     const ProcessEnd& end = *node.process->poll_end();
     if (end.signal != 0 && !node.is_asked_to_end) {
-      is_node_killed_ = true;
-      const std::string line = "slewring: the " + node.process->name() + " node (process " +
-                               std::to_string(node.process->pid()) + ") " + end.text() +
-                               "; the others hold, end with code 4 and close the recording; run the session again";
-      status_.say(line);
+      if (may_start_again(node)) {
+        node.is_awaited = true;
+        return say_kill(node, fmt::format("; the others hold, and it is started again with the state of its last "
+                                          "checkpoint ({} of {})",
+                                          node.restarts + 1, kMostRestarts));
+      }
+      report_kill(node, "; the others hold, end with code 4 and close the recording; run the session again");
     }
     const bool is_wrong = end.signal != 0 || end.exit_code != 0;
     if (node.role == Role::io || is_wrong) {
@@ -226,7 +283,7 @@ class Supervisor {
   void show() {
     const std::int64_t now_ns = monotonic_ns();
     const SessionView& view = observer_->view();
-    has_stepped_ = has_stepped_ || view.step() > 0;
+    has_stepped_ = has_stepped_ || view.step() > begin_;
     if (has_stepped_ && !view.is_over()) clock_.measure(now_ns, view.step(), view.is_paused());
     if (keyboard_) keyboard_->poll(*observer_, now_ns);
     text_.measure(view, now_ns);
@@ -274,13 +331,14 @@ class Supervisor {
     outcome.recording = recording_;
     if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
     outcome.view = observer_->view();
-    outcome.steps = std::max<StepIndex>(0, outcome.view.step());
+    outcome.steps = std::max<StepIndex>(0, outcome.view.step() - begin_);
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
     return outcome;
   }
 
   const RunOptions& options_;
+  StepIndex begin_;  // step that the session goes on from
   StatusLine status_;
   StatusText text_;
   std::uint32_t roles_;
@@ -288,6 +346,7 @@ class Supervisor {
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
   std::optional<Keyboard> keyboard_;
+  bool is_place_held_;  // of a physics node that is lost
   bool are_others_started_ = false;
   bool is_node_killed_ = false;
   bool is_termed_ = false;
@@ -303,8 +362,8 @@ class Supervisor {
 
 }  // namespace
 
-RunOutcome run_distributed(const RunOptions& options, const scene::Scene& scene) {
-  return Supervisor(options, scene).run();
+RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session) {
+  return Supervisor(options, session).run();
 }
 
 }  // namespace slew::cli

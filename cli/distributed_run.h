@@ -2,10 +2,10 @@
 #pragma once
 
 #include "cli/run_outcome.h"
-#include "scene/scene.h"
+#include "io_node/session_scene.h"
 
 namespace slew::cli {
 
-[[nodiscard]] RunOutcome run_distributed(const RunOptions& options, const scene::Scene& scene);
+[[nodiscard]] RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session);
 
 }  // namespace slew::cli

@@ -1,7 +1,6 @@
 // `slewring export REC`: a recording's variables as a table, or as structs for MATLAB.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -13,7 +12,6 @@
 #include "cli/text_output.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
-#include "scene/units.h"
 
 namespace slew::cli {
 namespace {
@@ -32,24 +30,10 @@ struct Options {
   bool may_replace = false;
 };
 
-std::uint64_t time_ns(const std::string& option, const std::string& text) {
-  scene::UnitSystem units;
-  const scene::QuantityResult time = scene::read_quantity(text, scene::Writing::quoted, Dimension::time, units);
-  const bool is_bare = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
-  const double seconds = time.value ? *time.value : is_bare ? std::strtod(text.c_str(), nullptr) : -1;
-  // beyond 2^63 ns no recording goes
-  if (!(seconds >= 0) || seconds > 9e9) {
-    throw Failure(ExitCode::bad_input, option + " '" + text +
-                                           "' is not a time of the recording; nothing was written; expected one such "
-                                           "as '2.5 s', or a bare number in s, 0 or more");
-  }
-  return static_cast<std::uint64_t>(std::llround(seconds * 1e9));
-}
-
 TimeRange range_of(const Options& options) {
   TimeRange range;
-  if (!options.from.empty()) range.from_ns = time_ns("--from", options.from);
-  if (!options.to.empty()) range.to_ns = time_ns("--to", options.to);
+  if (!options.from.empty()) range.from_ns = recorded_time_ns("--from", options.from);
+  if (!options.to.empty()) range.to_ns = recorded_time_ns("--to", options.to);
   if (range.to_ns < range.from_ns) {
     throw Failure(ExitCode::bad_input, "--to " + options.to + " lies before --from " + options.from +
                                            "; nothing was written; name the earlier time first");

@@ -24,13 +24,16 @@ using wire::Role;
 
 class InProcessRun {
  public:
-  InProcessRun(const RunOptions& options, const scene::Scene& scene)
-      : options_(options), scene_(scene), status_(status_mode(options.is_quiet || options.is_json)), text_(scene) {
+  InProcessRun(const RunOptions& options, const io::SessionScene& session)
+      : options_(options),
+        begin_(session.beginning ? session.beginning->step : 0),
+        status_(status_mode(options.is_quiet || options.is_json)),
+        text_(session.scene) {
     io::SessionWish wish;
     wish.session_name = options.session.session;
     wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
     wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
-    io::IoConfig config = io::make_config(scene, wish);
+    io::IoConfig config = io::make_config(session, wish);
     config.name_check = {};  // nobody else is on this bus
     roles_ = config.required_roles;
     io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
@@ -38,7 +41,7 @@ class InProcessRun {
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
     observer_ = std::make_unique<Observer>(cli_support::open_carrier(Role::observer, bus_), options.session.session);
-    if (options.scene.input == "keyboard") keyboard_.emplace(scene);
+    if (options.scene.input == "keyboard") keyboard_.emplace(session.scene);
   }
 
   RunOutcome run() {
@@ -66,7 +69,7 @@ class InProcessRun {
     if ((roles_ & bit(role)) == 0) return;
     auto node = std::make_unique<node::PhysicsNode>(
         role, endpoint(role),
-        cli_support::subsystem_factory([this, role](const scene::Scene& scene) { return family_.make(role, scene); },
+        cli_support::subsystem_factory([this, role](const scene::Scene& own) { return family_.make(role, own); },
                                        options_.assets()));
     nodes_.push_back(node.get());
     physics_.push_back(std::move(node));
@@ -83,7 +86,7 @@ class InProcessRun {
   void each_round() {
     const std::int64_t now_ns = monotonic_ns();
     observer_->drain();
-    has_stepped_ = has_stepped_ || io_->next_step() > 0;
+    has_stepped_ = has_stepped_ || io_->next_step() > begin_;
     if (has_stepped_ && io_->member().state() < wire::NodeState::ended) {
       clock_.measure(now_ns, io_->next_step(), io_->is_paused());
     }
@@ -106,7 +109,7 @@ class InProcessRun {
     if (interrupt_code() != 0) outcome.code = static_cast<ExitCode>(interrupt_code());
     if (recorder_ != nullptr) outcome.recording = recorder_->recording().string();
     outcome.has_begun = true;
-    outcome.steps = io_->next_step();
+    outcome.steps = io_->next_step() - begin_;
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
     outcome.view = observer_->view();
@@ -123,7 +126,7 @@ class InProcessRun {
   }
 
   const RunOptions& options_;
-  const scene::Scene& scene_;
+  StepIndex begin_;  // step that the session goes on from
   StatusLine status_;
   StatusText text_;
   transport::InProcessBus bus_;
@@ -142,8 +145,8 @@ class InProcessRun {
 
 }  // namespace
 
-RunOutcome run_in_process(const RunOptions& options, const scene::Scene& scene) {
-  return InProcessRun(options, scene).run();
+RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session) {
+  return InProcessRun(options, session).run();
 }
 
 }  // namespace slew::cli

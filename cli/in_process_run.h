@@ -3,10 +3,10 @@
 #pragma once
 
 #include "cli/run_outcome.h"
-#include "scene/scene.h"
+#include "io_node/session_scene.h"
 
 namespace slew::cli {
 
-[[nodiscard]] RunOutcome run_in_process(const RunOptions& options, const scene::Scene& scene);
+[[nodiscard]] RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session);
 
 }  // namespace slew::cli

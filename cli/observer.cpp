@@ -30,7 +30,36 @@ void Observer::drain() {
   while (carrier_->take(message)) {
     view_.take(message.topic, message.bytes);
     wire::ControlReply reply;
+    take_state(message);
     if (message.topic == Topic::control_reply && on_reply_ && transport::decode(message.bytes, reply)) on_reply_(reply);
+  }
+}
+
+void Observer::take_state(const transport::Received& message) {
+  wire::StatePart part;
+  if (message.topic != Topic::state || !transport::decode(message.bytes, part)) return;
+  const bool is_answer = part.header.role == wire::Role::io && part.request != 0 && view_.has_session() &&
+                         part.header.session == view_.session().header.session;
+  if (is_answer) states_[{part.request, part.role}].take(part);
+}
+
+const node::Checkpoint* Observer::state(std::uint64_t request, wire::Role role) const {
+  const auto found = states_.find({request, role});
+  return found != states_.end() && found->second.is_whole() ? &found->second.checkpoint() : nullptr;
+}
+
+void Observer::give_state(std::uint64_t request, wire::Role role, const node::Checkpoint& state) {
+  wire::Header header;
+  header.session = view_.session().header.session;
+  header.role = wire::Role::observer;
+  header.phase = wire::Phase::running;
+  header.step = state.step;
+  transport::ByteBuffer bytes;
+  for (const wire::StatePart& part : node::parts_of(state, header, role, request)) {
+    if (!transport::encode(part, bytes)) {
+      throw Failure(ExitCode::bad_input, "the saved state is too large; nothing was sent");
+    }
+    cli_support::require(carrier_->publish(Topic::state, bytes));
   }
 }
 
@@ -45,9 +74,17 @@ bool Observer::wait_for(const std::function<bool()>& done, SimDuration at_most) 
   }
 }
 
+std::uint64_t Observer::draw_number() {
+  std::uint64_t number = 0;
+  while (number == 0) {
+    if (getrandom(&number, sizeof number, 0) != sizeof number) std::abort();
+  }
+  return number;
+}
+
 std::uint64_t Observer::send(wire::ControlRequest request) {
   request.session = session_;
-  if (getrandom(&request.request, sizeof request.request, 0) != sizeof request.request) std::abort();
+  if (request.request == 0) request.request = draw_number();
   transport::ByteBuffer bytes;
   if (!transport::encode(request, bytes)) {
     throw Failure(ExitCode::bad_input, "the request is too long; nothing was sent; names have at most 63 characters");
@@ -62,12 +99,13 @@ bool Observer::wait_until_heard() {
       [this] {
         const NodeView& io = view_.node(wire::Role::io);
         return io.health.header.session == view_.session().header.session &&
-               cli_support::is_heard(*carrier_, Topic::control_request);
+               cli_support::is_heard(*carrier_, Topic::control_request) &&
+               cli_support::is_heard(*carrier_, Topic::state);
       },
       kAnswerTimeout);
 }
 
-wire::ControlReply Observer::ask(wire::ControlRequest request) {
+wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_most) {
   wire::ControlReply answer;
   bool is_answered = false;
   std::uint64_t number = 0;
@@ -78,12 +116,13 @@ wire::ControlReply Observer::ask(wire::ControlRequest request) {
   };
   if (wait_until_heard()) {
     number = send(std::move(request));
-    wait_for([&] { return is_answered; }, kAnswerTimeout);
+    wait_for([&] { return is_answered; }, at_most);
   }
   on_reply_ = nullptr;
   if (!is_answered) {
-    throw Failure(ExitCode::failed, "session '" + session_ +
-                                        "' has not answered within 3 s; the request may have had an effect; look with "
+    throw Failure(ExitCode::failed, "session '" + session_ + "' has not answered within " +
+                                        node::seconds_text(at_most) +
+                                        "; the request may have had an effect; look with "
                                         "'slewring sessions' whether it still runs");
   }
   return answer;

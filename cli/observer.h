@@ -3,15 +3,22 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "cli/session_view.h"
 #include "cli_support/session_options.h"
 #include "core/time.h"
+#include "node/checkpoint.h"
 #include "transport/transport.h"
 
 namespace slew::cli {
+
+// How long a verb waits for a session that should be there, and for an answer of it.
+inline constexpr SimDuration kFindTimeout = milliseconds(3000);
+inline constexpr SimDuration kAnswerTimeout = milliseconds(3000);
 
 class Observer {
  public:
@@ -27,25 +34,32 @@ class Observer {
   bool wait_for(const std::function<bool()>& done, SimDuration at_most);
 
   // Sends a request and waits for io_node's answer. Throws Failure when none comes.
-  [[nodiscard]] wire::ControlReply ask(wire::ControlRequest request);
+  [[nodiscard]] wire::ControlReply ask(wire::ControlRequest request, SimDuration at_most = kAnswerTimeout);
 
-  // The same without waiting: whether it had an effect is seen in the view. Returns the request's number.
+  // The same without waiting: whether it had an effect is seen in the view. Returns the request's number, which is
+  // drawn unless it has one.
   std::uint64_t send(wire::ControlRequest request);
+  [[nodiscard]] static std::uint64_t draw_number();
+
+  // The state of a role that io_node has given in answer to a request; null: it has not come whole.
+  [[nodiscard]] const node::Checkpoint* state(std::uint64_t request, wire::Role role) const;
+  // Gives io_node a role's state for a request. Throws Failure when it cannot be sent.
+  void give_state(std::uint64_t request, wire::Role role, const node::Checkpoint& state);
 
   void send(const wire::ControllerInput& input);
 
- private:
+  // io_node knows this reader and this writer. False: not within kAnswerTimeout.
   bool wait_until_heard();
+
+ private:
+  void take_state(const transport::Received& message);
 
   std::unique_ptr<transport::Transport> carrier_;
   std::string session_;
   SessionView view_;
   std::function<void(const wire::ControlReply&)> on_reply_;
+  std::map<std::pair<std::uint64_t, wire::Role>, node::CheckpointParts> states_;  // by request and role
 };
-
-// How long a verb waits for a session that should be there, and for an answer of it.
-inline constexpr SimDuration kFindTimeout = milliseconds(3000);
-inline constexpr SimDuration kAnswerTimeout = milliseconds(3000);
 
 // Opens an observer of the named session, or of the only one that runs on the domain, and waits until it is heard.
 // Throws Failure when there is none, or more than one and no name.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -14,6 +16,7 @@
 #include "cli_support/name_pattern.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
+#include "scene/units.h"
 #include "transport/codec.h"
 
 namespace slew::cli {
@@ -69,8 +72,9 @@ bool was_paused(const std::map<std::uint64_t, bool>& paused_since, std::uint64_t
   return false;
 }
 
-// Files that belonged to the scene, as the recorder listed them.
-std::vector<scene::Asset> manifest_of(const Reader& reader) {
+}  // namespace
+
+std::vector<scene::Asset> recorded_manifest(const Reader& reader) {
   std::vector<scene::Asset> assets;
   const auto list = nlohmann::json::parse(attachment_text(reader, "manifest.json"), nullptr, false);
   if (!list.is_array()) {
@@ -88,8 +92,6 @@ std::vector<scene::Asset> manifest_of(const Reader& reader) {
   return assets;
 }
 
-}  // namespace
-
 std::unique_ptr<Reader> open_recording(const std::string& path) {
   std::filesystem::path file = path;
   std::error_code error;
@@ -105,13 +107,27 @@ scene::Scene recorded_scene(const Reader& reader, const std::string& assets) {
   const std::string text = attachment_text(reader, "scene.yaml"), name = reader.identity().scene;
   scene::Scene plain = scene::load_text(text, name);
   if (!plain.has_flexible_bodies()) return plain;
-  const Status status = scene::check_assets(manifest_of(reader), assets);
+  const Status status = scene::check_assets(recorded_manifest(reader), assets);
   if (!status.is_ok()) {
     throw cli_support::Failure(ExitCode::bad_input, "the scene's files are not in '" + assets + "' as they were: " +
                                                         status.text.substr(0, status.text.find("; this node")) +
                                                         "; nothing was computed; name their folder with --assets");
   }
   return scene::load_text(text, name, {}, assets);
+}
+
+std::uint64_t recorded_time_ns(const std::string& option, const std::string& text) {
+  scene::UnitSystem units;
+  const scene::QuantityResult time = scene::read_quantity(text, scene::Writing::quoted, Dimension::time, units);
+  const bool is_bare = text.find_first_not_of("0123456789.eE+-") == std::string::npos;
+  const double seconds = time.value ? *time.value : is_bare ? std::strtod(text.c_str(), nullptr) : -1;
+  // beyond 2^63 ns no recording goes
+  if (!(seconds >= 0) || seconds > 9e9) {
+    throw Failure(ExitCode::bad_input, option + " '" + text +
+                                           "' is not a time of the recording; nothing was written; expected one such "
+                                           "as '2.5 s', or a bare number in s, 0 or more");
+  }
+  return static_cast<std::uint64_t>(std::llround(seconds * 1e9));
 }
 
 std::string recorded_assets(const std::string& recording) {

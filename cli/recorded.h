@@ -32,6 +32,9 @@ struct TimeRange {
   std::uint64_t to_ns = std::numeric_limits<std::uint64_t>::max();
 };
 
+// A time of a recording, "2.5 s" or a bare number in s, as an option has it. Throws Failure.
+[[nodiscard]] std::uint64_t recorded_time_ns(const std::string& option, const std::string& text);
+
 // Curves of the named variables. Throws Failure when one is not in the recording, with the name that was probably
 // meant.
 [[nodiscard]] std::vector<plotting::Series> read_series(const recording::Reader& reader,
@@ -50,6 +53,9 @@ struct TickSpan {
 // The scene of a recording, with the files of its flexible bodies from the folder, which must be those of the
 // recording. Throws Failure, LoadError.
 [[nodiscard]] scene::Scene recorded_scene(const recording::Reader& reader, const std::string& assets);
+
+// Files that belonged to the scene, as the recorder listed them. Throws Failure.
+[[nodiscard]] std::vector<scene::Asset> recorded_manifest(const recording::Reader& reader);
 
 // Folder beside a recording in which the files of its scene are kept: those of flexible bodies, of which a session's
 // text has only the names.

@@ -10,6 +10,8 @@
 #include "cli/recorded.h"
 #include "cli_support/failure.h"
 #include "core/arithmetic_self_test.h"
+#include "io_node/scene_config.h"
+#include "io_node/tick_follower.h"
 #include "node/driver.h"
 #include "node/identity.h"
 #include "scene/scene.h"
@@ -29,8 +31,12 @@ constexpr std::size_t kMostWaiting = 4096;
 
 class Replay {
  public:
-  Replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets)
-      : reader_(reader), on_difference_(on_difference), scene_(recorded_scene(reader, assets)), session_(scene_) {
+  Replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets, ReplayEnd* end)
+      : reader_(reader),
+        on_difference_(on_difference),
+        scene_(recorded_scene(reader, assets)),
+        session_(scene_),
+        end_(end) {
     set_floating_point_mode();
     if (scene_.session.mode == scene::ExchangeMode::free_running) {
       throw Failure(ExitCode::bad_input,
@@ -44,6 +50,13 @@ class Replay {
   }
 
   ReplayResult run() {
+    read_states();
+    epoch_ = first_epoch();
+    if (end_ != nullptr) {
+      last_epoch_ = last_epoch();
+      config_ = io::make_config(scene_, {});
+      follower_.emplace(config_);
+    }
     start_epoch();
     recording::MessageFilter filter;
     for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic}) {
@@ -51,11 +64,12 @@ class Replay {
     }
     const Status status = reader_.for_each(filter, [this](const recording::RecordedMessage& message) {
       take(message);
-      return has_stopped_ || node::stop_requested.load() != 0 ? Visit::stop : Visit::go_on;
+      return has_stopped_ || is_at_end() || node::stop_requested.load() != 0 ? Visit::stop : Visit::go_on;
     });
     if (!status.is_ok()) throw Failure(status.code, status.text);
-    if (!has_stopped_) finish_epoch(EpochEnd::recording);
-    if (result_.steps == 0 && result_.problem.empty()) {
+    if (!has_stopped_ && end_ == nullptr) finish_epoch(EpochEnd::recording);
+    if (end_ != nullptr && !has_stopped_) save_end();
+    if (result_.steps == 0 && end_ == nullptr && result_.problem.empty()) {
       throw Failure(ExitCode::bad_input, "the recording has no tick 0; there is nothing to replay");
     }
     return result_;
@@ -63,7 +77,7 @@ class Replay {
 
  private:
   struct Hashes {
-    std::vector<std::uint64_t> computed;  // by step, from 0
+    std::vector<std::uint64_t> computed;  // by step, from the epoch's first
     std::vector<bool> is_compared;
   };
 
@@ -78,16 +92,103 @@ class Replay {
     }
   }
 
+  // ---- states -------------------------------------------------------------------------------------------------
+
+  // Epochs that begin with states have them in the recording.
+  void read_states() {
+    recording::MessageFilter filter;
+    filter.topics.emplace_back(node::to_text(Topic::state));
+    std::map<std::pair<std::uint32_t, Role>, node::CheckpointParts> parts;
+    wire::StatePart part;
+    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+      if (!transport::decode(message.payload, part)) return Visit::go_on;
+      node::CheckpointParts& of_role = parts[{part.header.epoch, part.role}];
+      if (of_role.take(part)) states_[part.header.epoch].push_back({part.role, of_role.checkpoint()});
+      return Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+  }
+
+  // A recording may begin later than its session.
+  [[nodiscard]] std::uint32_t first_epoch() const {
+    std::uint32_t epoch = 0;
+    bool has_tick = false;
+    wire::Header header;
+    recording::MessageFilter filter;
+    filter.topics.emplace_back(node::to_text(Topic::tick));
+    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+      has_tick = transport::decode_header(message.payload, header) && header.phase != Phase::join;
+      if (has_tick) epoch = header.epoch;
+      return has_tick ? Visit::stop : Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+    // an INIT tick is said at the begin of its epoch, not of the first one
+    return has_tick && header.phase == Phase::init && epoch > 0 ? epoch - 1 : epoch;
+  }
+
+  [[nodiscard]] std::uint32_t last_epoch() const {
+    std::uint32_t epoch = 0;
+    wire::Header header;
+    recording::MessageFilter filter;
+    filter.topics.emplace_back(node::to_text(Topic::tick));
+    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+      if (transport::decode_header(message.payload, header)) epoch = std::max(epoch, header.epoch);
+      return Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+    return epoch;
+  }
+
+  // ---- the end ------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool is_at_end() const { return end_ != nullptr && epoch_ == last_epoch_ && next_ >= end_->step; }
+
+  void save_end() {
+    const double H = scene_.session.step_duration().seconds();
+    if (!is_at_end() || next_ > end_->step) {
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("the recording ends before step {} (t = {:.6g} s) of its last epoch, or that begins "
+                                "later; nothing was saved; say an earlier time with --until",
+                                end_->step, static_cast<double>(end_->step) * H));
+    }
+    if (const Status can = session_.can_save(); !can.is_ok()) throw Failure(can.code, can.text);
+    io::SavedSession& saved = end_->saved;
+    saved.step = next_;
+    saved.build = node::build_id();
+    saved.session_name = reader_.identity().session_name;
+    saved.scene_name = scene_.name;
+    saved.scene_text = scene_.expanded_text;
+    saved.communication_step = scene_.session.step_duration();
+    for (const scene::Asset& asset : recorded_manifest(reader_)) {
+      saved.assets.push_back({asset.name, asset.size, asset.sha256});
+    }
+    saved.states = session_.save(next_);
+    saved.states.push_back({Role::io, follower_->state(next_)});
+  }
+
   // ---- epochs -------------------------------------------------------------------------------------------------
 
   void start_epoch() {
     ++result_.epochs;
-    next_ = 0;
+    const auto states = states_.find(epoch_);
+    begin_ = states == states_.end() ? 0 : states->second.front().state.step;
+    next_ = begin_;
     waiting_ticks_.clear();
     waiting_samples_.clear();
     hashes_ = {};
-    const Status status = session_.start();
-    if (!status.is_ok()) return stop("INIT: " + status.text);
+    const Status status = states == states_.end() ? session_.start() : session_.load(states->second);
+    if (status.is_ok() && follower_) {
+      const node::Checkpoint* own = nullptr;
+      if (states != states_.end()) {
+        for (const io::SavedState& of_role : states->second) {
+          if (of_role.role == Role::io) own = &of_role.state;
+        }
+      }
+      if (const Status followed = follower_->begin(own); !followed.is_ok()) return stop(followed.text);
+    }
+    if (!status.is_ok())
+      return stop((states == states_.end() ? "INIT: " : "the states of step " + std::to_string(begin_) + ": ") +
+                  status.text);
     init_hash_ = session_.init_hash();
     keep_hashes();
   }
@@ -123,7 +224,7 @@ class Replay {
     }
     if (header.phase != Phase::running || header.epoch != epoch_ || header.step < next_) return;
     waiting_ticks_.emplace(header.step, tick_);
-    while (!waiting_ticks_.empty() && waiting_ticks_.begin()->first == next_ && !has_stopped_) {
+    while (!waiting_ticks_.empty() && waiting_ticks_.begin()->first == next_ && !has_stopped_ && !is_at_end()) {
       const wire::Tick tick = std::move(waiting_ticks_.begin()->second);
       waiting_ticks_.erase(waiting_ticks_.begin());
       // the END tick ends the epoch: nothing was computed with it
@@ -140,6 +241,7 @@ class Replay {
   void step(const wire::Tick& tick) {
     const std::int64_t begin_ns = monotonic_ns();
     session_.step(next_, tick.commands, tick.controls.span());
+    if (follower_) follower_->take(tick);
     result_.compute_time += static_cast<double>(monotonic_ns() - begin_ns) * 1e-9;
     ++next_;
     ++result_.steps;
@@ -158,7 +260,8 @@ class Replay {
       Hashes& of_role = hashes_[index(role)];
       of_role.computed.push_back(session_.state_hash(role));
       // a step that has no sample has nothing to compare
-      of_role.is_compared.push_back(!session_.has_sample(role, static_cast<StepIndex>(of_role.is_compared.size())));
+      const StepIndex at = begin_ + static_cast<StepIndex>(of_role.is_compared.size());
+      of_role.is_compared.push_back(!session_.has_sample(role, at));
     }
   }
 
@@ -172,13 +275,15 @@ class Replay {
     }
     if (header.phase != Phase::running) return;
     const Hashes& of_role = hashes_[index(header.role)];
-    if (header.step < static_cast<StepIndex>(of_role.computed.size())) return compare(header.role, header.step, hash);
+    if (header.step < begin_ + static_cast<StepIndex>(of_role.computed.size()))
+      return compare(header.role, header.step, hash);
     waiting_samples_.emplace(std::pair(header.step, header.role), hash);
   }
 
   void compare(Role role, StepIndex step, std::uint64_t recorded) {
     Hashes& of_role = hashes_[index(role)];
-    const auto at = static_cast<std::size_t>(step);
+    if (step < begin_) return;
+    const auto at = static_cast<std::size_t>(step - begin_);
     if (at >= of_role.computed.size() || of_role.is_compared[at]) return;
     of_role.is_compared[at] = true;
     ++result_.compared;
@@ -208,9 +313,15 @@ class Replay {
   scene::Scene scene_;
   DirectSession session_;
   ReplayResult result_;
+  ReplayEnd* end_;
+  io::IoConfig config_;
+  std::optional<io::TickFollower> follower_;
+  std::map<std::uint32_t, std::vector<io::SavedState>> states_;  // by epoch, of those that begin with them
   bool has_stopped_ = false;
   std::uint32_t epoch_ = 0;
-  StepIndex next_ = 0;  // step that the next tick starts
+  std::uint32_t last_epoch_ = 0;
+  StepIndex begin_ = 0;  // first step of the epoch
+  StepIndex next_ = 0;   // step that the next tick starts
   std::uint64_t init_hash_ = 0;
   std::array<Hashes, std::size(wire::kPhysicsRoles)> hashes_;
   std::map<StepIndex, wire::Tick> waiting_ticks_;
@@ -223,8 +334,9 @@ class Replay {
 
 }  // namespace
 
-ReplayResult replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets) {
-  return Replay(reader, on_difference, assets).run();
+ReplayResult replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets,
+                    ReplayEnd* end) {
+  return Replay(reader, on_difference, assets, end).run();
 }
 
 }  // namespace slew::cli

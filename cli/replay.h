@@ -11,6 +11,7 @@
 
 #include "core/status.h"
 #include "core/time.h"
+#include "io_node/saved_session.h"
 #include "recording/reader.h"
 #include "transport/wire.h"
 
@@ -29,9 +30,17 @@ struct ReplayResult {
   [[nodiscard]] bool is_equal() const noexcept { return problem.empty() && different == 0; }
 };
 
+// Until where a recording is computed, and the session as it is there.
+struct ReplayEnd {
+  StepIndex step = 0;  // of the last epoch; the next one at which all nodes exchange
+  io::SavedSession saved;
+};
+
 // Throws Failure when the recording lacks its scene or its ticks.
 // assets: folder of the files that belong to the scene; those that the recording's manifest names must be there alike.
+// end: null computes everything; else up to its step, which is set to the one that was reached, and what is saved
+// there.
 [[nodiscard]] ReplayResult replay(const recording::Reader& reader, OnDifference on_difference,
-                                  const std::string& assets);
+                                  const std::string& assets, ReplayEnd* end = nullptr);
 
 }  // namespace slew::cli

@@ -1,12 +1,15 @@
 // `slewring replay REC [--verify]`.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/recorded.h"
 #include "cli/replay.h"
+#include "cli/run_session.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "node/driver.h"
@@ -15,11 +18,18 @@
 namespace slew::cli {
 namespace {
 
+using cli_support::Failure;
+
 struct Options {
   std::string recording;
   std::string assets;
   bool is_verifying = false;
   bool is_json = false;
+  std::string until;
+  std::string saved;  // file for the state there
+  bool may_replace = false;
+  bool goes_on = false;
+  RunOptions run;
 };
 
 nlohmann::json to_json(const ReplayResult& result) {
@@ -28,7 +38,77 @@ nlohmann::json to_json(const ReplayResult& result) {
           {"equal", result.is_equal()},    {"problem", result.problem}};
 }
 
+// ---- until a time, and on from there --------------------------------------------------------------------------
+
+class ScratchFile {
+ public:
+  ScratchFile()
+      : path_((std::filesystem::temp_directory_path() / fmt::format("slewring-{}.saved", getpid())).string()) {}
+  ~ScratchFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// The next step at which all nodes have exchanged.
+StepIndex step_until(const recording::Reader& reader, const std::string& assets, const std::string& until) {
+  const scene::Scene scene = recorded_scene(reader, assets);
+  const auto step_ns = static_cast<std::uint64_t>(scene.session.step_duration().ns);
+  const auto step = static_cast<StepIndex>((recorded_time_ns("--until", until) + step_ns - 1) / step_ns);
+  const StepIndex unit = io::save_unit(scene);
+  return (step + unit - 1) / unit * unit;
+}
+
+ExitCode run_until(const Options& options) {
+  node::install_signal_handlers();
+  const auto reader = open_recording(options.recording);
+  const std::string assets = options.assets.empty() ? recorded_assets(options.recording) : options.assets;
+  ReplayEnd end;
+  end.step = step_until(*reader, assets, options.until);
+  const ReplayResult result = replay(*reader, OnDifference::stop, assets, &end);
+  if (const int stop = node::stop_requested.load(); stop != 0) return static_cast<ExitCode>(stop);
+  if (!result.is_equal()) {
+    throw Failure(ExitCode::failed, result.problem + "; nothing was saved or started; replay it with its own build");
+  }
+  end.saved.build = node::build_id();
+  if (!options.is_json) {
+    fmt::print("{} computed again until t = {:.6g} s, {} compared, none different\n",
+               counted(static_cast<std::uint64_t>(result.steps), "step", "steps"), end.saved.time(),
+               counted(result.compared, "hash", "hashes"));
+    std::fflush(stdout);
+  }
+  if (!options.saved.empty()) {
+    cli_support::require(
+        io::write_saved(options.saved, end.saved, options.may_replace ? io::Replace::existing : io::Replace::never));
+    if (!options.is_json) fmt::print("saved: {}\n", options.saved);
+  }
+  if (!options.goes_on) return ExitCode::ok;
+  const ScratchFile scratch;
+  RunOptions run = options.run;
+  run.scene.from = options.saved.empty() ? scratch.path() : options.saved;
+  run.scene.assets = assets;
+  run.is_json = options.is_json;
+  if (options.saved.empty()) cli_support::require(io::write_saved(run.scene.from, end.saved, io::Replace::existing));
+  const io::SessionScene session = io::load_session_scene(run.scene);
+  return run_session(std::move(run), session);
+}
+
 ExitCode run(const Options& options) {
+  if (options.until.empty() && (options.goes_on || !options.saved.empty())) {
+    throw Failure(ExitCode::bad_input, "--then-live and --save need a time; nothing was done; say it with --until");
+  }
+  if (!options.until.empty() && !options.goes_on && options.saved.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "--until alone leaves nothing; nothing was done; go on with --then-live, or keep the state with "
+                  "--save FILE");
+  }
+  if (!options.until.empty()) return run_until(options);
   node::install_signal_handlers();
   const auto reader = open_recording(options.recording);
   const ReplayResult result = replay(*reader, options.is_verifying ? OnDifference::stop : OnDifference::count,
@@ -73,9 +153,42 @@ void add_replay(CLI::App& program, Action& action) {
                    "folder with the scene's files; without it the copies that lie beside the recording")
       ->type_name("FOLDER");
   verb->add_flag("--json", options->is_json, "for machines");
+  verb->add_option("--until", options->until, "compute up to this time of the last epoch, such as '2.5 s', comparing")
+      ->type_name("TIME")
+      ->group("Going on");
+  verb->add_flag("--then-live", options->goes_on, "run a session from there, as 'slewring run --from' does")
+      ->group("Going on");
+  verb->add_option("--save", options->saved, "keep the state there in a file for 'slewring run --from'")
+      ->type_name("FILE")
+      ->group("Going on");
+  verb->add_flag("--force", options->may_replace, "replace that file if it exists")->group("Going on");
+  verb->add_option("--input", options->run.scene.input,
+                   "with --then-live: script (the recorded scene's own, which goes on), none, keyboard, or a file")
+      ->type_name("SOURCE")
+      ->capture_default_str()
+      ->group("Going on");
+  verb->add_option("--duration", options->run.scene.duration, "with --then-live: end of the session's time; 0: none")
+      ->type_name("TIME")
+      ->group("Going on");
+  verb->add_option("--pace", options->run.scene.pace, "with --then-live: real or free")
+      ->check(CLI::IsMember({"real", "free"}))
+      ->type_name("PACE")
+      ->group("Going on");
+  verb->add_option("--set", options->run.scene.overrides, "with --then-live: change a live parameter at that time")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false)
+      ->group("Going on");
+  verb->add_flag("--record,!--no-record", options->run.scene.is_recording, "with --then-live: record it (default)")
+      ->group("Going on");
+  verb->add_flag("--in-process", options->run.is_in_process, "with --then-live: all nodes in this process")
+      ->group("Going on");
+  cli_support::add_session_options(*verb, options->run.session, false);
+  add_running_options(*verb, options->run);
   verb->footer(
       "Without --verify differences are counted and told, and the exit code is 0.\n\n"
-      "Example:\n  slewring replay runs/truck_crane-20260501-102030 --verify");
+      "Examples:\n"
+      "  slewring replay runs/truck_crane-20260501-102030 --verify\n"
+      "  slewring replay runs/truck_crane-20260501-102030 --until 8s --then-live --input keyboard");
   verb->callback([&action, options] { action = [options] { return run(*options); }; });
 }
 

@@ -16,6 +16,7 @@ std::string_view reason_of(std::string_view message) {
 }  // namespace
 
 std::string RunOptions::assets() const {
+  if (!scene.from.empty()) return scene.assets.empty() ? "." : scene.assets;
   const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();
   return folder.empty() ? "." : folder.string();
 }

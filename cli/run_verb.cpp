@@ -7,6 +7,7 @@
 #include "cli/distributed_run.h"
 #include "cli/in_process_run.h"
 #include "cli/run_report.h"
+#include "cli/run_session.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 
@@ -42,20 +43,33 @@ void check_controllers(const scene::Scene& scene) {
 ExitCode run(RunOptions options, const CLI::App& verb) {
   if (options.is_monolithic) options.scene.overrides.emplace_back("session.solution=monolithic");
   if (!options.rtol.empty()) options.scene.overrides.push_back("session.rtol=" + options.rtol);
-  const scene::Scene scene = cli_support::load_scene(options.scene);
-  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  for (const std::string& warning : coupling_warnings(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
-  if (scene.session.solution == scene::Solution::monolithic) {
+  if (options.is_monolithic && !options.scene.from.empty()) {
+    throw cli_support::Failure(ExitCode::bad_input,
+                               "--from and --monolithic exclude each other: CVODE's history is not saved; nothing was "
+                               "started; leave one out");
+  }
+  const io::SessionScene session = io::load_session_scene(options.scene);
+  if (session.scene.session.solution == scene::Solution::monolithic) {
     check_monolithic(verb);
     options.is_in_process = true;
   }
+  return run_session(std::move(options), session);
+}
+
+}  // namespace
+
+ExitCode run_session(RunOptions options, const io::SessionScene& session) {
+  const scene::Scene& scene = session.scene;
+  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : coupling_warnings(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
   if (options.is_in_process && !options.remote.empty()) {
     throw cli_support::Failure(ExitCode::bad_input,
                                "--in-process and --remote exclude each other; nothing was started; leave one out");
   }
   if (options.is_in_process) check_controllers(scene);
-  const RunOutcome outcome = options.is_in_process ? run_in_process(options, scene) : run_distributed(options, scene);
+  const RunOutcome outcome =
+      options.is_in_process ? run_in_process(options, session) : run_distributed(options, session);
   if (!outcome.has_begun) {
     for (const std::string& message : without_echoes(outcome.messages)) std::fprintf(stderr, "%s\n", message.c_str());
     return outcome.code;
@@ -70,7 +84,18 @@ ExitCode run(RunOptions options, const CLI::App& verb) {
   return report.code;
 }
 
-}  // namespace
+void add_running_options(CLI::App& verb, RunOptions& options) {
+  verb.add_option("--out", options.runs, "folder in which the recording gets a folder of its own")
+      ->type_name("DIR")
+      ->capture_default_str();
+  verb.add_option("--keep-free", options.keep_free_mb,
+                  "room on its file system that the recording leaves to others; 0: none")
+      ->check(CLI::Range(0.0, 1e9))
+      ->type_name("MB")
+      ->capture_default_str();
+  verb.add_flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");
+  verb.add_flag("--quiet", options.is_quiet, "no status line");
+}
 
 void add_run(CLI::App& program, Action& action) {
   CLI::App* verb = program.add_subcommand("run", "run a scene: start its nodes, drive, record, plot");
@@ -93,24 +118,16 @@ void add_run(CLI::App& program, Action& action) {
       ->needs(monolithic)
       ->type_name("NUMBER")
       ->group("Accuracy");
-  verb->add_option("--out", options->runs, "folder in which the recording gets a folder of its own")
-      ->type_name("DIR")
-      ->capture_default_str();
-  verb->add_option("--keep-free", options->keep_free_mb,
-                   "room on its file system that the recording leaves to others; 0: none")
-      ->check(CLI::Range(0.0, 1e9))
-      ->type_name("MB")
-      ->capture_default_str();
-  verb->add_flag("--rt", options->is_real_time, "real-time scheduling and locked memory for the nodes");
+  add_running_options(*verb, *options);
   verb->add_flag("--json", options->is_json, "print the summary as JSON and nothing else");
-  verb->add_flag("--quiet", options->is_quiet, "no status line");
   verb->footer(
       "The first Ctrl-C ends the session in order, the second one at once.\n\n"
       "Examples:\n"
       "  slewring run scenes/truck_crane.yaml\n"
       "  slewring run scenes/truck_crane.yaml --set Bag.mass=1000kg --duration 10 --pace free --in-process\n"
       "  slewring run scenes/truck_crane.yaml --monolithic --rtol 1e-9 --pace free\n"
-      "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20");
+      "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20\n"
+      "  slewring run --from crane.saved --set Bag.mass=1000kg --duration 60s");
   verb->callback([&action, options, verb] { action = [options, verb] { return run(*options, *verb); }; });
 }
 

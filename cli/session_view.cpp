@@ -77,7 +77,12 @@ void SessionView::take_session(std::span<const std::byte> bytes) {
     if (is_it(session_)) look_at(std::exchange(rival_, std::nullopt));
     return;
   }
-  if (session.header.phase != wire::Phase::running || is_it(session_)) return;
+  if (session.header.phase != wire::Phase::running) return;
+  // its owner says anew how it stands
+  if (is_it(session_)) {
+    session_ = std::move(session);
+    return;
+  }
   if (session_ && session.started_ns < session_->started_ns) {
     rival_ = std::move(session);
     return;

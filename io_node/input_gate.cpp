@@ -49,6 +49,24 @@ void InputGate::reset() {
   }
 }
 
+void InputGate::save(StateWriter& bytes) const {
+  for (const Channel& channel : channels_) {
+    bytes.number(channel.raw);
+    bytes.number(channel.ramped);
+    bytes.number(channel.control);
+  }
+}
+
+void InputGate::load(StateReader& bytes, StepIndex next_step) {
+  reset();
+  next_step_ = next_step;
+  for (Channel& channel : channels_) {
+    bytes.number(channel.raw);
+    bytes.number(channel.ramped);
+    bytes.number(channel.control);
+  }
+}
+
 int InputGate::find(std::string_view name) const noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if (channels_[i].config.name == name) return static_cast<int>(i);

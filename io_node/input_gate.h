@@ -25,6 +25,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "core/time.h"
 
@@ -111,6 +112,10 @@ class InputGate {
 
   // Back to neutral without holders.
   void reset();
+  // Where the ramps of all channels are. Who holds a channel is no part of it: controllers acquire theirs again.
+  void save(StateWriter& bytes) const;
+  // The same in the place of what there was, without holders; next_step: the tick that is made next.
+  void load(StateReader& bytes, StepIndex next_step);
   // What controllers are to be told since the last call.
   [[nodiscard]] std::vector<Notice> take_notices() { return std::exchange(notices_, {}); }
   void add_to(StateHash& hash) const noexcept;

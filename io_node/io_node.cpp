@@ -43,9 +43,11 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
   description_.host = member_.identity().host;
   description_.pid = member_.identity().pid;
   description_.started_ns = member_.identity().started_ns;
-  description_.header = member_.header(Phase::join, kJoinStep);
+  description_.rejoin_ns = config_.rejoin.ns;
+  description_.header = member_.header(Phase::join, config_.beginning ? config_.beginning->step : kJoinStep);
   description_.header.session = node::random_session_id();
   static_cast<void>(member_.adopt(description_, 0));
+  if (config_.beginning) begin_with(*config_.beginning);
 }
 
 bool IoNode::poll(std::int64_t now_ns) {
@@ -67,6 +69,7 @@ bool IoNode::poll(std::int64_t now_ns) {
 std::int64_t IoNode::next_deadline(std::int64_t now_ns) const {
   if (stage_ == Stage::joining) return now_ns + node::kProbeInterval.ns / 2;
   if (stage_ != Stage::ticking) return now_ns + node::kProbeInterval.ns;
+  if (saving_ && n_ >= saving_->step) return std::max(now_ns, saving_->resend.due_ns());
   if (is_withheld()) return now_ns + node::kProbeInterval.ns;
   if (controllers_due_ns_ != 0) return now_ns + node::kProbeInterval.ns;
   if (controllers_wait_ns_ != 0) return std::max(now_ns, controllers_wait_ns_ + gate_.awaited(n_).ns);
@@ -119,7 +122,11 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
     case Topic::control_request:
       return receive_control(message.bytes, now_ns);
     case Topic::resend:
-      return receive_resend(message.bytes);
+      return receive_resend(message.bytes, now_ns);
+    case Topic::checkpoint:
+      return receive_checkpoint(message.bytes);
+    case Topic::state:
+      return receive_upload(message.bytes, now_ns);
     default:
       return;
   }
@@ -166,7 +173,9 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
     ++member_.refusals().too_far_ahead;
     return;
   }
-  StepIndex& at = topic == Topic::mechanism ? mechanics_at_ : topic == Topic::actuators ? hydraulics_at_ : flex_at_;
+  StepIndex& at = newest_of(header.role);
+  Replaced& replaced = replaced_[static_cast<std::size_t>(header.role)];
+  if (header.step >= replaced.until) replaced.until = kJoinStep;
   // samples come in order from one writer; one that was lost and asked for again may close a gap
   if (header.step == at + 1) {
     at = header.step;
@@ -247,11 +256,18 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
       show_running();
       return answer(request, true, "", n_);
     case wire::ControlAction::reset:
+      if (!vacancies_.empty()) {
+        return answer(request, false, vacancy_text(vacancies_.front()) + "; ask again when it has come", n_);
+      }
       answer(request, true, "", 0);
       return start_epoch(now_ns);
     case wire::ControlAction::stop:
       answer(request, true, "", n_);
       return begin_ending(ExitCode::ok, "", now_ns);
+    case wire::ControlAction::save:
+      return begin_saving(request, now_ns);
+    case wire::ControlAction::load:
+      return begin_loading(request, now_ns);
   }
 }
 
@@ -297,12 +313,13 @@ void IoNode::answer(const wire::ControlRequest& request, bool accepted, const st
   member_.publish(Topic::control_reply, reply);
 }
 
-void IoNode::receive_resend(std::span<const std::byte> bytes) {
+void IoNode::receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns) {
   wire::ResendRequest request;
   if (!transport::decode(bytes, request)) {
     ++member_.refusals().undecodable;
     return;
   }
+  if (request.topic == static_cast<std::uint8_t>(Topic::state)) return answer_state(request, now_ns);
   if (request.role != Role::io || !member_.is_of_session(request.header, Topic::resend)) return;
   if (request.topic != static_cast<std::uint8_t>(Topic::tick)) return;
   // a node that missed a reset asks with the old epoch: it gets the tick that started the new one
@@ -321,6 +338,7 @@ void IoNode::receive_resend(std::span<const std::byte> bytes) {
 // ---- doing ----------------------------------------------------------------------------------------------------
 
 bool IoNode::advance(std::int64_t now_ns) {
+  if (upload_.asked) advance_loading(now_ns);
   switch (stage_) {
     case Stage::checking_name:
       return advance_name_check(now_ns);
@@ -367,9 +385,10 @@ bool IoNode::advance_initialising(std::int64_t now_ns) {
   member_.set_step(n_);
   show_running();
   stage_ = Stage::ticking;
-  base_ns_ = now_ns;
+  base_ns_ = now_ns - n_ * config_.step.ns;
   last_tick_ns_ = now_ns - config_.step.ns;
   resend_.restart(now_ns);
+  keep_first_states(now_ns);
   return true;
 }
 
@@ -440,12 +459,14 @@ std::int64_t IoNode::due_ns(StepIndex n) const noexcept {
 
 // What the status says of a session that ticks: it runs, it waits for somebody, or ticks are withheld on request.
 void IoNode::show_running() {
-  if (const std::optional<Role> silent = member_.silent_peer()) {
+  if (!vacancies_.empty()) {
+    member_.hold(vacancy_text(vacancies_.front()));
+  } else if (const std::optional<Role> silent = member_.silent_peer()) {
     member_.hold(member_.silence_text(*silent));
   } else if (is_withheld()) {
     member_.hold("");
   } else if (controllers_due_ns_ != 0) {
-    member_.hold("step 0 waits for a controller on channel " +
+    member_.hold("step " + std::to_string(n_) + " waits for a controller on channel " +
                  gate_.config(static_cast<std::size_t>(gate_.vacant())).name);
   } else {
     member_.set_state(NodeState::running);
@@ -463,6 +484,7 @@ void IoNode::keep_time(std::int64_t now_ns) noexcept {
 bool IoNode::advance_ticks(std::int64_t now_ns) {
   bool any = false;
   while (stage_ == Stage::ticking && member_.send_failure().is_ok()) {
+    if (saving_ && n_ >= saving_->step && !advance_saving(now_ns)) return any;
     if (config_.steps >= 0 && n_ >= config_.steps) {
       begin_ending(ExitCode::ok, "", now_ns);
       return true;
@@ -489,11 +511,11 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
 
 // Step 0 of a session, and again after a reset, is not done before every lockstep channel has a holder.
 bool IoNode::has_its_controllers(std::int64_t now_ns) {
-  const int vacant = n_ == 0 ? gate_.vacant() : -1;
+  const int vacant = n_ == begin_step_ ? gate_.vacant() : -1;
   if (vacant < 0) {
     if (controllers_due_ns_ == 0) return true;
     // the wait for them is no slip
-    base_ns_ = std::max(base_ns_, now_ns);
+    base_ns_ = std::max(base_ns_, now_ns - n_ * config_.step.ns);
     controllers_due_ns_ = 0;
     show_running();
     return true;
@@ -601,18 +623,21 @@ void IoNode::send_tick(StepIndex step) {
   member_.send(Topic::tick, buffer_);
 }
 
-void IoNode::start_epoch(std::int64_t now_ns) {
+void IoNode::start_epoch(std::int64_t now_ns, StepIndex from) {
   member_.set_epoch(member_.epoch() + 1);
   gate_.reset();
   parameters_.reset();
   waiting_commands_.clear();
   single_steps_ = 0;
   sent_.clear();
-  n_ = 0;
+  n_ = begin_step_ = std::max<StepIndex>(0, from);
   controllers_due_ns_ = controllers_wait_ns_ = 0;
-  mechanics_at_ = hydraulics_at_ = flex_at_ = kJoinStep;
+  mechanics_at_ = hydraulics_at_ = flex_at_ = n_ - 1;
+  for (node::KeptCheckpoints& states : states_) states.clear();
+  replaced_.fill({n_, kJoinStep});
+  saving_.reset();
   tick_ = wire::Tick{};
-  tick_.header = member_.header(Phase::init, kJoinStep);
+  tick_.header = member_.header(Phase::init, from);
   send_tick(kJoinStep);
   tell_notices();
   member_.set_step(kJoinStep);
@@ -671,11 +696,13 @@ void IoNode::watch(std::int64_t now_ns) {
   Role about = Role::io;
   const node::PeerEvent event = member_.watch_peers(now_ns, about);
   if (stage_ == Stage::ending) return;
+  watch_vacancies(now_ns);
   // of several that went wrong in the same moment the one of the earliest step is named, then by the order of roles
   const node::Peer* first = nullptr;
   for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
     const node::Peer& peer = member_.peer(role);
     if (!member_.requires_role(role) || !peer.is_known || peer.status.state < NodeState::ended) continue;
+    if (vacancy(role) != nullptr) continue;
     if (first == nullptr || peer.status.header.step < first->status.header.step) first = &peer;
   }
   if (first != nullptr) {
@@ -686,6 +713,9 @@ void IoNode::watch(std::int64_t now_ns) {
                         member_.describe_peer(role) + ": " + first->status.reason, now_ns);
   }
   switch (event) {
+    case node::PeerEvent::gone:
+      if (hold_place(about, now_ns)) return;
+      [[fallthrough]];
     case node::PeerEvent::lost:
       return begin_ending(ExitCode::node_lost,
                           member_.describe_peer(about) + " is gone; the session was held after step " +

@@ -5,9 +5,13 @@
 // A tick is also held back for the values of lockstep controllers (input_gate.h), tick 0 until each of their channels
 // has a holder. After a hold, `real` pace catches up at no more than twice real time while the lag is below 50 ms;
 // beyond that the time base is moved and the slip counted. INIT and the ticks reproduce a lock-step run exactly.
+//
+// Where the scene has session.rejoin, io keeps the physics nodes' checkpoints. When a node is lost it gives up that
+// process, says so in the session's description and holds the place: a process of the role that comes gets the newest
+// state from which it can say again all that the others may lack.
 #pragma once
 
-#include <deque>
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,6 +21,8 @@
 
 #include "io_node/input_gate.h"
 #include "io_node/live_parameters.h"
+#include "io_node/saved_session.h"
+#include "node/checkpoint.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "node/sent_cache.h"
@@ -38,6 +44,13 @@ struct ParameterVerdict {
   bool is_accepted = false;
   std::string reason;
   std::int64_t over_ns = 0;  // the one that was asked for, or the parameter's own
+};
+
+// A session that goes on from the states of another one.
+struct Beginning {
+  StepIndex step = 0;
+  std::vector<SavedState> states;      // of io and of every physics node
+  std::vector<wire::Command> changes;  // parameters that are different from this step on
 };
 
 struct IoConfig {
@@ -62,7 +75,16 @@ struct IoConfig {
   SimDuration join_timeout = node::kJoinTimeout;
   bool starts_paused = false;
   bool is_free_running = false;  // nodes may be ahead of the ticks by the window
+  SimDuration rejoin{};          // a lost physics node's place is held so long; 0: the session ends
+  std::string save_obstacle{};   // why the session's state cannot be saved; empty: it can
+  StepIndex save_unit = 1;       // every how many steps it can, because all nodes have exchanged then
+  std::optional<Beginning> beginning{};
 };
+
+// A node that has not given its state for so long: the session goes on without being saved.
+inline constexpr SimDuration kSaveTimeout = milliseconds(5000);
+// From a request to load to the last part of the state that it belongs to.
+inline constexpr SimDuration kUploadTimeout = milliseconds(2000);
 
 // Recorder window of architecture section 2.
 inline constexpr StepIndex kRecorderWindow = 512;
@@ -94,7 +116,7 @@ class IoNode final : public node::Node {
   void receive_sample(std::span<const std::byte> bytes, wire::Topic topic, std::int64_t now_ns);
   void receive_controller(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_control(std::span<const std::byte> bytes, std::int64_t now_ns);
-  void receive_resend(std::span<const std::byte> bytes);
+  void receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns);
 
   bool advance(std::int64_t now_ns);
   bool advance_name_check(std::int64_t now_ns);
@@ -114,10 +136,70 @@ class IoNode final : public node::Node {
   void show_running();
   void keep_time(std::int64_t now_ns) noexcept;
   void send_end(std::uint32_t flags);
-  void start_epoch(std::int64_t now_ns);
+  // from: step whose states io has; -1: INIT
+  void start_epoch(std::int64_t now_ns, StepIndex from = kJoinStep);
   void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   [[nodiscard]] std::string not_ready_text() const;
+
+  // ---- states of the physics nodes (states.cpp)
+  // A physics node whose place is held for another process of its role.
+  struct Vacancy {
+    wire::Role role = wire::Role::io;
+    std::string who;        // the process that was lost
+    StepIndex lost_at = 0;  // next tick then
+    StepIndex from = 0;     // step of the state that the next process gets
+    std::int64_t deadline_ns = 0;
+  };
+  // The state that all nodes give of one step, while its tick is held back.
+  struct Saving {
+    wire::ControlRequest request;  // number 0: nobody's
+    StepIndex step = 0;
+    std::int64_t deadline_ns = 0;
+    node::ResendClock resend;
+    bool is_given = true;  // to who asked for it; else kept for who takes a role over
+  };
+  // The states that a request to load comes with.
+  struct Upload {
+    std::uint64_t request = 0;
+    std::array<node::CheckpointParts, wire::kRoles> parts;
+    std::optional<wire::ControlRequest> asked;  // has come before the last part
+    std::int64_t deadline_ns = 0;
+  };
+  void begin_with(const Beginning& beginning);
+  void begin_saving(const wire::ControlRequest& request, std::int64_t now_ns);
+  void keep_first_states(std::int64_t now_ns);
+  bool advance_saving(std::int64_t now_ns);
+  [[nodiscard]] std::optional<wire::Role> has_not_saved() const noexcept;
+  void give_saved();
+  void answer_asked(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step);
+  void receive_upload(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void begin_loading(const wire::ControlRequest& request, std::int64_t now_ns);
+  void advance_loading(std::int64_t now_ns);
+  void start_epoch_from_upload(std::int64_t now_ns);
+  void save_own(StepIndex step, node::Checkpoint& checkpoint) const;
+  [[nodiscard]] Status load_own(const node::Checkpoint& checkpoint);
+  void receive_checkpoint(std::span<const std::byte> bytes);
+  void answer_state(const wire::ResendRequest& request, std::int64_t now_ns);
+  // A node that has taken a place: it can say its samples from this step on, and has caught up with what was said of
+  // its role before when its newest sample is of the other one.
+  struct Replaced {
+    StepIndex from = 0;
+    StepIndex until = kJoinStep;
+  };
+  [[nodiscard]] const node::Checkpoint* state_for(wire::Role role) const noexcept;
+  [[nodiscard]] bool suits(wire::Role role, StepIndex step) const noexcept;
+  [[nodiscard]] const Vacancy* vacancy(wire::Role role) const noexcept;
+  [[nodiscard]] bool hold_place(wire::Role role, std::int64_t now_ns);
+  void give_up(wire::Role role, std::int64_t now_ns);
+  void watch_vacancies(std::int64_t now_ns);
+  [[nodiscard]] std::string vacancy_text(const Vacancy& vacancy) const;
+  [[nodiscard]] StepIndex& newest_of(wire::Role role) noexcept {
+    return role == wire::Role::mechanics ? mechanics_at_ : role == wire::Role::hydraulics ? hydraulics_at_ : flex_at_;
+  }
+  [[nodiscard]] StepIndex newest_of(wire::Role role) const noexcept {
+    return role == wire::Role::mechanics ? mechanics_at_ : role == wire::Role::hydraulics ? hydraulics_at_ : flex_at_;
+  }
   void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step,
               double value = 0);
   [[nodiscard]] bool has_its_controllers(std::int64_t now_ns);
@@ -159,6 +241,13 @@ class IoNode final : public node::Node {
   wire::VariableBlock block_;
   std::vector<std::byte> buffer_;
   node::SentCache sent_;
+  std::array<node::KeptCheckpoints, wire::kRoles> states_;
+  std::vector<Vacancy> vacancies_;
+  std::array<Replaced, wire::kRoles> replaced_;
+  StepIndex begin_step_ = 0;  // of the epoch
+  std::optional<Saving> saving_;
+  Upload upload_;
+  wire::StatePart part_;
 };
 
 }  // namespace slew::io

@@ -25,6 +25,17 @@ void LiveParameters::advance(StepIndex n) noexcept {
   ramps_.apply(n, [this](int parameter, double value) { values_[static_cast<std::size_t>(parameter)] = value; });
 }
 
+void LiveParameters::save(StateWriter& bytes) const {
+  bytes.numbers(std::span<const double>(values_));
+  ramps_.save(bytes);
+}
+
+void LiveParameters::load(StateReader& bytes) noexcept {
+  bytes.numbers(std::span<double>(values_));
+  ramps_.load(bytes,
+              [this](int parameter) { return parameter >= 0 && static_cast<std::size_t>(parameter) < values_.size(); });
+}
+
 void LiveParameters::reset() noexcept {
   ramps_.clear();
   values_ = scene_values_;

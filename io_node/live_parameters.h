@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/state_bytes.h"
 #include "core/time.h"
 #include "coupling/parameter_ramps.h"
 #include "transport/wire.h"
@@ -36,6 +37,8 @@ class LiveParameters {
   void advance(StepIndex n) noexcept;
   // As the scene has them.
   void reset() noexcept;
+  void save(StateWriter& bytes) const;
+  void load(StateReader& bytes) noexcept;
 
  private:
   std::map<std::string, int, std::less<>> index_;

@@ -3,7 +3,7 @@
 #include "cli_support/failure.h"
 #include "cli_support/node_program.h"
 #include "cli_support/scene_options.h"
-#include "io_node/scene_config.h"
+#include "io_node/session_scene.h"
 
 namespace {
 
@@ -16,13 +16,13 @@ struct IoOptions {
 
 ExitCode run(const IoOptions& options) {
   cli_support::apply_real_time(options.node, "io_node");
-  const scene::Scene scene = cli_support::load_scene(options.scene);
+  const io::SessionScene session = io::load_session_scene(options.scene);
   const auto carrier = cli_support::open_carrier(wire::Role::io, options.node.session);
   io::SessionWish wish;
   wish.session_name = options.node.session.session;
   wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
   wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
-  io::IoConfig config = io::make_config(scene, wish);
+  io::IoConfig config = io::make_config(session, wish);
   config.join_timeout = options.node.join().join_timeout;
   io::IoNode node(*carrier, std::move(config));
   return cli_support::run_node(node).value();  // its own session is nothing that it follows

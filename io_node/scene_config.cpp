@@ -1,5 +1,7 @@
 #include "io_node/scene_config.h"
 
+#include <numeric>
+
 #include "scene/parameters.h"
 
 namespace slew::io {
@@ -32,6 +34,23 @@ std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noe
   return roles;
 }
 
+StepIndex save_unit(const scene::Scene& scene) noexcept {
+  return std::lcm<StepIndex>(scene.session.exchange_every, scene.has_modes() ? scene.flexible_every() : 1);
+}
+
+namespace {
+
+std::string obstacle_to_saving(const scene::Scene& scene) {
+  const std::string_view of_session = scene::obstacle_to_saving(scene.session);
+  if (!of_session.empty()) return std::string(of_session);
+  if (scene.has_hydraulics() && scene.hydraulics.solver == hydraulics::Solver::cvode) {
+    return "hydraulics.solver: cvode keeps a history that cannot be put back; expected another solver";
+  }
+  return "";
+}
+
+}  // namespace
+
 IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   IoConfig config;
   config.session_name = wish.session_name;
@@ -42,6 +61,9 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   config.pace = scene.session.pace == scene::Pace::free ? wire::Pace::free : wire::Pace::real;
   config.window = scene.session.window_steps();
   config.is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
+  config.save_obstacle = obstacle_to_saving(scene);
+  config.save_unit = save_unit(scene);
+  config.rejoin = duration_of_seconds(scene.session.rejoin);
   config.required_roles = required_roles(scene, wish.recording);
   config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;
   for (const scene::InputDef& input : scene.inputs) {

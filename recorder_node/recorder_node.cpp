@@ -84,6 +84,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
     }
   } else if (stage_ != Stage::finished) {
     ask_for_gaps(now_ns);
+    ask_for_states(now_ns);
     watch(now_ns);
     report_progress(now_ns);
     if (writer_ != nullptr && stopped_.is_ok()) {
@@ -151,13 +152,24 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
     case Topic::health:
       member_.on_health(message.bytes, now_ns);
       break;
+    case Topic::state:
+      return receive_state(message, now_ns);
     default:
       break;
   }
-  // everything else is filed under the step that is being recorded
-  if (writer_ != nullptr) {
-    write(message, member_.epoch(), std::max<StepIndex>(0, complete_up_to()), static_cast<std::uint32_t>(++unstepped_));
+  file(message);
+}
+
+// everything that has no step of its own is filed under the one that is being recorded
+void RecorderNode::file(const transport::Received& message) {
+  if (writer_ == nullptr) return;
+  if (begin_ != Begin::known) {
+    if (before_.size() < kMaxEarly) {
+      before_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
+    }
+    return;
   }
+  write(message, member_.epoch(), std::max(streams_.begin, complete_up_to()), static_cast<std::uint32_t>(++unstepped_));
 }
 
 // this one leaves nothing behind unless it holds a step of the session
@@ -194,6 +206,10 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
   }
   const node::SessionNews news = member_.news(session);
   if (news == node::SessionNews::withdrawn) return withdraw();
+  if (news == node::SessionNews::renewed) {
+    member_.renew(session, now_ns);
+    return file(message);
+  }
   if (news != node::SessionNews::begins) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   Status status = member_.problem_of_protocol();
@@ -205,10 +221,15 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
     stage_ = Stage::finished;
     return;
   }
-  begin_streams();
+  begin_streams(session.header.step);
   write(message, session.header.epoch, kJoinStep, 0);
   // a session that needs a recorder begins with io's probe; one that has begun has its recorder
   member_.set_state(member_.requires_role(Role::recorder) ? NodeState::joining : NodeState::ready);
+  if (!member_.requires_role(Role::recorder)) {
+    // a session that has given a process up has begun long before the step that it names
+    begin_ = session.given_up.empty() ? Begin::open : Begin::late;
+    late_deadline_ns_ = session.given_up.empty() ? 0 : now_ns + node::kJoinTimeout.ns;
+  }
   stage_ = Stage::recording;
   deadline_ns_ = 0;
 }
@@ -268,7 +289,7 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
     return;
   }
   if (message.topic == Topic::tick && member_.begins_next_epoch(header)) {
-    start_epoch(header.epoch);
+    start_epoch(header);
     receive_stepped(message, now_ns);
     for (const Early& early : std::exchange(early_, {}))
       receive_stepped({early.topic, early.bytes, early.source_ns}, now_ns);
@@ -284,6 +305,7 @@ void RecorderNode::receive_stepped(const transport::Received& message, std::int6
     return;
   }
   if (!member_.fits(header, message.topic)) return;
+  if (begin_ != Begin::known && !is_from_the_begin(message, header, now_ns)) return;
   if (member_.state() == NodeState::joining && !has_come_in_time(header, message.topic, now_ns)) return;
   member_.heard(header, message.topic, now_ns);
   if (header.phase == Phase::join || writer_ == nullptr) return;
@@ -300,7 +322,9 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
   const bool is_of_flexible_bodies = message.topic == Topic::flexible || message.topic == Topic::elastic;
   if (is_of_flexible_bodies) return record_block(message, header, {message.topic, header.role, 0}, streams);
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
-  StepStream& stream = streams.steps.try_emplace({message.topic, header.role}).first->second;
+  StepStream& stream =
+      streams.steps.try_emplace({message.topic, header.role}, StepStream{StreamGaps(kStreamDepth, streams.begin), {}})
+          .first->second;
   const StepIndex expected = stream.gaps.next();
   switch (stream.gaps.arrived(header.step)) {
     case StreamGaps::Arrival::duplicate:
@@ -316,32 +340,123 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
 }
 
-// io's probe comes before the first tick, and the first tick before every sample but INIT and sample 0. A recorder that
-// hears a later message first is a second one: it records nothing and waits for the first one's status, which names it.
+// io's probe comes before the first tick, and the first tick before every sample but INIT and the first. A recorder
+// that hears a later message first is a second one: it records nothing and waits for the first one's status, which
+// names it.
 bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std::int64_t now_ns) {
   if (header.phase == Phase::join) {
     if (topic == Topic::tick) member_.set_state(NodeState::ready);
     return true;
   }
-  if (topic != Topic::tick && header.step <= 0) return true;
+  if (topic != Topic::tick && header.step <= streams_.begin) return true;
   ++member_.refusals().early;
   if (late_deadline_ns_ == 0) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
   return false;
 }
 
+// What the others can say again from the first step on is no reason to begin later.
+bool RecorderNode::is_from_the_begin(const transport::Received& message, const wire::Header& header,
+                                     std::int64_t now_ns) {
+  if (header.phase == Phase::join) return true;
+  // blocks of variables are kept for who comes late: their steps say nothing about the session's
+  if (message.topic == Topic::variables) {
+    if (before_.size() < kMaxEarly) {
+      before_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
+    }
+    return false;
+  }
+  const bool is_near = header.step - streams_.begin < static_cast<StepIndex>(node::kSentDepth / 2);
+  if (begin_ == Begin::open && is_near) {
+    begin_ = Begin::known;
+    file_what_came_before(now_ns);
+    return true;
+  }
+  if (begin_ == Begin::open) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
+  begin_ = Begin::late;
+  return false;
+}
+
+void RecorderNode::begin_late(StepIndex step, std::int64_t now_ns) {
+  streams_ = {};
+  begin_streams(step);
+  begin_ = Begin::known;
+  late_deadline_ns_ = 0;
+  file_what_came_before(now_ns);
+}
+
+void RecorderNode::file_what_came_before(std::int64_t now_ns) {
+  for (const Early& before : std::exchange(before_, {})) {
+    const transport::Received message{before.topic, before.bytes, before.source_ns};
+    before.topic == Topic::variables ? receive_stepped(message, now_ns) : file(message);
+  }
+}
+
 void RecorderNode::refuse_late() {
+  if (begin_ == Begin::late) {
+    return refuse(Status::error(
+        ExitCode::bad_input, "session '" + member_.session().name +
+                                 "' runs and has given no state from which a recording could be computed again: it "
+                                 "cannot be saved, or it is paused between two exchanges; nothing was recorded here; "
+                                 "start the recorder with the session"));
+  }
   refuse(Status::error(ExitCode::bad_input, "session '" + member_.session().name +
                                                 "' had begun before this recorder came, and its own recorder was not "
                                                 "heard; nothing was recorded here; start the recorder with the "
                                                 "session"));
 }
 
-// what must be complete: the ticks and the samples of every role that takes part
-void RecorderNode::begin_streams() {
+// what must be complete: the ticks and the samples of every role that takes part, and the states they begin with.
+// from: step of these states; -1: the epoch begins with INIT
+void RecorderNode::begin_streams(StepIndex from) {
+  streams_.begin = std::max<StepIndex>(0, from);
+  missing_states_.clear();
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::flex}) {
+    if (from >= 0 && member_.requires_role(role)) missing_states_[role];
+  }
   for (const auto& [topic, role] : {std::pair(Topic::tick, Role::io), std::pair(Topic::mechanism, Role::mechanics),
                                     std::pair(Topic::actuators, Role::hydraulics)}) {
-    if (member_.requires_role(role)) streams_.steps.try_emplace({topic, role});
+    if (!member_.requires_role(role)) continue;
+    streams_.steps.try_emplace({topic, role}, StepStream{StreamGaps(kStreamDepth, streams_.begin), {}});
   }
+}
+
+// The states that an epoch begins with, so that it can be computed again from there. Those that io gives to others
+// later are no news.
+void RecorderNode::receive_state(const transport::Received& message, std::int64_t now_ns) {
+  wire::Header header;
+  const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late;
+  if (!is_wanted || writer_ == nullptr || !transport::decode_header(message.bytes, header)) return;
+  if (header.role != Role::io || !member_.fits(header, Topic::state)) return;
+  if (!transport::decode(message.bytes, part_)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  // io gives its own state with those of all others alone
+  if (begin_ == Begin::late && part_.role == Role::io) begin_late(header.step, now_ns);
+  if (header.step != streams_.begin) return;
+  const auto missing = missing_states_.find(part_.role);
+  if (missing == missing_states_.end() || missing->second.has(part_)) return;
+  const auto place = static_cast<std::uint32_t>(part_.first / wire::kMaxStatePart);
+  write(message, header.epoch, header.step, (static_cast<std::uint32_t>(part_.role) << 16) | place);
+  if (missing->second.take(part_)) missing_states_.erase(missing);
+}
+
+void RecorderNode::ask_for_states(std::int64_t now_ns) {
+  const bool knows_io = member_.peer(Role::io).is_known && member_.state() != NodeState::joining;
+  const bool is_late = begin_ == Begin::late;
+  if ((missing_states_.empty() && !is_late) || !knows_io || !states_resend_.is_due(now_ns)) return;
+  states_resend_.asked(now_ns);
+  const auto ask = [&](Role role, StepIndex step) {
+    wire::ResendRequest request;
+    request.header = member_.header(Phase::running, step);
+    request.role = role;
+    request.topic = static_cast<std::uint8_t>(Topic::state);
+    request.last_step = step;
+    member_.publish(Topic::resend, request);
+    ++health().resends_asked;
+  };
+  if (is_late) return ask(Role::io, kJoinStep);
+  for (const auto& [role, parts] : missing_states_) ask(role, streams_.begin);
 }
 
 // Blocks of variables, and the samples of and for flexible bodies, come every k-th step from step 0 on. They are not
@@ -359,7 +474,7 @@ void RecorderNode::record_variables(const transport::Received& message, const wi
 void RecorderNode::record_block(const transport::Received& message, const wire::Header& header,
                                 const BlockSource& source, EpochStreams& streams) {
   BlockStream& stream = streams.blocks[source];
-  if (header.step <= stream.newest) {
+  if (header.step <= stream.newest || header.step < streams.begin) {
     ++counts_[static_cast<std::size_t>(message.topic)].duplicates;
     return;
   }
@@ -378,11 +493,11 @@ void RecorderNode::keep_for_next_epoch(const transport::Received& message) {
   early_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
 }
 
-void RecorderNode::start_epoch(std::uint32_t epoch) {
+void RecorderNode::start_epoch(const wire::Header& init) {
   count_losses(former_, false);
   former_ = std::exchange(streams_, {});
-  begin_streams();
-  member_.set_epoch(epoch);
+  begin_streams(init.step);
+  member_.set_epoch(init.epoch);
   reported_step_ = kJoinStep;
   member_.set_recorded_step(kJoinStep);
   member_.mark_status_changed();
@@ -523,7 +638,7 @@ bool RecorderNode::is_ending() const noexcept {
 
 // everybody who is still there has ended, and all that they sent has come
 bool RecorderNode::has_everything() const noexcept {
-  return member_.all_required(NodeState::ended) &&
+  return member_.all_required(NodeState::ended) && missing_states_.empty() &&
          std::all_of(streams_.steps.begin(), streams_.steps.end(),
                      [&](const auto& entry) {
                        const auto& [key, stream] = entry;
@@ -620,6 +735,8 @@ void RecorderNode::finish(const SessionEnd& session, ExitCode own_code, const st
 }
 
 void RecorderNode::count_all_losses() {
+  counts_[static_cast<std::size_t>(Topic::state)].lost += missing_states_.size();
+  missing_states_.clear();
   count_losses(former_, false);
   count_losses(streams_, true);
 }
@@ -635,7 +752,9 @@ void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
   for (const auto& [source, stream] : streams.blocks) {
     const StepIndex last = is_present ? last_block(source, stream.newest) : stream.newest;
     const StepIndex step = every(source.topic);
-    const auto expected = step == 0 ? stream.arrived : static_cast<std::uint64_t>(last / step) + 1;
+    const StepIndex before = step == 0 ? 0 : (streams.begin + step - 1) / step;  // blocks of earlier steps
+    const auto expected =
+        step == 0 ? stream.arrived : static_cast<std::uint64_t>(std::max<StepIndex>(0, last / step + 1 - before));
     counts_[static_cast<std::size_t>(source.topic)].lost += expected - std::min(expected, stream.arrived);
   }
   streams = {};

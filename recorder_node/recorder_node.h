@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "node/checkpoint.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "recorder_node/stream_gaps.h"
@@ -63,8 +64,11 @@ struct StepStream {
   node::ResendClock resend;
 };
 
+inline constexpr std::size_t kStreamDepth = 4096;  // steps ahead of a gap that are remembered
+
 // What has come of one epoch, by writer.
 struct EpochStreams {
+  StepIndex begin = 0;                                             // its first step
   std::map<std::pair<wire::Topic, wire::Role>, StepStream> steps;  // ticks and samples
   std::map<BlockSource, BlockStream> blocks;
 };
@@ -112,6 +116,16 @@ class RecorderNode final : public node::Node {
   [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
   void record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
                    std::int64_t now_ns);
+  // A recorder that a session does not need may come when it has begun: then the recording begins with the states of
+  // the next step that io gives.
+  enum class Begin : std::uint8_t { known, open, late };
+  [[nodiscard]] bool is_from_the_begin(const transport::Received& message, const wire::Header& header,
+                                       std::int64_t now_ns);
+  void begin_late(StepIndex step, std::int64_t now_ns);
+  void file_what_came_before(std::int64_t now_ns);
+  void file(const transport::Received& message);
+  void receive_state(const transport::Received& message, std::int64_t now_ns);
+  void ask_for_states(std::int64_t now_ns);
   void record_variables(const transport::Received& message, const wire::Header& header, EpochStreams& streams);
   void record_block(const transport::Received& message, const wire::Header& header, const BlockSource& source,
                     EpochStreams& streams);
@@ -120,8 +134,8 @@ class RecorderNode final : public node::Node {
   Status create(const wire::SessionDescription& session);
   Status add_attachments(const wire::SessionDescription& session);
   void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
-  void start_epoch(std::uint32_t epoch);
-  void begin_streams();
+  void start_epoch(const wire::Header& init);
+  void begin_streams(StepIndex from);
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
   [[nodiscard]] StepIndex final_step(wire::Role writer, StepIndex newest) const noexcept;
   [[nodiscard]] StepIndex last_block(const BlockSource& source, StepIndex newest) const noexcept;
@@ -160,6 +174,10 @@ class RecorderNode final : public node::Node {
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;
+  // of an epoch that begins with states: those that have not come whole
+  std::map<wire::Role, node::CheckpointParts> missing_states_;
+  node::ResendClock states_resend_;
+  wire::StatePart part_;
   EpochStreams former_;  // of the epoch before: its last messages may come after the tick that ended it
   // steps between two blocks of a topic, as those that came say; 0: unknown yet
   std::array<StepIndex, wire::kTopics> block_every_{};
@@ -167,6 +185,7 @@ class RecorderNode final : public node::Node {
   StepIndex last_step_ = kJoinStep;  // up to which every stream was complete at the end
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
+  Begin begin_ = Begin::known;
   std::int64_t late_deadline_ns_ = 0;  // of one that came after the session's begin; 0: it did not
   std::string lost_node_;              // who is gone, while the others are still saying so; empty: nobody
   struct Early {
@@ -174,6 +193,7 @@ class RecorderNode final : public node::Node {
     std::int64_t source_ns = 0;
     std::vector<std::byte> bytes;
   };
+  std::vector<Early> before_;    // without a step of its own, until the first step is known
   std::vector<Early> early_;     // of the next epoch, heard before the tick that begins it
   std::uint64_t unstepped_ = 0;  // running number of messages without a step of their own
 };

@@ -13,7 +13,9 @@ namespace slew::recorder {
 class StreamGaps {
  public:
   // depth: how far ahead of a gap steps are remembered; a gap that is left further behind counts as lost.
-  explicit StreamGaps(std::size_t depth = 4096) : ahead_(depth, false) {}
+  // first: step with which the stream begins.
+  explicit StreamGaps(std::size_t depth = 4096, StepIndex first = 0)
+      : ahead_(depth, false), next_(first), newest_(first - 1) {}
 
   enum class Arrival : std::uint8_t { new_step, duplicate, too_far };
 
@@ -70,8 +72,8 @@ class StreamGaps {
   }
 
   std::vector<bool> ahead_;
-  StepIndex next_ = 0;
-  StepIndex newest_ = -1;
+  StepIndex next_;
+  StepIndex newest_;
   StepIndex doubted_ = -1;  // last step that was not believed
   std::uint64_t lost_ = 0;
 };

@@ -16,23 +16,26 @@ using wire::Topic;
 TopicSet topics_written(Role role) noexcept {
   switch (role) {
     case Role::io:
-      return {Topic::session,   Topic::node_status,      Topic::tick,          Topic::variable_directory,
-              Topic::variables, Topic::controller_lease, Topic::control_reply, Topic::health,
-              Topic::resend};
+      return {Topic::session,       Topic::node_status,
+              Topic::tick,          Topic::variable_directory,
+              Topic::variables,     Topic::controller_lease,
+              Topic::control_reply, Topic::health,
+              Topic::resend,        Topic::state};
     case Role::mechanics:
       return {Topic::node_status, Topic::mechanism, Topic::flexible, Topic::variable_directory,
-              Topic::variables,   Topic::health,    Topic::resend};
+              Topic::variables,   Topic::health,    Topic::resend,   Topic::checkpoint};
     case Role::hydraulics:
-      return {Topic::node_status, Topic::actuators, Topic::variable_directory,
-              Topic::variables,   Topic::health,    Topic::resend};
+      return {Topic::node_status, Topic::actuators, Topic::variable_directory, Topic::variables,
+              Topic::health,      Topic::resend,    Topic::checkpoint};
     case Role::recorder:
       return {Topic::node_status, Topic::health, Topic::resend};
     case Role::observer:
+      return {Topic::controller_input, Topic::control_request, Topic::state};
     case Role::controller:
       return {Topic::controller_input, Topic::control_request};
     case Role::flex:
-      return {Topic::node_status, Topic::elastic, Topic::variable_directory,
-              Topic::variables,   Topic::health,  Topic::resend};
+      return {Topic::node_status, Topic::elastic, Topic::variable_directory, Topic::variables,
+              Topic::health,      Topic::resend,  Topic::checkpoint};
   }
   return {};
 }
@@ -40,22 +43,37 @@ TopicSet topics_written(Role role) noexcept {
 TopicSet topics_read(Role role) noexcept {
   switch (role) {
     case Role::io:
-      return {Topic::session,          Topic::node_status,     Topic::mechanism, Topic::actuators, Topic::elastic,
-              Topic::controller_input, Topic::control_request, Topic::health,    Topic::resend};
+      return {Topic::session,         Topic::node_status, Topic::mechanism,
+              Topic::actuators,       Topic::elastic,     Topic::controller_input,
+              Topic::control_request, Topic::health,      Topic::resend,
+              Topic::checkpoint,      Topic::state};
     case Role::mechanics:
-      return {Topic::session, Topic::node_status, Topic::tick,  Topic::actuators,
-              Topic::elastic, Topic::health,      Topic::resend};
+      return {Topic::session, Topic::node_status, Topic::tick,   Topic::actuators,
+              Topic::elastic, Topic::health,      Topic::resend, Topic::state};
     case Role::hydraulics:
-      return {Topic::session, Topic::node_status, Topic::tick, Topic::mechanism, Topic::health, Topic::resend};
-    case Role::recorder:
-      return TopicSet::all();
+      return {Topic::session, Topic::node_status, Topic::tick, Topic::mechanism,
+              Topic::health,  Topic::resend,      Topic::state};
+    case Role::recorder: {
+      TopicSet topics = TopicSet::all();
+      topics.erase(Topic::checkpoint);
+      return topics;
+    }
     case Role::observer:
+      return {Topic::session,
+              Topic::node_status,
+              Topic::variable_directory,
+              Topic::variables,
+              Topic::controller_lease,
+              Topic::control_reply,
+              Topic::health,
+              Topic::state};
     case Role::controller:
       return {Topic::session,   Topic::node_status,      Topic::variable_directory,
               Topic::variables, Topic::controller_lease, Topic::control_reply,
               Topic::health};
     case Role::flex:
-      return {Topic::session, Topic::node_status, Topic::tick, Topic::flexible, Topic::health, Topic::resend};
+      return {Topic::session, Topic::node_status, Topic::tick, Topic::flexible,
+              Topic::health,  Topic::resend,      Topic::state};
   }
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "cli_support/failure.h"
 #include "scene/canonical.h"
 #include "scene/script_reader.h"
 
@@ -46,7 +47,19 @@ void replace_script(scene::Scene& scene, const std::string& file) {
 }  // namespace
 
 void add_scene_options(CLI::App& app, SceneOptions& options) {
-  app.add_option("scene", options.file, "scene file")->required()->type_name("SCENE");
+  app.add_option("scene", options.file, "scene file")->type_name("SCENE");
+  app.add_option("--from", options.from,
+                 "go on with a saved session ('slewring control save') in the place of a scene; --set then changes "
+                 "live parameters")
+      ->type_name("FILE")
+      ->group("Scene");
+  app.add_option("--assets", options.assets, "with --from: folder with the scene's files; without it this one")
+      ->type_name("DIR")
+      ->group("Scene");
+  app.parse_complete_callback([&options] {
+    if (options.file.empty() && options.from.empty()) throw CLI::RequiredError("scene");
+    if (!options.file.empty() && !options.from.empty()) throw CLI::ExcludesError("--from", "scene");
+  });
   app.add_option("--set", options.overrides, "change a value of the scene; repeat for more")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false)
@@ -66,12 +79,17 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
   app.add_flag("--record,!--no-record", options.is_recording, "write a recording (default)")->group("Scene");
 }
 
-scene::Scene load_scene(const SceneOptions& options) {
-  scene::Overrides overrides = options.overrides;
+namespace {
+
+scene::Overrides of_session(const SceneOptions& options) {
+  scene::Overrides overrides;
   if (!options.step.empty()) overrides.push_back("session.step=" + options.step);
   if (!options.duration.empty()) overrides.push_back("session.duration=" + options.duration);
   if (!options.pace.empty()) overrides.push_back("session.pace=" + options.pace);
-  scene::Scene scene = scene::load_file(options.file, overrides);
+  return overrides;
+}
+
+scene::Scene with_input(scene::Scene scene, const SceneOptions& options) {
   if (options.input == "script") return scene;
   if (options.has_script()) {
     replace_script(scene, options.input);
@@ -82,13 +100,48 @@ scene::Scene load_scene(const SceneOptions& options) {
   return scene;
 }
 
+}  // namespace
+
+scene::Scene load_scene(const SceneOptions& options) {
+  scene::Overrides overrides = options.overrides;
+  const scene::Overrides more = of_session(options);
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return with_input(scene::load_file(options.file, overrides), options);
+}
+
+ContinuedScene continue_scene(const SceneOptions& options, const std::string& scene_text,
+                              const std::string& scene_name) {
+  if (!options.step.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "the step of a saved session is a part of its state; nothing was started; leave --step out");
+  }
+  ContinuedScene continued{with_input(scene::load_text(scene_text, scene_name, of_session(options),
+                                                       options.assets.empty() ? "." : options.assets),
+                                      options),
+                           {}};
+  scene::ParameterDirectory directory(continued.scene);
+  for (const std::string& setting : options.overrides) {
+    scene::Assignment change = directory.parse_assignment(setting);
+    if (!change.status.is_ok()) {
+      throw Failure(ExitCode::bad_input, "--set " + setting + ": " + change.status.text +
+                                             "; a session that goes on takes changes of live parameters only; nothing "
+                                             "was started");
+    }
+    continued.changes.push_back(std::move(change));
+  }
+  return continued;
+}
+
 std::vector<std::string> scene_arguments(const SceneOptions& options) {
-  std::vector<std::string> arguments = {options.file};
+  std::vector<std::string> arguments;
+  if (options.from.empty()) arguments.push_back(options.file);
   const auto add = [&](const char* name, const std::string& value) {
     if (value.empty()) return;
     arguments.emplace_back(name);
     arguments.push_back(value);
   };
+  add("--from", options.from);
+  add("--assets", options.assets);
   for (const std::string& setting : options.overrides) add("--set", setting);
   add("--step", options.step);
   add("--duration", options.duration);

@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "scene/parameters.h"
 #include "scene/scene.h"
 
 namespace slew::cli_support {
 
 struct SceneOptions {
   std::string file;
+  std::string from;                    // a saved session in the place of a scene file
+  std::string assets;                  // folder of its scene's files; empty: here
   std::vector<std::string> overrides;  // "Bag.mass=1500kg"
   std::string step;                    // quantities; empty: as the scene says
   std::string duration;
@@ -21,12 +24,21 @@ struct SceneOptions {
   [[nodiscard]] bool has_script() const noexcept { return input != "none" && input != "keyboard"; }
 };
 
-// SCENE, --set, --step, --duration, --pace, --input, --record, --no-record.
+// SCENE or --from FILE and --assets, --set, --step, --duration, --pace, --input, --record, --no-record.
 void add_scene_options(CLI::App& app, SceneOptions& options);
 
 // The scene with every option applied: step, pace, duration and the input file become part of its text. Throws
 // scene::LoadError.
 [[nodiscard]] scene::Scene load_scene(const SceneOptions& options);
+
+// The scene of a saved session with what may be different where it goes on: duration, pace and input become part of its
+// text; settings are changes of live parameters. Throws Failure or scene::LoadError.
+struct ContinuedScene {
+  scene::Scene scene;
+  std::vector<scene::Assignment> changes;
+};
+[[nodiscard]] ContinuedScene continue_scene(const SceneOptions& options, const std::string& scene_text,
+                                            const std::string& scene_name);
 
 // The same as command-line arguments, for a child process.
 [[nodiscard]] std::vector<std::string> scene_arguments(const SceneOptions& options);

@@ -31,6 +31,9 @@ bool is_fault(const wire::Tick& tick) {
 // io knows all roles: it is given the time to say which one is missing
 constexpr SimDuration kOwnerFirst = milliseconds(1000);
 
+// ticks and samples that a node asks for at once when it computes steps that the others have done
+constexpr StepIndex kCatchUp = static_cast<StepIndex>(kRingDepth) - 32;
+
 }  // namespace
 
 PhysicsNode::PhysicsNode(Role role, transport::Transport& transport, SubsystemFactory factory, const JoinOptions& join)
@@ -64,6 +67,7 @@ std::int64_t PhysicsNode::next_deadline(std::int64_t now_ns) const {
       if (built_.ports.is_free_running) return free_deadline(now_ns);
       [[fallthrough]];
     case Stage::initialising:
+    case Stage::loading:
       // after a fault's END nothing is asked for: io's status comes by itself
       return is_ended_by_fault_ ? now_ns + kProbeInterval.ns : std::max(now_ns, resend_.due_ns());
     default:
@@ -113,6 +117,8 @@ void PhysicsNode::receive(const transport::Received& message, std::int64_t now_n
       return receive_sample(message.bytes, message.topic, now_ns);
     case Topic::resend:
       return receive_resend(message.bytes);
+    case Topic::state:
+      return receive_state(message.bytes);
     default:
       return;
   }
@@ -135,6 +141,7 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     member_.withdraw();
     stage_ = Stage::finished;
   }
+  if (news == SessionNews::renewed) return renew(session, now_ns);
   if (news != SessionNews::begins) return;
   if (const Status held = member_.adopt(session, now_ns); !held.is_ok()) return refuse(held);
   if (const Status protocol = member_.problem_of_protocol(); !protocol.is_ok()) {
@@ -151,6 +158,12 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
                      " variables of this node, at most " + std::to_string(wire::kMaxVariables) +
                      " can be told apart; this node does not take part; name fewer in recording.variables");
   }
+  const bool must_save = session.rejoin_ns > 0 || member_.has_state();
+  if (const Status can = must_save && built_.subsystem != nullptr ? built_.subsystem->can_save() : Status::ok();
+      !can.is_ok() && member_.state() != NodeState::fault) {
+    member_.fail(can.code, "the state of this node cannot be taken over by another process: " + can.text +
+                               "; this node does not take part; run it with session.rejoin=0, from the start");
+  }
   if (member_.state() == NodeState::fault) {
     member_.publish_status_if_changed();
     stage_ = Stage::finished;
@@ -162,6 +175,28 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
   stage_ = Stage::joining;
 }
 
+// io says who was given up, and where the session is
+void PhysicsNode::renew(const wire::SessionDescription& session, std::int64_t now_ns) {
+  member_.renew(session, now_ns);
+  if (!member_.is_given_up()) return;
+  member_.yield();
+  stage_ = Stage::finished;
+}
+
+void PhysicsNode::receive_state(std::span<const std::byte> bytes) {
+  wire::Header header;
+  if (!transport::decode_header(bytes, header)) {
+    ++member_.refusals().undecodable;
+    return;
+  }
+  if (stage_ != Stage::loading || !member_.fits(header, Topic::state)) return;
+  if (!transport::decode(bytes, part_)) {
+    ++member_.refusals().undecodable;
+  } else if (part_.role == member_.role() && !taken_over_.is_whole()) {
+    taken_over_.take(part_);
+  }
+}
+
 void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t now_ns) {
   wire::Header header;
   if (!transport::decode_header(bytes, header)) {
@@ -169,7 +204,7 @@ void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t no
     return;
   }
   // a new epoch starts with an INIT tick
-  if (member_.begins_next_epoch(header)) return restart(header.epoch);
+  if (member_.begins_next_epoch(header)) return restart(header);
   if (!member_.fits(header, Topic::tick)) return;
   member_.heard(header, Topic::tick, now_ns);
   if (header.phase != Phase::running) return;
@@ -234,6 +269,13 @@ void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
     return;
   }
   if (request.role != member_.role() || !member_.fits(request.header, Topic::resend)) return;
+  if (request.topic == static_cast<std::uint8_t>(Topic::state)) return;
+  if (request.topic == static_cast<std::uint8_t>(Topic::checkpoint)) {
+    if (request.header.role != Role::io) return;
+    save_at_ = request.header.step;
+    if (stage_ == Stage::stepping && n_ == save_at_) say_state();
+    return;
+  }
   health().resends_answered += samples_.answer(member_, request);
 }
 
@@ -254,6 +296,8 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
       return advance_join(now_ns);
     case Stage::initialising:
       return advance_init(now_ns);
+    case Stage::loading:
+      return advance_loading(now_ns);
     case Stage::stepping: {
       bool any = false;
       const auto go_on = [&] {
@@ -276,8 +320,8 @@ bool PhysicsNode::advance_join(std::int64_t now_ns) {
   if (join_deadline_ns_ == 0) join_deadline_ns_ = now_ns + join_timeout_.ns + kOwnerFirst.ns;
   if (member_.is_heard_by_all()) {
     member_.set_state(NodeState::initialising);
-    stage_ = Stage::initialising;
-    resend_.restart(now_ns);
+    stage_ = member_.has_state() ? Stage::loading : Stage::initialising;
+    resend_.restart(member_.has_state() ? now_ns - kResendAfter.ns : now_ns);
     return true;
   }
   if (now_ns > join_deadline_ns_) {
@@ -323,7 +367,72 @@ bool PhysicsNode::advance_init(std::int64_t now_ns) {
   } else {
     resend_.restart(now_ns);
   }
+  save_if_due(StepReport{});
   return true;
+}
+
+// In the place of INIT: the own state at a step that the session has done, from io.
+bool PhysicsNode::advance_loading(std::int64_t now_ns) {
+  if (!taken_over_.is_whole()) {
+    ask_for_missing(now_ns);
+    return false;
+  }
+  wire::SampleState said;
+  const Status loaded = load_node(taken_over_.checkpoint(), *built_.subsystem, said, own_);
+  if (!loaded.is_ok()) {
+    leave(loaded.code, loaded.text, now_ns);
+    return true;
+  }
+  n_ = taken_over_.checkpoint().step;
+  taken_over_.clear();
+  go_on_from(said, now_ns);
+  return true;
+}
+
+void PhysicsNode::go_on_from(const wire::SampleState& said, std::int64_t now_ns) {
+  used_step_ = said.used_step;
+  quality_ = said.quality;
+  lost_ = said.lost;
+  const wire::Header& told = member_.session().header;
+  caught_up_at_ = told.epoch == member_.epoch() ? std::max(n_, told.step) : n_;
+  StepReport report;
+  report.flags = said.flags;
+  report.offender = said.offender;
+  report.substeps = said.substeps;
+  publish_directory();
+  publish_sample(Phase::running, n_, report);
+  if (n_ % built_.variables_every == 0) publish_variables(n_);
+  member_.set_step(n_);
+  member_.set_state(NodeState::ready);
+  member_.mark_status_changed();
+  stage_ = Stage::stepping;
+  // what the others have said already is missing now
+  resend_.restart(now_ns - kResendAfter.ns);
+  save_if_due(report);
+}
+
+// A checkpoint when its step has come, and after that a part of it with every step: what a step costs is bounded.
+void PhysicsNode::save_if_due(const StepReport& report) {
+  if (report.has_failed()) return;
+  if (n_ == save_at_) return say_state();
+  const bool is_first = n_ == 0 || n_ / kCheckpointEvery != (n_ - samples_.stride()) / kCheckpointEvery;
+  const bool is_due = is_first && member_.session().rejoin_ns > 0 && n_ >= caught_up_at_;
+  if (is_due && !checkpoint_.has_more()) save_node(*built_.subsystem, said_, n_, checkpoint_.next());
+  if (n_ == 0) return checkpoint_.send_rest(member_);
+  if (checkpoint_.has_more()) checkpoint_.send_part(member_);
+}
+
+// The whole state of this step at once, for io, which holds the ticks until it has it.
+void PhysicsNode::say_state() {
+  if (built_.subsystem->can_save().is_ok()) {
+    save_node(*built_.subsystem, said_, n_, checkpoint_.next());
+    return checkpoint_.send_rest(member_);
+  }
+  // no bytes: there is nothing to say
+  part_ = {};
+  part_.header = member_.header(Phase::running, n_);
+  part_.role = member_.role();
+  member_.publish(Topic::checkpoint, part_);
 }
 
 // In `real` pace the next tick is due a step later. Nobody waits for a follower: it never asks before its sample would
@@ -438,6 +547,7 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
   if (spent_ns > h.step_time_max_ns) h.step_time_max_ns = spent_ns;
   member_.set_step(n_);
   expect_next(now_ns);
+  save_if_due(report);
   if (report.has_failed()) leave(ExitCode::diverged, divergence_text(report), now_ns);
 }
 
@@ -456,9 +566,10 @@ bool PhysicsNode::advance_leaving(std::int64_t now_ns) {
   return false;
 }
 
-void PhysicsNode::restart(std::uint32_t epoch) {
-  if (stage_ != Stage::initialising && stage_ != Stage::stepping) return;
-  member_.set_epoch(epoch);
+// A new epoch begins at INIT, or at the step that the tick says, with the states that io has.
+void PhysicsNode::restart(const wire::Header& init) {
+  if (stage_ != Stage::initialising && stage_ != Stage::loading && stage_ != Stage::stepping) return;
+  member_.set_epoch(init.epoch);
   built_.subsystem->reset();
   ticks_.clear();
   samples_.clear();
@@ -472,10 +583,14 @@ void PhysicsNode::restart(std::uint32_t epoch) {
   controls_.clear();
   has_late_end_ = false;
   first_sample_sent_ = false;
+  save_at_ = kNoStep;
+  caught_up_at_ = 0;
+  checkpoint_.next().bytes.clear();
+  taken_over_.clear();
   member_.set_step(kJoinStep);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
-  stage_ = Stage::initialising;
+  stage_ = init.step >= 0 ? Stage::loading : Stage::initialising;
 }
 
 void PhysicsNode::leave(ExitCode code, const std::string& reason, std::int64_t now_ns) {
@@ -502,6 +617,7 @@ void PhysicsNode::publish_sample(Phase phase, StepIndex step, const StepReport& 
   state.offender = report.offender;
   state.substeps = report.substeps;
   samples_.publish(member_, phase, step, state, own_);
+  said_ = state;
 }
 
 void PhysicsNode::publish_variables(StepIndex step) {
@@ -554,12 +670,13 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
     request.header = member_.header(Phase::running, step);
     request.role = role;
     request.topic = static_cast<std::uint8_t>(topic);
-    request.last_step = step;
+    request.last_step = stage_ == Stage::stepping ? std::max(step, std::min(caught_up_at_ - 1, n_ + kCatchUp)) : step;
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
   };
   resend_.asked(now_ns);
   if (stage_ == Stage::initialising) return samples_.for_each_missing_at_start(ask);
+  if (stage_ == Stage::loading) return ask(member_.role(), Topic::state, kJoinStep);
   if (is_follower()) {
     if (!is_withheld(n_ + samples_.stride() - 1)) samples_.for_each_missing(n_ + samples_.stride(), ask);
     return;
@@ -594,6 +711,12 @@ void PhysicsNode::watch(std::int64_t now_ns) {
       return leave(ExitCode::node_lost,
                    member_.describe_peer(about) + " is gone; this node stopped after step " + std::to_string(n_),
                    now_ns);
+    case PeerEvent::gone:
+      if (stage_ == Stage::stepping) {
+        member_.hold(member_.describe_peer(about) + " is gone; waits at step " + std::to_string(n_) +
+                     " for another process of its role");
+      }
+      return;
     case PeerEvent::silent:
       if (stage_ == Stage::stepping) member_.hold(member_.silence_text(about));
       return;

@@ -8,6 +8,10 @@
 // Free-running: step n is done when Tick n has come, or its time by the last tick and the budget have passed; with the
 // samples n, or, when the budget has passed since, with the newest that there are. A tick that comes later still has
 // its commands applied, in the step that is next then. Nobody is further ahead of the ticks than the session's window.
+//
+// In a session that has a state (SessionDescription.header.step, or the INIT tick's) a node asks io for its own after
+// JOIN, in the place of INIT, and goes on from there: with the ticks and samples since, which it asks for by number
+// like any that is missing. Such a session's nodes say their state every kCheckpointEvery steps.
 #pragma once
 
 #include <functional>
@@ -16,6 +20,7 @@
 #include <vector>
 
 #include "coupling/subsystem.h"
+#include "node/checkpoint.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "node/sample_exchange.h"
@@ -49,10 +54,12 @@ class PhysicsNode final : public Node {
 
  private:
   static constexpr StepIndex kNoStep = -1;
-  enum class Stage : std::uint8_t { waiting_for_session, joining, initialising, stepping, leaving, finished };
+  enum class Stage : std::uint8_t { waiting_for_session, joining, initialising, loading, stepping, leaving, finished };
 
   void receive(const transport::Received& message, std::int64_t now_ns);
   void receive_session(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void renew(const wire::SessionDescription& session, std::int64_t now_ns);
+  void receive_state(std::span<const std::byte> bytes);
   void refuse(const Status& refusal);
   void receive_tick(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_last_tick(std::span<const std::byte> bytes);
@@ -62,6 +69,10 @@ class PhysicsNode final : public Node {
   bool advance(std::int64_t now_ns);
   bool advance_join(std::int64_t now_ns);
   bool advance_init(std::int64_t now_ns);
+  bool advance_loading(std::int64_t now_ns);
+  void go_on_from(const wire::SampleState& said, std::int64_t now_ns);
+  void save_if_due(const StepReport& report);
+  void say_state();
   bool advance_step(std::int64_t now_ns);
   bool follow(std::int64_t now_ns);
   bool advance_free(std::int64_t now_ns);
@@ -72,7 +83,7 @@ class PhysicsNode final : public Node {
   [[nodiscard]] std::string divergence_text(const StepReport& report) const;
   void compute(const coupling::PartnerSamples& partners, std::span<const double> controls, std::int64_t now_ns);
   bool advance_leaving(std::int64_t now_ns);
-  void restart(std::uint32_t epoch);
+  void restart(const wire::Header& init);
 
   void publish_sample(wire::Phase phase, StepIndex step, const StepReport& report);
   void publish_variables(StepIndex step);
@@ -116,6 +127,12 @@ class PhysicsNode final : public Node {
   bool has_late_end_ = false;
   coupling::Quality quality_ = coupling::Quality::ok;
   ResendClock resend_;
+  wire::SampleState said_;  // of the last sample
+  CheckpointSender checkpoint_;
+  StepIndex save_at_ = kNoStep;  // step whose state io has asked for
+  CheckpointParts taken_over_;   // the state that io has of this role
+  wire::StatePart part_;
+  StepIndex caught_up_at_ = 0;  // ticks and samples before it have been said before
 };
 
 }  // namespace slew::node

@@ -52,7 +52,8 @@ class Inbox {
   void keep(std::span<const std::byte> bytes, StepIndex step, StepIndex n, Refusals& refusals) {
     if (step % every != 0) return;
     const StepIndex place = step / every;
-    const StepIndex first = takes_late ? n - static_cast<StepIndex>(kRingDepth) + 1 : n;
+    // a node that took a state over between two exchanges needs the last one
+    const StepIndex first = takes_late ? n - static_cast<StepIndex>(kRingDepth) + 1 : n - n % every;
     if (place >= n / every + static_cast<StepIndex>(kRingDepth)) {
       ++refusals.too_far_ahead;
     } else if (step < first || ring_.find(place) != nullptr) {

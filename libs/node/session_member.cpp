@@ -62,7 +62,10 @@ std::uint32_t writers_of(Topic topic) noexcept {
     case Topic::tick:
     case Topic::controller_lease:
     case Topic::control_reply:
+    case Topic::state:
       return bit(Role::io);
+    case Topic::checkpoint:
+      return bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex);
     case Topic::mechanism:
     case Topic::flexible:
       return bit(Role::mechanics);
@@ -116,7 +119,10 @@ SessionNews SessionMember::news(const wire::SessionDescription& session) const n
   const Phase phase = session.header.phase;
   if (has_session_) {
     const bool is_owner = is_in_session(session.header) && is_writer(session.header, Topic::session);
-    return phase == Phase::ended && is_owner ? SessionNews::withdrawn : SessionNews::none;
+    if (!is_owner) return SessionNews::none;
+    if (phase == Phase::ended) return SessionNews::withdrawn;
+    const bool is_news = session.given_up != session_.given_up || session.header.step != session_.header.step;
+    return phase == Phase::running && is_news ? SessionNews::renewed : SessionNews::none;
   }
   // a description in phase JOIN only claims the name
   const bool is_wanted = !only_ || session.header.session == *only_;
@@ -146,6 +152,29 @@ Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_
     if (refusal.is_ok()) refusal = answer;
   }
   return refusal;
+}
+
+void SessionMember::renew(const wire::SessionDescription& session, std::int64_t now_ns) {
+  session_ = session;
+  forget_given_up(now_ns);
+  // those who come hear this process as it is now
+  status_changed_ = true;
+}
+
+void SessionMember::forget_given_up(std::int64_t now_ns) {
+  for (const wire::GivenUp& gone : session_.given_up) {
+    const auto index = static_cast<std::size_t>(gone.role);
+    if (index >= wire::kRoles || !peers_[index].is_known || peers_[index].incarnation != gone.incarnation) continue;
+    peers_[index] = Peer{};
+    if (const auto rival = std::exchange(rivals_[index], std::nullopt)) {
+      static_cast<void>(take_status(*rival, now_ns));
+    }
+  }
+}
+
+bool SessionMember::is_given_up(Role role, std::uint32_t incarnation) const noexcept {
+  return std::find(session_.given_up.begin(), session_.given_up.end(), wire::GivenUp{role, incarnation}) !=
+         session_.given_up.end();
 }
 
 Status SessionMember::problem_of_protocol() const {
@@ -223,6 +252,12 @@ void SessionMember::step_aside(ExitCode code, std::string reason) {
   is_aside_ = true;
 }
 
+void SessionMember::yield() {
+  step_aside(ExitCode::node_lost, "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
+                                      "' was given to another process, because nothing had been heard of this one; "
+                                      "this one ends, and the session goes on without it");
+}
+
 void SessionMember::withdraw() {
   if (only_) return step_aside(ExitCode::bad_input, "io ended the session: another one holds its name");
   step_aside(ExitCode::ok, "");
@@ -267,9 +302,14 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
   if (index >= wire::kRoles) return Status::ok();
   if (status.header.role == role_) return on_own_role(status);
   Peer& peer = peers_[index];
+  if (is_given_up(status.header.role, status.header.incarnation)) {
+    ++refusals_.unexpected_writer;
+    return Status::ok();
+  }
   if (peer.is_known && peer.incarnation != status.header.incarnation) {
     // a second process of the role takes over only from one that goes behind it
     if (peer.is_lost || !goes_first(status, peer.status)) {
+      if (may_be_replaced(status.header.role)) rivals_[index] = status;
       ++refusals_.unexpected_writer;
       return Status::ok();
     }
@@ -289,6 +329,7 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
 // another process that says it has this role
 Status SessionMember::on_own_role(const wire::NodeStatus& status) {
   if (status.header.incarnation == incarnation_ || is_over(status.state)) return Status::ok();
+  if (is_given_up(role_, status.header.incarnation)) return Status::ok();
   wire::NodeStatus own = status_;
   own.header.incarnation = incarnation_;
   if (!goes_first(status, own)) return Status::ok();
@@ -326,28 +367,63 @@ void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now
   }
 }
 
+bool SessionMember::may_be_replaced(Role role) const noexcept {
+  const bool is_physics =
+      std::find(std::begin(wire::kPhysicsRoles), std::end(wire::kPhysicsRoles), role) != std::end(wire::kPhysicsRoles);
+  return is_physics && session_.rejoin_ns > 0;
+}
+
+// A process that was stopped has heard nobody while it stood. In a session that waits for lost nodes it does not take
+// the others for lost then: io tells it what has become of its role.
+void SessionMember::excuse_own_absence(std::int64_t now_ns) noexcept {
+  const std::int64_t absence_ns = watched_ns_ == 0 ? 0 : now_ns - watched_ns_;
+  watched_ns_ = now_ns;
+  if (session_.rejoin_ns == 0 || absence_ns <= kSilentAfter.ns) return;
+  for (Peer& peer : peers_) peer.last_heard_ns = std::min(now_ns, peer.last_heard_ns + absence_ns);
+}
+
+PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noexcept {
+  const std::int64_t silent_ns = now_ns - peer.last_heard_ns;
+  if (peer.exit_seen_ns == 0 && peer.process.has_exited()) peer.exit_seen_ns = now_ns;
+  // what it said last may still be on its way, and says why
+  const bool is_gone = peer.exit_seen_ns != 0 && now_ns - peer.exit_seen_ns >= kLastWords.ns;
+  if (peer.gone_ns != 0) {
+    // io decides about its place; who is heard again was cut off from this process alone
+    if (!is_gone && silent_ns <= kSilentAfter.ns) {
+      peer.gone_ns = 0;
+      peer.is_lost = peer.is_silent = false;
+      return PeerEvent::back;
+    }
+    if (now_ns - peer.gone_ns <= session_.rejoin_ns + kLostAfter.ns) return PeerEvent::none;
+    peer.gone_ns = 0;
+    return PeerEvent::lost;
+  }
+  if (peer.is_lost) return PeerEvent::none;
+  if (is_gone || silent_ns > kLostAfter.ns) {
+    peer.is_lost = true;
+    if (!may_be_replaced(role)) return PeerEvent::lost;
+    peer.gone_ns = now_ns;
+    return PeerEvent::gone;
+  }
+  if (silent_ns > kSilentAfter.ns && !peer.is_silent) {
+    peer.is_silent = true;
+    return PeerEvent::silent;
+  }
+  if (silent_ns <= kSilentAfter.ns && peer.is_silent) {
+    peer.is_silent = false;
+    return PeerEvent::back;
+  }
+  return PeerEvent::none;
+}
+
 PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
+  excuse_own_absence(now_ns);
   for (const Role role : wire::kNodeRoles) {
     if (role == role_ || !requires_role(role)) continue;
     Peer& peer = peers_[static_cast<std::size_t>(role)];
-    if (!peer.is_known || peer.is_lost || peer.status.state >= NodeState::ended) continue;
+    if (!peer.is_known || peer.status.state >= NodeState::ended) continue;
     about = role;
-    const std::int64_t silent_ns = now_ns - peer.last_heard_ns;
-    if (peer.exit_seen_ns == 0 && peer.process.has_exited()) peer.exit_seen_ns = now_ns;
-    // what it said last may still be on its way, and says why
-    const bool is_gone = peer.exit_seen_ns != 0 && now_ns - peer.exit_seen_ns >= kLastWords.ns;
-    if (is_gone || silent_ns > kLostAfter.ns) {
-      peer.is_lost = true;
-      return PeerEvent::lost;
-    }
-    if (silent_ns > kSilentAfter.ns && !peer.is_silent) {
-      peer.is_silent = true;
-      return PeerEvent::silent;
-    }
-    if (silent_ns <= kSilentAfter.ns && peer.is_silent) {
-      peer.is_silent = false;
-      return PeerEvent::back;
-    }
+    if (const PeerEvent event = look_at(peer, role, now_ns); event != PeerEvent::none) return event;
   }
   return PeerEvent::none;
 }

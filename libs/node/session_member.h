@@ -57,15 +57,18 @@ struct Peer {
   ProcessWatch process;
   std::int64_t exit_seen_ns = 0;  // when the process was first seen to be gone; 0: it is there
   bool is_silent = false;         // named once
-  bool is_lost = false;           // given up
+  bool is_lost = false;           // given up, or gone
+  std::int64_t gone_ns = 0;       // when it was seen to be gone; 0: it is not
 };
 
-enum class PeerEvent : std::uint8_t { none, silent, back, lost };
+// gone: a physics node whose place the session holds for another process of its role.
+enum class PeerEvent : std::uint8_t { none, silent, back, gone, lost };
 
 // What a session's description means to a node that does not own it.
 enum class SessionNews : std::uint8_t {
   none,
   begins,     // the session to take part in
+  renewed,    // its owner says anew how it stands: processes that were given up, the step that it is at
   withdrawn,  // its owner takes it back: another session holds the name
 };
 
@@ -92,6 +95,12 @@ class SessionMember {
   // Takes part in a session. NodeStatus messages that came before are taken now; returns a refusal when another
   // process holds this role.
   Status adopt(const wire::SessionDescription& session, std::int64_t now_ns);
+  // Takes what the owner says anew. Places of processes that were given up are free for others.
+  void renew(const wire::SessionDescription& session, std::int64_t now_ns);
+  // This process has lost its role to another one, which it has not noticed.
+  [[nodiscard]] bool is_given_up() const noexcept { return is_given_up(role_, incarnation_); }
+  // The session has begun, or begins, at a step whose state io has.
+  [[nodiscard]] bool has_state() const noexcept { return session_.header.step >= 0; }
   // Ok when the session speaks this program's protocol version.
   [[nodiscard]] Status problem_of_protocol() const;
   [[nodiscard]] bool has_session() const noexcept { return has_session_; }
@@ -125,6 +134,8 @@ class SessionMember {
   void end(ExitCode code, std::string reason = "");
   // Ends without a word to the others: this process never held the role.
   void step_aside(ExitCode code, std::string reason);
+  // Steps aside because its role was given to another process.
+  void yield();
   // Steps aside because the session was withdrawn: is_withdrawn(), or failed when there is no other session for it.
   void withdraw();
   // This process may take part in the next session of the name, as a new node on a new carrier.
@@ -176,6 +187,11 @@ class SessionMember {
 
  private:
   [[nodiscard]] Status take_status(const wire::NodeStatus& status, std::int64_t now_ns);
+  [[nodiscard]] bool is_given_up(wire::Role role, std::uint32_t incarnation) const noexcept;
+  void forget_given_up(std::int64_t now_ns);
+  [[nodiscard]] bool may_be_replaced(wire::Role role) const noexcept;
+  void excuse_own_absence(std::int64_t now_ns) noexcept;
+  [[nodiscard]] PeerEvent look_at(Peer& peer, wire::Role role, std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_in_session(const wire::Header& header) const noexcept;
   [[nodiscard]] bool is_writer(const wire::Header& header, wire::Topic topic) const noexcept;
   [[nodiscard]] std::string found_writers(wire::Topic topic);
@@ -201,6 +217,9 @@ class SessionMember {
   std::vector<wire::NodeStatus> early_statuses_;  // came before the session's description
   std::vector<std::string> warnings_;
   std::array<Peer, wire::kRoles> peers_;
+  // what a second process of a role said last: it may come before the word that the first one was given up
+  std::array<std::optional<wire::NodeStatus>, wire::kRoles> rivals_;
+  std::int64_t watched_ns_ = 0;  // when the others were looked at last
   Refusals refusals_;
   Status send_failure_;
   std::int64_t next_probe_ns_ = 0;

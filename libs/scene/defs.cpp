@@ -26,6 +26,7 @@ constexpr Range kDelayRange{.min = 1, .max = 64, .min_is_open = false, .max_is_o
 constexpr Range kWaitRange{.min = 0.001, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
 constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
+constexpr Range kRejoinRange{.min = 0, .max = 3600, .min_is_open = false, .max_is_open = false};
 constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-3, .min_is_open = false, .max_is_open = false};
 constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
@@ -104,6 +105,12 @@ constexpr Field kSessionFields[] = {
                                                                   .range = kTimeoutRange,
                                                                   .doc = "silence, or time out of step, after which a "
                                                                          "controller's channel goes to neutral"}),
+    field<&SessionDef::rejoin>(
+        "rejoin",
+        {.dimension = Dimension::time,
+         .range = kRejoinRange,
+         .doc = "how long the session is held when a physics node is lost, for another process that takes its place "
+                "and goes on with the state of the last checkpoint; 0: no checkpoints, the session ends"}),
 };
 
 constexpr Field kInputFields[] = {
@@ -257,9 +264,27 @@ void validate_free_running(const SessionDef& session, Problems& errors) {
   }
 }
 
+void validate_rejoin(const SessionDef& session, Problems& errors) {
+  if (const std::string_view obstacle = obstacle_to_saving(session); !obstacle.empty()) {
+    errors.push_back({"session.rejoin", "no other process can take over: " + std::string(obstacle), "0", ""});
+  }
+}
+
 }  // namespace
 
+std::string_view obstacle_to_saving(const SessionDef& session) noexcept {
+  if (session.mode == ExchangeMode::free_running) {
+    return "in a free-running session the clock decides which samples a step uses, and a state alone does not say how "
+           "it goes on";
+  }
+  if (session.solution == Solution::monolithic) {
+    return "a monolithic solution is CVODE's, whose history cannot be put back";
+  }
+  return "";
+}
+
 void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
+  if (session.rejoin > 0) validate_rejoin(session, errors);
   const double nanoseconds = session.step * 1e9;
   if (std::abs(nanoseconds - std::round(nanoseconds)) > kWholeNanosecondTolerance) {
     errors.push_back({"session.step", fmt::format("{} s is not a whole number of nanoseconds", session.step),

@@ -52,6 +52,7 @@ struct SessionDef {
   ContactUse contact = ContactUse::tested;
   std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free, see window_steps()
   double controller_timeout = 0.5;  // s of silence, or out of step, after which a controller's channel goes to neutral
+  double rejoin = 0;                // s that a lost physics node's place is held for another process; 0: it is not
 
   [[nodiscard]] SimDuration step_duration() const noexcept;
   [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped
@@ -151,6 +152,9 @@ inline constexpr std::string_view kInputTypeChoices[] = {"analog", "digital"};
 
 // Why the session cannot couple a port at this level; empty: it can.
 [[nodiscard]] std::string_view obstacle_of(const SessionDef& session, coupling::Level level) noexcept;
+
+// Why the state of such a session cannot be put back; empty: it can, as far as the session says.
+[[nodiscard]] std::string_view obstacle_to_saving(const SessionDef& session) noexcept;
 
 // Rules between the fields; ranges are the tables' matter.
 void validate(const SessionDef& session, Problems& errors, Problems& warnings);

@@ -317,6 +317,9 @@ bool encode(const wire::Health& message, ByteBuffer& buffer) {
 bool encode(const wire::ResendRequest& message, ByteBuffer& buffer) {
   return encode_message(message, buffer);
 }
+bool encode(const wire::StatePart& message, ByteBuffer& buffer) {
+  return encode_message(message, buffer);
+}
 
 bool decode(Bytes bytes, wire::SessionDescription& message) {
   return decode_message(bytes, message);
@@ -361,6 +364,9 @@ bool decode(Bytes bytes, wire::Health& message) {
   return decode_message(bytes, message);
 }
 bool decode(Bytes bytes, wire::ResendRequest& message) {
+  return decode_message(bytes, message);
+}
+bool decode(Bytes bytes, wire::StatePart& message) {
   return decode_message(bytes, message);
 }
 

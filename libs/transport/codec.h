@@ -41,6 +41,7 @@ using ByteBuffer = std::vector<std::byte>;
 [[nodiscard]] bool encode(const wire::ControlReply& message, ByteBuffer& buffer);
 [[nodiscard]] bool encode(const wire::Health& message, ByteBuffer& buffer);
 [[nodiscard]] bool encode(const wire::ResendRequest& message, ByteBuffer& buffer);
+[[nodiscard]] bool encode(const wire::StatePart& message, ByteBuffer& buffer);
 
 [[nodiscard]] bool decode(Bytes bytes, wire::SessionDescription& message);
 [[nodiscard]] bool decode(Bytes bytes, wire::NodeStatus& message);
@@ -57,6 +58,7 @@ using ByteBuffer = std::vector<std::byte>;
 [[nodiscard]] bool decode(Bytes bytes, wire::ControlReply& message);
 [[nodiscard]] bool decode(Bytes bytes, wire::Health& message);
 [[nodiscard]] bool decode(Bytes bytes, wire::ResendRequest& message);
+[[nodiscard]] bool decode(Bytes bytes, wire::StatePart& message);
 
 // The Header alone of a message that starts with one: who speaks and of which step, before the rest is worth reading.
 // All messages but ControllerInput and ControlRequest start with one.

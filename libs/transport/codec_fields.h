@@ -89,7 +89,7 @@ inline constexpr std::uint32_t kEnumerators<wire::NodeState> = 8;
 template <>
 inline constexpr std::uint32_t kEnumerators<wire::ControllerAction> = 3;
 template <>
-inline constexpr std::uint32_t kEnumerators<wire::ControlAction> = 7;
+inline constexpr std::uint32_t kEnumerators<wire::ControlAction> = 9;
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::Header>& m) {
@@ -158,10 +158,17 @@ void fields(A& a, typename A::template Of<wire::Asset>& m) {
 }
 
 template <typename A>
+void fields(A& a, typename A::template Of<wire::GivenUp>& m) {
+  a(m.role, m.incarnation);
+}
+
+template <typename A>
 void fields(A& a, typename A::template Of<wire::SessionDescription>& m) {
   a(m.header, m.protocol, name(m.name), name(m.scene_name), Text{m.scene_text, wire::kMaxSceneBytes});
   a(List{m.assets, wire::kMaxAssets}, sentence(m.build), m.self_test, m.step_ns, m.pace, m.window, m.required_roles);
   a(sentence(m.host), m.pid, m.started_ns);
+  // recordings of earlier versions are read for ever
+  if (m.protocol >= 4) a(m.rejoin_ns, List{m.given_up, wire::kMaxGivenUp});
 }
 
 template <typename A>
@@ -219,6 +226,12 @@ void fields(A& a, typename A::template Of<wire::ControlReply>& m) {
 template <typename A>
 void fields(A& a, typename A::template Of<wire::ResendRequest>& m) {
   a(m.header, m.role, m.topic, step(m.last_step));
+}
+
+template <typename A>
+void fields(A& a, typename A::template Of<wire::StatePart>& m) {
+  a(m.header, m.role, m.request, m.state_hash, Bounded{m.total, 0, wire::kMaxStateBytes});
+  a(Bounded{m.first, 0, wire::kMaxStateBytes}, m.bytes);
 }
 
 }  // namespace slew::transport::detail

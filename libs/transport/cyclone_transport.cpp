@@ -41,6 +41,8 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
     &slewring_ControlReply_desc,
     &slewring_Health_desc,
     &slewring_ResendRequest_desc,
+    &slewring_StatePart_desc,
+    &slewring_StatePart_desc,
 };
 
 [[nodiscard]] std::string partition_of(const std::string& session) {

@@ -24,6 +24,8 @@ constexpr std::array<TopicTraits, wire::kTopics> kTraits = {{
     {wire::Topic::control_reply, "slewring/control_reply", "slewring::ControlReply", kDialogueDepth, 0},
     {wire::Topic::health, "slewring/health", "slewring::Health", kDialogueDepth, 0},
     {wire::Topic::resend, "slewring/resend", "slewring::ResendRequest", kDialogueDepth, 0},
+    {wire::Topic::checkpoint, "slewring/checkpoint", "slewring::StatePart", kStepDepth, 0},
+    {wire::Topic::state, "slewring/state", "slewring::StatePart", kStepDepth, 0},
 }};
 
 constexpr bool is_in_order() {

@@ -35,6 +35,7 @@ class TopicSet {
     return set;
   }
   constexpr void insert(wire::Topic topic) { bits_ |= 1u << static_cast<unsigned>(topic); }
+  constexpr void erase(wire::Topic topic) { bits_ &= ~(1u << static_cast<unsigned>(topic)); }
   [[nodiscard]] constexpr bool is_empty() const { return bits_ == 0; }
   [[nodiscard]] constexpr bool contains(wire::Topic topic) const {
     return (bits_ & (1u << static_cast<unsigned>(topic))) != 0;
@@ -77,5 +78,8 @@ template <>
 inline constexpr wire::Topic kTopicOf<wire::Health> = wire::Topic::health;
 template <>
 inline constexpr wire::Topic kTopicOf<wire::ResendRequest> = wire::Topic::resend;
+// the one that recordings have; physics nodes say it on Topic::checkpoint
+template <>
+inline constexpr wire::Topic kTopicOf<wire::StatePart> = wire::Topic::state;
 
 }  // namespace slew::transport

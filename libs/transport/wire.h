@@ -17,7 +17,7 @@
 
 namespace slew::wire {
 
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
@@ -28,6 +28,9 @@ inline constexpr std::size_t kMaxReasonLength = 255;       // characters: senten
 inline constexpr std::size_t kMaxAssets = 256;
 inline constexpr std::size_t kMaxHeard = 256;
 inline constexpr std::size_t kMaxSceneBytes = 4 * 1024 * 1024;
+inline constexpr std::size_t kMaxGivenUp = 64;                   // processes of one session
+inline constexpr std::size_t kMaxStatePart = 8192;               // bytes
+inline constexpr std::size_t kMaxStateBytes = 64 * 1024 * 1024;  // of one node
 
 using SessionId = std::array<std::uint8_t, 16>;
 
@@ -123,10 +126,17 @@ struct Asset {
 
 enum class Pace : std::uint8_t { real, free };
 
+// A process that was silent for too long or died: its role is another one's, whatever it still says.
+struct GivenUp {
+  Role role = Role::io;
+  std::uint32_t incarnation = 0;
+  bool operator==(const GivenUp&) const = default;
+};
+
 // Published by io_node, transient-local: all that another node needs to take part. In phase JOIN it only claims the
-// name and is for other io nodes; in phase RUNNING the session is to be joined.
+// name and is for other io nodes; in phase RUNNING the session is to be joined. Said again when a process is given up.
 struct SessionDescription {
-  Header header;
+  Header header;  // step: -1, or who joins takes the state that io has, and the session is, or begins, at this step
   std::uint32_t protocol = kProtocolVersion;
   std::string name;
   std::string scene_name;
@@ -141,6 +151,9 @@ struct SessionDescription {
   std::string host;
   std::uint32_t pid = 0;
   std::int64_t started_ns = 0;  // wall clock
+  // from protocol version 4 on
+  std::int64_t rejoin_ns = 0;     // how long the place of a physics node that is lost is held; 0: it is not
+  std::vector<GivenUp> given_up;  // at most kMaxGivenUp
   bool operator==(const SessionDescription&) const = default;
 };
 
@@ -235,7 +248,7 @@ struct ControllerLease {
   bool operator==(const ControllerLease&) const = default;
 };
 
-enum class ControlAction : std::uint8_t { set_parameter, pause, resume, step, reset, stop, get_parameter };
+enum class ControlAction : std::uint8_t { set_parameter, pause, resume, step, reset, stop, get_parameter, save, load };
 
 struct ControlRequest {
   std::string session;
@@ -256,13 +269,26 @@ struct ControlReply {
   bool operator==(const ControlReply&) const = default;
 };
 
-// "I miss this step of your topic": answered by publishing the cached message again.
+// "I miss this step of your topic": answered by publishing the cached message again. Of topic checkpoint, from io to a
+// physics node: its state at this step is wanted; of topic state, to io: the one it has of a role.
 struct ResendRequest {
   Header header;         // step: first one missing
-  Role role = Role::io;  // whose message is missing
+  Role role = Role::io;  // whose message is missing, whose state is wanted
   std::uint8_t topic = 0;
   StepIndex last_step = 0;  // last one missing
   bool operator==(const ResendRequest&) const = default;
+};
+
+// Bytes of a node's whole state at a step, one part of several. Nobody but the same role's program reads them.
+struct StatePart {
+  Header header;              // step: the one that the state holds at
+  Role role = Role::io;       // whose state
+  std::uint64_t request = 0;  // ControlRequest::request that it belongs to; 0: none
+  std::uint64_t state_hash = 0;
+  std::uint32_t total = 0;  // bytes of the state
+  std::uint32_t first = 0;  // place of bytes[0], a multiple of kMaxStatePart
+  StaticVector<std::uint8_t, kMaxStatePart> bytes;
+  bool operator==(const StatePart&) const = default;
 };
 
 // Topics in the order in which messages of one step are recorded.
@@ -282,6 +308,8 @@ enum class Topic : std::uint8_t {
   control_reply,
   health,
   resend,
+  checkpoint,
+  state,
   count
 };
 

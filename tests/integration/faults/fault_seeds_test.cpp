@@ -16,8 +16,9 @@
 namespace slew::testing {
 namespace {
 
-constexpr std::int64_t kProgressWithin = 100 * kMs;  // of ticks at 1 ms
-constexpr std::int64_t kEndWithin = 20'000 * kMs;    // of a session of 0.4 s
+constexpr std::int64_t kProgressWithin = 100 * kMs;    // of ticks at 1 ms
+constexpr std::int64_t kReplacedWithin = 6'000 * kMs;  // two nodes, one after the other
+constexpr std::int64_t kEndWithin = 20'000 * kMs;      // of a session of 0.4 s
 constexpr std::uint64_t kSeeds = 50, kNightlySeeds = 1000;
 
 // What a session may be made of; seed s takes entry s mod their number.
@@ -36,9 +37,15 @@ const std::vector<Machine>& machines() {
   return all;
 }
 
-scene::Scene scene_of(const Machine& machine) {
+// in every second round of machines nodes die, in sessions that hold their places
+bool has_kills(std::uint64_t seed) {
+  return seed / machines().size() % 2 == 1;
+}
+
+scene::Scene scene_of(const Machine& machine, bool is_place_held = false) {
   scene::Overrides overrides = machine.overrides;
   overrides.insert(overrides.end(), {"session.duration=0.4 s", "session.pace=real", "recording.every=10"});
+  if (is_place_held) overrides.emplace_back("session.rejoin=60 s");
   return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + machine.file, overrides);
 }
 
@@ -62,19 +69,26 @@ class FaultSeeds : public ::testing::Test {
     const std::size_t which = seed % machines().size();
     const Auditor::Chain& expected = clean(which);
     ASSERT_GT(expected.size(), 1200u);  // ticks and samples of both sides for 400 steps
-    const scene::Scene scene = scene_of(machines()[which]);
-    const FaultPlan plan = FaultPlan::drawn(seed, VirtualSession::roles_of(scene), VirtualClock().now_ns);
+    const scene::Scene scene = scene_of(machines()[which], has_kills(seed));
+    const FaultPlan plan = FaultPlan::drawn(seed, VirtualSession::roles_of(scene), VirtualClock().now_ns,
+                                            has_kills(seed) ? FaultPlan::Kills::some : FaultPlan::Kills::none);
     SCOPED_TRACE(fmt::format("{}: {}\n  again: SLEWRING_FAULT_SEED={} {}/test_fault_seeds", machines()[which].file,
                              plan.text(), seed, SLEWRING_BINARY_DIR "/bin"));
     VirtualSession session(scene, folder_.path().string(), plan);
     session.run_until(plan.end_ns);
+    // a node that died is given up after 2 s
+    std::int64_t end_ns = session.now_ns();
+    while (!session.is_settled() && !session.is_finished() && end_ns < plan.end_ns + kReplacedWithin) {
+      session.run_until(end_ns += kMs);
+    }
+    EXPECT_TRUE(session.is_settled() || session.is_finished()) << session.text();
     const StepIndex at_end = session.next_tick();
     if (!session.is_finished()) {
-      session.run_until(plan.end_ns + kProgressWithin);
+      session.run_until(end_ns + kProgressWithin);
       EXPECT_TRUE(session.next_tick() > at_end || session.next_tick() >= 400)
           << "no tick since " << at_end << "; " << session.text();
     }
-    session.run_until(plan.end_ns + kEndWithin);
+    session.run_until(end_ns + kEndWithin);
     EXPECT_TRUE(session.has_ended_well()) << session.text();
     EXPECT_EQ(session.auditor().contradiction(), "") << session.text();
     EXPECT_TRUE(session.auditor().chain() == expected) << "other bits than without faults; " << session.text();
@@ -86,11 +100,12 @@ class FaultSeeds : public ::testing::Test {
     late_ += session.count().late;
     stalls_ += plan.stalls.size();
     cuts_ += plan.partitions.size();
+    restarts_ += session.restarts();
   }
 
   TemporaryFolder folder_{"fault_seeds"};
   std::map<std::size_t, Auditor::Chain> clean_;
-  std::uint64_t lost_ = 0, doubled_ = 0, late_ = 0, stalls_ = 0, cuts_ = 0;
+  std::uint64_t lost_ = 0, doubled_ = 0, late_ = 0, stalls_ = 0, cuts_ = 0, restarts_ = 0;
 };
 
 TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
@@ -106,10 +121,12 @@ TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
   EXPECT_GT(late_, 100 * seeds);
   EXPECT_GT(stalls_, seeds / 2);
   EXPECT_GT(cuts_, seeds / 2);
-  std::printf("%llu seeds: %llu messages lost, %llu doubled, %llu late, %llu stalls, %llu cuts\n",
+  EXPECT_GT(restarts_, seeds / 4);
+  std::printf("%llu seeds: %llu messages lost, %llu doubled, %llu late, %llu stalls, %llu cuts, %llu restarts\n",
               static_cast<unsigned long long>(seeds), static_cast<unsigned long long>(lost_),
               static_cast<unsigned long long>(doubled_), static_cast<unsigned long long>(late_),
-              static_cast<unsigned long long>(stalls_), static_cast<unsigned long long>(cuts_));
+              static_cast<unsigned long long>(stalls_), static_cast<unsigned long long>(cuts_),
+              static_cast<unsigned long long>(restarts_));
 }
 
 }  // namespace

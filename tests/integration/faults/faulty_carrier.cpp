@@ -46,7 +46,7 @@ bool is_dialogue(Topic topic, Role reader) {
 
 }  // namespace
 
-FaultPlan FaultPlan::drawn(std::uint64_t seed, const std::vector<Role>& roles, std::int64_t begin_ns) {
+FaultPlan FaultPlan::drawn(std::uint64_t seed, const std::vector<Role>& roles, std::int64_t begin_ns, Kills kills) {
   std::mt19937_64 random(seed);
   FaultPlan plan;
   plan.seed = seed;
@@ -71,6 +71,16 @@ FaultPlan FaultPlan::drawn(std::uint64_t seed, const std::vector<Role>& roles, s
     Stall stall{role(), 0, 0};
     interval(stall);
     plan.stalls.push_back(stall);
+  }
+  if (kills == Kills::none) return plan;
+  // the session lasts for 0.4 s
+  for (std::int64_t i = between(random, 1, 3); i > 0; --i) {
+    Kill kill{role(), begin_ns + between(random, 0, 500 * kMs)};
+    while (std::find(std::begin(wire::kPhysicsRoles), std::end(wire::kPhysicsRoles), kill.role) ==
+           std::end(wire::kPhysicsRoles)) {
+      kill.role = role();
+    }
+    plan.kills.push_back(kill);
   }
   return plan;
 }
@@ -112,6 +122,10 @@ std::string FaultPlan::text() const {
   }
   for (const Stall& stall : stalls) {
     text += fmt::format("; {} stands, {}", node::to_text(stall.role), interval(stall.begin_ns, stall.end_ns));
+  }
+  for (const Kill& kill : kills) {
+    text +=
+        fmt::format("; {} dies {} ms before the end of faults", node::to_text(kill.role), (end_ns - kill.at_ns) / kMs);
   }
   return text;
 }

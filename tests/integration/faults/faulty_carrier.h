@@ -42,16 +42,24 @@ struct Stall {
   std::int64_t begin_ns = 0, end_ns = 0;
 };
 
+// The role's process dies, once the session ticks, and another one comes when io has given it up.
+struct Kill {
+  wire::Role role = wire::Role::io;
+  std::int64_t at_ns = 0;
+};
+
 struct FaultPlan {
   std::uint64_t seed = 0;
   MessageFaults messages;
   std::vector<Partition> partitions;
   std::vector<Stall> stalls;
+  std::vector<Kill> kills;
   std::int64_t end_ns = 0;  // of all faults
 
   // roles: of the session. Faults begin at any time from the clock's on and last for 0.2 to 1.7 s, below the 2 s after
-  // which a node is given up.
-  static FaultPlan drawn(std::uint64_t seed, const std::vector<wire::Role>& roles, std::int64_t begin_ns);
+  // which a node is given up. kills: physics nodes die too, up to twice.
+  enum class Kills : std::uint8_t { none, some };
+  static FaultPlan drawn(std::uint64_t seed, const std::vector<wire::Role>& roles, std::int64_t begin_ns, Kills kills);
 
   [[nodiscard]] bool is_stalled(wire::Role role, std::int64_t now_ns) const noexcept;
   // End of the partition that is in the way now; 0: none is.

@@ -46,9 +46,12 @@ void Auditor::hear(const transport::Received& message) {
   }
   // JOIN repeats its step -1 until it is heard
   if (heard.header.phase == wire::Phase::join) return;
-  const auto [said, is_new] = said_.try_emplace({message.topic, heard.header.phase, heard.header.step},
-                                                message.bytes.begin(), message.bytes.end());
-  const bool is_same = std::equal(said->second.begin(), said->second.end(), message.bytes.begin(), message.bytes.end());
+  // whoever says it
+  heard.header.incarnation = 0;
+  std::vector<std::byte> bytes;
+  if (!transport::encode(heard, bytes)) contradiction_ = "a message cannot be encoded again";
+  const auto [said, is_new] = said_.try_emplace({message.topic, heard.header.phase, heard.header.step}, bytes);
+  const bool is_same = said->second == bytes;
   if (!is_new && !is_same && contradiction_.empty()) {
     contradiction_ = fmt::format("{} says two things of step {}", node::to_text(message.topic), heard.header.step);
   }
@@ -59,6 +62,11 @@ void Auditor::hear(const transport::Received& message) {
     hash = heard.state_hash;
   }
   chain_[{message.topic, heard.header.step}] = hash;
+}
+
+std::size_t Auditor::given_up(Role role) const {
+  return static_cast<std::size_t>(
+      std::count_if(given_up_.begin(), given_up_.end(), [role](const wire::GivenUp& g) { return g.role == role; }));
 }
 
 void Auditor::listen() {
@@ -77,6 +85,11 @@ void Auditor::listen() {
       case Topic::elastic:
         hear<wire::ElasticMessage>(message);
         break;
+      case Topic::session: {
+        wire::SessionDescription session;
+        if (transport::decode(message.bytes, session)) given_up_ = session.given_up;
+        break;
+      }
       default:
         break;
     }
@@ -86,7 +99,7 @@ void Auditor::listen() {
 // ---- session ---------------------------------------------------------------------------------------------------
 
 VirtualSession::VirtualSession(const scene::Scene& scene, const std::string& runs, FaultPlan plan)
-    : plan_(std::move(plan)), auditor_(bus_) {
+    : plan_(std::move(plan)), auditor_(bus_), kills_(plan_.kills) {
   set_floating_point_mode();
   io::SessionWish wish;
   wish.session_name = "faults";
@@ -127,9 +140,46 @@ FaultyCarrier& VirtualSession::place_for(Role role) {
 }
 
 void VirtualSession::add_physics(Role role) {
-  FaultyCarrier& carrier = place_for(role);
-  places_.back().node = std::make_unique<node::PhysicsNode>(
-      role, carrier, cli_support::subsystem_factory(maker_of(role), SLEWRING_SOURCE_DIR "/scenes"));
+  place_for(role);
+  places_.back().node = make_physics(places_.back());
+}
+
+std::unique_ptr<node::Node> VirtualSession::make_physics(const Place& place) {
+  return std::make_unique<node::PhysicsNode>(
+      place.role, *place.carrier, cli_support::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
+}
+
+// A process that has died says nothing more; the one that a supervisor starts in its place hears what is kept.
+void VirtualSession::kill_and_replace() {
+  for (Place& place : places_) {
+    if (!place.is_dead) {
+      const auto due = std::find_if(kills_.begin(), kills_.end(), [&](const Kill& kill) {
+        return kill.role == place.role && kill.at_ns <= clock_.now_ns;
+      });
+      // a session that does not tick yet has nothing to give, one that is through needs nobody
+      if (due == kills_.end() || io_->next_step() < 1) continue;
+      kills_.erase(due);
+      if (io_->member().state() >= wire::NodeState::ended || place.node->is_finished()) continue;
+      place.is_dead = true;
+      place.health.reset();
+      place.node.reset();
+      place.carrier.reset();
+      place.endpoint.reset();
+      died_[place.role] = auditor_.given_up(place.role);
+    } else if (auditor_.given_up(place.role) > died_[place.role]) {
+      place.endpoint = cli_support::open_carrier(place.role, bus_);
+      place.carrier = std::make_unique<FaultyCarrier>(*place.endpoint, place.role, clock_, plan_, count_);
+      place.node = make_physics(place);
+      place.health = std::make_unique<node::HealthReport>(*place.node);
+      place.is_dead = false;
+      ++restarts_;
+    }
+  }
+}
+
+bool VirtualSession::is_settled() const {
+  return kills_.empty() &&
+         std::none_of(places_.begin(), places_.end(), [](const Place& place) { return place.is_dead; });
 }
 
 void VirtualSession::run_until(std::int64_t virtual_ns) {
@@ -138,6 +188,7 @@ void VirtualSession::run_until(std::int64_t virtual_ns) {
       next_health_ns_ = clock_.now_ns + node::kHealthInterval.ns;
       send_health();
     }
+    kill_and_replace();
     poll_all();
     clock_.now_ns += kRound;
   }
@@ -145,7 +196,7 @@ void VirtualSession::run_until(std::int64_t virtual_ns) {
 
 void VirtualSession::send_health() {
   for (Place& place : places_) {
-    const bool is_there = !place.node->is_finished() && !plan_.is_stalled(place.role, clock_.now_ns);
+    const bool is_there = !place.is_dead && !place.node->is_finished() && !plan_.is_stalled(place.role, clock_.now_ns);
     if (is_there) place.health->send();
   }
 }
@@ -155,7 +206,7 @@ void VirtualSession::poll_all() {
   for (int polls = 0; any && polls < kMostPolls; ++polls) {
     any = false;
     for (Place& place : places_) {
-      if (place.node->is_finished() || plan_.is_stalled(place.role, clock_.now_ns)) continue;
+      if (place.is_dead || place.node->is_finished() || plan_.is_stalled(place.role, clock_.now_ns)) continue;
       any |= place.node->poll(clock_.now_ns);
     }
     auditor_.listen();
@@ -163,12 +214,15 @@ void VirtualSession::poll_all() {
 }
 
 bool VirtualSession::is_finished() const {
-  return std::all_of(places_.begin(), places_.end(), [](const Place& place) { return place.node->is_finished(); });
+  return std::all_of(places_.begin(), places_.end(),
+                     [](const Place& place) { return place.is_dead || place.node->is_finished(); });
 }
 
 bool VirtualSession::has_ended_well() const {
-  const bool may_lose = plan_.cut_off_ns(Role::recorder) > node::kLinger.ns / 2;
+  // what was on its way to a recorder that lags is lost with its writer
+  const bool may_lose = plan_.cut_off_ns(Role::recorder) > node::kLinger.ns / 2 || restarts_ > 0;
   return is_finished() && std::all_of(places_.begin(), places_.end(), [may_lose](const Place& place) {
+           if (place.is_dead) return false;
            const ExitCode code = place.node->member().exit_code();
            return code == ExitCode::ok || (code == ExitCode::losses && place.role == Role::recorder && may_lose);
          });
@@ -176,7 +230,9 @@ bool VirtualSession::has_ended_well() const {
 
 std::uint64_t VirtualSession::resends() const {
   std::uint64_t asked = 0;
-  for (const Place& place : places_) asked += place.node->health().resends_asked;
+  for (const Place& place : places_) {
+    if (!place.is_dead) asked += place.node->health().resends_asked;
+  }
   return asked;
 }
 
@@ -184,6 +240,10 @@ std::string VirtualSession::text() const {
   std::string text = fmt::format("{} lost, {} doubled, {} late, {} asked for again", count_.lost, count_.doubled,
                                  count_.late, resends());
   for (const Place& place : places_) {
+    if (place.is_dead) {
+      text += fmt::format("; {} dead", node::to_text(place.role));
+      continue;
+    }
     const node::SessionMember& member = place.node->member();
     text += fmt::format("; {} {} at step {} code {} {}", node::to_text(place.role), node::to_text(member.state()),
                         place.node->health().step.load(), static_cast<int>(member.exit_code()), member.reason());

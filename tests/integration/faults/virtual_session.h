@@ -28,6 +28,8 @@ class Auditor {
   using Chain = std::map<std::pair<wire::Topic, StepIndex>, std::uint64_t>;
   [[nodiscard]] const Chain& chain() const noexcept { return chain_; }
   [[nodiscard]] const std::string& contradiction() const noexcept { return contradiction_; }  // the first; empty: none
+  // Processes of a role that io has given up.
+  [[nodiscard]] std::size_t given_up(wire::Role role) const;
 
  private:
   template <typename Message>
@@ -37,6 +39,7 @@ class Auditor {
   Chain chain_;
   std::map<std::tuple<wire::Topic, wire::Phase, StepIndex>, std::vector<std::byte>> said_;
   std::string contradiction_;
+  std::vector<wire::GivenUp> given_up_;
 };
 
 class VirtualSession {
@@ -57,6 +60,10 @@ class VirtualSession {
   [[nodiscard]] const FaultPlan& plan() const noexcept { return plan_; }
   [[nodiscard]] const FaultCount& count() const noexcept { return count_; }
   [[nodiscard]] std::uint64_t resends() const;
+  // Nodes that died and whose place another one took.
+  [[nodiscard]] std::size_t restarts() const noexcept { return restarts_; }
+  // Nobody is dead, and nobody is about to die.
+  [[nodiscard]] bool is_settled() const;
   // By role: its state, step and reason.
   [[nodiscard]] std::string text() const;
   // Every node with code ok; a recorder that was cut off for longer than it waits at the end may have losses.
@@ -70,10 +77,13 @@ class VirtualSession {
     std::unique_ptr<FaultyCarrier> carrier;
     std::unique_ptr<node::Node> node;
     std::unique_ptr<node::HealthReport> health;
+    bool is_dead = false;
   };
 
   FaultyCarrier& place_for(wire::Role role);
   void add_physics(wire::Role role);
+  [[nodiscard]] std::unique_ptr<node::Node> make_physics(const Place& place);
+  void kill_and_replace();
   void poll_all();
   void send_health();
 
@@ -86,6 +96,9 @@ class VirtualSession {
   io::IoNode* io_ = nullptr;
   recorder::RecorderNode* recorder_ = nullptr;
   std::int64_t next_health_ns_ = 0;
+  std::vector<Kill> kills_;  // to come
+  std::size_t restarts_ = 0;
+  std::map<wire::Role, std::size_t> died_;  // given-up processes of the role when its last one died
 };
 
 }  // namespace slew::testing

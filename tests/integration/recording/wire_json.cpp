@@ -58,6 +58,10 @@ json to_json(const wire::SessionDescription& m) {
   for (const wire::Asset& a : m.assets) {
     assets.push_back({{"name", a.name}, {"size", value_of(a.size)}, {"sha256", list_of(a.sha256)}});
   }
+  json given_up = json::array();
+  for (const wire::GivenUp& g : m.given_up) {
+    given_up.push_back({{"role", value_of(g.role)}, {"incarnation", g.incarnation}});
+  }
   return {{"header", header_of(m.header)},
           {"protocol", m.protocol},
           {"name", m.name},
@@ -72,7 +76,9 @@ json to_json(const wire::SessionDescription& m) {
           {"required_roles", m.required_roles},
           {"host", m.host},
           {"pid", m.pid},
-          {"started_ns", value_of(m.started_ns)}};
+          {"started_ns", value_of(m.started_ns)},
+          {"rejoin_ns", value_of(m.rejoin_ns)},
+          {"given_up", given_up}};
 }
 
 json to_json(const wire::NodeStatus& m) {
@@ -206,6 +212,16 @@ json to_json(const wire::ResendRequest& m) {
           {"role", value_of(m.role)},
           {"topic", m.topic},
           {"last_step", value_of(m.last_step)}};
+}
+
+json to_json(const wire::StatePart& m) {
+  return {{"header", header_of(m.header)},
+          {"role", value_of(m.role)},
+          {"request", value_of(m.request)},
+          {"state_hash", value_of(m.state_hash)},
+          {"total", m.total},
+          {"first", m.first},
+          {"bytes", list_of(m.bytes)}};
 }
 
 }  // namespace slew::recording

@@ -24,5 +24,6 @@ namespace slew::recording {
 [[nodiscard]] nlohmann::json to_json(const wire::ControlReply& m);
 [[nodiscard]] nlohmann::json to_json(const wire::Health& m);
 [[nodiscard]] nlohmann::json to_json(const wire::ResendRequest& m);
+[[nodiscard]] nlohmann::json to_json(const wire::StatePart& m);
 
 }  // namespace slew::recording

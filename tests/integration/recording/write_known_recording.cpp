@@ -253,6 +253,15 @@ void write_occasional(KnownRecording& recording, StepIndex step) {
   health.slip_ns = -1;
   recording.write(health, step);
   recording.write(wire::ResendRequest{header_at(step, wire::Role::flex), wire::Role::io, 2, step + 3}, step);
+  wire::StatePart part;
+  part.header = header_at(step, wire::Role::io);
+  part.role = wire::Role::hydraulics;
+  part.request = ~n;
+  part.state_hash = n << 40;
+  part.total = 20'000;
+  part.first = wire::kMaxStatePart;
+  for (std::uint64_t i = 0; i < n % 300; ++i) part.bytes.push_back(static_cast<std::uint8_t>(i));
+  recording.write(part, step);
 }
 
 }  // namespace

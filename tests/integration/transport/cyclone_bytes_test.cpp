@@ -77,7 +77,8 @@ using Pairs =
     ::testing::Types<testing::SessionDescriptionPair, testing::NodeStatusPair, testing::TickPair,
                      testing::MechanismPair, testing::ActuatorPair, testing::FlexiblePair, testing::ElasticPair,
                      testing::DirectoryPair, testing::BlockPair, testing::InputPair, testing::LeasePair,
-                     testing::RequestPair, testing::ReplyPair, testing::HealthPair, testing::ResendPair>;
+                     testing::RequestPair, testing::ReplyPair, testing::HealthPair, testing::ResendPair,
+                     testing::StatePair>;
 TYPED_TEST_SUITE(BytesOf, Pairs);
 
 TYPED_TEST(BytesOf, ArriveFieldByFieldInTheGeneratedTypeAndComeBackTheSame) {

@@ -30,5 +30,6 @@ using RequestPair = Pair<wire::ControlRequest, slewring_ControlRequest, &slewrin
 using ReplyPair = Pair<wire::ControlReply, slewring_ControlReply, &slewring_ControlReply_desc>;
 using HealthPair = Pair<wire::Health, slewring_Health, &slewring_Health_desc>;
 using ResendPair = Pair<wire::ResendRequest, slewring_ResendRequest, &slewring_ResendRequest_desc>;
+using StatePair = Pair<wire::StatePart, slewring_StatePart, &slewring_StatePart_desc>;
 
 }  // namespace slew::testing

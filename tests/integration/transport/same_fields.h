@@ -100,11 +100,16 @@ inline bool same(const slewring_Asset& a, const wire::Asset& b) {
   return a.name == b.name && a.size == b.size && std::memcmp(a.sha256, b.sha256.data(), 32) == 0;
 }
 
+inline bool same(const slewring_GivenUp& a, const wire::GivenUp& b) {
+  return same_value(a.role, b.role) && a.incarnation == b.incarnation;
+}
+
 inline bool same(const slewring_SessionDescription& a, const wire::SessionDescription& b) {
   return same(a.header, b.header) && a.protocol == b.protocol && a.name == b.name && a.scene_name == b.scene_name &&
          a.scene_text == b.scene_text && same_list(a.assets, b.assets) && a.build == b.build &&
          a.self_test == b.self_test && a.step_ns == b.step_ns && same_value(a.pace, b.pace) && a.window == b.window &&
-         a.required_roles == b.required_roles && a.host == b.host && a.pid == b.pid && a.started_ns == b.started_ns;
+         a.required_roles == b.required_roles && a.host == b.host && a.pid == b.pid && a.started_ns == b.started_ns &&
+         a.rejoin_ns == b.rejoin_ns && same_list(a.given_up, b.given_up);
 }
 
 inline bool same(const slewring_Heard& a, const wire::Heard& b) {
@@ -161,6 +166,11 @@ inline bool same(const slewring_ControlReply& a, const wire::ControlReply& b) {
 
 inline bool same(const slewring_ResendRequest& a, const wire::ResendRequest& b) {
   return same(a.header, b.header) && same_value(a.role, b.role) && a.topic == b.topic && a.last_step == b.last_step;
+}
+
+inline bool same(const slewring_StatePart& a, const wire::StatePart& b) {
+  return same(a.header, b.header) && same_value(a.role, b.role) && a.request == b.request &&
+         a.state_hash == b.state_hash && a.total == b.total && a.first == b.first && same_numbers(a.bytes, b.bytes);
 }
 
 }  // namespace slew::testing

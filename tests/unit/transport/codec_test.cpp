@@ -21,7 +21,7 @@ using Messages =
     ::testing::Types<wire::SessionDescription, wire::NodeStatus, wire::Tick, wire::MechanismMessage,
                      wire::ActuatorMessage, wire::FlexibleMessage, wire::ElasticMessage, wire::VariableDirectory,
                      wire::VariableBlock, wire::ControllerInput, wire::ControllerLease, wire::ControlRequest,
-                     wire::ControlReply, wire::Health, wire::ResendRequest>;
+                     wire::ControlReply, wire::Health, wire::ResendRequest, wire::StatePart>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, ComesBackAsItWasSent) {

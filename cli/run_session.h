@@ -1,0 +1,17 @@
+// A session from its scene, or from saved states, to its summary: `slewring run`, and what goes on behind a replay.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cli/run_outcome.h"
+#include "io_node/session_scene.h"
+
+namespace slew::cli {
+
+// Runs the session, records it, and prints what came of it.
+[[nodiscard]] ExitCode run_session(RunOptions options, const io::SessionScene& session);
+
+// --out, --keep-free, --rt, --quiet.
+void add_running_options(CLI::App& verb, RunOptions& options);
+
+}  // namespace slew::cli

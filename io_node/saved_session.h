@@ -1,0 +1,57 @@
+// A session at one step as a file: the scene, and the state of every node, so that it can go on as if it had never
+// stopped.
+//
+//   "SLEWSAVE" | format version u32 | build | session | scene name | scene text | H i64 | step i64
+//   | number of files u32, each: name, size u64, SHA-256 | number of states u32, each: role u32, hash u64, bytes
+//   | XXH3 of all before u64
+//
+// Texts and bytes have their length (u64) in front; little-endian. The states are those of node/checkpoint.h, readable
+// to the program that wrote them and to those that keep its layouts.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+#include "core/time.h"
+#include "node/checkpoint.h"
+#include "transport/wire.h"
+
+namespace slew::io {
+
+inline constexpr std::uint32_t kSavedFormat = 1;
+
+struct SavedState {
+  wire::Role role = wire::Role::io;
+  node::Checkpoint state;
+};
+
+struct SavedSession {
+  std::string build;         // of the io that saved it
+  std::string session_name;  // of the session that was saved
+  std::string scene_name;
+  std::string scene_text;  // after includes and --set
+  std::vector<wire::Asset> assets;
+  SimDuration communication_step;
+  StepIndex step = 0;
+  std::vector<SavedState> states;  // of io and of every physics node
+
+  [[nodiscard]] const node::Checkpoint* find(wire::Role role) const noexcept;
+  // Simulated time of the step [s].
+  [[nodiscard]] double time() const noexcept {
+    return static_cast<double>(step) * static_cast<double>(communication_step.ns) * 1e-9;
+  }
+};
+
+enum class Replace : std::uint8_t { never, existing };
+
+// Written beside its place under another name, put onto the disk and renamed: there is never half a file. Errors:
+// bad_input when it exists and may not be replaced, storage.
+[[nodiscard]] Status write_saved(const std::filesystem::path& path, const SavedSession& saved, Replace replace);
+
+// Any bytes may come. Errors: bad_input, with what is wrong and what to do.
+[[nodiscard]] Status read_saved(const std::filesystem::path& path, SavedSession& saved);
+
+}  // namespace slew::io

@@ -1,0 +1,32 @@
+// What io_node's own state has become after the ticks of a recording, so that a session can go on behind them.
+//
+// The live parameters are those of io_node to the bit. Of the channels the ticks tell the control value alone: raw
+// value and ramp are taken as control / scale, so that the ramp goes on where it was, to the last bits.
+#pragma once
+
+#include <vector>
+
+#include "io_node/io_node.h"
+#include "io_node/live_parameters.h"
+#include "node/checkpoint.h"
+
+namespace slew::io {
+
+class TickFollower {
+ public:
+  explicit TickFollower(const IoConfig& config);
+
+  // At the begin of an epoch: as the scene has it, or as io_node was. Error (bad_input): the state is of another scene.
+  [[nodiscard]] Status begin(const node::Checkpoint* own);
+  // The ticks of all steps in order.
+  void take(const wire::Tick& tick);
+  // The state before the tick of this step.
+  [[nodiscard]] node::Checkpoint state(StepIndex step) const;
+
+ private:
+  const IoConfig& config_;
+  LiveParameters parameters_;
+  std::vector<double> controls_;
+};
+
+}  // namespace slew::io

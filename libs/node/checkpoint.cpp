@@ -1,0 +1,170 @@
+#include "node/checkpoint.h"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+namespace slew::node {
+namespace {
+
+constexpr std::uint32_t kLayout = 1;
+
+template <typename T>
+void put(std::vector<std::byte>& bytes, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const std::size_t at = bytes.size();
+  bytes.resize(at + sizeof value);
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+template <typename T>
+[[nodiscard]] bool get(std::span<const std::byte>& bytes, T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (bytes.size() < sizeof value) return false;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  bytes = bytes.subspan(sizeof value);
+  return true;
+}
+
+[[nodiscard]] bool get_said(std::span<const std::byte>& bytes, wire::SampleState& said) {
+  std::uint32_t layout = 0;
+  return get(bytes, layout) && layout == kLayout && get(bytes, said.level) && get(bytes, said.quality) &&
+         get(bytes, said.used_step) && get(bytes, said.lost) && get(bytes, said.flags) && get(bytes, said.offender) &&
+         get(bytes, said.substeps);
+}
+
+}  // namespace
+
+void save_node(const coupling::Subsystem& subsystem, const wire::SampleState& said, StepIndex step,
+               Checkpoint& checkpoint) {
+  checkpoint.step = step;
+  checkpoint.state_hash = said.state_hash;
+  checkpoint.bytes.clear();
+  put(checkpoint.bytes, kLayout);
+  put(checkpoint.bytes, said.level);
+  put(checkpoint.bytes, said.quality);
+  put(checkpoint.bytes, said.used_step);
+  put(checkpoint.bytes, said.lost);
+  put(checkpoint.bytes, said.flags);
+  put(checkpoint.bytes, said.offender);
+  put(checkpoint.bytes, said.substeps);
+  subsystem.save(checkpoint.bytes);
+}
+
+Status load_node(const Checkpoint& checkpoint, coupling::Subsystem& subsystem, wire::SampleState& said,
+                 coupling::OwnSample& sample) {
+  std::span<const std::byte> bytes = checkpoint.bytes;
+  const std::string of_step = "the state of step " + std::to_string(checkpoint.step);
+  if (!get_said(bytes, said)) {
+    return Status::error(ExitCode::bad_input, of_step + " is damaged or of another version of this program; " +
+                                                  "install one build on all machines");
+  }
+  if (const Status loaded = subsystem.load(bytes, sample); !loaded.is_ok()) return loaded;
+  said.state_hash = subsystem.state_hash();
+  if (said.state_hash == checkpoint.state_hash) return Status::ok();
+  subsystem.reset();
+  return Status::error(ExitCode::bad_input, of_step +
+                                                " has another hash here than where it was saved; install one "
+                                                "build on all machines, on processors of one family");
+}
+
+// ---- parts ------------------------------------------------------------------------------------------------------
+
+namespace {
+
+void fill(wire::StatePart& part, const Checkpoint& checkpoint, std::size_t first) {
+  const std::size_t count = std::min(wire::kMaxStatePart, checkpoint.bytes.size() - first);
+  part.state_hash = checkpoint.state_hash;
+  part.total = static_cast<std::uint32_t>(checkpoint.bytes.size());
+  part.first = static_cast<std::uint32_t>(first);
+  part.bytes.resize(count);
+  std::memcpy(part.bytes.data(), checkpoint.bytes.data() + first, count);
+}
+
+}  // namespace
+
+void CheckpointSender::send_part(SessionMember& member) {
+  part_.header = member.header(wire::Phase::running, checkpoint_.step);
+  part_.role = member.role();
+  fill(part_, checkpoint_, at_);
+  at_ += part_.bytes.size();
+  member.publish(wire::Topic::checkpoint, part_);
+}
+
+std::vector<wire::StatePart> parts_of(const Checkpoint& checkpoint, const wire::Header& header, wire::Role role,
+                                      std::uint64_t request) {
+  std::vector<wire::StatePart> parts;
+  for (std::size_t first = 0; first < checkpoint.bytes.size(); first += wire::kMaxStatePart) {
+    wire::StatePart& part = parts.emplace_back();
+    part.header = header;
+    part.role = role;
+    part.request = request;
+    fill(part, checkpoint, first);
+  }
+  return parts;
+}
+
+void send_checkpoint(SessionMember& member, wire::Topic topic, wire::Role role, const Checkpoint& checkpoint,
+                     std::uint64_t request) {
+  const wire::Header header = member.header(wire::Phase::running, checkpoint.step);
+  for (const wire::StatePart& part : parts_of(checkpoint, header, role, request)) member.publish(topic, part);
+}
+
+bool CheckpointParts::is_of_this(const wire::StatePart& part) const noexcept {
+  return is_begun_ && checkpoint_.step == part.header.step && checkpoint_.state_hash == part.state_hash &&
+         checkpoint_.bytes.size() == part.total;
+}
+
+bool CheckpointParts::has(const wire::StatePart& part) const noexcept {
+  const std::size_t place = part.first / wire::kMaxStatePart;
+  return is_of_this(part) && place < has_.size() && has_[place];
+}
+
+bool CheckpointParts::take(const wire::StatePart& part) {
+  const StepIndex step = part.header.step;
+  if (!is_of_this(part)) {
+    if (part.total == 0 || step < 0) return false;
+    checkpoint_.step = step;
+    checkpoint_.state_hash = part.state_hash;
+    checkpoint_.bytes.resize(part.total);
+    has_.assign((part.total + wire::kMaxStatePart - 1) / wire::kMaxStatePart, false);
+    missing_ = has_.size();
+    is_begun_ = true;
+  }
+  const std::size_t place = part.first / wire::kMaxStatePart;
+  const bool fits = part.first % wire::kMaxStatePart == 0 && place < has_.size() &&
+                    part.bytes.size() == std::min<std::size_t>(wire::kMaxStatePart, part.total - part.first);
+  if (!fits || has_[place]) return false;
+  has_[place] = true;
+  --missing_;
+  std::memcpy(checkpoint_.bytes.data() + part.first, part.bytes.data(), part.bytes.size());
+  return missing_ == 0;
+}
+
+void KeptCheckpoints::take(const wire::StatePart& part) {
+  if (find(part.header.step) != nullptr || !parts_.take(part)) return;
+  keep(parts_.checkpoint());
+  parts_.clear();
+}
+
+void KeptCheckpoints::keep(const Checkpoint& checkpoint) {
+  Checkpoint& place = *std::min_element(kept_.begin(), kept_.end(),
+                                        [](const Checkpoint& a, const Checkpoint& b) { return a.step < b.step; });
+  if (checkpoint.step < place.step) return;
+  place.step = checkpoint.step;
+  place.state_hash = checkpoint.state_hash;
+  place.bytes.assign(checkpoint.bytes.begin(), checkpoint.bytes.end());
+}
+
+const Checkpoint* KeptCheckpoints::find(StepIndex step) const noexcept {
+  const auto found =
+      std::find_if(kept_.begin(), kept_.end(), [step](const Checkpoint& kept) { return kept.step == step; });
+  return step >= 0 && found != kept_.end() ? &*found : nullptr;
+}
+
+void KeptCheckpoints::clear() noexcept {
+  parts_.clear();
+  for (Checkpoint& kept : kept_) kept.step = kJoinStep;
+}
+
+}  // namespace slew::node

@@ -1,0 +1,212 @@
+// Physics nodes that are killed in mid-motion, and others that take their places: the session goes on to the same bits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <random>
+
+#include "build_paths.h"
+#include "direct_chain.h"
+#include "node/identity.h"
+#include "session.h"
+#include "tests/support/nightly.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::NodeState;
+using wire::Role;
+
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+constexpr const char* kDuration = "1.6s";
+constexpr StepIndex kSteps = 1600;
+
+// input within the first second, so that valves move and friction slips
+std::vector<std::string> places_held(const std::string& pace) {
+  return {"--pace", pace, "--duration", kDuration, "--set", "session.rejoin=20s"};
+}
+
+const HashChain& undisturbed() {
+  static const RecordedSession session = [] {
+    const ScratchFolder folder;
+    return run_in_one_process(load_scene(kScene, kDuration), folder.path() / "runs");
+  }();
+  return session.chain();
+}
+
+bool holds_a_place(Observer& observer, Role role, std::size_t times = 1) {
+  return observer.wait_until([&] {
+    const auto& all = observer.descriptions();
+    const auto count = [&](const wire::SessionDescription& session) {
+      return static_cast<std::size_t>(std::count_if(session.given_up.begin(), session.given_up.end(),
+                                                    [role](const wire::GivenUp& g) { return g.role == role; }));
+    };
+    return std::any_of(all.begin(), all.end(), [&](const auto& entry) { return count(entry.second) >= times; });
+  });
+}
+
+void expect_undisturbed_bits(Session& session) {
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(recorded.losses(), 0);
+  EXPECT_EQ(recorded.last_complete_step(), kSteps);
+  EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
+  Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
+                 session.folder() / "replay");
+  EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+}
+
+std::string role_name(const ::testing::TestParamInfo<Role>& role) {
+  return std::string(node::to_text(role.param));
+}
+
+class KilledAndReplaced : public ::testing::TestWithParam<Role> {};
+
+TEST_P(KilledAndReplaced, InMidMotionTheSessionGoesOnToTheSameBits) {
+  std::mt19937_64 random(20'261'123 + static_cast<std::uint64_t>(GetParam()));
+  for (int round = 0; round < testing::rounds(1, 10); ++round) {
+    Session session(places_held("real"));
+    Observer& observer = session.observer();
+    session.start_all();
+    ASSERT_TRUE(observer.wait_for_step(200 + static_cast<StepIndex>(random() % 1000))) << session.said();
+    session.node(GetParam()).send(SIGKILL);
+    ASSERT_TRUE(holds_a_place(observer, GetParam())) << session.said();
+    const auto& io = observer.status(Role::io);
+    EXPECT_TRUE(observer.wait_until([&] {
+      return io->state == NodeState::holding && io->reason.find("its place is held for 20 s") != std::string::npos;
+    })) << io->reason;
+    session.start(GetParam());
+    expect_undisturbed_bits(session);
+    EXPECT_NE(session.node(Role::io).err().find("goes on in the place of"), std::string::npos) << session.said();
+  }
+}
+
+TEST_P(KilledAndReplaced, TwiceInFreePace) {
+  Session session(places_held("free"));
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
+  session.node(GetParam()).send(SIGKILL);
+  ASSERT_TRUE(holds_a_place(observer, GetParam())) << session.said();
+  session.start(GetParam());
+  // as soon as it has begun to compute
+  ASSERT_TRUE(observer.wait_until([&] {
+    const auto& status = observer.status(GetParam());
+    return status && status->pid == static_cast<std::uint32_t>(session.node(GetParam()).pid()) &&
+           status->state >= NodeState::ready;
+  })) << session.said();
+  session.node(GetParam()).send(SIGKILL);
+  ASSERT_TRUE(holds_a_place(observer, GetParam(), 2)) << session.said();
+  session.start(GetParam());
+  expect_undisturbed_bits(session);
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, KilledAndReplaced, ::testing::Values(Role::mechanics, Role::hydraulics), role_name);
+
+TEST(Replaced, AStoppedProcessThatWakesUpIsToldThatItsRoleWasGivenAway) {
+  Session session(places_held("real"));
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
+  Program& first = session.node(Role::hydraulics);
+  first.send(SIGSTOP);
+  ASSERT_TRUE(holds_a_place(observer, Role::hydraulics)) << session.said();
+  Program& second = session.start(Role::hydraulics, {}, "_second");
+  ASSERT_TRUE(observer.wait_until([&] {
+    const auto& status = observer.status(Role::hydraulics);
+    return status && status->pid == static_cast<std::uint32_t>(second.pid()) && status->state >= NodeState::ready;
+  })) << second.err();
+  first.send(SIGCONT);
+  EXPECT_EQ(first.wait(), 4) << first.err();
+  EXPECT_NE(first.err().find("was given to another process"), std::string::npos) << first.err();
+  EXPECT_EQ(second.wait(), 0) << second.err();
+  for (const Role role : {Role::io, Role::mechanics, Role::recorder}) EXPECT_EQ(session.node(role).wait(), 0);
+  EXPECT_EQ(first_difference(session.recorded().chain(), undisturbed()), "");
+}
+
+TEST(Replaced, NobodyComesInTimeTheSessionEndsWithCode4) {
+  Session session({"--pace", "real", "--duration", "20s", "--set", "session.rejoin=1s"});
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
+  session.node(Role::mechanics).send(SIGKILL);
+  for (const Role role : {Role::io, Role::hydraulics, Role::recorder}) {
+    EXPECT_EQ(session.node(role).wait(), 4) << session.said();
+  }
+  EXPECT_NE(session.node(Role::io).err().find("no other process took its place within 1 s"), std::string::npos)
+      << session.said();
+  EXPECT_EQ(session.recorded().problem, "");
+}
+
+TEST(Replaced, AKilledIoOrRecorderEndsTheSessionAsWithout) {
+  for (const Role role : {Role::io, Role::recorder}) {
+    Session session({"--pace", "real", "--duration", "20s", "--set", "session.rejoin=20s"});
+    session.start_all();
+    ASSERT_TRUE(session.observer().wait_for_step(300)) << session.said();
+    session.node(role).send(SIGKILL);
+    for (const auto& [other, code] : session.wait_all()) {
+      EXPECT_EQ(code, other == role ? -SIGKILL : 4) << node::to_text(other) << session.said();
+    }
+  }
+}
+
+// ---- with a flex node -----------------------------------------------------------------------------------------
+
+TEST(ReplacedFlex, InMidMotionTheSessionGoesOnToTheSameBits) {
+  const std::string scene = SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml";
+  const std::vector<std::string> files = {"--assets", SLEWRING_SOURCE_DIR "/scenes"};
+  for (const std::string exchange : {"once", "every_step"}) {
+    std::vector<HashChain> chains;
+    for (const bool is_killed : {false, true}) {
+      Session session({"--pace", "real", "--duration", "0.8s", "--set", "session.rejoin=20s", "--set",
+                       "session.flexible=" + exchange},
+                      scene);
+      Observer& observer = session.observer();
+      session.start(Role::io);
+      session.start(Role::recorder);
+      for (const Role role : wire::kPhysicsRoles) session.start(role, files);
+      ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
+      if (is_killed) {
+        session.node(Role::flex).send(SIGKILL);
+        ASSERT_TRUE(holds_a_place(observer, Role::flex)) << session.said();
+        session.start(Role::flex, files);
+      }
+      for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.said();
+      const RecordedSession recorded = session.recorded();
+      EXPECT_EQ(recorded.problem, "");
+      chains.push_back(recorded.chain());
+      if (!is_killed) continue;
+      Program verify(program_path("slewring"),
+                     {"replay", only_recording(session.runs()).string(), "--verify", files[0], files[1]},
+                     session.folder() / "replay");
+      EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+    }
+    EXPECT_EQ(first_difference(chains[0], chains[1]), "") << exchange;
+  }
+}
+
+// ---- `slewring run` -------------------------------------------------------------------------------------------
+
+TEST(RunWithRejoin, StartsAKilledNodeAgainAndEndsWellWithTheSameBits) {
+  const ScratchFolder folder;
+  const TestDomain domain;
+  Program run(
+      program_path("slewring"),
+      {"run", kScene, "--session", "s", "--domain", std::to_string(domain.number()), "--pace", "real", "--duration",
+       kDuration, "--set", "session.rejoin=20s", "--out", (folder.path() / "runs").string(), "--quiet"},
+      folder.path() / "run");
+  Observer observer(domain.number(), "s");
+  ASSERT_TRUE(observer.wait_for_step(300)) << run.out() << run.err();
+  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::mechanics).has_value(); }));
+  kill(static_cast<pid_t>(observer.status(Role::mechanics)->pid), SIGKILL);
+  EXPECT_EQ(run.wait(), 0) << run.out() << run.err();
+  EXPECT_NE(run.err().find("it is started again with the state of its last checkpoint (1 of 3)"), std::string::npos)
+      << run.err();
+  const RecordedSession recorded = read_session(folder.path() / "runs");
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
+}
+
+}  // namespace
+}  // namespace slew::testing

@@ -1,0 +1,257 @@
+// Sessions that are saved at a step and go on from there: the same bits as if they had never stopped.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "build_paths.h"
+#include "direct_chain.h"
+#include "io_node/saved_session.h"
+#include "node/identity.h"
+#include "session.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::NodeState;
+using wire::Role;
+
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+constexpr const char* kDuration = "1.6s";
+constexpr StepIndex kSteps = 1600;
+
+const HashChain& undisturbed() {
+  static const RecordedSession session = [] {
+    const ScratchFolder folder;
+    return run_in_one_process(load_scene(kScene, kDuration), folder.path() / "runs");
+  }();
+  return session.chain();
+}
+
+HashChain from_step(const HashChain& chain, StepIndex step) {
+  return {chain.lower_bound(step), chain.end()};
+}
+
+int slewring(const std::vector<std::string>& arguments, const std::filesystem::path& output,
+             std::string* said = nullptr) {
+  Program program(program_path("slewring"), arguments, output);
+  const int code = program.wait(4 * kSoonNs).value_or(-1000);
+  if (said != nullptr) *said = program.out() + program.err();
+  return code;
+}
+
+// a session that was saved somewhere in its middle and has ended in order
+class SavedSession : public ::testing::Test {
+ protected:
+  void save_in_mid_motion() {
+    Session session({"--pace", "real", "--duration", kDuration});
+    Observer& observer = session.observer();
+    session.start_all();
+    ASSERT_TRUE(observer.wait_for_step(500)) << session.said();
+    std::string said;
+    ASSERT_EQ(slewring({"control", "save", file(), "--session", "s", "--domain", std::to_string(session.domain())},
+                       folder_.path() / "save", &said),
+              0)
+        << said << session.said();
+    EXPECT_NE(said.find("accepted("), std::string::npos) << said;
+    EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+    // to save is no disturbance
+    EXPECT_EQ(first_difference(session.recorded().chain(), undisturbed()), "");
+    ASSERT_EQ(io::read_saved(file(), saved_).text, "");
+    EXPECT_GE(saved_.step, 500);
+    EXPECT_LT(saved_.step, kSteps);
+    EXPECT_EQ(saved_.states.size(), 3u);
+  }
+
+  void expect_goes_on(const std::vector<std::string>& how) {
+    const std::filesystem::path runs = folder_.path() / ("runs" + std::to_string(++runs_));
+    const TestDomain domain;
+    std::vector<std::string> arguments = {"run", "--from", file(), "--pace", "free", "--quiet", "--out", runs.string()};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    if (how.empty()) arguments.insert(arguments.end(), {"--domain", std::to_string(domain.number())});
+    std::string said;
+    ASSERT_EQ(slewring(arguments, folder_.path() / "run", &said), 0) << said;
+    const RecordedSession recorded = read_session(runs);
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_EQ(recorded.losses(), 0);
+    EXPECT_EQ(recorded.last_complete_step(), kSteps);
+    EXPECT_EQ(recorded.chain().begin()->first, saved_.step);
+    EXPECT_EQ(first_difference(recorded.chain(), from_step(undisturbed(), saved_.step)), "");
+    ASSERT_EQ(slewring({"replay", only_recording(runs).string(), "--verify"}, folder_.path() / "verify", &said), 0)
+        << said;
+  }
+
+  [[nodiscard]] std::string file() const { return (folder_.path() / "crane.saved").string(); }
+
+  ScratchFolder folder_;
+  io::SavedSession saved_;
+  int runs_ = 0;
+};
+
+TEST_F(SavedSession, GoesOnAsProcessesAndInOneProcessToTheSameBits) {
+  save_in_mid_motion();
+  expect_goes_on({});
+  expect_goes_on({"--in-process"});
+}
+
+TEST_F(SavedSession, TakesChangesOfLiveParametersAndRefusesOthers) {
+  save_in_mid_motion();
+  std::string said;
+  const std::vector<std::string> from = {"run",          "--from", file(),
+                                         "--in-process", "--pace", "free",
+                                         "--quiet",      "--out",  (folder_.path() / "runs").string()};
+  std::vector<std::string> with = from;
+  with.insert(with.end(), {"--set", "Bag.mass=1000kg"});
+  ASSERT_EQ(slewring(with, folder_.path() / "run", &said), 0) << said;
+  const RecordedSession recorded = read_session(folder_.path() / "runs");
+  ASSERT_EQ(recorded.ticks.at(0).begin()->second.commands.size(), 1u);
+  EXPECT_EQ(recorded.ticks.at(0).begin()->second.commands[0].path, "Bag.mass");
+  EXPECT_NE(first_difference(recorded.chain(), from_step(undisturbed(), saved_.step)), "");
+  with = from;
+  with.insert(with.end(), {"--set", "session.exchange_every=2"});
+  EXPECT_EQ(slewring(with, folder_.path() / "run", &said), 2);
+  EXPECT_NE(said.find("live parameters only"), std::string::npos) << said;
+  with = from;
+  with.insert(with.end(), {"--duration", "0.1s"});
+  EXPECT_EQ(slewring(with, folder_.path() / "run", &said), 2);
+  EXPECT_NE(said.find("say a longer --duration"), std::string::npos) << said;
+  with = {"run", kScene, "--from", file()};
+  EXPECT_EQ(slewring(with, folder_.path() / "run", &said), 2);
+}
+
+TEST_F(SavedSession, IsLoadedIntoARunningSessionOfTheSceneAndIntoNoOther) {
+  save_in_mid_motion();
+  {
+    Session session({"--pace", "free", "--duration", kDuration});
+    Observer& observer = session.observer();
+    session.start_all();
+    ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
+    ASSERT_TRUE(observer.request(wire::ControlAction::pause).is_accepted);
+    std::string said;
+    ASSERT_EQ(slewring({"control", "load", file(), "--session", "s", "--domain", std::to_string(session.domain())},
+                       folder_.path() / "load", &said),
+              0)
+        << said << session.said();
+    ASSERT_TRUE(observer.request(wire::ControlAction::resume).is_accepted);
+    EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+    const RecordedSession recorded = session.recorded();
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_EQ(recorded.losses(), 0);
+    ASSERT_EQ(recorded.epochs.size(), 2u);
+    EXPECT_EQ(first_difference(recorded.epochs[1], from_step(undisturbed(), saved_.step)), "");
+    ASSERT_EQ(
+        slewring({"replay", only_recording(session.runs()).string(), "--verify"}, folder_.path() / "verify", &said), 0)
+        << said;
+  }
+  Session other({"--pace", "real", "--duration", "20s", "--set", "Bag.mass=1000kg"});
+  other.start_all();
+  ASSERT_TRUE(other.observer().wait_for_step(50)) << other.said();
+  std::string said;
+  EXPECT_EQ(slewring({"control", "load", file(), "--session", "s", "--domain", std::to_string(other.domain())},
+                     folder_.path() / "load", &said),
+            2);
+  EXPECT_NE(said.find("nothing was changed"), std::string::npos) << said;
+  EXPECT_NE(said.find("Bag"), std::string::npos) << said;
+  EXPECT_NE(said.find("mass"), std::string::npos) << said;
+  EXPECT_EQ(other.observer().epoch(), 0u);
+  EXPECT_TRUE(other.observer().request(wire::ControlAction::stop).is_accepted);
+  EXPECT_EQ(other.wait_all(), all_ok()) << other.said();
+}
+
+TEST_F(SavedSession, IsMadeOfARecordingAndGoesOnLive) {
+  Session session({"--pace", "free", "--duration", kDuration});
+  session.start_all();
+  ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+  const std::string recording = only_recording(session.runs()).string();
+  std::string said;
+  ASSERT_EQ(slewring({"replay", recording, "--until", "0.8s", "--save", file()}, folder_.path() / "until", &said), 0)
+      << said;
+  ASSERT_EQ(io::read_saved(file(), saved_).text, "");
+  EXPECT_EQ(saved_.step, 800);
+  for (const io::SavedState& of_role : saved_.states) {
+    const StepHashes& at = undisturbed().at(800);
+    if (of_role.role == Role::io) continue;
+    EXPECT_EQ(of_role.state.state_hash, of_role.role == Role::mechanics ? at.mechanics : at.hydraulics);
+  }
+  const TestDomain domain;
+  const std::filesystem::path runs = folder_.path() / "live";
+  ASSERT_EQ(slewring({"replay", recording, "--until", "0.8s", "--then-live", "--pace", "free", "--duration", "2s",
+                      "--quiet", "--domain", std::to_string(domain.number()), "--out", runs.string()},
+                     folder_.path() / "live_run", &said),
+            0)
+      << said;
+  const RecordedSession live = read_session(runs);
+  EXPECT_EQ(live.problem, "");
+  EXPECT_EQ(live.chain().begin()->first, 800);
+  EXPECT_EQ(live.last_complete_step(), 2000);
+  EXPECT_EQ(live.chain().at(800).mechanics, undisturbed().at(800).mechanics);
+  EXPECT_EQ(slewring({"replay", only_recording(runs).string(), "--verify"}, folder_.path() / "verify", &said), 0)
+      << said;
+  // a time that the recording does not have
+  EXPECT_EQ(slewring({"replay", recording, "--until", "8s", "--then-live"}, folder_.path() / "late", &said), 2);
+  EXPECT_NE(said.find("the recording ends before"), std::string::npos) << said;
+}
+
+TEST(LateRecording, BeginsWithTheStatesOfAStepAndReplays) {
+  Session session({"--pace", "real", "--duration", kDuration, "--no-record"});
+  Observer& observer = session.observer();
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) session.start(role);
+  ASSERT_TRUE(observer.wait_for_step(700)) << session.said();
+  // time for the recorder to come
+  ASSERT_TRUE(observer.request(wire::ControlAction::pause).is_accepted);
+  session.start(Role::recorder);
+  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::recorder).has_value(); })) << session.said();
+  ASSERT_TRUE(observer.request(wire::ControlAction::resume).is_accepted);
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(recorded.losses(), 0);
+  EXPECT_EQ(recorded.last_complete_step(), kSteps);
+  const StepIndex begin = recorded.chain().begin()->first;
+  EXPECT_GE(begin, 700);
+  EXPECT_LT(begin, kSteps);
+  EXPECT_EQ(first_difference(recorded.chain(), from_step(undisturbed(), begin)), "");
+  Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
+                 session.folder() / "verify");
+  EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+}
+
+TEST_F(SavedSession, IsNeverHalfAFileAndNeverReplacesOneUnasked) {
+  Session session({"--pace", "real", "--duration", "20s"});
+  session.start_all();
+  ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
+  std::ofstream(file()) << "mine";
+  std::string said;
+  const std::vector<std::string> save = {
+      "control", "save", file(), "--session", "s", "--domain", std::to_string(session.domain())};
+  EXPECT_EQ(slewring(save, folder_.path() / "save", &said), 2);
+  EXPECT_NE(said.find("the file exists already; it was left as it is"), std::string::npos) << said;
+  EXPECT_EQ(std::filesystem::file_size(file()), 4u);
+  // a disk that takes nothing
+  std::vector<std::string> full = save;
+  full[2] = "/dev/full/crane.saved";
+  EXPECT_EQ(slewring(full, folder_.path() / "save", &said), 6);
+  EXPECT_NE(said.find("cannot be saved"), std::string::npos) << said;
+  std::vector<std::string> forced = save;
+  forced.emplace_back("--force");
+  EXPECT_EQ(slewring(forced, folder_.path() / "save", &said), 0) << said;
+  EXPECT_EQ(io::read_saved(file(), saved_).text, "");
+  EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  // cut and changed files are told
+  for (const bool is_cut : {true, false}) {
+    std::ifstream whole(file(), std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(whole)), {});
+    if (is_cut) bytes.resize(bytes.size() / 2);
+    if (!is_cut) bytes[bytes.size() / 2] ^= 1;
+    const std::string bad = file() + ".bad";
+    std::ofstream(bad, std::ios::binary) << bytes;
+    EXPECT_EQ(slewring({"run", "--from", bad, "--in-process"}, folder_.path() / "bad", &said), 2);
+    EXPECT_NE(said.find("is cut or damaged"), std::string::npos) << said;
+  }
+  EXPECT_EQ(slewring({"run", "--from", kScene, "--in-process"}, folder_.path() / "bad", &said), 2);
+  EXPECT_NE(said.find("is no saved session"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace slew::testing
