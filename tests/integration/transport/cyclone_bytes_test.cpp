@@ -73,12 +73,11 @@ class Serialiser {
 template <typename P>
 class BytesOf : public ::testing::Test {};
 
-using Pairs =
-    ::testing::Types<testing::SessionDescriptionPair, testing::NodeStatusPair, testing::TickPair,
-                     testing::MechanismPair, testing::ActuatorPair, testing::FlexiblePair, testing::ElasticPair,
-                     testing::DirectoryPair, testing::BlockPair, testing::InputPair, testing::LeasePair,
-                     testing::RequestPair, testing::ReplyPair, testing::HealthPair, testing::ResendPair,
-                     testing::StatePair>;
+using Pairs = ::testing::Types<testing::SessionDescriptionPair, testing::NodeStatusPair, testing::TickPair,
+                               testing::MechanismPair, testing::ActuatorPair, testing::FlexiblePair,
+                               testing::ElasticPair, testing::DirectoryPair, testing::BlockPair, testing::InputPair,
+                               testing::LeasePair, testing::RequestPair, testing::ReplyPair, testing::HealthPair,
+                               testing::ResendPair, testing::StatePair>;
 TYPED_TEST_SUITE(BytesOf, Pairs);
 
 TYPED_TEST(BytesOf, ArriveFieldByFieldInTheGeneratedTypeAndComeBackTheSame) {

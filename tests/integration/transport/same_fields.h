@@ -18,6 +18,7 @@ bool same_numbers(const Sequence& theirs, const StaticVector<T, N>& ours) {
 
 bool same(const slewring_Command& a, const wire::Command& b);
 bool same(const slewring_Asset& a, const wire::Asset& b);
+bool same(const slewring_GivenUp& a, const wire::GivenUp& b);
 bool same(const slewring_Heard& a, const wire::Heard& b);
 bool same(const slewring_VariableEntry& a, const wire::VariableEntry& b);
 
