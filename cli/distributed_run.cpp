@@ -16,10 +16,13 @@
 #include "cli/observer.h"
 #include "cli/status_line.h"
 #include "cli_support/carrier.h"
+#include "cli_support/failure.h"
+#include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
 #include "node/identity.h"
 #include "node/session_member.h"
 #include "recording/run_directory.h"
+#include "scene/cpu_places.h"
 
 namespace slew::cli {
 namespace {
@@ -46,6 +49,9 @@ class Supervisor {
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
         is_place_held_(scene.session.rejoin > 0) {
+    const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
+    cli_support::require(scene::parse_cpu_places(places, cpus_));
+    for (const scene::CpuPlace& place : cpus_) check_cpu(place);
     if (options.scene.input == "keyboard") keyboard_.emplace(scene);
   }
 
@@ -62,10 +68,12 @@ class Supervisor {
       start_again();
       start_others_when_io_is_there();
       obey_interrupts();
+      if (options_.each_round && !options_.each_round(*observer_, monotonic_ns())) end_session();
       enforce_deadlines();
       show();
     }
     look_after_children();  // last words of the one that ended last
+    observer_->drain();
     status_.clear();
     return outcome();
   }
@@ -98,6 +106,17 @@ class Supervisor {
     return (roles_ & bit(role)) != 0 && !is_remote;
   }
 
+  // before anything is started
+  static void check_cpu(const scene::CpuPlace& place) {
+    const std::vector<int> cpus = usable_cpus();
+    if (std::binary_search(cpus.begin(), cpus.end(), place.cpu)) return;
+    throw cli_support::Failure(
+        ExitCode::bad_input,
+        fmt::format("{}={}: there is no processor {} for this process; there are {}; nothing was started; name one of "
+                    "them in --cpu or session.cpus",
+                    place.role, place.cpu, place.cpu, cpu_list(cpus)));
+  }
+
   void start(Role role) { nodes_.push_back({role, make(role)}); }
 
   [[nodiscard]] std::unique_ptr<ChildProcess> make(Role role) const {
@@ -117,6 +136,13 @@ class Supervisor {
       arguments.insert(arguments.end(),
                        {"--out", options_.runs, "--keep-free", fmt::format("{}", options_.keep_free_mb)});
     if (options_.is_real_time) arguments.emplace_back("--rt");
+    for (const scene::CpuPlace& place : cpus_) {
+      if (place.role == node::to_text(role)) arguments.insert(arguments.end(), {"--cpu", std::to_string(place.cpu)});
+    }
+    const bool is_physics = role != Role::io && role != Role::recorder;
+    if (is_physics && options_.added_work_us > 0) {
+      arguments.insert(arguments.end(), {"--add-work", fmt::format("{}", options_.added_work_us)});
+    }
     const std::string name(node::to_text(role));
     return std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments);
   }
@@ -197,6 +223,12 @@ class Supervisor {
       recording_ = line.substr(kPath.size());
       return;
     }
+    // every node is refused alike: once is enough
+    constexpr std::string_view kRefused = "the run goes on with normal scheduling";
+    if (line.find(kRefused) != std::string::npos) {
+      if (is_refusal_told_) return;
+      is_refusal_told_ = true;
+    }
     // what follows from another node's failure is kept apart from the cause
     const bool is_consequence = line.find("io ended the session") != std::string::npos ||
                                 line.find("because of a fault elsewhere") != std::string::npos;
@@ -254,6 +286,12 @@ class Supervisor {
     if (count == obeyed_) return;
     obeyed_ = count;
     if (count > 1) return send_to_all(SIGKILL);
+    end_session();
+  }
+
+  void end_session() {
+    if (is_ending_) return;
+    is_ending_ = true;
     if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
     if (is_ours(Role::io)) {
       // io ends the session in order: END, the recorder closes, everybody leaves
@@ -342,6 +380,7 @@ class Supervisor {
   StatusLine status_;
   StatusText text_;
   std::uint32_t roles_;
+  std::vector<scene::CpuPlace> cpus_;
   std::string name_;         // of the scene
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
@@ -350,6 +389,8 @@ class Supervisor {
   bool are_others_started_ = false;
   bool is_node_killed_ = false;
   bool is_termed_ = false;
+  bool is_ending_ = false;
+  bool is_refusal_told_ = false;
   int obeyed_ = 0;
   std::int64_t deadline_ns_ = 0;
   std::int64_t started_wall_ns_ = 0;

@@ -42,6 +42,8 @@ int main(int argc, char** argv) {
   cli::add_simplify(app, action);
   cli::add_extremes(app, action);
   cli::add_extremes_case(app, action);
+  cli::add_stress(app, action);
+  cli::add_stress_load(app, action);
   cli::add_node(app, action);
   cli::add_keys(app, action);
   cli::add_doctor(app, action);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "core/status.h"
 
 namespace slew::cli {
+
+class Observer;
 
 struct RunOptions {
   cli_support::SceneOptions scene;
@@ -22,6 +25,10 @@ struct RunOptions {
   bool is_monolithic = false;
   std::string rtol;  // of a monolithic run; empty: the scene's
   bool is_real_time = false;
+  std::string cpus;          // "mechanics=1, hydraulics=0"; empty: as the scene says
+  double added_work_us = 0;  // CPU time that every step of a physics node burns beside its own
+  // of a distributed run, some 50 times a second; false asks the session to end
+  std::function<bool(Observer&, std::int64_t now_ns)> each_round;
   bool is_json = false;
   bool is_quiet = false;
 

@@ -16,6 +16,7 @@
 #include "cli/status_line.h"
 #include "cli_support/failure.h"
 #include "coupling/indicator.h"
+#include "io_node/session_clock.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
 #include "scene/names.h"
@@ -39,7 +40,7 @@ void report_nodes(const SessionView& view, RunReport& report) {
     if (!view.has_session() || (view.session().required_roles & bit(role)) == 0) continue;
     const NodeView& node = view.node(role);
     report.nodes.push_back({std::string(node::to_text(role)), node.times, node.health.resends_asked,
-                            node.health.resends_answered, node.health.refused_messages});
+                            node.health.resends_answered, node.health.refused_messages, node.health});
   }
   report.slip = static_cast<double>(view.node(Role::io).health.slip_ns) * 1e-9;
 }
@@ -84,6 +85,83 @@ std::string percent(double share) {
 
 nlohmann::json number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+// p99 and the largest; empty before anything was judged
+std::string tail_text(const char* what, const wire::Quantiles& times) {
+  if (times.count == 0) return "";
+  return fmt::format("{} {} p99, {} max; ", what, duration_text(times.p99), duration_text(times.largest));
+}
+
+std::string timing_text(const wire::Health& health) {
+  std::string text = tail_text("response", health.response);
+  const auto most = std::max_element(health.waited.begin(), health.waited.end()) - health.waited.begin();
+  if (health.wait.count > 0) {
+    text += fmt::format("CPU {} a step; waits most for {}; ", duration_text(health.cpu_time.p50),
+                        node::to_text(static_cast<Role>(most)));
+  }
+  if (health.allocations >= 0)
+    text += counted(static_cast<std::uint64_t>(health.allocations), "heap call; ", "heap calls; ");
+  return text;
+}
+
+// How the session kept its deadlines, as io saw it.
+void add_deadlines(const RunReport& report, std::vector<std::vector<std::string>>& rows) {
+  const wire::Health& io = report.nodes.front().health;
+  if (io.response.count > 0) {
+    rows.push_back(
+        {"deadline",
+         fmt::format("{} of {} later than {} ({:.2g} %), {} in a row at most; response {} median, {} p99, {} "
+                     "max; release {} late p99",
+                     io.overruns, counted(io.response.count, "step", "steps"), duration_text(report.step),
+                     100.0 * static_cast<double>(io.overruns) / static_cast<double>(io.response.count),
+                     io.longest_overrun, duration_text(io.response.p50), duration_text(io.response.p99),
+                     duration_text(io.response.largest), duration_text(io.release_jitter.p99))});
+  }
+  if (io.input_latency.count > 0) {
+    rows.push_back({"controller", fmt::format("{} from a value to the first samples that used it, {} p99, {} max",
+                                              duration_text(io.input_latency.p50), duration_text(io.input_latency.p99),
+                                              duration_text(io.input_latency.largest))});
+  }
+  if (!report.books.empty()) rows.push_back({"books", "do not balance: " + report.books});
+}
+
+nlohmann::json times_json(const wire::Quantiles& times) {
+  return {{"count", times.count}, {"min", times.least}, {"p50", times.p50},
+          {"p99", times.p99},     {"p999", times.p999}, {"max", times.largest}};
+}
+
+nlohmann::json timing_json(const wire::Health& health) {
+  return {{"release_jitter", times_json(health.release_jitter)},
+          {"execution", times_json(health.execution)},
+          {"cpu_time", times_json(health.cpu_time)},
+          {"wait", times_json(health.wait)},
+          {"waited",
+           {{"io", health.waited[0]},
+            {"mechanics", health.waited[1]},
+            {"hydraulics", health.waited[2]},
+            {"flex", health.waited[3]}}},
+          {"response", times_json(health.response)},
+          {"overruns", health.overruns},
+          {"longest_overrun", health.longest_overrun},
+          {"allocations", health.allocations},
+          {"carrier_allocations", health.carrier_allocations}};
+}
+
+// Of io: the session's own.
+nlohmann::json session_json(const RunReport& report) {
+  if (report.nodes.empty() || report.pace != "real") return {};
+  const wire::Health& io = report.nodes.front().health;
+  nlohmann::json json = timing_json(io);
+  json["input_latency"] = times_json(io.input_latency);
+  json["transitions"] = io.transitions;
+  json["steps_due"] = io.steps_due;
+  json["steps_run"] = io.header.step;
+  json["steps_skipped"] = io.steps_skipped;
+  json["lag"] = static_cast<double>(io.lag_ns) * 1e-9;
+  json["rest"] = static_cast<double>(io.rest_ns) * 1e-9;
+  json["books_balance"] = report.books.empty();
+  return json;
 }
 
 }  // namespace
@@ -138,6 +216,9 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
   report.paused_time = outcome.paused_time;
   if (outcome.view.has_session()) report.session = outcome.view.session().name;
   report_nodes(outcome.view, report);
+  if (report.pace == "real" && outcome.view.is_over() && !report.nodes.empty()) {
+    report.books = io::problem_of_books(report.nodes.front().health, scene.session.step_duration());
+  }
   if (outcome.recording.empty()) {
     report_variables(outcome.view, scene, report);
   } else {
@@ -183,11 +264,15 @@ void print(const RunReport& report) {
                                         static_cast<double>(report.steps) / report.wall_time)});
   }
   if (report.paused_time > kShortestPause) rows.push_back({"paused", duration_text(report.paused_time)});
-  if (report.pace == "real") rows.push_back({"slip", duration_text(report.slip)});
+  if (report.pace == "real") {
+    rows.push_back({"slip", duration_text(report.slip)});
+    if (!report.nodes.empty()) add_deadlines(report, rows);
+  }
   for (const NodeReport& node : report.nodes) {
     std::string text;
     if (node.times.sum > 0) {
       text = fmt::format("step {} mean, {} max; ", duration_text(node.times.mean()), duration_text(node.times.max));
+      text += timing_text(node.health);
     }
     text += fmt::format("resends {} asked, {} answered", node.resends_asked, node.resends_answered);
     if (node.refused_messages > 0) text += "; " + counted(node.refused_messages, "message", "messages") + " refused";
@@ -220,7 +305,8 @@ std::string to_json_text(const RunReport& report) {
                         {"steps", node.times.steps},
                         {"resends_asked", node.resends_asked},
                         {"resends_answered", node.resends_answered},
-                        {"refused_messages", node.refused_messages}};
+                        {"refused_messages", node.refused_messages},
+                        {"timing", timing_json(node.health)}};
   }
   nlohmann::json ports = nlohmann::json::object();
   for (const PortReport& port : report.ports) {
@@ -246,6 +332,7 @@ std::string to_json_text(const RunReport& report) {
                          {"real_time_factor", is_timed ? report.simulated_time / report.wall_time : 0},
                          {"steps_per_second", is_timed ? static_cast<double>(report.steps) / report.wall_time : 0},
                          {"slip", report.slip},
+                         {"deadline", session_json(report)},
                          {"nodes", nodes},
                          {"lost", report.lost},
                          {"ports", ports},

@@ -17,6 +17,7 @@ struct NodeReport {
   std::uint64_t resends_asked = 0;
   std::uint64_t resends_answered = 0;
   std::uint64_t refused_messages = 0;
+  wire::Health health;  // the last one: what its steps took
 };
 
 struct PortReport {
@@ -40,6 +41,7 @@ struct RunReport {
   double wall_time = 0;       // s, without pauses
   double paused_time = 0;     // s
   double slip = 0;            // s
+  std::string books;          // of a paced session: what does not balance; empty: all does
   std::vector<NodeReport> nodes;
   std::string lost;  // "tick 0, mechanism 0, ..."; empty: not recorded
   std::vector<PortReport> ports;

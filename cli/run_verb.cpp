@@ -17,7 +17,7 @@ namespace {
 
 // All physics as one system: one process, and no clock can be promised.
 void check_monolithic(const CLI::App& verb) {
-  for (const char* option : {"--remote", "--domain", "--interface", "--peer", "--rt"}) {
+  for (const char* option : {"--remote", "--domain", "--interface", "--peer", "--rt", "--cpu"}) {
     if (verb.count(option) == 0) continue;
     const std::string why =
         std::string_view(option) == "--rt" ? "its steps take as long as they take" : "it is one system in one process";
@@ -68,6 +68,10 @@ ExitCode run_session(RunOptions options, const io::SessionScene& session) {
                                "--in-process and --remote exclude each other; nothing was started; leave one out");
   }
   if (options.is_in_process) check_controllers(scene);
+  if (options.is_in_process && !options.cpus.empty()) {
+    throw cli_support::Failure(ExitCode::bad_input,
+                               "--cpu places processes, and --in-process has one; nothing was started; leave one out");
+  }
   const RunOutcome outcome =
       options.is_in_process ? run_in_process(options, session) : run_distributed(options, session);
   if (!outcome.has_begun) {
@@ -94,6 +98,9 @@ void add_running_options(CLI::App& verb, RunOptions& options) {
       ->type_name("MB")
       ->capture_default_str();
   verb.add_flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");
+  verb.add_option("--cpu", options.cpus,
+                  "processor of each node, such as mechanics=1,hydraulics=0; without it session.cpus, else any")
+      ->type_name("ROLE=N");
   verb.add_flag("--quiet", options.is_quiet, "no status line");
 }
 

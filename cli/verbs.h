@@ -34,6 +34,8 @@ void add_tradeoff(CLI::App& program, Action& action);
 void add_tradeoff_row(CLI::App& program, Action& action);
 void add_extremes(CLI::App& program, Action& action);
 void add_extremes_case(CLI::App& program, Action& action);
+void add_stress(CLI::App& program, Action& action);
+void add_stress_load(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_doctor(CLI::App& program, Action& action);
 

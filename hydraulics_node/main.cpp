@@ -18,6 +18,7 @@ std::optional<ExitCode> run(const cli_support::NodeOptions& options) {
       cli_support::subsystem_factory(
           [](const scene::Scene& scene) { return hydraulic_node::make_hydraulics_subsystem(scene); }, options.assets),
       options.join());
+  node.add_work(microseconds(static_cast<std::int64_t>(options.added_work_us)));
   return cli_support::run_node(node);
 }
 

@@ -288,7 +288,7 @@ void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::in
     const std::int64_t silent_since_ns =
         is_lockstep ? std::max(channel.written_ns, channel.out_since_ns) : channel.written_ns;
     const bool may_be_silent = is_lockstep && channel.pace == Pace::in_step;
-    if (!may_be_silent && now_ns - silent_since_ns > config_.release_after.ns) {
+    if (!may_be_silent && !channel.holder.empty() && now_ns - silent_since_ns > config_.release_after.ns) {
       take_lease(i, "no value came for " + milliseconds_text(config_.release_after) + ": channel " +
                         channel.config.name + " is free; acquire it again to go on");
     }

@@ -103,6 +103,7 @@ class InputGate {
   void advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns);
   // Time in which the session stood still for another reason: no controller is blamed for its silence.
   void excuse(SimDuration standstill) noexcept;
+  [[nodiscard]] bool is_held(std::size_t channel) const noexcept { return !channels_[channel].holder.empty(); }
   [[nodiscard]] double control(std::size_t channel) const noexcept { return channels_[channel].control; }
   [[nodiscard]] double raw(std::size_t channel) const noexcept { return channels_[channel].raw; }
   [[nodiscard]] std::uint32_t age(std::size_t channel) const noexcept { return channels_[channel].age; }

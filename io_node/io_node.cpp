@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/check.h"
 #include "node/sample_exchange.h"
@@ -17,6 +18,24 @@ using wire::Role;
 using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
+
+struct SessionVariable {
+  const char* name;
+  const char* unit;
+};
+// of the session as io sees it, and of each physics node as its last health message says
+constexpr SessionVariable kTimingVariables[] = {
+    {"session.release_jitter", "s"}, {"session.response", "s"},      {"session.lag", "s"},
+    {"session.overruns", "1"},       {"session.skipped_steps", "1"}, {"session.transitions", "1"},
+    {"session.input_latency", "s"}};
+constexpr SessionVariable kNodeVariables[] = {{".step_time", "s"},      {".step_time_max", "s"}, {".cpu_time", "s"},
+                                              {".release_jitter", "s"}, {".wait", "s"},          {".response", "s"},
+                                              {".overruns", "1"},       {".allocations", "1"}};
+
+double seconds(std::int64_t ns) noexcept {
+  return static_cast<double>(ns) * 1e-9;
+}
+
 constexpr double kNoLoop = -1;  // loop delay of a channel that no controller moves
 constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -28,8 +47,13 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       gate_(config_.channels, config_.gate, config_.step),
       parameters_(config_.parameters, config_.step),
       is_paused_(config_.starts_paused),
+      clock_(config_.step, config_.overrun, timing()),
+      shedding_(config_.shed),
       tick_ns_(static_cast<std::size_t>(kLoopMemory)),
       script_raw_(config_.channels.size(), kSaysNothing) {
+  tick_.controls.resize(gate_.size());
+  tick_.age.resize(gate_.size());
+  if (transport::encode(tick_, buffer_)) sent_.reserve(buffer_.size());
   description_.name = config_.session_name;
   description_.scene_name = config_.scene_name;
   description_.scene_text = config_.scene_text;
@@ -62,6 +86,7 @@ bool IoNode::poll(std::int64_t now_ns) {
     begin_ending(failure.code, failure.text, now_ns);
   watch(now_ns);
   if (stage_ != Stage::checking_name) member_.publish_status_if_changed();
+  keep_books(now_ns);
   update_health();
   return any;
 }
@@ -87,7 +112,7 @@ void IoNode::update_health() noexcept {
   h.state = static_cast<std::uint8_t>(member_.state());
   h.step = n_;
   h.epoch = member_.epoch();
-  h.slip_ns = slip_ns_;
+  h.slip_ns = clock_.slip_ns();
   h.refused = member_.refusals().refused();
   const bool waits_for_controller = controllers_due_ns_ != 0 || controllers_wait_ns_ != 0;
   h.is_waiting = stage_ == Stage::ticking && (waits_for_controller || !partners_allow(n_));
@@ -112,6 +137,7 @@ void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
       return;
     }
     case Topic::health:
+      keep_health(message.bytes);
       return member_.on_health(message.bytes, now_ns);
     case Topic::mechanism:
     case Topic::actuators:
@@ -205,7 +231,9 @@ void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t n
   if (channel < 0 || input.controller.empty()) {
     lease.reason = channel < 0 ? "the scene has no input '" + input.channel + "'" : "a controller needs a name";
   } else if (input.action == wire::ControllerAction::write) {
-    gate_.write(static_cast<std::size_t>(channel), input.controller, input.value, n_, now_ns, input.based_on_step);
+    const bool is_taken =
+        gate_.write(static_cast<std::size_t>(channel), input.controller, input.value, n_, now_ns, input.based_on_step);
+    if (is_taken) input_ns_ = now_ns;
     return;
   } else {
     const auto index = static_cast<std::size_t>(channel);
@@ -243,7 +271,7 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
       return answer(request, true, "", n_);
     case wire::ControlAction::resume:
       // a pause is no slip
-      if (is_paused_) base_ns_ = std::max(base_ns_, now_ns - n_ * config_.step.ns);
+      if (is_paused_) clock_.excuse(n_, now_ns);
       is_paused_ = false;
       show_running();
       return answer(request, true, "", n_);
@@ -385,7 +413,7 @@ bool IoNode::advance_initialising(std::int64_t now_ns) {
   member_.set_step(n_);
   show_running();
   stage_ = Stage::ticking;
-  base_ns_ = now_ns - n_ * config_.step.ns;
+  clock_.begin(n_, now_ns);
   last_tick_ns_ = now_ns - config_.step.ns;
   resend_.restart(now_ns);
   keep_first_states(now_ns);
@@ -454,7 +482,7 @@ bool IoNode::partners_allow(StepIndex n) const noexcept {
 std::int64_t IoNode::due_ns(StepIndex n) const noexcept {
   if (config_.pace == wire::Pace::free) return 0;
   // catching up at no more than twice real time
-  return std::max(base_ns_ + n * config_.step.ns, last_tick_ns_ + config_.step.ns / 2);
+  return std::max(clock_.due_ns(n), last_tick_ns_ + config_.step.ns / 2);
 }
 
 // What the status says of a session that ticks: it runs, it waits for somebody, or ticks are withheld on request.
@@ -473,16 +501,76 @@ void IoNode::show_running() {
   }
 }
 
-// a lag beyond the limit is given up: the time base moves and the slip is counted
-void IoNode::keep_time(std::int64_t now_ns) noexcept {
-  const std::int64_t lag = now_ns - (base_ns_ + n_ * config_.step.ns);
-  if (lag <= kLagLimit.ns) return;
-  base_ns_ += lag;
-  slip_ns_ += lag;
+// All samples that io needs up to this step have come.
+StepIndex IoNode::complete_up_to() const noexcept {
+  StepIndex complete = n_;
+  if (member_.requires_role(Role::mechanics)) complete = std::min(complete, mechanics_at_);
+  if (member_.requires_role(Role::hydraulics)) complete = std::min(complete, hydraulics_at_);
+  return complete;
+}
+
+// A change that the overrun policy makes is an event: an answer that nobody asked for, in the recording; the first of a
+// kind is told to the user.
+void IoNode::obey(const std::optional<Verdict>& verdict, std::int64_t now_ns) {
+  if (!verdict || verdict->why.empty()) return;
+  const char* then = "";
+  if (verdict->what == Overrun::hold) then = "; it is paused; 'slewring control resume' lets it go on";
+  if (verdict->what == Overrun::stop) {
+    then = "; it was ended, what was recorded is valid; take a larger session.step, --rt, or session.overrun: slip";
+  }
+  const std::string text = verdict->why + then;
+  tell_event(text);
+  const std::uint32_t kind = 1u << static_cast<unsigned>(verdict->what);
+  if (verdict->what != Overrun::stop && (told_verdicts_ & kind) == 0) member_.warn(text);
+  told_verdicts_ |= kind;
+  if (verdict->what == Overrun::hold) {
+    is_paused_ = true;
+    single_steps_ = 0;
+    show_running();
+  }
+  if (verdict->what == Overrun::stop) begin_ending(ExitCode::losses, text, now_ns);
+}
+
+void IoNode::tell_event(const std::string& text) {
+  const wire::ControlRequest nobody;
+  answer(nobody, true, text, n_);
+}
+
+void IoNode::shed_load() {
+  bool has_controllers = false;
+  for (std::size_t i = 0; i < gate_.size(); ++i) {
+    has_controllers |= gate_.is_held(i) || gate_.config(i).exchange == Exchange::lockstep;
+  }
+  const std::string event = shedding_.look(n_, timing().response.count(), timing().overruns,
+                                           has_controllers ? Steering::controllers : Steering::nobody);
+  if (event.empty()) return;
+  tell_event(event);
+  ++timing().transitions;
+  constexpr std::uint32_t kShed = 1u << 31;
+  if ((told_verdicts_ & kShed) == 0) member_.warn(event + "; what follows of this kind is in the recording alone");
+  told_verdicts_ |= kShed;
+}
+
+void IoNode::keep_books(std::int64_t now_ns) noexcept {
+  if (config_.pace != wire::Pace::real || stage_ != Stage::ticking) return;
+  if (is_paused_ || controllers_due_ns_ != 0 || !vacancies_.empty()) clock_.excuse(n_, now_ns);
+  clock_.close(n_, now_ns);
+}
+
+void IoNode::keep_health(std::span<const std::byte> bytes) {
+  wire::Health health;
+  if (!transport::decode(bytes, health)) return;
+  const auto role = static_cast<std::size_t>(health.header.role);
+  if (role >= healths_.size() || health.header.session != member_.session().header.session) return;
+  if (health.header.incarnation == member_.peer(health.header.role).incarnation) healths_[role] = health;
 }
 
 bool IoNode::advance_ticks(std::int64_t now_ns) {
   bool any = false;
+  if (config_.pace == wire::Pace::real) {
+    obey(clock_.completed(complete_up_to(), n_, now_ns), now_ns);
+    if (config_.shed != Shed::none) shed_load();
+  }
   while (stage_ == Stage::ticking && member_.send_failure().is_ok()) {
     if (saving_ && n_ >= saving_->step && !advance_saving(now_ns)) return any;
     if (config_.steps >= 0 && n_ >= config_.steps) {
@@ -499,7 +587,12 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
       return any;
     }
     if (config_.pace == wire::Pace::real) {
-      if (!is_paused_) keep_time(now_ns);
+      if (is_paused_) {
+        clock_.excuse(n_, now_ns);  // a single step is due when it is asked for
+      } else if (const std::optional<Verdict> verdict = clock_.keep_time(n_, now_ns)) {
+        obey(verdict, now_ns);
+        if (verdict->what != Overrun::slip) return true;
+      }
       if (now_ns < due_ns(n_)) return any;
     }
     if (may_wait_for_controllers(now_ns)) return any;
@@ -515,7 +608,7 @@ bool IoNode::has_its_controllers(std::int64_t now_ns) {
   if (vacant < 0) {
     if (controllers_due_ns_ == 0) return true;
     // the wait for them is no slip
-    base_ns_ = std::max(base_ns_, now_ns - n_ * config_.step.ns);
+    clock_.excuse(n_, now_ns);
     controllers_due_ns_ = 0;
     show_running();
     return true;
@@ -593,7 +686,10 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   parameters_.advance(n_);
   // the tick
   tick_.header = member_.header(Phase::running, n_);
-  tick_.flags = 0;
+  tick_.flags = shedding_.level() == Shed::none   ? 0
+                : shedding_.level() == Shed::view ? static_cast<std::uint32_t>(wire::TickFlag::shed_view)
+                                                  : static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
+                                                        static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
   for (std::size_t i = 0; i < gate_.size(); ++i) {
@@ -606,6 +702,10 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   tick_.state_hash = hash.digest();
   tick_ns_[static_cast<std::size_t>(n_ % kLoopMemory)] = now_ns;
   send_tick(n_);
+  if (config_.pace == wire::Pace::real) {
+    clock_.ran(n_, now_ns);
+    if (input_ns_ != 0) clock_.used_input(n_, std::exchange(input_ns_, 0));
+  }
   if (n_ % config_.variables_every == 0) publish_variables(now_ns);
 
   ++n_;
@@ -674,6 +774,7 @@ void IoNode::send_end(std::uint32_t flags) {
 void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns) {
   if (stage_ == Stage::ending || stage_ == Stage::finished) return;
   const bool was_ticking = stage_ == Stage::ticking;
+  if (was_ticking && now_ns != 0) keep_books(now_ns);
   const bool is_orderly = code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated;
   if (was_ticking) send_end(is_orderly ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault));
   if (is_orderly && was_ticking) {
@@ -747,6 +848,13 @@ void IoNode::publish_directory() {
   directory.entries.push_back({"session.clamped_inputs", "1"});
   directory.entries.push_back({"session.silent_controllers", "1"});
   directory.entries.push_back({"session.late_controllers", "1"});
+  for (const SessionVariable& variable : kTimingVariables) directory.entries.push_back({variable.name, variable.unit});
+  for (const Role role : wire::kPhysicsRoles) {
+    if (!member_.requires_role(role)) continue;
+    for (const SessionVariable& variable : kNodeVariables) {
+      directory.entries.push_back({std::string(to_text(role)) + variable.name, variable.unit});
+    }
+  }
   directory.total = static_cast<std::uint32_t>(directory.entries.size());
   member_.publish(Topic::variable_directory, directory);
 }
@@ -773,13 +881,35 @@ void IoNode::publish_variables(std::int64_t now_ns) {
     block_.values.push_back(based_on < 0 ? kNoLoop : static_cast<double>(n_ - based_on));
     block_.values.push_back(loop_time_ms(i, now_ns));
   }
-  block_.values.push_back(static_cast<double>(slip_ns_) * 1e-9);
+  block_.values.push_back(seconds(clock_.slip_ns()));
   block_.values.push_back(
       static_cast<double>(gate_.rejected_not_finite() + gate_.rejected_no_lease() + gate_.rejected_late()));
   block_.values.push_back(static_cast<double>(gate_.clamped()));
   block_.values.push_back(static_cast<double>(gate_.went_neutral()));
   block_.values.push_back(static_cast<double>(gate_.fell_out_of_step()));
+  add_timing_values(now_ns);
   member_.publish(Topic::variables, block_);
+}
+
+// in the order of kTimingVariables, then of kNodeVariables by role
+void IoNode::add_timing_values(std::int64_t now_ns) {
+  const node::NodeTiming& own = timing();
+  const bool is_paced = config_.pace == wire::Pace::real;
+  const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
+  for (const double value : {seconds(own.last_release_jitter_ns), seconds(own.last_response_ns),
+                             is_paced ? seconds(now_ns - clock_.due_ns(n_)) : 0.0, count(own.overruns),
+                             count(clock_.skipped()), count(own.transitions), seconds(own.input_latency.max())}) {
+    block_.values.push_back(value);
+  }
+  for (const Role role : wire::kPhysicsRoles) {
+    if (!member_.requires_role(role)) continue;
+    const wire::Health& node = healths_[static_cast<std::size_t>(role)];
+    for (const double value :
+         {node.step_time_mean, node.step_time_max, node.cpu_time.p50, node.release_jitter.p99, node.wait.p50,
+          node.response_recent, count(node.overruns), static_cast<double>(node.allocations)}) {
+      block_.values.push_back(value);
+    }
+  }
 }
 
 }  // namespace slew::io

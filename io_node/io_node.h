@@ -4,7 +4,8 @@
 // when a required recorder is less than 512 steps behind (`free` pace), and in `real` pace not before wall time n H.
 // A tick is also held back for the values of lockstep controllers (input_gate.h), tick 0 until each of their channels
 // has a holder. After a hold, `real` pace catches up at no more than twice real time while the lag is below 50 ms;
-// beyond that the time base is moved and the slip counted. INIT and the ticks reproduce a lock-step run exactly.
+// beyond that the session's overrun policy decides (session_clock.h): whole steps of wall time are given up and counted
+// as slip, or the session pauses or ends. INIT and the ticks reproduce a lock-step run exactly.
 //
 // Where the scene has session.rejoin, io keeps the physics nodes' checkpoints. When a node is lost it gives up that
 // process, says so in the session's description and holds the place: a process of the role that comes gets the newest
@@ -21,7 +22,9 @@
 
 #include "io_node/input_gate.h"
 #include "io_node/live_parameters.h"
+#include "io_node/load_shedding.h"
 #include "io_node/saved_session.h"
+#include "io_node/session_clock.h"
 #include "node/checkpoint.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
@@ -79,6 +82,8 @@ struct IoConfig {
   std::string save_obstacle{};   // why the session's state cannot be saved; empty: it can
   StepIndex save_unit = 1;       // every how many steps it can, because all nodes have exchanged then
   std::optional<Beginning> beginning{};
+  OverrunRules overrun;          // of `real` pace
+  Shed shed = Shed::none;        // the most that a session that overruns leaves out
 };
 
 // A node that has not given its state for so long: the session goes on without being saved.
@@ -88,7 +93,6 @@ inline constexpr SimDuration kUploadTimeout = milliseconds(2000);
 
 // Recorder window of architecture section 2.
 inline constexpr StepIndex kRecorderWindow = 512;
-inline constexpr SimDuration kLagLimit = milliseconds(50);
 inline constexpr SimDuration kStandstill = milliseconds(100);     // between two ticks: nobody's silence counts
 inline constexpr int kControllerWarnings = 20;                    // on standard error, of one session
 inline constexpr StepIndex kLoopMemory = 1024;                    // steps for which the loop time is measured
@@ -134,7 +138,12 @@ class IoNode final : public node::Node {
   void issue_tick(std::int64_t now_ns);
   void send_tick(StepIndex step);
   void show_running();
-  void keep_time(std::int64_t now_ns) noexcept;
+  [[nodiscard]] StepIndex complete_up_to() const noexcept;
+  void obey(const std::optional<Verdict>& verdict, std::int64_t now_ns);
+  void keep_books(std::int64_t now_ns) noexcept;
+  void tell_event(const std::string& text);
+  void shed_load();
+  void keep_health(std::span<const std::byte> bytes);
   void send_end(std::uint32_t flags);
   // from: step whose states io has; -1: INIT
   void start_epoch(std::int64_t now_ns, StepIndex from = kJoinStep);
@@ -210,6 +219,7 @@ class IoNode final : public node::Node {
   [[nodiscard]] double loop_time_ms(std::size_t channel, std::int64_t now_ns) const noexcept;
   void publish_directory();
   void publish_variables(std::int64_t now_ns);
+  void add_timing_values(std::int64_t now_ns);
   void update_health() noexcept;
 
   node::SessionMember member_;
@@ -225,9 +235,12 @@ class IoNode final : public node::Node {
   std::vector<wire::Command> waiting_commands_;
   bool is_paused_ = false;
   StepIndex single_steps_ = 0;  // ticks still to issue while paused
-  std::int64_t base_ns_ = 0;    // wall time of tick 0 less slips
+  SessionClock clock_;
+  LoadShedding shedding_;
   std::int64_t last_tick_ns_ = 0;
-  std::int64_t slip_ns_ = 0;
+  std::int64_t input_ns_ = 0;  // when the newest value of a controller came that no tick has used; 0: none
+  std::array<wire::Health, wire::kRoles> healths_;
+  std::uint32_t told_verdicts_ = 0;       // kinds that were told on standard error, a bit each
   std::int64_t controllers_due_ns_ = 0;   // 0: no step 0 waits for a controller to take its channel
   std::int64_t controllers_wait_ns_ = 0;  // since when tick n_ waits for controllers alone; 0: it does not
   std::vector<std::int64_t> tick_ns_;     // wall time of the last ticks, by step modulo their number

@@ -10,6 +10,8 @@ namespace slew::io {
 static_assert(scene::kMaxSceneNameLength <= wire::kMaxNameLength);
 static_assert(scene::kMaxAssetNameLength <= wire::kMaxReasonLength);
 static_assert(scene::kMaxExpandedBytes <= wire::kMaxSceneBytes);
+static_assert(static_cast<int>(Shed::view) == static_cast<int>(scene::ShedLoad::view));
+static_assert(static_cast<int>(Shed::variables) == static_cast<int>(scene::ShedLoad::variables));
 
 void ScriptSource::values(SimTime t, std::span<double> raw) {
   for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = player_.value(i, t);
@@ -98,6 +100,13 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   };
   config.variables_every = static_cast<std::uint32_t>(scene.recording.every);
   config.flexible_every = scene.flexible_every();
+  config.overrun.policy = scene.session.overrun == scene::OverrunPolicy::hold   ? Overrun::hold
+                          : scene.session.overrun == scene::OverrunPolicy::stop ? Overrun::stop
+                                                                                : Overrun::slip;
+  config.shed = static_cast<Shed>(scene.session.shed);
+  config.overrun.after = scene.session.overrun_after;
+  config.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
+  config.overrun.grace = duration_of_seconds(scene.session.start_grace);
   return config;
 }
 

@@ -462,6 +462,7 @@ void IoNode::watch_vacancies(std::int64_t now_ns) {
       member_.warn(member_.describe_peer(role) + " goes on in the place of " + held.who + " from step " +
                    std::to_string(held.from));
       vacancies_.erase(vacancies_.begin() + static_cast<std::ptrdiff_t>(i--));
+      clock_.excuse(n_, now_ns);  // the machine was not too slow
       show_running();
       continue;
     }

@@ -31,7 +31,7 @@ inline constexpr std::size_t kBacklogBytes = 64u << 20;
 
 // Of the recorder: a slow disk holds up a thread, not the session.
 [[nodiscard]] inline recording::WriterLimits recorder_limits() {
-  recording::WriterLimits limits = recorder_limits();
+  recording::WriterLimits limits;
   limits.backlog_bytes = kBacklogBytes;
   return limits;
 }
@@ -40,7 +40,7 @@ struct RecorderConfig {
   std::filesystem::path runs_directory = "runs";
   node::JoinOptions join;
   std::uint64_t keep_free = kKeepFreeBytes;  // bytes on the recording's file system that are left to others
-  recording::WriterLimits limits;
+  recording::WriterLimits limits = recorder_limits();
   recording::FileCalls* file_calls = &recording::system_file_calls();
 };
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cli_support/failure.h"
+#include "cli_support/metered_carrier.h"
 #include "node/identity.h"
 #include "transport/cyclone_transport.h"
 #include "transport/protection.h"
@@ -95,8 +96,10 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role r
 }  // namespace
 
 std::unique_ptr<transport::Transport> open_carrier(Role role, const SessionOptions& options) {
-  return open(options, role,
-              {options.session, std::string(node::to_text(role)), topics_written(role), topics_read(role)});
+  auto carrier =
+      open(options, role, {options.session, std::string(node::to_text(role)), topics_written(role), topics_read(role)});
+  if (static_cast<std::size_t>(role) >= wire::kRoles) return carrier;
+  return std::make_unique<MeteredCarrier>(std::move(carrier));
 }
 
 std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options) {

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "cli_support/failure.h"
+#include "cli_support/metered_carrier.h"
 #include "core/arithmetic_self_test.h"
 #include "core/real_time_thread.h"
 #include "node/driver.h"
@@ -93,6 +94,7 @@ void add_version(CLI::App& app) {
 }
 
 void apply_real_time(const NodeOptions& options, const std::string& program) {
+  if (options.cpu >= 0) require(run_on_cpu(options.cpu));
   if (!options.is_real_time) return;
   const Status status = make_real_time(options.priority);
   if (!status.is_ok()) std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), status.text.c_str());
@@ -100,7 +102,7 @@ void apply_real_time(const NodeOptions& options, const std::string& program) {
 
 std::optional<ExitCode> run_node(node::Node& node) {
   node::install_signal_handlers();
-  const ExitCode code = node::run_alone(node);
+  const ExitCode code = node::run_alone(node, heap_meter());
   if (node.member().is_withdrawn()) return std::nullopt;
   const std::string& reason = node.member().reason();
   // whoever sent this process the signal knows why it ended

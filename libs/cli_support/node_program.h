@@ -23,7 +23,8 @@ namespace slew::cli_support {
 // --version of every program: name and build id.
 void add_version(CLI::App& app);
 
-// Real-time scheduling as asked for; refused permission is a warning with the remedy on standard error.
+// Processor and real-time scheduling as asked for; refused permission is a warning with the remedy on standard error, a
+// processor that is not there a Failure.
 void apply_real_time(const NodeOptions& options, const std::string& program);
 
 // Runs a node to its end; throws Failure with its reason if it failed. Nothing when its session was withdrawn: the

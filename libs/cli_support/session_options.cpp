@@ -82,6 +82,10 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->type_name("N")
       ->capture_default_str()
       ->group("Real time");
+  app.add_option("--cpu", options.cpu, "processor to run on, from 0; without it any")
+      ->check(CLI::Range(0, 1023))
+      ->type_name("N")
+      ->group("Real time");
 }
 
 void add_join_timeout(CLI::App& app, NodeOptions& options) {
@@ -111,6 +115,11 @@ void add_physics_node_options(CLI::App& app, NodeOptions& options) {
   app.add_option("--assets", options.assets, "folder with the scene's files (meshes, tables)")
       ->type_name("DIR")
       ->capture_default_str();
+  app.add_option("--add-work", options.added_work_us,
+                 "CPU time that every step burns beside its own, to see what the machine bears")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("US")
+      ->group("Real time");
 }
 
 node::JoinOptions NodeOptions::join() const {

@@ -28,6 +28,8 @@ struct NodeOptions {
   SessionOptions session;
   bool is_real_time = false;
   int priority = kDefaultPriority;  // SCHED_FIFO, 1..99
+  int cpu = -1;                     // processor to run on; -1: any
+  double added_work_us = 0;         // CPU time that each step of a physics node burns beside its own
   double join_timeout = 10;         // s
   // of nodes that look for their session
   double session_timeout = 30;  // s
@@ -41,13 +43,13 @@ struct NodeOptions {
 void add_network_options(CLI::App& app, SessionOptions& options);
 // --session and the network; a session is named or the verb takes its scene's name.
 void add_session_options(CLI::App& app, SessionOptions& options, bool is_required);
-// The above and --rt, --priority: every node.
+// The above and --rt, --priority, --cpu: every node.
 void add_node_options(CLI::App& app, NodeOptions& options);
 // --join-timeout: a node that waits for others.
 void add_join_timeout(CLI::App& app, NodeOptions& options);
 // --session-timeout, --session-id: a node that looks for its session.
 void add_finding_options(CLI::App& app, NodeOptions& options);
-// All of these and --assets.
+// All of these, --assets and --add-work.
 void add_physics_node_options(CLI::App& app, NodeOptions& options);
 
 // The same as command-line arguments, for a child process.

@@ -55,6 +55,10 @@ void free(void* block) {
 
 namespace slew {
 
+std::uint64_t thread_allocations() noexcept {
+  return allocation_count;
+}
+
 AllocationGuard::AllocationGuard() noexcept : allocations_at_start_(allocation_count), frees_at_start_(free_count) {}
 AllocationGuard::~AllocationGuard() = default;
 

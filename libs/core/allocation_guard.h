@@ -1,4 +1,5 @@
-// Counts heap allocations of the calling thread between construction and count(): proof of rule "no heap in a step".
+// Counts heap allocations of a thread, between construction and count(), or from its start: proof of rule "no heap in a
+// step", in tests and in every node while it runs.
 //
 // Link slewring_allocation_guard; it puts itself in front of malloc for the whole program. Not under a sanitizer, which
 // needs that place for itself: the guard then counts nothing.
@@ -7,6 +8,9 @@
 #include <cstdint>
 
 namespace slew {
+
+// Allocations of the calling thread so far. Real-time safe.
+[[nodiscard]] std::uint64_t thread_allocations() noexcept;
 
 class AllocationGuard {
  public:

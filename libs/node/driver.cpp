@@ -1,5 +1,8 @@
 #include "node/driver.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <algorithm>
 #include <condition_variable>
 #include <csignal>
@@ -29,7 +32,14 @@ constexpr int kHealthsBetweenLooks = 10;  // of one second: who does not fit is 
 
 class HealthThread {
  public:
-  explicit HealthThread(Node& node) : node_(node), report_(node), thread_([this] { run(); }) {}
+  explicit HealthThread(Node& node) : node_(node), report_(node), thread_([this] { run(); }) {
+    // of a real-time process: below every loop, above everything else
+    int policy = SCHED_OTHER;
+    sched_param parameters{};
+    if (pthread_getschedparam(thread_.native_handle(), &policy, &parameters) != 0 || policy != SCHED_FIFO) return;
+    parameters.sched_priority = 1;
+    pthread_setschedparam(thread_.native_handle(), SCHED_FIFO, &parameters);
+  }
   ~HealthThread() {
     {
       const std::lock_guard lock(mutex_);
@@ -37,6 +47,7 @@ class HealthThread {
     }
     condition_.notify_one();
     thread_.join();
+    report_.send();  // as it was in the end
   }
 
  private:
@@ -66,6 +77,36 @@ class HealthThread {
   std::thread thread_;
 };
 
+void tell_warnings(Node& node) {
+  for (const std::string& warning : node.member().take_warnings()) {
+    std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node.member().role())).c_str(), warning.c_str());
+  }
+}
+
+// Heap calls of the loop's thread since the node's first step.
+class LoopHeap {
+ public:
+  LoopHeap(Node& node, HeapMeter meter) : node_(node), meter_(meter) {}
+  void after_poll() noexcept {
+    if (meter_ == nullptr) return;
+    const HeapCalls now = meter_();
+    const HealthState& h = node_.health();
+    const bool has_begun = node_.member().role() == wire::Role::recorder ? h.step.load() >= 0 : h.steps_done.load() > 0;
+    if (!has_begun) {
+      before_ = now;
+      return;
+    }
+    const std::uint64_t of_carrier = now.carrier - before_.carrier;
+    node_.timing().allocations = static_cast<std::int64_t>(now.all - before_.all - of_carrier);
+    node_.timing().carrier_allocations = static_cast<std::int64_t>(of_carrier);
+  }
+
+ private:
+  Node& node_;
+  HeapMeter meter_;
+  HeapCalls before_;
+};
+
 }  // namespace
 
 void install_signal_handlers() {
@@ -76,9 +117,10 @@ void install_signal_handlers() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-ExitCode run_alone(Node& node) {
+ExitCode run_alone(Node& node, HeapMeter meter) {
   set_floating_point_mode();
   const HealthThread health(node);
+  LoopHeap heap(node, meter);
   bool stop_passed_on = false;
   while (!node.is_finished()) {
     const int stop = stop_requested.load();
@@ -88,9 +130,8 @@ ExitCode run_alone(Node& node) {
     }
     std::int64_t now = monotonic_ns();
     const bool was_busy = node.poll(now);
-    for (const std::string& warning : node.member().take_warnings()) {
-      std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node.member().role())).c_str(), warning.c_str());
-    }
+    heap.after_poll();
+    tell_warnings(node);
     if (was_busy) continue;
     now = monotonic_ns();
     node.member().transport().wait_until(std::min(node.next_deadline(now), now + kLongestWaitNs));
@@ -120,6 +161,7 @@ ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>&
           if (!nodes[i]->is_finished()) reports[i].send();
         }
       }
+      for (Node* node : nodes) tell_warnings(*node);
       if (each_round) each_round();
     }
     bool any = false;
@@ -133,6 +175,7 @@ ExitCode run_together(std::span<Node* const> nodes, const std::function<void()>&
     }
     sleep_until_monotonic(deadline);
   }
+  for (HealthReport& report : reports) report.send();
   // the first serious code counts
   for (Node* node : nodes) {
     if (node->member().exit_code() != ExitCode::ok) return node->member().exit_code();

@@ -17,8 +17,16 @@ extern std::atomic<int> stop_requested;
 // SIGINT and SIGTERM set stop_requested; SIGPIPE is ignored.
 void install_signal_handlers();
 
-// Runs until the node has finished; sends its health every 100 ms from a thread of its own.
-ExitCode run_alone(Node& node);
+// Heap calls of the calling thread so far.
+struct HeapCalls {
+  std::uint64_t all = 0;
+  std::uint64_t carrier = 0;  // of them inside the carrier's calls: the middleware's
+};
+using HeapMeter = HeapCalls (*)() noexcept;
+
+// Runs until the node has finished; sends its health every 100 ms from a thread of its own, and once more at the end.
+// meter: counts the heap calls of this thread from the node's first step on into its timing; null: nobody counts.
+ExitCode run_alone(Node& node, HeapMeter meter = nullptr);
 
 // Runs all nodes in turn on this thread until every one has finished, and sends their health every 100 ms. each_round
 // is called between rounds, at most every 20 ms (status line, keyboard); it may be empty.

@@ -12,7 +12,6 @@ void HealthReport::send() {
   message.waiting_for = static_cast<wire::Role>(h.waiting_for.load());
   message.waiting_step = h.waiting_step.load();
   message.steps_done = h.steps_done.load();
-  message.overruns = h.overruns.load();
   message.resends_asked = h.resends_asked.load();
   message.resends_answered = h.resends_answered.load();
   message.refused_messages = h.refused.load();
@@ -25,9 +24,33 @@ void HealthReport::send() {
   message.step_time_max = static_cast<double>(h.step_time_max_ns.exchange(0)) * 1e-9;
   last_steps_ = message.steps_done;
   last_sum_ns_ = sum_ns;
+  add_timing(message);
   // a lost health message needs no reaction: the next one follows
   if (!transport::encode(message, buffer_)) return;
   static_cast<void>(node_.member().transport().publish(wire::Topic::health, buffer_));
+}
+
+void HealthReport::add_timing(wire::Health& message) const {
+  NodeTiming& timing = node_.timing();
+  message.overruns = timing.overruns.load();
+  message.longest_overrun = timing.longest_overrun.load();
+  message.release_jitter = quantiles_of(timing.release_jitter);
+  message.execution = quantiles_of(timing.execution);
+  message.cpu_time = quantiles_of(timing.cpu_time);
+  message.wait = quantiles_of(timing.wait);
+  message.response = quantiles_of(timing.response);
+  message.input_latency = quantiles_of(timing.input_latency);
+  message.response_recent = static_cast<double>(timing.response_recent_ns.exchange(0)) * 1e-9;
+  for (std::size_t i = 0; i < message.waited.size(); ++i) {
+    message.waited[i] = static_cast<double>(timing.waited_ns[i].load()) * 1e-9;
+  }
+  message.allocations = timing.allocations.load();
+  message.carrier_allocations = timing.carrier_allocations.load();
+  message.steps_due = timing.steps_due.load();
+  message.steps_skipped = timing.steps_skipped.load();
+  message.lag_ns = timing.lag_ns.load();
+  message.rest_ns = timing.rest_ns.load();
+  message.transitions = timing.transitions.load();
 }
 
 }  // namespace slew::node

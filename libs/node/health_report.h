@@ -17,6 +17,8 @@ class HealthReport {
   void send();
 
  private:
+  void add_timing(wire::Health& message) const;
+
   Node& node_;
   std::uint64_t last_steps_ = 0;
   std::int64_t last_sum_ns_ = 0;

@@ -4,10 +4,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "core/status.h"
 #include "node/session_member.h"
+#include "node/step_timing.h"
 
 namespace slew::node {
 
@@ -20,7 +22,6 @@ struct HealthState {
   std::atomic<std::int64_t> waiting_step{0};
   std::atomic<std::int64_t> step{kJoinStep};
   std::atomic<std::uint64_t> steps_done{0};
-  std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::uint64_t> resends_asked{0};
   std::atomic<std::uint64_t> resends_answered{0};
   std::atomic<std::uint64_t> refused{0};
@@ -48,9 +49,11 @@ class Node {
 
   [[nodiscard]] virtual SessionMember& member() = 0;
   [[nodiscard]] HealthState& health() noexcept { return health_; }
+  [[nodiscard]] NodeTiming& timing() noexcept { return *timing_; }
 
  private:
   HealthState health_;
+  const std::unique_ptr<NodeTiming> timing_ = std::make_unique<NodeTiming>();  // too large for a stack
 };
 
 }  // namespace slew::node

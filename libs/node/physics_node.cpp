@@ -48,6 +48,7 @@ bool PhysicsNode::poll(std::int64_t now_ns) {
   bool any = false;
   transport::Received message;
   while (stage_ != Stage::finished && member_.transport().take(message)) {
+    source_ns_ = message.source_ns;
     receive(message, now_ns);
     any = true;
   }
@@ -171,6 +172,9 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
   }
   variable_values_.resize(built_.subsystem->variables().size());
   samples_.configure(member_, built_.ports, built_.flexible);
+  const bool has_deadline = session.pace == wire::Pace::real;
+  step_timing_.configure({has_deadline ? session.step_ns * samples_.stride() : 0},
+                         built_.start_grace.ns / session.step_ns);
   member_.set_state(NodeState::joining);
   stage_ = Stage::joining;
 }
@@ -222,6 +226,8 @@ void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t no
   } else if (!transport::decode(bytes, ticks_.put(header.step))) {
     ticks_.remove(header.step);
     ++member_.refusals().undecodable;
+  } else {
+    measure_release(header.step);
   }
 }
 
@@ -245,7 +251,10 @@ void PhysicsNode::take_late_tick(std::span<const std::byte> bytes) {
 void PhysicsNode::receive_last_tick(std::span<const std::byte> bytes) {
   if (!transport::decode(bytes, last_tick_)) {
     ++member_.refusals().undecodable;
-  } else if (is_end(last_tick_)) {
+    return;
+  }
+  tick_flags_ = last_tick_.flags;
+  if (is_end(last_tick_)) {
     last_step_ = last_tick_.header.step;
     is_ended_by_fault_ = is_fault(last_tick_);
   }
@@ -260,6 +269,7 @@ void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, 
   if (!member_.fits(header, topic)) return;
   member_.heard(header, topic, now_ns);
   samples_.receive(bytes, header, topic, n_, member_.refusals());
+  if (is_follower() && header.phase == Phase::running && header.step > n_) measure_release(header.step);
 }
 
 void PhysicsNode::receive_resend(std::span<const std::byte> bytes) {
@@ -459,8 +469,12 @@ bool PhysicsNode::advance_step(std::int64_t now_ns) {
     return !is_ended_by_fault_;
   }
   coupling::PartnerSamples partners;
-  if (!samples_.find(n_, partners)) return false;
+  if (!samples_.find(n_, partners)) {
+    samples_.for_each_missing(n_, [this](Role role, Topic, StepIndex) { step_timing_.waits_for(role); });
+    return false;
+  }
   apply_commands(tick->commands);
+  tick_flags_ = tick->flags;
   used_step_ = n_ - std::max(partners.mechanism_age, partners.actuators_age);
   compute(partners, tick->controls.span(), now_ns);
   return true;
@@ -490,6 +504,7 @@ bool PhysicsNode::advance_free(std::int64_t now_ns) {
   sample_due_ns_ = 0;
   if (tick != nullptr) {
     controls_.assign(tick->controls.begin(), tick->controls.end());
+    tick_flags_ = tick->flags;
   } else {
     if (missed_ticks_.size() == kRingDepth) missed_ticks_.erase(missed_ticks_.begin());
     missed_ticks_.push_back(n_);
@@ -532,13 +547,20 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
                           std::int64_t now_ns) {
   if (member_.state() != NodeState::running) member_.set_state(NodeState::running);
   const std::int64_t begin_ns = monotonic_ns();
-  const StepReport report = built_.subsystem->step(n_, partners, controls, own_);
+  // a follower's step is released by the sample of the step that its own is of
+  step_timing_.begin(is_follower() ? n_ + samples_.stride() : n_);
+  StepReport report = built_.subsystem->step(n_, partners, controls, own_);
+  if (added_work_.ns > 0) work_more();
+  step_timing_.computed();
   const std::int64_t spent_ns = monotonic_ns() - begin_ns;
+  // told beside the state, which knows no clock
+  if (step_timing_.is_late()) report.raise(StepFlag::overrun);
   quality_ = report.has(StepFlag::late_input)                  ? coupling::Quality::degraded
              : built_.ports.is_free_running && used_step_ < n_ ? coupling::Quality::extrapolated
                                                                : coupling::Quality::ok;
   n_ += samples_.stride();
   publish_sample(Phase::running, n_, report);
+  step_timing_.published();
   if (n_ % built_.variables_every == 0) publish_variables(n_);
 
   HealthState& h = health();
@@ -549,6 +571,17 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
   expect_next(now_ns);
   save_if_due(report);
   if (report.has_failed()) leave(ExitCode::diverged, divergence_text(report), now_ns);
+}
+
+void PhysicsNode::measure_release(StepIndex step) noexcept {
+  const bool is_local = member_.session().host == member_.identity().host;
+  step_timing_.release(step, sent_ns(source_ns_, is_local ? WriterClock::same : WriterClock::other));
+}
+
+void PhysicsNode::work_more() const noexcept {
+  const std::int64_t end_ns = thread_cpu_ns() + added_work_.ns;
+  while (thread_cpu_ns() < end_ns) {
+  }
 }
 
 std::string PhysicsNode::divergence_text(const StepReport& report) const {
@@ -587,6 +620,8 @@ void PhysicsNode::restart(const wire::Header& init) {
   caught_up_at_ = 0;
   checkpoint_.next().bytes.clear();
   taken_over_.clear();
+  step_timing_.restart();
+  tick_flags_ = 0;
   member_.set_step(kJoinStep);
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
@@ -622,18 +657,26 @@ void PhysicsNode::publish_sample(Phase phase, StepIndex step, const StepReport& 
 
 void PhysicsNode::publish_variables(StepIndex step) {
   if (built_.published_variables.empty()) return;
-  built_.subsystem->read_variables(variable_values_);
+  // what the session leaves out is said by a block without values: nobody takes it for lost
+  const bool has_values = !is_shed();
+  if (has_values) built_.subsystem->read_variables(variable_values_);
   const std::size_t total = built_.published_variables.size();
   for (std::size_t first = 0; first < total; first += wire::kMaxVariablesPerBlock) {
     const std::size_t count = std::min(wire::kMaxVariablesPerBlock, total - first);
     block_.header = member_.header(Phase::running, step);
     block_.first = static_cast<std::uint32_t>(first);
-    block_.values.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
+    block_.values.resize(has_values ? count : 0);
+    for (std::size_t i = 0; i < block_.values.size(); ++i) {
       block_.values[i] = variable_values_[built_.published_variables[first + i]];
     }
     member_.publish(Topic::variables, block_);
   }
+}
+
+bool PhysicsNode::is_shed() const noexcept {
+  const auto view = static_cast<std::uint32_t>(wire::TickFlag::shed_view);
+  const auto all = static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
+  return (tick_flags_ & (is_follower() ? view | all : all)) != 0;
 }
 
 void PhysicsNode::publish_directory() {

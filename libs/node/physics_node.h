@@ -36,6 +36,7 @@ struct BuiltSubsystem {
   std::vector<std::uint32_t> published_variables;  // indices into Subsystem::variables(), ascending
   PortTraffic ports;
   FlexibleTraffic flexible;
+  SimDuration start_grace;  // steps of this time after step 0 are not judged
 };
 
 // Builds the subsystem; refuses with the reason (assets that differ, scene that this build cannot run).
@@ -45,6 +46,9 @@ class PhysicsNode final : public Node {
  public:
   PhysicsNode(wire::Role role, transport::Transport& transport, SubsystemFactory factory,
               const JoinOptions& join = JoinOptions{});
+
+  // CPU time that every step burns beside its own, to see what the machine bears; before the session begins.
+  void add_work(SimDuration work) noexcept { added_work_ = work; }
 
   bool poll(std::int64_t now_ns) override;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t now_ns) const override;
@@ -87,12 +91,15 @@ class PhysicsNode final : public Node {
 
   void publish_sample(wire::Phase phase, StepIndex step, const StepReport& report);
   void publish_variables(StepIndex step);
+  [[nodiscard]] bool is_shed() const noexcept;
   void publish_directory();
   [[nodiscard]] bool is_withheld(StepIndex tick) const noexcept;
   void ask_for_missing(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   void leave(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void apply_commands(std::span<const wire::Command> commands);
+  void measure_release(StepIndex step) noexcept;
+  void work_more() const noexcept;
   [[nodiscard]] bool is_follower() const noexcept { return member_.role() == wire::Role::flex; }
   void update_health() noexcept;
 
@@ -133,6 +140,10 @@ class PhysicsNode final : public Node {
   CheckpointParts taken_over_;   // the state that io has of this role
   wire::StatePart part_;
   StepIndex caught_up_at_ = 0;  // ticks and samples before it have been said before
+  StepTiming step_timing_{timing()};
+  std::int64_t source_ns_ = 0;  // stamp of the message that is being received
+  SimDuration added_work_;
+  std::uint32_t tick_flags_ = 0;  // of the newest tick that was used
 };
 
 }  // namespace slew::node

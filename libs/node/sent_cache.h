@@ -16,7 +16,15 @@ class SentCache {
  public:
   explicit SentCache(std::size_t depth = kSentDepth) : ring_(depth) {}
 
+  // Room for messages of this size in all places, so that no step needs memory of its own.
+  void reserve(std::size_t bytes) {
+    if (bytes <= reserved_) return;
+    reserved_ = bytes;
+    ring_.for_each([bytes](std::vector<std::byte>& slot) { slot.reserve(bytes); });
+  }
+  // The first message of a size makes room for all that follow.
   void keep(StepIndex step, std::span<const std::byte> bytes) {
+    reserve(bytes.size());
     std::vector<std::byte>& slot = ring_.put(step);
     slot.assign(bytes.begin(), bytes.end());
   }
@@ -29,6 +37,7 @@ class SentCache {
 
  private:
   StepRing<std::vector<std::byte>> ring_;
+  std::size_t reserved_ = 0;
 };
 
 }  // namespace slew::node

@@ -281,16 +281,15 @@ void SessionMember::publish_status_if_changed() {
 }
 
 Status SessionMember::on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  wire::NodeStatus status;
-  if (!transport::decode(bytes, status)) {
+  if (!transport::decode(bytes, heard_)) {
     ++refusals_.undecodable;
     return Status::ok();
   }
   if (!has_session_) {
-    if (early_statuses_.size() < kMaxEarlyStatuses) early_statuses_.push_back(std::move(status));
+    if (early_statuses_.size() < kMaxEarlyStatuses) early_statuses_.push_back(heard_);
     return Status::ok();
   }
-  return take_status(status, now_ns);
+  return take_status(heard_, now_ns);
 }
 
 Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t now_ns) {

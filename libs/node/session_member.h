@@ -214,6 +214,7 @@ class SessionMember {
   std::string reason_;  // whole; the message carries its beginning
   bool is_aside_ = false;
   bool is_withdrawn_ = false;
+  wire::NodeStatus heard_;                        // the one that is being taken; its texts keep their memory
   std::vector<wire::NodeStatus> early_statuses_;  // came before the session's description
   std::vector<std::string> warnings_;
   std::array<Peer, wire::kRoles> peers_;

@@ -31,6 +31,11 @@ class StepRing {
   void clear() noexcept {
     for (StepIndex& step : steps_) step = kEmpty;
   }
+  // All places, filled or not.
+  template <typename Visit>
+  void for_each(Visit visit) {
+    for (Message& slot : slots_) visit(slot);
+  }
   [[nodiscard]] std::size_t depth() const noexcept { return slots_.size(); }
 
  private:

@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "scene/cpu_places.h"
+
 namespace slew::scene {
 namespace {
 
@@ -29,6 +31,9 @@ constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_i
 constexpr Range kRejoinRange{.min = 0, .max = 3600, .min_is_open = false, .max_is_open = false};
 constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-3, .min_is_open = false, .max_is_open = false};
+constexpr Range kOverrunAfterRange{.min = 0, .max = 1e6, .min_is_open = false, .max_is_open = false};
+constexpr Range kOverrunLagRange{.min = 0.001, .max = 60, .min_is_open = false, .max_is_open = false};
+constexpr Range kGraceRange{.min = 0, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kEveryRange{.min = 1, .max = 1e6, .min_is_open = false, .max_is_open = false};
 
 constexpr std::string_view kPaces[] = {"real", "free"};
@@ -38,6 +43,8 @@ constexpr std::string_view kCouplingAlarms[] = {"stop", "warn"};
 constexpr std::string_view kContactUses[] = {"tested", "off"};
 constexpr std::string_view kSolutions[] = {"split", "monolithic"};
 constexpr std::string_view kElasticExchanges[] = {"once", "every_step", "condensed"};
+constexpr std::string_view kOverrunPolicies[] = {"slip", "hold", "stop"};
+constexpr std::string_view kShedLoads[] = {"none", "view", "variables"};
 constexpr std::string_view kControllerModes[] = {"sampled", "lockstep"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
 constexpr std::string_view kInterpolations[] = {"linear", "step"};
@@ -111,6 +118,31 @@ constexpr Field kSessionFields[] = {
          .range = kRejoinRange,
          .doc = "how long the session is held when a physics node is lost, for another process that takes its place "
                 "and goes on with the state of the last checkpoint; 0: no checkpoints, the session ends"}),
+    field<&SessionDef::overrun>(
+        "overrun",
+        {.choices = kOverrunPolicies,
+         .doc = "what becomes of a session in real pace that the machine cannot keep up with. slip: whole steps of "
+                "wall time are given up and counted; hold: it pauses until somebody resumes it; stop: it ends with "
+                "exit code 3"}),
+    field<&SessionDef::overrun_after>(
+        "overrun_after", {.range = kOverrunAfterRange,
+                          .doc = "steps in a row longer than session.step, after which hold or stop takes effect; 0: "
+                                 "overrun_lag alone decides"}),
+    field<&SessionDef::overrun_lag>("overrun_lag", {.dimension = Dimension::time,
+                                                    .range = kOverrunLagRange,
+                                                    .doc = "time behind the wall clock after which slip, hold or stop "
+                                                           "takes effect"}),
+    field<&SessionDef::shed>(
+        "shed",
+        {.choices = kShedLoads,
+         .doc = "what a session that overruns may leave out, in this order. view: the values of the flex node's "
+                "variables; variables: those of mechanics and hydraulics too, while no controller steers; never a "
+                "step's messages"}),
+    field<&SessionDef::start_grace>(
+        "start_grace",
+        {.dimension = Dimension::time, .range = kGraceRange, .doc = "time after step 0 in which nothing is judged"}),
+    field<&SessionDef::cpus>("cpus", {.doc = "where `run` puts the nodes it starts, such as \"mechanics=1, "
+                                             "hydraulics=0\"; without it anywhere"}),
 };
 
 constexpr Field kInputFields[] = {
@@ -313,6 +345,15 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   if (session.solution == Solution::monolithic && session.flexible == coupling::ElasticExchange::condensed) {
     errors.push_back({"session.flexible",
                       "'condensed' leaves the modes to the flex node, a monolithic solution has them", "once", ""});
+  }
+  if (session.overrun_lag < session.step) {
+    errors.push_back({"session.overrun_lag",
+                      fmt::format("{} ms are less than a step of {} ms", session.overrun_lag * 1e3, session.step * 1e3),
+                      "at least session.step", ""});
+  }
+  std::vector<CpuPlace> places;
+  if (const Status cpus = parse_cpu_places(session.cpus, places); !cpus.is_ok()) {
+    errors.push_back({"session.cpus", cpus.text, "such as \"mechanics=1, hydraulics=0\"", ""});
   }
   if (const std::string_view obstacle = obstacle_of(session, session.coupling); !obstacle.empty()) {
     errors.push_back({"session.coupling", std::string(obstacle), "two or linear", ""});

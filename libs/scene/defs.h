@@ -33,6 +33,20 @@ enum class CouplingAlarm : int {
 // (docs/models/coupling_reference_monolith.md).
 enum class Solution : int { split, monolithic };
 
+// What io does about a session that the machine cannot keep up with, in `real` pace (docs/realtime.md).
+enum class OverrunPolicy : int {
+  slip,  // gives up whole steps of wall time and goes on
+  hold,  // pauses the session until somebody resumes it
+  stop   // ends it, exit code 3
+};
+
+// How much a session that overruns may leave out, in this order; never a step's messages.
+enum class ShedLoad : int {
+  none,
+  view,      // variables of the flex node
+  variables  // and those of mechanics and hydraulics, while no controller steers
+};
+
 // Whether the pairs of shapes that a scene declares are tested; `off` is the scene without them.
 enum class ContactUse : int { tested, off };
 
@@ -53,6 +67,14 @@ struct SessionDef {
   std::int64_t window = 0;          // ticks ahead of the slowest node; 0: 1 in real pace, 4 in free, see window_steps()
   double controller_timeout = 0.5;  // s of silence, or out of step, after which a controller's channel goes to neutral
   double rejoin = 0;                // s that a lost physics node's place is held for another process; 0: it is not
+
+  OverrunPolicy overrun = OverrunPolicy::slip;
+  std::int64_t overrun_after =
+      0;                      // steps in a row that overran, after which hold or stop takes effect; 0: the lag alone
+  double overrun_lag = 0.05;  // s, behind the wall clock, after which the policy takes effect
+  ShedLoad shed = ShedLoad::none;
+  double start_grace = 0.5;   // s after step 0 that are not judged
+  std::string cpus;           // "mechanics=1, hydraulics=0": where `run` puts its nodes; empty: anywhere
 
   [[nodiscard]] SimDuration step_duration() const noexcept;
   [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped

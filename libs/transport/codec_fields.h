@@ -183,9 +183,17 @@ void fields(A& a, typename A::template Of<wire::NodeStatus>& m) {
 }
 
 template <typename A>
+void fields(A& a, typename A::template Of<wire::Quantiles>& m) {
+  a(m.count, m.least, m.p50, m.p99, m.p999, m.largest);
+}
+
+template <typename A>
 void fields(A& a, typename A::template Of<wire::Health>& m) {
   a(m.header, m.state, m.is_waiting, m.waiting_for, step(m.waiting_step), m.steps_done, m.overruns, m.resends_asked);
   a(m.resends_answered, m.refused_messages, m.step_time_mean, m.step_time_max, m.slip_ns);
+  a(m.longest_overrun, m.release_jitter, m.execution, m.cpu_time, m.wait, m.response, m.input_latency);
+  a(m.response_recent, m.waited[0], m.waited[1], m.waited[2], m.waited[3], m.allocations, m.carrier_allocations);
+  a(m.steps_due, m.steps_skipped, m.lag_ns, m.rest_ns, m.transitions);
 }
 
 template <typename A>

@@ -96,7 +96,12 @@ struct ElasticMessage {
   bool operator==(const ElasticMessage&) const = default;
 };
 
-enum class TickFlag : std::uint32_t { end = 1u << 0, fault = 1u << 1 };
+enum class TickFlag : std::uint32_t {
+  end = 1u << 0,
+  fault = 1u << 1,
+  shed_view = 1u << 2,      // flex publishes no values of its variables with this step
+  shed_variables = 1u << 3  // nor do mechanics and hydraulics
+};
 
 // A parameter change that every node applies at the start of this step.
 struct Command {
@@ -183,6 +188,17 @@ struct NodeStatus {
   bool operator==(const NodeStatus&) const = default;
 };
 
+// Distribution of a time over the judged steps so far, s; percentiles are up to 1/128 too large.
+struct Quantiles {
+  std::uint64_t count = 0;  // 0: nothing was measured
+  double least = 0;
+  double p50 = 0;
+  double p99 = 0;
+  double p999 = 0;
+  double largest = 0;
+  bool operator==(const Quantiles&) const = default;
+};
+
 struct Health {
   Header header;  // step: last finished one
   NodeState state = NodeState::checking;
@@ -197,6 +213,22 @@ struct Health {
   double step_time_mean = 0;           // s, of Subsystem::step over the last second
   double step_time_max = 0;            // s
   std::int64_t slip_ns = 0;            // io_node: wall time given up so far
+  std::uint64_t longest_overrun = 0;   // steps in a row that overran
+  Quantiles release_jitter;            // docs/realtime.md, as those that follow
+  Quantiles execution;
+  Quantiles cpu_time;
+  Quantiles wait;
+  Quantiles response;
+  Quantiles input_latency;                // io_node
+  double response_recent = 0;             // s, largest since the last health message
+  std::array<double, 4> waited{};         // s, for io, mechanics, hydraulics, flex, all judged steps together
+  std::int64_t allocations = -1;          // of the loop since READY, without the middleware's; -1: not counted
+  std::int64_t carrier_allocations = -1;  // of the middleware in the loop's thread since READY; -1: not counted
+  std::uint64_t steps_due = 0;            // io_node: that the wall clock has asked for in this epoch
+  std::uint64_t steps_skipped = 0;        // io_node: of them given up with the slip
+  std::int64_t lag_ns = 0;                // io_node: behind the wall clock of the epoch, pauses apart; negative: ahead
+  std::int64_t rest_ns = 0;               // io_node: of it, what was not given up
+  std::uint64_t transitions = 0;          // io_node: changes that the overrun policy made
   bool operator==(const Health&) const = default;
 };
 

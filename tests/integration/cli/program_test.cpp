@@ -51,6 +51,7 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
                                                        {"recover"},
                                                        {"replay"},
                                                        {"compare"},
+                                                       {"stress"},
                                                        {"node"},
                                                        {"doctor"}};
   for (std::vector<std::string> arguments : verbs) {

@@ -45,7 +45,7 @@ awk -F'\t' -v variables="$scratch/variables" '
       if (!(v[1] in rows)) print v[1] " has no row"
       else if (index(rows[v[1]], "; " v[2] " ;") == 0) print v[1] ": no row says its unit " v[2]
     }
-    for (name in rows) if (!(name in is_variable) && name !~ /^session\./) print name " is no variable"
+    for (name in rows) if (!(name in is_variable) && name !~ /^(session|role)\./) print name " is no variable"
     if (count < 60) print "only " count + 0 " variables were found"
   }' "$scratch/rows" >> "$scratch/wrong"
 

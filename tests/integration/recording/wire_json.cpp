@@ -191,6 +191,11 @@ json to_json(const wire::ControlReply& m) {
           {"reason", m.reason}};
 }
 
+json quantiles_of(const wire::Quantiles& m) {
+  return {{"count", value_of(m.count)}, {"least", value_of(m.least)}, {"p50", value_of(m.p50)},
+          {"p99", value_of(m.p99)},     {"p999", value_of(m.p999)},   {"largest", value_of(m.largest)}};
+}
+
 json to_json(const wire::Health& m) {
   return {{"header", header_of(m.header)},
           {"state", value_of(m.state)},
@@ -204,7 +209,23 @@ json to_json(const wire::Health& m) {
           {"refused_messages", value_of(m.refused_messages)},
           {"step_time_mean", value_of(m.step_time_mean)},
           {"step_time_max", value_of(m.step_time_max)},
-          {"slip_ns", value_of(m.slip_ns)}};
+          {"slip_ns", value_of(m.slip_ns)},
+          {"longest_overrun", value_of(m.longest_overrun)},
+          {"release_jitter", quantiles_of(m.release_jitter)},
+          {"execution", quantiles_of(m.execution)},
+          {"cpu_time", quantiles_of(m.cpu_time)},
+          {"wait", quantiles_of(m.wait)},
+          {"response", quantiles_of(m.response)},
+          {"input_latency", quantiles_of(m.input_latency)},
+          {"response_recent", value_of(m.response_recent)},
+          {"waited", list_of(m.waited)},
+          {"allocations", value_of(m.allocations)},
+          {"carrier_allocations", value_of(m.carrier_allocations)},
+          {"steps_due", value_of(m.steps_due)},
+          {"steps_skipped", value_of(m.steps_skipped)},
+          {"lag_ns", value_of(m.lag_ns)},
+          {"rest_ns", value_of(m.rest_ns)},
+          {"transitions", value_of(m.transitions)}};
 }
 
 json to_json(const wire::ResendRequest& m) {

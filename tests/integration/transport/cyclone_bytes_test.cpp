@@ -132,6 +132,8 @@ TEST(IdlCaps, AreTheConstantsOfTheMessages) {
   EXPECT_EQ(slewring_kMaxSceneBytes, wire::kMaxSceneBytes);
   EXPECT_EQ(slewring_kTickEnd, static_cast<unsigned>(wire::TickFlag::end));
   EXPECT_EQ(slewring_kTickFault, static_cast<unsigned>(wire::TickFlag::fault));
+  EXPECT_EQ(slewring_kTickShedView, static_cast<unsigned>(wire::TickFlag::shed_view));
+  EXPECT_EQ(slewring_kTickShedVariables, static_cast<unsigned>(wire::TickFlag::shed_variables));
 }
 
 TYPED_TEST(BytesOf, TheTopicHasTheTypeOfTheIdl) {

@@ -3,6 +3,7 @@
 
 #include <slewring.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -124,12 +125,23 @@ inline bool same(const slewring_NodeStatus& a, const wire::NodeStatus& b) {
          a.exit_code == b.exit_code;
 }
 
+inline bool same(const slewring_Quantiles& a, const wire::Quantiles& b) {
+  return a.count == b.count && a.least == b.least && a.p50 == b.p50 && a.p99 == b.p99 && a.p999 == b.p999 &&
+         a.largest == b.largest;
+}
+
 inline bool same(const slewring_Health& a, const wire::Health& b) {
   return same(a.header, b.header) && same_value(a.state, b.state) && a.is_waiting == b.is_waiting &&
          same_value(a.waiting_for, b.waiting_for) && a.waiting_step == b.waiting_step && a.steps_done == b.steps_done &&
          a.overruns == b.overruns && a.resends_asked == b.resends_asked && a.resends_answered == b.resends_answered &&
          a.refused_messages == b.refused_messages && a.step_time_mean == b.step_time_mean &&
-         a.step_time_max == b.step_time_max && a.slip_ns == b.slip_ns;
+         a.step_time_max == b.step_time_max && a.slip_ns == b.slip_ns && a.longest_overrun == b.longest_overrun &&
+         same(a.release_jitter, b.release_jitter) && same(a.execution, b.execution) && same(a.cpu_time, b.cpu_time) &&
+         same(a.wait, b.wait) && same(a.response, b.response) && same(a.input_latency, b.input_latency) &&
+         a.response_recent == b.response_recent && std::equal(b.waited.begin(), b.waited.end(), a.waited) &&
+         a.allocations == b.allocations && a.carrier_allocations == b.carrier_allocations &&
+         a.steps_due == b.steps_due && a.steps_skipped == b.steps_skipped && a.lag_ns == b.lag_ns &&
+         a.rest_ns == b.rest_ns && a.transitions == b.transitions;
 }
 
 inline bool same(const slewring_VariableEntry& a, const wire::VariableEntry& b) {

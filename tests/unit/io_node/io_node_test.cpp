@@ -171,6 +171,113 @@ TEST_F(Io, CountsNoPauseAsSlip) {
   EXPECT_GE(node->health().slip_ns.load(), 150 * kMs);
 }
 
+// ---- overruns -------------------------------------------------------------------------------------------------
+
+TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
+  IoConfig slow = config();
+  slow.overrun.policy = Overrun::hold;
+  slow.overrun.after = 3;
+  restart(std::move(slow));
+  get_running();
+  run_to(10);
+  const auto late = [this](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      poll(5 * kMs);
+      say_samples(node->next_step());
+    }
+    poll();
+  };
+  late(2);
+  EXPECT_FALSE(node->is_paused());
+  late(2);
+  EXPECT_TRUE(node->is_paused());
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  const std::vector<std::string> warnings = node->member().take_warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("3 steps in a row were longer than 1.0 ms"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("'slewring control resume'"), std::string::npos) << warnings[0];
+  // an event in the recording: an answer that nobody asked for
+  const auto replies = played.said<wire::ControlReply>(Topic::control_reply);
+  ASSERT_EQ(replies.size(), 1u);
+  EXPECT_EQ(replies[0].request, 0u);
+  EXPECT_EQ(replies[0].reason, warnings[0]);
+  EXPECT_EQ(node->timing().transitions, 1u);
+  const StepIndex held_at = node->next_step();
+  live(10'000);
+  EXPECT_EQ(node->next_step(), held_at);
+  ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
+  run_to(held_at + 20);
+  EXPECT_FALSE(node->is_paused());
+  EXPECT_EQ(node->health().slip_ns, 0);
+}
+
+TEST_F(Io, StopsASessionThatIsTooFarBehindWithCode3) {
+  IoConfig slow = config();
+  slow.overrun.policy = Overrun::stop;
+  restart(std::move(slow));
+  get_running();
+  run_to(10);
+  poll(60 * kMs);
+  say_samples(node->next_step());
+  poll();
+  EXPECT_EQ(node->member().exit_code(), ExitCode::losses);
+  EXPECT_NE(node->member().reason().find("behind the wall clock (session.overrun_lag 50.0 ms)"), std::string::npos)
+      << node->member().reason();
+  const auto ticks = played.said<wire::Tick>(Topic::tick);
+  ASSERT_FALSE(ticks.empty());
+  EXPECT_NE(ticks.back().flags & static_cast<std::uint32_t>(wire::TickFlag::end), 0u);
+}
+
+TEST_F(Io, KeepsBooksThatBalanceOverLagsPausesAndSingleSteps) {
+  get_running();
+  const auto books = [this] {
+    wire::Health io;
+    io.header.step = node->next_step();
+    io.steps_due = node->timing().steps_due;
+    io.steps_skipped = node->timing().steps_skipped;
+    io.lag_ns = node->timing().lag_ns;
+    io.rest_ns = node->timing().rest_ns;
+    return problem_of_books(io, milliseconds(1));
+  };
+  run_to(10);
+  EXPECT_EQ(books(), "");
+  EXPECT_EQ(node->timing().steps_due, 10u);
+  poll(75 * kMs);
+  say_samples(node->next_step());
+  poll();
+  EXPECT_EQ(books(), "");
+  EXPECT_GT(node->timing().steps_skipped, 60u);
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  const std::uint64_t overruns = node->timing().overruns;
+  live(5000);
+  ASSERT_TRUE(request(wire::ControlAction::step, 3).is_accepted);
+  run_to(node->next_step() + 3);
+  EXPECT_EQ(books(), "");
+  ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
+  run_to(node->next_step() + 50);
+  EXPECT_EQ(books(), "");
+  EXPECT_EQ(node->timing().overruns, overruns) << "a pause is no overrun";
+}
+
+TEST_F(Io, MeasuresFromAControllersValueToTheSamplesThatUsedIt) {
+  IoConfig lever = config();
+  lever.channels.push_back({.name = "Lever"});
+  restart(std::move(lever));
+  get_running();
+  run_to(3);
+  const auto say = [this](wire::ControllerAction action) {
+    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, 0.5, 1, kJoinStep});
+    poll();
+  };
+  say(wire::ControllerAction::acquire);
+  EXPECT_EQ(node->timing().input_latency.count(), 0u);
+  say(wire::ControllerAction::write);
+  run_to(6);
+  EXPECT_EQ(node->timing().input_latency.count(), 1u);
+  EXPECT_GT(node->timing().input_latency.max(), 0);
+  EXPECT_LE(node->timing().input_latency.max(), 3 * kMs);
+}
+
 TEST_F(Io, AsksForSamplesOnlyWhenTheyAreDue) {
   IoConfig slow = config();
   slow.step = milliseconds(10);

@@ -84,6 +84,76 @@ TEST_F(Physics, AfterAFaultTickSleepsUntilIoSaysWhy) {
   EXPECT_EQ(node.member().reason(), "io ended the session: disk");
 }
 
+TEST_F(Physics, SaysOfAStepThatWasTooLongThatItWasAndHashesTheSame) {
+  played.session.pace = wire::Pace::real;
+  node.add_work({3 * played.session.step_ns});
+  get_ready();
+  played.say_tick(0);
+  poll(kMs);
+  const auto samples = played.said<wire::MechanismMessage>(Topic::mechanism);
+  ASSERT_FALSE(samples.empty());
+  EXPECT_EQ(samples.back().header.step, 1);
+  EXPECT_EQ(samples.back().state.flags, static_cast<std::uint32_t>(StepFlag::overrun));
+  EXPECT_EQ(samples.back().state.state_hash, StillSubsystem().state_hash());
+  EXPECT_EQ(node.timing().overruns, 1u);
+  EXPECT_GE(node.timing().execution.min(), 3 * played.session.step_ns);
+}
+
+TEST_F(Physics, HasNoDeadlineInFreePace) {
+  played.session.pace = wire::Pace::free;
+  node.add_work({3 * played.session.step_ns});
+  get_ready();
+  played.say_tick(0);
+  poll(kMs);
+  const auto samples = played.said<wire::MechanismMessage>(Topic::mechanism);
+  ASSERT_FALSE(samples.empty());
+  EXPECT_EQ(samples.back().state.flags, 0u);
+  EXPECT_EQ(node.timing().overruns, 0u);
+  EXPECT_EQ(node.timing().response.count(), 1u);
+}
+
+// one variable, published at every step
+class Observed final : public StillSubsystem {
+ public:
+  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
+  void read_variables(std::span<double> values) const noexcept override { values[0] = 7; }
+
+ private:
+  std::vector<ElementVariable> variables_{{"Bag.mass", Dimension::mass}};
+};
+
+TEST_F(Physics, LeavesOutTheValuesOfItsVariablesWhereTheTickSaysSo) {
+  PhysicsNode observed(Role::mechanics, played.carrier(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
+    built.subsystem = std::make_unique<Observed>();
+    built.published_variables = {0};
+    built.variables_every = 1;
+    return Status::ok();
+  });
+  const auto go_on = [&] { observed.poll(now_ns += kMs); };
+  played.say(Topic::session, played.session);
+  go_on();
+  const wire::Header own = observed.member().header(Phase::join, kJoinStep);
+  played.say_heard(Role::io, NodeState::joining, own, {Topic::mechanism, Topic::variables});
+  played.say_heard(Role::hydraulics, NodeState::joining, own, {Topic::mechanism});
+  go_on();
+  go_on();
+  const auto view = static_cast<std::uint32_t>(TickFlag::shed_view);
+  const auto all = view | static_cast<std::uint32_t>(TickFlag::shed_variables);
+  const std::uint32_t flags[] = {0, view, all, 0};
+  for (StepIndex step = 0; step < 4; ++step) {
+    played.say_actuators(step);
+    played.say_tick(step, flags[step]);
+    go_on();
+    go_on();
+  }
+  std::map<StepIndex, std::size_t> values;
+  for (const auto& block : played.said<wire::VariableBlock>(Topic::variables)) {
+    if (block.header.phase == Phase::running) values[block.header.step] = block.values.size();
+  }
+  // a block has the step after its tick; the view is the flex node's matter
+  EXPECT_EQ(values, (std::map<StepIndex, std::size_t>{{0, 1}, {1, 1}, {2, 1}, {3, 0}, {4, 1}}));
+}
+
 TEST_F(Physics, EndsAtTheFirstSampleThatCannotBeSent) {
   get_ready();
   for (StepIndex step = 0; step < 4; ++step) {

@@ -1,0 +1,274 @@
+#include "cli/stress/stress.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "cli/distributed_run.h"
+#include "cli/observer.h"
+#include "cli/stress/yardstick.h"
+#include "cli_support/failure.h"
+#include "io_node/scene_config.h"
+#include "scene/cpu_places.h"
+
+namespace slew::cli {
+namespace {
+
+using cli_support::Failure;
+using wire::Role;
+
+constexpr double kLongestSlice = 20;  // s of a session between two slices of the yardstick
+constexpr double kYardstickShare = 0.25;
+constexpr std::int64_t kAskAgainNs = 1'000'000'000;
+
+bool fifo_is_allowed() {
+  bool is_allowed = false;
+  std::thread([&is_allowed] {
+    sched_param parameters{};
+    parameters.sched_priority = cli_support::kIoPriority;
+    is_allowed = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+  }).join();
+  return is_allowed;
+}
+
+int cpu_of(const std::string& places, const std::string& role) {
+  std::vector<scene::CpuPlace> all;
+  cli_support::require(scene::parse_cpu_places(places, all));
+  for (const scene::CpuPlace& place : all) {
+    if (place.role == role) return place.cpu;
+  }
+  return -1;
+}
+
+// Goes on beside a session: pauses it for the slices of the yardstick, and follows its response.
+class CellWatch {
+ public:
+  CellWatch(const YardstickRules& rules, StepIndex steps, StressCell& cell)
+      : rules_(rules), cell_(cell), slices_(slices_of(rules, steps)), steps_(steps) {}
+
+  // Called some 50 times a second.
+  void look(Observer& observer, std::int64_t now_ns) {
+    const SessionView& view = observer.view();
+    if (!view.has_session() || view.step() <= 0) return;
+    follow(view.node(Role::io).health);
+    switch (stage_) {
+      case Stage::stepping:
+        if (done_ == slices_ || view.is_over() || view.step() < steps_ * (done_ + 1) / (slices_ + 1)) return;
+        ask(observer, wire::ControlAction::pause, now_ns);
+        stage_ = Stage::pausing;
+        return;
+      case Stage::pausing:
+        if (view.is_over()) stage_ = Stage::stepping;
+        if (!view.is_paused()) return ask_again(observer, wire::ControlAction::pause, now_ns);
+        measure(view);
+        stage_ = Stage::measuring;
+        return;
+      case Stage::measuring:
+        if (yardstick_.is_running()) return;
+        ++done_;
+        ask(observer, wire::ControlAction::resume, now_ns);
+        stage_ = Stage::resuming;
+        return;
+      case Stage::resuming:
+        if (view.is_paused()) return ask_again(observer, wire::ControlAction::resume, now_ns);
+        stage_ = Stage::stepping;
+        return;
+    }
+  }
+
+  void finish() {
+    yardstick_.stop();
+    yardstick_.wait();
+    cell_.yardstick = yardstick_.result();
+    cell_.yardstick_work = rules_.work.seconds();
+    if (!yardstick_.problem().empty()) cell_.books = "yardstick: " + yardstick_.problem();
+  }
+
+ private:
+  enum class Stage : std::uint8_t { stepping, pausing, measuring, resuming };
+
+  static StepIndex slices_of(const YardstickRules& rules, StepIndex steps) {
+    const double seconds = rules.step.seconds() * static_cast<double>(steps);
+    return std::max<StepIndex>(1, std::llround(std::ceil(seconds / kLongestSlice)));
+  }
+
+  void measure(const SessionView& view) {
+    if (done_ == 0) {
+      double median = 0;
+      for (const Role role : wire::kPhysicsRoles) median = std::max(median, view.node(role).health.execution.p50);
+      rules_.work = duration_of_seconds(median);
+    }
+    const double session = rules_.step.seconds() * static_cast<double>(steps_);
+    yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));
+  }
+
+  void follow(const wire::Health& io) {
+    if (io.header.step <= followed_) return;
+    followed_ = io.header.step;
+    if (io.response.count == 0) return;
+    cell_.response.time.push_back(static_cast<double>(followed_) * rules_.step.seconds());
+    cell_.response.values.push_back(io.response_recent * 1e6);
+  }
+
+  void ask(Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+    wire::ControlRequest request;
+    request.action = action;
+    observer.send(request);
+    asked_ns_ = now_ns;
+  }
+  void ask_again(Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+    if (now_ns - asked_ns_ > kAskAgainNs) ask(observer, action, now_ns);
+  }
+
+  YardstickRules rules_;
+  StressCell& cell_;
+  Yardstick yardstick_;
+  Stage stage_ = Stage::stepping;
+  StepIndex slices_, done_ = 0;
+  StepIndex steps_;
+  StepIndex followed_ = 0;
+  std::int64_t asked_ns_ = 0;
+};
+
+RunOptions options_of(const StressWish& wish, const StressCell& cell, const std::string& runs) {
+  RunOptions options;
+  options.scene = wish.scene;
+  options.session = wish.session;
+  options.runs = runs;
+  options.is_quiet = true;
+  options.is_real_time = cell.scheduling == Scheduling::fifo;
+  options.cpus = wish.cpus;
+  options.added_work_us = cell.work_us;
+  return options;
+}
+
+std::string name_of(const StressCell& cell) {
+  return fmt::format("{}, load {}, {:g} us added", to_text(cell.scheduling), to_text(cell.load), cell.work_us);
+}
+
+void run_cell(const StressWish& wish, const scene::Scene& scene, StressCell& cell,
+              const std::function<bool(double)>& progress) {
+  const std::string runs = wish.folder + "/stress-" + std::to_string(getpid());
+  std::error_code ignored;
+  std::filesystem::create_directories(runs, ignored);
+  RunOptions options = options_of(wish, cell, runs);
+  const std::string places = wish.cpus.empty() ? scene.session.cpus : wish.cpus;
+  YardstickRules rules;
+  rules.step = scene.session.step_duration();
+  rules.priority = cell.scheduling == Scheduling::fifo ? cli_support::kIoPriority : 0;
+  rules.cpu = cpu_of(places, "mechanics");
+  CellWatch watch(rules, scene.session.steps(), cell);
+  options.each_round = [&](Observer& observer, std::int64_t now_ns) {
+    watch.look(observer, now_ns);
+    const auto step = static_cast<double>(std::max<StepIndex>(0, observer.view().step()));
+    return progress(step / static_cast<double>(scene.session.steps()));
+  };
+  const CpuTicks before = cpu_ticks();
+  RunOutcome outcome;
+  {
+    const LoadProcesses load(cell.load, runs);
+    outcome = run_distributed(options, scene);
+    cell.load_average = load_average();
+  }
+  const CpuTicks after = cpu_ticks();
+  watch.finish();
+  cell.steal = steal_between(before, after);
+  cell.busy = busy_between(before, after);
+  cell.code = outcome.code;
+  cell.messages = without_echoes(outcome.messages);
+  cell.steps = outcome.steps;
+  cell.step = scene.session.step;
+  if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;
+  for (const Role role : wire::kNodeRoles) cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;
+  const std::string of_session = io::problem_of_books(outcome.view.node(Role::io).health, rules.step);
+  if (!of_session.empty()) cell.books = "session: " + of_session;
+  std::filesystem::remove_all(runs, ignored);
+}
+
+}  // namespace
+
+std::string_view to_text(Scheduling scheduling) {
+  return scheduling == Scheduling::fifo ? "FIFO" : "normal";
+}
+
+double missed(const wire::Health& health) noexcept {
+  if (health.response.count == 0) return 0;
+  return static_cast<double>(health.overruns) / static_cast<double>(health.response.count);
+}
+
+Judgement judge(const wire::Health& health, const StressBounds& bounds) noexcept {
+  if ((bounds.max_miss < 0 && bounds.p99 < 0) || health.response.count == 0) return Judgement::none;
+  const bool misses = bounds.max_miss >= 0 && missed(health) > bounds.max_miss;
+  const bool is_slow = bounds.p99 >= 0 && health.response.p99 > bounds.p99;
+  return misses || is_slow ? Judgement::over : Judgement::within;
+}
+
+Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept {
+  const bool is_stated = bounds.max_miss >= 0 || bounds.p99 >= 0;
+  if (is_stated && cell.skipped.empty() && cell.code != ExitCode::ok) return Judgement::over;
+  return judge(cell.nodes[static_cast<std::size_t>(Role::io)], bounds);
+}
+
+Stress run_stress(const StressWish& wish, const StressBounds& bounds, const StressProgress& progress) {
+  Stress stress;
+  stress.wish = wish;
+  stress.bounds = bounds;
+  stress.machine = this_machine();
+  const scene::Scene scene = cli_support::load_scene(wish.scene);
+  stress.scene = scene.name;
+  if (stress.wish.session.session.empty()) {
+    stress.wish.session.session = cli_support::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
+  }
+  if (scene.session.solution == scene::Solution::monolithic) {
+    throw Failure(ExitCode::bad_input,
+                  "a monolithic solution has no deadline: its steps take as long as they take; nothing was run; choose "
+                  "session.solution: split");
+  }
+  const bool has_fifo = fifo_is_allowed();
+  for (const Scheduling scheduling : wish.schedulings) {
+    for (const Load load : wish.loads) {
+      for (const double work_us : wish.works_us) {
+        StressCell& cell = stress.cells.emplace_back();
+        cell.scheduling = scheduling;
+        cell.load = load;
+        cell.work_us = work_us;
+        if (scheduling == Scheduling::fifo && !has_fifo) cell.skipped = "SCHED_FIFO was refused";
+      }
+    }
+  }
+  const double all = static_cast<double>(stress.cells.size());
+  for (std::size_t i = 0; i < stress.cells.size(); ++i) {
+    StressCell& cell = stress.cells[i];
+    if (!cell.skipped.empty()) continue;
+    bool goes_on = true;
+    run_cell(stress.wish, scene, cell, [&](double share) {
+      goes_on = goes_on && progress(name_of(cell), (static_cast<double>(i) + std::min(1.0, share)) / all);
+      return goes_on;
+    });
+    cell.response.name = name_of(cell);
+    cell.response.unit = "us";
+    if (goes_on) continue;
+    stress.cells.resize(i + 1);
+    break;
+  }
+  return stress;
+}
+
+ExitCode exit_code_of(const Stress& stress) noexcept {
+  ExitCode code = ExitCode::ok;
+  for (const StressCell& cell : stress.cells) {
+    if (!cell.skipped.empty()) continue;
+    if (cell.code != ExitCode::ok && cell.code != ExitCode::losses) return cell.code;
+    if (!cell.books.empty()) return ExitCode::failed;
+    if (judge(cell, stress.bounds) == Judgement::over) code = ExitCode::losses;
+  }
+  return code;
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,85 @@
+// How well this machine keeps a scene's deadlines: the session as processes, cell by cell of a matrix of scheduling,
+// other load and work added to every step, each beside a bare loop with the same work in the same minute
+// (docs/realtime.md).
+//
+// A cell is one session in `real` pace. Every 20 s at most it is paused and the yardstick runs for a quarter of that
+// time, under the same scheduling, load and rules; its work is the median execution time of the slowest physics node.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/plotting/series.h"
+#include "cli/run_outcome.h"
+#include "cli/stress/load.h"
+#include "cli/stress/machine.h"
+#include "cli_support/scene_options.h"
+
+namespace slew::cli {
+
+enum class Scheduling : std::uint8_t { normal, fifo };
+[[nodiscard]] std::string_view to_text(Scheduling scheduling);
+
+struct StressWish {
+  cli_support::SceneOptions scene;
+  cli_support::SessionOptions session;
+  std::vector<Scheduling> schedulings;
+  std::vector<Load> loads;
+  std::vector<double> works_us;  // CPU time added to every step of each physics node
+  double seconds = 10;           // of every cell
+  std::string cpus;              // "mechanics=1, ..."; empty: the scene's
+  std::string folder = "runs";   // recordings, which are removed again, and the load's files
+};
+
+// Bounds of the verdict; negative: none is stated.
+struct StressBounds {
+  double max_miss = -1;  // share of the judged steps
+  double p99 = -1;       // s, of the response
+};
+
+struct StressCell {
+  Scheduling scheduling = Scheduling::normal;
+  Load load = Load::none;
+  double work_us = 0;
+  std::string skipped;  // why it was not run; empty: it was
+  ExitCode code = ExitCode::ok;
+  std::vector<std::string> messages;  // why the session did not end well
+  StepIndex steps = 0;
+  double step = 0;                                 // s
+  std::array<wire::Health, wire::kRoles> nodes{};  // in the end; of io the session's own
+  std::uint32_t roles = 0;                         // that took part
+  wire::Health yardstick;
+  double yardstick_work = 0;  // s, CPU time of its step
+  double load_average = 0, steal = 0, busy = 0;
+  std::string books;          // what does not balance; empty: all does
+  plotting::Series response;  // largest of every 0.1 s over the session's time
+};
+
+struct Stress {
+  std::string scene;
+  Machine machine;
+  StressWish wish;
+  StressBounds bounds;
+  std::vector<StressCell> cells;
+};
+
+// Largest share of judged steps that overran; 0 when none was judged.
+[[nodiscard]] double missed(const wire::Health& health) noexcept;
+
+enum class Judgement : std::uint8_t { none, within, over };
+// Against the stated bounds; none when there are none, or nothing was measured. A session that failed is over.
+[[nodiscard]] Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept;
+[[nodiscard]] Judgement judge(const wire::Health& health, const StressBounds& bounds) noexcept;
+
+// doing, share of the whole; false ends it, with the cells that are done.
+using StressProgress = std::function<bool(std::string_view doing, double share)>;
+
+// Throws Failure for a scene or a wish that cannot be run.
+[[nodiscard]] Stress run_stress(const StressWish& wish, const StressBounds& bounds, const StressProgress& progress);
+
+// ok; losses when a cell is over its bound; failed when books do not balance; a session's own code when one failed.
+[[nodiscard]] ExitCode exit_code_of(const Stress& stress) noexcept;
+
+}  // namespace slew::cli

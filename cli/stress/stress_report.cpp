@@ -1,0 +1,190 @@
+#include "cli/stress/stress_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/display.h"
+#include "cli/plotting/html_plot.h"
+#include "node/identity.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+const wire::Health& session_of(const StressCell& cell) {
+  return cell.nodes[static_cast<std::size_t>(Role::io)];
+}
+
+std::string microseconds_text(double seconds) {
+  return fmt::format("{:.0f}", seconds * 1e6);
+}
+
+std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
+  if (!cell.skipped.empty()) return "not run: " + cell.skipped;
+  if (cell.code != ExitCode::ok && cell.code != ExitCode::losses) {
+    return fmt::format("failed with code {}", static_cast<int>(cell.code));
+  }
+  switch (judge(cell, bounds)) {
+    case Judgement::none:
+      return "";
+    case Judgement::within:
+      return "within";
+    case Judgement::over:
+      return judge(cell.yardstick, bounds) == Judgement::over ? "over, as the yardstick" : "over";
+  }
+  return "";
+}
+
+std::vector<std::string> row_of(const std::string& what, const wire::Health& health) {
+  const wire::Quantiles& response = health.response;
+  return {what,
+          std::to_string(response.count),
+          std::to_string(health.overruns),
+          fmt::format("{:.3f}", 100 * missed(health)),
+          std::to_string(health.longest_overrun),
+          microseconds_text(response.least),
+          microseconds_text(response.p50),
+          microseconds_text(response.p99),
+          microseconds_text(response.p999),
+          microseconds_text(response.largest)};
+}
+
+std::string table_of(const Stress& stress) {
+  std::vector<std::vector<std::string>> rows = {{"scheduling", "load", "added us", "", "steps", "missed", "%",
+                                                 "in a row", "min us", "p50", "p99", "p99.9", "max", "load avg",
+                                                 "steal %", "verdict"}};
+  for (const StressCell& cell : stress.cells) {
+    const std::vector<std::string> cells = {std::string(to_text(cell.scheduling)), to_text(cell.load),
+                                            fmt::format("{:g}", cell.work_us)};
+    const std::vector<std::string> around = {fmt::format("{:.1f}", cell.load_average),
+                                             fmt::format("{:.2f}", 100 * cell.steal)};
+    std::vector<std::string> session = cells;
+    for (std::string& text : row_of("session", session_of(cell))) session.push_back(std::move(text));
+    session.insert(session.end(), around.begin(), around.end());
+    session.push_back(verdict_text(cell, stress.bounds));
+    rows.push_back(std::move(session));
+    if (!cell.skipped.empty()) continue;
+    std::vector<std::string> yardstick = {"", "", ""};
+    const std::string name = fmt::format("yardstick {} us", microseconds_text(cell.yardstick_work));
+    for (std::string& text : row_of(name, cell.yardstick)) yardstick.push_back(std::move(text));
+    rows.push_back(std::move(yardstick));
+  }
+  return table_text(rows, "");
+}
+
+std::string books_of(const StressCell& cell) {
+  const wire::Health& io = session_of(cell);
+  const auto step_ns = static_cast<std::int64_t>(std::llround(cell.step * 1e9));
+  const std::int64_t slips_ns = static_cast<std::int64_t>(io.steps_skipped) * step_ns;
+  return fmt::format(
+      "{}, load {}, {:g} us: {} steps due = {} run + {} skipped + {} behind; lag {} us = slips {} us + rest "
+      "{} us{}",
+      to_text(cell.scheduling), to_text(cell.load), cell.work_us, io.steps_due, io.header.step, io.steps_skipped,
+      io.rest_ns < 0 ? 0 : io.rest_ns / step_ns + 1, io.lag_ns / 1000, slips_ns / 1000, io.rest_ns / 1000,
+      cell.books.empty() ? "" : "  DO NOT BALANCE: " + cell.books);
+}
+
+nlohmann::json json_of(const wire::Quantiles& q) {
+  return {{"count", q.count}, {"min", q.least}, {"p50", q.p50}, {"p99", q.p99}, {"p999", q.p999}, {"max", q.largest}};
+}
+
+nlohmann::json timing_of(const wire::Health& health) {
+  return {{"response", json_of(health.response)}, {"release_jitter", json_of(health.release_jitter)},
+          {"cpu_time", json_of(health.cpu_time)}, {"missed", health.overruns},
+          {"missed_share", missed(health)},       {"longest_run_of_misses", health.longest_overrun}};
+}
+
+nlohmann::json node_of(const wire::Health& health) {
+  nlohmann::json node = timing_of(health);
+  node["execution"] = json_of(health.execution);
+  node["wait"] = json_of(health.wait);
+  node["waited"] = {{"io", health.waited[0]},
+                    {"mechanics", health.waited[1]},
+                    {"hydraulics", health.waited[2]},
+                    {"flex", health.waited[3]}};
+  node["allocations"] = health.allocations;
+  node["carrier_allocations"] = health.carrier_allocations;
+  return node;
+}
+
+nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
+  const wire::Health& io = session_of(cell);
+  nlohmann::json json = {{"scheduling", to_text(cell.scheduling)},
+                         {"load", to_text(cell.load)},
+                         {"added_work", cell.work_us * 1e-6},
+                         {"verdict", verdict_text(cell, bounds)}};
+  if (!cell.skipped.empty()) return json;
+  json["exit_code"] = static_cast<int>(cell.code);
+  json["messages"] = cell.messages;
+  json["steps"] = cell.steps;
+  json["session"] = timing_of(io);
+  json["yardstick"] = timing_of(cell.yardstick);
+  json["yardstick"]["work"] = cell.yardstick_work;
+  json["load_average"] = cell.load_average;
+  json["steal"] = cell.steal;
+  json["busy"] = cell.busy;
+  json["books"] = {{"due", io.steps_due},
+                   {"run", io.header.step},
+                   {"skipped", io.steps_skipped},
+                   {"lag", static_cast<double>(io.lag_ns) * 1e-9},
+                   {"slips", static_cast<double>(io.slip_ns) * 1e-9},
+                   {"rest", static_cast<double>(io.rest_ns) * 1e-9},
+                   {"balance", cell.books.empty()},
+                   {"problem", cell.books}};
+  json["nodes"] = nlohmann::json::object();
+  for (const Role role : wire::kNodeRoles) {
+    if (role == Role::io || (cell.roles & bit(role)) == 0) continue;
+    json["nodes"][std::string(node::to_text(role))] = node_of(cell.nodes[static_cast<std::size_t>(role)]);
+  }
+  return json;
+}
+
+std::string heading(const Stress& stress) {
+  return fmt::format("{}, {} s a cell, {} processors {}, {}", stress.scene, stress.wish.seconds, stress.machine.cpus,
+                     stress.machine.processor, stress.machine.kernel);
+}
+
+}  // namespace
+
+std::string report_text(const Stress& stress) {
+  std::string text = heading(stress) + "\n" + table_of(stress);
+  for (const StressCell& cell : stress.cells) {
+    if (cell.skipped.empty()) text += books_of(cell) + "\n";
+  }
+  for (const StressCell& cell : stress.cells) {
+    for (const std::string& message : cell.messages) text += message + "\n";
+  }
+  return text;
+}
+
+std::string report_json(const Stress& stress) {
+  nlohmann::json json = {{"scene", stress.scene},
+                         {"seconds", stress.wish.seconds},
+                         {"kernel", stress.machine.kernel},
+                         {"processor", stress.machine.processor},
+                         {"processors", stress.machine.cpus},
+                         {"exit_code", static_cast<int>(exit_code_of(stress))},
+                         {"cells", nlohmann::json::array()}};
+  if (stress.bounds.max_miss >= 0) json["max_miss"] = stress.bounds.max_miss;
+  if (stress.bounds.p99 >= 0) json["p99"] = stress.bounds.p99;
+  for (const StressCell& cell : stress.cells) json["cells"].push_back(json_of(cell, stress.bounds));
+  return json.dump(2);
+}
+
+std::string report_html(const Stress& stress) {
+  std::vector<plotting::Plot> plots;
+  for (const StressCell& cell : stress.cells) {
+    if (cell.response.time.empty()) continue;
+    plots.push_back({.title = cell.response.name, .series = {cell.response}});
+    plots.back().series.front().name = "largest response of 0.1 s";
+  }
+  plotting::PlotOptions options;
+  options.title = "stress: " + stress.scene;
+  options.subtitle = heading(stress);
+  return plotting::plot_html(plots, options);
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,136 @@
+#include "io_node/session_clock.h"
+
+#include <algorithm>
+
+namespace slew::io {
+namespace {
+
+constexpr auto kRelaxed = std::memory_order_relaxed;
+// so long without giving up time: the machine keeps up again
+constexpr std::int64_t kCalmNs = 1'000'000'000;
+
+std::string milliseconds_text(std::int64_t ns) {
+  const std::int64_t tenths = (ns + 50'000) / 100'000;
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " ms";
+}
+
+void add(std::atomic<std::uint64_t>& to, std::uint64_t what) noexcept {
+  to.store(to.load(kRelaxed) + what, kRelaxed);
+}
+
+// steps due and not done, when the next one is late by `rest`
+std::int64_t behind(std::int64_t rest_ns, std::int64_t H) noexcept {
+  return rest_ns < 0 ? 0 : rest_ns / H + 1;
+}
+
+}  // namespace
+
+void SessionClock::begin(StepIndex n, std::int64_t now_ns) noexcept {
+  first_ = n;
+  start_ns_ = base_ns_ = now_ns - n * H_;
+  excused_ns_ = 0;
+  skipped_ = 0;
+  complete_ = n;  // its sample is of the start
+  slipped_ns_ = 0;
+  issued_.fill({});
+  timing_.overrun_run.store(0, kRelaxed);
+}
+
+void SessionClock::excuse(StepIndex n, std::int64_t now_ns) noexcept {
+  const std::int64_t late_ns = now_ns - due_ns(n);
+  if (late_ns <= 0) return;
+  excused_ns_ += late_ns;
+  base_ns_ += late_ns;
+}
+
+std::string SessionClock::in_words(const char* what, StepIndex n) const {
+  return std::string("session.overrun: ") + what + ": at step " + std::to_string(n) + " ";
+}
+
+std::optional<Verdict> SessionClock::keep_time(StepIndex n, std::int64_t now_ns) {
+  const std::int64_t lag_ns = now_ns - due_ns(n);
+  if (lag_ns <= rules_.lag.ns) {
+    if (slipped_ns_ == 0 || now_ns - slipped_ns_ < kCalmNs) return std::nullopt;
+    slipped_ns_ = 0;
+    add(timing_.transitions, 1);
+    return Verdict{Overrun::slip, in_words("slip", n) + "the session has kept up with the wall clock for 1 s again, " +
+                                      std::to_string(skipped_) + " steps were given up so far"};
+  }
+  if (rules_.policy != Overrun::slip && is_judged(n)) {
+    const bool holds = rules_.policy == Overrun::hold;
+    add(timing_.transitions, 1);
+    return Verdict{rules_.policy, in_words(holds ? "hold" : "stop", n) + "the session was " +
+                                      milliseconds_text(lag_ns) + " behind the wall clock (session.overrun_lag " +
+                                      milliseconds_text(rules_.lag.ns) + ")"};
+  }
+  const std::int64_t steps = lag_ns / H_;
+  base_ns_ += steps * H_;
+  all_slips_ns_ += steps * H_;
+  skipped_ += static_cast<std::uint64_t>(steps);
+  const bool is_new = slipped_ns_ == 0;
+  slipped_ns_ = now_ns;
+  if (!is_new || !is_judged(n)) return Verdict{Overrun::slip, ""};
+  add(timing_.transitions, 1);
+  return Verdict{Overrun::slip, in_words("slip", n) + "the session was " + milliseconds_text(lag_ns) +
+                                    " behind the wall clock; " + std::to_string(steps) +
+                                    " steps of wall time were given up"};
+}
+
+void SessionClock::ran(StepIndex n, std::int64_t now_ns) noexcept {
+  Issued& tick = issued(n);
+  tick = {n, due_ns(n), now_ns, 0};
+  const std::int64_t before_ns = cpu_ns_;
+  cpu_ns_ = node::thread_cpu_ns();
+  if (!is_judged(n)) return;
+  timing_.release_jitter.record(now_ns - tick.due_ns);
+  timing_.last_release_jitter_ns.store(now_ns - tick.due_ns, kRelaxed);
+  if (before_ns != 0) timing_.cpu_time.record(cpu_ns_ - before_ns);
+}
+
+void SessionClock::used_input(StepIndex n, std::int64_t came_ns) noexcept {
+  if (issued(n).step == n) issued(n).input_ns = came_ns;
+}
+
+std::optional<Verdict> SessionClock::completed(StepIndex step, StepIndex n, std::int64_t now_ns) {
+  std::optional<Verdict> verdict;
+  while (complete_ < step) {
+    const Issued& tick = issued(complete_++);
+    if (tick.step != complete_ - 1) continue;
+    if (tick.input_ns != 0) timing_.input_latency.record(now_ns - tick.input_ns);
+    if (!is_judged(tick.step)) continue;
+    const std::int64_t response_ns = now_ns - tick.due_ns;
+    timing_.add_response(response_ns, response_ns > H_);
+    const auto run = static_cast<std::int64_t>(timing_.overrun_run.load(kRelaxed));
+    if (rules_.policy == Overrun::slip || rules_.after == 0 || run != rules_.after) continue;
+    const bool holds = rules_.policy == Overrun::hold;
+    add(timing_.transitions, 1);
+    verdict = Verdict{rules_.policy, in_words(holds ? "hold" : "stop", n) + std::to_string(run) +
+                                         " steps in a row were longer than " + milliseconds_text(H_) +
+                                         " (session.overrun_after), the last one " + milliseconds_text(response_ns)};
+  }
+  return verdict;
+}
+
+void SessionClock::close(StepIndex n, std::int64_t now_ns) noexcept {
+  const std::int64_t elapsed_ns = now_ns - start_ns_ - excused_ns_;
+  timing_.steps_due.store(elapsed_ns < 0 ? 0 : static_cast<std::uint64_t>(elapsed_ns / H_) + 1, kRelaxed);
+  timing_.steps_skipped.store(skipped_, kRelaxed);
+  timing_.lag_ns.store(elapsed_ns - n * H_, kRelaxed);
+  timing_.rest_ns.store(now_ns - due_ns(n), kRelaxed);
+}
+
+std::string problem_of_books(const wire::Health& io, SimDuration step) {
+  const auto skipped = static_cast<std::int64_t>(io.steps_skipped);
+  const std::int64_t run = io.header.step, late = behind(io.rest_ns, step.ns);
+  if (static_cast<std::int64_t>(io.steps_due) != run + skipped + late) {
+    return std::to_string(io.steps_due) + " steps were due, but " + std::to_string(run) + " run, " +
+           std::to_string(skipped) + " skipped and " + std::to_string(late) + " behind";
+  }
+  if (io.lag_ns != skipped * step.ns + io.rest_ns) {
+    return "a lag of " + std::to_string(io.lag_ns) + " ns, but " + std::to_string(skipped * step.ns) +
+           " ns given up and a rest of " + std::to_string(io.rest_ns) + " ns";
+  }
+  return "";
+}
+
+}  // namespace slew::io

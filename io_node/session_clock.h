@@ -1,0 +1,96 @@
+// The books of a session that is paced by the wall clock: which steps were due, done and given up, how late each was,
+// and what the session's overrun policy makes of it (docs/realtime.md).
+//
+// Step n is due at base + n H. `base` is the wall time of step 0, moved by what is no fault of the machine (pauses, the
+// wait for controllers: excused) and by what was given up (slips: whole steps). At any time, of an epoch,
+//
+//   steps due = run + skipped + behind       behind: due and not done yet
+//   lag       = slips + rest                 lag: wall time since step n was due at first, without what was excused
+//
+// in whole nanoseconds. The left sides come from the clock and the start alone, the right sides from what was counted.
+//
+// The response of step n goes from the time at which it was due to the arrival of the last sample n+1 that io needs;
+// the step overran when that is longer than H, because then Tick n+1 cannot be in time. Steps before the end of the
+// start-up grace are not judged.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/time.h"
+#include "node/step_timing.h"
+
+namespace slew::io {
+
+enum class Overrun : std::uint8_t { slip, hold, stop };
+
+struct OverrunRules {
+  Overrun policy = Overrun::slip;
+  std::int64_t after = 0;              // steps in a row; 0: the lag alone
+  SimDuration lag = milliseconds(50);  // behind the wall clock
+  SimDuration grace = {};              // after the first step
+};
+
+// What the policy asks for, and why.
+struct Verdict {
+  Overrun what = Overrun::slip;
+  std::string why;  // an event: for the recording and the user; empty: nothing to tell
+};
+
+class SessionClock {
+ public:
+  SessionClock(SimDuration step, OverrunRules rules, node::NodeTiming& timing)
+      : H_(step.ns), rules_(rules), timing_(timing) {}
+
+  // Step n, the first of an epoch, is due now: 0, or that of a saved state.
+  void begin(StepIndex n, std::int64_t now_ns) noexcept;
+  // The next step n is not due before now: somebody wanted the pause.
+  void excuse(StepIndex n, std::int64_t now_ns) noexcept;
+  [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept { return base_ns_ + n * H_; }
+
+  // Looks at the lag before step n: gives up whole steps of it, or has the policy's verdict.
+  [[nodiscard]] std::optional<Verdict> keep_time(StepIndex n, std::int64_t now_ns);
+  // Tick n went out.
+  void ran(StepIndex n, std::int64_t now_ns) noexcept;
+  // A controller's value that Tick n uses came then.
+  void used_input(StepIndex n, std::int64_t came_ns) noexcept;
+  // All samples up to `step` have come; those of several steps at once count as come now. n: the next tick.
+  [[nodiscard]] std::optional<Verdict> completed(StepIndex step, StepIndex n, std::int64_t now_ns);
+
+  // The books as of now, into the node's timing. n: the next tick.
+  void close(StepIndex n, std::int64_t now_ns) noexcept;
+  [[nodiscard]] std::int64_t slip_ns() const noexcept { return all_slips_ns_; }
+  [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
+
+ private:
+  static constexpr std::size_t kDepth = 1024;  // ticks that may be under way
+  struct Issued {
+    StepIndex step = -1;
+    std::int64_t due_ns = 0, sent_ns = 0, input_ns = 0;
+  };
+
+  [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - first_) * H_ >= rules_.grace.ns; }
+  [[nodiscard]] Issued& issued(StepIndex n) noexcept { return issued_[static_cast<std::size_t>(n) % kDepth]; }
+  [[nodiscard]] std::string in_words(const char* what, StepIndex n) const;
+
+  std::int64_t H_;
+  OverrunRules rules_;
+  node::NodeTiming& timing_;
+  std::array<Issued, kDepth> issued_{};
+  StepIndex first_ = 0;          // of this epoch
+  std::int64_t start_ns_ = 0;    // wall time of step 0, as it were when the first step is a later one
+  std::int64_t excused_ns_ = 0;  // since then
+  std::int64_t base_ns_ = 0;     // start, what was excused and what was given up
+  std::uint64_t skipped_ = 0;    // steps of this epoch
+  std::int64_t all_slips_ns_ = 0;
+  StepIndex complete_ = kJoinStep;
+  std::int64_t slipped_ns_ = 0;  // when time was last given up; 0: it is not being given up
+  std::int64_t cpu_ns_ = 0;
+};
+
+// The two equations above from what io's health says; empty: they hold, else which does not.
+[[nodiscard]] std::string problem_of_books(const wire::Health& io, SimDuration step);
+
+}  // namespace slew::io

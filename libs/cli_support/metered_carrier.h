@@ -1,0 +1,28 @@
+// A carrier that counts what its calls take from the heap, so that a node's own use can be told from the middleware's.
+#pragma once
+
+#include <memory>
+
+#include "node/driver.h"
+#include "transport/transport.h"
+
+namespace slew::cli_support {
+
+class MeteredCarrier final : public transport::Transport {
+ public:
+  explicit MeteredCarrier(std::unique_ptr<transport::Transport> carrier) : carrier_(std::move(carrier)) {}
+
+  Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
+  bool take(transport::Received& message) override;
+  void wait_until(std::int64_t monotonic_deadline_ns) override;
+  [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
+
+ private:
+  std::unique_ptr<transport::Transport> carrier_;
+};
+
+// Heap calls of the calling thread, those inside of a MeteredCarrier apart. Null under a sanitizer, which counts
+// itself.
+[[nodiscard]] node::HeapMeter heap_meter() noexcept;
+
+}  // namespace slew::cli_support

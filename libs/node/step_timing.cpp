@@ -1,0 +1,124 @@
+#include "node/step_timing.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace slew::node {
+namespace {
+
+constexpr auto kRelaxed = std::memory_order_relaxed;
+// a message is not longer on its way than its writer may be silent
+constexpr std::int64_t kLongestWayNs = 2'000'000'000;
+
+double seconds(std::int64_t ns) noexcept {
+  return static_cast<double>(ns) * 1e-9;
+}
+
+// one writer
+template <typename T>
+void add(std::atomic<T>& to, T what) noexcept {
+  to.store(to.load(kRelaxed) + what, kRelaxed);
+}
+
+}  // namespace
+
+void NodeTiming::add_response(std::int64_t ns, bool is_late) noexcept {
+  response.record(ns);
+  last_response_ns.store(ns, kRelaxed);
+  // the reader takes it away meanwhile: then this step's is the largest since
+  if (ns > response_recent_ns.load(kRelaxed)) response_recent_ns.store(ns, kRelaxed);
+  if (!is_late) {
+    overrun_run.store(0, kRelaxed);
+    return;
+  }
+  add<std::uint64_t>(overruns, 1);
+  add<std::uint64_t>(overrun_run, 1);
+  longest_overrun.store(std::max(longest_overrun.load(kRelaxed), overrun_run.load(kRelaxed)), kRelaxed);
+}
+
+wire::Quantiles quantiles_of(const HdrHistogram& histogram) noexcept {
+  wire::Quantiles quantiles;
+  quantiles.count = histogram.count();
+  quantiles.least = seconds(histogram.min());
+  constexpr std::array<double, 3> kShares = {0.5, 0.99, 0.999};
+  std::array<std::int64_t, 3> values{};
+  histogram.percentiles(kShares, values);
+  quantiles.p50 = seconds(values[0]);
+  quantiles.p99 = seconds(values[1]);
+  quantiles.p999 = seconds(values[2]);
+  quantiles.largest = seconds(histogram.max());
+  return quantiles;
+}
+
+std::int64_t thread_cpu_ns() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+}
+
+std::int64_t sent_ns(std::int64_t source_wall_ns, WriterClock clock) noexcept {
+  const std::int64_t now_ns = monotonic_ns();
+  if (clock == WriterClock::other) return now_ns;
+  const std::int64_t way_ns = wall_clock_ns() - source_wall_ns;
+  return way_ns >= 0 && way_ns <= kLongestWayNs ? now_ns - way_ns : now_ns;
+}
+
+void StepTiming::configure(SimDuration deadline, StepIndex first) noexcept {
+  deadline_ns_ = deadline.ns;
+  first_ = first;
+}
+
+void StepTiming::release(StepIndex step, std::int64_t released_ns) noexcept {
+  releases_[static_cast<std::size_t>(step) % kDepth] = {step, released_ns, monotonic_ns()};
+}
+
+void StepTiming::begin(StepIndex step) noexcept {
+  step_ = step;
+  begin_ns_ = monotonic_ns();
+  const Release& released = releases_[static_cast<std::size_t>(step) % kDepth];
+  // a free-running step may be done without its tick
+  release_ = released.step == step ? released : Release{step, begin_ns_, begin_ns_};
+}
+
+void StepTiming::computed() noexcept {
+  computed_ns_ = monotonic_ns();
+}
+
+bool StepTiming::is_late() const noexcept {
+  return deadline_ns_ > 0 && step_ >= first_ && computed_ns_ - release_.released_ns > deadline_ns_;
+}
+
+void StepTiming::published() noexcept {
+  const std::int64_t now_ns = monotonic_ns(), cpu_ns = thread_cpu_ns();
+  const std::int64_t before_ns = published_ns_, cpu_before_ns = cpu_ns_;
+  published_ns_ = now_ns;
+  cpu_ns_ = cpu_ns;
+  const wire::Role partner = std::exchange(partner_, wire::Role::io);
+  if (step_ < first_) return;
+  timing_.release_jitter.record(release_.in_hand_ns - release_.released_ns);
+  timing_.last_release_jitter_ns.store(release_.in_hand_ns - release_.released_ns, kRelaxed);
+  timing_.execution.record(computed_ns_ - begin_ns_);
+  if (before_ns != 0) {
+    timing_.cpu_time.record(cpu_ns - cpu_before_ns);
+    timing_.wait.record(begin_ns_ - before_ns);
+    // until the release for io, from then on for the partner whose sample came last
+    const std::int64_t to_io_ns =
+        partner == wire::Role::io ? begin_ns_ - before_ns
+                                  : std::clamp<std::int64_t>(release_.in_hand_ns - before_ns, 0, begin_ns_ - before_ns);
+    add(timing_.waited_ns[0], to_io_ns);
+    if (partner != wire::Role::io) {
+      add(timing_.waited_ns[static_cast<std::size_t>(partner)], begin_ns_ - before_ns - to_io_ns);
+    }
+  }
+  const std::int64_t response_ns = now_ns - release_.released_ns;
+  timing_.add_response(response_ns, deadline_ns_ > 0 && response_ns > deadline_ns_);
+}
+
+void StepTiming::restart() noexcept {
+  releases_.fill({});
+  published_ns_ = 0;
+}
+
+}  // namespace slew::node

@@ -1,0 +1,170 @@
+// `--rt`, `--cpu`, the overrun policies and the heap of the real nodes, seen from outside.
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "../../support/test_domain.h"
+#include "command.h"
+#include "core/allocation_guard.h"
+#include "core/real_time_thread.h"
+
+namespace slew::testing {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kPrograms[] = {"io_node", "mechanics_node", "hydraulics_node", "recorder_node"};
+
+class RealTime : public ::testing::Test {
+ protected:
+  std::vector<std::string> arguments(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"run", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number())});
+    return more;
+  }
+  CommandResult run_crane(std::vector<std::string> more) const {
+    return run("slewring", arguments(std::move(more)), work_.path());
+  }
+  std::unique_ptr<Command> start(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--step", "10 ms", "--duration", "0"});
+    return std::make_unique<Command>("slewring", arguments(std::move(more)), work_.path());
+  }
+  static bool wait_until_running(Command& command) {
+    return wait_until([&] { return command.out().find("  running") != std::string::npos || command.has_ended(); }) &&
+           !command.has_ended();
+  }
+  // "Cpus_allowed_list" and the like of /proc/PID/status
+  static std::string status_of(pid_t pid, const std::string& key) {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/status");
+    for (std::string line; std::getline(file, line);) {
+      if (line.starts_with(key + ":")) return line.substr(line.find_first_not_of(" \t", key.size() + 1));
+    }
+    return "";
+  }
+
+  TestDomain domain_;
+  WorkFolder work_;
+};
+
+TEST_F(RealTime, NodesRunOnTheProcessorsTheyWereGiven) {
+  const std::vector<int> cpus = usable_cpus();
+  ASSERT_FALSE(cpus.empty());
+  const std::string first = std::to_string(cpus.front()), last = std::to_string(cpus.back());
+  // the command line goes before the scene
+  const auto session = start({"--set", "session.cpus='io=" + first + ", mechanics=" + first + "'", "--cpu",
+                              "mechanics=" + last + ",hydraulics=" + first});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  const auto place = [&](const char* program) {
+    return status_of(child_of(session->pid(), program), "Cpus_allowed_list");
+  };
+  EXPECT_EQ(place("mechanics_node"), last);
+  EXPECT_EQ(place("hydraulics_node"), first);
+  const std::string anywhere = status_of(getpid(), "Cpus_allowed_list");
+  EXPECT_EQ(place("io_node"), anywhere);
+  session->send(SIGINT);
+  EXPECT_EQ(session->wait().code, 130);
+}
+
+TEST_F(RealTime, TheScenesProcessorsAreUsed) {
+  const std::string last = std::to_string(usable_cpus().back());
+  const auto session = start({"--set", "session.cpus='hydraulics=" + last + "'"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  EXPECT_EQ(status_of(child_of(session->pid(), "hydraulics_node"), "Cpus_allowed_list"), last);
+  session->send(SIGINT);
+  EXPECT_EQ(session->wait().code, 130);
+}
+
+TEST_F(RealTime, AProcessorThatIsNotThereIsRefusedByNameOfThoseThatAre) {
+  const CommandResult result = run_crane({"--cpu", "mechanics=1000"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_EQ(result.err, "slewring: mechanics=1000: there is no processor 1000 for this process; there are " +
+                            cpu_list(usable_cpus()) +
+                            "; nothing was started; name one of them in --cpu or session.cpus\n");
+  const CommandResult node = run("mechanics_node", {"--session", "nobody", "--cpu", "1000"}, work_.path());
+  EXPECT_EQ(node.code, 2);
+  EXPECT_NE(node.err.find("there is no processor 1000"), std::string::npos) << node.err;
+  const CommandResult role = run_crane({"--cpu", "mechanic=0"});
+  EXPECT_EQ(role.code, 2);
+  EXPECT_NE(role.err.find("'mechanic' is no role"), std::string::npos) << role.err;
+}
+
+TEST_F(RealTime, NodesAreScheduledFifoWithLockedMemory) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs the right to SCHED_FIFO: run it as root";
+  const auto session = start({"--rt"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  if (session->err().find("was refused") != std::string::npos) GTEST_SKIP() << "refused here: " << session->err();
+  for (const char* program : kPrograms) {
+    const pid_t pid = child_of(session->pid(), program);
+    ASSERT_GT(pid, 0) << program;
+    EXPECT_EQ(sched_getscheduler(pid), SCHED_FIFO) << program;
+    sched_param parameters{};
+    ASSERT_EQ(sched_getparam(pid, &parameters), 0);
+    EXPECT_EQ(parameters.sched_priority, std::string(program) == "io_node"         ? 30
+                                         : std::string(program) == "recorder_node" ? 10
+                                                                                   : 20)
+        << program;
+    EXPECT_GT(std::stol(status_of(pid, "VmLck")), 32 * 1024) << program << " kB: at least the heap that was touched";
+  }
+  session->send(SIGINT);
+  EXPECT_EQ(session->wait().code, 130);
+}
+
+TEST_F(RealTime, ARefusedPermissionIsOneWarningWithTheRemedy) {
+  rlimit allowed{};
+  getrlimit(RLIMIT_RTPRIO, &allowed);
+  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to everybody here";
+  std::vector<std::string> command = {"/usr/bin/setpriv", "--bounding-set=-sys_nice,-ipc_lock",
+                                      program_file("slewring").string()};
+  if (geteuid() != 0) command.erase(command.begin(), command.begin() + 2);
+  if (!std::filesystem::exists(command.front())) GTEST_SKIP() << "needs setpriv";
+  const std::vector<std::string> rest = arguments({"--rt", "--duration", "0.1", "--quiet", "--no-record"});
+  command.insert(command.end(), rest.begin(), rest.end());
+  const CommandResult result =
+      run(command.front(), std::vector<std::string>(command.begin() + 1, command.end()), work_.path());
+  EXPECT_EQ(result.code, 0) << result.err;
+  const std::string refusal = "SCHED_FIFO was refused (";
+  const std::size_t first = result.err.find(refusal);
+  ASSERT_NE(first, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "said twice: " << result.err;
+  EXPECT_NE(result.err.find("the run goes on with normal scheduling; to allow it, run as root, or set 'rtprio 95' and "
+                            "'memlock unlimited' for the user in /etc/security/limits.conf and log in again"),
+            std::string::npos)
+      << result.err;
+}
+
+TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterTheirFirstStep) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
+  const CommandResult result =
+      run_crane({"--duration", "3", "--pace", "real", "--step", "2 ms", "--json", "--set", "Bag.mass=400kg"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json nodes = json::parse(result.out).at("nodes");
+  for (const char* role : {"io", "mechanics", "hydraulics"}) {
+    EXPECT_EQ(nodes.at(role).at("timing").at("allocations"), 0) << role;
+    EXPECT_GT(nodes.at(role).at("timing").at("carrier_allocations"), 0) << role << ": Cyclone's own";
+  }
+}
+
+TEST_F(RealTime, StopsASessionThatCannotKeepUpWithCode3) {
+  // a step of 10 us is beyond any machine with processes
+  const CommandResult result = run_crane({"--step", "10 us", "--duration", "2", "--no-record", "--set",
+                                          "session.overrun=stop", "--set", "session.start_grace=0 s"});
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_NE(result.err.find("session.overrun: stop: at step "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("it was ended, what was recorded is valid"), std::string::npos) << result.err;
+}
+
+TEST_F(RealTime, ASessionThatSlipsTellsItOnceAndItsBooksBalance) {
+  const CommandResult result = run_crane({"--step", "10 us", "--duration", "0.2", "--no-record", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json deadline = json::parse(result.out).at("deadline");
+  EXPECT_TRUE(deadline.at("books_balance"));
+  EXPECT_GT(deadline.at("steps_skipped"), 0);
+  EXPECT_EQ(deadline.at("steps_run"), 20'000);
+}
+
+}  // namespace
+}  // namespace slew::testing

@@ -1,0 +1,109 @@
+// `slewring stress`: what it tells and with which code. Bounds are such that they are always or never kept.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "../../support/test_domain.h"
+#include "command.h"
+
+namespace slew::testing {
+namespace {
+
+using nlohmann::json;
+
+class Stress : public ::testing::Test {
+ protected:
+  CommandResult stress(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()),
+                               "--quiet", "--seconds", "1"});
+    return run("slewring", more, work_.path());
+  }
+  static void expect_ordered(const json& times) {
+    EXPECT_GT(times.at("count"), 0);
+    EXPECT_GT(times.at("min"), 0);
+    EXPECT_LE(times.at("min"), times.at("p50"));
+    EXPECT_LE(times.at("p50"), times.at("p99"));
+    EXPECT_LE(times.at("p99"), times.at("p999"));
+    EXPECT_LE(times.at("p999"), times.at("max"));
+  }
+
+  TestDomain domain_;
+  WorkFolder work_;
+};
+
+TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
+  const CommandResult result = stress({"--json", "--load", "none,mixed", "--max-miss", "100", "-o", "stress.html"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_FALSE(report.at("kernel").get<std::string>().empty());
+  ASSERT_EQ(report.at("cells").size(), 2u);
+  for (const json& cell : report.at("cells")) {
+    EXPECT_EQ(cell.at("scheduling"), "normal");
+    EXPECT_EQ(cell.at("steps"), 1000);
+    EXPECT_EQ(cell.at("verdict"), "within");
+    const json& books = cell.at("books");
+    EXPECT_TRUE(books.at("balance")) << books;
+    EXPECT_EQ(books.at("run"), 1000);
+    const double rest = books.at("rest"), lag = books.at("lag");
+    const double behind = rest < 0 ? 0 : std::floor(rest / 1e-3) + 1;
+    EXPECT_EQ(books.at("due").get<double>(), 1000 + books.at("skipped").get<double>() + behind);
+    EXPECT_NEAR(lag, books.at("skipped").get<double>() * 1e-3 + rest, 1e-9);
+    for (const char* who : {"session", "yardstick"}) {
+      expect_ordered(cell.at(who).at("response"));
+      EXPECT_LE(cell.at(who).at("missed"), cell.at(who).at("response").at("count"));
+      EXPECT_LE(cell.at(who).at("longest_run_of_misses"), cell.at(who).at("missed"));
+    }
+    // half a second of start-up grace is not judged
+    EXPECT_LE(cell.at("session").at("response").at("count"), 500);
+    EXPECT_EQ(cell.at("yardstick").at("response").at("count"), 250);
+    EXPECT_GT(cell.at("yardstick").at("work"), 0);
+    for (const char* role : {"mechanics", "hydraulics"}) {
+      const json& node = cell.at("nodes").at(role);
+      for (const char* time : {"response", "execution", "cpu_time", "wait", "release_jitter"}) {
+        expect_ordered(node.at(time));
+      }
+      EXPECT_GT(node.at("waited").at("io"), 0);
+    }
+    EXPECT_TRUE(cell.at("nodes").contains("recorder"));
+  }
+  std::ifstream page(work_.path() / "stress.html");
+  const std::string text((std::istreambuf_iterator<char>(page)), {});
+  EXPECT_NE(text.find("normal, load mixed, 0 us added"), std::string::npos);
+  EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "asks for nothing from elsewhere";
+  // what came is gone again
+  EXPECT_TRUE(std::filesystem::is_empty(work_.path() / "runs"));
+}
+
+TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
+  const CommandResult result = stress({"--no-record", "--p99", "0.001"});
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_NE(result.out.find("over, as the yardstick"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("steps due = "), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("NOT BALANCE"), std::string::npos) << result.out;
+}
+
+TEST_F(Stress, WorkThatIsAddedIsDone) {
+  // twice the step's time: every step overruns, all of them in a row, and the session falls behind
+  const CommandResult result =
+      stress({"--json", "--no-record", "--add-work", "2000", "--set", "session.start_grace=0 s"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json cell = json::parse(result.out).at("cells").at(0);
+  EXPECT_GE(cell.at("nodes").at("mechanics").at("execution").at("min"), 2e-3);
+  EXPECT_GE(cell.at("session").at("missed_share"), 0.99);
+  EXPECT_GE(cell.at("yardstick").at("missed_share"), 0.99);
+  EXPECT_GT(cell.at("books").at("skipped"), 0);
+  EXPECT_TRUE(cell.at("books").at("balance"));
+  EXPECT_EQ(cell.at("verdict"), "") << "none was asked for";
+}
+
+TEST_F(Stress, RefusesWhatHasNoDeadline) {
+  const CommandResult result = stress({"--set", "session.solution=monolithic"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("a monolithic solution has no deadline"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace slew::testing

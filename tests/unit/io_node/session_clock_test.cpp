@@ -1,0 +1,197 @@
+// The books of a paced session on a clock that is a number.
+#include "io_node/session_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <random>
+
+namespace slew::io {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr SimDuration kStep = milliseconds(1);
+
+class Clock : public ::testing::Test {
+ protected:
+  void rules(Overrun policy, std::int64_t after = 0, SimDuration grace = {}) {
+    clock = std::make_unique<SessionClock>(kStep, OverrunRules{policy, after, milliseconds(50), grace}, *timing);
+    clock->begin(0, now_ns);
+  }
+  // does the next step, which takes so long, and is not before its time
+  std::optional<Verdict> step(std::int64_t response_ns) {
+    now_ns = std::max(now_ns, clock->due_ns(n));
+    std::optional<Verdict> verdict = clock->keep_time(n, now_ns);
+    clock->ran(n, now_ns);
+    now_ns += response_ns;
+    ++n;
+    if (std::optional<Verdict> later = clock->completed(n, n, now_ns)) verdict = later;
+    return verdict;
+  }
+  [[nodiscard]] std::string problem() {
+    clock->close(n, now_ns);
+    wire::Health health;
+    health.header.step = n;
+    health.steps_due = timing->steps_due;
+    health.steps_skipped = timing->steps_skipped;
+    health.lag_ns = timing->lag_ns;
+    health.rest_ns = timing->rest_ns;
+    return problem_of_books(health, kStep);
+  }
+
+  std::unique_ptr<node::NodeTiming> timing = std::make_unique<node::NodeTiming>();
+  std::unique_ptr<SessionClock> clock;
+  std::int64_t now_ns = 123'456'789;
+  StepIndex n = 0;
+};
+
+TEST_F(Clock, AStepLongerThanHOverrunsAndSoDoThoseThatItDelays) {
+  rules(Overrun::slip);
+  for (int i = 0; i < 10; ++i) step(kMs / 10);
+  EXPECT_EQ(timing->overruns, 0u);
+  step(kMs);  // in time to the nanosecond
+  EXPECT_EQ(timing->overruns, 0u);
+  step(3 * kMs + 1);
+  EXPECT_EQ(timing->overruns, 1u);
+  for (int i = 0; i < 10; ++i) step(kMs / 10);
+  // the next two were due before it was done
+  EXPECT_EQ(timing->overruns, 3u);
+  EXPECT_EQ(timing->longest_overrun, 3u);
+  EXPECT_EQ(timing->overrun_run, 0u);
+  EXPECT_EQ(timing->response.count(), 22u);
+  EXPECT_EQ(timing->response.max(), 3 * kMs + 1);
+  EXPECT_EQ(clock->slip_ns(), 0);
+  EXPECT_EQ(problem(), "");
+}
+
+TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
+  rules(Overrun::slip);
+  step(kMs / 10);
+  step(60 * kMs + kMs / 3);
+  const std::optional<Verdict> verdict = step(kMs / 10);
+  ASSERT_TRUE(verdict);
+  EXPECT_EQ(verdict->what, Overrun::slip);
+  EXPECT_EQ(
+      verdict->why,
+      "session.overrun: slip: at step 2 the session was 59.3 ms behind the wall clock; 59 steps of wall time were "
+      "given up");
+  EXPECT_EQ(clock->skipped(), 59u);
+  EXPECT_EQ(clock->slip_ns(), 59 * kMs);
+  EXPECT_EQ(problem(), "");
+  // told once while it goes on, and again when it is over
+  step(100 * kMs);
+  const std::optional<Verdict> again = step(kMs / 10);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->why, "");
+  EXPECT_EQ(timing->transitions, 1u);
+  std::string over;
+  for (int i = 0; i < 1200; ++i) {
+    if (const std::optional<Verdict> told = step(kMs / 10)) over += told->why;
+  }
+  EXPECT_NE(over.find("has kept up with the wall clock for 1 s again"), std::string::npos) << over;
+  EXPECT_EQ(timing->transitions, 2u);
+  EXPECT_EQ(problem(), "");
+}
+
+TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
+  for (const Overrun policy : {Overrun::hold, Overrun::stop}) {
+    rules(policy);
+    step(51 * kMs + kMs);
+    const std::optional<Verdict> verdict = step(kMs / 10);
+    ASSERT_TRUE(verdict);
+    EXPECT_EQ(verdict->what, policy);
+    EXPECT_NE(
+        verdict->why.find("at step 1 the session was 51.0 ms behind the wall clock (session.overrun_lag 50.0 ms)"),
+        std::string::npos)
+        << verdict->why;
+    EXPECT_EQ(clock->skipped(), 0u);
+    n = 0;
+    rules(policy, 3);
+    EXPECT_FALSE(step(kMs + 1));
+    EXPECT_FALSE(step(kMs));
+    const std::optional<Verdict> third = step(kMs);
+    ASSERT_TRUE(third);
+    EXPECT_EQ(third->what, policy);
+    EXPECT_NE(third->why.find("3 steps in a row were longer than 1.0 ms (session.overrun_after)"), std::string::npos)
+        << third->why;
+    n = 0;
+  }
+}
+
+TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
+  rules(Overrun::stop, 2, milliseconds(20));
+  for (int i = 0; i < 10; ++i) {
+    const std::optional<Verdict> verdict = step(30 * kMs);
+    // time is given up, which no policy can help
+    if (verdict) {
+      EXPECT_EQ(verdict->what, Overrun::slip);
+      EXPECT_EQ(verdict->why, "");
+    }
+  }
+  for (; n < 20;) step(kMs / 10);
+  EXPECT_EQ(timing->response.count(), 0u);
+  EXPECT_EQ(timing->overruns, 0u);
+  for (; n < 400;) step(kMs / 10);
+  EXPECT_FALSE(step(kMs + 1));
+  EXPECT_TRUE(step(kMs));
+  EXPECT_EQ(problem(), "");
+}
+
+TEST_F(Clock, APauseIsNoLag) {
+  rules(Overrun::slip);
+  for (int i = 0; i < 10; ++i) step(kMs / 10);
+  now_ns += 3'600'000 * kMs;
+  clock->excuse(n, now_ns);
+  for (int i = 0; i < 10; ++i) step(kMs / 10);
+  EXPECT_EQ(timing->overruns, 0u);
+  EXPECT_EQ(clock->slip_ns(), 0);
+  EXPECT_EQ(problem(), "");
+}
+
+TEST_F(Clock, BooksBalanceWhateverTheStepsTake) {
+  std::mt19937_64 random(7);
+  for (int session = 0; session < 50; ++session) {
+    n = 0;
+    rules(Overrun::slip);
+    for (int i = 0; i < 300; ++i) {
+      const auto dice = random() % 100;
+      const auto part = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(kMs));
+      step(dice < 90 ? part / 2 : dice < 98 ? 3 * part : 100 * part);
+      if (random() % 40 == 0) {
+        now_ns += static_cast<std::int64_t>(random() % 1000) * kMs / 7;
+        clock->excuse(n, now_ns);
+      }
+      ASSERT_EQ(problem(), "") << "session " << session << " step " << n;
+    }
+  }
+}
+
+TEST_F(Clock, BooksThatDoNotBalanceAreNamed) {
+  wire::Health io;
+  io.header.step = 100;
+  io.steps_due = 103;
+  io.steps_skipped = 2;
+  io.lag_ns = 1'500'000;
+  io.rest_ns = -500'000;
+  EXPECT_EQ(problem_of_books(io, kStep), "103 steps were due, but 100 run, 2 skipped and 0 behind");
+  io.steps_due = 102;
+  EXPECT_EQ(problem_of_books(io, kStep), "");
+  io.lag_ns = 1'500'001;
+  EXPECT_EQ(problem_of_books(io, kStep), "a lag of 1500001 ns, but 2000000 ns given up and a rest of -500000 ns");
+}
+
+TEST_F(Clock, AControllersValueIsMeasuredToTheFirstSamplesThatUsedIt) {
+  rules(Overrun::slip);
+  step(kMs / 10);
+  now_ns = clock->due_ns(1);
+  const std::int64_t came_ns = now_ns - kMs / 4;
+  clock->ran(1, now_ns);
+  clock->used_input(1, came_ns);
+  static_cast<void>(clock->completed(2, 2, now_ns + kMs / 2));
+  EXPECT_EQ(timing->input_latency.count(), 1u);
+  EXPECT_EQ(timing->input_latency.max(), 3 * kMs / 4);
+}
+
+}  // namespace
+}  // namespace slew::io

@@ -1,0 +1,95 @@
+#include "node/step_timing.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace slew::node {
+namespace {
+
+using wire::Role;
+
+class Timing : public ::testing::Test {
+ protected:
+  // one step: released so long ago, then done at once
+  void step(StepIndex n, std::int64_t released_ago_ns, Role waits_for = Role::io) {
+    steps.release(n, monotonic_ns() - released_ago_ns);
+    if (waits_for != Role::io) steps.waits_for(waits_for);
+    steps.begin(n);
+    steps.computed();
+    is_late = steps.is_late();
+    steps.published();
+  }
+  std::unique_ptr<NodeTiming> timing = std::make_unique<NodeTiming>();
+  StepTiming steps{*timing};
+  bool is_late = false;
+};
+
+constexpr std::int64_t kHour = 3'600'000'000'000;
+
+TEST_F(Timing, AResponseBeyondTheDeadlineIsAnOverrunAndFlagged) {
+  steps.configure({kHour}, 0);
+  step(0, 0);
+  EXPECT_FALSE(is_late);
+  step(1, 2 * kHour);
+  EXPECT_TRUE(is_late);
+  step(2, 2 * kHour);
+  step(3, 0);
+  EXPECT_EQ(timing->overruns, 2u);
+  EXPECT_EQ(timing->longest_overrun, 2u);
+  EXPECT_EQ(timing->overrun_run, 0u);
+  EXPECT_EQ(timing->response.count(), 4u);
+  EXPECT_GE(timing->response.max(), 2 * kHour);
+  EXPECT_GE(timing->release_jitter.max(), 2 * kHour);
+  EXPECT_EQ(timing->execution.count(), 4u);
+  EXPECT_EQ(timing->cpu_time.count(), 3u) << "the first step has none before it";
+  EXPECT_GE(timing->response_recent_ns, 2 * kHour);
+}
+
+TEST_F(Timing, NothingIsLateWithoutADeadlineAndNothingJudgedInTheGrace) {
+  steps.configure({}, 2);
+  step(0, 2 * kHour);
+  step(1, 2 * kHour);
+  EXPECT_EQ(timing->response.count(), 0u);
+  step(2, 2 * kHour);
+  EXPECT_FALSE(is_late);
+  EXPECT_EQ(timing->response.count(), 1u);
+  EXPECT_EQ(timing->overruns, 0u);
+}
+
+TEST_F(Timing, WaitingIsCountedForIoUntilTheReleaseAndThenForThePartner) {
+  steps.configure({kHour}, 0);
+  step(0, 0);
+  step(1, 0);
+  const std::int64_t for_io = timing->waited_ns[0];
+  EXPECT_GT(for_io, 0);
+  EXPECT_EQ(timing->waited_ns[2], 0);
+  step(2, 0, Role::hydraulics);
+  EXPECT_GT(timing->waited_ns[2], 0);
+  EXPECT_EQ(timing->wait.count(), 2u);
+  const std::int64_t for_partner = timing->waited_ns[2];
+  step(3, 0);
+  EXPECT_EQ(timing->waited_ns[2], for_partner) << "this one waited for io again";
+}
+
+TEST_F(Timing, AStepWithoutReleaseBeginsAtOnce) {
+  steps.configure({kHour}, 0);
+  steps.begin(5);
+  steps.computed();
+  steps.published();
+  EXPECT_EQ(timing->release_jitter.max(), 0);
+  EXPECT_EQ(timing->overruns, 0u);
+}
+
+TEST(SentTime, IsThatOfTheStampUnlessItCannotBeTrue) {
+  const std::int64_t before_ns = monotonic_ns();
+  EXPECT_LE(sent_ns(wall_clock_ns() - 1'000'000, WriterClock::same), monotonic_ns() - 1'000'000 + 500'000'000);
+  EXPECT_LT(sent_ns(wall_clock_ns() - 1'000'000'000, WriterClock::same), before_ns);
+  // another clock, a stamp of the future, one of an hour ago: the arrival
+  EXPECT_GE(sent_ns(wall_clock_ns() - 1'000'000, WriterClock::other), before_ns);
+  EXPECT_GE(sent_ns(wall_clock_ns() + kHour, WriterClock::same), before_ns);
+  EXPECT_GE(sent_ns(wall_clock_ns() - kHour, WriterClock::same), before_ns);
+}
+
+}  // namespace
+}  // namespace slew::node
