@@ -187,6 +187,7 @@ TEST_F(Io, HoldsASessionThatIsTooSlowUntilItIsResumed) {
     }
     poll();
   };
+  static_cast<void>(node->member().take_warnings());  // of builds that differ
   late(2);
   EXPECT_FALSE(node->is_paused());
   late(2);
@@ -247,6 +248,11 @@ TEST_F(Io, KeepsBooksThatBalanceOverLagsPausesAndSingleSteps) {
   poll();
   EXPECT_EQ(books(), "");
   EXPECT_GT(node->timing().steps_skipped, 60u);
+  // the step under way is done before the pause
+  say_samples(node->next_step());
+  poll();
+  say_samples(node->next_step());
+  played.forget();
   ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
   const std::uint64_t overruns = node->timing().overruns;
   live(5000);
