@@ -811,17 +811,18 @@ void IoNode::watch(std::int64_t now_ns) {
     if (now_ns - fault_seen_ns_ < kFaultGathering.ns) return;
     const Role role = first->status.header.role;
     return begin_ending(static_cast<ExitCode>(first->status.exit_code),
-                        member_.describe_peer(role) + ": " + first->status.reason, now_ns);
+                        member_.end_text(role, member_.describe_peer(role) + ": " + first->status.reason), now_ns);
   }
   switch (event) {
     case node::PeerEvent::gone:
       if (hold_place(about, now_ns)) return;
       [[fallthrough]];
     case node::PeerEvent::lost:
-      return begin_ending(ExitCode::node_lost,
-                          member_.describe_peer(about) + " is gone; the session was held after step " +
-                              std::to_string(n_) + " and ended, what was recorded up to there is valid",
-                          now_ns);
+      return begin_ending(
+          ExitCode::node_lost,
+          member_.end_text(about, member_.describe_peer(about) + " is gone; the session was held after step " +
+                                      std::to_string(n_) + " and ended, what was recorded up to there is valid"),
+          now_ns);
     case node::PeerEvent::silent:
       if (stage_ == Stage::ticking) member_.hold(member_.silence_text(about));
       return;

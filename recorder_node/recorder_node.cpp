@@ -162,7 +162,7 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
 
 // everything that has no step of its own is filed under the one that is being recorded
 void RecorderNode::file(const transport::Received& message) {
-  if (writer_ == nullptr) return;
+  if (writer_ == nullptr || is_of_another_session(message)) return;
   if (begin_ != Begin::known) {
     if (before_.size() < kMaxEarly) {
       before_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
@@ -170,6 +170,13 @@ void RecorderNode::file(const transport::Received& message) {
     return;
   }
   write(message, member_.epoch(), std::max(streams_.begin, complete_up_to()), static_cast<std::uint32_t>(++unstepped_));
+}
+
+// Of an earlier session of the name a process may still be there that had stood still.
+bool RecorderNode::is_of_another_session(const transport::Received& message) const {
+  if (message.topic == Topic::controller_input || message.topic == Topic::control_request) return false;
+  wire::Header header;
+  return transport::decode_header(message.bytes, header) && header.session != member_.session().header.session;
 }
 
 // this one leaves nothing behind unless it holds a step of the session
@@ -633,7 +640,7 @@ StepIndex RecorderNode::last_block(const BlockSource& source, StepIndex newest) 
 }
 
 bool RecorderNode::is_ending() const noexcept {
-  return member_.peer(Role::io).status.state >= NodeState::ended || !lost_node_.empty();
+  return member_.peer(Role::io).status.state >= NodeState::ended || lost_node_;
 }
 
 // everybody who is still there has ended, and all that they sent has come
@@ -686,8 +693,8 @@ void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
 void RecorderNode::watch(std::int64_t now_ns) {
   if (stage_ != Stage::recording) return;
   Role about = Role::io;
-  if (member_.watch_peers(now_ns, about) == node::PeerEvent::lost && lost_node_.empty()) {
-    lost_node_ = member_.describe_peer(about);
+  if (member_.watch_peers(now_ns, about) == node::PeerEvent::lost && !lost_node_) {
+    lost_node_ = about;
     deadline_ns_ = now_ns + node::kSilentAfter.ns;
   }
   const bool is_late = late_deadline_ns_ != 0;
@@ -699,14 +706,17 @@ void RecorderNode::watch(std::int64_t now_ns) {
   // a moment longer, so that the others' last messages are recorded
   if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns / 2;
   if (!has_everything() && now_ns < deadline_ns_) return;
-  if (!lost_node_.empty()) {
-    return begin_ending(ExitCode::node_lost, lost_node_ + " is gone; the recording was closed after step " +
-                                                 std::to_string(complete_up_to()));
+  if (lost_node_) {
+    return begin_ending(ExitCode::node_lost,
+                        member_.end_text(*lost_node_, member_.describe_peer(*lost_node_) +
+                                                          " is gone; the recording was closed after step " +
+                                                          std::to_string(complete_up_to())));
   }
   // asked to end by a signal or not: who saw the END has done all that it had to do
   const wire::NodeStatus& io = member_.peer(Role::io).status;
   const auto code = static_cast<ExitCode>(io.exit_code);
-  finish({code, io.reason}, io.state == NodeState::fault ? code : ExitCode::ok, "io ended the session: " + io.reason);
+  finish({code, io.reason}, io.state == NodeState::fault ? code : ExitCode::ok,
+         member_.end_text(Role::io, "io ended the session: " + io.reason));
 }
 
 void RecorderNode::begin_ending(ExitCode code, const std::string& reason) {

@@ -107,6 +107,7 @@ class RecorderNode final : public node::Node {
   enum class Stage : std::uint8_t { waiting_for_session, recording, finished };
 
   void receive(const transport::Received& message, std::int64_t now_ns);
+  [[nodiscard]] bool is_of_another_session(const transport::Received& message) const;
   void receive_session(const transport::Received& message, std::int64_t now_ns);
   void discard(const Status& why);
   void refuse(const Status& refusal);
@@ -186,8 +187,8 @@ class RecorderNode final : public node::Node {
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
   Begin begin_ = Begin::known;
-  std::int64_t late_deadline_ns_ = 0;  // of one that came after the session's begin; 0: it did not
-  std::string lost_node_;              // who is gone, while the others are still saying so; empty: nobody
+  std::int64_t late_deadline_ns_ = 0;    // of one that came after the session's begin; 0: it did not
+  std::optional<wire::Role> lost_node_;  // who is gone, while the others are still saying so
   struct Early {
     wire::Topic topic = wire::Topic::session;
     std::int64_t source_ns = 0;

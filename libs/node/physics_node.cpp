@@ -741,7 +741,8 @@ void PhysicsNode::watch(std::int64_t now_ns) {
   if (io.status.state == NodeState::fault) {
     const auto code = static_cast<ExitCode>(io.status.exit_code);
     const bool by_signal = code == ExitCode::interrupted || code == ExitCode::terminated;
-    return leave(code, by_signal ? "" : "io ended the session: " + io.status.reason, now_ns);
+    return leave(code, by_signal ? "" : member_.end_text(Role::io, "io ended the session: " + io.status.reason),
+                 now_ns);
   }
   // the END tick normally comes first, and io answers for a while if it was lost
   if (io.status.state == NodeState::ended) {
@@ -752,7 +753,8 @@ void PhysicsNode::watch(std::int64_t now_ns) {
   switch (event) {
     case PeerEvent::lost:
       return leave(ExitCode::node_lost,
-                   member_.describe_peer(about) + " is gone; this node stopped after step " + std::to_string(n_),
+                   member_.end_text(about, member_.describe_peer(about) + " is gone; this node stopped after step " +
+                                               std::to_string(n_)),
                    now_ns);
     case PeerEvent::gone:
       if (stage_ == Stage::stepping) {

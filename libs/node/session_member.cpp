@@ -372,18 +372,22 @@ bool SessionMember::may_be_replaced(Role role) const noexcept {
   return is_physics && session_.rejoin_ns > 0;
 }
 
-// A process that was stopped has heard nobody while it stood. In a session that waits for lost nodes it does not take
-// the others for lost then: io tells it what has become of its role.
-void SessionMember::excuse_own_absence(std::int64_t now_ns) noexcept {
-  const std::int64_t absence_ns = watched_ns_ == 0 ? 0 : now_ns - watched_ns_;
+void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
+  const std::int64_t gap_ns = watched_ns_ == 0 ? 0 : now_ns - watched_ns_;
   watched_ns_ = now_ns;
-  if (session_.rejoin_ns == 0 || absence_ns <= kSilentAfter.ns) return;
-  for (Peer& peer : peers_) peer.last_heard_ns = std::min(now_ns, peer.last_heard_ns + absence_ns);
+  if (gap_ns <= kStoodStill.ns) return;
+  if (gap_ns > kLostAfter.ns) {
+    stood_still_ns_ = gap_ns;
+    stood_until_ns_ = now_ns;
+  }
+  for (Peer& peer : peers_) {
+    if (peer.last_heard_ns == peer.excused_ns) continue;
+    peer.last_heard_ns = peer.excused_ns = std::min(now_ns, peer.last_heard_ns + gap_ns);
+  }
 }
 
 PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noexcept {
   const std::int64_t silent_ns = now_ns - peer.last_heard_ns;
-  if (peer.exit_seen_ns == 0 && peer.process.has_exited()) peer.exit_seen_ns = now_ns;
   // what it said last may still be on its way, and says why
   const bool is_gone = peer.exit_seen_ns != 0 && now_ns - peer.exit_seen_ns >= kLastWords.ns;
   if (peer.gone_ns != 0) {
@@ -416,12 +420,15 @@ PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noe
 }
 
 PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
-  excuse_own_absence(now_ns);
+  excuse_peers(now_ns);
+  const bool looks_for_processes = now_ns - processes_ns_ >= kProcessLook.ns;
+  if (looks_for_processes) processes_ns_ = now_ns;
   for (const Role role : wire::kNodeRoles) {
     if (role == role_ || !requires_role(role)) continue;
     Peer& peer = peers_[static_cast<std::size_t>(role)];
     if (!peer.is_known || peer.status.state >= NodeState::ended) continue;
     about = role;
+    if (looks_for_processes && peer.exit_seen_ns == 0 && peer.process.has_exited()) peer.exit_seen_ns = now_ns;
     if (const PeerEvent event = look_at(peer, role, now_ns); event != PeerEvent::none) return event;
   }
   return PeerEvent::none;
@@ -445,6 +452,31 @@ std::string SessionMember::describe_peer(Role role) const {
 std::string SessionMember::silence_text(Role role) const {
   return "waits for " + describe_peer(role) + ", which has been silent for 0.3 s at step " +
          std::to_string(status_.header.step) + "; it is given up after 2 s";
+}
+
+std::string SessionMember::end_text(Role about, const std::string& reason) const {
+  const Peer& peer = this->peer(about);
+  const std::string own_loss = std::string(to_text(role_)) + " (process " + std::to_string(identity_.pid) + " on " +
+                               machine_of(identity_.host) + ") is gone";
+  const bool is_given_up = peer.status.reason.find(own_loss) != std::string::npos;
+  const std::string remedy =
+      "; look for what stopped the process (a signal, a debugger, lack of memory or of processors)";
+  if (is_given_up && stood_still_ns_ > 0) {
+    return "this node stood still for " + seconds_text({stood_still_ns_}) + " at step " +
+           std::to_string(status_.header.step) + " and was given up after 2 s; session '" + session_.name +
+           "' has ended" + remedy;
+  }
+  if (is_given_up) {
+    return "this node ran, but was not heard for 2 s and was given up; look at the network from this machine to the "
+           "others; " +
+           reason;
+  }
+  // the others may have given it up and have gone
+  if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= kLostAfter.ns + kLinger.ns) {
+    return reason + "; this node itself had stood still for " + seconds_text({stood_still_ns_}) +
+           ", and after 2 s the others give a node up" + remedy;
+  }
+  return reason;
 }
 
 bool SessionMember::all_required(NodeState at_least) const noexcept {

@@ -26,7 +26,9 @@ inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
 inline constexpr SimDuration kSilentAfter = {300'000'000};   // named, everybody holds
 inline constexpr SimDuration kLostAfter = {2'000'000'000};   // given up
+inline constexpr SimDuration kStoodStill = {1'000'000'000};  // between two looks: nobody's silence but one's own
 inline constexpr SimDuration kLastWords = {20'000'000};      // on their way when a process is seen to be gone
+inline constexpr SimDuration kProcessLook = {1'000'000};     // between two looks whether processes are there
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
@@ -53,7 +55,8 @@ struct Peer {
   bool is_known = false;
   wire::NodeStatus status;
   std::uint32_t incarnation = 0;   // of the process that holds the role
-  std::int64_t last_heard_ns = 0;  // monotonic
+  std::int64_t last_heard_ns = 0;  // monotonic; without the time in which this process stood still
+  std::int64_t excused_ns = -1;    // what last_heard_ns became by that, until something is heard
   ProcessWatch process;
   std::int64_t exit_seen_ns = 0;  // when the process was first seen to be gone; 0: it is there
   bool is_silent = false;         // named once
@@ -153,8 +156,12 @@ class SessionMember {
   Status on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns);
   void on_health(std::span<const std::byte> bytes, std::int64_t now_ns);
   [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
-  // Looks for silent and lost required peers; at most one event per call, with the role it is about.
+  // Looks for silent and lost required peers; at most one event per call, with the role it is about. Time in which this
+  // process stood still is nobody's silence: once, until the peer is heard again.
   PeerEvent watch_peers(std::int64_t now_ns, wire::Role& about);
+  // Why this node ends with a peer that is gone or has ended: `reason`, and what this process has to do with it when it
+  // stood still itself or was not heard.
+  [[nodiscard]] std::string end_text(wire::Role about, const std::string& reason) const;
   // A required role that has been named silent and has not come back.
   [[nodiscard]] std::optional<wire::Role> silent_peer() const noexcept;
   [[nodiscard]] std::string describe_peer(wire::Role role) const;
@@ -190,9 +197,9 @@ class SessionMember {
   [[nodiscard]] bool is_given_up(wire::Role role, std::uint32_t incarnation) const noexcept;
   void forget_given_up(std::int64_t now_ns);
   [[nodiscard]] bool may_be_replaced(wire::Role role) const noexcept;
-  void excuse_own_absence(std::int64_t now_ns) noexcept;
   [[nodiscard]] PeerEvent look_at(Peer& peer, wire::Role role, std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_in_session(const wire::Header& header) const noexcept;
+  void excuse_peers(std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_writer(const wire::Header& header, wire::Topic topic) const noexcept;
   [[nodiscard]] std::string found_writers(wire::Topic topic);
   [[nodiscard]] Status on_own_role(const wire::NodeStatus& status);
@@ -220,10 +227,13 @@ class SessionMember {
   std::array<Peer, wire::kRoles> peers_;
   // what a second process of a role said last: it may come before the word that the first one was given up
   std::array<std::optional<wire::NodeStatus>, wire::kRoles> rivals_;
-  std::int64_t watched_ns_ = 0;  // when the others were looked at last
   Refusals refusals_;
   Status send_failure_;
   std::int64_t next_probe_ns_ = 0;
+  std::int64_t processes_ns_ = 0;    // when their processes were looked for last
+  std::int64_t watched_ns_ = 0;      // when the peers were looked at last
+  std::int64_t stood_still_ns_ = 0;  // from one look to the next, when the others had time to give this process up
+  std::int64_t stood_until_ns_ = 0;
   std::vector<std::byte> buffer_;
 };
 

@@ -246,6 +246,12 @@ Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<Cyclon
   return Status::ok();
 }
 
+void CycloneDomain::wake_timers() noexcept {
+  // neither deaf nor mute, as it is; what is scheduled in front of all that waits wakes the thread
+  constexpr dds_duration_t kInFrontOfAll = DDS_SECS(-3600);
+  static_cast<void>(dds_domain_set_deafmute(handle_, /*deaf=*/false, /*mute=*/false, kInFrontOfAll));
+}
+
 CycloneDomain::~CycloneDomain() {
   if (handle_ > 0) dds_delete(handle_);
 }

@@ -54,6 +54,10 @@ class CycloneDomain {
   [[nodiscard]] bool is_secured() const noexcept { return is_secured_; }
   [[nodiscard]] CycloneLog& log() noexcept { return log_; }
 
+  // Lets Cyclone look at its timers now. They sleep until an instant of the wall clock: when that is set back, they
+  // would for as long, and with them discovery, heartbeats and requests for what was lost.
+  void wake_timers() noexcept;
+
  private:
   CycloneDomain(std::uint32_t number, bool is_secured) : number_(number), is_secured_(is_secured) {}
 

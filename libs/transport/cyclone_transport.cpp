@@ -74,6 +74,9 @@ constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors 
   return qos;
 }
 
+constexpr std::int64_t kClockLook = 50'000'000;  // between two looks at the wall clock [ns]
+constexpr std::int64_t kClockStep = 20'000'000;  // it was set back when it is behind by more; slewing is far slower
+
 // step by step, at full rate
 [[nodiscard]] bool has_several_writers(wire::Topic topic) {
   return topic == wire::Topic::variables || topic == wire::Topic::controller_input;
@@ -221,6 +224,7 @@ bool CycloneTransport::take(Received& message) {
 
 // the next messages of a topic that has rung, lowest topic first; false when none has any
 bool CycloneTransport::refill() {
+  look_at_the_clock();
   pending_ |= doorbell_.collect();
   while (pending_ != 0) {
     const int topic = std::countr_zero(pending_);
@@ -245,6 +249,15 @@ bool CycloneTransport::refill() {
     if (batch_count_ > 0) return true;
   }
   return false;
+}
+
+void CycloneTransport::look_at_the_clock() noexcept {
+  const std::int64_t now_ns = monotonic_ns();
+  if (now_ns < next_look_ns_) return;
+  next_look_ns_ = now_ns + kClockLook;
+  const std::int64_t ahead_ns = wall_clock_ns() - now_ns;
+  if (ahead_ns < wall_ahead_ns_ - kClockStep) domain_->wake_timers();
+  wall_ahead_ns_ = ahead_ns;
 }
 
 void CycloneTransport::wait_until(std::int64_t monotonic_deadline_ns) {

@@ -79,6 +79,7 @@ class CycloneTransport final : public Transport {
   [[nodiscard]] bool hears_kept(wire::Topic topic) const noexcept;
   [[nodiscard]] Status create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber);
   [[nodiscard]] bool refill();
+  void look_at_the_clock() noexcept;
 
   std::shared_ptr<CycloneDomain> domain_;
   const CycloneOptions options_;
@@ -89,6 +90,8 @@ class CycloneTransport final : public Transport {
   Doorbell doorbell_;
   std::array<TopicBell, wire::kTopics> bells_{};
   std::uint32_t pending_ = 0;  // topics to be read, a bit each
+  std::int64_t next_look_ns_ = 0;
+  std::int64_t wall_ahead_ns_ = INT64_MIN;  // of the monotonic clock, at the last look
 
   std::array<ddsi_serdata*, kBatch> batch_{};
   std::array<std::int64_t, kBatch> batch_source_ns_{};

@@ -57,17 +57,36 @@ void NamespacePair::unplug() {
   static_cast<void>(ip({"-n", left_.name, "link", "set", left_.interface, "down"}));
 }
 
+void NamespacePair::plug() {
+  static_cast<void>(ip({"-n", left_.name, "link", "set", left_.interface, "up"}));
+}
+
 bool NamespacePair::lose(int percent) {
-  if (access(kNft, X_OK) != 0) return false;
-  for (const Side* side : {&left_, &right_}) {
-    if (!filter(*side, {"add", "table", "ip", "loss"})) return false;
-    if (!filter(*side, {"add", "chain", "ip", "loss", "input", "{ type filter hook input priority 0; }"})) return false;
-    if (!filter(*side, {"add", "rule", "ip", "loss", "input", "iifname", side->interface, "meta", "l4proto", "udp",
-                        "numgen", "random", "mod", "100", "<", std::to_string(percent), "counter", "drop"})) {
-      return false;
-    }
+  const std::vector<std::string> some = {"numgen", "random", "mod", "100", "<", std::to_string(percent)};
+  return drop(left_, some) && drop(right_, some);
+}
+
+bool NamespacePair::deafen(const Side& side, Datagrams which) {
+  return drop(side, which == Datagrams::all ? std::vector<std::string>{}
+                                            : std::vector<std::string>{"udp", "dport", "&", "1", "==", "1"});
+}
+
+bool NamespacePair::drop(const Side& side, const std::vector<std::string>& which) {
+  if (access(kNft, X_OK) != 0) {
+    problem_ = "there is no /usr/sbin/nft (package nftables)";
+    return false;
   }
-  return true;
+  std::vector<std::string> rule = {"add",     "rule",         "ip",   "loss",    "input",
+                                   "iifname", side.interface, "meta", "l4proto", "udp"};
+  rule.insert(rule.end(), which.begin(), which.end());
+  rule.insert(rule.end(), {"counter", "drop"});
+  return filter(side, {"add", "table", "ip", "loss"}) &&
+         filter(side, {"add", "chain", "ip", "loss", "input", "{ type filter hook input priority 0; }"}) &&
+         filter(side, rule);
+}
+
+std::uint64_t NamespacePair::lost(const Side& side) {
+  return counted(side, "loss");
 }
 
 bool NamespacePair::count_sent() {
@@ -78,8 +97,12 @@ bool NamespacePair::count_sent() {
 }
 
 std::uint64_t NamespacePair::sent() {
+  return counted(left_, "sent");
+}
+
+std::uint64_t NamespacePair::counted(const Side& side, const std::string& table) {
   const ScratchFolder folder;
-  Program program(kIp, {"netns", "exec", left_.name, kNft, "list", "table", "ip", "sent"}, folder.path() / "nft");
+  Program program(kIp, {"netns", "exec", side.name, kNft, "list", "table", "ip", table}, folder.path() / "nft");
   if (program.wait() != 0) throw std::runtime_error("nft: " + program.err());
   const std::string said = program.out();
   return std::stoull(said.substr(said.find("packets ") + 8));
@@ -112,6 +135,15 @@ void NamespacePair::remove_left_behind() {
   }
   for (const std::string& name : dead) static_cast<void>(ip({"netns", "del", name}));
   problem_.clear();
+}
+
+void distribute(Session& session, const NamespacePair& cable) {
+  for (const wire::Role role : kAllNodes) {
+    const bool is_left = role == wire::Role::mechanics || role == wire::Role::recorder;
+    const NamespacePair::Side& here = is_left ? cable.left() : cable.right();
+    const NamespacePair::Side& there = is_left ? cable.right() : cable.left();
+    session.run_under(role, here.command(), {"--interface", here.interface, "--peer", there.address, "--insecure-lan"});
+  }
 }
 
 }  // namespace slew::testing

@@ -1,9 +1,13 @@
 // Two network namespaces joined by a veth pair: two machines as far as the network is concerned.
+//
+// Datagrams are lost by filters of nft at the side they come to.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "session.h"
 
 namespace slew::testing {
 
@@ -28,8 +32,17 @@ class NamespacePair {
   [[nodiscard]] const Side& right() const noexcept { return right_; }
 
   void unplug();
+  void plug();
   // From now on each side loses this share of the datagrams that come to it [%]. False where that is not possible.
   [[nodiscard]] bool lose(int percent);
+  enum class Datagrams : std::uint8_t {
+    all,
+    data,  // those to the odd ports: by the others the sides still discover each other (RTPS 2.5, 9.6.2)
+  };
+  // From now on this side hears nothing of the other. False where that is not possible.
+  [[nodiscard]] bool deafen(const Side& side, Datagrams which = Datagrams::all);
+  // Datagrams that a side has lost since lose() or deafen().
+  [[nodiscard]] std::uint64_t lost(const Side& side);
   // From now on the datagrams that leave the left side are counted. False where that is not possible.
   [[nodiscard]] bool count_sent();
   [[nodiscard]] std::uint64_t sent();
@@ -37,10 +50,16 @@ class NamespacePair {
  private:
   [[nodiscard]] bool ip(const std::vector<std::string>& arguments);
   [[nodiscard]] bool filter(const Side& side, const std::vector<std::string>& arguments);
+  [[nodiscard]] bool drop(const Side& side, const std::vector<std::string>& which);
+  [[nodiscard]] std::uint64_t counted(const Side& side, const std::string& table);
   void remove_left_behind();
 
   std::string problem_;
   Side left_, right_;
 };
+
+// Mechanics and recorder on the left side, io and hydraulics on the right, with the options that two_machines.md tells
+// the user.
+void distribute(Session& session, const NamespacePair& cable);
 
 }  // namespace slew::testing

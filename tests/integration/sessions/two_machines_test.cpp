@@ -21,22 +21,12 @@ class TwoMachines : public ::testing::Test {
   void SetUp() override {
     if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
   }
-  // the options that two_machines.md tells the user
-  void distribute(Session& session) const {
-    for (const Role role : kAllNodes) {
-      const bool is_left = role == Role::mechanics || role == Role::recorder;
-      const NamespacePair::Side& here = is_left ? cable.left() : cable.right();
-      const NamespacePair::Side& there = is_left ? cable.right() : cable.left();
-      session.run_under(role, here.command(),
-                        {"--interface", here.interface, "--peer", there.address, "--insecure-lan"});
-    }
-  }
   NamespacePair cable;
 };
 
 TEST_F(TwoMachines, GiveTheSameBitsAsOneProcess) {
   Session session({"--pace", "free", "--duration", "1.6s"});
-  distribute(session);
+  distribute(session, cable);
   session.start_all();
   ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
   const RecordedSession recorded = session.recorded();
@@ -49,7 +39,7 @@ TEST_F(TwoMachines, GiveTheSameBitsAsOneProcess) {
 
 TEST_F(TwoMachines, WhoseCableBreaksNameEachOtherAndEndWithCode4) {
   Session session({"--pace", "real", "--duration", "20s"});
-  distribute(session);
+  distribute(session, cable);
   session.start_all();
   // nobody outside the namespaces can listen; the recording grows when the session runs
   ASSERT_FALSE(session.node(Role::io).wait(1'500'000'000).has_value()) << session.said();

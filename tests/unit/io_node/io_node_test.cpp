@@ -372,6 +372,62 @@ TEST_F(Io, EndsWhenATickCannotBeSent) {
   EXPECT_EQ(node->member().reason(), "message not sent");
 }
 
+TEST_F(Io, NamesTheNodeThatDoesNotGetReady) {
+  IoConfig with = config();
+  with.join_timeout = milliseconds(2000);
+  restart(std::move(with));
+  poll();
+  const auto sessions = played.said<wire::SessionDescription>(Topic::session);
+  ASSERT_FALSE(sessions.empty());
+  played.session.header = sessions.back().header;
+  for (const Role role : {Role::mechanics, Role::hydraulics}) {
+    played.say_heard(role, NodeState::joining, node->member().header(Phase::join, kJoinStep), {Topic::tick});
+  }
+  poll(kMs);
+  played.say_status(Role::mechanics, NodeState::ready, 0);
+  for (int i = 0; i < 25; ++i) {
+    played.say_status(Role::mechanics, NodeState::ready, 0);
+    played.say_status(Role::hydraulics, NodeState::initialising, 0);
+    poll(100 * kMs);
+  }
+  EXPECT_EQ(node->member().exit_code(), ExitCode::failed);
+  EXPECT_TRUE(node->member().reason().starts_with("not every node became ready within 2 s: hydraulics (process "))
+      << node->member().reason();
+  EXPECT_NE(node->member().reason().find(" on elsewhere) is initialising"), std::string::npos)
+      << node->member().reason();
+  EXPECT_EQ(node->member().reason().find("mechanics"), std::string::npos) << node->member().reason();
+}
+
+TEST_F(Io, RefusesWhatCannotBeDoneNowSayingWhen) {
+  wire::ControlRequest set;
+  set.session = "s";
+  set.action = wire::ControlAction::set_parameter;
+  set.path = "Bag.mass";
+  set.value = 1;
+  const auto answer_to = [&] {
+    ++set.request;
+    played.say(Topic::control_request, set);
+    poll();
+    const auto replies = played.said<wire::ControlReply>(Topic::control_reply);
+    return replies.empty() ? wire::ControlReply{} : replies.back();
+  };
+  IoConfig with = config();
+  with.judge_parameter = [](std::string_view, double, std::int64_t) { return ParameterVerdict{true, "", 0}; };
+  restart(std::move(with));
+  poll();
+  EXPECT_EQ(answer_to().reason, "the session is not running yet");
+  get_running();
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  for (std::size_t i = 0; i < wire::kMaxCommandsPerTick; ++i) EXPECT_TRUE(answer_to().is_accepted);
+  const wire::ControlReply refused = answer_to();
+  EXPECT_FALSE(refused.is_accepted);
+  EXPECT_EQ(refused.reason, "16 changes already wait for the next step; send it again after that step");
+  EXPECT_TRUE(request(wire::ControlAction::step, 1).is_accepted);
+  say_samples(node->next_step());
+  poll(kMs);
+  EXPECT_TRUE(answer_to().is_accepted);
+}
+
 TEST_F(Io, PublishesWhatItHeldAtABoundAndWhoFellSilent) {
   IoConfig lever = config();
   lever.channels.push_back({.name = "Lever"});

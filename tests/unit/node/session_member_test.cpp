@@ -206,6 +206,107 @@ TEST_F(Member, NamesASilentNodeOnceAndTakesItBack) {
   EXPECT_EQ(watch(321 * kMs), PeerEvent::back);
 }
 
+// ---- standing still oneself -----------------------------------------------------------------------------------
+
+TEST_F(Member, ThatStoodStillItselfGivesTheOthersTimeToBeHeardAgainOnce) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5), 0).is_ok());
+  EXPECT_EQ(watch(10 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(30'000 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(30'100 * kMs), PeerEvent::none);
+  hear_health(Role::io, 9, 30'200 * kMs);
+  // silent since 10 ms before it stood still
+  EXPECT_EQ(watch(30'291 * kMs), PeerEvent::silent);
+  EXPECT_EQ(about, Role::hydraulics);
+  // who has not been heard since is not excused again, who has is
+  EXPECT_EQ(watch(60'000 * kMs), PeerEvent::lost);
+  EXPECT_EQ(about, Role::hydraulics);
+  EXPECT_FALSE(member.peer(Role::io).is_lost);
+}
+
+TEST_F(Member, ThatWasGivenUpSaysWhetherItStoodStillOrWasNotHeard) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  member.set_step(512);
+  NodeStatus io = status_of(Role::io, 9, NodeState::fault);
+  io.reason = "mechanics (process " + std::to_string(getpid()) + " on " + machine_of(this_process().host) +
+              ") is gone; the session was held";
+  EXPECT_EQ(watch(10 * kMs), PeerEvent::none);
+  ASSERT_TRUE(hear(io, 20 * kMs).is_ok());
+  const std::string reason = "io ended the session: " + io.reason;
+  EXPECT_EQ(member.end_text(Role::io, reason),
+            "this node ran, but was not heard for 2 s and was given up; look at the network from this machine to the "
+            "others; " +
+                reason);
+  EXPECT_EQ(watch(30'010 * kMs), PeerEvent::none);
+  EXPECT_EQ(member.end_text(Role::io, reason),
+            "this node stood still for 30 s at step 512 and was given up after 2 s; session 's' has ended; look for "
+            "what stopped the process (a signal, a debugger, lack of memory or of processors)");
+  // any other reason is its own
+  io.reason = "hydraulics (process 1005 on elsewhere) is gone; the session was held";
+  ASSERT_TRUE(hear(io, 30'020 * kMs).is_ok());
+  EXPECT_EQ(member.end_text(Role::io, io.reason), io.reason);
+}
+
+TEST_F(Member, ThatStoodStillAndHearsNobodyAfterwardsSaysSo) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  EXPECT_EQ(watch(10 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(30'010 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(30'020 * kMs + kSilentAfter.ns), PeerEvent::silent);
+  EXPECT_EQ(watch(30'100 * kMs + kSilentAfter.ns), PeerEvent::none);
+  EXPECT_EQ(watch(31'000 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch(32'001 * kMs), PeerEvent::lost);
+  EXPECT_EQ(member.end_text(about, "io is gone"),
+            "io is gone; this node itself had stood still for 30 s, and after 2 s the others give a node up; look for "
+            "what stopped the process (a signal, a debugger, lack of memory or of processors)");
+}
+
+// ---- other programs -------------------------------------------------------------------------------------------
+
+TEST_F(Member, WhoOwnsTheSessionTellsOnceWhatMayChangeTheLastBit) {
+  InProcessEndpoint place(bus, {"io", {Topic::node_status}, transport::TopicSet::all()});
+  SessionMember owner(Role::io, place, {});
+  ASSERT_TRUE(owner.adopt(description(), 0).is_ok());
+  const auto hears = [&](NodeStatus status) {
+    std::vector<std::byte> bytes;
+    ASSERT_TRUE(transport::encode(status, bytes));
+    ASSERT_TRUE(owner.on_node_status(bytes, 0).is_ok());
+  };
+  NodeStatus same = status_of(Role::mechanics, 5);
+  same.build = owner.identity().build;
+  same.self_test = owner.identity().self_test;
+  hears(same);
+  EXPECT_TRUE(owner.take_warnings().empty());
+  NodeStatus other = status_of(Role::hydraulics, 5);
+  other.build = "another";
+  other.self_test = same.self_test;
+  hears(other);
+  hears(other);
+  EXPECT_EQ(owner.take_warnings(),
+            std::vector<std::string>{"hydraulics on elsewhere is of build 'another', io of '" + same.build +
+                                     "': bits may differ from those of one build; install one build on all machines"});
+  NodeStatus inexact = status_of(Role::recorder, 5);
+  inexact.build = same.build;
+  inexact.self_test = same.self_test + 1;
+  hears(inexact);
+  const std::vector<std::string> warnings = owner.take_warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(
+      warnings[0].starts_with("recorder on elsewhere computes the arithmetic self-test with another result "
+                              "than io: this session's bits cannot be compared"))
+      << warnings[0];
+}
+
+TEST_F(Member, IsRefusedByASessionOfAnotherProtocol) {
+  wire::SessionDescription session = description();
+  session.protocol = wire::kProtocolVersion + 1;
+  ASSERT_TRUE(member.adopt(session, 0).is_ok());
+  const Status status = member.problem_of_protocol();
+  EXPECT_EQ(status.code, ExitCode::bad_input);
+  EXPECT_EQ(status.text, "session 's' speaks protocol version " + std::to_string(wire::kProtocolVersion + 1) +
+                             ", this program " + std::to_string(wire::kProtocolVersion) +
+                             "; use one version on all machines");
+}
+
 TEST_F(Member, IsHeardOnlyWhenEveryRequiredReaderSaysSo) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   const std::uint32_t own = member.header(Phase::join, kJoinStep).incarnation;

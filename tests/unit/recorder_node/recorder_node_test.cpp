@@ -194,6 +194,31 @@ TEST_F(Recorder, CountsVariableBlocksThatNeverCame) {
   EXPECT_EQ(summary("variables.recorded"), "4");
   EXPECT_EQ(summary("variables.lost"), "2");
   EXPECT_EQ(node->member().exit_code(), ExitCode::losses);
+  EXPECT_EQ(node->member().reason(), "2 messages are missing in the recording");
+}
+
+// ---- others of the name ---------------------------------------------------------------------------------------
+
+TEST_F(Recorder, DoesNotFileWhatAnotherSessionOfTheNameSays) {
+  join();
+  const auto say_all = [&](std::uint8_t session) {
+    wire::NodeStatus status = played.status(Role::mechanics, NodeState::running, 1);
+    wire::Health health;
+    wire::ControllerLease lease;
+    status.header.session[0] ^= session;
+    health.header = lease.header = status.header;
+    played.say(Topic::node_status, status);
+    played.say(Topic::health, health);
+    played.say(Topic::controller_lease, lease);
+    poll(kMs);
+  };
+  say_all(0);
+  say_all(1);
+  say_all(1);
+  say_steps(0, 9);
+  say_end(9);
+  EXPECT_EQ(summary("health.recorded"), "1");
+  EXPECT_EQ(summary("controller_lease.recorded"), "1");
 }
 
 TEST_F(Recorder, WaitsForTheLastVariableBlock) {

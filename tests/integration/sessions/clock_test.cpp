@@ -1,0 +1,135 @@
+// The wall clock of the nodes is wrong by hours, differs between them, or jumps while they run: nothing changes but the
+// time stamps.
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <memory>
+
+#include "build_paths.h"
+#include "core/time.h"
+#include "direct_chain.h"
+#include "node/identity.h"
+#include "session.h"
+#include "shifted_clock.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::NodeState;
+using wire::Role;
+
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+constexpr const char* kDuration = "4s";
+constexpr std::int64_t kHour = std::int64_t{3600} * 1'000'000'000;
+
+// The wall clocks of a session's nodes.
+class Clocks {
+ public:
+  explicit Clocks(Session& session) {
+    for (const Role role : kAllNodes) {
+      const std::string path = session.folder() / ("clock_of_" + std::string(node::to_text(role)));
+      const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+      if (file < 0 || ftruncate(file, sizeof(ClockShift)) != 0) throw std::runtime_error("cannot write " + path);
+      void* const page = mmap(nullptr, sizeof(ClockShift), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+      close(file);
+      if (page == MAP_FAILED) throw std::runtime_error("cannot map " + path);
+      shifts_[role] = static_cast<ClockShift*>(page);
+      session.run_under(role,
+                        {"/usr/bin/env", std::string("LD_PRELOAD=") + SLEWRING_SHIFTED_CLOCK,
+                         std::string(kClockShiftVariable) + "=" + path},
+                        {});
+    }
+  }
+  ~Clocks() {
+    for (const auto& [role, shift] : shifts_) munmap(shift, sizeof(ClockShift));
+  }
+  Clocks(const Clocks&) = delete;
+  Clocks& operator=(const Clocks&) = delete;
+
+  void set(Role role, std::int64_t shift_ns) { shifts_.at(role)->ns = shift_ns; }
+  void set_all(std::int64_t shift_ns) {
+    for (const Role role : kAllNodes) set(role, shift_ns);
+  }
+  [[nodiscard]] bool all_are_read() const {
+    for (const auto& [role, shift] : shifts_) {
+      if (shift->reads == 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  std::map<Role, ClockShift*> shifts_;
+};
+
+class WallClock : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::string(SLEWRING_SANITIZER) != "") GTEST_SKIP() << "a sanitizer wants to be the first library itself";
+  }
+
+  void expect_an_undisturbed_session(const std::string& duration) {
+    ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+    EXPECT_TRUE(clocks.all_are_read()) << "the clock was not in the way: the test shows nothing";
+    for (const Role role : kAllNodes) EXPECT_EQ(session.node(role).err(), "") << node::to_text(role);
+    recorded = session.recorded();
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_TRUE(recorded.has_all_messages);
+    EXPECT_EQ(recorded.losses(), 0);
+    for (const SaidStatus& said : recorded.statuses) {
+      EXPECT_NE(said.status.state, NodeState::holding) << said.status.reason;
+      EXPECT_EQ(said.status.reason, "");
+    }
+    // what a busy machine costs, and nothing of the hours
+    EXPECT_LT(recorded.largest.at("session.slip"), 60);
+    const ScratchFolder folder;
+    const RecordedSession reference = run_in_one_process(load_scene(kScene, duration), folder.path() / "runs");
+    EXPECT_EQ(first_difference(recorded.chain(), reference.chain()), "");
+  }
+
+  Session session{{"--pace", "real", "--duration", kDuration}};
+  Clocks clocks{session};
+  RecordedSession recorded;
+};
+
+TEST_F(WallClock, ThatDiffersByHoursBetweenTheNodesChangesNothing) {
+  clocks.set(Role::mechanics, 5 * kHour);
+  clocks.set(Role::hydraulics, -7 * kHour);
+  clocks.set(Role::recorder, 30 * 24 * kHour);
+  session.start_all();
+  expect_an_undisturbed_session(kDuration);
+}
+
+class JumpingClock : public WallClock, public ::testing::WithParamInterface<std::int64_t> {};
+
+TEST_P(JumpingClock, OfAllNodesInMidRunChangesNothing) {
+  session.start_all();
+  ASSERT_TRUE(session.observer().wait_for_step(1000)) << session.said();
+  clocks.set_all(GetParam());
+  // who comes now finds the session, and is answered
+  Program late(program_path("slewring"),
+               {"param", "get", "Bag.mass", "--session", session.name(), "--domain", std::to_string(session.domain())},
+               session.folder() / "late");
+  EXPECT_EQ(late.wait(), 0) << late.err();
+  EXPECT_TRUE(session.node(Role::io).is_running()) << "it was answered too late";
+  ASSERT_TRUE(session.observer().wait_for_step(3000)) << session.said();
+  clocks.set_all(0);
+  expect_an_undisturbed_session(kDuration);
+}
+
+TEST_P(JumpingClock, OfOneNodeInMidRunChangesNothing) {
+  session.start_all();
+  ASSERT_TRUE(session.observer().wait_for_step(1000)) << session.said();
+  clocks.set(Role::hydraulics, GetParam());
+  ASSERT_TRUE(session.observer().wait_for_step(3000)) << session.said();
+  clocks.set(Role::hydraulics, 0);
+  expect_an_undisturbed_session(kDuration);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hours, JumpingClock, ::testing::Values(3 * kHour, -3 * kHour),
+                         [](const auto& shift) { return shift.param > 0 ? "ahead" : "back"; });
+
+}  // namespace
+}  // namespace slew::testing

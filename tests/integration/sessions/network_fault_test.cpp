@@ -1,0 +1,192 @@
+// A session over a cable that loses datagrams, is out for a while, or carries in one direction only.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "build_paths.h"
+#include "direct_chain.h"
+#include "namespaces.h"
+#include "node/identity.h"
+#include "session.h"
+
+namespace slew::testing {
+namespace {
+
+using wire::Role;
+
+constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
+
+class FaultyCable : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
+  }
+
+  // Nobody outside the namespaces hears the session: its recording grows when it runs.
+  static void wait_until_it_runs(Session& session) {
+    constexpr std::uintmax_t kSomeSteps = 300'000;  // bytes; the front of the file is a tenth of it
+    const auto size = [&] {
+      std::uintmax_t bytes = 0;
+      std::error_code ignored;
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(session.runs(), ignored)) {
+        if (entry.is_regular_file(ignored)) bytes += entry.file_size(ignored);
+      }
+      return bytes;
+    };
+    for (int i = 0; i < 600 && size() < kSomeSteps; ++i) {
+      ASSERT_FALSE(session.node(Role::io).wait(50'000'000).has_value()) << session.said();
+    }
+    ASSERT_GE(size(), kSomeSteps) << session.said();
+  }
+
+  static void expect_bits_of_one_process(const RecordedSession& recorded, const std::string& duration) {
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_TRUE(recorded.has_all_messages);
+    EXPECT_EQ(recorded.losses(), 0);
+    const ScratchFolder folder;
+    const RecordedSession reference = run_in_one_process(load_scene(kScene, duration), folder.path() / "runs");
+    EXPECT_EQ(first_difference(recorded.chain(), reference.chain()), "");
+  }
+
+  // What the nodes of this role said in the recording, one line each.
+  static std::string told(const RecordedSession& recorded, Role role) {
+    std::string text;
+    for (const SaidStatus& said : recorded.statuses) {
+      if (said.status.header.role == role) text += said.status.reason + "\n";
+    }
+    return text;
+  }
+
+  NamespacePair cable;
+};
+
+// ---- loss -----------------------------------------------------------------------------------------------------
+
+class LossyCable : public FaultyCable, public ::testing::WithParamInterface<int> {};
+
+TEST_P(LossyCable, GivesTheBitsOfOneProcess) {
+  Session session({"--pace", "free", "--duration", "1.6s"});
+  distribute(session, cable);
+  if (!cable.lose(GetParam())) GTEST_SKIP() << "datagrams cannot be lost here: " << cable.problem();
+  session.start_all();
+  ASSERT_EQ(session.wait_all(120'000'000'000), all_ok()) << session.said();
+  const std::uint64_t left = cable.lost(cable.left()), right = cable.lost(cable.right());
+  RecordProperty("lost_left", std::to_string(left));
+  RecordProperty("lost_right", std::to_string(right));
+  EXPECT_GT(left, 0u) << "nothing was lost: the test shows nothing";
+  EXPECT_GT(right, 0u) << "nothing was lost: the test shows nothing";
+  expect_bits_of_one_process(session.recorded(), "1.6s");
+}
+
+INSTANTIATE_TEST_SUITE_P(Percent, LossyCable, ::testing::Values(1, 5));
+
+// ---- link down ------------------------------------------------------------------------------------------------
+
+TEST_F(FaultyCable, OutForHalfASecondIsNamedAndTheSessionGoesOnWithTheSameBits) {
+  Session session({"--pace", "real", "--duration", "4s"});
+  distribute(session, cable);
+  session.start_all();
+  wait_until_it_runs(session);
+  if (HasFatalFailure()) return;
+  cable.unplug();
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  cable.plug();
+  ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  expect_bits_of_one_process(recorded, "4s");
+  // both sides held and named somebody of the other side
+  EXPECT_NE(told(recorded, Role::mechanics).find("which has been silent for 0.3 s at step "), std::string::npos)
+      << told(recorded, Role::mechanics);
+  EXPECT_NE(told(recorded, Role::io).find("which has been silent for 0.3 s at step "), std::string::npos)
+      << told(recorded, Role::io);
+}
+
+TEST_F(FaultyCable, OutFor3SecondsEndsTheSessionWithCode4) {
+  Session session({"--pace", "real", "--duration", "60s"});
+  distribute(session, cable);
+  session.start_all();
+  wait_until_it_runs(session);
+  if (HasFatalFailure()) return;
+  cable.unplug();
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  cable.plug();
+  for (const auto& [role, code] : session.wait_all()) {
+    EXPECT_EQ(code, 4) << node::to_text(role) << "\n" << session.said();
+    EXPECT_NE(session.node(role).err().find(" is gone; "), std::string::npos) << session.said();
+  }
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_TRUE(recorded.has_all_messages);
+  EXPECT_GT(recorded.last_complete_step(), 0);
+}
+
+// ---- one way --------------------------------------------------------------------------------------------------
+
+TEST_F(FaultyCable, ThatCarriesOneWayLetsNobodyJoin) {
+  Session session({"--duration", "1s", "--join-timeout", "2"});
+  distribute(session, cable);
+  if (!cable.deafen(cable.right())) GTEST_SKIP() << "datagrams cannot be lost here: " << cable.problem();
+  for (const Role role : {Role::io, Role::hydraulics}) session.start(role);
+  for (const Role role : {Role::mechanics, Role::recorder}) session.start(role, {"--session-timeout", "4"});
+  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 1) << node::to_text(role) << session.said();
+  EXPECT_GT(cable.lost(cable.right()), 0u);
+  const std::string said = session.node(Role::io).err();
+  EXPECT_NE(said.find("JOIN did not come about within 2 s: no mechanics node has been heard in session 's' (expected "
+                      "topic slewring/mechanism, type slewring::MechanismMessage; found no writer of it)"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("no recorder node has been heard"), std::string::npos) << said;
+  EXPECT_EQ(said.find("no hydraulics node"), std::string::npos) << said;
+  EXPECT_NE(session.node(Role::mechanics).err().find("no session was found within 4 s"), std::string::npos)
+      << session.said();
+}
+
+// a fire wall that lets the ports of discovery through and not those of the data
+TEST_F(FaultyCable, ThatCarriesDataOneWayLetsNobodyJoinAndIoNamesTheWriterThatItDoesNotHear) {
+  Session session({"--duration", "1s", "--join-timeout", "2"});
+  distribute(session, cable);
+  if (!cable.deafen(cable.right(), NamespacePair::Datagrams::data)) {
+    GTEST_SKIP() << "datagrams cannot be lost here: " << cable.problem();
+  }
+  session.start_all();
+  for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 1) << node::to_text(role) << session.said();
+  EXPECT_GT(cable.lost(cable.right()), 0u);
+  const std::string said = session.node(Role::io).err();
+  EXPECT_NE(said.find("no mechanics node has been heard in session 's' (expected topic slewring/mechanism, type "
+                      "slewring::MechanismMessage; found "),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("pid " + std::to_string(session.node(Role::mechanics).pid())), std::string::npos) << said;
+}
+
+class OneWayCable : public FaultyCable, public ::testing::WithParamInterface<bool> {};
+
+TEST_P(OneWayCable, InMidRunEndsTheSessionWithCode4) {
+  Session session({"--pace", "real", "--duration", "60s"});
+  distribute(session, cable);
+  session.start_all();
+  wait_until_it_runs(session);
+  if (HasFatalFailure()) return;
+  const bool is_left_deaf = GetParam();
+  if (!cable.deafen(is_left_deaf ? cable.left() : cable.right())) {
+    GTEST_SKIP() << "datagrams cannot be lost here: " << cable.problem();
+  }
+  for (const auto& [role, code] : session.wait_all())
+    EXPECT_EQ(code, 4) << node::to_text(role) << "\n" << session.said();
+  // the side that hears nothing names one of the other side
+  const Role deaf = is_left_deaf ? Role::mechanics : Role::hydraulics;
+  const std::string said = session.node(deaf).err();
+  EXPECT_NE(said.find(" is gone; this node stopped after step "), std::string::npos) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_TRUE(recorded.has_all_messages);
+  EXPECT_GT(recorded.last_complete_step(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(DeafSide, OneWayCable, ::testing::Bool(),
+                         [](const auto& is_left) { return is_left.param ? "left" : "right"; });
+
+}  // namespace
+}  // namespace slew::testing

@@ -1,0 +1,20 @@
+// The wall clock of a program under test: hours off, and it may jump while the program runs.
+//
+// shifted_clock.cpp is loaded into the program in front of its libraries and answers for the kernel. Both look at one
+// page of a file. What waits until an instant of the wall clock waits as the kernel lets it wait: until the shifted
+// clock shows that instant.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace slew::testing {
+
+struct ClockShift {
+  std::atomic<std::int64_t> ns{0};      // added to CLOCK_REALTIME
+  std::atomic<std::uint64_t> reads{0};  // of the shifted clock: the program asked it
+};
+
+inline constexpr const char* kClockShiftVariable = "SLEWRING_TEST_CLOCK_SHIFT";
+
+}  // namespace slew::testing
