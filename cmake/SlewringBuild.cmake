@@ -20,6 +20,10 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
 endif()
 
+# position-independent programs, not only libraries
+include(CheckPIESupported)
+check_pie_supported(LANGUAGES C CXX)
+
 # the same bits in every build: no contraction to fused multiply-add, no value-changing optimisation
 add_library(slewring_flags INTERFACE)
 target_compile_options(slewring_flags INTERFACE -march=${SLEWRING_MARCH} -ffp-contract=off)
@@ -30,6 +34,13 @@ target_compile_options(slewring_flags INTERFACE
   # clang takes the C macro INFINITY for a float
   $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion>)
 target_include_directories(slewring_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/libs)
+# what a damaged stack, a wrong length or an overwritten table of functions must not become; docs/security.md. The
+# sanitizers bring checks of their own.
+if(NOT SLEWRING_SANITIZE)
+  target_compile_options(slewring_flags INTERFACE -fstack-protector-strong -fstack-clash-protection)
+  target_compile_definitions(slewring_flags INTERFACE $<$<NOT:$<CONFIG:Debug>>:_FORTIFY_SOURCE=2>)
+  target_link_options(slewring_flags INTERFACE -Wl,-z,relro -Wl,-z,now -Wl,-z,noexecstack)
+endif()
 if(SLEWRING_SANITIZE)
   target_compile_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE})

@@ -82,8 +82,8 @@ struct IoConfig {
   std::string save_obstacle{};   // why the session's state cannot be saved; empty: it can
   StepIndex save_unit = 1;       // every how many steps it can, because all nodes have exchanged then
   std::optional<Beginning> beginning{};
-  OverrunRules overrun;          // of `real` pace
-  Shed shed = Shed::none;        // the most that a session that overruns leaves out
+  OverrunRules overrun;    // of `real` pace
+  Shed shed = Shed::none;  // the most that a session that overruns leaves out
 };
 
 // A node that has not given its state for so long: the session goes on without being saved.

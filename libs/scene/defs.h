@@ -73,8 +73,8 @@ struct SessionDef {
       0;                      // steps in a row that overran, after which hold or stop takes effect; 0: the lag alone
   double overrun_lag = 0.05;  // s, behind the wall clock, after which the policy takes effect
   ShedLoad shed = ShedLoad::none;
-  double start_grace = 0.5;   // s after step 0 that are not judged
-  std::string cpus;           // "mechanics=1, hydraulics=0": where `run` puts its nodes; empty: anywhere
+  double start_grace = 0.5;  // s after step 0 that are not judged
+  std::string cpus;          // "mechanics=1, hydraulics=0": where `run` puts its nodes; empty: anywhere
 
   [[nodiscard]] SimDuration step_duration() const noexcept;
   [[nodiscard]] StepIndex steps() const noexcept;  // of the whole duration; 0: until stopped
