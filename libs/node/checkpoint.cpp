@@ -123,7 +123,7 @@ bool CheckpointParts::has(const wire::StatePart& part) const noexcept {
 bool CheckpointParts::take(const wire::StatePart& part) {
   const StepIndex step = part.header.step;
   if (!is_of_this(part)) {
-    if (part.total == 0 || step < 0) return false;
+    if (part.total == 0 || part.total > kMaxStateBytes || step < 0) return false;
     checkpoint_.step = step;
     checkpoint_.state_hash = part.state_hash;
     checkpoint_.bytes.resize(part.total);

@@ -27,6 +27,9 @@ inline constexpr StepIndex kCheckpointEvery = 128;
 // within the kSentDepth steps that everybody can say again.
 inline constexpr std::size_t kKeptCheckpoints = 4;
 
+// No state is longer; of a part that says so nothing is kept.
+inline constexpr std::size_t kMaxStateBytes = std::size_t{64} << 20;
+
 struct Checkpoint {
   StepIndex step = kJoinStep;
   std::uint64_t state_hash = 0;

@@ -117,6 +117,10 @@ TEST(StateParts, ThatDoNotFitAreLeftOut) {
   EXPECT_FALSE(taken.take(part)) << "a short first part";
   part.total = 0;
   EXPECT_FALSE(taken.take(part));
+  part = parts_of(some_checkpoint(128, 9000))[1];
+  part.total = 0xffffffff;
+  EXPECT_FALSE(taken.take(part));
+  EXPECT_EQ(taken.checkpoint().bytes.capacity(), 0u) << "no memory for what nobody sends";
 }
 
 TEST(StateParts, OfTheLastFourStatesAreKept) {
