@@ -15,6 +15,7 @@
 #include "cli/stress/yardstick.h"
 #include "cli_support/failure.h"
 #include "io_node/scene_config.h"
+#include "io_node/session_scene.h"
 #include "scene/cpu_places.h"
 
 namespace slew::cli {
@@ -152,8 +153,9 @@ std::string name_of(const StressCell& cell) {
   return fmt::format("{}, load {}, {:g} us added", to_text(cell.scheduling), to_text(cell.load), cell.work_us);
 }
 
-void run_cell(const StressWish& wish, const scene::Scene& scene, StressCell& cell,
+void run_cell(const StressWish& wish, const io::SessionScene& session, StressCell& cell,
               const std::function<bool(double)>& progress) {
+  const scene::Scene& scene = session.scene;
   const std::string runs = wish.folder + "/stress-" + std::to_string(getpid());
   std::error_code ignored;
   std::filesystem::create_directories(runs, ignored);
@@ -173,7 +175,7 @@ void run_cell(const StressWish& wish, const scene::Scene& scene, StressCell& cel
   RunOutcome outcome;
   {
     const LoadProcesses load(cell.load, runs);
-    outcome = run_distributed(options, scene);
+    outcome = run_distributed(options, session);
     cell.load_average = load_average();
   }
   const CpuTicks after = cpu_ticks();
@@ -220,7 +222,8 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
   stress.wish = wish;
   stress.bounds = bounds;
   stress.machine = this_machine();
-  const scene::Scene scene = cli_support::load_scene(wish.scene);
+  const io::SessionScene session = io::load_session_scene(wish.scene);
+  const scene::Scene& scene = session.scene;
   stress.scene = scene.name;
   if (stress.wish.session.session.empty()) {
     stress.wish.session.session = cli_support::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
@@ -247,7 +250,7 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
     StressCell& cell = stress.cells[i];
     if (!cell.skipped.empty()) continue;
     bool goes_on = true;
-    run_cell(stress.wish, scene, cell, [&](double share) {
+    run_cell(stress.wish, session, cell, [&](double share) {
       goes_on = goes_on && progress(name_of(cell), (static_cast<double>(i) + std::min(1.0, share)) / all);
       return goes_on;
     });

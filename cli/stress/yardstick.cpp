@@ -39,7 +39,7 @@ void Yardstick::run(const YardstickRules& rules, SimDuration slice) {
   io::SessionClock clock(rules.step, rules.overrun, *timing_);
   const StepIndex steps = slice.ns / rules.step.ns;
   std::int64_t last_ns = monotonic_ns();
-  clock.begin(last_ns + rules.step.ns);
+  clock.begin(0, last_ns + rules.step.ns);
   StepIndex n = 0;
   for (; n < steps && !is_stopped_; ++n) {
     sleep_until_monotonic(std::max(clock.due_ns(n), last_ns + rules.step.ns / 2));
