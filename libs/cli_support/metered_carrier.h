@@ -16,6 +16,7 @@ class MeteredCarrier final : public transport::Transport {
   bool take(transport::Received& message) override;
   void wait_until(std::int64_t monotonic_deadline_ns) override;
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
+  [[nodiscard]] std::vector<std::string> misfits() override { return carrier_->misfits(); }
 
  private:
   std::unique_ptr<transport::Transport> carrier_;

@@ -256,7 +256,7 @@ void CycloneTransport::look_at_the_clock() noexcept {
   if (now_ns < next_look_ns_) return;
   next_look_ns_ = now_ns + kClockLook;
   const std::int64_t ahead_ns = wall_clock_ns() - now_ns;
-  if (ahead_ns < wall_ahead_ns_ - kClockStep) domain_->wake_timers();
+  if (ahead_ns + kClockStep < wall_ahead_ns_) domain_->wake_timers();
   wall_ahead_ns_ = ahead_ns;
 }
 

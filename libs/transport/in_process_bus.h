@@ -42,6 +42,7 @@ class InProcessEndpoint final : public Transport {
   bool take(Received& message) override;
   void wait_until(std::int64_t monotonic_deadline_ns) override;
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
+  [[nodiscard]] std::vector<std::string> misfits() override { return {}; }  // there are none on a bus
 
   // Messages lost because they were not taken in time.
   [[nodiscard]] std::uint64_t dropped() const;

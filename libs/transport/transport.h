@@ -42,7 +42,7 @@ class Transport {
 
   // Who is in this session with a type or QoS that keeps them and this endpoint from hearing each other, a sentence
   // each; without this they would only be silent. Thread-safe.
-  [[nodiscard]] virtual std::vector<std::string> misfits() { return {}; }
+  [[nodiscard]] virtual std::vector<std::string> misfits() = 0;
 };
 
 }  // namespace slew::transport

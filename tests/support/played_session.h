@@ -54,6 +54,7 @@ class BreakableCarrier final : public transport::Transport {
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override {
     return carrier_.discovered_writers(topic);
   }
+  [[nodiscard]] std::vector<std::string> misfits() override { return carrier_.misfits(); }
 
  private:
   transport::Transport& carrier_;

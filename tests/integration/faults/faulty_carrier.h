@@ -89,6 +89,7 @@ class FaultyCarrier final : public transport::Transport {
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override {
     return carrier_.discovered_writers(topic);
   }
+  [[nodiscard]] std::vector<std::string> misfits() override { return carrier_.misfits(); }
 
  private:
   struct Pending {
