@@ -46,6 +46,7 @@ void complete(Options& options) {
     wish.loads.push_back(text == "cpu" ? Load::cpu : text == "mixed" ? Load::mixed : Load::none);
   }
   wish.scene.pace = "real";
+  wish.scene.overrides.emplace_back("session.overrun=slip");  // a cell goes on to its end
   wish.scene.duration = fmt::format("{} s", wish.seconds);
 }
 

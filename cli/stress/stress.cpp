@@ -67,6 +67,7 @@ class CellWatch {
       case Stage::pausing:
         if (view.is_over()) stage_ = Stage::stepping;
         if (!view.is_paused()) return ask_again(observer, wire::ControlAction::pause, now_ns);
+        if (done_ == 0 && median_execution(view).ns == 0 && now_ns - asked_ns_ < kAskAgainNs) return;
         measure(view);
         stage_ = Stage::measuring;
         return;
@@ -99,12 +100,15 @@ class CellWatch {
     return std::max<StepIndex>(1, std::llround(std::ceil(seconds / kLongestSlice)));
   }
 
+  // of the slowest physics node; 0: none has told it yet
+  static SimDuration median_execution(const SessionView& view) {
+    double median = 0;
+    for (const Role role : wire::kPhysicsRoles) median = std::max(median, view.node(role).health.execution.p50);
+    return duration_of_seconds(median);
+  }
+
   void measure(const SessionView& view) {
-    if (done_ == 0) {
-      double median = 0;
-      for (const Role role : wire::kPhysicsRoles) median = std::max(median, view.node(role).health.execution.p50);
-      rules_.work = duration_of_seconds(median);
-    }
+    if (done_ == 0) rules_.work = median_execution(view);
     const double session = rules_.step.seconds() * static_cast<double>(steps_);
     yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));
   }
@@ -163,6 +167,7 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, StressCel
   const std::string places = wish.cpus.empty() ? scene.session.cpus : wish.cpus;
   YardstickRules rules;
   rules.step = scene.session.step_duration();
+  rules.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
   rules.priority = cell.scheduling == Scheduling::fifo ? cli_support::kIoPriority : 0;
   rules.cpu = cpu_of(places, "mechanics");
   CellWatch watch(rules, scene.session.steps(), cell);
@@ -213,7 +218,9 @@ Judgement judge(const wire::Health& health, const StressBounds& bounds) noexcept
 
 Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept {
   const bool is_stated = bounds.max_miss >= 0 || bounds.p99 >= 0;
-  if (is_stated && cell.skipped.empty() && cell.code != ExitCode::ok) return Judgement::over;
+  // what the recorder lost is no deadline
+  const bool has_run = cell.code == ExitCode::ok || cell.code == ExitCode::losses;
+  if (is_stated && cell.skipped.empty() && !has_run) return Judgement::over;
   return judge(cell.nodes[static_cast<std::size_t>(Role::io)], bounds);
 }
 
@@ -232,6 +239,12 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
     throw Failure(ExitCode::bad_input,
                   "a monolithic solution has no deadline: its steps take as long as they take; nothing was run; choose "
                   "session.solution: split");
+  }
+  if (scene.session.duration <= 2 * scene.session.start_grace) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("the first {:g} s of a session are not judged (session.start_grace), and {:g} s are too "
+                              "short to judge the rest; nothing was run; give --seconds more than {:g}",
+                              scene.session.start_grace, scene.session.duration, 2 * scene.session.start_grace));
   }
   const bool has_fifo = fifo_is_allowed();
   for (const Scheduling scheduling : wish.schedulings) {

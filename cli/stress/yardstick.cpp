@@ -50,13 +50,7 @@ void Yardstick::run(const YardstickRules& rules, SimDuration slice) {
     static_cast<void>(clock.completed(n + 1, n + 1, monotonic_ns()));
   }
   clock.close(n, monotonic_ns());
-  wire::Health books;
-  books.header.step = n;
-  books.steps_due = timing_->steps_due;
-  books.steps_skipped = timing_->steps_skipped;
-  books.lag_ns = timing_->lag_ns;
-  books.rest_ns = timing_->rest_ns;
-  if (problem_.empty()) problem_ = io::problem_of_books(books, rules.step);
+  if (problem_.empty()) problem_ = io::problem_of_books(timing_->books.read(), rules.step);
   steps_ += static_cast<std::uint64_t>(n);
   skipped_ += clock.skipped();
   slip_ns_ += clock.slip_ns();

@@ -18,7 +18,7 @@ class Stress : public ::testing::Test {
  protected:
   CommandResult stress(std::vector<std::string> more) const {
     more.insert(more.begin(), {"stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()),
-                               "--quiet", "--seconds", "1"});
+                               "--quiet", "--seconds", "2"});
     return run("slewring", more, work_.path());
   }
   static void expect_ordered(const json& times) {
@@ -42,14 +42,14 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   ASSERT_EQ(report.at("cells").size(), 2u);
   for (const json& cell : report.at("cells")) {
     EXPECT_EQ(cell.at("scheduling"), "normal");
-    EXPECT_EQ(cell.at("steps"), 1000);
+    EXPECT_EQ(cell.at("steps"), 2000);
     EXPECT_EQ(cell.at("verdict"), "within");
     const json& books = cell.at("books");
     EXPECT_TRUE(books.at("balance")) << books;
-    EXPECT_EQ(books.at("run"), 1000);
+    EXPECT_EQ(books.at("run"), 2000);
     const double rest = books.at("rest"), lag = books.at("lag");
     const double behind = rest < 0 ? 0 : std::floor(rest / 1e-3) + 1;
-    EXPECT_EQ(books.at("due").get<double>(), 1000 + books.at("skipped").get<double>() + behind);
+    EXPECT_EQ(books.at("due").get<double>(), 2000 + books.at("skipped").get<double>() + behind);
     EXPECT_NEAR(lag, books.at("skipped").get<double>() * 1e-3 + rest, 1e-9);
     for (const char* who : {"session", "yardstick"}) {
       expect_ordered(cell.at(who).at("response"));
@@ -57,8 +57,8 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
       EXPECT_LE(cell.at(who).at("longest_run_of_misses"), cell.at(who).at("missed"));
     }
     // half a second of start-up grace is not judged
-    EXPECT_LE(cell.at("session").at("response").at("count"), 500);
-    EXPECT_EQ(cell.at("yardstick").at("response").at("count"), 250);
+    EXPECT_LE(cell.at("session").at("response").at("count"), 1500);
+    EXPECT_EQ(cell.at("yardstick").at("response").at("count"), 500);
     EXPECT_GT(cell.at("yardstick").at("work"), 0);
     for (const char* role : {"mechanics", "hydraulics"}) {
       const json& node = cell.at("nodes").at(role);
@@ -86,9 +86,10 @@ TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
 }
 
 TEST_F(Stress, WorkThatIsAddedIsDone) {
-  // twice the step's time: every step overruns, all of them in a row, and the session falls behind
-  const CommandResult result =
-      stress({"--json", "--no-record", "--add-work", "2000", "--set", "session.start_grace=0 s"});
+  // twice the step's time: every step overruns, all of them in a row, and the session falls behind; it goes on to its
+  // end whatever the scene would have it do
+  const CommandResult result = stress({"--json", "--no-record", "--add-work", "2000", "--set",
+                                       "session.start_grace=0 s", "--set", "session.overrun=hold"});
   ASSERT_EQ(result.code, 0) << result.err;
   const json cell = json::parse(result.out).at("cells").at(0);
   EXPECT_GE(cell.at("nodes").at("mechanics").at("execution").at("min"), 2e-3);
@@ -100,6 +101,9 @@ TEST_F(Stress, WorkThatIsAddedIsDone) {
 }
 
 TEST_F(Stress, RefusesWhatHasNoDeadline) {
+  const CommandResult brief = stress({"--set", "session.start_grace=1 s"});
+  EXPECT_EQ(brief.code, 2);
+  EXPECT_NE(brief.err.find("give --seconds more than 2"), std::string::npos) << brief.err;
   const CommandResult result = stress({"--set", "session.solution=monolithic"});
   EXPECT_EQ(result.code, 2);
   EXPECT_NE(result.err.find("a monolithic solution has no deadline"), std::string::npos) << result.err;
