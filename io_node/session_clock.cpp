@@ -32,7 +32,8 @@ void SessionClock::begin(StepIndex n, std::int64_t now_ns) noexcept {
   skipped_ = 0;
   complete_ = n;  // its sample is of the start
   slipped_ns_ = 0;
-  issued_.fill({});
+  cpu_ns_ = 0;
+  forget_under_way();
   timing_.overrun_run.store(0, kRelaxed);
 }
 
@@ -41,6 +42,8 @@ void SessionClock::excuse(StepIndex n, std::int64_t now_ns) noexcept {
   if (late_ns <= 0) return;
   excused_ns_ += late_ns;
   base_ns_ += late_ns;
+  if (slipped_ns_ != 0) slipped_ns_ += late_ns;
+  cpu_ns_ = 0;  // what was done meanwhile is of no step
 }
 
 std::string SessionClock::in_words(const char* what, StepIndex n) const {
@@ -56,24 +59,34 @@ std::optional<Verdict> SessionClock::keep_time(StepIndex n, std::int64_t now_ns)
     return Verdict{Overrun::slip, in_words("slip", n) + "the session has kept up with the wall clock for 1 s again, " +
                                       std::to_string(skipped_) + " steps were given up so far"};
   }
-  if (rules_.policy != Overrun::slip && is_judged(n)) {
-    const bool holds = rules_.policy == Overrun::hold;
-    add(timing_.transitions, 1);
-    return Verdict{rules_.policy, in_words(holds ? "hold" : "stop", n) + "the session was " +
-                                      milliseconds_text(lag_ns) + " behind the wall clock (session.overrun_lag " +
-                                      milliseconds_text(rules_.lag.ns) + ")"};
+  const StepIndex steps = rules_.policy == Overrun::stop && is_judged(n) ? 0 : give_up(lag_ns);
+  if (!is_judged(n)) return Verdict{Overrun::slip, ""};
+  if (rules_.policy != Overrun::slip) {
+    return overrun(n, "the session was " + milliseconds_text(lag_ns) + " behind the wall clock (session.overrun_lag " +
+                          milliseconds_text(rules_.lag.ns) + ")");
   }
-  const std::int64_t steps = lag_ns / H_;
-  base_ns_ += steps * H_;
-  all_slips_ns_ += steps * H_;
-  skipped_ += static_cast<std::uint64_t>(steps);
   const bool is_new = slipped_ns_ == 0;
   slipped_ns_ = now_ns;
-  if (!is_new || !is_judged(n)) return Verdict{Overrun::slip, ""};
+  if (!is_new) return Verdict{Overrun::slip, ""};
   add(timing_.transitions, 1);
   return Verdict{Overrun::slip, in_words("slip", n) + "the session was " + milliseconds_text(lag_ns) +
                                     " behind the wall clock; " + std::to_string(steps) +
                                     " steps of wall time were given up"};
+}
+
+// in whole steps
+StepIndex SessionClock::give_up(std::int64_t lag_ns) noexcept {
+  const StepIndex steps = lag_ns / H_;
+  base_ns_ += steps * H_;
+  all_slips_ns_ += steps * H_;
+  skipped_ += static_cast<std::uint64_t>(steps);
+  return steps;
+}
+
+Verdict SessionClock::overrun(StepIndex n, const std::string& why) {
+  add(timing_.transitions, 1);
+  timing_.overrun_run.store(0, kRelaxed);  // of a session that is resumed they are counted anew
+  return {rules_.policy, in_words(rules_.policy == Overrun::hold ? "hold" : "stop", n) + why};
 }
 
 void SessionClock::ran(StepIndex n, std::int64_t now_ns) noexcept {
@@ -96,41 +109,42 @@ std::optional<Verdict> SessionClock::completed(StepIndex step, StepIndex n, std:
   while (complete_ < step) {
     const Issued& tick = issued(complete_++);
     if (tick.step != complete_ - 1) continue;
-    if (tick.input_ns != 0) timing_.input_latency.record(now_ns - tick.input_ns);
     if (!is_judged(tick.step)) continue;
+    if (tick.input_ns != 0) timing_.input_latency.record(now_ns - tick.input_ns);
     const std::int64_t response_ns = now_ns - tick.due_ns;
     timing_.add_response(response_ns, response_ns > H_);
     const auto run = static_cast<std::int64_t>(timing_.overrun_run.load(kRelaxed));
     if (rules_.policy == Overrun::slip || rules_.after == 0 || run != rules_.after) continue;
-    const bool holds = rules_.policy == Overrun::hold;
-    add(timing_.transitions, 1);
-    verdict = Verdict{rules_.policy, in_words(holds ? "hold" : "stop", n) + std::to_string(run) +
-                                         " steps in a row were longer than " + milliseconds_text(H_) +
-                                         " (session.overrun_after), the last one " + milliseconds_text(response_ns)};
+    verdict = overrun(n, std::to_string(run) + " steps in a row were longer than " + milliseconds_text(H_) +
+                             " (session.overrun_after), the last one " + milliseconds_text(response_ns));
   }
   return verdict;
 }
 
 void SessionClock::close(StepIndex n, std::int64_t now_ns) noexcept {
   const std::int64_t elapsed_ns = now_ns - start_ns_ - excused_ns_;
-  timing_.steps_due.store(elapsed_ns < 0 ? 0 : static_cast<std::uint64_t>(elapsed_ns / H_) + 1, kRelaxed);
-  timing_.steps_skipped.store(skipped_, kRelaxed);
-  timing_.lag_ns.store(elapsed_ns - n * H_, kRelaxed);
-  timing_.rest_ns.store(now_ns - due_ns(n), kRelaxed);
+  const auto due = elapsed_ns < 0 ? 0 : static_cast<std::uint64_t>(elapsed_ns / H_) + 1;
+  timing_.books.write({n, due, skipped_, elapsed_ns - n * H_, now_ns - due_ns(n)});
+}
+
+std::string problem_of_books(const node::SessionBooks& books, SimDuration step) {
+  if (books.due == 0) return "";
+  const auto skipped = static_cast<std::int64_t>(books.skipped);
+  const std::int64_t late = behind(books.rest_ns, step.ns);
+  if (static_cast<std::int64_t>(books.due) != books.run + skipped + late) {
+    return std::to_string(books.due) + " steps were due, but " + std::to_string(books.run) + " run, " +
+           std::to_string(skipped) + " skipped and " + std::to_string(late) + " behind";
+  }
+  if (books.lag_ns != skipped * step.ns + books.rest_ns) {
+    return "a lag of " + std::to_string(books.lag_ns) + " ns, but " + std::to_string(skipped * step.ns) +
+           " ns given up and a rest of " + std::to_string(books.rest_ns) + " ns";
+  }
+  return "";
 }
 
 std::string problem_of_books(const wire::Health& io, SimDuration step) {
-  const auto skipped = static_cast<std::int64_t>(io.steps_skipped);
-  const std::int64_t run = io.header.step, late = behind(io.rest_ns, step.ns);
-  if (static_cast<std::int64_t>(io.steps_due) != run + skipped + late) {
-    return std::to_string(io.steps_due) + " steps were due, but " + std::to_string(run) + " run, " +
-           std::to_string(skipped) + " skipped and " + std::to_string(late) + " behind";
-  }
-  if (io.lag_ns != skipped * step.ns + io.rest_ns) {
-    return "a lag of " + std::to_string(io.lag_ns) + " ns, but " + std::to_string(skipped * step.ns) +
-           " ns given up and a rest of " + std::to_string(io.rest_ns) + " ns";
-  }
-  return "";
+  return problem_of_books(node::SessionBooks{io.header.step, io.steps_due, io.steps_skipped, io.lag_ns, io.rest_ns},
+                          step);
 }
 
 }  // namespace slew::io

@@ -1,8 +1,9 @@
 // The books of a session that is paced by the wall clock: which steps were due, done and given up, how late each was,
 // and what the session's overrun policy makes of it (docs/realtime.md).
 //
-// Step n is due at base + n H. `base` is the wall time of step 0, moved by what is no fault of the machine (pauses, the
-// wait for controllers: excused) and by what was given up (slips: whole steps). At any time, of an epoch,
+// Step n is due at base + n H. `base` is the wall time of step 0, moved by what is no fault of the machine (pauses,
+// places that are held, the wait for controllers before the first step: excused) and by what was given up (slips: whole
+// steps). At any time, of an epoch,
 //
 //   steps due = run + skipped + behind       behind: due and not done yet
 //   lag       = slips + rest                 lag: wall time since step n was due at first, without what was excused
@@ -48,6 +49,8 @@ class SessionClock {
   void begin(StepIndex n, std::int64_t now_ns) noexcept;
   // The next step n is not due before now: somebody wanted the pause.
   void excuse(StepIndex n, std::int64_t now_ns) noexcept;
+  // Nobody judges the steps that are under way: one of their nodes is gone.
+  void forget_under_way() noexcept { issued_.fill({}); }
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept { return base_ns_ + n * H_; }
 
   // Looks at the lag before step n: gives up whole steps of it, or has the policy's verdict.
@@ -74,6 +77,9 @@ class SessionClock {
   [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - first_) * H_ >= rules_.grace.ns; }
   [[nodiscard]] Issued& issued(StepIndex n) noexcept { return issued_[static_cast<std::size_t>(n) % kDepth]; }
   [[nodiscard]] std::string in_words(const char* what, StepIndex n) const;
+  StepIndex give_up(std::int64_t lag_ns) noexcept;
+  // The verdict of `hold` or `stop`.
+  [[nodiscard]] Verdict overrun(StepIndex n, const std::string& why);
 
   std::int64_t H_;
   OverrunRules rules_;
@@ -90,7 +96,9 @@ class SessionClock {
   std::int64_t cpu_ns_ = 0;
 };
 
-// The two equations above from what io's health says; empty: they hold, else which does not.
+// The two equations above; empty: they hold, or no books were kept, else which does not.
+[[nodiscard]] std::string problem_of_books(const node::SessionBooks& books, SimDuration step);
+// The same from what io's health says.
 [[nodiscard]] std::string problem_of_books(const wire::Health& io, SimDuration step);
 
 }  // namespace slew::io

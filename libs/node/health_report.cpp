@@ -46,11 +46,14 @@ void HealthReport::add_timing(wire::Health& message) const {
   }
   message.allocations = timing.allocations.load();
   message.carrier_allocations = timing.carrier_allocations.load();
-  message.steps_due = timing.steps_due.load();
-  message.steps_skipped = timing.steps_skipped.load();
-  message.lag_ns = timing.lag_ns.load();
-  message.rest_ns = timing.rest_ns.load();
   message.transitions = timing.transitions.load();
+  const SessionBooks books = timing.books.read();
+  if (books.due == 0) return;
+  message.header.step = books.run;  // of the same moment
+  message.steps_due = books.due;
+  message.steps_skipped = books.skipped;
+  message.lag_ns = books.lag_ns;
+  message.rest_ns = books.rest_ns;
 }
 
 }  // namespace slew::node

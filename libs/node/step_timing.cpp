@@ -65,11 +65,6 @@ std::int64_t sent_ns(std::int64_t source_wall_ns, WriterClock clock) noexcept {
   return way_ns >= 0 && way_ns <= kLongestWayNs ? now_ns - way_ns : now_ns;
 }
 
-void StepTiming::configure(SimDuration deadline, StepIndex first) noexcept {
-  deadline_ns_ = deadline.ns;
-  first_ = first;
-}
-
 void StepTiming::release(StepIndex step, std::int64_t released_ns) noexcept {
   releases_[static_cast<std::size_t>(step) % kDepth] = {step, released_ns, monotonic_ns()};
 }

@@ -14,12 +14,40 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 
 #include "core/hdr_histogram.h"
 #include "core/time.h"
 #include "transport/wire.h"
 
 namespace slew::node {
+
+// What became of the steps of a paced session, io_node/session_clock.h.
+struct SessionBooks {
+  StepIndex run = 0;      // the next tick's number
+  std::uint64_t due = 0;  // 0: no books are kept
+  std::uint64_t skipped = 0;
+  std::int64_t lag_ns = 0, rest_ns = 0;
+};
+
+// The books as of one moment, for another thread.
+class BooksCell {
+ public:
+  // Real-time safe: while they are being read the older ones stay.
+  void write(const SessionBooks& books) noexcept {
+    if (!mutex_.try_lock()) return;
+    books_ = books;
+    mutex_.unlock();
+  }
+  [[nodiscard]] SessionBooks read() const {
+    const std::lock_guard lock(mutex_);
+    return books_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  SessionBooks books_;
+};
 
 // Everything that is measured, for the thread that tells it while the loop goes on. One thread writes.
 struct NodeTiming {
@@ -34,9 +62,8 @@ struct NodeTiming {
   std::atomic<std::int64_t> last_response_ns{0}, last_release_jitter_ns{0};
   // heap calls in the loop since READY; -1: nobody counts them
   std::atomic<std::int64_t> allocations{-1}, carrier_allocations{-1};
-  // books of a paced session, by io
-  std::atomic<std::uint64_t> steps_due{0}, steps_skipped{0}, transitions{0};
-  std::atomic<std::int64_t> lag_ns{0}, rest_ns{0};
+  std::atomic<std::uint64_t> transitions{0};  // of the overrun policy, by io
+  BooksCell books;                            // by io
 
   // A step's response, against the deadline where there is one.
   void add_response(std::int64_t ns, bool is_late) noexcept;
@@ -57,8 +84,10 @@ class StepTiming {
  public:
   explicit StepTiming(NodeTiming& timing) : timing_(timing) {}
 
-  // deadline: of a step's response; 0: none. first: the first step that is judged.
-  void configure(SimDuration deadline, StepIndex first) noexcept;
+  // Of a step's response; 0: none.
+  void set_deadline(SimDuration deadline) noexcept { deadline_ns_ = deadline.ns; }
+  // Earlier steps are not measured.
+  void judge_from(StepIndex first) noexcept { first_ = first; }
   // What releases this step is in hand.
   void release(StepIndex step, std::int64_t released_ns) noexcept;
   // The step waits for a partner although it is released.

@@ -1,7 +1,6 @@
 // What happens when something goes wrong in a session: it is named at once, everybody ends with the right code, and
 // the recording is valid.
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <cstdint>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include "build_paths.h"
@@ -153,6 +153,16 @@ TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
 
 // ---- signals --------------------------------------------------------------------------------------------------
 
+// but for what a busy machine costs
+std::string said_without_slips(Program& program) {
+  std::istringstream lines(program.err());
+  std::string rest;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("session.overrun: slip: ") == std::string::npos) rest += line + "\n";
+  }
+  return rest;
+}
+
 void expect_orderly_end(Session& session, int signal) {
   Program& io = session.node(Role::io);
   EXPECT_EQ(io.wait(), signal == SIGINT ? 130 : 143) << session.said();
@@ -164,7 +174,7 @@ void expect_orderly_end(Session& session, int signal) {
   }
   for (const auto& [role, code] : session.wait_all()) {
     EXPECT_TRUE(code == 0 || code == 128 + signal) << node::to_text(role) << " ended with " << code << session.said();
-    EXPECT_EQ(session.node(role).err(), "");
+    EXPECT_EQ(said_without_slips(session.node(role)), "");
   }
   for (const auto& entry : std::filesystem::recursive_directory_iterator(session.folder())) {
     if (entry.path().extension() != ".mcap") continue;

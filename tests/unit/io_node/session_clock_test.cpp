@@ -31,13 +31,7 @@ class Clock : public ::testing::Test {
   }
   [[nodiscard]] std::string problem() {
     clock->close(n, now_ns);
-    wire::Health health;
-    health.header.step = n;
-    health.steps_due = timing->steps_due;
-    health.steps_skipped = timing->steps_skipped;
-    health.lag_ns = timing->lag_ns;
-    health.rest_ns = timing->rest_ns;
-    return problem_of_books(health, kStep);
+    return problem_of_books(timing->books.read(), kStep);
   }
 
   std::unique_ptr<node::NodeTiming> timing = std::make_unique<node::NodeTiming>();
@@ -105,7 +99,8 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
         verdict->why.find("at step 1 the session was 51.0 ms behind the wall clock (session.overrun_lag 50.0 ms)"),
         std::string::npos)
         << verdict->why;
-    EXPECT_EQ(clock->skipped(), 0u);
+    EXPECT_EQ(clock->skipped(), policy == Overrun::hold ? 51u : 0u);
+    EXPECT_EQ(problem(), "");
     n = 0;
     rules(policy, 3);
     EXPECT_FALSE(step(kMs + 1));
@@ -136,6 +131,63 @@ TEST_F(Clock, JudgesNothingInTheStartUpGrace) {
   EXPECT_FALSE(step(kMs + 1));
   EXPECT_TRUE(step(kMs));
   EXPECT_EQ(problem(), "");
+}
+
+TEST_F(Clock, ALagInTheGraceIsNotToldAndALaterOneIs) {
+  rules(Overrun::slip, 0, milliseconds(200));
+  step(60 * kMs);
+  std::string told;
+  for (int i = 0; i < 1500; ++i) {
+    if (const std::optional<Verdict> verdict = step(kMs / 10)) told += verdict->why;
+  }
+  EXPECT_EQ(told, "");
+  EXPECT_EQ(timing->transitions, 0u);
+  EXPECT_EQ(clock->skipped(), 59u);
+  step(60 * kMs);
+  const std::optional<Verdict> verdict = step(kMs / 10);
+  ASSERT_TRUE(verdict);
+  EXPECT_NE(verdict->why.find("steps of wall time were given up"), std::string::npos) << verdict->why;
+  EXPECT_EQ(timing->transitions, 1u);
+  // a pause is no time in which the machine keeps up
+  now_ns += 5000 * kMs;
+  clock->excuse(n, now_ns);
+  for (int i = 0; i < 500; ++i) {
+    if (const std::optional<Verdict> again = step(kMs / 10)) {
+      EXPECT_EQ(again->why, "");
+    }
+  }
+  EXPECT_EQ(timing->transitions, 1u);
+}
+
+TEST_F(Clock, HoldsAgainWhenItIsStillTooSlowAfterAResume) {
+  rules(Overrun::hold, 3);
+  for (int round = 1; round <= 3; ++round) {
+    EXPECT_FALSE(step(kMs + 1));
+    EXPECT_FALSE(step(kMs + 1));
+    EXPECT_TRUE(step(kMs + 1)) << "round " << round;
+    EXPECT_EQ(timing->transitions, static_cast<std::uint64_t>(round));
+    now_ns += 1000 * kMs;
+    clock->excuse(n, now_ns);
+    EXPECT_EQ(problem(), "");
+  }
+  EXPECT_EQ(timing->longest_overrun, 3u);
+}
+
+TEST_F(Clock, BeginsAtALaterStepWithTheSameBooksAndAGraceOfItsOwn) {
+  rules(Overrun::slip, 0, milliseconds(20));
+  n = 5000;
+  clock->begin(n, now_ns);
+  EXPECT_EQ(problem(), "");
+  for (int i = 0; i < 20; ++i) step(3 * kMs);
+  EXPECT_EQ(timing->response.count(), 0u);
+  EXPECT_EQ(problem(), "");
+  step(kMs / 10);
+  EXPECT_EQ(timing->response.count(), 1u);
+  step(70 * kMs);
+  step(kMs / 10);
+  EXPECT_GT(clock->skipped(), 60u);
+  EXPECT_EQ(problem(), "");
+  EXPECT_EQ(timing->books.read().run, n);
 }
 
 TEST_F(Clock, APauseIsNoLag) {

@@ -28,7 +28,7 @@ class Timing : public ::testing::Test {
 constexpr std::int64_t kHour = 3'600'000'000'000;
 
 TEST_F(Timing, AResponseBeyondTheDeadlineIsAnOverrunAndFlagged) {
-  steps.configure({kHour}, 0);
+  steps.set_deadline({kHour});
   step(0, 0);
   EXPECT_FALSE(is_late);
   step(1, 2 * kHour);
@@ -47,7 +47,7 @@ TEST_F(Timing, AResponseBeyondTheDeadlineIsAnOverrunAndFlagged) {
 }
 
 TEST_F(Timing, NothingIsLateWithoutADeadlineAndNothingJudgedInTheGrace) {
-  steps.configure({}, 2);
+  steps.judge_from(2);
   step(0, 2 * kHour);
   step(1, 2 * kHour);
   EXPECT_EQ(timing->response.count(), 0u);
@@ -58,7 +58,7 @@ TEST_F(Timing, NothingIsLateWithoutADeadlineAndNothingJudgedInTheGrace) {
 }
 
 TEST_F(Timing, WaitingIsCountedForIoUntilTheReleaseAndThenForThePartner) {
-  steps.configure({kHour}, 0);
+  steps.set_deadline({kHour});
   step(0, 0);
   step(1, 0);
   const std::int64_t for_io = timing->waited_ns[0];
@@ -73,7 +73,7 @@ TEST_F(Timing, WaitingIsCountedForIoUntilTheReleaseAndThenForThePartner) {
 }
 
 TEST_F(Timing, AStepWithoutReleaseBeginsAtOnce) {
-  steps.configure({kHour}, 0);
+  steps.set_deadline({kHour});
   steps.begin(5);
   steps.computed();
   steps.published();
