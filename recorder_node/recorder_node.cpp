@@ -233,9 +233,10 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
   // a session that needs a recorder begins with io's probe; one that has begun has its recorder
   member_.set_state(member_.requires_role(Role::recorder) ? NodeState::joining : NodeState::ready);
   if (!member_.requires_role(Role::recorder)) {
-    // a session that has given a process up has begun long before the step that it names
-    begin_ = session.given_up.empty() ? Begin::open : Begin::late;
-    late_deadline_ns_ = session.given_up.empty() ? 0 : now_ns + node::kJoinTimeout.ns;
+    // a session that has given a process up, or was reset, has begun long ago
+    const bool is_late = !session.given_up.empty() || session.header.epoch > 0;
+    begin_ = is_late ? Begin::late : Begin::open;
+    late_deadline_ns_ = is_late ? now_ns + node::kJoinTimeout.ns : 0;
   }
   stage_ = Stage::recording;
   deadline_ns_ = 0;
@@ -361,11 +362,12 @@ bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std
   return false;
 }
 
-// What the others can say again from the first step on is no reason to begin later.
+// What the others can say again from the first step on is no reason to begin later. Blocks of variables are not said
+// again: of a session that had begun they are recorded from then on.
 bool RecorderNode::is_from_the_begin(const transport::Received& message, const wire::Header& header,
                                      std::int64_t now_ns) {
   if (header.phase == Phase::join) return true;
-  // blocks of variables are kept for who comes late: their steps say nothing about the session's
+  // a block's step says nothing about the session's
   if (message.topic == Topic::variables) {
     if (before_.size() < kMaxEarly) {
       before_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
@@ -375,6 +377,7 @@ bool RecorderNode::is_from_the_begin(const transport::Received& message, const w
   const bool is_near = header.step - streams_.begin < static_cast<StepIndex>(node::kSentDepth / 2);
   if (begin_ == Begin::open && is_near) {
     begin_ = Begin::known;
+    streams_.first_heard = header.step;
     file_what_came_before(now_ns);
     return true;
   }
@@ -762,7 +765,8 @@ void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
   for (const auto& [source, stream] : streams.blocks) {
     const StepIndex last = is_present ? last_block(source, stream.newest) : stream.newest;
     const StepIndex step = every(source.topic);
-    const StepIndex before = step == 0 ? 0 : (streams.begin + step - 1) / step;  // blocks of earlier steps
+    const StepIndex from = std::max(streams.begin, streams.first_heard);
+    const StepIndex before = step == 0 ? 0 : (from + step - 1) / step;  // blocks of earlier steps
     const auto expected =
         step == 0 ? stream.arrived : static_cast<std::uint64_t>(std::max<StepIndex>(0, last / step + 1 - before));
     counts_[static_cast<std::size_t>(source.topic)].lost += expected - std::min(expected, stream.arrived);

@@ -68,7 +68,8 @@ inline constexpr std::size_t kStreamDepth = 4096;  // steps ahead of a gap that 
 
 // What has come of one epoch, by writer.
 struct EpochStreams {
-  StepIndex begin = 0;                                             // its first step
+  StepIndex begin = 0;        // its first step
+  StepIndex first_heard = 0;  // of its messages, where that was later: blocks of earlier steps are not missing
   std::map<std::pair<wire::Topic, wire::Role>, StepStream> steps;  // ticks and samples
   std::map<BlockSource, BlockStream> blocks;
 };

@@ -216,6 +216,29 @@ TEST(LateRecording, BeginsWithTheStatesOfAStepAndReplays) {
   EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
 }
 
+TEST(LateRecording, OfASessionThatWasResetBeginsWithItsStatesToo) {
+  Session session({"--pace", "real", "--duration", kDuration, "--no-record"});
+  Observer& observer = session.observer();
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) session.start(role);
+  for (std::uint32_t epoch = 0; epoch < 2; ++epoch) {
+    ASSERT_TRUE(observer.wait_until([&] { return observer.epoch() == epoch && observer.step() >= 100; }));
+    ASSERT_TRUE(observer.request(wire::ControlAction::reset).is_accepted);
+  }
+  ASSERT_TRUE(observer.wait_until([&] { return observer.epoch() == 2 && observer.step() >= 600; })) << session.said();
+  ASSERT_TRUE(observer.request(wire::ControlAction::pause).is_accepted);
+  session.start(Role::recorder);
+  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::recorder).has_value(); })) << session.said();
+  ASSERT_TRUE(observer.request(wire::ControlAction::resume).is_accepted);
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(recorded.losses(), 0);
+  EXPECT_EQ(recorded.last_complete_step(), kSteps);
+  Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
+                 session.folder() / "verify");
+  EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+}
+
 TEST_F(SavedSession, IsNeverHalfAFileAndNeverReplacesOneUnasked) {
   Session session({"--pace", "real", "--duration", "20s"});
   session.start_all();
