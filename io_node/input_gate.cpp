@@ -35,7 +35,7 @@ void InputGate::take_lease(std::size_t index, std::string reason) {
 }
 
 void InputGate::reset() {
-  next_step_ = 0;
+  begin_step_ = next_step_ = 0;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
     take_lease(i, "the session was reset: channel " + channel.config.name +
@@ -59,11 +59,12 @@ void InputGate::save(StateWriter& bytes) const {
 
 void InputGate::load(StateReader& bytes, StepIndex next_step) {
   reset();
-  next_step_ = next_step;
+  begin_step_ = next_step_ = next_step;
   for (Channel& channel : channels_) {
-    bytes.number(channel.raw);
-    bytes.number(channel.ramped);
-    bytes.number(channel.control);
+    for (double* value : {&channel.raw, &channel.ramped, &channel.control}) {
+      bytes.number(*value);
+      if (!std::isfinite(*value)) bytes.refuse();
+    }
   }
 }
 
@@ -79,7 +80,7 @@ void InputGate::give(Channel& channel, const std::string& controller, std::int64
   channel.holder = controller;
   channel.based_on = channel.last_sent = channel.last_value = kJoinStep;
   std::fill(channel.early.begin(), channel.early.end(), Early{});
-  channel.pace = next_step_ == 0 ? Pace::in_step : Pace::neutral;
+  channel.pace = next_step_ == begin_step_ ? Pace::in_step : Pace::neutral;
   channel.out_since = next_step_;
   channel.out_since_ns = now_ns;
 }
@@ -164,10 +165,11 @@ bool InputGate::write(std::size_t index, const std::string& controller, double r
 
 // ---- lockstep -------------------------------------------------------------------------------------------------
 
-// (1); -1: the tick is earlier than the loop's delay
+// (1); -1: since the begin there has been no such step
 StepIndex InputGate::needed(const Channel& channel, StepIndex n) const noexcept {
   const StepIndex m = n - channel.config.delay;
-  return m < 0 ? kJoinStep : m - m % config_.variables_every;
+  const StepIndex block = m < 0 ? kJoinStep : m - m % config_.variables_every;
+  return block < begin_step_ ? kJoinStep : block;
 }
 
 // A value for a tick to come. The first one for a step counts: which of two is in time must not depend on the clock.
@@ -320,10 +322,10 @@ void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::in
   }
 }
 
-void InputGate::excuse(SimDuration standstill) noexcept {
+void InputGate::excuse(SimDuration standstill, std::int64_t now_ns) noexcept {
   for (Channel& channel : channels_) {
-    channel.written_ns += standstill.ns;
-    channel.out_since_ns += standstill.ns;
+    channel.written_ns = std::min(now_ns, channel.written_ns + standstill.ns);
+    channel.out_since_ns = std::min(now_ns, channel.out_since_ns + standstill.ns);
   }
 }
 

@@ -102,7 +102,7 @@ class InputGate {
   // Values for the tick of step n. script_raw: the scripted source's raw values, used on channels without a holder.
   void advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns);
   // Time in which the session stood still for another reason: no controller is blamed for its silence.
-  void excuse(SimDuration standstill) noexcept;
+  void excuse(SimDuration standstill, std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_held(std::size_t channel) const noexcept { return !channels_[channel].holder.empty(); }
   [[nodiscard]] double control(std::size_t channel) const noexcept { return channels_[channel].control; }
   [[nodiscard]] double raw(std::size_t channel) const noexcept { return channels_[channel].raw; }
@@ -171,7 +171,8 @@ class InputGate {
 
   std::vector<Channel> channels_;
   std::vector<Notice> notices_;
-  StepIndex next_step_ = 0;  // the tick that is made next
+  StepIndex begin_step_ = 0;  // first tick of the epoch
+  StepIndex next_step_ = 0;   // the tick that is made next
   GateConfig config_;
   double H_;
   std::uint64_t rejected_not_finite_ = 0;

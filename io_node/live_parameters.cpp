@@ -1,5 +1,8 @@
 #include "io_node/live_parameters.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace slew::io {
 
 LiveParameters::LiveParameters(const std::vector<LiveParameter>& parameters, SimDuration step)
@@ -32,6 +35,7 @@ void LiveParameters::save(StateWriter& bytes) const {
 
 void LiveParameters::load(StateReader& bytes) noexcept {
   bytes.numbers(std::span<double>(values_));
+  if (!std::all_of(values_.begin(), values_.end(), [](double value) { return std::isfinite(value); })) bytes.refuse();
   ramps_.load(bytes,
               [this](int parameter) { return parameter >= 0 && static_cast<std::size_t>(parameter) < values_.size(); });
 }

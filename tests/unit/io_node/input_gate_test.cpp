@@ -278,6 +278,44 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   EXPECT_TRUE(gate.take_notices().empty());
 }
 
+TEST(InputGate, ALockstepChannelOfASavedSessionIsAwaitedAsAtStepZero) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.exchange = Exchange::lockstep;
+  lever.delay = 3;
+  InputGate saved({lever}, GateConfig{}, milliseconds(1)), gate({lever}, GateConfig{}, milliseconds(1));
+  std::vector<std::byte> state;
+  StateWriter writer(state, {1, 1});
+  saved.save(writer);
+  writer.finish();
+  StateReader reader(state, {1, 1});
+  gate.load(reader, 700);
+  ASSERT_TRUE(reader.finish("io").is_ok());
+  EXPECT_EQ(gate.vacant(), 0);
+  ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
+  for (StepIndex n = 700; n < 703; ++n) {
+    EXPECT_EQ(gate.awaited(n).ns, 0) << "no step of this session is three before tick " << n;
+    gate.advance(n, std::vector<double>{0}, 0);
+  }
+  EXPECT_GT(gate.awaited(703).ns, 0);
+  EXPECT_TRUE(gate.write(0, "pid", 0.5, 703, 0, 700));
+  EXPECT_EQ(gate.awaited(703).ns, 0);
+  gate.advance(703, std::vector<double>{0}, 0);
+  EXPECT_EQ(gate.raw(0), 0.5);
+  EXPECT_TRUE(gate.take_notices().empty());
+}
+
+TEST(InputGate, NoStateBringsAValueThatIsNotFinite) {
+  InputGate gate = crane_gate();
+  std::vector<std::byte> state;
+  StateWriter writer(state, {1, 1});
+  writer.number(kNan);
+  for (int i = 0; i < 5; ++i) writer.number(0.0);
+  writer.finish();
+  StateReader reader(state, {1, 1});
+  gate.load(reader, 700);
+  EXPECT_FALSE(reader.finish("io").is_ok());
+}
+
 TEST(InputGate, ALockstepChannelThatIsTakenOverKeepsItsValueUntilTheNewHolderIsInStep) {
   ChannelConfig lever = channel("Lever", 1, 0);
   lever.exchange = Exchange::lockstep;
@@ -341,7 +379,7 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
             gate.reset();
             n = 0;
           }
-          gate.excuse(milliseconds(below(100)));
+          gate.excuse(milliseconds(below(100)), now_ns);
           break;
         case 4:
         case 5:
