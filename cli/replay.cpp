@@ -64,10 +64,11 @@ class Replay {
     }
     const Status status = reader_.for_each(filter, [this](const recording::RecordedMessage& message) {
       take(message);
-      return has_stopped_ || is_at_end() || node::stop_requested.load() != 0 ? Visit::stop : Visit::go_on;
+      return has_stopped_ || (is_at_end() && is_all_compared()) || node::stop_requested.load() != 0 ? Visit::stop
+                                                                                                    : Visit::go_on;
     });
     if (!status.is_ok()) throw Failure(status.code, status.text);
-    if (!has_stopped_ && end_ == nullptr) finish_epoch(EpochEnd::recording);
+    if (!has_stopped_ && (end_ == nullptr || is_at_end())) finish_epoch(EpochEnd::recording);
     if (end_ != nullptr && !has_stopped_) save_end();
     if (result_.steps == 0 && end_ == nullptr && result_.problem.empty()) {
       throw Failure(ExitCode::bad_input, "the recording has no tick 0; there is nothing to replay");
@@ -142,6 +143,13 @@ class Replay {
   // ---- the end ------------------------------------------------------------------------------------------------
 
   [[nodiscard]] bool is_at_end() const { return end_ != nullptr && epoch_ == last_epoch_ && next_ >= end_->step; }
+
+  // A sample may stand behind the tick of its step: those of the last steps too are held against what was computed.
+  [[nodiscard]] bool is_all_compared() const {
+    return std::all_of(hashes_.begin(), hashes_.end(), [](const Hashes& of_role) {
+      return std::find(of_role.is_compared.begin(), of_role.is_compared.end(), false) == of_role.is_compared.end();
+    });
+  }
 
   void save_end() {
     const double H = scene_.session.step_duration().seconds();
@@ -222,7 +230,7 @@ class Replay {
       session_.reset();
       return start_epoch();
     }
-    if (header.phase != Phase::running || header.epoch != epoch_ || header.step < next_) return;
+    if (header.phase != Phase::running || header.epoch != epoch_ || header.step < next_ || is_at_end()) return;
     waiting_ticks_.emplace(header.step, tick_);
     while (!waiting_ticks_.empty() && waiting_ticks_.begin()->first == next_ && !has_stopped_ && !is_at_end()) {
       const wire::Tick tick = std::move(waiting_ticks_.begin()->second);

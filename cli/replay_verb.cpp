@@ -61,7 +61,7 @@ StepIndex step_until(const recording::Reader& reader, const std::string& assets,
   const scene::Scene scene = recorded_scene(reader, assets);
   const auto step_ns = static_cast<std::uint64_t>(scene.session.step_duration().ns);
   const auto step = static_cast<StepIndex>((recorded_time_ns("--until", until) + step_ns - 1) / step_ns);
-  const StepIndex unit = io::save_unit(scene);
+  const StepIndex unit = scene.exchange_unit();
   return (step + unit - 1) / unit * unit;
 }
 
