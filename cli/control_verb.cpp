@@ -134,8 +134,8 @@ ExitCode save(const Options& options) {
   return ExitCode::ok;
 }
 
-// Empty when both are the same machine; else what differs first. Duration, pace, script, and what is recorded and
-// plotted are no part of the machine.
+// Empty when both are the same machine; else what differs first. Duration, pace, how deadlines are kept, script, and
+// which variables are recorded and plotted are no part of the machine.
 std::string difference_of(const io::SavedSession& saved, const wire::SessionDescription& running) {
   scene::Scene a = scene::load_text(saved.scene_text, saved.scene_name);
   scene::Scene b = scene::load_text(running.scene_text, running.scene_name);
@@ -144,6 +144,12 @@ std::string difference_of(const io::SavedSession& saved, const wire::SessionDesc
   b.session.window = a.session.window;
   b.session.rejoin = a.session.rejoin;
   b.session.controller_timeout = a.session.controller_timeout;
+  b.session.overrun = a.session.overrun;
+  b.session.overrun_after = a.session.overrun_after;
+  b.session.overrun_lag = a.session.overrun_lag;
+  b.session.shed = a.session.shed;
+  b.session.start_grace = a.session.start_grace;
+  b.session.cpus = a.session.cpus;
   b.script = a.script;
   b.recording.variables = a.recording.variables;
   b.plots = a.plots;

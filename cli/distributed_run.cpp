@@ -51,7 +51,11 @@ class Supervisor {
         is_place_held_(scene.session.rejoin > 0) {
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
     cli_support::require(scene::parse_cpu_places(places, cpus_));
-    for (const scene::CpuPlace& place : cpus_) check_cpu(place);
+    for (const scene::CpuPlace& place : cpus_) {
+      const auto role = std::find_if(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
+                                     [&](Role of_place) { return node::to_text(of_place) == place.role; });
+      if (role != std::end(wire::kNodeRoles) && is_ours(*role)) check_cpu(place);
+    }
     if (options.scene.input == "keyboard") keyboard_.emplace(scene);
   }
 
@@ -87,6 +91,7 @@ class Supervisor {
     int restarts = 0;
     int given_up_before = 0;  // processes of its role, when it was started
     bool is_awaited = false;  // it was killed, and is started again when io holds its place
+    bool is_killed_as_lost = false;
   };
 
   // values are needed for the status line, and for the summary of a run that is not recorded here
@@ -179,16 +184,35 @@ class Supervisor {
         std::count_if(gone.begin(), gone.end(), [role](const wire::GivenUp& g) { return g.role == role; }));
   }
 
+  // io has given this very process up: it was silent for too long.
+  [[nodiscard]] bool has_lost_its_place(const Node& node) const {
+    return is_place_held_ && places_given_up(node.role) > node.given_up_before;
+  }
+
+  [[nodiscard]] bool is_taken_by_another(const Node& node) const {
+    const NodeView& view = observer_->view().node(node.role);
+    return view.is_known && view.status.state < wire::NodeState::ended &&
+           view.status.pid != static_cast<std::uint32_t>(node.process->pid());
+  }
+
   void start_again() {
     for (Node& node : nodes_) {
+      if (!node.process->poll_end() && !node.is_killed_as_lost && has_lost_its_place(node)) {
+        status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                    ") was silent for 2 s and has lost its place; it is killed");
+        node.is_killed_as_lost = true;
+        node.process->send_signal(SIGKILL);
+      }
       if (!node.is_awaited) continue;
       if (observer_->view().is_over() || deadline_ns_ != 0) {
         node.is_awaited = false;
         report_kill(node, "; the others end with code 4 and close the recording; run the session again");
-      } else if (places_given_up(node.role) > node.given_up_before) {
+      } else if (has_lost_its_place(node)) {
         node.given_up_before = places_given_up(node.role);
+        node.is_awaited = false;
+        if (is_taken_by_another(node)) continue;
         node.process = make(node.role);
-        node.is_awaited = node.is_reported = false;
+        node.is_reported = node.is_killed_as_lost = false;
         ++node.restarts;
       }
     }
@@ -251,7 +275,7 @@ class Supervisor {
   void report_end(Node& node) {
     node.is_reported = true;
     const ProcessEnd& end = *node.process->poll_end();
-    if (end.signal != 0 && !node.is_asked_to_end) {
+    if ((end.signal != 0 || has_lost_its_place(node)) && !node.is_asked_to_end) {
       if (may_start_again(node)) {
         node.is_awaited = true;
         return say_kill(node, fmt::format("; the others hold, and it is started again with the state of its last "

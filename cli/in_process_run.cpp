@@ -109,7 +109,7 @@ class InProcessRun {
     if (interrupt_code() != 0) outcome.code = static_cast<ExitCode>(interrupt_code());
     if (recorder_ != nullptr) outcome.recording = recorder_->recording().string();
     outcome.has_begun = true;
-    outcome.steps = io_->next_step() - begin_;
+    outcome.steps = std::max<StepIndex>(0, io_->next_step() - begin_);
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
     outcome.view = observer_->view();

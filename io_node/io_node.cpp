@@ -94,7 +94,7 @@ bool IoNode::poll(std::int64_t now_ns) {
 std::int64_t IoNode::next_deadline(std::int64_t now_ns) const {
   if (stage_ == Stage::joining) return now_ns + node::kProbeInterval.ns / 2;
   if (stage_ != Stage::ticking) return now_ns + node::kProbeInterval.ns;
-  if (saving_ && n_ >= saving_->step) return std::max(now_ns, saving_->resend.due_ns());
+  if (is_saving_now()) return std::max(now_ns, saving_->resend.due_ns());
   if (is_withheld()) return now_ns + node::kProbeInterval.ns;
   if (controllers_due_ns_ != 0) return now_ns + node::kProbeInterval.ns;
   if (controllers_wait_ns_ != 0) return std::max(now_ns, controllers_wait_ns_ + gate_.awaited(n_).ns);
@@ -552,8 +552,12 @@ void IoNode::shed_load() {
 }
 
 void IoNode::keep_books(std::int64_t now_ns) noexcept {
-  if (config_.pace != wire::Pace::real || stage_ != Stage::ticking) return;
-  if (is_paused_ || controllers_due_ns_ != 0 || !vacancies_.empty()) clock_.excuse(n_, now_ns);
+  if (config_.pace != wire::Pace::real || stage_ >= Stage::ending) return;
+  const bool is_held = is_paused_ || controllers_due_ns_ != 0 || is_saving_now() || is_replacing();
+  if (is_held || stage_ != Stage::ticking) {
+    clock_.excuse(n_, now_ns);
+    if (input_ns_ != 0) input_ns_ = now_ns;
+  }
   clock_.close(n_, now_ns);
 }
 
@@ -572,7 +576,10 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
     if (config_.shed != Shed::none) shed_load();
   }
   while (stage_ == Stage::ticking && member_.send_failure().is_ok()) {
-    if (saving_ && n_ >= saving_->step && !advance_saving(now_ns)) return any;
+    if (is_saving_now()) {
+      if (!advance_saving(now_ns)) return any;
+      clock_.excuse(n_, now_ns);
+    }
     if (config_.steps >= 0 && n_ >= config_.steps) {
       begin_ending(ExitCode::ok, "", now_ns);
       return true;
@@ -673,7 +680,7 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   }
   const std::int64_t waited_ns = controllers_wait_ns_ == 0 ? 0 : now_ns - controllers_wait_ns_;
   const SimDuration standstill{now_ns - last_tick_ns_ - waited_ns};
-  if (standstill > kStandstill) gate_.excuse(standstill);
+  if (standstill > kStandstill) gate_.excuse(standstill, now_ns);
   controllers_wait_ns_ = 0;
   gate_.advance(n_, script_raw_, now_ns);
   tell_notices();
@@ -731,7 +738,7 @@ void IoNode::start_epoch(std::int64_t now_ns, StepIndex from) {
   single_steps_ = 0;
   sent_.clear();
   n_ = begin_step_ = std::max<StepIndex>(0, from);
-  controllers_due_ns_ = controllers_wait_ns_ = 0;
+  controllers_due_ns_ = controllers_wait_ns_ = input_ns_ = 0;
   mechanics_at_ = hydraulics_at_ = flex_at_ = n_ - 1;
   for (node::KeptCheckpoints& states : states_) states.clear();
   replaced_.fill({n_, kJoinStep});
@@ -745,6 +752,15 @@ void IoNode::start_epoch(std::int64_t now_ns, StepIndex from) {
   member_.mark_status_changed();
   stage_ = Stage::initialising;
   deadline_ns_ = now_ns + config_.join_timeout.ns;
+  // for who comes late
+  tell_session(from, now_ns);
+}
+
+// The session's description anew, with the step that it is at; -1: it begins with INIT.
+void IoNode::tell_session(StepIndex step, std::int64_t now_ns) {
+  description_.header = member_.header(Phase::running, step);
+  member_.renew(description_, now_ns);
+  member_.publish(Topic::session, description_);
 }
 
 void IoNode::tell_notices() {
@@ -774,7 +790,7 @@ void IoNode::send_end(std::uint32_t flags) {
 void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns) {
   if (stage_ == Stage::ending || stage_ == Stage::finished) return;
   const bool was_ticking = stage_ == Stage::ticking;
-  if (was_ticking && now_ns != 0) keep_books(now_ns);
+  if (now_ns != 0) keep_books(now_ns);
   const bool is_orderly = code == ExitCode::ok || code == ExitCode::interrupted || code == ExitCode::terminated;
   if (was_ticking) send_end(is_orderly ? 0 : static_cast<std::uint32_t>(wire::TickFlag::fault));
   if (is_orderly && was_ticking) {

@@ -130,6 +130,10 @@ class IoNode final : public node::Node {
   bool advance_ending(std::int64_t now_ns);
 
   [[nodiscard]] bool is_withheld() const noexcept { return is_paused_ && single_steps_ == 0; }
+  // The next tick waits for states.
+  [[nodiscard]] bool is_saving_now() const noexcept { return saving_ && n_ >= saving_->step; }
+  // A place is held, or who took it computes what was done before it came.
+  [[nodiscard]] bool is_replacing() const noexcept;
   [[nodiscard]] StepIndex needed_of_flex(StepIndex n) const noexcept;
   [[nodiscard]] std::optional<wire::Role> holds_back(StepIndex n) const noexcept;
   [[nodiscard]] bool partners_allow(StepIndex n) const noexcept;
@@ -147,6 +151,7 @@ class IoNode final : public node::Node {
   void send_end(std::uint32_t flags);
   // from: step whose states io has; -1: INIT
   void start_epoch(std::int64_t now_ns, StepIndex from = kJoinStep);
+  void tell_session(StepIndex step, std::int64_t now_ns);
   void begin_ending(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   [[nodiscard]] std::string not_ready_text() const;
@@ -164,7 +169,7 @@ class IoNode final : public node::Node {
   struct Saving {
     wire::ControlRequest request;  // number 0: nobody's
     StepIndex step = 0;
-    std::int64_t deadline_ns = 0;
+    std::int64_t deadline_ns = 0;  // from when the tick is held back; 0: it is not yet
     node::ResendClock resend;
     bool is_given = true;  // to who asked for it; else kept for who takes a role over
   };
@@ -190,14 +195,16 @@ class IoNode final : public node::Node {
   [[nodiscard]] Status load_own(const node::Checkpoint& checkpoint);
   void receive_checkpoint(std::span<const std::byte> bytes);
   void answer_state(const wire::ResendRequest& request, std::int64_t now_ns);
-  // A node that has taken a place: it can say its samples from this step on, and has caught up with what was said of
-  // its role before when its newest sample is of the other one.
+  // A node that has taken a place: it can say its samples from this step on, and has caught up with the ticks when its
+  // newest sample is of the other one.
   struct Replaced {
     StepIndex from = 0;
     StepIndex until = kJoinStep;
   };
   [[nodiscard]] const node::Checkpoint* state_for(wire::Role role) const noexcept;
   [[nodiscard]] bool suits(wire::Role role, StepIndex step) const noexcept;
+  [[nodiscard]] bool begins_anew(wire::Role role) const noexcept;
+  [[nodiscard]] bool are_bound(wire::Role role, wire::Role other) const noexcept;
   [[nodiscard]] const Vacancy* vacancy(wire::Role role) const noexcept;
   [[nodiscard]] bool hold_place(wire::Role role, std::int64_t now_ns);
   void give_up(wire::Role role, std::int64_t now_ns);

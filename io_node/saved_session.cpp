@@ -189,13 +189,19 @@ Status read_saved(const std::filesystem::path& path, SavedSession& saved) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   std::ifstream file(path, std::ios::binary);
-  if (error || !file) return refuse("cannot be read (" + std::string(std::strerror(errno)) + "); nothing was started");
-  std::vector<std::byte> bytes(size);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  constexpr std::size_t kFront = sizeof kMagic + sizeof kSavedFormat, kBack = sizeof(std::uint64_t);
-  if (!file || size < sizeof kMagic || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0) {
+  if (error || !file) {
+    const std::string why = error ? error.message() : std::strerror(errno);
+    return refuse("cannot be read (" + why + "); nothing was started");
+  }
+  char magic[sizeof kMagic] = {};
+  file.read(magic, sizeof magic);
+  if (!file || std::memcmp(magic, kMagic, sizeof kMagic) != 0) {
     return refuse("is no saved session; expected a file of 'slewring control save'");
   }
+  std::vector<std::byte> bytes(size);
+  file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!file) return refuse("cannot be read to its end; nothing was started");
+  constexpr std::size_t kFront = sizeof kMagic + sizeof kSavedFormat, kBack = sizeof(std::uint64_t);
   std::uint32_t format = 0;
   if (size >= kFront) std::memcpy(&format, bytes.data() + sizeof kMagic, sizeof format);
   if (size >= kFront && format != kSavedFormat) {

@@ -1,7 +1,5 @@
 #include "io_node/scene_config.h"
 
-#include <numeric>
-
 #include "scene/parameters.h"
 
 namespace slew::io {
@@ -36,10 +34,6 @@ std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noe
   return roles;
 }
 
-StepIndex save_unit(const scene::Scene& scene) noexcept {
-  return std::lcm<StepIndex>(scene.session.exchange_every, scene.has_modes() ? scene.flexible_every() : 1);
-}
-
 namespace {
 
 std::string obstacle_to_saving(const scene::Scene& scene) {
@@ -64,7 +58,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   config.window = scene.session.window_steps();
   config.is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
   config.save_obstacle = obstacle_to_saving(scene);
-  config.save_unit = save_unit(scene);
+  config.save_unit = scene.exchange_unit();
   config.rejoin = duration_of_seconds(scene.session.rejoin);
   config.required_roles = required_roles(scene, wish.recording);
   config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;

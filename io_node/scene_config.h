@@ -34,9 +34,6 @@ struct SessionWish {
 // Roles that take part: io always, mechanics with bodies, hydraulics with components, the recorder when recording.
 [[nodiscard]] std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noexcept;
 
-// Steps between two at which all nodes have exchanged, so that their states fit each other.
-[[nodiscard]] StepIndex save_unit(const scene::Scene& scene) noexcept;
-
 // Everything about step, pace and duration is the scene's, overrides included.
 [[nodiscard]] IoConfig make_config(const scene::Scene& scene, const SessionWish& wish);
 

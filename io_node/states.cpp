@@ -204,7 +204,8 @@ void IoNode::begin_saving(const wire::ControlRequest& request, std::int64_t now_
   if (!config_.save_obstacle.empty())
     return refuse("the state of this session cannot be saved: " + config_.save_obstacle);
   if (!vacancies_.empty()) return refuse(vacancy_text(vacancies_.front()) + "; ask again when it has come");
-  if (saving_) return refuse("the session is being saved already; ask again when that is done");
+  if (saving_ || upload_.asked)
+    return refuse("the session is being saved or loaded already; ask again when that is done");
   const StepIndex step = (n_ + config_.save_unit - 1) / config_.save_unit * config_.save_unit;
   if (is_paused_ && step > n_ + single_steps_) {
     return refuse("the session is paused at step " + std::to_string(n_) + ", and all nodes exchange at every " +
@@ -213,17 +214,16 @@ void IoNode::begin_saving(const wire::ControlRequest& request, std::int64_t now_
   }
   if (config_.steps >= 0 && step > config_.steps)
     return refuse("the session ends before the next step at which it could be saved");
-  saving_ = Saving{request, step, now_ns + kSaveTimeout.ns, {}, true};
+  saving_ = Saving{request, step, 0, {}, true};
   // nodes save when they get there; who is there saves at once
   saving_->resend.restart(now_ns - node::kResendAfter.ns);
-  saving_->deadline_ns += (step - n_) * config_.step.ns;
   static_cast<void>(advance_saving(now_ns));
 }
 
 // Where places are held no tick goes out before every node can be replaced.
 void IoNode::keep_first_states(std::int64_t now_ns) {
   if (config_.rejoin.ns == 0) return;
-  saving_ = Saving{{}, n_, now_ns + kSaveTimeout.ns, {}, false};
+  saving_ = Saving{{}, n_, 0, {}, false};
   saving_->resend.restart(now_ns);
 }
 
@@ -248,7 +248,8 @@ bool IoNode::advance_saving(std::int64_t now_ns) {
     give_saved();
     return true;
   }
-  if (now_ns > saving_->deadline_ns) {
+  if (saving_->deadline_ns == 0 && n_ >= saving_->step) saving_->deadline_ns = now_ns + kSaveTimeout.ns;
+  if (saving_->deadline_ns != 0 && now_ns > saving_->deadline_ns) {
     answer_asked(saving_->request, false,
                  member_.describe_peer(missing.value_or(Role::io)) + " has not given its state of step " +
                      std::to_string(saving_->step) + " within " + node::seconds_text(kSaveTimeout) +
@@ -299,8 +300,10 @@ void IoNode::receive_upload(std::span<const std::byte> bytes, std::int64_t now_n
     return;
   }
   const bool is_for_this = part_.header.session == description_.header.session && part_.request != 0;
-  if (!is_for_this || part_.header.role != Role::observer || static_cast<std::size_t>(part_.role) >= wire::kRoles)
-    return;
+  const bool has_state = part_.role == Role::io ||
+                         (std::find(std::begin(kMayLack), std::end(kMayLack), part_.role) != std::end(kMayLack) &&
+                          member_.requires_role(part_.role));
+  if (!is_for_this || part_.header.role != Role::observer || !has_state) return;
   if (upload_.request != part_.request) {
     if (upload_.asked) return;  // one at a time
     upload_ = {};
@@ -311,7 +314,10 @@ void IoNode::receive_upload(std::span<const std::byte> bytes, std::int64_t now_n
 }
 
 void IoNode::begin_loading(const wire::ControlRequest& request, std::int64_t now_ns) {
-  const auto refuse = [&](const std::string& why) { answer(request, false, why, n_); };
+  const auto refuse = [&](const std::string& why) {
+    if (!upload_.asked) upload_ = {};
+    answer(request, false, why, n_);
+  };
   if (!config_.save_obstacle.empty()) return refuse("this session takes no saved state: " + config_.save_obstacle);
   if (!vacancies_.empty()) return refuse(vacancy_text(vacancies_.front()) + "; ask again when it has come");
   if (upload_.asked || saving_)
@@ -332,6 +338,7 @@ void IoNode::advance_loading(std::int64_t now_ns) {
     answer(request, false, why, n_);
   };
   if (stage_ != Stage::ticking) return refuse("the session is not running any more");
+  if (!vacancies_.empty()) return refuse(vacancy_text(vacancies_.front()) + "; ask again when it has come");
   const node::CheckpointParts& own = upload_.parts[static_cast<std::size_t>(Role::io)];
   for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::flex}) {
     const node::CheckpointParts& parts = upload_.parts[static_cast<std::size_t>(role)];
@@ -369,22 +376,33 @@ void IoNode::start_epoch_from_upload(std::int64_t now_ns) {
 
 // ---- places that are held -------------------------------------------------------------------------------------
 
+// Nobody has come yet for the place of this role.
+bool IoNode::begins_anew(Role role) const noexcept {
+  return vacancy(role) != nullptr && !member_.peer(role).is_known;
+}
+
+// The step at which one of the two begins decides about the other: they exchange, or both do with a mechanics node that
+// begins with them.
+bool IoNode::are_bound(Role role, Role other) const noexcept {
+  return role == Role::mechanics || other == Role::mechanics || begins_anew(Role::mechanics);
+}
+
 // Whether a process of the role that begins at this step finds, and says again, all that it and the others may lack.
 // What was on its way when its writer died is lost with it. Two that exchange must meet: each waits for the other's
 // sample of the step that it has reached, and can say its own from the step on that it began with.
 bool IoNode::suits(Role role, StepIndex step) const noexcept {
+  if (step % config_.save_unit != 0) return false;
   for (const Role other : kMayLack) {
-    const bool is_exchanging = role == Role::mechanics || other == Role::mechanics;
-    if (other == role || !member_.requires_role(other) || !is_exchanging) continue;
+    if (other == role || !member_.requires_role(other) || !are_bound(role, other)) continue;
     // both begin anew, at the same step
-    if (vacancy(other) != nullptr && !member_.peer(other).is_known) {
+    if (begins_anew(other)) {
       if (states_[static_cast<std::size_t>(other)].find(step) == nullptr) return false;
       continue;
     }
     // a flex node whose samples nobody waits for reads those of the mechanics all the same
     const bool is_followed = config_.flexible_every > 1;
     const bool reads_other = !(is_followed && other == Role::flex);
-    const bool is_read = !(is_followed && role == Role::flex);
+    const bool is_read = !(is_followed && role == Role::flex) || begins_anew(Role::mechanics);
     const Replaced& replaced = replaced_[static_cast<std::size_t>(other)];
     // who is ready has come to the step that it began with, whatever io has heard of it since
     const StepIndex reached = replaced.until == kJoinStep ? std::max(newest_of(other), replaced.from) : replaced.from;
@@ -414,6 +432,11 @@ const IoNode::Vacancy* IoNode::vacancy(Role role) const noexcept {
   return found == vacancies_.end() ? nullptr : &*found;
 }
 
+bool IoNode::is_replacing() const noexcept {
+  const auto computes_again = [](const Replaced& replaced) { return replaced.until != kJoinStep; };
+  return !vacancies_.empty() || std::any_of(replaced_.begin(), replaced_.end(), computes_again);
+}
+
 std::string IoNode::vacancy_text(const Vacancy& vacancy) const {
   return vacancy.who + " is gone at step " + std::to_string(vacancy.lost_at) + "; its place is held for " +
          node::seconds_text(config_.rejoin) + ", who takes it gets the state of step " + std::to_string(vacancy.from);
@@ -426,14 +449,14 @@ bool IoNode::hold_place(Role role, std::int64_t now_ns) {
   Vacancy held{role, member_.describe_peer(role), n_, state->step, now_ns + config_.rejoin.ns};
   // who has not come yet begins where this one does
   for (Vacancy& other : vacancies_) {
-    const bool is_exchanging = role == Role::mechanics || other.role == Role::mechanics;
-    if (other.role == role || !is_exchanging || member_.peer(other.role).is_known) continue;
+    if (other.role == role || !are_bound(role, other.role) || !begins_anew(other.role)) continue;
     other.from = state->step;
     replaced_[static_cast<std::size_t>(other.role)].from = state->step;
   }
-  replaced_[static_cast<std::size_t>(role)] = {state->step, newest_of(role)};
+  replaced_[static_cast<std::size_t>(role)] = {state->step, n_};
   std::erase_if(vacancies_, [role](const Vacancy& former) { return former.role == role; });
   vacancies_.push_back(std::move(held));
+  clock_.forget_under_way();
   member_.warn(vacancy_text(vacancies_.back()));
   give_up(role, now_ns);
   show_running();
@@ -442,9 +465,7 @@ bool IoNode::hold_place(Role role, std::int64_t now_ns) {
 
 void IoNode::give_up(Role role, std::int64_t now_ns) {
   description_.given_up.push_back({role, member_.peer(role).incarnation});
-  description_.header = member_.header(Phase::running, n_);
-  member_.renew(description_, now_ns);
-  member_.publish(Topic::session, description_);
+  tell_session(n_, now_ns);
 }
 
 void IoNode::watch_vacancies(std::int64_t now_ns) {
@@ -462,7 +483,6 @@ void IoNode::watch_vacancies(std::int64_t now_ns) {
       member_.warn(member_.describe_peer(role) + " goes on in the place of " + held.who + " from step " +
                    std::to_string(held.from));
       vacancies_.erase(vacancies_.begin() + static_cast<std::ptrdiff_t>(i--));
-      clock_.excuse(n_, now_ns);  // the machine was not too slow
       show_running();
       continue;
     }

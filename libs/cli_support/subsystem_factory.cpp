@@ -42,6 +42,7 @@ node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets)
       built.ports = {static_cast<std::uint32_t>(scene->session.exchange_every),
                      scene->session.mode == scene::ExchangeMode::free_running, scene->session.wait_budget_duration()};
       built.flexible = {scene->session.flexible, scene->flexible_every()};
+      built.exchange_unit = scene->exchange_unit();
       built.start_grace = duration_of_seconds(scene->session.start_grace);
       built.published_variables = published_variables(*scene, *built.subsystem);
       return Status::ok();

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "core/state_hash.h"
+
 namespace slew::node {
 namespace {
 
@@ -26,11 +28,22 @@ template <typename T>
   return true;
 }
 
+std::uint64_t check_of(std::span<const std::byte> bytes) {
+  StateHash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.digest();
+}
+
 [[nodiscard]] bool get_said(std::span<const std::byte>& bytes, wire::SampleState& said) {
+  const std::span<const std::byte> all = bytes;
   std::uint32_t layout = 0;
-  return get(bytes, layout) && layout == kLayout && get(bytes, said.level) && get(bytes, said.quality) &&
-         get(bytes, said.used_step) && get(bytes, said.lost) && get(bytes, said.flags) && get(bytes, said.offender) &&
-         get(bytes, said.substeps);
+  std::uint64_t check = 0;
+  const bool is_there = get(bytes, layout) && layout == kLayout && get(bytes, said.level) && get(bytes, said.quality) &&
+                        get(bytes, said.used_step) && get(bytes, said.lost) && get(bytes, said.flags) &&
+                        get(bytes, said.offender) && get(bytes, said.substeps);
+  const std::size_t size = all.size() - bytes.size();
+  return is_there && get(bytes, check) && check == check_of(all.first(size)) && said.level <= coupling::Level::tlm &&
+         said.quality <= coupling::Quality::invalid;
 }
 
 }  // namespace
@@ -48,6 +61,7 @@ void save_node(const coupling::Subsystem& subsystem, const wire::SampleState& sa
   put(checkpoint.bytes, said.flags);
   put(checkpoint.bytes, said.offender);
   put(checkpoint.bytes, said.substeps);
+  put(checkpoint.bytes, check_of(checkpoint.bytes));
   subsystem.save(checkpoint.bytes);
 }
 

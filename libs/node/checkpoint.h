@@ -1,9 +1,9 @@
 // The state of one node at one step as bytes: made by a physics node, sent in parts, kept by io, given to who takes the
 // role over.
 //
-// The bytes of a physics node: a layout number, what its sample says beside the physics (wire::SampleState), then what
-// Subsystem::save() gave. Little-endian raw bits of this processor family. Only the same build need read them: the hash
-// of the state that is loaded is held against that of the state that was saved.
+// The bytes of a physics node: a layout number, what its sample says beside the physics (wire::SampleState), XXH3 of
+// these, then what Subsystem::save() gave. Little-endian raw bits of this processor family. Only the same build need
+// read them: the hash of the state that is loaded is held against that of the state that was saved.
 #pragma once
 
 #include <array>
@@ -20,15 +20,21 @@
 
 namespace slew::node {
 
-// Steps between two checkpoints. A node that rejoins computes up to two of these intervals again.
+// Steps between two checkpoints, at least. A node that rejoins computes up to two of these intervals again.
 inline constexpr StepIndex kCheckpointEvery = 128;
+
+// Steps between two checkpoints of nodes that have all exchanged after every `unit` steps: two that begin anew must
+// find each other's samples from their common step on.
+[[nodiscard]] constexpr StepIndex checkpoint_interval(StepIndex unit) noexcept {
+  return (kCheckpointEvery + unit - 1) / unit * unit;
+}
 
 // Checkpoints of a role that io keeps. The oldest is at most 5 intervals behind the ticks (with what is on its way),
 // within the kSentDepth steps that everybody can say again.
 inline constexpr std::size_t kKeptCheckpoints = 4;
 
 // No state is longer; of a part that says so nothing is kept.
-inline constexpr std::size_t kMaxStateBytes = std::size_t{64} << 20;
+inline constexpr std::size_t kMaxStateBytes = std::size_t{4} << 20;
 
 struct Checkpoint {
   StepIndex step = kJoinStep;

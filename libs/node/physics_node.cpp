@@ -173,8 +173,7 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
   variable_values_.resize(built_.subsystem->variables().size());
   samples_.configure(member_, built_.ports, built_.flexible);
   const bool has_deadline = session.pace == wire::Pace::real;
-  step_timing_.configure({has_deadline ? session.step_ns * samples_.stride() : 0},
-                         built_.start_grace.ns / session.step_ns);
+  step_timing_.set_deadline({has_deadline ? session.step_ns * samples_.stride() : 0});
   member_.set_state(NodeState::joining);
   stage_ = Stage::joining;
 }
@@ -372,6 +371,7 @@ bool PhysicsNode::advance_init(std::int64_t now_ns) {
   member_.set_state(NodeState::ready);
   member_.mark_status_changed();
   stage_ = Stage::stepping;
+  judge_after(0);
   if (is_follower()) {
     expect_next(now_ns);
   } else {
@@ -405,6 +405,7 @@ void PhysicsNode::go_on_from(const wire::SampleState& said, std::int64_t now_ns)
   lost_ = said.lost;
   const wire::Header& told = member_.session().header;
   caught_up_at_ = told.epoch == member_.epoch() ? std::max(n_, told.step) : n_;
+  judge_after(caught_up_at_);
   StepReport report;
   report.flags = said.flags;
   report.offender = said.offender;
@@ -425,7 +426,7 @@ void PhysicsNode::go_on_from(const wire::SampleState& said, std::int64_t now_ns)
 void PhysicsNode::save_if_due(const StepReport& report) {
   if (report.has_failed()) return;
   if (n_ == save_at_) return say_state();
-  const bool is_first = n_ == 0 || n_ / kCheckpointEvery != (n_ - samples_.stride()) / kCheckpointEvery;
+  const bool is_first = n_ % checkpoint_interval(built_.exchange_unit) == 0;
   const bool is_due = is_first && member_.session().rejoin_ns > 0 && n_ >= caught_up_at_;
   if (is_due && !checkpoint_.has_more()) save_node(*built_.subsystem, said_, n_, checkpoint_.next());
   if (n_ == 0) return checkpoint_.send_rest(member_);
@@ -573,8 +574,13 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
   if (report.has_failed()) leave(ExitCode::diverged, divergence_text(report), now_ns);
 }
 
+void PhysicsNode::judge_after(StepIndex begin) noexcept {
+  step_timing_.judge_from(begin + built_.start_grace.ns / member_.session().step_ns);
+}
+
 void PhysicsNode::measure_release(StepIndex step) noexcept {
-  const bool is_local = member_.session().host == member_.identity().host;
+  const std::string& host = is_follower() ? member_.peer(Role::mechanics).status.host : member_.session().host;
+  const bool is_local = host == member_.identity().host;
   step_timing_.release(step, sent_ns(source_ns_, is_local ? WriterClock::same : WriterClock::other));
 }
 
@@ -614,6 +620,7 @@ void PhysicsNode::restart(const wire::Header& init) {
   missed_ticks_.clear();
   late_commands_.clear();
   controls_.clear();
+  quality_ = coupling::Quality::ok;
   has_late_end_ = false;
   first_sample_sent_ = false;
   save_at_ = kNoStep;

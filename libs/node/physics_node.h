@@ -36,7 +36,8 @@ struct BuiltSubsystem {
   std::vector<std::uint32_t> published_variables;  // indices into Subsystem::variables(), ascending
   PortTraffic ports;
   FlexibleTraffic flexible;
-  SimDuration start_grace;  // steps of this time after step 0 are not judged
+  StepIndex exchange_unit = 1;  // steps after which all nodes have exchanged
+  SimDuration start_grace;      // steps of this time after the first are not judged
 };
 
 // Builds the subsystem; refuses with the reason (assets that differ, scene that this build cannot run).
@@ -98,6 +99,8 @@ class PhysicsNode final : public Node {
   void watch(std::int64_t now_ns);
   void leave(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void apply_commands(std::span<const wire::Command> commands);
+  // caches are filled and pages touched in the start-up grace
+  void judge_after(StepIndex begin) noexcept;
   void measure_release(StepIndex step) noexcept;
   void work_more() const noexcept;
   [[nodiscard]] bool is_follower() const noexcept { return member_.role() == wire::Role::flex; }

@@ -155,7 +155,10 @@ Status SessionMember::adopt(const wire::SessionDescription& session, std::int64_
 }
 
 void SessionMember::renew(const wire::SessionDescription& session, std::int64_t now_ns) {
-  session_ = session;
+  // nothing that the thread which tells the health reads
+  session_.header.step = session.header.step;
+  session_.header.epoch = session.header.epoch;
+  session_.given_up = session.given_up;
   forget_given_up(now_ns);
   // those who come hear this process as it is now
   status_changed_ = true;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -279,6 +280,10 @@ bool Scene::has_modes() const noexcept {
 std::uint32_t Scene::flexible_every() const noexcept {
   const bool is_stated_once = session.flexible == coupling::ElasticExchange::once;
   return is_stated_once ? static_cast<std::uint32_t>(recording.every) : 1;
+}
+
+StepIndex Scene::exchange_unit() const noexcept {
+  return std::lcm<StepIndex>(session.exchange_every, has_modes() ? flexible_every() : 1);
 }
 
 }  // namespace slew::scene

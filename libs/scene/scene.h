@@ -85,6 +85,8 @@ struct Scene {
   [[nodiscard]] bool has_modes() const noexcept;
   // Steps between two samples for and of flexible bodies.
   [[nodiscard]] std::uint32_t flexible_every() const noexcept;
+  // Steps after which all nodes have exchanged: the least common multiple of what they exchange at.
+  [[nodiscard]] StepIndex exchange_unit() const noexcept;
   // By modes or by segments: then its flexible files are needed.
   [[nodiscard]] bool has_flexible_bodies() const noexcept {
     return !mechanics.flexible_bodies.empty() || !mechanics.segmented_bodies.empty();

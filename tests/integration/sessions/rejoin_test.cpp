@@ -208,5 +208,41 @@ TEST(RunWithRejoin, StartsAKilledNodeAgainAndEndsWellWithTheSameBits) {
   EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
 }
 
+TEST(RunWithRejoin, ReplacesANodeThatHangs) {
+  const ScratchFolder folder;
+  const TestDomain domain;
+  Program run(
+      program_path("slewring"),
+      {"run", kScene, "--session", "s", "--domain", std::to_string(domain.number()), "--pace", "real", "--duration",
+       kDuration, "--set", "session.rejoin=20s", "--out", (folder.path() / "runs").string(), "--quiet"},
+      folder.path() / "run");
+  Observer observer(domain.number(), "s");
+  ASSERT_TRUE(observer.wait_for_step(300)) << run.out() << run.err();
+  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::hydraulics).has_value(); }));
+  kill(static_cast<pid_t>(observer.status(Role::hydraulics)->pid), SIGSTOP);
+  EXPECT_EQ(run.wait(), 0) << run.out() << run.err();
+  EXPECT_NE(run.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos) << run.err();
+  EXPECT_NE(run.err().find("(1 of 3)"), std::string::npos) << run.err();
+  EXPECT_EQ(first_difference(read_session(folder.path() / "runs").chain(), undisturbed()), "");
+}
+
+// a step of which neither node has a sample is no beginning
+TEST(Replaced, BothPartnersOfAnExchangeAtEveryThirdStep) {
+  Session session(
+      {"--pace", "real", "--duration", kDuration, "--set", "session.rejoin=20s", "--set", "session.exchange_every=3"});
+  Observer& observer = session.observer();
+  session.start_all();
+  ASSERT_TRUE(observer.wait_for_step(600)) << session.said();
+  for (const Role role : {Role::mechanics, Role::hydraulics}) session.node(role).send(SIGKILL);
+  for (const Role role : {Role::mechanics, Role::hydraulics}) {
+    ASSERT_TRUE(holds_a_place(observer, role)) << session.said();
+    session.start(role);
+  }
+  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
+  Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
+                 session.folder() / "replay");
+  EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+}
+
 }  // namespace
 }  // namespace slew::testing

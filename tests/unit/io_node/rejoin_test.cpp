@@ -169,6 +169,44 @@ TEST_F(Rejoin, HoldsThePlaceGivesTheStateAndGoesOn) {
       << warnings.back();
 }
 
+TEST_F(Rejoin, TheHoldAndWhatIsComputedAgainAreNoLagOfTheMachine) {
+  IoConfig strict = config(milliseconds(30'000));
+  strict.overrun.policy = Overrun::stop;
+  get_running(std::move(strict));
+  run_to(140);
+  say_checkpoint(Role::hydraulics, 128);
+  played.say_mechanism(140);
+  poll(kMs);
+  const std::uint64_t judged = node->timing().response.count();
+  lose_hydraulics(2500);
+  EXPECT_EQ(problem_of_books(node->timing().books.read(), milliseconds(1)), "");
+  for (const NodeState state : {NodeState::joining, NodeState::ready}) {
+    played.say(Topic::node_status, second(state));
+    poll(kMs);
+  }
+  wire::ActuatorMessage message;
+  for (StepIndex step = 128; step <= 140; ++step) {
+    message.header = played.header(Role::hydraulics, step);
+    message.header.incarnation = 99;
+    played.say(Topic::actuators, message);
+    poll(40 * kMs);
+  }
+  for (int i = 0; i < 50; ++i) {
+    message.header = played.header(Role::hydraulics, node->next_step());
+    message.header.incarnation = 99;
+    played.say(Topic::actuators, message);
+    played.say_mechanism(node->next_step());
+    poll(kMs);
+  }
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
+  EXPECT_EQ(node->member().state(), NodeState::running);
+  EXPECT_GT(node->next_step(), 180);
+  EXPECT_GT(node->timing().response.count(), judged + 30);
+  EXPECT_LT(node->timing().response.max(), 100 * kMs) << "the hold is no step's response";
+  EXPECT_EQ(node->timing().books.read().skipped, 0u);
+  EXPECT_EQ(problem_of_books(node->timing().books.read(), milliseconds(1)), "");
+}
+
 TEST_F(Rejoin, GivesNoStateFromWhichTheOthersWouldMissASample) {
   get_running(config(milliseconds(30'000)));
   run_to(140);
