@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "transport/codec.h"
+#include "transport/given_up.h"
 
 namespace slew::cli {
 
@@ -20,7 +21,7 @@ constexpr std::size_t kMostEarly = 1024;
 NodeView* SessionView::node_of(const wire::Header& header) {
   const auto index = static_cast<std::size_t>(header.role);
   if (!session_ || header.session != session_->header.session || index >= wire::kRoles) return nullptr;
-  return &nodes_[index];
+  return transport::is_given_up(*session_, header) ? nullptr : &nodes_[index];
 }
 
 void SessionView::take(Topic topic, std::span<const std::byte> bytes) {

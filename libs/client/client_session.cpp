@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "transport/codec.h"
+#include "transport/given_up.h"
 #include "transport/protection.h"
 
 namespace slew::client {
@@ -150,6 +151,7 @@ void ClientSession::take_session(std::span<const std::byte> bytes) {
   if (!transport::decode(bytes, description) || description.name != options_.session) return;
   const bool is_this_one = has_session_ && description.header.session == description_.header.session;
   if (is_this_one && description.header.phase == Phase::ended) is_over_ = true;
+  if (is_this_one) description_.given_up = description.given_up;
   if (has_session_ || description.header.phase != Phase::running) return;
   description.scene_text.clear();
   description_ = std::move(description);
@@ -157,17 +159,21 @@ void ClientSession::take_session(std::span<const std::byte> bytes) {
   for (const Early& message : std::exchange(before_session_, {})) take(message.topic, message.bytes);
 }
 
-// io says when it is over and why; of one that was lost the others do
+// io says when it is over and why; of one that was lost the others do. Where lost nodes are replaced, one that ends for
+// another reason than the loss of somebody is replaced too, or io says that it is over.
 void ClientSession::take_status(std::span<const std::byte> bytes) {
   wire::NodeStatus status;
   if (!transport::decode(bytes, status) || !is_ours(status.header)) return;
   if (status.state < wire::NodeState::ended || status.header.role == Role::recorder) return;
+  const bool is_of_io = status.header.role == Role::io;
+  const bool has_lost_somebody = status.exit_code == static_cast<std::int32_t>(ExitCode::node_lost);
+  if (!is_of_io && description_.rejoin_ns > 0 && !has_lost_somebody) return;
   is_over_ = true;
   if (end_reason_.empty()) end_reason_ = status.reason;
 }
 
 bool ClientSession::is_ours(const wire::Header& header) const noexcept {
-  return has_session_ && header.session == description_.header.session;
+  return has_session_ && header.session == description_.header.session && !transport::is_given_up(description_, header);
 }
 
 const ClientSession::Named* ClientSession::named(const std::string& name) const noexcept {

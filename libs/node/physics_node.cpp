@@ -330,6 +330,7 @@ bool PhysicsNode::advance_join(std::int64_t now_ns) {
   if (member_.is_heard_by_all()) {
     member_.set_state(NodeState::initialising);
     stage_ = member_.has_state() ? Stage::loading : Stage::initialising;
+    if (member_.has_state()) n_ = member_.session().header.step;  // so that what comes meanwhile is near
     resend_.restart(member_.has_state() ? now_ns - kResendAfter.ns : now_ns);
     return true;
   }
@@ -612,7 +613,7 @@ void PhysicsNode::restart(const wire::Header& init) {
   built_.subsystem->reset();
   ticks_.clear();
   samples_.clear();
-  n_ = 0;
+  n_ = std::max<StepIndex>(0, init.step);
   last_step_ = newest_tick_ = kNoStep;
   used_step_ = kJoinStep;
   lost_ = 0;

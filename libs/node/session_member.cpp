@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "transport/given_up.h"
 #include "transport/topics.h"
 
 namespace slew::node {
@@ -176,8 +177,7 @@ void SessionMember::forget_given_up(std::int64_t now_ns) {
 }
 
 bool SessionMember::is_given_up(Role role, std::uint32_t incarnation) const noexcept {
-  return std::find(session_.given_up.begin(), session_.given_up.end(), wire::GivenUp{role, incarnation}) !=
-         session_.given_up.end();
+  return transport::is_given_up(session_, role, incarnation);
 }
 
 Status SessionMember::problem_of_protocol() const {

@@ -2,7 +2,9 @@
 // taking over, a reset, the end, and every refusal.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -270,6 +272,34 @@ TEST_F(ClientLibrary, TheHeaderForCxxThrowsAndReleasesAtTheEnd) {
   stop();
   while (third.step()) {
   }
+}
+
+TEST_F(ClientLibrary, GoesOnWhenANodeIsReplacedAndTheOneThatStoodStillWakesUp) {
+  start({"--set", "session.rejoin=30s"});
+  const Client client = join("reader");
+  const int stroke = slewring_find(client.get(), "Cyl_Lift.stroke", kSoon);
+  ASSERT_GE(stroke, 0);
+  ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK);
+  Program& first = session->node(Role::hydraulics);
+  first.send(SIGSTOP);
+  ASSERT_TRUE(session->observer().wait_until([&] {
+    const auto& all = session->observer().descriptions();
+    return std::any_of(all.begin(), all.end(), [](const auto& entry) { return !entry.second.given_up.empty(); });
+  })) << session->said();
+  session->start(Role::hydraulics, {}, "_second");
+  const long long held_at = slewring_present_step(client.get());
+  first.send(SIGCONT);
+  EXPECT_EQ(first.wait(), 4) << first.err();
+  long long before = held_at;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
+    EXPECT_GT(slewring_present_step(client.get()), before) << "a step that was computed again is told once";
+    before = slewring_present_step(client.get());
+  }
+  control("stop");
+  int result = SLEWRING_OK;
+  while (result == SLEWRING_OK) result = slewring_step(client.get(), kSoon);
+  EXPECT_EQ(result, SLEWRING_ENDED) << slewring_error(client.get());
 }
 
 }  // namespace

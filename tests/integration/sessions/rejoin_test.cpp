@@ -188,42 +188,44 @@ TEST(ReplacedFlex, InMidMotionTheSessionGoesOnToTheSameBits) {
 
 // ---- `slewring run` -------------------------------------------------------------------------------------------
 
-TEST(RunWithRejoin, StartsAKilledNodeAgainAndEndsWellWithTheSameBits) {
-  const ScratchFolder folder;
-  const TestDomain domain;
-  Program run(
+class RunWithRejoin : public ::testing::Test {
+ protected:
+  // of a session in mid-motion
+  void send_to(Role role, int signal) {
+    ASSERT_TRUE(observer_.wait_for_step(300)) << run_.out() << run_.err();
+    ASSERT_TRUE(observer_.wait_until([&] { return observer_.status(role).has_value(); }));
+    kill(static_cast<pid_t>(observer_.status(role)->pid), signal);
+  }
+  // a node is started again, and what it goes on with is as if nothing had been
+  void expect_one_restart_and_undisturbed_bits() {
+    EXPECT_EQ(run_.wait(), 0) << run_.out() << run_.err();
+    EXPECT_NE(run_.err().find("it is started again with the state of its last checkpoint (1 of 3)"), std::string::npos)
+        << run_.err();
+    const RecordedSession recorded = read_session(folder_.path() / "runs");
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
+  }
+
+  ScratchFolder folder_;
+  TestDomain domain_;
+  Program run_{
       program_path("slewring"),
-      {"run", kScene, "--session", "s", "--domain", std::to_string(domain.number()), "--pace", "real", "--duration",
-       kDuration, "--set", "session.rejoin=20s", "--out", (folder.path() / "runs").string(), "--quiet"},
-      folder.path() / "run");
-  Observer observer(domain.number(), "s");
-  ASSERT_TRUE(observer.wait_for_step(300)) << run.out() << run.err();
-  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::mechanics).has_value(); }));
-  kill(static_cast<pid_t>(observer.status(Role::mechanics)->pid), SIGKILL);
-  EXPECT_EQ(run.wait(), 0) << run.out() << run.err();
-  EXPECT_NE(run.err().find("it is started again with the state of its last checkpoint (1 of 3)"), std::string::npos)
-      << run.err();
-  const RecordedSession recorded = read_session(folder.path() / "runs");
-  EXPECT_EQ(recorded.problem, "");
-  EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
+      {"run", kScene, "--session", "s", "--domain", std::to_string(domain_.number()), "--pace", "real", "--duration",
+       kDuration, "--set", "session.rejoin=20s", "--out", (folder_.path() / "runs").string(), "--quiet"},
+      folder_.path() / "run"};
+  Observer observer_{domain_.number(), "s"};
+};
+
+TEST_F(RunWithRejoin, StartsAKilledNodeAgainAndEndsWellWithTheSameBits) {
+  send_to(Role::mechanics, SIGKILL);
+  expect_one_restart_and_undisturbed_bits();
 }
 
-TEST(RunWithRejoin, ReplacesANodeThatHangs) {
-  const ScratchFolder folder;
-  const TestDomain domain;
-  Program run(
-      program_path("slewring"),
-      {"run", kScene, "--session", "s", "--domain", std::to_string(domain.number()), "--pace", "real", "--duration",
-       kDuration, "--set", "session.rejoin=20s", "--out", (folder.path() / "runs").string(), "--quiet"},
-      folder.path() / "run");
-  Observer observer(domain.number(), "s");
-  ASSERT_TRUE(observer.wait_for_step(300)) << run.out() << run.err();
-  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::hydraulics).has_value(); }));
-  kill(static_cast<pid_t>(observer.status(Role::hydraulics)->pid), SIGSTOP);
-  EXPECT_EQ(run.wait(), 0) << run.out() << run.err();
-  EXPECT_NE(run.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos) << run.err();
-  EXPECT_NE(run.err().find("(1 of 3)"), std::string::npos) << run.err();
-  EXPECT_EQ(first_difference(read_session(folder.path() / "runs").chain(), undisturbed()), "");
+TEST_F(RunWithRejoin, ReplacesANodeThatHangs) {
+  send_to(Role::hydraulics, SIGSTOP);
+  expect_one_restart_and_undisturbed_bits();
+  EXPECT_NE(run_.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos)
+      << run_.err();
 }
 
 // a step of which neither node has a sample is no beginning
