@@ -155,7 +155,8 @@ void add_stress(CLI::App& program, Action& action) {
   verb->add_flag("--json", options->is_json, "print the result as JSON and nothing else");
   verb->add_flag("--quiet", options->is_quiet, "no progress");
   verb->footer(
-      "Exit code 3 when a cell is over --max-miss or --p99. What is measured and how: docs/realtime.md.\n\n"
+      "Exit code 3 when a cell is over --max-miss or --p99, 7 when one could not be run. What is measured and how: "
+      "docs/realtime.md.\n\n"
       "Examples:\n"
       "  slewring stress scenes/truck_crane.yaml --rt --seconds 60 --max-miss 0.5 --p99 500\n"
       "  slewring stress scenes/truck_crane.yaml --matrix --seconds 30 -o stress.html");

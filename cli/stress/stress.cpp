@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,7 @@
 #include "cli_support/failure.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_scene.h"
+#include "node/identity.h"
 #include "scene/cpu_places.h"
 
 namespace slew::cli {
@@ -38,13 +40,63 @@ bool fifo_is_allowed() {
   return is_allowed;
 }
 
-int cpu_of(const std::string& places, const std::string& role) {
+// CPU time of a process of this machine so far; 0: it is gone.
+std::int64_t process_cpu_ns(std::uint32_t pid) noexcept {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(static_cast<pid_t>(pid), &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+// CPU time that the session's processes take for a step.
+class SessionWork {
+ public:
+  // io's health has just said that the session is at this step.
+  void look(const SessionView& view, StepIndex step) noexcept {
+    Looked& at = first_.step == kJoinStep ? first_ : last_;
+    at.step = step;
+    for (const Role role : wire::kNodeRoles) at.cpu_ns[static_cast<std::size_t>(role)] = cpu_ns(view, role);
+  }
+  // Of a role's process, between the first look and the last one; 0: there was one alone.
+  [[nodiscard]] SimDuration of_step(Role role) const noexcept {
+    const auto r = static_cast<std::size_t>(role);
+    if (last_.step <= first_.step || first_.cpu_ns[r] == 0 || last_.cpu_ns[r] == 0) return {};
+    return {(last_.cpu_ns[r] - first_.cpu_ns[r]) / (last_.step - first_.step)};
+  }
+
+ private:
+  struct Looked {
+    StepIndex step = kJoinStep;
+    std::array<std::int64_t, wire::kRoles> cpu_ns{};
+  };
+  static std::int64_t cpu_ns(const SessionView& view, Role role) noexcept {
+    const NodeView& node = view.node(role);
+    return node.is_known ? process_cpu_ns(node.status.pid) : 0;
+  }
+
+  Looked first_, last_;
+};
+
+int priority_of(Role role) noexcept {
+  if (role == Role::io) return cli_support::kIoPriority;
+  return role == Role::recorder ? cli_support::kRecorderPriority : cli_support::kDefaultPriority;
+}
+
+// A loop for every node of the session, io's in front; what they burn is not known yet.
+std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, const std::string& places) {
   std::vector<scene::CpuPlace> all;
   cli_support::require(scene::parse_cpu_places(places, all));
-  for (const scene::CpuPlace& place : all) {
-    if (place.role == role) return place.cpu;
+  std::vector<YardstickLoop> loops;
+  for (const Role role : wire::kNodeRoles) {
+    if ((roles & bit(role)) == 0) continue;
+    YardstickLoop& loop = loops.emplace_back();
+    loop.role = role;
+    if (scheduling == Scheduling::fifo) loop.priority = priority_of(role);
+    const auto place = std::ranges::find(all, node::to_text(role), &scene::CpuPlace::role);
+    if (place != all.end()) loop.cpu = place->cpu;
+    loop.ends_step = role == Role::io || role == Role::mechanics || role == Role::hydraulics;
   }
-  return -1;
+  return loops;
 }
 
 // Goes on beside a session: pauses it for the slices of the yardstick, and follows its response.
@@ -57,7 +109,7 @@ class CellWatch {
   void look(Observer& observer, std::int64_t now_ns) {
     const SessionView& view = observer.view();
     if (!view.has_session() || view.step() <= 0) return;
-    follow(view.node(Role::io).health);
+    follow(view);
     switch (stage_) {
       case Stage::stepping:
         if (done_ == slices_ || view.is_over() || view.step() < steps_ * (done_ + 1) / (slices_ + 1)) return;
@@ -67,8 +119,7 @@ class CellWatch {
       case Stage::pausing:
         if (view.is_over()) stage_ = Stage::stepping;
         if (!view.is_paused()) return ask_again(observer, wire::ControlAction::pause, now_ns);
-        if (done_ == 0 && median_execution(view).ns == 0 && now_ns - asked_ns_ < kAskAgainNs) return;
-        measure(view);
+        measure();
         stage_ = Stage::measuring;
         return;
       case Stage::measuring:
@@ -88,7 +139,7 @@ class CellWatch {
     yardstick_.stop();
     yardstick_.wait();
     cell_.yardstick = yardstick_.result();
-    cell_.yardstick_work = rules_.work.seconds();
+    cell_.yardstick_loops = rules_.loops;
     if (!yardstick_.problem().empty()) cell_.books = "yardstick: " + yardstick_.problem();
   }
 
@@ -100,22 +151,19 @@ class CellWatch {
     return std::max<StepIndex>(1, std::llround(std::ceil(seconds / kLongestSlice)));
   }
 
-  // of the slowest physics node; 0: none has told it yet
-  static SimDuration median_execution(const SessionView& view) {
-    double median = 0;
-    for (const Role role : wire::kPhysicsRoles) median = std::max(median, view.node(role).health.execution.p50);
-    return duration_of_seconds(median);
-  }
-
-  void measure(const SessionView& view) {
-    if (done_ == 0) rules_.work = median_execution(view);
+  void measure() {
+    if (done_ == 0) {
+      for (YardstickLoop& loop : rules_.loops) loop.work = work_.of_step(loop.role);
+    }
     const double session = rules_.step.seconds() * static_cast<double>(steps_);
     yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));
   }
 
-  void follow(const wire::Health& io) {
+  void follow(const SessionView& view) {
+    const wire::Health& io = view.node(Role::io).health;
     if (io.header.step <= followed_) return;
     followed_ = io.header.step;
+    if (done_ == 0) work_.look(view, followed_);
     if (io.response.count == 0) return;
     cell_.response.time.push_back(static_cast<double>(followed_) * rules_.step.seconds());
     cell_.response.values.push_back(io.response_recent * 1e6);
@@ -132,6 +180,7 @@ class CellWatch {
   }
 
   YardstickRules rules_;
+  SessionWork work_;
   StressCell& cell_;
   Yardstick yardstick_;
   Stage stage_ = Stage::stepping;
@@ -153,6 +202,10 @@ RunOptions options_of(const StressWish& wish, const StressCell& cell, const std:
   return options;
 }
 
+bool is_stated(const StressBounds& bounds) noexcept {
+  return bounds.max_miss >= 0 || bounds.p99 >= 0;
+}
+
 std::string name_of(const StressCell& cell) {
   return fmt::format("{}, load {}, {:g} us added", to_text(cell.scheduling), to_text(cell.load), cell.work_us);
 }
@@ -168,8 +221,8 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, StressCel
   YardstickRules rules;
   rules.step = scene.session.step_duration();
   rules.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
-  rules.priority = cell.scheduling == Scheduling::fifo ? cli_support::kIoPriority : 0;
-  rules.cpu = cpu_of(places, "mechanics");
+  const auto recording = wish.scene.is_recording ? io::Recording::required : io::Recording::none;
+  rules.loops = loops_of(cell.scheduling, io::required_roles(scene, recording), places);
   CellWatch watch(rules, scene.session.steps(), cell);
   options.each_round = [&](Observer& observer, std::int64_t now_ns) {
     watch.look(observer, now_ns);
@@ -210,17 +263,17 @@ double missed(const wire::Health& health) noexcept {
 }
 
 Judgement judge(const wire::Health& health, const StressBounds& bounds) noexcept {
-  if ((bounds.max_miss < 0 && bounds.p99 < 0) || health.response.count == 0) return Judgement::none;
+  if (!is_stated(bounds) || health.response.count == 0) return Judgement::none;
   const bool misses = bounds.max_miss >= 0 && missed(health) > bounds.max_miss;
   const bool is_slow = bounds.p99 >= 0 && health.response.p99 > bounds.p99;
   return misses || is_slow ? Judgement::over : Judgement::within;
 }
 
 Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept {
-  const bool is_stated = bounds.max_miss >= 0 || bounds.p99 >= 0;
   // what the recorder lost is no deadline
   const bool has_run = cell.code == ExitCode::ok || cell.code == ExitCode::losses;
-  if (is_stated && cell.skipped.empty() && !has_run) return Judgement::over;
+  const bool is_measured = cell.nodes[static_cast<std::size_t>(Role::io)].response.count > 0;
+  if (is_stated(bounds) && cell.skipped.empty() && !(has_run && is_measured)) return Judgement::over;
   return judge(cell.nodes[static_cast<std::size_t>(Role::io)], bounds);
 }
 
@@ -279,7 +332,10 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
 ExitCode exit_code_of(const Stress& stress) noexcept {
   ExitCode code = ExitCode::ok;
   for (const StressCell& cell : stress.cells) {
-    if (!cell.skipped.empty()) continue;
+    if (!cell.skipped.empty()) {
+      if (is_stated(stress.bounds) && code == ExitCode::ok) code = ExitCode::resources;
+      continue;
+    }
     if (cell.code != ExitCode::ok && cell.code != ExitCode::losses) return cell.code;
     if (!cell.books.empty()) return ExitCode::failed;
     if (judge(cell, stress.bounds) == Judgement::over) code = ExitCode::losses;

@@ -1,9 +1,9 @@
 // How well this machine keeps a scene's deadlines: the session as processes, cell by cell of a matrix of scheduling,
-// other load and work added to every step, each beside a bare loop with the same work in the same minute
+// other load and work added to every step, each beside bare loops with the same work in the same minute
 // (docs/realtime.md).
 //
 // A cell is one session in `real` pace. Every 20 s at most it is paused and the yardstick runs for a quarter of that
-// time, under the same scheduling, load and rules; its work is the median execution time of the slowest physics node.
+// time, under the same scheduling, load and rules: a loop for every process, with the CPU time of its steps so far.
 #pragma once
 
 #include <functional>
@@ -15,6 +15,7 @@
 #include "cli/run_outcome.h"
 #include "cli/stress/load.h"
 #include "cli/stress/machine.h"
+#include "cli/stress/yardstick.h"
 #include "cli_support/scene_options.h"
 
 namespace slew::cli {
@@ -51,7 +52,7 @@ struct StressCell {
   std::array<wire::Health, wire::kRoles> nodes{};  // in the end; of io the session's own
   std::uint32_t roles = 0;                         // that took part
   wire::Health yardstick;
-  double yardstick_work = 0;  // s, CPU time of its step
+  std::vector<YardstickLoop> yardstick_loops;
   double load_average = 0, steal = 0, busy = 0;
   std::string books;          // what does not balance; empty: all does
   plotting::Series response;  // largest of every 0.1 s over the session's time
@@ -79,7 +80,8 @@ using StressProgress = std::function<bool(std::string_view doing, double share)>
 // Throws Failure for a scene or a wish that cannot be run.
 [[nodiscard]] Stress run_stress(const StressWish& wish, const StressBounds& bounds, const StressProgress& progress);
 
-// ok; losses when a cell is over its bound; failed when books do not balance; a session's own code when one failed.
+// ok; losses when a cell is over its bound, resources when one for which a bound was stated could not be run; failed
+// when books do not balance; a session's own code when one failed.
 [[nodiscard]] ExitCode exit_code_of(const Stress& stress) noexcept;
 
 }  // namespace slew::cli

@@ -22,6 +22,13 @@ std::string microseconds_text(double seconds) {
   return fmt::format("{:.0f}", seconds * 1e6);
 }
 
+// of all loops together in a step, s
+double work_of(const StressCell& cell) {
+  double work = 0;
+  for (const YardstickLoop& loop : cell.yardstick_loops) work += loop.work.seconds();
+  return work;
+}
+
 std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
   if (!cell.skipped.empty()) return "not run: " + cell.skipped;
   if (cell.code != ExitCode::ok && cell.code != ExitCode::losses) {
@@ -68,7 +75,7 @@ std::string table_of(const Stress& stress) {
     rows.push_back(std::move(session));
     if (!cell.skipped.empty()) continue;
     std::vector<std::string> yardstick = {"", "", ""};
-    const std::string name = fmt::format("yardstick {} us", microseconds_text(cell.yardstick_work));
+    const std::string name = fmt::format("yardstick {} us", microseconds_text(work_of(cell)));
     for (std::string& text : row_of(name, cell.yardstick)) yardstick.push_back(std::move(text));
     rows.push_back(std::move(yardstick));
   }
@@ -122,7 +129,10 @@ nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
   json["steps"] = cell.steps;
   json["session"] = timing_of(io);
   json["yardstick"] = timing_of(cell.yardstick);
-  json["yardstick"]["work"] = cell.yardstick_work;
+  json["yardstick"]["work"] = work_of(cell);
+  for (const YardstickLoop& loop : cell.yardstick_loops) {
+    json["yardstick"]["loops"][std::string(node::to_text(loop.role))] = loop.work.seconds();
+  }
   json["load_average"] = cell.load_average;
   json["steal"] = cell.steal;
   json["busy"] = cell.busy;

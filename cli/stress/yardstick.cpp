@@ -8,6 +8,29 @@
 #include "core/real_time_thread.h"
 
 namespace slew::cli {
+namespace {
+
+constexpr std::int32_t kNoMore = -1;  // a round
+
+void take_place(const YardstickLoop& loop) noexcept {
+  if (loop.priority > 0) {
+    sched_param parameters{};
+    parameters.sched_priority = loop.priority;
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+  }
+  if (loop.cpu >= 0) static_cast<void>(run_on_cpu(loop.cpu));
+}
+
+void count(std::atomic<std::int32_t>& counter) noexcept {
+  ++counter;
+  counter.notify_one();
+}
+
+void wait_for(const std::atomic<std::int32_t>& counter, std::int32_t value) noexcept {
+  for (std::int32_t at = counter; at < value; at = counter) counter.wait(at);
+}
+
+}  // namespace
 
 void burn(SimDuration cpu_time) noexcept {
   const std::int64_t end_ns = node::thread_cpu_ns() + cpu_time.ns;
@@ -20,7 +43,7 @@ void Yardstick::start(const YardstickRules& rules, SimDuration slice) {
   is_stopped_ = false;
   is_running_ = true;
   thread_ = std::thread([this, rules, slice] {
-    run(rules, slice);
+    lead(rules, slice);
     is_running_ = false;
   });
 }
@@ -29,31 +52,60 @@ void Yardstick::wait() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Yardstick::run(const YardstickRules& rules, SimDuration slice) {
-  if (rules.priority > 0) {
-    sched_param parameters{};
-    parameters.sched_priority = rules.priority;
-    pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+void Yardstick::release(std::int32_t round, std::int64_t due_ns) noexcept {
+  done_ = 0;
+  due_ns_ = due_ns;
+  round_ = round;
+  round_.notify_all();
+}
+
+void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
+  round_ = placed_ = 0;
+  std::vector<std::jthread> followers;
+  std::int32_t awaited = 0;
+  for (std::size_t i = 1; i < rules.loops.size(); ++i) {
+    followers.emplace_back([this, loop = rules.loops[i]] { follow(loop); });
+    if (rules.loops[i].ends_step) ++awaited;
   }
-  if (rules.cpu >= 0) static_cast<void>(run_on_cpu(rules.cpu));
+  take_place(rules.loops.front());
+  wait_for(placed_, static_cast<std::int32_t>(followers.size()));
   io::SessionClock clock(rules.step, rules.overrun, *timing_);
   const StepIndex steps = slice.ns / rules.step.ns;
   std::int64_t last_ns = monotonic_ns();
   clock.begin(0, last_ns + rules.step.ns);
   StepIndex n = 0;
   for (; n < steps && !is_stopped_; ++n) {
-    sleep_until_monotonic(std::max(clock.due_ns(n), last_ns + rules.step.ns / 2));
+    const std::int64_t due_ns = std::max(clock.due_ns(n), last_ns + rules.step.ns / 2);
+    release(static_cast<std::int32_t>(n + 1), due_ns);
+    sleep_until_monotonic(due_ns);
     last_ns = monotonic_ns();
     static_cast<void>(clock.keep_time(n, last_ns));
     clock.ran(n, last_ns);
-    burn(rules.work);
+    burn(rules.loops.front().work);
+    wait_for(done_, awaited);
     static_cast<void>(clock.completed(n + 1, n + 1, monotonic_ns()));
   }
   clock.close(n, monotonic_ns());
+  release(kNoMore, 0);
+  followers.clear();
   if (problem_.empty()) problem_ = io::problem_of_books(timing_->books.read(), rules.step);
   steps_ += static_cast<std::uint64_t>(n);
   skipped_ += clock.skipped();
   slip_ns_ += clock.slip_ns();
+}
+
+void Yardstick::follow(const YardstickLoop& loop) noexcept {
+  take_place(loop);
+  count(placed_);
+  std::int32_t round = 0;
+  while (true) {
+    round_.wait(round);
+    round = round_;
+    if (round == kNoMore) return;
+    sleep_until_monotonic(due_ns_);
+    burn(loop.work);
+    if (loop.ends_step) count(done_);
+  }
 }
 
 wire::Health Yardstick::result() const {

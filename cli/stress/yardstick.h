@@ -1,5 +1,6 @@
-// What the machine itself can do: a bare loop that sleeps until its time with clock_nanosleep and burns as much CPU
-// time as a step of the session, by the same rules of lag, catching up and missing as io_node
+// What the machine itself can do: bare loops that sleep with clock_nanosleep until the time of a step and burn as much
+// CPU time as the processes of the session do in it, one loop for each, all released at once. Nothing is sent and
+// nobody is waited for but at the end of a step. Lag, catching up and missing follow io_node's rules
 // (io_node/session_clock.h).
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core/time.h"
 #include "io_node/session_clock.h"
@@ -15,15 +17,21 @@
 
 namespace slew::cli {
 
+struct YardstickLoop {
+  wire::Role role = wire::Role::io;  // whose process it stands for
+  SimDuration work;                  // CPU time of a step
+  int priority = 0;                  // SCHED_FIFO; 0: normal scheduling
+  int cpu = -1;                      // processor; -1: any
+  bool ends_step = true;             // else a load: the step does not wait for it
+};
+
 struct YardstickRules {
   SimDuration step;
-  SimDuration work;  // CPU time of a step
-  int priority = 0;  // SCHED_FIFO; 0: normal scheduling
-  int cpu = -1;      // processor; -1: any
+  std::vector<YardstickLoop> loops;  // the first leads: it keeps the time
   io::OverrunRules overrun;
 };
 
-// One loop, in slices; the results of all of them together.
+// The loops, in slices; the results of all slices together.
 class Yardstick {
  public:
   Yardstick() = default;
@@ -31,7 +39,7 @@ class Yardstick {
   Yardstick(const Yardstick&) = delete;
   Yardstick& operator=(const Yardstick&) = delete;
 
-  // Runs a slice on a thread of its own.
+  // Runs a slice on threads of its own.
   void start(const YardstickRules& rules, SimDuration slice);
   [[nodiscard]] bool is_running() const noexcept { return is_running_.load(); }
   void wait();
@@ -44,11 +52,16 @@ class Yardstick {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
  private:
-  void run(const YardstickRules& rules, SimDuration slice);
+  void lead(const YardstickRules& rules, SimDuration slice);
+  void follow(const YardstickLoop& loop) noexcept;
+  void release(std::int32_t round, std::int64_t due_ns) noexcept;
 
   std::unique_ptr<node::NodeTiming> timing_ = std::make_unique<node::NodeTiming>();
   std::thread thread_;
   std::atomic<bool> is_running_{false}, is_stopped_{false};
+  // followers in their places; the step that the leader has released, and how many loops have done it
+  std::atomic<std::int32_t> placed_{0}, round_{0}, done_{0};
+  std::atomic<std::int64_t> due_ns_{0};
   std::uint64_t steps_ = 0, skipped_ = 0;
   std::int64_t slip_ns_ = 0;
   std::string problem_;

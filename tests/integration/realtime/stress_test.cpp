@@ -59,7 +59,16 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     // half a second of start-up grace is not judged
     EXPECT_LE(cell.at("session").at("response").at("count"), 1500);
     EXPECT_EQ(cell.at("yardstick").at("response").at("count"), 500);
-    EXPECT_GT(cell.at("yardstick").at("work"), 0);
+    // a loop for every process, which together do the session's work
+    const json& loops = cell.at("yardstick").at("loops");
+    double work = 0;
+    for (const char* role : {"io", "mechanics", "hydraulics", "recorder"}) {
+      EXPECT_GT(loops.at(role).get<double>(), 1e-6) << role;
+      work += loops.at(role).get<double>();
+    }
+    EXPECT_EQ(loops.size(), 4u);
+    EXPECT_NEAR(cell.at("yardstick").at("work"), work, 1e-12);
+    EXPECT_GE(cell.at("yardstick").at("response").at("min"), loops.at("mechanics"));
     for (const char* role : {"mechanics", "hydraulics"}) {
       const json& node = cell.at("nodes").at(role);
       for (const char* time : {"response", "execution", "cpu_time", "wait", "release_jitter"}) {
