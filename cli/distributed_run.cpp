@@ -248,7 +248,7 @@ class Supervisor {
       return;
     }
     // every node is refused alike: once is enough
-    constexpr std::string_view kRefused = "the run goes on with normal scheduling";
+    constexpr std::string_view kRefused = "; to allow it, run as root, or set 'rtprio 95'";
     if (line.find(kRefused) != std::string::npos) {
       if (is_refusal_told_) return;
       is_refusal_told_ = true;

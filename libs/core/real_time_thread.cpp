@@ -40,21 +40,23 @@ void keep_memory() noexcept {
 }  // namespace
 
 Status make_real_time(int priority) {
-  std::string refused;
+  std::string refused, goes_on;
   sched_param parameters{};
   parameters.sched_priority = priority;
   if (sched_setscheduler(0, SCHED_FIFO, &parameters) != 0) {
     refused = std::string("SCHED_FIFO was refused (") + std::strerror(errno) + ")";
+    goes_on = "normal scheduling";
   }
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     refused += std::string(refused.empty() ? "" : ", ") + "locking memory was refused (" + std::strerror(errno) + ")";
+    goes_on += std::string(goes_on.empty() ? "" : " and ") + "memory that may be paged";
   }
   keep_memory();
   if (refused.empty()) return Status::ok();
   return Status::error(ExitCode::resources,
-                       refused +
-                           "; the run goes on with normal scheduling; to allow it, run as root, or set 'rtprio 95' and "
-                           "'memlock unlimited' for the user in /etc/security/limits.conf and log in again");
+                       refused + "; the run goes on with " + goes_on +
+                           "; to allow it, run as root, or set 'rtprio 95' and 'memlock unlimited' for the user in "
+                           "/etc/security/limits.conf and log in again");
 }
 
 std::vector<int> usable_cpus() {

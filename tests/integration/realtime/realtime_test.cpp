@@ -37,6 +37,14 @@ class RealTime : public ::testing::Test {
     return wait_until([&] { return command.out().find("  running") != std::string::npos || command.has_ended(); }) &&
            !command.has_ended();
   }
+  // As somebody without these rights ("sys_nice,-ipc_lock"), and with 64 KiB of memory that may be locked.
+  CommandResult run_without(const std::string& rights, std::vector<std::string> arguments) const {
+    std::vector<std::string> command = {"--memlock=65536:65536", "/usr/bin/setpriv", "--bounding-set=-" + rights,
+                                        program_file("slewring").string()};
+    if (geteuid() != 0) command.erase(command.begin() + 1, command.begin() + 3);
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run("/usr/bin/prlimit", command, work_.path());
+  }
   // "Cpus_allowed_list" and the like of /proc/PID/status
   static std::string status_of(pid_t pid, const std::string& key) {
     std::ifstream file("/proc/" + std::to_string(pid) + "/status");
@@ -123,23 +131,44 @@ TEST_F(RealTime, ARefusedPermissionIsOneWarningWithTheRemedy) {
   rlimit allowed{};
   getrlimit(RLIMIT_RTPRIO, &allowed);
   if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to everybody here";
-  std::vector<std::string> command = {"/usr/bin/setpriv", "--bounding-set=-sys_nice,-ipc_lock",
-                                      program_file("slewring").string()};
-  if (geteuid() != 0) command.erase(command.begin(), command.begin() + 2);
-  if (!std::filesystem::exists(command.front())) GTEST_SKIP() << "needs setpriv";
-  const std::vector<std::string> rest = arguments({"--rt", "--duration", "0.1", "--quiet", "--no-record"});
-  command.insert(command.end(), rest.begin(), rest.end());
   const CommandResult result =
-      run(command.front(), std::vector<std::string>(command.begin() + 1, command.end()), work_.path());
-  EXPECT_EQ(result.code, 0) << result.err;
+      run_without("sys_nice,-ipc_lock", arguments({"--rt", "--duration", "0.1", "--quiet", "--no-record"}));
+  ASSERT_EQ(result.code, 0) << result.err;
   const std::string refusal = "SCHED_FIFO was refused (";
   const std::size_t first = result.err.find(refusal);
   ASSERT_NE(first, std::string::npos) << result.err;
   EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "said twice: " << result.err;
-  EXPECT_NE(result.err.find("the run goes on with normal scheduling; to allow it, run as root, or set 'rtprio 95' and "
-                            "'memlock unlimited' for the user in /etc/security/limits.conf and log in again"),
+  EXPECT_NE(result.err.find("the run goes on with normal scheduling"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("to allow it, run as root, or set 'rtprio 95' and 'memlock unlimited' for the user in "
+                            "/etc/security/limits.conf and log in again"),
             std::string::npos)
       << result.err;
+}
+
+TEST_F(RealTime, MemoryThatMayNotBeLockedLeavesTheScheduling) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs the right to SCHED_FIFO: run it as root";
+  const CommandResult result =
+      run_without("ipc_lock", arguments({"--rt", "--duration", "0.1", "--quiet", "--no-record"}));
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.err.find("locking memory was refused ("), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("the run goes on with memory that may be paged; to allow it"), std::string::npos)
+      << result.err;
+  EXPECT_EQ(result.err.find("SCHED_FIFO"), std::string::npos) << result.err;
+}
+
+TEST_F(RealTime, ABoundThatCouldNotBeMeasuredIsNotKept) {
+  rlimit allowed{};
+  getrlimit(RLIMIT_RTPRIO, &allowed);
+  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to everybody here";
+  std::vector<std::string> stress = {
+      "stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()), "--rt", "--seconds", "2",
+      "--quiet"};
+  const CommandResult told = run_without("sys_nice", stress);
+  EXPECT_EQ(told.code, 0) << told.err;
+  EXPECT_NE(told.err.find("SCHED_FIFO was refused, and cells that need it were not run"), std::string::npos)
+      << told.err;
+  stress.insert(stress.end(), {"--max-miss", "100"});
+  EXPECT_EQ(run_without("sys_nice", stress).code, 7);
 }
 
 TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterTheirFirstStep) {
