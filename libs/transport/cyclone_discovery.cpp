@@ -4,6 +4,8 @@
 #include <dds/ddsi/ddsi_typelib.h>
 #include <dds/ddsi/ddsi_typewrap.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <cstring>
@@ -18,19 +20,37 @@ namespace {
 constexpr std::uint32_t kMaxEndpoints = 2048;  // of all topics in the domain, written or read
 constexpr const char* kOtherLayout = " of another layout (built from another idl/slewring.idl)";
 
-// whether one of the endpoint's partitions is the session's
-bool is_in_session(const dds_qos_t* qos, const std::string& session) {
-  std::uint32_t count = 0;
-  char** partitions = nullptr;
-  if (!dds_qget_partition(qos, &count, &partitions)) return false;
-  bool is_in = false;
-  const std::string own = "slewring/" + session;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    is_in = is_in || session == kAnySession || own == partitions[i];
-    dds_free(partitions[i]);
+constexpr std::string_view kSessions = "slewring/";  // the partitions' names begin so
+
+struct Partitions {
+  std::vector<std::string> names;  // of who says nothing the one without a name
+
+  // the session's, by name or by a pattern
+  [[nodiscard]] bool has(const std::string& session) const {
+    return std::ranges::any_of(names, [own = std::string(kSessions) + session](const std::string& name) {
+      return fnmatch(name.c_str(), own.c_str(), 0) == 0 || fnmatch(own.c_str(), name.c_str(), 0) == 0;
+    });
   }
-  dds_free(partitions);
-  return is_in;
+  [[nodiscard]] bool are_of_sessions() const {
+    return std::ranges::any_of(names, [](const std::string& name) {
+      return name.starts_with(kSessions) || name.find_first_of("*?[") != std::string::npos;
+    });
+  }
+};
+
+Partitions partitions_of(const dds_qos_t* qos) {
+  Partitions found;
+  std::uint32_t count = 0;
+  char** names = nullptr;
+  if (dds_qget_partition(qos, &count, &names)) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      found.names.emplace_back(names[i]);
+      dds_free(names[i]);
+    }
+    dds_free(names);
+  }
+  if (found.names.empty()) found.names.emplace_back();
+  return found;
 }
 
 // "role on host h, pid p" from the user data role:host:pid of our writers
@@ -63,10 +83,9 @@ bool has_other_layout(const dds_builtintopic_endpoint_t& endpoint, const ddsi_se
   return differs;
 }
 
-// Visits what others in the session write (or read), of this and other processes.
+// Visits what others in the domain write (or read), of this and other processes.
 template <typename Visit>
-void for_each_endpoint(dds_entity_t participant, dds_entity_t builtin_topic, const std::string& session,
-                       Visit&& visit) {
+void for_each_endpoint(dds_entity_t participant, dds_entity_t builtin_topic, Visit&& visit) {
   dds_guid_t own{};
   if (dds_get_guid(participant, &own) != DDS_RETCODE_OK) return;
   const dds_entity_t reader = dds_create_reader(participant, builtin_topic, nullptr, nullptr);
@@ -78,7 +97,7 @@ void for_each_endpoint(dds_entity_t participant, dds_entity_t builtin_topic, con
     if (!about[i].valid_data || about[i].instance_state != DDS_ALIVE_INSTANCE_STATE) continue;
     const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
     if (std::memcmp(&endpoint.participant_key, &own, sizeof own) == 0) continue;
-    if (is_in_session(endpoint.qos, session)) visit(endpoint);
+    visit(endpoint, partitions_of(endpoint.qos));
   }
   if (count > 0) dds_return_loan(reader, samples.data(), count);
   dds_delete(reader);
@@ -134,9 +153,10 @@ std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested) {
 
 std::vector<std::string> CycloneTransport::discovered_writers(wire::Topic topic) {
   std::vector<std::string> writers;
-  for_each_endpoint(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, options_.session,
-                    [&](const dds_builtintopic_endpoint_t& endpoint) {
+  for_each_endpoint(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION,
+                    [&](const dds_builtintopic_endpoint_t& endpoint, const Partitions& partitions) {
                       if (std::strcmp(endpoint.topic_name, traits(topic).name) != 0) return;
+                      if (!partitions.has(options_.session)) return;
                       const ddsi_sertype* type = types_[static_cast<std::size_t>(topic)];
                       const bool differs = type != nullptr && has_other_layout(endpoint, *type);
                       writers.push_back(fmt::format("{}, type {}{}", description(endpoint.qos), endpoint.type_name,
@@ -149,12 +169,17 @@ std::vector<std::string> CycloneTransport::discovered_writers(wire::Topic topic)
 std::vector<std::string> CycloneTransport::misfits() {
   std::vector<std::string> found;
   const auto look = [&](dds_entity_t builtin_topic, const auto& own_endpoints, bool is_writer) {
-    for_each_endpoint(participant_, builtin_topic, options_.session, [&](const dds_builtintopic_endpoint_t& endpoint) {
+    const auto name = [&](const dds_builtintopic_endpoint_t& endpoint, const Partitions& partitions) {
+      const bool is_in_session = partitions.has(options_.session);
+      if (!is_in_session && partitions.are_of_sessions()) return;
       for (std::size_t i = 0; i < wire::kTopics; ++i) {
         const TopicTraits& topic = traits(static_cast<wire::Topic>(i));
         if (own_endpoints[i] <= 0 || std::strcmp(endpoint.topic_name, topic.name) != 0) continue;
         std::string problem;
-        if (std::strcmp(endpoint.type_name, topic.type_name) != 0) {
+        if (!is_in_session) {
+          problem = fmt::format("partition '{}', where '{}{}' is expected", fmt::join(partitions.names, "', '"),
+                                kSessions, options_.session);
+        } else if (std::strcmp(endpoint.type_name, topic.type_name) != 0) {
           problem = fmt::format("type {}, which is {} here", endpoint.type_name, topic.type_name);
         } else if (types_[i] != nullptr && has_other_layout(endpoint, *types_[i])) {
           problem = fmt::format("type {}{}", endpoint.type_name, kOtherLayout);
@@ -165,7 +190,8 @@ std::vector<std::string> CycloneTransport::misfits() {
         found.push_back(fmt::format("{} {} topic '{}' with {}; it is not heard; see idl/README.md",
                                     description(endpoint.qos), is_writer ? "writes" : "reads", topic.name, problem));
       }
-    });
+    };
+    for_each_endpoint(participant_, builtin_topic, name);
   };
   look(DDS_BUILTIN_TOPIC_DCPSPUBLICATION, readers_, true);
   look(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, writers_, false);
