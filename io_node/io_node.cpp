@@ -19,24 +19,6 @@ using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
 
-struct SessionVariable {
-  const char* name;
-  const char* unit;
-};
-// of the session as io sees it, and of each physics node as its last health message says
-constexpr SessionVariable kTimingVariables[] = {
-    {"session.release_jitter", "s"}, {"session.response", "s"},      {"session.lag", "s"},
-    {"session.overruns", "1"},       {"session.skipped_steps", "1"}, {"session.transitions", "1"},
-    {"session.input_latency", "s"}};
-constexpr SessionVariable kNodeVariables[] = {{".step_time", "s"},      {".step_time_max", "s"}, {".cpu_time", "s"},
-                                              {".release_jitter", "s"}, {".wait", "s"},          {".response", "s"},
-                                              {".overruns", "1"},       {".allocations", "1"}};
-
-double seconds(std::int64_t ns) noexcept {
-  return static_cast<double>(ns) * 1e-9;
-}
-
-constexpr double kNoLoop = -1;  // loop delay of a channel that no controller moves
 constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -49,6 +31,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       is_paused_(config_.starts_paused),
       clock_(config_.step, config_.overrun, timing()),
       shedding_(config_.shed),
+      input_ns_(config_.channels.size()),
       tick_ns_(static_cast<std::size_t>(kLoopMemory)),
       script_raw_(config_.channels.size(), kSaysNothing) {
   tick_.controls.resize(gate_.size());
@@ -214,155 +197,6 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
   }
 }
 
-void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  wire::ControllerInput input;
-  if (!transport::decode(bytes, input)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
-  if (input.session != config_.session_name) {
-    ++member_.refusals().other_session;
-    return;
-  }
-  wire::ControllerLease lease;
-  lease.controller = input.controller;
-  lease.channel = input.channel;
-  const int channel = gate_.find(input.channel);
-  if (channel < 0 || input.controller.empty()) {
-    lease.reason = channel < 0 ? "the scene has no input '" + input.channel + "'" : "a controller needs a name";
-  } else if (input.action == wire::ControllerAction::write) {
-    const bool is_taken =
-        gate_.write(static_cast<std::size_t>(channel), input.controller, input.value, n_, now_ns, input.based_on_step);
-    if (is_taken) input_ns_ = now_ns;
-    return;
-  } else {
-    const auto index = static_cast<std::size_t>(channel);
-    LeaseAnswer answer = input.action == wire::ControllerAction::release
-                             ? gate_.release(index, input.controller, input.based_on_step)
-                         : input.value == wire::kTakeOver ? gate_.take_over(index, input.controller, now_ns)
-                                                          : gate_.acquire(index, input.controller, now_ns);
-    lease.is_granted = answer.is_granted;
-    lease.holder = std::move(answer.holder);
-    lease.reason = answer.reason.substr(0, wire::kMaxReasonLength);
-    tell_notices();
-  }
-  lease.header = member_.header(Phase::running, n_);
-  member_.publish(Topic::controller_lease, lease);
-}
-
-void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  wire::ControlRequest request;
-  if (!transport::decode(bytes, request)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
-  if (request.session != config_.session_name) return;
-  if (request.action == wire::ControlAction::get_parameter) return tell_parameter(request);
-  if (stage_ != Stage::ticking) return answer(request, false, "the session is not running yet", n_);
-  switch (request.action) {
-    case wire::ControlAction::get_parameter:
-      return;  // answered above, in every stage
-    case wire::ControlAction::set_parameter:
-      return set_parameter(request);
-    case wire::ControlAction::pause:
-      is_paused_ = true;
-      single_steps_ = 0;
-      show_running();
-      return answer(request, true, "", n_);
-    case wire::ControlAction::resume:
-      // a pause is no slip
-      if (is_paused_) clock_.excuse(n_, now_ns);
-      is_paused_ = false;
-      show_running();
-      return answer(request, true, "", n_);
-    case wire::ControlAction::step:
-      if (!is_paused_) return answer(request, false, "pause the session first", n_);
-      if (!(request.value >= 1 && request.value <= 1e9)) {
-        return answer(request, false, "the number of steps must be 1 to 1e9", n_);
-      }
-      single_steps_ += static_cast<StepIndex>(request.value);
-      show_running();
-      return answer(request, true, "", n_);
-    case wire::ControlAction::reset:
-      if (!vacancies_.empty()) {
-        return answer(request, false, vacancy_text(vacancies_.front()) + "; ask again when it has come", n_);
-      }
-      answer(request, true, "", 0);
-      return start_epoch(now_ns);
-    case wire::ControlAction::stop:
-      answer(request, true, "", n_);
-      return begin_ending(ExitCode::ok, "", now_ns);
-    case wire::ControlAction::save:
-      return begin_saving(request, now_ns);
-    case wire::ControlAction::load:
-      return begin_loading(request, now_ns);
-  }
-}
-
-void IoNode::set_parameter(const wire::ControlRequest& request) {
-  const ParameterVerdict verdict = config_.judge_parameter
-                                       ? config_.judge_parameter(request.path, request.value, request.over_ns)
-                                       : ParameterVerdict{false, "this session has no live parameters", 0};
-  if (!verdict.is_accepted) return answer(request, false, verdict.reason, n_);
-  if (waiting_commands_.size() >= wire::kMaxCommandsPerTick) {
-    return answer(request, false,
-                  std::to_string(wire::kMaxCommandsPerTick) +
-                      " changes already wait for the next step; send it again after that step",
-                  n_);
-  }
-  wire::Command command;
-  command.request = request.request;
-  command.path = request.path;
-  command.value = request.value;
-  command.over_ns = verdict.over_ns;
-  waiting_commands_.push_back(command);
-  answer(request, true, "", n_);
-}
-
-void IoNode::tell_parameter(const wire::ControlRequest& request) {
-  const int parameter = parameters_.find(request.path);
-  if (parameter < 0) return answer(request, false, "no live parameter '" + request.path + "' in this session", n_);
-  const bool is_waiting = std::any_of(waiting_commands_.begin(), waiting_commands_.end(),
-                                      [&](const wire::Command& command) { return command.path == request.path; });
-  const char* const remark = is_waiting                           ? "a change waits for the next step"
-                             : parameters_.is_changing(parameter) ? "on its way to a new value"
-                                                                  : "";
-  answer(request, true, remark, n_, parameters_.value(parameter));
-}
-
-void IoNode::answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step,
-                    double value) {
-  wire::ControlReply reply;
-  reply.header = member_.header(Phase::running, step);
-  reply.request = request.request;
-  reply.is_accepted = accepted;
-  reply.value = value;
-  reply.reason = reason.substr(0, wire::kMaxReasonLength);
-  member_.publish(Topic::control_reply, reply);
-}
-
-void IoNode::receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns) {
-  wire::ResendRequest request;
-  if (!transport::decode(bytes, request)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
-  if (request.topic == static_cast<std::uint8_t>(Topic::state)) return answer_state(request, now_ns);
-  if (request.role != Role::io || !member_.is_of_session(request.header, Topic::resend)) return;
-  if (request.topic != static_cast<std::uint8_t>(Topic::tick)) return;
-  // a node that missed a reset asks with the old epoch: it gets the tick that started the new one
-  const bool is_late_epoch = request.header.epoch < member_.epoch();
-  const StepIndex first = is_late_epoch ? kJoinStep : request.header.step;
-  const StepIndex last =
-      is_late_epoch ? kJoinStep : std::min(request.last_step, first + static_cast<StepIndex>(sent_.depth()));
-  for (StepIndex step = first; step <= last; ++step) {
-    const std::span<const std::byte> sent = sent_.find(step);
-    if (sent.empty()) continue;
-    member_.send(Topic::tick, sent);
-    ++health().resends_answered;
-  }
-}
-
 // ---- doing ----------------------------------------------------------------------------------------------------
 
 bool IoNode::advance(std::int64_t now_ns) {
@@ -509,66 +343,6 @@ StepIndex IoNode::complete_up_to() const noexcept {
   return complete;
 }
 
-// A change that the overrun policy makes is an event: an answer that nobody asked for, in the recording; the first of a
-// kind is told to the user.
-void IoNode::obey(const std::optional<Verdict>& verdict, std::int64_t now_ns) {
-  if (!verdict || verdict->why.empty()) return;
-  const char* then = "";
-  if (verdict->what == Overrun::hold) then = "; it is paused; 'slewring control resume' lets it go on";
-  if (verdict->what == Overrun::stop) {
-    then = "; it was ended, what was recorded is valid; take a larger session.step, --rt, or session.overrun: slip";
-  }
-  const std::string text = verdict->why + then;
-  tell_event(text);
-  const std::uint32_t kind = 1u << static_cast<unsigned>(verdict->what);
-  if (verdict->what != Overrun::stop && (told_verdicts_ & kind) == 0) member_.warn(text);
-  told_verdicts_ |= kind;
-  if (verdict->what == Overrun::hold) {
-    is_paused_ = true;
-    single_steps_ = 0;
-    show_running();
-  }
-  if (verdict->what == Overrun::stop) begin_ending(ExitCode::losses, text, now_ns);
-}
-
-void IoNode::tell_event(const std::string& text) {
-  const wire::ControlRequest nobody;
-  answer(nobody, true, text, n_);
-}
-
-void IoNode::shed_load() {
-  bool has_controllers = false;
-  for (std::size_t i = 0; i < gate_.size(); ++i) {
-    has_controllers |= gate_.is_held(i) || gate_.config(i).exchange == Exchange::lockstep;
-  }
-  const std::string event = shedding_.look(n_, timing().response.count(), timing().overruns,
-                                           has_controllers ? Steering::controllers : Steering::nobody);
-  if (event.empty()) return;
-  tell_event(event);
-  ++timing().transitions;
-  constexpr std::uint32_t kShed = 1u << 31;
-  if ((told_verdicts_ & kShed) == 0) member_.warn(event + "; what follows of this kind is in the recording alone");
-  told_verdicts_ |= kShed;
-}
-
-void IoNode::keep_books(std::int64_t now_ns) noexcept {
-  if (config_.pace != wire::Pace::real || stage_ >= Stage::ending) return;
-  const bool is_held = is_paused_ || controllers_due_ns_ != 0 || is_saving_now() || is_replacing();
-  if (is_held || stage_ != Stage::ticking) {
-    clock_.excuse(n_, now_ns);
-    if (input_ns_ != 0) input_ns_ = now_ns;
-  }
-  clock_.close(n_, now_ns);
-}
-
-void IoNode::keep_health(std::span<const std::byte> bytes) {
-  wire::Health health;
-  if (!transport::decode(bytes, health)) return;
-  const auto role = static_cast<std::size_t>(health.header.role);
-  if (role >= healths_.size() || health.header.session != member_.session().header.session) return;
-  if (health.header.incarnation == member_.peer(health.header.role).incarnation) healths_[role] = health;
-}
-
 bool IoNode::advance_ticks(std::int64_t now_ns) {
   bool any = false;
   if (config_.pace == wire::Pace::real) {
@@ -711,7 +485,7 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   send_tick(n_);
   if (config_.pace == wire::Pace::real) {
     clock_.ran(n_, now_ns);
-    if (input_ns_ != 0) clock_.used_input(n_, std::exchange(input_ns_, 0));
+    clock_.used_input(n_, oldest_unused_input());
   }
   if (n_ % config_.variables_every == 0) publish_variables(now_ns);
 
@@ -721,6 +495,16 @@ void IoNode::issue_tick(std::int64_t now_ns) {
   last_tick_ns_ = now_ns;
   resend_.restart(std::max(now_ns, due_ns(n_)));
   if (is_paused_ && --single_steps_ == 0) show_running();
+}
+
+// when the oldest of the values came that this tick is the first to use; 0: it uses none
+std::int64_t IoNode::oldest_unused_input() noexcept {
+  std::int64_t oldest_ns = 0;
+  for (std::int64_t& came_ns : input_ns_) {
+    if (came_ns != 0 && (oldest_ns == 0 || came_ns < oldest_ns)) oldest_ns = came_ns;
+    came_ns = 0;
+  }
+  return oldest_ns;
 }
 
 void IoNode::send_tick(StepIndex step) {
@@ -738,7 +522,8 @@ void IoNode::start_epoch(std::int64_t now_ns, StepIndex from) {
   single_steps_ = 0;
   sent_.clear();
   n_ = begin_step_ = std::max<StepIndex>(0, from);
-  controllers_due_ns_ = controllers_wait_ns_ = input_ns_ = 0;
+  controllers_due_ns_ = controllers_wait_ns_ = 0;
+  std::ranges::fill(input_ns_, 0);
   mechanics_at_ = hydraulics_at_ = flex_at_ = n_ - 1;
   for (node::KeptCheckpoints& states : states_) states.clear();
   replaced_.fill({n_, kJoinStep});
@@ -761,21 +546,6 @@ void IoNode::tell_session(StepIndex step, std::int64_t now_ns) {
   description_.header = member_.header(Phase::running, step);
   member_.renew(description_, now_ns);
   member_.publish(Topic::session, description_);
-}
-
-void IoNode::tell_notices() {
-  for (Notice& notice : gate_.take_notices()) {
-    wire::ControllerLease lease;
-    lease.header = member_.header(Phase::running, n_);
-    lease.controller = std::move(notice.controller);
-    lease.channel = gate_.config(notice.channel).name;
-    lease.is_granted = notice.has_channel;
-    if (notice.has_channel) lease.holder = lease.controller;
-    lease.reason = notice.reason.substr(0, wire::kMaxReasonLength);
-    member_.publish(Topic::controller_lease, lease);
-    if (!notice.has_channel || warnings_left_ == 0) continue;
-    member_.warn(notice.reason + (--warnings_left_ > 0 ? "" : "; what follows of this kind is in the recording alone"));
-  }
 }
 
 // ---- ending ---------------------------------------------------------------------------------------------------
@@ -847,85 +617,6 @@ void IoNode::watch(std::int64_t now_ns) {
       return;
     case node::PeerEvent::none:
       return;
-  }
-}
-
-// ---- variables ------------------------------------------------------------------------------------------------
-
-void IoNode::publish_directory() {
-  wire::VariableDirectory directory;
-  directory.header = member_.header(Phase::running, 0);
-  for (std::size_t i = 0; i < gate_.size(); ++i) {
-    for (const ChannelVariable& variable : kChannelVariables) {
-      directory.entries.push_back({gate_.config(i).name + variable.quantity, variable.unit});
-    }
-  }
-  directory.entries.push_back({"session.slip", "s"});
-  directory.entries.push_back({"session.rejected_inputs", "1"});
-  directory.entries.push_back({"session.clamped_inputs", "1"});
-  directory.entries.push_back({"session.silent_controllers", "1"});
-  directory.entries.push_back({"session.late_controllers", "1"});
-  for (const SessionVariable& variable : kTimingVariables) directory.entries.push_back({variable.name, variable.unit});
-  for (const Role role : wire::kPhysicsRoles) {
-    if (!member_.requires_role(role)) continue;
-    for (const SessionVariable& variable : kNodeVariables) {
-      directory.entries.push_back({std::string(to_text(role)) + variable.name, variable.unit});
-    }
-  }
-  directory.total = static_cast<std::uint32_t>(directory.entries.size());
-  member_.publish(Topic::variable_directory, directory);
-}
-
-// From the tick of the step that a channel's value was computed from to this one.
-double IoNode::loop_time_ms(std::size_t channel, std::int64_t now_ns) const noexcept {
-  const StepIndex based_on = gate_.based_on(channel);
-  if (based_on < 0) return kNoLoop;
-  const StepIndex delay = n_ - based_on;
-  const std::int64_t spent_ns = delay < kLoopMemory
-                                    ? now_ns - tick_ns_[static_cast<std::size_t>(based_on % kLoopMemory)]
-                                    : delay * config_.step.ns;
-  return static_cast<double>(spent_ns) * 1e-6;
-}
-
-void IoNode::publish_variables(std::int64_t now_ns) {
-  block_.header = member_.header(Phase::running, n_);
-  block_.values.clear();
-  for (std::size_t i = 0; i < gate_.size(); ++i) {
-    block_.values.push_back(gate_.raw(i));
-    block_.values.push_back(gate_.control(i));
-    block_.values.push_back(gate_.age(i));
-    const StepIndex based_on = gate_.based_on(i);
-    block_.values.push_back(based_on < 0 ? kNoLoop : static_cast<double>(n_ - based_on));
-    block_.values.push_back(loop_time_ms(i, now_ns));
-  }
-  block_.values.push_back(seconds(clock_.slip_ns()));
-  block_.values.push_back(
-      static_cast<double>(gate_.rejected_not_finite() + gate_.rejected_no_lease() + gate_.rejected_late()));
-  block_.values.push_back(static_cast<double>(gate_.clamped()));
-  block_.values.push_back(static_cast<double>(gate_.went_neutral()));
-  block_.values.push_back(static_cast<double>(gate_.fell_out_of_step()));
-  add_timing_values(now_ns);
-  member_.publish(Topic::variables, block_);
-}
-
-// in the order of kTimingVariables, then of kNodeVariables by role
-void IoNode::add_timing_values(std::int64_t now_ns) {
-  const node::NodeTiming& own = timing();
-  const bool is_paced = config_.pace == wire::Pace::real;
-  const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
-  for (const double value : {seconds(own.last_release_jitter_ns), seconds(own.last_response_ns),
-                             is_paced ? seconds(now_ns - clock_.due_ns(n_)) : 0.0, count(own.overruns),
-                             count(clock_.skipped()), count(own.transitions), seconds(own.input_latency.max())}) {
-    block_.values.push_back(value);
-  }
-  for (const Role role : wire::kPhysicsRoles) {
-    if (!member_.requires_role(role)) continue;
-    const wire::Health& node = healths_[static_cast<std::size_t>(role)];
-    for (const double value :
-         {node.step_time_mean, node.step_time_max, node.cpu_time.p50, node.release_jitter.p99, node.wait.p50,
-          node.response_recent, count(node.overruns), static_cast<double>(node.allocations)}) {
-      block_.values.push_back(value);
-    }
   }
 }
 

@@ -140,6 +140,7 @@ class IoNode final : public node::Node {
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept;
   void ask_for_missing(std::int64_t now_ns);
   void issue_tick(std::int64_t now_ns);
+  [[nodiscard]] std::int64_t oldest_unused_input() noexcept;
   void send_tick(StepIndex step);
   void show_running();
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
@@ -245,7 +246,7 @@ class IoNode final : public node::Node {
   SessionClock clock_;
   LoadShedding shedding_;
   std::int64_t last_tick_ns_ = 0;
-  std::int64_t input_ns_ = 0;  // when the newest value of a controller came that no tick has used; 0: none
+  std::vector<std::int64_t> input_ns_;  // by channel, when the newest value came that no tick has used; 0: none
   std::array<wire::Health, wire::kRoles> healths_;
   std::uint32_t told_verdicts_ = 0;       // kinds that were told on standard error, a bit each
   std::int64_t controllers_due_ns_ = 0;   // 0: no step 0 waits for a controller to take its channel
@@ -268,6 +269,7 @@ class IoNode final : public node::Node {
   std::optional<Saving> saving_;
   Upload upload_;
   wire::StatePart part_;
+  wire::ControllerInput input_;
 };
 
 }  // namespace slew::io

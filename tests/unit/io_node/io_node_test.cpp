@@ -277,6 +277,48 @@ TEST_F(Io, MeasuresFromAControllersValueToTheSamplesThatUsedIt) {
   EXPECT_LE(node->timing().input_latency.max(), 3 * kMs);
 }
 
+TEST_F(Io, MeasuresFromTheOldestValueThatATickUses) {
+  IoConfig levers = config();
+  levers.channels = {{.name = "Lever"}, {.name = "Pedal"}};
+  restart(std::move(levers));
+  get_running();
+  run_to(3);
+  const auto say = [this](const char* channel, wire::ControllerAction action) {
+    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", channel, action, 0.5, 1, kJoinStep});
+    poll();
+  };
+  for (const char* channel : {"Lever", "Pedal"}) say(channel, wire::ControllerAction::acquire);
+  say("Lever", wire::ControllerAction::write);
+  poll(20 * kMs);
+  say("Pedal", wire::ControllerAction::write);
+  run_to(6);
+  EXPECT_EQ(node->timing().input_latency.count(), 1u);
+  EXPECT_GE(node->timing().input_latency.max(), 20 * kMs);
+}
+
+TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
+  IoConfig shedding = config();
+  shedding.shed = Shed::view;
+  shedding.overrun.lag = milliseconds(1'000'000);
+  restart(std::move(shedding));
+  get_running();
+  constexpr auto kShed = static_cast<std::uint32_t>(wire::TickFlag::shed_view);
+  const auto flags = [this] { return played.said<wire::Tick>(Topic::tick).back().flags; };
+  run_to(150);
+  EXPECT_EQ(flags() & kShed, 0u);
+  for (int late = 0; late < 150; ++late) {
+    poll(2 * kMs);
+    say_samples(node->next_step());
+    poll();
+  }
+  EXPECT_EQ(flags(), kShed) << "the flex node's values alone are left out";
+  const auto events = played.said<wire::ControlReply>(Topic::control_reply);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events.front().request, 0u);
+  EXPECT_EQ(events.front().reason.rfind("session.shed: ", 0), 0u) << events.front().reason;
+  EXPECT_EQ(node->timing().transitions, 1u);
+}
+
 TEST_F(Io, AsksForSamplesOnlyWhenTheyAreDue) {
   IoConfig slow = config();
   slow.step = milliseconds(10);
