@@ -1,14 +1,10 @@
 #include "recorder_node/recorder_node.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 #include <optional>
-#include <tuple>
 #include <utility>
 
-#include "recorder_node/idl_text.h"
-#include "recording/run_directory.h"
 #include "transport/topics.h"
 
 namespace slew::recorder {
@@ -23,39 +19,6 @@ using wire::Topic;
 // the recorder reports how far it is at least this often
 constexpr StepIndex kReportSteps = 64;
 constexpr std::int64_t kReportNs = 100'000'000;
-
-// messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
-constexpr std::size_t kMaxEarly = 256;
-
-std::string end_text(const SessionEnd& session) {
-  if (!session.reason.empty()) return session.reason;
-  switch (session.code) {
-    case ExitCode::ok:
-      return "in order";
-    case ExitCode::interrupted:
-      return "interrupted by SIGINT";
-    case ExitCode::terminated:
-      return "terminated by SIGTERM";
-    default:
-      return "failed";
-  }
-}
-
-std::string manifest_text(const wire::SessionDescription& session) {
-  std::string text = "[";
-  for (const wire::Asset& asset : session.assets) {
-    constexpr char kDigits[] = "0123456789abcdef";
-    std::string sum;
-    for (const std::uint8_t byte : asset.sha256) sum += {kDigits[byte >> 4], kDigits[byte & 15]};
-    text += (text.size() > 1 ? ",\n " : "") + std::string("{\"name\": \"") + asset.name +
-            "\", \"size\": " + std::to_string(asset.size) + ", \"sha256\": \"" + sum + "\"}";
-  }
-  return text + "]\n";
-}
-
-recording::ByteSpan bytes_of(const std::string& text) {
-  return std::as_bytes(std::span<const char>(text.data(), text.size()));
-}
 
 }  // namespace
 
@@ -163,12 +126,7 @@ void RecorderNode::receive(const transport::Received& message, std::int64_t now_
 // everything that has no step of its own is filed under the one that is being recorded
 void RecorderNode::file(const transport::Received& message) {
   if (writer_ == nullptr || is_of_another_session(message)) return;
-  if (begin_ != Begin::known) {
-    if (before_.size() < kMaxEarly) {
-      before_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
-    }
-    return;
-  }
+  if (begin_ != Begin::known) return keep_until_begin(message);
   write(message, member_.epoch(), std::max(streams_.begin, complete_up_to()), static_cast<std::uint32_t>(++unstepped_));
 }
 
@@ -242,54 +200,6 @@ void RecorderNode::receive_session(const transport::Received& message, std::int6
   deadline_ns_ = 0;
 }
 
-Status RecorderNode::create(const wire::SessionDescription& session) {
-  std::filesystem::path directory;
-  Status status =
-      recording::create_run_directory(config_.runs_directory, session.scene_name, session.started_ns, directory);
-  if (!status.is_ok()) return status;
-  status = problem_of_room(directory);
-  if (!status.is_ok()) {
-    std::error_code ignored;
-    std::filesystem::remove(directory, ignored);
-    return status;
-  }
-  const std::filesystem::path path = directory / recording::kRecordingFileName;
-  recording::SessionIdentity identity;
-  identity.scene = session.scene_name;
-  identity.session_name = session.name;
-  identity.session_id = to_text(session.header.session);
-  identity.build = session.build;
-  identity.communication_step = {session.step_ns};
-  identity.started_ns = session.started_ns;
-  identity.more["pace"] = session.pace == wire::Pace::free ? "free" : "real";
-  identity.more["protocol"] = std::to_string(session.protocol);
-  status = recording::Writer::create(path, identity, config_.limits, writer_, *config_.file_calls);
-  if (!status.is_ok()) {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-    std::filesystem::remove(directory, ignored);
-    return status;
-  }
-  path_ = path;
-  status = add_attachments(session);
-  for (std::size_t i = 0; status.is_ok() && i < wire::kTopics; ++i) {
-    const recording::ChannelDef channel{
-        std::string(to_text(static_cast<Topic>(i))), transport::traits(static_cast<Topic>(i)).type_name, kIdlText, {}};
-    status = writer_->add_channel(channel, channels_[i]);
-  }
-  // a session whose front cannot be written does not begin
-  return status.is_ok() ? writer_->settle() : status;
-}
-
-Status RecorderNode::add_attachments(const wire::SessionDescription& session) {
-  Status status = writer_->add_attachment("scene.yaml", "application/yaml", bytes_of(session.scene_text));
-  if (status.is_ok()) {
-    status = writer_->add_attachment("manifest.json", "application/json", bytes_of(manifest_text(session)));
-  }
-  if (status.is_ok()) status = writer_->add_attachment("build.txt", "text/plain", bytes_of(session.build + "\n"));
-  return status;
-}
-
 void RecorderNode::receive_stepped(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
   if (!transport::decode_header(message.bytes, header)) {
@@ -348,73 +258,6 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
 }
 
-// io's probe comes before the first tick, and the first tick before every sample but INIT and the first. A recorder
-// that hears a later message first is a second one: it records nothing and waits for the first one's status, which
-// names it.
-bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std::int64_t now_ns) {
-  if (header.phase == Phase::join) {
-    if (topic == Topic::tick) member_.set_state(NodeState::ready);
-    return true;
-  }
-  if (topic != Topic::tick && header.step <= streams_.begin) return true;
-  ++member_.refusals().early;
-  if (late_deadline_ns_ == 0) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
-  return false;
-}
-
-// What the others can say again from the first step on is no reason to begin later. Blocks of variables are not said
-// again: of a session that had begun they are recorded from then on.
-bool RecorderNode::is_from_the_begin(const transport::Received& message, const wire::Header& header,
-                                     std::int64_t now_ns) {
-  if (header.phase == Phase::join) return true;
-  // a block's step says nothing about the session's
-  if (message.topic == Topic::variables) {
-    if (before_.size() < kMaxEarly) {
-      before_.push_back({message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
-    }
-    return false;
-  }
-  const bool is_near = header.step - streams_.begin < static_cast<StepIndex>(node::kSentDepth / 2);
-  if (begin_ == Begin::open && is_near) {
-    begin_ = Begin::known;
-    streams_.first_heard = header.step;
-    file_what_came_before(now_ns);
-    return true;
-  }
-  if (begin_ == Begin::open) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
-  begin_ = Begin::late;
-  return false;
-}
-
-void RecorderNode::begin_late(StepIndex step, std::int64_t now_ns) {
-  streams_ = {};
-  begin_streams(step);
-  begin_ = Begin::known;
-  late_deadline_ns_ = 0;
-  file_what_came_before(now_ns);
-}
-
-void RecorderNode::file_what_came_before(std::int64_t now_ns) {
-  for (const Early& before : std::exchange(before_, {})) {
-    const transport::Received message{before.topic, before.bytes, before.source_ns};
-    before.topic == Topic::variables ? receive_stepped(message, now_ns) : file(message);
-  }
-}
-
-void RecorderNode::refuse_late() {
-  if (begin_ == Begin::late) {
-    return refuse(Status::error(
-        ExitCode::bad_input, "session '" + member_.session().name +
-                                 "' runs and has given no state from which a recording could be computed again: it "
-                                 "cannot be saved, or it is paused between two exchanges; nothing was recorded here; "
-                                 "start the recorder with the session"));
-  }
-  refuse(Status::error(ExitCode::bad_input, "session '" + member_.session().name +
-                                                "' had begun before this recorder came, and its own recorder was not "
-                                                "heard; nothing was recorded here; start the recorder with the "
-                                                "session"));
-}
-
 // what must be complete: the ticks and the samples of every role that takes part, and the states they begin with.
 // from: step of these states; -1: the epoch begins with INIT
 void RecorderNode::begin_streams(StepIndex from) {
@@ -428,45 +271,6 @@ void RecorderNode::begin_streams(StepIndex from) {
     if (!member_.requires_role(role)) continue;
     streams_.steps.try_emplace({topic, role}, StepStream{StreamGaps(kStreamDepth, streams_.begin), {}});
   }
-}
-
-// The states that an epoch begins with, so that it can be computed again from there. Those that io gives to others
-// later are no news.
-void RecorderNode::receive_state(const transport::Received& message, std::int64_t now_ns) {
-  wire::Header header;
-  const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late;
-  if (!is_wanted || writer_ == nullptr || !transport::decode_header(message.bytes, header)) return;
-  if (header.role != Role::io || !member_.fits(header, Topic::state)) return;
-  if (!transport::decode(message.bytes, part_)) {
-    ++member_.refusals().undecodable;
-    return;
-  }
-  // io gives its own state with those of all others alone
-  if (begin_ == Begin::late && part_.role == Role::io) begin_late(header.step, now_ns);
-  if (header.step != streams_.begin) return;
-  const auto missing = missing_states_.find(part_.role);
-  if (missing == missing_states_.end() || missing->second.has(part_)) return;
-  const auto place = static_cast<std::uint32_t>(part_.first / wire::kMaxStatePart);
-  write(message, header.epoch, header.step, (static_cast<std::uint32_t>(part_.role) << 16) | place);
-  if (missing->second.take(part_)) missing_states_.erase(missing);
-}
-
-void RecorderNode::ask_for_states(std::int64_t now_ns) {
-  const bool knows_io = member_.peer(Role::io).is_known && member_.state() != NodeState::joining;
-  const bool is_late = begin_ == Begin::late;
-  if ((missing_states_.empty() && !is_late) || !knows_io || !states_resend_.is_due(now_ns)) return;
-  states_resend_.asked(now_ns);
-  const auto ask = [&](Role role, StepIndex step) {
-    wire::ResendRequest request;
-    request.header = member_.header(Phase::running, step);
-    request.role = role;
-    request.topic = static_cast<std::uint8_t>(Topic::state);
-    request.last_step = step;
-    member_.publish(Topic::resend, request);
-    ++health().resends_asked;
-  };
-  if (is_late) return ask(Role::io, kJoinStep);
-  for (const auto& [role, parts] : missing_states_) ask(role, streams_.begin);
 }
 
 // Blocks of variables, and the samples of and for flexible bodies, come every k-th step from step 0 on. They are not
@@ -488,6 +292,7 @@ void RecorderNode::record_block(const transport::Received& message, const wire::
     ++counts_[static_cast<std::size_t>(message.topic)].duplicates;
     return;
   }
+  if (stream.arrived == 0) stream.first = header.step;
   stream.newest = header.step;
   ++stream.arrived;
   every(message.topic) = std::gcd(every(message.topic), header.step);
@@ -511,105 +316,6 @@ void RecorderNode::start_epoch(const wire::Header& init) {
   reported_step_ = kJoinStep;
   member_.set_recorded_step(kJoinStep);
   member_.mark_status_changed();
-}
-
-void RecorderNode::write(const transport::Received& message, std::uint32_t epoch, StepIndex step,
-                         std::uint32_t sequence) {
-  const auto topic = static_cast<std::size_t>(message.topic);
-  if (!stopped_.is_ok()) {
-    ++counts_[topic].lost;
-    return;
-  }
-  if (is_left_out(message.topic, step, epoch)) {
-    ++counts_[topic].lost;
-    return;
-  }
-  const Status status = writer_->write(channels_[topic], {epoch, step, sequence, message.source_ns}, message.bytes);
-  if (status.is_ok()) {
-    ++counts_[topic].recorded;
-  } else if (status.code == ExitCode::failed) {
-    // a message that no recording can hold; the session is not at fault
-    ++counts_[topic].lost;
-  } else {
-    ++counts_[topic].lost;
-    stop_recording(status);
-  }
-}
-
-// ---- storage --------------------------------------------------------------------------------------------------
-
-// In real pace nothing waits for the recorder: what the disk cannot take is left out, variables and health first.
-bool RecorderNode::is_left_out(Topic topic, StepIndex step, std::uint32_t epoch) {
-  const std::size_t most = config_.limits.backlog_bytes;
-  if (most == 0 || member_.session().pace == wire::Pace::free) return false;
-  const std::size_t waiting = writer_->backlog_bytes();
-  const bool is_full = waiting + config_.limits.chunk_bytes > most;
-  const bool is_slow = is_full || waiting > most / 2 || (gap_ && waiting > most / 4);
-  if (!is_slow) {
-    end_gap();
-    return false;
-  }
-  const bool is_visual = topic == Topic::variables || topic == Topic::health;
-  if (!is_visual && !is_full) return false;
-  if (!gap_) {
-    gap_ = Gap{epoch, step, step, {}};
-    std::fprintf(stderr,
-                 "recorder: warning: the disk is slower than the session; from step %lld on variables are left out of "
-                 "the recording, and steps too when that is not enough; record elsewhere with --out DIR, or less with "
-                 "recording.every\n",
-                 static_cast<long long>(step));
-  }
-  if (gap_->epoch == epoch) gap_->to = std::max(gap_->to, step);
-  ++gap_->messages[static_cast<std::size_t>(topic)];
-  return true;
-}
-
-void RecorderNode::end_gap() {
-  if (!gap_) return;
-  recording::TextMap entries;
-  entries["cause"] = "the disk was slower than the session";
-  entries["epoch"] = std::to_string(gap_->epoch);
-  entries["from_step"] = std::to_string(gap_->from);
-  entries["to_step"] = std::to_string(gap_->to);
-  for (std::size_t i = 0; i < wire::kTopics; ++i) {
-    if (gap_->messages[i] > 0)
-      entries["left_out." + std::string(to_text(static_cast<Topic>(i)))] = std::to_string(gap_->messages[i]);
-  }
-  gap_.reset();
-  // a failure is told by the next write
-  std::ignore = writer_->add_metadata(recording::kGapName, entries);
-}
-
-// The session goes on without its recording; what comes from now on is counted as lost.
-void RecorderNode::stop_recording(const Status& why) {
-  last_step_ = complete_up_to();
-  stopped_ = why;
-  close_file({ExitCode::storage, why.text});
-  std::fprintf(stderr, "recorder: warning: %s; the session goes on without its recording and ends with code %d\n",
-               why.text.c_str(), static_cast<int>(ExitCode::storage));
-}
-
-Status RecorderNode::problem_of_room(const std::filesystem::path& place) const {
-  constexpr double kMega = 1e6;
-  if (config_.keep_free == 0) return Status::ok();
-  const std::uint64_t free = config_.file_calls->free_bytes(place);
-  if (free >= config_.keep_free) return Status::ok();
-  char room[160];
-  std::snprintf(room, sizeof room, ": %.0f MB are free on this file system and %.0f MB are to be left to others; ",
-                static_cast<double>(free) / kMega, static_cast<double>(config_.keep_free) / kMega);
-  return Status::error(ExitCode::storage,
-                       place.string() + room +
-                           (writer_ == nullptr ? "nothing was recorded" : "the recording was closed") +
-                           "; free space, record elsewhere with --out DIR, or leave less with "
-                           "--keep-free MB");
-}
-
-// what is held is still written: there is room for it
-void RecorderNode::stop_when_room_is_short(std::int64_t now_ns) {
-  if (writer_ == nullptr || !stopped_.is_ok() || now_ns - room_checked_ns_ < config_.limits.flush_period.ns) return;
-  room_checked_ns_ = now_ns;
-  const Status status = problem_of_room(path_);
-  if (!status.is_ok()) stop_recording(status);
 }
 
 // ---- progress -------------------------------------------------------------------------------------------------
@@ -765,43 +471,13 @@ void RecorderNode::count_losses(EpochStreams& streams, bool is_present) {
   for (const auto& [source, stream] : streams.blocks) {
     const StepIndex last = is_present ? last_block(source, stream.newest) : stream.newest;
     const StepIndex step = every(source.topic);
-    const StepIndex from = std::max(streams.begin, streams.first_heard);
+    const StepIndex from = streams.had_begun ? stream.first : streams.begin;
     const StepIndex before = step == 0 ? 0 : (from + step - 1) / step;  // blocks of earlier steps
     const auto expected =
         step == 0 ? stream.arrived : static_cast<std::uint64_t>(std::max<StepIndex>(0, last / step + 1 - before));
     counts_[static_cast<std::size_t>(source.topic)].lost += expected - std::min(expected, stream.arrived);
   }
   streams = {};
-}
-
-void RecorderNode::close(const SessionEnd& session) {
-  if (writer_ == nullptr) return;
-  if (stopped_.is_ok()) close_file(session);
-  writer_.reset();
-}
-
-void RecorderNode::close_file(SessionEnd session) {
-  end_gap();
-  // what fails only now is told in the summary too
-  const Status flushed = writer_->flush();
-  if (stopped_.is_ok()) stopped_ = flushed;
-  if (!stopped_.is_ok() && session.code == ExitCode::ok) session = {stopped_.code, stopped_.text};
-  recording::TextMap summary;
-  const std::optional<StepIndex> first_lost = writer_->first_lost_step();
-  summary["last_step"] = std::to_string(first_lost ? std::min(last_step_, *first_lost - 1) : last_step_);
-  summary["exit_code"] = std::to_string(static_cast<int>(session.code));
-  summary["end"] = end_text(session);
-  for (std::size_t i = 0; i < wire::kTopics; ++i) {
-    if (counts_[i].recorded == 0 && counts_[i].lost == 0) continue;
-    const std::string name(to_text(static_cast<Topic>(i)));
-    // of what a failed writer took some never came into the file
-    const std::uint64_t in_file = first_lost ? writer_->messages_in_file(channels_[i]) : counts_[i].recorded;
-    summary[name + ".recorded"] = std::to_string(in_file);
-    summary[name + ".lost"] = std::to_string(counts_[i].lost + counts_[i].recorded - in_file);
-    summary[name + ".duplicates"] = std::to_string(counts_[i].duplicates);
-  }
-  const Status status = writer_->close(summary);
-  if (!status.is_ok() && stopped_.is_ok()) stopped_ = status;
 }
 
 }  // namespace slew::recorder

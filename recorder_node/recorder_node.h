@@ -54,7 +54,7 @@ struct BlockSource {
 };
 
 struct BlockStream {
-  StepIndex newest = kJoinStep;
+  StepIndex first = kJoinStep, newest = kJoinStep;
   std::uint64_t arrived = 0;
 };
 
@@ -65,11 +65,13 @@ struct StepStream {
 };
 
 inline constexpr std::size_t kStreamDepth = 4096;  // steps ahead of a gap that are remembered
+// messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
+inline constexpr std::size_t kMaxEarly = 256;
 
 // What has come of one epoch, by writer.
 struct EpochStreams {
-  StepIndex begin = 0;        // its first step
-  StepIndex first_heard = 0;  // of its messages, where that was later: blocks of earlier steps are not missing
+  StepIndex begin = 0;     // its first step
+  bool had_begun = false;  // before the recorder came: a block before the first one that it heard is not missing
   std::map<std::pair<wire::Topic, wire::Role>, StepStream> steps;  // ticks and samples
   std::map<BlockSource, BlockStream> blocks;
 };
@@ -123,6 +125,7 @@ class RecorderNode final : public node::Node {
   enum class Begin : std::uint8_t { known, open, late };
   [[nodiscard]] bool is_from_the_begin(const transport::Received& message, const wire::Header& header,
                                        std::int64_t now_ns);
+  void keep_until_begin(const transport::Received& message);
   void begin_late(StepIndex step, std::int64_t now_ns);
   void file_what_came_before(std::int64_t now_ns);
   void file(const transport::Received& message);
