@@ -153,12 +153,14 @@ TEST(Replaced, AKilledIoOrRecorderEndsTheSessionAsWithout) {
 
 // ---- with a flex node -----------------------------------------------------------------------------------------
 
-TEST(ReplacedFlex, InMidMotionTheSessionGoesOnToTheSameBits) {
+TEST(ReplacedFlex, AloneOrWithAllOthersTheSessionGoesOnToTheSameBits) {
   const std::string scene = SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml";
   const std::vector<std::string> files = {"--assets", SLEWRING_SOURCE_DIR "/scenes"};
+  const std::vector<std::vector<Role>> losses = {{}, {Role::flex}, {Role::mechanics, Role::hydraulics, Role::flex}};
   for (const std::string exchange : {"once", "every_step"}) {
-    std::vector<HashChain> chains;
-    for (const bool is_killed : {false, true}) {
+    HashChain undisturbed;
+    for (const std::vector<Role>& lost : losses) {
+      SCOPED_TRACE(exchange + ", lost: " + std::to_string(lost.size()));
       Session session({"--pace", "real", "--duration", "0.8s", "--set", "session.rejoin=20s", "--set",
                        "session.flexible=" + exchange},
                       scene);
@@ -167,22 +169,24 @@ TEST(ReplacedFlex, InMidMotionTheSessionGoesOnToTheSameBits) {
       session.start(Role::recorder);
       for (const Role role : wire::kPhysicsRoles) session.start(role, files);
       ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
-      if (is_killed) {
-        session.node(Role::flex).send(SIGKILL);
-        ASSERT_TRUE(holds_a_place(observer, Role::flex)) << session.said();
-        session.start(Role::flex, files);
+      for (const Role role : lost) session.node(role).send(SIGKILL);
+      for (const Role role : lost) {
+        ASSERT_TRUE(holds_a_place(observer, role)) << session.said();
+        session.start(role, files);
       }
       for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.said();
       const RecordedSession recorded = session.recorded();
       EXPECT_EQ(recorded.problem, "");
-      chains.push_back(recorded.chain());
-      if (!is_killed) continue;
+      if (lost.empty()) {
+        undisturbed = recorded.chain();
+        continue;
+      }
+      EXPECT_EQ(first_difference(undisturbed, recorded.chain()), "");
       Program verify(program_path("slewring"),
                      {"replay", only_recording(session.runs()).string(), "--verify", files[0], files[1]},
                      session.folder() / "replay");
       EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
     }
-    EXPECT_EQ(first_difference(chains[0], chains[1]), "") << exchange;
   }
 }
 
@@ -190,6 +194,8 @@ TEST(ReplacedFlex, InMidMotionTheSessionGoesOnToTheSameBits) {
 
 class RunWithRejoin : public ::testing::Test {
  protected:
+  explicit RunWithRejoin(const char* duration = kDuration) : duration_(duration) {}
+
   // of a session in mid-motion
   void send_to(Role role, int signal) {
     ASSERT_TRUE(observer_.wait_for_step(300)) << run_.out() << run_.err();
@@ -206,12 +212,13 @@ class RunWithRejoin : public ::testing::Test {
     EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
   }
 
+  const char* duration_;
   ScratchFolder folder_;
   TestDomain domain_;
   Program run_{
       program_path("slewring"),
       {"run", kScene, "--session", "s", "--domain", std::to_string(domain_.number()), "--pace", "real", "--duration",
-       kDuration, "--set", "session.rejoin=20s", "--out", (folder_.path() / "runs").string(), "--quiet"},
+       duration_, "--set", "session.rejoin=20s", "--out", (folder_.path() / "runs").string(), "--quiet"},
       folder_.path() / "run"};
   Observer observer_{domain_.number(), "s"};
 };
@@ -226,6 +233,27 @@ TEST_F(RunWithRejoin, ReplacesANodeThatHangs) {
   expect_one_restart_and_undisturbed_bits();
   EXPECT_NE(run_.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos)
       << run_.err();
+}
+
+class LongRunWithRejoin : public RunWithRejoin {
+ protected:
+  LongRunWithRejoin() : RunWithRejoin("60s") {}
+};
+
+TEST_F(LongRunWithRejoin, EndsWithCode4WhenANodeIsLostForTheFourthTime) {
+  std::uint32_t last = 0;
+  for (int loss = 0; loss < 4; ++loss) {
+    ASSERT_TRUE(observer_.wait_until([&] {
+      const auto& status = observer_.status(Role::mechanics);
+      return status && status->pid != last && status->state == NodeState::running;
+    })) << run_.err();
+    last = observer_.status(Role::mechanics)->pid;
+    kill(static_cast<pid_t>(last), SIGKILL);
+  }
+  EXPECT_EQ(run_.wait(), 4) << run_.out() << run_.err();
+  EXPECT_NE(run_.err().find("checkpoint (3 of 3)"), std::string::npos) << run_.err();
+  EXPECT_NE(run_.err().find("end with code 4 and close the recording"), std::string::npos) << run_.err();
+  EXPECT_EQ(read_session(folder_.path() / "runs").problem, "");
 }
 
 // a step of which neither node has a sample is no beginning

@@ -192,51 +192,58 @@ TEST_F(SavedSession, IsMadeOfARecordingAndGoesOnLive) {
   EXPECT_NE(said.find("the recording ends before"), std::string::npos) << said;
 }
 
-TEST(LateRecording, BeginsWithTheStatesOfAStepAndReplays) {
-  Session session({"--pace", "real", "--duration", kDuration, "--no-record"});
-  Observer& observer = session.observer();
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) session.start(role);
-  ASSERT_TRUE(observer.wait_for_step(700)) << session.said();
-  // time for the recorder to come
-  ASSERT_TRUE(observer.request(wire::ControlAction::pause).is_accepted);
-  session.start(Role::recorder);
-  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::recorder).has_value(); })) << session.said();
-  ASSERT_TRUE(observer.request(wire::ControlAction::resume).is_accepted);
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
-  const RecordedSession recorded = session.recorded();
-  EXPECT_EQ(recorded.problem, "");
-  EXPECT_EQ(recorded.losses(), 0);
-  EXPECT_EQ(recorded.last_complete_step(), kSteps);
+// A recorder that comes when the session has begun.
+class LateRecording : public ::testing::Test {
+ protected:
+  LateRecording() {
+    for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) session_.start(role);
+  }
+
+  // Starts the recorder while the session pauses, and lets it go on to its end. What was recorded is complete and
+  // replays.
+  RecordedSession record_the_rest() {
+    Observer& observer = session_.observer();
+    EXPECT_TRUE(observer.request(wire::ControlAction::pause).is_accepted);
+    session_.start(Role::recorder);
+    EXPECT_TRUE(observer.wait_until([&] { return observer.status(Role::recorder).has_value(); })) << session_.said();
+    EXPECT_TRUE(observer.request(wire::ControlAction::resume).is_accepted);
+    EXPECT_EQ(session_.wait_all(), all_ok()) << session_.said();
+    RecordedSession recorded = session_.recorded();
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_EQ(recorded.losses(), 0);
+    EXPECT_EQ(recorded.last_complete_step(), kSteps);
+    Program verify(program_path("slewring"), {"replay", only_recording(session_.runs()).string(), "--verify"},
+                   session_.folder() / "verify");
+    EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+    return recorded;
+  }
+
+  Session session_{{"--pace", "real", "--duration", kDuration, "--no-record"}};
+};
+
+TEST_F(LateRecording, BeginsWithTheStatesOfAStepAndReplays) {
+  ASSERT_TRUE(session_.observer().wait_for_step(700)) << session_.said();
+  const RecordedSession recorded = record_the_rest();
   const StepIndex begin = recorded.chain().begin()->first;
   EXPECT_GE(begin, 700);
   EXPECT_LT(begin, kSteps);
   EXPECT_EQ(first_difference(recorded.chain(), from_step(undisturbed(), begin)), "");
-  Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
-                 session.folder() / "verify");
-  EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
 }
 
-TEST(LateRecording, OfASessionThatWasResetBeginsWithItsStatesToo) {
-  Session session({"--pace", "real", "--duration", kDuration, "--no-record"});
-  Observer& observer = session.observer();
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics}) session.start(role);
+TEST_F(LateRecording, OfASessionThatCanSayAllAgainIsWhole) {
+  ASSERT_TRUE(session_.observer().wait_for_step(20)) << session_.said();
+  // INIT was said before it came
+  EXPECT_EQ(first_difference(record_the_rest().chain(), from_step(undisturbed(), 0)), "");
+}
+
+TEST_F(LateRecording, OfASessionThatWasResetBeginsWithItsStatesToo) {
+  Observer& observer = session_.observer();
   for (std::uint32_t epoch = 0; epoch < 2; ++epoch) {
     ASSERT_TRUE(observer.wait_until([&] { return observer.epoch() == epoch && observer.step() >= 100; }));
     ASSERT_TRUE(observer.request(wire::ControlAction::reset).is_accepted);
   }
-  ASSERT_TRUE(observer.wait_until([&] { return observer.epoch() == 2 && observer.step() >= 600; })) << session.said();
-  ASSERT_TRUE(observer.request(wire::ControlAction::pause).is_accepted);
-  session.start(Role::recorder);
-  ASSERT_TRUE(observer.wait_until([&] { return observer.status(Role::recorder).has_value(); })) << session.said();
-  ASSERT_TRUE(observer.request(wire::ControlAction::resume).is_accepted);
-  EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
-  const RecordedSession recorded = session.recorded();
-  EXPECT_EQ(recorded.problem, "");
-  EXPECT_EQ(recorded.losses(), 0);
-  EXPECT_EQ(recorded.last_complete_step(), kSteps);
-  Program verify(program_path("slewring"), {"replay", only_recording(session.runs()).string(), "--verify"},
-                 session.folder() / "verify");
-  EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+  ASSERT_TRUE(observer.wait_until([&] { return observer.epoch() == 2 && observer.step() >= 600; })) << session_.said();
+  record_the_rest();
 }
 
 TEST_F(SavedSession, IsNeverHalfAFileAndNeverReplacesOneUnasked) {
