@@ -137,9 +137,9 @@ void NamespacePair::remove_left_behind() {
   problem_.clear();
 }
 
-void distribute(Session& session, const NamespacePair& cable) {
+void distribute(Session& session, const NamespacePair& cable, std::initializer_list<wire::Role> on_left) {
   for (const wire::Role role : kAllNodes) {
-    const bool is_left = role == wire::Role::mechanics || role == wire::Role::recorder;
+    const bool is_left = std::find(on_left.begin(), on_left.end(), role) != on_left.end();
     const NamespacePair::Side& here = is_left ? cable.left() : cable.right();
     const NamespacePair::Side& there = is_left ? cable.right() : cable.left();
     session.run_under(role, here.command(), {"--interface", here.interface, "--peer", there.address, "--insecure-lan"});

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -58,8 +59,8 @@ class NamespacePair {
   Side left_, right_;
 };
 
-// Mechanics and recorder on the left side, io and hydraulics on the right, with the options that two_machines.md tells
-// the user.
-void distribute(Session& session, const NamespacePair& cable);
+// These nodes on the left side, the others on the right, with the options that two_machines.md tells the user.
+void distribute(Session& session, const NamespacePair& cable,
+                std::initializer_list<wire::Role> on_left = {wire::Role::mechanics, wire::Role::recorder});
 
 }  // namespace slew::testing

@@ -124,6 +124,28 @@ TEST_F(FaultyCable, OutFor3SecondsEndsTheSessionWithCode4) {
   EXPECT_GT(recorded.last_complete_step(), 0);
 }
 
+TEST_F(FaultyCable, OutFor3SecondsTheNodeBeyondItIsReplacedAndTheSessionGoesOnWithTheSameBits) {
+  Session session({"--pace", "real", "--duration", "4s", "--set", "session.rejoin=60s"});
+  distribute(session, cable, {Role::mechanics});
+  session.start_all();
+  wait_until_it_runs(session);
+  if (HasFatalFailure()) return;
+  cable.unplug();
+  // it is alone: its session is gone, and for the others it is
+  EXPECT_EQ(session.node(Role::mechanics).wait(), 4) << session.said();
+  cable.plug();
+  Program& second = session.start(Role::mechanics, {}, "_second");
+  EXPECT_EQ(second.wait(), 0) << second.err() << session.said();
+  for (const Role role : {Role::io, Role::hydraulics, Role::recorder}) {
+    EXPECT_EQ(session.node(role).wait(), 0) << session.said();
+  }
+  EXPECT_NE(session.node(Role::io).err().find("goes on in the place of mechanics (process " +
+                                              std::to_string(session.node(Role::mechanics).pid())),
+            std::string::npos)
+      << session.said();
+  expect_bits_of_one_process(session.recorded(), "4s");
+}
+
 // ---- one way --------------------------------------------------------------------------------------------------
 
 TEST_F(FaultyCable, ThatCarriesOneWayLetsNobodyJoin) {
