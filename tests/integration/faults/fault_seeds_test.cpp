@@ -33,6 +33,7 @@ const std::vector<Machine>& machines() {
       {"truck_crane.yaml", {"session.window=3"}},
       {"single_cylinder.yaml", {"session.exchange_every=4"}},
       {"truck_crane_flexible.yaml", {"session.flexible=every_step"}},
+      {"single_cylinder.yaml", {"session.pace=free", "session.window=4"}},
   };
   return all;
 }
@@ -43,8 +44,8 @@ bool has_kills(std::uint64_t seed) {
 }
 
 scene::Scene scene_of(const Machine& machine, bool is_place_held = false) {
-  scene::Overrides overrides = machine.overrides;
-  overrides.insert(overrides.end(), {"session.duration=0.4 s", "session.pace=real", "recording.every=10"});
+  scene::Overrides overrides = {"session.duration=0.4 s", "session.pace=real", "recording.every=10"};
+  overrides.insert(overrides.end(), machine.overrides.begin(), machine.overrides.end());
   if (is_place_held) overrides.emplace_back("session.rejoin=60 s");
   return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + machine.file, overrides);
 }
@@ -72,8 +73,12 @@ class FaultSeeds : public ::testing::Test {
     const scene::Scene scene = scene_of(machines()[which], has_kills(seed));
     const FaultPlan plan = FaultPlan::drawn(seed, VirtualSession::roles_of(scene), VirtualClock().now_ns,
                                             has_kills(seed) ? FaultPlan::Kills::some : FaultPlan::Kills::none);
-    SCOPED_TRACE(fmt::format("{}: {}\n  again: SLEWRING_FAULT_SEED={} {}/test_fault_seeds", machines()[which].file,
-                             plan.text(), seed, SLEWRING_BINARY_DIR "/bin"));
+    const std::string again = fmt::format("{}: {}\n  again: SLEWRING_FAULT_SEED={} {}/test_fault_seeds",
+                                          machines()[which].file, plan.text(), seed, SLEWRING_BINARY_DIR "/bin");
+    SCOPED_TRACE(again);
+    // also of one that crashes or hangs
+    std::printf("%s\n", again.c_str());
+    std::fflush(stdout);
     VirtualSession session(scene, folder_.path().string(), plan);
     session.run_until(plan.end_ns);
     // a node that died is given up after 2 s
