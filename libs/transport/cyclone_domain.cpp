@@ -178,9 +178,15 @@ std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_ad
   for (const std::string& peer : network.peers) {
     if (peer != own_address) peers += fmt::format(R"(<Peer Address="{}"/>)", peer);
   }
-  // writer cache above depth x size of every topic and not adaptive: a slow reader never makes a writer wait;
-  // heartbeat and nack timers: a lost packet costs milliseconds; reorder: what arrives during a repair is not asked
-  // again
+  // heartbeat and nack timers: on a network a lost packet costs milliseconds; on loopback nothing is lost but what a
+  // reader has no room for, and each question and answer costs as much as a sample
+  const char* const timers = leaves_machine(network.interface)
+                                 ? R"(<HeartbeatInterval min="2ms" minsched="2ms" max="20ms">5ms</HeartbeatInterval>
+  <PreEmptiveAckDelay>1ms</PreEmptiveAckDelay>)"
+                                 : R"(<HeartbeatInterval min="20ms" minsched="20ms" max="40ms">20ms</HeartbeatInterval>
+  <PreEmptiveAckDelay>10ms</PreEmptiveAckDelay>)";
+  // writer cache above depth x size of every topic and not adaptive: a slow reader never makes a writer wait; reorder:
+  // what arrives during a repair is not asked again
   return fmt::format(
       R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
  <General>
@@ -194,15 +200,15 @@ std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_ad
   <Peers>{}</Peers>
  </Discovery>
  <Internal>
-  <HeartbeatInterval min="2ms" minsched="2ms" max="20ms">5ms</HeartbeatInterval>
-  <NackDelay>0ms</NackDelay><PreEmptiveAckDelay>1ms</PreEmptiveAckDelay>
+  {}
+  <NackDelay>0ms</NackDelay>
   <AutoReschedNackDelay>5ms</AutoReschedNackDelay>
   <PrimaryReorderMaxSamples>1024</PrimaryReorderMaxSamples><SecondaryReorderMaxSamples>1024</SecondaryReorderMaxSamples>
   <WriterLingerDuration>0ms</WriterLingerDuration>
   <Watermarks><WhcHigh>64 MB</WhcHigh><WhcHighInit>64 MB</WhcHighInit><WhcAdaptive>false</WhcAdaptive></Watermarks>
  </Internal>{}
 </Domain></CycloneDDS>)",
-      network.interface, kMaxProcesses, peers, network.security ? security_xml(*network.security) : "");
+      network.interface, kMaxProcesses, peers, timers, network.security ? security_xml(*network.security) : "");
 }
 
 Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<CycloneDomain>& domain) {
