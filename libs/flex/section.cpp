@@ -171,6 +171,19 @@ class Checker {
   void factor(const char* key, const std::optional<double>& value) {
     if (value) positive(key, *value, "");
   }
+  // lengths that are numbers may have powers that are none
+  void quantities(const Section& section) {
+    for (const double value :
+         {section.area, section.second_moment_y, section.second_moment_z, section.torsion_constant}) {
+      if (std::isfinite(value) && value > 0) continue;
+      problems_.push_back({owner_,
+                           fmt::format("area {} m2, second moments {} and {} m4, torsion constant {} m4", section.area,
+                                       section.second_moment_y, section.second_moment_z, section.torsion_constant),
+                           "lengths that give positive ones",
+                           {}});
+      return;
+    }
+  }
 
  private:
   const std::string& owner_;
@@ -181,6 +194,7 @@ class Checker {
 }  // namespace
 
 void check_section(const std::string& owner, const SectionDef& def, Problems& problems) {
+  const std::size_t before = problems.size();
   Checker check(owner, problems);
   const bool is_round = def.shape == SectionShape::tube || def.shape == SectionShape::solid_circle;
   if (def.shape == SectionShape::given) {
@@ -207,6 +221,7 @@ void check_section(const std::string& owner, const SectionDef& def, Problems& pr
   }
   check.factor("shear_factor_y", def.shear_factor_y);
   check.factor("shear_factor_z", def.shear_factor_z);
+  if (problems.size() == before) check.quantities(shaped(def, 0));
 }
 
 Section make_section(const SectionDef& def, double poisson_ratio) {

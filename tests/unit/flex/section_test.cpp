@@ -150,6 +150,12 @@ TEST(Section, WrongDimensionsAreNamed) {
             "Beam.section.wall: 0.06 m leaves nothing inside; expected less than 0.05 m, half of the diameter\n");
   EXPECT_NE(problems_of(i_beam(0.1, 0.2, 0.01, 0)).find("flange"), std::string::npos);
   EXPECT_NE(problems_of({.area = 1, .second_moment_y = 0}).find("second_moment_y: 0 m4"), std::string::npos);
+  // the fourth powers of these are no numbers, or none above 0
+  EXPECT_NE(problems_of({.shape = SectionShape::tube, .wall = 0.06, .diameter = 6e98})
+                .find("expected lengths that give positive ones"),
+            std::string::npos);
+  EXPECT_NE(problems_of({.shape = SectionShape::solid_circle, .diameter = 1e-90}).find("second moments 0 and 0 m4"),
+            std::string::npos);
   SectionDef def = solid(0.1, 0.1);
   def.shear_factor_z = 0;
   EXPECT_NE(problems_of(def).find("shear_factor_z"), std::string::npos);
