@@ -70,6 +70,7 @@ Status load_node(const Checkpoint& checkpoint, coupling::Subsystem& subsystem, w
   std::span<const std::byte> bytes = checkpoint.bytes;
   const std::string of_step = "the state of step " + std::to_string(checkpoint.step);
   if (!get_said(bytes, said)) {
+    subsystem.reset();
     return Status::error(ExitCode::bad_input, of_step + " is damaged or of another version of this program; " +
                                                   "install one build on all machines");
   }

@@ -197,6 +197,13 @@ TEST(NodeState, ComesBackWithWhatItsSampleSaid) {
     cut.bytes.resize(size);
     EXPECT_FALSE(load_node(cut, other, loaded, again).is_ok()) << size;
   }
+  // found by a fuzzer: a refusal leaves nothing of an earlier state
+  ASSERT_TRUE(load_node(checkpoint, other, loaded, again).is_ok());
+  ASSERT_NE(other.state_hash(), 0u);
+  Checkpoint of_another_layout = checkpoint;
+  of_another_layout.bytes[0] = std::byte{99};
+  EXPECT_EQ(load_node(of_another_layout, other, loaded, again).code, ExitCode::bad_input);
+  EXPECT_EQ(other.state_hash(), 0u) << "as after reset()";
   for (std::size_t bit = 0; bit < 8 * front; ++bit) {
     Checkpoint flipped = checkpoint;
     flipped.bytes[bit / 8] ^= std::byte{1} << (bit % 8);
