@@ -204,12 +204,10 @@ void try_physics(const Loaded& of, bool has_right_sums, fuzz::Choices& choices) 
   } else {
     require_refused(loaded);
   }
-  of.subsystem->reset();
   wire::SampleState said;
   const Status of_node = node::load_node(checkpoint, *of.subsystem, said, sample);
   if (!of_node.is_ok()) return require_refused(of_node);
   fuzz::require(loaded.is_ok() && said.state_hash == checkpoint.state_hash);
-  of.subsystem->reset();
 }
 
 // ---- io
