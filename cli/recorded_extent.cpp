@@ -68,18 +68,22 @@ recording::MessageFilter only(std::initializer_list<Topic> topics) {
   return filter;
 }
 
-// Samples of flexible bodies come every k-th step from step 0 on; 0: there are none but of step 0.
-StepIndex elastic_every(const recording::Reader& reader) {
+// Samples of and for flexible bodies come every k-th step from step 0 on.
+bool is_of_flexible_bodies(const std::string& topic) {
+  return topic == node::to_text(Topic::elastic) || topic == node::to_text(Topic::flexible);
+}
+
+// k; 1 when there are none but of step 0.
+StepIndex flexible_every(const recording::Reader& reader) {
   StepIndex every = 0;
-  if (reader.find_channel(node::to_text(Topic::elastic)) == nullptr) return every;
   wire::Header header;
-  cli_support::require(reader.for_each(only({Topic::elastic}), [&](const RecordedMessage& message) {
+  cli_support::require(reader.for_each(only({Topic::elastic, Topic::flexible}), [&](const RecordedMessage& message) {
     if (transport::decode_header(message.payload, header) && header.phase == Phase::running) {
       every = std::gcd(every, header.step);
     }
     return Visit::go_on;
   }));
-  return every;
+  return std::max<StepIndex>(1, every);
 }
 
 void take(const RecordedMessage& message, StepIndex every, Epoch& epoch, const wire::Header& header) {
@@ -88,7 +92,7 @@ void take(const RecordedMessage& message, StepIndex every, Epoch& epoch, const w
   } else if (header.phase == Phase::init) {
     epoch.init_at = std::max<StepIndex>(0, header.step);
   } else if (header.phase == Phase::running && header.step >= 0) {
-    const StepIndex unit = is_of(message, Topic::elastic) ? std::max<StepIndex>(1, every) : 1;
+    const StepIndex unit = is_of_flexible_bodies(message.channel->topic) ? every : 1;
     epoch.streams[message.channel->topic].add(header.step / unit);
   }
 }
@@ -105,9 +109,10 @@ std::optional<StepIndex> first_step(const Epoch& epoch) {
 }  // namespace
 
 RecordedExtent recorded_extent(const recording::Reader& reader) {
-  const StepIndex every = elastic_every(reader);
+  const StepIndex every = flexible_every(reader);
   std::map<std::uint32_t, Epoch> epochs;
-  const auto filter = only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic, Topic::state});
+  const auto filter =
+      only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic, Topic::state});
   wire::Header header;
   cli_support::require(reader.for_each(filter, [&](const RecordedMessage& message) {
     if (transport::decode_header(message.payload, header)) take(message, every, epochs[header.epoch], header);
@@ -122,7 +127,7 @@ RecordedExtent recorded_extent(const recording::Reader& reader) {
     const StepIndex first = extent.first_step.value_or(0);
     std::optional<StepIndex> complete_to;
     for (const auto& [topic, stream] : epoch.streams) {
-      const StepIndex unit = topic == node::to_text(Topic::elastic) ? std::max<StepIndex>(1, every) : 1;
+      const StepIndex unit = is_of_flexible_bodies(topic) ? every : 1;
       const StepIndex from = (first + unit - 1) / unit;
       const StepIndex complete = (stream.complete_to(from) + 1) * unit - 1;
       complete_to = std::min(complete_to.value_or(complete), complete);

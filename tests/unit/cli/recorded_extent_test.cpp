@@ -27,7 +27,8 @@ class Extent : public ::testing::Test {
     recording::SessionIdentity identity;
     identity.communication_step = milliseconds(1);
     EXPECT_EQ(recording::Writer::create(path_, identity, {}, writer_).text, "");
-    for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic, Topic::state}) {
+    for (const Topic topic :
+         {Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic, Topic::state}) {
       EXPECT_EQ(
           writer_->add_channel({std::string(node::to_text(topic)), "slewring::Any", "", {}}, channels_[topic]).text,
           "");
@@ -47,6 +48,7 @@ class Extent : public ::testing::Test {
     ASSERT_TRUE(topic == Topic::tick        ? encoded(wire::Tick{})
                 : topic == Topic::mechanism ? encoded(wire::MechanismMessage{})
                 : topic == Topic::actuators ? encoded(wire::ActuatorMessage{})
+                : topic == Topic::flexible  ? encoded(wire::FlexibleMessage{})
                 : topic == Topic::elastic   ? encoded(wire::ElasticMessage{})
                                             : encoded(wire::StatePart{}));
     ASSERT_EQ(writer_->write(channels_[topic], {epoch_, step, 0, 0}, bytes).text, "");
@@ -150,8 +152,9 @@ TEST_F(Extent, HoldsTheSamplesOfFlexibleBodiesInTheirRhythm) {
   say(Topic::state, 820);
   run(820, 899);
   for (const StepIndex step : {820, 830, 840, 860, 890}) say(Topic::elastic, step);
+  for (const StepIndex step : {820, 830, 840, 850, 860, 880}) say(Topic::flexible, step);
   const RecordedExtent slow = extent();
-  EXPECT_EQ(slow.lost, 3u);
+  EXPECT_EQ(slow.lost, 3u + 1u);
   EXPECT_EQ(slow.complete_to, 849);
   EXPECT_EQ(slow.last_step, 899);
 }
