@@ -57,7 +57,7 @@ class Fields {
   }
   void raw(void* to, std::size_t size) {
     if (size > rest_.size()) is_good_ = false;
-    if (!is_good_) return;
+    if (!is_good_ || size == 0) return;
     std::memcpy(to, rest_.data(), size);
     rest_ = rest_.subspan(size);
   }

@@ -72,6 +72,8 @@ void CircuitIntegrator::load(StateReader& bytes) {
   visit(*this, bytes);
   solver_->load(bytes);
   if (bytes.is_sound()) list_quasi_static();
+  // nothing else can be inconsistent
+  if (!is_consistent_ && quasi_static_.empty()) bytes.refuse();
 }
 
 }  // namespace slew::hydraulics

@@ -70,6 +70,7 @@ Status load_node(const Checkpoint& checkpoint, coupling::Subsystem& subsystem, w
   std::span<const std::byte> bytes = checkpoint.bytes;
   const std::string of_step = "the state of step " + std::to_string(checkpoint.step);
   if (!get_said(bytes, said)) {
+    subsystem.reset();
     return Status::error(ExitCode::bad_input, of_step + " is damaged or of another version of this program; " +
                                                   "install one build on all machines");
   }
@@ -93,6 +94,13 @@ void fill(wire::StatePart& part, const Checkpoint& checkpoint, std::size_t first
   part.first = static_cast<std::uint32_t>(first);
   part.bytes.resize(count);
   std::memcpy(part.bytes.data(), checkpoint.bytes.data() + first, count);
+}
+
+// At a place of the state that it says it is of, and as long as that place.
+bool has_place(const wire::StatePart& part) noexcept {
+  return part.header.step >= 0 && part.total <= kMaxStateBytes && part.first < part.total &&
+         part.first % wire::kMaxStatePart == 0 &&
+         part.bytes.size() == std::min<std::size_t>(wire::kMaxStatePart, part.total - part.first);
 }
 
 }  // namespace
@@ -130,15 +138,13 @@ bool CheckpointParts::is_of_this(const wire::StatePart& part) const noexcept {
 }
 
 bool CheckpointParts::has(const wire::StatePart& part) const noexcept {
-  const std::size_t place = part.first / wire::kMaxStatePart;
-  return is_of_this(part) && place < has_.size() && has_[place];
+  return is_of_this(part) && has_place(part) && has_[part.first / wire::kMaxStatePart];
 }
 
 bool CheckpointParts::take(const wire::StatePart& part) {
-  const StepIndex step = part.header.step;
+  if (!has_place(part)) return false;
   if (!is_of_this(part)) {
-    if (part.total == 0 || part.total > kMaxStateBytes || step < 0) return false;
-    checkpoint_.step = step;
+    checkpoint_.step = part.header.step;
     checkpoint_.state_hash = part.state_hash;
     checkpoint_.bytes.resize(part.total);
     has_.assign((part.total + wire::kMaxStatePart - 1) / wire::kMaxStatePart, false);
@@ -146,9 +152,7 @@ bool CheckpointParts::take(const wire::StatePart& part) {
     is_begun_ = true;
   }
   const std::size_t place = part.first / wire::kMaxStatePart;
-  const bool fits = part.first % wire::kMaxStatePart == 0 && place < has_.size() &&
-                    part.bytes.size() == std::min<std::size_t>(wire::kMaxStatePart, part.total - part.first);
-  if (!fits || has_[place]) return false;
+  if (has_[place]) return false;
   has_[place] = true;
   --missing_;
   std::memcpy(checkpoint_.bytes.data() + part.first, part.bytes.data(), part.bytes.size());

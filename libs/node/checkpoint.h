@@ -85,7 +85,8 @@ class CheckpointSender {
 void send_checkpoint(SessionMember& member, wire::Topic topic, wire::Role role, const Checkpoint& checkpoint,
                      std::uint64_t request = 0);
 
-// Puts parts together, of one state at a time: a part of a later step, or of another state, begins anew.
+// Puts parts together, of one state at a time: a part of another state begins anew. A part that has no place in the
+// state that it says it is of changes nothing.
 class CheckpointParts {
  public:
   // True when this part made the state whole.

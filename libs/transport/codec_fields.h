@@ -53,6 +53,12 @@ template <typename N>
   return {value, 0, static_cast<std::int64_t>(wire::kMaxVariables)};
 }
 
+// length of a node's state, or a place in it
+template <typename N>
+[[nodiscard]] Bounded<N> state_bytes(N& value) {
+  return {value, 0, static_cast<std::int64_t>(wire::kMaxStateBytes)};
+}
+
 // index of the first variable of a message
 template <typename N>
 [[nodiscard]] Bounded<N> variable(N& value) {
@@ -238,8 +244,8 @@ void fields(A& a, typename A::template Of<wire::ResendRequest>& m) {
 
 template <typename A>
 void fields(A& a, typename A::template Of<wire::StatePart>& m) {
-  a(m.header, m.role, m.request, m.state_hash, Bounded{m.total, 0, wire::kMaxStateBytes});
-  a(Bounded{m.first, 0, wire::kMaxStateBytes}, m.bytes);
+  a(m.header, m.role, m.request, m.state_hash, state_bytes(m.total));
+  a(state_bytes(m.first), m.bytes);
 }
 
 }  // namespace slew::transport::detail

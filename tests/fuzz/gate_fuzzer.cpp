@@ -71,7 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         break;
       case 6:
-        gate.excuse(SimDuration{static_cast<std::int64_t>(choices.byte()) * kMs});
+        gate.excuse(SimDuration{static_cast<std::int64_t>(choices.byte()) * kMs}, now_ns);
         break;
       default: {
         const std::vector<double> script = {choices.usual(), choices.usual(), choices.usual()};

@@ -2,37 +2,14 @@
 //
 // Most changes break a check sum, and the reader goes no further. So three of four changed inputs get the right sums of
 // marks, attachments and uncompressed chunks again, which lets them through to what lies behind.
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <string>
-
 #include "recording/reader.h"
 #include "recording/records.h"
 #include "recording/recovery.h"
-#include "tests/fuzz/bytes.h"
+#include "tests/fuzz/memory_file.h"
 
 namespace {
 
 using namespace slew;
-
-// A file in memory under a path.
-class MemoryFile {
- public:
-  MemoryFile() : fd_(memfd_create("recording", 0)) { fuzz::require(fd_ >= 0); }
-  ~MemoryFile() { close(fd_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  void write(const std::uint8_t* data, std::size_t size) {
-    fuzz::require(ftruncate(fd_, 0) == 0);
-    fuzz::require(pwrite(fd_, data, size, 0) == static_cast<ssize_t>(size));
-  }
-  [[nodiscard]] std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(fd_); }
-
- private:
-  int fd_;
-};
 
 std::uint64_t read_all(const std::filesystem::path& path) {
   std::unique_ptr<recording::Reader> reader;
@@ -101,9 +78,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static MemoryFile file;
-  static const std::filesystem::path recovered =
-      std::filesystem::temp_directory_path() / ("slewring_fuzz_" + std::to_string(getpid()) + ".mcap");
+  static fuzz::MemoryFile file;
+  static const std::filesystem::path recovered = fuzz::written_file(".mcap");
   file.write(data, size);
   const std::uint64_t readable = read_all(file.path());
   recording::Recovery recovery;

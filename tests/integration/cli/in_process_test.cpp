@@ -285,6 +285,32 @@ TEST_F(InProcess, ADamagedRecordingIsRecoveredAndReplays) {
   EXPECT_NE(again.err.find("cut.recovered.mcap: the file exists already"), std::string::npos) << again.err;
 }
 
+// a recording that begins in mid-run has lost nothing in front of it
+TEST_F(InProcess, ADamagedRecordingOfASessionThatGoesOnIsRecoveredFromItsFirstStepOn) {
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.8", "--out", "first"}).code, 0);
+  const std::string first = only_recording_below(work_.path() / "first").string();
+  ASSERT_EQ(slewring({"replay", first, "--until", "0.7s", "--save", "crane.saved"}).code, 0);
+  const CommandResult went_on = slewring({"run", "--from", "crane.saved", "--in-process", "--pace", "free", "--quiet",
+                                          "--duration", "4", "--out", "second"});
+  ASSERT_EQ(went_on.code, 0) << went_on.err;
+  const std::filesystem::path second = only_recording_below(work_.path() / "second");
+  std::filesystem::copy_file(second, work_.path() / "cut.mcap");
+  std::filesystem::resize_file(work_.path() / "cut.mcap", std::filesystem::file_size(second) * 2 / 3);
+  const CommandResult cut = slewring({"recover", "cut.mcap", "--json"});
+  ASSERT_EQ(cut.code, 3) << cut.err;
+  const nlohmann::json saved = nlohmann::json::parse(cut.out);
+  EXPECT_EQ(saved.at("first_step"), 700);
+  EXPECT_GT(saved.at("complete_to"), 1000);
+  EXPECT_LE(saved.at("complete_to"), saved.at("last_step"));
+  EXPECT_EQ(saved.at("lost_steps"), 0);
+  const CommandResult told = slewring({"recover", "cut.mcap", "-o", "again.mcap"});
+  EXPECT_NE(told.out.find("complete from step 700 up to step "), std::string::npos) << told.out;
+  EXPECT_EQ(told.out.find("ticks and samples"), std::string::npos) << told.out;
+  const CommandResult replayed = slewring({"replay", "cut.recovered.mcap", "--json"});
+  ASSERT_EQ(replayed.code, 0) << replayed.err;
+  EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0);
+}
+
 // what an operator did on one crane, done again on another, and both in one picture
 TEST_F(InProcess, AnInputIsTakenFromOneCraneToAnotherAndBothAreDrawnTogether) {
   const auto run_into = [&](const std::string& scene, const std::string& out, const std::string& input) {

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <random>
 
+#include "core/state_bytes.h"
 #include "hydraulics/circuit_integrator.h"
 #include "hydraulics/curve.h"
 #include "hydraulics/oil.h"
@@ -400,6 +402,41 @@ TEST(CircuitIntegrator, hash_changes_when_any_state_changes_by_one_ulp) {
   EXPECT_EQ(circuit.set_parameter(circuit.find_parameter("L90Lift.overlap"), std::nextafter(0.32, 1.0)),
             ParameterResult::ok);
   EXPECT_NE(digest(), before);
+}
+
+// Found by a fuzzer: a state that says that volumes without compressibility are inconsistent, where there are none.
+TEST(CircuitIntegrator, a_saved_state_whose_flags_cannot_be_is_refused) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  integrator.step(1e-3, HeldSpeed(3));
+  std::vector<std::byte> saved;
+  StateWriter writer(saved, {});
+  integrator.save(writer);
+  writer.finish();
+  constexpr std::size_t kHeader = 32, kCheck = 24;  // of the layout in core/state_bytes.h
+  int refused = 0;
+  for (std::size_t i = kHeader; i < saved.size(); ++i) {
+    if (saved[i] != std::byte{1}) continue;
+    std::vector<std::byte> changed = saved;
+    changed[i] = {};
+    StateHash check;
+    check.add_bytes(changed.data() + kHeader, changed.size() - kHeader);
+    const std::uint64_t digest = check.digest();
+    std::memcpy(changed.data() + kCheck, &digest, sizeof digest);
+    StateReader reader(changed, {});
+    integrator.load(reader);
+    if (reader.finish("hydraulics").is_ok()) {
+      EXPECT_FALSE(integrator.step(1e-3, HeldSpeed(3)).has(StepFlag::not_converged)) << i;
+    } else {
+      ++refused;
+    }
+  }
+  EXPECT_GE(refused, 1);
+  StateReader reader(saved, {});
+  integrator.load(reader);
+  EXPECT_TRUE(reader.finish("hydraulics").is_ok());
 }
 
 TEST(CircuitIntegrator, a_non_finite_state_is_latched_and_the_last_good_one_stays) {

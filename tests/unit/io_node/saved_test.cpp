@@ -386,6 +386,20 @@ TEST_F(SavedFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read.find(Role::flex), nullptr);
 }
 
+// found by a fuzzer: to copy no bytes to nowhere is undefined (the sanitizers tell)
+TEST_F(SavedFile, OfANodeWithoutBytesComesBackToo) {
+  SavedSession saved = some();
+  saved.states.push_back({Role::flex, {1234, 7, {}}});
+  saved.scene_text.clear();
+  ASSERT_EQ(write_saved(path_, saved, Replace::never).text, "");
+  SavedSession read;
+  ASSERT_EQ(read_saved(path_, read).text, "");
+  ASSERT_NE(read.find(Role::flex), nullptr);
+  EXPECT_EQ(read.find(Role::flex)->state_hash, 7u);
+  EXPECT_TRUE(read.find(Role::flex)->bytes.empty());
+  EXPECT_EQ(read.scene_text, "");
+}
+
 TEST_F(SavedFile, CutOrChangedAnywhereIsRefused) {
   ASSERT_EQ(write_saved(path_, some(), Replace::never).text, "");
   std::ifstream file(path_, std::ios::binary);

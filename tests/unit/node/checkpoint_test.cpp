@@ -123,6 +123,30 @@ TEST(StateParts, ThatDoNotFitAreLeftOut) {
   EXPECT_LT(taken.checkpoint().bytes.capacity(), 10'000u) << "memory for what nobody sends";
 }
 
+TEST(StateParts, WithoutAPlaceInTheirOwnStateChangeNothing) {
+  const auto parts = parts_of(some_checkpoint(128, 9000));
+  CheckpointParts taken;
+  EXPECT_FALSE(taken.take(parts[0]));
+  // of a later state, beside its places, too short, of no length, of a step that there is not
+  wire::StatePart other = parts_of(some_checkpoint(256, 9000))[0];
+  other.first = 8;
+  EXPECT_FALSE(taken.take(other));
+  other.first = 0;
+  other.bytes.resize(100);
+  EXPECT_FALSE(taken.take(other));
+  other.total = 0;
+  EXPECT_FALSE(taken.take(other));
+  other = parts_of(some_checkpoint(256, 100))[0];
+  other.header.step = kJoinStep;
+  EXPECT_FALSE(taken.take(other));
+  // what lies beside a place that has come is no part that has come
+  wire::StatePart beside = parts[0];
+  beside.first = 8;
+  EXPECT_TRUE(taken.has(parts[0]));
+  EXPECT_FALSE(taken.has(beside));
+  EXPECT_TRUE(taken.take(parts[1]));
+}
+
 TEST(StateParts, OfTheLastFourStatesAreKept) {
   KeptCheckpoints kept;
   const auto any = [](StepIndex) { return true; };
@@ -173,6 +197,13 @@ TEST(NodeState, ComesBackWithWhatItsSampleSaid) {
     cut.bytes.resize(size);
     EXPECT_FALSE(load_node(cut, other, loaded, again).is_ok()) << size;
   }
+  // found by a fuzzer: a refusal leaves nothing of an earlier state
+  ASSERT_TRUE(load_node(checkpoint, other, loaded, again).is_ok());
+  ASSERT_NE(other.state_hash(), 0u);
+  Checkpoint of_another_layout = checkpoint;
+  of_another_layout.bytes[0] = std::byte{99};
+  EXPECT_EQ(load_node(of_another_layout, other, loaded, again).code, ExitCode::bad_input);
+  EXPECT_EQ(other.state_hash(), 0u) << "as after reset()";
   for (std::size_t bit = 0; bit < 8 * front; ++bit) {
     Checkpoint flipped = checkpoint;
     flipped.bytes[bit / 8] ^= std::byte{1} << (bit % 8);
