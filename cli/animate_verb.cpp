@@ -32,9 +32,13 @@ Motion read_motion(const recording::Reader& reader, const MachineDrawing& machin
   for (std::size_t body = 1; body < machine.bodies.size(); ++body) {
     for (const char* part : kParts) names.push_back(machine.bodies[body].name + "." + part);
   }
-  const std::vector<plotting::Series> series = read_series(reader, names, Units::si);
+  std::vector<plotting::Series> series = read_series(reader, names, Units::si);
+  plotting::keep_common_instants(series);
   const plotting::PlotOptions heading = plot_heading(reader);
-  Motion motion{heading.title, heading.subtitle, series.front().time, {}};
+  Motion motion{heading.title, heading.subtitle, series.front().time, {}, {}};
+  for (std::size_t k = 1; k < motion.time.size(); ++k) {
+    if (plotting::is_gap(series.front(), k)) motion.gaps.push_back({motion.time[k - 1], motion.time[k]});
+  }
   for (std::size_t body = 0; body + 1 < machine.bodies.size(); ++body) {
     const plotting::Series* of = &series[body * std::size(kParts)];
     motion.poses.emplace_back();

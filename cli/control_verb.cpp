@@ -64,7 +64,7 @@ void tell(const Options& options, const std::string& command, const Observer& ob
 
 ExitCode send(const Options& options, const Command& command) {
   node::install_signal_handlers();
-  const auto observer = find_session(options.session);
+  const auto observer = find_session(options.session, Access::steer);
   wire::ControlRequest request;
   request.action = command.action;
   request.value = command.action == ControlAction::step ? static_cast<double>(options.steps) : 0;
@@ -95,7 +95,7 @@ ExitCode save(const Options& options) {
                                    ": the file exists already; it was left as it is; choose another name, or "
                                    "replace it with --force");
   }
-  const auto observer = find_session(options.session);
+  const auto observer = find_session(options.session, Access::steer);
   const std::vector<wire::Role> roles = roles_with_state(observer->view().session());
   wire::ControlRequest request;
   request.action = ControlAction::save;
@@ -173,7 +173,7 @@ ExitCode load(const Options& options) {
   node::install_signal_handlers();
   io::SavedSession saved;
   cli_support::require(io::read_saved(options.file, saved));
-  const auto observer = find_session(options.session);
+  const auto observer = find_session(options.session, Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   const auto refuse = [&](const std::string& why) {
     throw cli_support::Failure(ExitCode::bad_input, options.file + ": refused, nothing was changed: " + why);

@@ -33,6 +33,8 @@ constexpr int kRoundMs = 20;
 // after io is through, or a node is lost, the others have this long: their own linger and some more
 constexpr std::int64_t kGraceNs = 4'000'000'000;
 constexpr std::int64_t kTermNs = 1'500'000'000;
+// a recorder closes when the disk has confirmed all that waited: 64 MiB of its own and what the system holds back
+constexpr std::int64_t kWritingNs = 600'000'000'000;
 // a node that is killed again and again has a cause that a restart does not remove
 constexpr int kMostRestarts = 3;
 
@@ -48,7 +50,7 @@ class Supervisor {
         text_(scene),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
-        is_place_held_(scene.session.rejoin > 0) {
+        rejoin_(duration_of_seconds(scene.session.rejoin)) {
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
     cli_support::require(scene::parse_cpu_places(places, cpus_));
     for (const scene::CpuPlace& place : cpus_) {
@@ -90,7 +92,8 @@ class Supervisor {
     bool is_asked_to_end = false;  // a signal is then no accident, even for one that does not catch it yet
     int restarts = 0;
     int given_up_before = 0;  // processes of its role, when it was started
-    bool is_awaited = false;  // it was killed, and is started again when io holds its place
+    bool is_awaited = false;  // it was killed, and is started again, or by somebody else, when io holds its place
+    bool is_replaced_elsewhere = false;  // by a process that was started by hand
     bool is_killed_as_lost = false;
   };
 
@@ -170,10 +173,10 @@ class Supervisor {
 
   // ---- starting again -----------------------------------------------------------------------------------------
 
-  [[nodiscard]] bool may_start_again(const Node& node) const {
+  [[nodiscard]] bool is_place_held(const Node& node) const {
     const bool is_physics = node.role != Role::io && node.role != Role::recorder;
     const bool runs = observer_->view().step() >= 0 && !observer_->view().is_over() && interrupts() == 0;
-    return is_place_held_ && is_physics && runs && deadline_ns_ == 0 && node.restarts < kMostRestarts;
+    return rejoin_.ns > 0 && is_physics && runs && deadline_ns_ == 0;
   }
 
   // Processes of the role that io has given up: it holds the place of the last one.
@@ -186,7 +189,7 @@ class Supervisor {
 
   // io has given this very process up: it was silent for too long.
   [[nodiscard]] bool has_lost_its_place(const Node& node) const {
-    return is_place_held_ && places_given_up(node.role) > node.given_up_before;
+    return rejoin_.ns > 0 && places_given_up(node.role) > node.given_up_before;
   }
 
   [[nodiscard]] bool is_taken_by_another(const Node& node) const {
@@ -206,11 +209,15 @@ class Supervisor {
       if (!node.is_awaited) continue;
       if (observer_->view().is_over() || deadline_ns_ != 0) {
         node.is_awaited = false;
+        // who asked the session to end did not wait for it
+        if (interrupts() > 0) continue;
         report_kill(node, "; the others end with code 4 and close the recording; run the session again");
       } else if (has_lost_its_place(node)) {
+        node.is_replaced_elsewhere = is_taken_by_another(node);
+        if (!node.is_replaced_elsewhere && node.restarts == kMostRestarts) continue;
         node.given_up_before = places_given_up(node.role);
         node.is_awaited = false;
-        if (is_taken_by_another(node)) continue;
+        if (node.is_replaced_elsewhere) continue;
         node.process = make(node.role);
         node.is_reported = node.is_killed_as_lost = false;
         ++node.restarts;
@@ -266,6 +273,17 @@ class Supervisor {
                 ") " + node.process->poll_end()->text() + what_follows);
   }
 
+  [[nodiscard]] std::string what_follows_of(const Node& awaited) const {
+    if (awaited.restarts < kMostRestarts) {
+      return fmt::format("; the others hold, and it is started again with the state of its last checkpoint ({} of {})",
+                         awaited.restarts + 1, kMostRestarts);
+    }
+    return fmt::format(
+        "; it was started again {} times and is not any more; the others hold for {} in case that somebody else starts "
+        "one ('slewring node {} --session {}'), and then end with code 4 and close the recording",
+        kMostRestarts, node::seconds_text(rejoin_), awaited.process->name(), options_.session.session);
+  }
+
   void report_kill(const Node& node, const std::string& what_follows) {
     is_node_killed_ = true;
     say_kill(node, what_follows);
@@ -276,11 +294,9 @@ class Supervisor {
     node.is_reported = true;
     const ProcessEnd& end = *node.process->poll_end();
     if ((end.signal != 0 || has_lost_its_place(node)) && !node.is_asked_to_end) {
-      if (may_start_again(node)) {
+      if (is_place_held(node)) {
         node.is_awaited = true;
-        return say_kill(node, fmt::format("; the others hold, and it is started again with the state of its last "
-                                          "checkpoint ({} of {})",
-                                          node.restarts + 1, kMostRestarts));
+        return say_kill(node, what_follows_of(node));
       }
       report_kill(node, "; the others hold, end with code 4 and close the recording; run the session again");
     }
@@ -292,16 +308,33 @@ class Supervisor {
 
   // ---- ending -------------------------------------------------------------------------------------------------
 
+  void send(Node& node, int signal) {
+    if (node.process->poll_end()) return;
+    node.is_asked_to_end = true;
+    if (signal == SIGKILL) {
+      const bool has_written = node.role == Role::recorder && is_recorder_awaited_;
+      status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                  (has_written ? ") was killed while it wrote; 'slewring recover' makes the recording whole"
+                               : ") does not end; it was killed"));
+    }
+    node.process->send_signal(signal);
+    node.process->send_signal(SIGCONT);  // one that is stopped takes its signal only then
+  }
+
   void send_to_all(int signal) {
+    for (Node& node : nodes_) send(node, signal);
+  }
+
+  // The session is over; who does not end by itself is killed, a recorder only when it has had time to write.
+  void kill_the_rest(std::int64_t now_ns) {
     for (Node& node : nodes_) {
-      if (node.process->poll_end()) continue;
-      node.is_asked_to_end = true;
-      if (signal == SIGKILL) {
-        status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
-                    ") does not end; it was killed");
+      if (node.role != Role::recorder || now_ns > asked_ns_ + kWritingNs) {
+        send(node, SIGKILL);
+      } else if (!node.process->poll_end() && !is_recorder_awaited_) {
+        is_recorder_awaited_ = true;
+        status_.say("slewring: the session is over, and the recorder (process " + std::to_string(node.process->pid()) +
+                    ") still writes to a slow disk; Ctrl-C ends it, and what is not written then is lost");
       }
-      node.process->send_signal(signal);
-      node.process->send_signal(SIGCONT);  // one that is stopped takes its signal only then
     }
   }
 
@@ -309,7 +342,7 @@ class Supervisor {
     const int count = interrupts();
     if (count == obeyed_) return;
     obeyed_ = count;
-    if (count > 1) return send_to_all(SIGKILL);
+    if (count > 1 || is_recorder_awaited_) return send_to_all(SIGKILL);
     end_session();
   }
 
@@ -333,9 +366,9 @@ class Supervisor {
     const std::int64_t now_ns = monotonic_ns();
     if (now_ns > deadline_ns_ + kTermNs) {
       deadline_ns_ = now_ns;
-      send_to_all(SIGKILL);
-    } else if (now_ns > deadline_ns_ && !is_termed_) {
-      is_termed_ = true;
+      kill_the_rest(now_ns);
+    } else if (now_ns > deadline_ns_ && asked_ns_ == 0) {
+      asked_ns_ = now_ns;
       send_to_all(SIGTERM);
     }
   }
@@ -370,6 +403,7 @@ class Supervisor {
     if (is_node_killed_) return ExitCode::node_lost;
     ExitCode of_io = ExitCode::ok, of_others = ExitCode::ok;
     for (const Node& node : nodes_) {
+      if (node.is_replaced_elsewhere) continue;
       const ProcessEnd& end = *node.process->poll_end();
       // one that had to be killed although nobody asked the session to end is a lost one
       const ExitCode of_killed = interrupt_code() != 0 ? ExitCode::terminated : ExitCode::node_lost;
@@ -409,14 +443,15 @@ class Supervisor {
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
   std::optional<Keyboard> keyboard_;
-  bool is_place_held_;  // of a physics node that is lost
+  SimDuration rejoin_;  // time that io holds the place of a physics node that is lost; 0: it does not
   bool are_others_started_ = false;
   bool is_node_killed_ = false;
-  bool is_termed_ = false;
+  bool is_recorder_awaited_ = false;  // it still writes when everybody else has ended
   bool is_ending_ = false;
   bool is_refusal_told_ = false;
   int obeyed_ = 0;
   std::int64_t deadline_ns_ = 0;
+  std::int64_t asked_ns_ = 0;  // when those that were left were asked to end
   std::int64_t started_wall_ns_ = 0;
   bool has_stepped_ = false;
   RunClock clock_;

@@ -51,34 +51,13 @@ void check_values(const recording::Reader& reader, const std::vector<plotting::S
                             static_cast<double>(reader.statistics().end_time) * 1e-9));
 }
 
-// A file is replaced only when that is asked for, and never by half of another: it is written under another name first.
-// What is no file, such as /dev/stdout, is written to as it is.
+// A file is replaced only when that is asked for, and never by half of another.
 ExitCode write_file(const Options& options, const std::function<Status(const std::filesystem::path&)>& write) {
-  const std::filesystem::path path = options.output;
   std::error_code error;
-  const std::filesystem::file_status there = std::filesystem::status(path, error);
-  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
-    cli_support::require(write(path));
-    return ExitCode::ok;
-  }
-  const std::filesystem::path part = path.string() + ".part";
-  Status status = write(part);
-  if (status.is_ok()) {
-    std::filesystem::rename(part, path, error);
-    if (error) {
-      status = Status::error(ExitCode::storage, fmt::format("{}: cannot be written ({}); nothing was kept; choose "
-                                                            "another place with -o",
-                                                            path.string(), error.message()));
-    }
-  }
-  if (!status.is_ok()) {
-    std::filesystem::remove(part, error);
-    if (const std::size_t at = status.text.find(part.string()); at != std::string::npos) {
-      status.text.replace(at, part.string().size(), path.string());
-    }
-  }
-  cli_support::require(status);
-  fmt::print("{}\n", path.string());
+  const std::filesystem::file_status there = std::filesystem::status(options.output, error);
+  const bool is_device = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
+  cli_support::require(replace_file(options.output, write));
+  if (!is_device) fmt::print("{}\n", options.output);
   return ExitCode::ok;
 }
 
@@ -103,7 +82,8 @@ std::string input_text(const recording::Reader& reader, const TimeRange& range) 
   }
   std::vector<std::string> names;
   for (const scene::InputDef& input : scene.inputs) names.push_back(input.name + ".raw");
-  const std::vector<plotting::Series> curves = read_series(reader, names, Units::si, range);
+  std::vector<plotting::Series> curves = read_series(reader, names, Units::si, range);
+  plotting::keep_common_instants(curves);
   check_values(reader, curves);
   std::string text = "time";
   for (const scene::InputDef& input : scene.inputs) text += "," + input.name;
@@ -130,14 +110,7 @@ ExitCode export_input(const Options& options, const std::vector<std::string>& wi
     write_text("-", text);
     return ExitCode::ok;
   }
-  return write_file(options, [&](const std::filesystem::path& path) {
-    try {
-      write_text(path.string(), text);
-    } catch (const Failure& failure) {
-      return Status::error(failure.code(), failure.what());
-    }
-    return Status::ok();
-  });
+  return write_file(options, [&](const std::filesystem::path& path) { return put_text(path, text); });
 }
 
 ExitCode export_variables(Options options) {

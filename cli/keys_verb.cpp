@@ -1,7 +1,6 @@
 // `slewring keys create|add|revoke|check|export`: who may take part in sessions that leave this machine.
 #include <fmt/format.h>
 
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
@@ -13,14 +12,6 @@ namespace slew::cli {
 namespace {
 
 constexpr int kUsualDays = 730, kMostDays = 3650;
-
-const std::map<std::string, wire::Role> kRoleNames = {{"io", wire::Role::io},
-                                                      {"mechanics", wire::Role::mechanics},
-                                                      {"hydraulics", wire::Role::hydraulics},
-                                                      {"flex", wire::Role::flex},
-                                                      {"recorder", wire::Role::recorder},
-                                                      {"observer", wire::Role::observer},
-                                                      {"controller", wire::Role::controller}};
 
 struct Options {
   std::string store, name, role = "controller", session = "*", to;
@@ -39,8 +30,7 @@ ExitCode create(const Options& options) {
 }
 
 ExitCode add(const Options& options) {
-  KeyIdentity identity{options.name.empty() ? options.role : options.name, kRoleNames.at(options.role), options.session,
-                       options.days};
+  KeyIdentity identity{options.name.empty() ? options.role : options.name, options.role, options.session, options.days};
   KeyStore store = KeyStore::open(options.store);
   store.add(identity);
   fmt::print("{}: keys for '{}' as {}, for sessions '{}'\n", options.store, identity.name, options.role,
@@ -103,11 +93,10 @@ void add_keys(CLI::App& program, Action& action) {
         ->capture_default_str();
   };
   add_validity(sub("create", "a new store with keys for every role", create));
-  CLI::App* adding = sub("add", "keys for one more: a second controller, a guest for one session", add);
-  std::vector<std::string> roles;
-  for (const auto& [name, role] : kRoleNames) roles.push_back(name);
+  CLI::App* adding =
+      sub("add", "keys for one more: a second controller, somebody who only looks on, a guest for one session", add);
   adding->add_option("--role", options->role, "what it may say and hear")
-      ->check(CLI::IsMember(roles))
+      ->check(CLI::IsMember(key_roles()))
       ->type_name("ROLE")
       ->capture_default_str();
   adding->add_option("--name", options->name, "its name; without it the role's")->type_name("NAME");

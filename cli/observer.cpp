@@ -134,9 +134,11 @@ void Observer::send(const wire::ControllerInput& input) {
   if (transport::encode(input, bytes)) static_cast<void>(carrier_->publish(Topic::controller_input, bytes));
 }
 
-std::unique_ptr<Observer> find_session(cli_support::SessionOptions options) {
+std::unique_ptr<Observer> find_session(cli_support::SessionOptions options, Access access) {
   if (options.session.empty()) options.session = only_session(options);
-  auto observer = std::make_unique<Observer>(cli_support::open_carrier(wire::Role::observer, options), options.session);
+  auto carrier = access == Access::look ? cli_support::open_viewer(options)
+                                        : cli_support::open_carrier(wire::Role::observer, options);
+  auto observer = std::make_unique<Observer>(std::move(carrier), options.session);
   const bool is_found = observer->wait_for([&] { return observer->view().has_session(); }, kFindTimeout);
   if (is_found) return observer;
   if (const int stop = node::stop_requested.load(); stop != 0)

@@ -61,8 +61,11 @@ class Observer {
   std::map<std::pair<std::uint64_t, wire::Role>, node::CheckpointParts> states_;  // by request and role
 };
 
+// An observer that only looks on can ask and send nothing.
+enum class Access : std::uint8_t { look, steer };
+
 // Opens an observer of the named session, or of the only one that runs on the domain, and waits until it is heard.
 // Throws Failure when there is none, or more than one and no name.
-[[nodiscard]] std::unique_ptr<Observer> find_session(cli_support::SessionOptions options);
+[[nodiscard]] std::unique_ptr<Observer> find_session(cli_support::SessionOptions options, Access access);
 
 }  // namespace slew::cli

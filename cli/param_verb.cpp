@@ -42,7 +42,7 @@ struct Present {
 class Source {
  public:
   explicit Source(const Options& options)
-      : observer_(options.scene.empty() ? find_session(options.session) : nullptr),
+      : observer_(options.scene.empty() ? find_session(options.session, Access::steer) : nullptr),
         directory_(
             observer_ ? scene::load_text(observer_->view().session().scene_text, observer_->view().session().scene_name)
                       : scene::load_file(options.scene)) {}
@@ -195,7 +195,7 @@ ExitCode set(const Options& options) {
   const std::optional<SimDuration> asked =
       options.over.empty() ? std::nullopt : std::optional(SimDuration{spread_ns(options.over)});
   node::install_signal_handlers();
-  const auto observer = find_session(options.session);
+  const auto observer = find_session(options.session, Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   scene::ParameterDirectory directory(scene::load_text(session.scene_text, session.scene_name));
   const scene::Assignment assignment = directory.parse_assignment(text, asked);

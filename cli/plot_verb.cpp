@@ -50,6 +50,7 @@ std::vector<plotting::Series> read_beside(const Readers& readers, const std::vec
     } catch (const Failure& failure) {
       throw Failure(failure.code(), readers[i]->path().string() + ": " + failure.what());
     }
+    plotting::part_at_gaps(by_recording.back());
     for (plotting::Series& curve : by_recording.back()) curve.name += " (" + labels[i] + ")";
   }
   std::vector<plotting::Series> curves;
@@ -94,7 +95,8 @@ ExitCode plot(const Options& options) {
   plotting::PlotOptions look = plot_heading(*reader);
   if (!options.title.empty()) look.title = options.title;
   if (!options.variables.empty()) {
-    const plotting::Plot plot{.title = "", .series = read_series(*reader, options.variables, Units::display)};
+    plotting::Plot plot{.title = "", .series = read_series(*reader, options.variables, Units::display)};
+    plotting::part_at_gaps(plot.series);
     return draw({&plot, 1}, look, options.output);
   }
   const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "cli/display.h"
 #include "cli_support/failure.h"
@@ -194,7 +195,8 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
     if (curve.unit == "1") curve.unit.clear();
     curves.push_back(std::move(curve));
   }
-  // values
+  // values; a node's blocks come every k-th step, from step 0 on
+  std::map<wire::Role, StepIndex> steps_between;
   wire::VariableBlock block;
   recording::MessageFilter blocks = only({Topic::variables});
   blocks.from_ns = range.from_ns;
@@ -202,9 +204,15 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
   read_all(reader, blocks, [&](const recording::RecordedMessage& message) {
     if (transport::decode(message.payload, block) && block.header.phase == wire::Phase::running) {
       add_block(block, static_cast<double>(message.log_time_ns) / 1e9, places, curves);
+      StepIndex& between = steps_between[block.header.role];
+      between = std::gcd(between, block.header.step);
     }
     return Visit::go_on;
   });
+  for (const auto& [place, curve] : places) {
+    curves[curve].spacing =
+        static_cast<double>(steps_between[place.first]) * reader.identity().communication_step.seconds();
+  }
   if (units == Units::display) {
     for (plotting::Series& curve : curves) {
       const double factor = display_unit(known.at(curve.name).second).factor;

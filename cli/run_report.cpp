@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/display.h"
@@ -14,6 +13,7 @@
 #include "cli/recorded.h"
 #include "cli/stall_report.h"
 #include "cli/status_line.h"
+#include "cli/text_output.h"
 #include "cli_support/failure.h"
 #include "coupling/indicator.h"
 #include "io_node/session_clock.h"
@@ -172,6 +172,7 @@ std::vector<plotting::Plot> read_plots(const scene::Scene& scene, const recordin
     try {
       plots.push_back(
           {plot.title.empty() ? plot.name : plot.title, read_series(reader, plot.variables, Units::display)});
+      plotting::part_at_gaps(plots.back().series);
     } catch (const cli_support::Failure& failure) {
       throw cli_support::Failure(
           failure.code(), "no plots were drawn; the recording is complete; plot " + plot.name + ": " + failure.what());
@@ -193,9 +194,8 @@ std::string write_plots(const scene::Scene& scene, const std::string& recording)
   if (plots.empty()) return "";
   const std::filesystem::path path =
       std::filesystem::path(recording).parent_path() / (recording::file_name(scene.name) + ".svg");
-  std::ofstream file(path, std::ios::binary);
-  file << plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(*reader));
-  if (!file.flush()) {
+  const std::string text = plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(*reader));
+  if (!replace_file(path, [&text](const auto& part) { return put_text(part, text); }).is_ok()) {
     throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
                                                       "; the recording is complete; free some space and use 'slewring "
                                                       "plot'");

@@ -72,11 +72,9 @@ std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& dr
   const std::vector<std::string> wanted = {drive.valve->name + ".control_signal", name + ".speed", name + ".stroke",
                                            name + ".static_force",
                                            name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
-  const std::vector<plotting::Series> curves = read_series(reader, wanted, Units::si);
+  std::vector<plotting::Series> curves = read_series(reader, wanted, Units::si);
+  plotting::keep_common_instants(curves);  // of nodes that did not end together
   const std::size_t size = curves[0].values.size();
-  for (const plotting::Series& curve : curves) {
-    if (curve.values.size() != size) return std::nullopt;  // written by nodes that did not end together
-  }
   const double sign = drive.direction;
   std::optional<Stall> longest;
   Stall stall;

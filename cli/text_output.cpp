@@ -1,23 +1,58 @@
 #include "cli/text_output.h"
 
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 
 #include "cli_support/failure.h"
 
 namespace slew::cli {
+namespace {
+
+Status failed(const std::filesystem::path& path, const std::string& reason) {
+  return Status::error(ExitCode::storage, fmt::format("{}: cannot be written ({}); nothing was kept; free space or "
+                                                      "choose another place with -o",
+                                                      path.string(), reason));
+}
+
+}  // namespace
+
+Status replace_file(const std::filesystem::path& path,
+                    const std::function<Status(const std::filesystem::path&)>& write) {
+  std::error_code error;
+  const std::filesystem::file_status there = std::filesystem::status(path, error);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) return write(path);
+  const std::filesystem::path part = path.string() + ".part";
+  Status status = write(part);
+  if (status.is_ok()) {
+    std::filesystem::rename(part, path, error);
+    if (error) status = failed(path, error.message());
+  }
+  if (status.is_ok()) return status;
+  std::filesystem::remove(part, error);
+  if (const std::size_t at = status.text.find(part.string()); at != std::string::npos) {
+    status.text.replace(at, part.string().size(), path.string());
+  }
+  return status;
+}
+
+Status put_text(const std::filesystem::path& path, const std::string& text) {
+  errno = 0;
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  return file ? Status::ok() : failed(path, std::strerror(errno));
+}
 
 void write_text(const std::string& path, const std::string& text) {
   if (path == "-") {
     std::cout << text << std::flush;
     return;
   }
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  if (!file.flush()) {
-    throw cli_support::Failure(ExitCode::storage,
-                               "cannot write " + path + "; nothing was kept; name another file with -o");
-  }
+  cli_support::require(replace_file(path, [&text](const std::filesystem::path& part) { return put_text(part, text); }));
 }
 
 }  // namespace slew::cli

@@ -49,7 +49,7 @@ std::vector<Named> of_scene(const std::string& file) {
 }
 
 std::vector<Named> of_session(const cli_support::SessionOptions& options) {
-  const auto observer = find_session(options);
+  const auto observer = find_session(options, Access::look);
   if (!observer->wait_for([&] { return observer->view().has_whole_directory(); }, milliseconds(5000))) {
     throw cli_support::Failure(ExitCode::failed, "session '" + observer->session_name() +
                                                      "' has not named its variables within 5 s; it may still be "

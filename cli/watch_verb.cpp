@@ -63,7 +63,7 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
 
 ExitCode watch(const Options& options) {
   node::install_signal_handlers();
-  const auto observer = find_session(options.session);
+  const auto observer = find_session(options.session, Access::look);
   const std::vector<std::string> names = chosen_names(*observer, options.variables);
   const SimDuration interval = duration_of_seconds(options.interval);
   for (std::int64_t lines = 0; options.count == 0 || lines < options.count; ++lines) {

@@ -29,7 +29,8 @@ canvas{display:inline-block;border:1px solid #ccc;width:calc(50% - 8px);height:7
 #now{min-width:6.5em;font-variant-numeric:tabular-nums}
 )";
 
-// D.axes: right, to the viewer, up; D.bodies: lines in body axes and, but for Ground, x y z w qx qy qz by instant
+// D.axes: right, to the viewer, up; D.gaps: times without a recorded pose, where the last one stays, faint; D.bodies:
+// lines in body axes and, but for Ground, x y z w qx qy qz by instant
 constexpr std::string_view kPageScript = R"(
 const D=JSON.parse(document.getElementById('data').textContent),$=i=>document.getElementById(i);
 const add=(a,b)=>[a[0]+b[0],a[1]+b[1],a[2]+b[2]],dot=(a,b)=>a[0]*b[0]+a[1]*b[1]+a[2]*b[2];
@@ -43,8 +44,9 @@ let reach=0,middle=[0,0,0];{let lo=[1/0,1/0,1/0],hi=[-1/0,-1/0,-1/0];
   for(let k=0;k<D.time.length;k+=step)for(const p of[[0,0,0],...b.lines.flat()]){const q=place(i,k,p);for(let a=0;a<3;a++){lo[a]=Math.min(lo[a],q[a]);hi[a]=Math.max(hi[a],q[a])}}});
  if(lo[0]<=hi[0]){middle=lo.map((v,a)=>(v+hi[a])/2);reach=Math.max(...lo.map((v,a)=>hi[a]-v))*.58}if(!(reach>0))reach=1}
 let k=0,playing=false,last=0,t=D.time[0];
+const lacks=()=>D.gaps.some(([from,to])=>from<t&&t<to);
 function view(canvas,right,up,title){const r=devicePixelRatio||1,W=canvas.clientWidth,H=canvas.clientHeight;canvas.width=W*r;canvas.height=H*r;
- const g=canvas.getContext('2d');g.setTransform(r,0,0,r,0,0);g.lineJoin='round';
+ const g=canvas.getContext('2d');g.setTransform(r,0,0,r,0,0);g.lineJoin='round';g.globalAlpha=lacks()?.25:1;
  const s=Math.min(W,H)/2/reach,px=p=>{const d=add(p,middle.map(v=>-v));return[W/2+s*dot(d,right),H/2-s*dot(d,up)]};
  const line=points=>{g.beginPath();points.forEach((p,i)=>{const[x,y]=px(p);i?g.lineTo(x,y):g.moveTo(x,y)});g.stroke()};
  D.bodies.forEach((b,i)=>{g.strokeStyle=colour(i);g.lineWidth=i?1.6:1;for(const l of b.lines)line(l.map(p=>place(i,k,p)))});
@@ -53,7 +55,7 @@ function view(canvas,right,up,title){const r=devicePixelRatio||1,W=canvas.client
  const bar=[.01,.02,.05,.1,.2,.5,1,2,5,10,20,50,100,200,500].filter(m=>m*s<W/3).pop()||.01;g.fillRect(10,H-14,bar*s,3);g.fillText(bar+' m',10,H-20)}
 function draw(){const f=+$('turn').value*Math.PI/180,[x,z,up]=D.axes,right=x.map((v,i)=>v*Math.cos(f)+z[i]*Math.sin(f));
  view($('side'),right,up,'side');view($('top'),x,z.map(v=>-v),'top');
- $('time').value=k;$('now').textContent=(+D.time[k].toPrecision(9))+' s'}
+ $('time').value=k;$('now').textContent=(+(lacks()?t:D.time[k]).toPrecision(9))+(lacks()?' s: not recorded':' s')}
 function frame(now){if(playing){t+=(now-last)/1000*+$('speed').value;
  if(t>D.time[D.time.length-1]){t=D.time[0];k=0}while(k+1<D.time.length&&D.time[k+1]<=t)k++;draw();last=now;requestAnimationFrame(frame)}}
 $('play').onclick=()=>{playing=!playing;$('play').textContent=playing?'pause':'play';last=performance.now();t=D.time[k];if(playing)requestAnimationFrame(frame)};
@@ -71,7 +73,7 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 std::string data_text(const MachineDrawing& machine, const Motion& motion) {
-  std::vector<std::string> bodies, links, axes, times, colours;
+  std::vector<std::string> bodies, links, axes, times, gaps, colours;
   for (std::size_t i = 0; i < machine.bodies.size(); ++i) {
     std::vector<std::string> lines;
     for (const Polyline& line : machine.bodies[i].lines) {
@@ -99,9 +101,10 @@ std::string data_text(const MachineDrawing& machine, const Motion& motion) {
   }
   for (const Triple& axis : machine.axes) axes.push_back(text_of(axis));
   for (const double time : motion.time) times.push_back(fmt::format("{:.12g}", time));
+  for (const Gap& gap : motion.gaps) gaps.push_back(fmt::format("[{:.12g},{:.12g}]", gap.from, gap.to));
   for (const std::string_view colour : plotting::kColours) colours.push_back(plotting::json_string(colour));
-  return fmt::format("{{\"colours\":{},\"axes\":{},\"time\":{},\"bodies\":{},\"links\":{}}}", joined(colours),
-                     joined(axes), joined(times), joined(bodies), joined(links));
+  return fmt::format("{{\"colours\":{},\"axes\":{},\"time\":{},\"gaps\":{},\"bodies\":{},\"links\":{}}}",
+                     joined(colours), joined(axes), joined(times), joined(gaps), joined(bodies), joined(links));
 }
 
 // ---- the picture
@@ -176,7 +179,7 @@ void add_instant(std::string& out, const View& view, const MachineDrawing& machi
 Motion thinned(const Motion& motion, std::size_t instants) {
   const std::size_t count = motion.time.size();
   if (count <= instants) return motion;
-  Motion thin{motion.title, motion.subtitle, {}, std::vector<std::vector<Pose>>(motion.poses.size())};
+  Motion thin{motion.title, motion.subtitle, {}, std::vector<std::vector<Pose>>(motion.poses.size()), motion.gaps};
   for (std::size_t i = 0; i < instants; ++i) {
     const std::size_t k = instants == 1 ? 0 : i * (count - 1) / (instants - 1);
     thin.time.push_back(motion.time[k]);

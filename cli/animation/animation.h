@@ -17,10 +17,16 @@ struct Pose {
   math::Quaternion orientation{};  // of the body in Ground
 };
 
+// Times between which nothing was recorded.
+struct Gap {
+  double from = 0, to = 0;  // s
+};
+
 struct Motion {
   std::string title, subtitle;
   std::vector<double> time;              // s
   std::vector<std::vector<Pose>> poses;  // by body of the drawing without Ground, then by instant
+  std::vector<Gap> gaps{};               // ascending
 };
 
 // At most `instants` of them, evenly, the first and the last among them.

@@ -28,6 +28,19 @@ using wire::Role;
 constexpr const char* kList = "identities.json";
 constexpr Role kAllRoles[] = {Role::io,       Role::mechanics, Role::hydraulics, Role::flex,
                               Role::recorder, Role::observer,  Role::controller};
+constexpr const char* kViewer = "viewer";
+
+struct Allowed {
+  transport::TopicSet writes, reads;
+};
+
+std::optional<Allowed> allowed_to(const std::string& role) {
+  if (role == kViewer) return Allowed{{}, cli_support::topics_read(Role::observer)};
+  for (const Role one : kAllRoles) {
+    if (node::to_text(one) == role) return Allowed{cli_support::topics_written(one), cli_support::topics_read(one)};
+  }
+  return std::nullopt;
+}
 
 [[nodiscard]] Failure storage(const fs::path& path, const std::string& why) {
   return Failure(ExitCode::storage, fmt::format("{}: {}; nothing else was changed", path.string(), why));
@@ -92,13 +105,6 @@ std::string subject_of(const fs::path& certificate) {
   return said.substr(said.find('=') + 1);
 }
 
-std::optional<Role> role_of(const std::string& text) {
-  for (const Role role : kAllRoles) {
-    if (node::to_text(role) == text) return role;
-  }
-  return std::nullopt;
-}
-
 bool is_session_pattern(const std::string& text) {
   return !text.empty() && text.size() <= wire::kMaxNameLength &&
          text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.*?") ==
@@ -136,8 +142,22 @@ subjectKeyIdentifier = hash
 
 }  // namespace
 
+const std::vector<std::string>& key_roles() {
+  static const std::vector<std::string> roles = [] {
+    std::vector<std::string> names;
+    for (const Role role : kAllRoles) names.emplace_back(node::to_text(role));
+    names.emplace_back(kViewer);
+    return names;
+  }();
+  return roles;
+}
+
+KeyStore::KeyStore(const fs::path& folder) : folder_(fs::weakly_canonical(fs::absolute(folder))) {
+  if (!folder_.has_filename()) folder_ = folder_.parent_path();
+}
+
 KeyStore KeyStore::create(const fs::path& folder, const std::string& session, int days) {
-  KeyIdentity first{"io", Role::io, session, days};
+  KeyIdentity first{"io", "io", session, days};
   require_good(first);
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_empty(folder, error)) {
@@ -150,8 +170,8 @@ KeyStore KeyStore::create(const fs::path& folder, const std::string& session, in
   try {
     KeyStore store(folder);
     store.make_authorities(days);
-    for (const Role role : kAllRoles) {
-      store.identities_.push_back({std::string(node::to_text(role)), role, session, days});
+    for (const std::string& role : key_roles()) {
+      store.identities_.push_back({role, role, session, days});
       store.make_identity(store.identities_.back());
     }
     store.write_list();
@@ -173,9 +193,9 @@ KeyStore KeyStore::open(const fs::path& folder) {
   }
   KeyStore store(folder);
   for (const nlohmann::json& one : list) {
-    const std::optional<Role> role = role_of(one.value("role", ""));
-    if (!role) throw storage(folder / kList, "has an identity without a role");
-    store.identities_.push_back({one.value("name", ""), *role, one.value("session", "*"), one.value("days", 0)});
+    const std::string role = one.value("role", "");
+    if (!allowed_to(role)) throw storage(folder / kList, "has an identity without a role");
+    store.identities_.push_back({one.value("name", ""), role, one.value("session", "*"), one.value("days", 0)});
   }
   return store;
 }
@@ -216,11 +236,12 @@ void KeyStore::make_identity(const KeyIdentity& identity) const {
   fs::remove(request);
   // clocks of other machines may be behind
   const auto now = std::chrono::system_clock::now();
+  const Allowed allowed = allowed_to(identity.role).value();
   Grant grant{identity.name,
               subject_of(certificate),
               identity.session,
-              cli_support::topics_written(identity.role),
-              cli_support::topics_read(identity.role),
+              allowed.writes,
+              allowed.reads,
               utc(now - std::chrono::hours(24)),
               utc(now + std::chrono::hours(24) * identity.days)};
   write_file(permissions, permissions_xml(grant));
@@ -230,8 +251,7 @@ void KeyStore::make_identity(const KeyIdentity& identity) const {
 void KeyStore::write_list() const {
   nlohmann::json list = nlohmann::json::array();
   for (const KeyIdentity& one : identities_) {
-    list.push_back(
-        {{"name", one.name}, {"role", node::to_text(one.role)}, {"session", one.session}, {"days", one.days}});
+    list.push_back({{"name", one.name}, {"role", one.role}, {"session", one.session}, {"days", one.days}});
   }
   const fs::path next = folder_ / (std::string(kList) + ".new");
   write_file(next, list.dump(2) + "\n");
@@ -284,8 +304,17 @@ void KeyStore::revoke(const std::string& name) {
   }
   const fs::path old = folder_.string() + ".old";
   fs::remove_all(old, error);
-  fs::rename(folder_, old);
-  fs::rename(next.folder_, folder_);
+  fs::rename(folder_, old, error);
+  if (!error) {
+    fs::rename(next.folder_, folder_, error);
+    std::error_code ignored;
+    if (error) fs::rename(old, folder_, ignored);
+  }
+  if (error) {
+    const Failure failure = storage(folder_, "the store could not be replaced (" + error.message() + ")");
+    fs::remove_all(next.folder_, error);
+    throw failure;
+  }
   fs::remove_all(old, error);
   identities_ = next.identities_;
 }
@@ -346,6 +375,14 @@ std::string problem_of_signature(const std::string& document, const std::string&
   return is_good ? "" : fmt::format("{} is not signed by {}", document, authority);
 }
 
+// As the document writes times, of which the later one is the greater text; empty: it names none.
+std::string permissions_end(const std::string& document) {
+  constexpr std::string_view kBegin = "<not_after>";
+  const std::size_t from = document.find(kBegin);
+  if (from == std::string::npos) return "";
+  return document.substr(from + kBegin.size(), document.find('<', from + 1) - from - kBegin.size());
+}
+
 KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   KeyFinding finding{name, "", ""};
   transport::CycloneNetwork network;
@@ -369,8 +406,11 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   }
   if (!finding.problem.empty()) return finding;
   const std::string subject = "<subject_name>" + subject_of(files.certificate) + "</subject_name>";
-  if (read_file(files.permissions).find(subject) == std::string::npos) {
+  const std::string permissions = read_file(files.permissions);
+  if (permissions.find(subject) == std::string::npos) {
     finding.problem = "the permissions are those of another certificate";
+  } else if (permissions_end(permissions) < utc(std::chrono::system_clock::now())) {
+    finding.problem = "the permissions have expired";
   }
   return finding;
 }

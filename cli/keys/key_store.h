@@ -9,13 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "transport/wire.h"
-
 namespace slew::cli {
 
+// Roles of a session, and "viewer": reads what an observer reads and writes nothing.
+[[nodiscard]] const std::vector<std::string>& key_roles();
+
 struct KeyIdentity {
-  std::string name;  // 1 to 63 letters, digits, '_', '-', '.'
-  wire::Role role = wire::Role::observer;
+  std::string name;           // 1 to 63 letters, digits, '_', '-', '.'
+  std::string role;           // of key_roles()
   std::string session = "*";  // sessions that it may take part in, with * and ?
   int days = 0;               // validity
 };
@@ -45,13 +46,13 @@ class KeyStore {
   void export_to(const std::filesystem::path& folder, const std::vector<std::string>& names) const;
 
  private:
-  explicit KeyStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit KeyStore(const std::filesystem::path& folder);
   void make_authorities(int days) const;
   void make_identity(const KeyIdentity& identity) const;
   void write_list() const;
   [[nodiscard]] const KeyIdentity* find(const std::string& name) const;
 
-  std::filesystem::path folder_;
+  std::filesystem::path folder_;  // absolute, without links and a separator at its end: it has neighbours
   std::vector<KeyIdentity> identities_;
 };
 

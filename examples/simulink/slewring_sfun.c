@@ -9,6 +9,10 @@
  *   variables   'Cyl_Lift.stroke,Cyl_Lift.force'   one output element each
  *   channels    'Input_Lift'                       one input element each
  *   period      0.01                               session.step x recording.every [s]
+ *   interface   'lo'                               network interface of the session
+ *   peers       ''                                 other machines' addresses with commas, for a session beyond this one
+ *
+ * Keys for a session that has them are in the environment of MATLAB: SLEWRING_KEYS=DIR, SLEWRING_IDENTITY=NAME.
  *
  * Build:  mex slewring_sfun.c -IPREFIX/include -LPREFIX/lib -lslewring_client
  * Model:  fixed-step solver with the same period; the inputs have no direct feed-through: what the session says in a
@@ -26,7 +30,7 @@
 #define MAX_TEXT 4096
 #define TIMEOUT 10.0 /* s */
 
-enum { SESSION, CONTROLLER, DOMAIN, VARIABLES, CHANNELS, PERIOD, PARAMETERS };
+enum { SESSION, CONTROLLER, DOMAIN, VARIABLES, CHANNELS, PERIOD, INTERFACE, PEERS, PARAMETERS };
 
 /* number of names in a list with commas; each name is cut off in place */
 static int split(char* list, char* names[MAX_NAMES]) {
@@ -36,9 +40,13 @@ static int split(char* list, char* names[MAX_NAMES]) {
   return count;
 }
 
-static int read_list(SimStruct* S, int parameter, char text[MAX_TEXT], char* names[MAX_NAMES]) {
+static void read_text(SimStruct* S, int parameter, char text[MAX_TEXT]) {
   text[0] = '\0';
   mxGetString(ssGetSFcnParam(S, parameter), text, MAX_TEXT);
+}
+
+static int read_list(SimStruct* S, int parameter, char text[MAX_TEXT], char* names[MAX_NAMES]) {
+  read_text(S, parameter, text);
   return split(text, names);
 }
 
@@ -75,13 +83,16 @@ static void mdlInitializeSampleTimes(SimStruct* S) {
 
 #define MDL_START
 static void mdlStart(SimStruct* S) {
-  static char text[MAX_TEXT], name[MAX_TEXT], controller[MAX_TEXT];
+  static char text[MAX_TEXT], name[MAX_TEXT], controller[MAX_TEXT], interface[MAX_TEXT], peers[MAX_TEXT];
   char* names[MAX_NAMES];
   slewring_session* session;
   int i, count, handle, next = 0;
-  mxGetString(ssGetSFcnParam(S, SESSION), name, MAX_TEXT);
-  mxGetString(ssGetSFcnParam(S, CONTROLLER), controller, MAX_TEXT);
-  session = slewring_join(name, controller, (unsigned)mxGetScalar(ssGetSFcnParam(S, DOMAIN)), "lo", "", TIMEOUT);
+  read_text(S, SESSION, name);
+  read_text(S, CONTROLLER, controller);
+  read_text(S, INTERFACE, interface);
+  read_text(S, PEERS, peers);
+  session =
+      slewring_join(name, controller, (unsigned)mxGetScalar(ssGetSFcnParam(S, DOMAIN)), interface, peers, TIMEOUT);
   ssSetPWorkValue(S, 0, session);
   if (session == NULL) {
     fail(S, NULL);

@@ -110,6 +110,10 @@ std::unique_ptr<transport::Transport> open_observer_without_values(const Session
                {Topic::session, Topic::node_status, Topic::control_reply, Topic::health}});
 }
 
+std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options) {
+  return open(options, Role::observer, {options.session, "viewer", {}, topics_read(Role::observer)});
+}
+
 std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options) {
   return open(options, Role::observer,
               {transport::kAnySession, "survey", {}, {Topic::session, Topic::node_status, Topic::health}});

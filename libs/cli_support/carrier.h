@@ -22,6 +22,9 @@ namespace slew::cli_support {
 // writers time.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options);
 
+// An observer that writes nothing: for keys that let somebody look on and no more.
+[[nodiscard]] std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options);
+
 // Reads what all sessions of the domain say about themselves; writes nothing.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options);
 

@@ -6,6 +6,7 @@
 #include "cli_support/failure.h"
 #include "cli_support/metered_carrier.h"
 #include "core/arithmetic_self_test.h"
+#include "core/file_size_limit.h"
 #include "core/real_time_thread.h"
 #include "node/driver.h"
 #include "node/identity.h"
@@ -45,6 +46,7 @@ std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
 }  // namespace
 
 int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept {
+  let_writes_fail_at_the_size_limit();
   try {
     return static_cast<int>(body());
   } catch (const Failure& failure) {

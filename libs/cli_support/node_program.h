@@ -14,6 +14,7 @@ namespace slew::cli_support {
 
 // Runs `body` and turns what it throws into one line on standard error and an exit code.
 // Failure: its own code; a scene's LoadError: bad_input; no memory: resources; anything else: failed.
+// A file at its size limit is a failed write to the body and no signal (core/file_size_limit.h).
 [[nodiscard]] int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept;
 
 // Parses; true when the program goes on. Otherwise `exit_code` is 0 (help, version) or bad_input, or resources on a

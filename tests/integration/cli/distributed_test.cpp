@@ -221,6 +221,42 @@ TEST_F(Distributed, CtrlCEndsInOrderWithAValidRecording) {
   EXPECT_NE(offline({"info", work_.recording().string()}).out.find(end), std::string::npos);
 }
 
+// of a disk that confirms the recording only after so many seconds
+class SlowDisk : public Distributed {
+ protected:
+  void SetUp() override {
+    if (!std::string_view(SLEWRING_SANITIZER).empty()) GTEST_SKIP() << "the sanitizer wants to be loaded first";
+  }
+  std::unique_ptr<Command> start_with(int seconds) const {
+    return std::make_unique<Command>(
+        "/usr/bin/env",
+        with_domain({"LD_PRELOAD=" SLEWRING_SLOW_DISK, "SLEWRING_SLOW_DISK=" + std::to_string(seconds),
+                     program_file("slewring").string(), "run", scene_file("first_steps.yaml"), "--pace", "free",
+                     "--duration", "0.2"}),
+        work_.path());
+  }
+};
+
+TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOver) {
+  const CommandResult result = start_with(8)->wait();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.err.find("still writes to a slow disk; Ctrl-C ends it"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
+  const CommandResult told = offline({"info", work_.recording().string()});
+  EXPECT_NE(told.out.find("end       closed in order\n"), std::string::npos) << told.out;
+}
+
+TEST_F(SlowDisk, IsNotWaitedForAfterCtrlC) {
+  const auto session = start_with(600);
+  ASSERT_TRUE(wait_until([&] { return session->err().find("still writes") != std::string::npos; })) << session->err();
+  session->send(SIGINT);
+  const CommandResult result = session->wait();
+  EXPECT_EQ(result.code, 130) << result.err;
+  EXPECT_NE(result.err.find("was killed while it wrote; 'slewring recover' makes the recording whole"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(Distributed, CtrlCBeforeTheFirstStepIsOrderlyToo) {
   // moments of the start: nothing yet, processes, JOIN, INIT
   for (const char* sign : {"", "waiting for the session", "starting"}) {
@@ -253,6 +289,41 @@ TEST_F(Distributed, AKilledNodeIsNamedAndTheRecordingStaysValid) {
     const CommandResult replayed = offline({"replay", only_recording_below(work_.path() / folder).string(), "--json"});
     EXPECT_EQ(nlohmann::json::parse(replayed.out).at("different"), 0) << replayed.err;
   }
+}
+
+TEST_F(Distributed, ANodeThatDiesForTheFourthTimeEndsTheSessionWithCode4AsTheRecordingTells) {
+  const auto session = start("truck_crane.yaml", {"--duration", "0", "--set", "session.rejoin=2s", "--session", "r"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  ASSERT_EQ(slewring({"watch", "Bag.position.y", "--count", "5"}).code, 0);  // a checkpoint has come
+  pid_t last = 0;
+  for (int death = 0; death < 4; ++death) {
+    const auto comebacks = [&] {
+      int count = 0;
+      const std::string said = session->err(), sign = " goes on in the place of ";
+      for (std::size_t at = said.find(sign); at != std::string::npos; at = said.find(sign, at + 1)) ++count;
+      return count;
+    };
+    ASSERT_TRUE(wait_until([&] { return comebacks() == death || session->has_ended(); })) << session->err();
+    const pid_t pid = child_of(session->pid(), "mechanics_node");
+    ASSERT_GT(pid, 0) << session->err();
+    ASSERT_NE(pid, last);
+    kill(pid, SIGKILL);
+    last = pid;
+  }
+  const CommandResult result = session->wait();
+  EXPECT_EQ(result.code, 4) << result.err;
+  EXPECT_NE(result.err.find("checkpoint (3 of 3)"), std::string::npos) << result.err;
+  const std::string who = "the mechanics node (process " + std::to_string(last) + ") was killed by signal 9 (Killed); ";
+  EXPECT_NE(result.err.find(who + "it was started again 3 times and is not any more; the others hold for 2 s in case "
+                                  "that somebody else starts one ('slewring node mechanics --session r'), and then "
+                                  "end with code 4 and close the recording"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(result.err.find("is gone, and no other process took its place within 2 s"), std::string::npos)
+      << result.err;
+  EXPECT_EQ(result.err.find("does not end"), std::string::npos) << result.err;
+  const std::string told = offline({"info", work_.recording().string()}).out;
+  EXPECT_NE(told.find("closed in order; the session ended with code 4: mechanics"), std::string::npos) << told;
 }
 
 TEST_F(Distributed, NodesDieWithTheirSupervisor) {

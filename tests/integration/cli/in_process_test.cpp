@@ -251,6 +251,46 @@ TEST_F(InProcess, WithoutRoomForARecordingNothingBeginsAndTheRemedyIsNamed) {
   EXPECT_EQ(run_scene("truck_crane.yaml", {"--duration", "0.1", "--keep-free", "0"}).code, 0);
 }
 
+// as `ulimit -f` sets it for a user's shell: no signal ends the program
+TEST_F(InProcess, ALimitOnTheSizeOfFilesIsAFailedWriteAndLeavesNoHalfFile) {
+  const auto limited = [&](std::size_t bytes, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"--fsize=" + std::to_string(bytes), program_file("slewring").string()});
+    return run("/usr/bin/prlimit", arguments, work_.path());
+  };
+  const CommandResult cut = limited(1'200'000, {"run", scene_file("truck_crane.yaml"), "--in-process", "--pace", "free",
+                                                "--duration", "6", "--out", "cut"});
+  EXPECT_EQ(cut.code, 6) << cut.err;
+  EXPECT_NE(cut.err.find("(File too large); the file was cut back to "), std::string::npos) << cut.err;
+
+  ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "2"}).code, 0);
+  const std::string recording = only_recording_below(work_.path() / "runs").string();
+  const auto text = [&](const std::string& name) {
+    std::ostringstream all;
+    all << std::ifstream(work_.path() / name, std::ios::binary).rdbuf();
+    return all.str();
+  };
+  const std::vector<std::vector<std::string>> verbs = {{"plot", recording, "Bag.*", "-o", "a.svg"},
+                                                       {"plot", recording, "Bag.*", "-o", "a.html"},
+                                                       {"animate", recording, "-o", "b.html"},
+                                                       {"export", recording, "--force", "-o", "c.csv"},
+                                                       {"export", recording, "--force", "--mat", "-o", "c.mat"},
+                                                       {"export", recording, "--force", "--input", "-o", "d.csv"}};
+  for (const std::vector<std::string>& verb : verbs) {
+    const std::string& name = verb.back();
+    for (const std::size_t bytes : {300, 500, 1100}) {
+      const CommandResult none = limited(bytes, verb);
+      EXPECT_EQ(none.code, 6) << name << none.err;
+      EXPECT_NE(none.err.find(name + ": "), std::string::npos) << none.err;
+      EXPECT_FALSE(std::filesystem::exists(work_.path() / name)) << name;
+    }
+    ASSERT_EQ(slewring(verb).code, 0) << name;
+    const std::string whole = text(name);
+    EXPECT_EQ(limited(500, verb).code, 6) << name;
+    EXPECT_EQ(text(name), whole) << name << " is as it was";
+    EXPECT_FALSE(std::filesystem::exists(work_.path() / (name + ".part"))) << name;
+  }
+}
+
 TEST_F(InProcess, ADamagedRecordingIsRecoveredAndReplays) {
   ASSERT_EQ(run_scene("truck_crane.yaml", {"--duration", "3"}).code, 0);
   const std::string recording = work_.recording().string();

@@ -44,7 +44,7 @@ TEST_F(Keys, StoreHasKeysForEveryRoleThatOthersCannotRead) {
   ASSERT_EQ(made.code, 0) << made.err;
   const CommandResult checked = keys({"check", "plant"});
   EXPECT_EQ(checked.code, 0) << checked.out << checked.err;
-  for (const char* role : {"io", "mechanics", "hydraulics", "flex", "recorder", "observer", "controller"}) {
+  for (const char* role : {"io", "mechanics", "hydraulics", "flex", "recorder", "observer", "controller", "viewer"}) {
     EXPECT_NE(checked.out.find(std::string("ok  ") + role), std::string::npos) << checked.out;
     const fs::perms mode = fs::status(folder() / "plant" / role / "private_key.pem").permissions();
     EXPECT_EQ(mode & (fs::perms::group_all | fs::perms::others_all), fs::perms::none) << role;
@@ -104,6 +104,100 @@ TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
   EXPECT_EQ(mixed.code, 2);
   EXPECT_NE(mixed.err.find("before a revocation"), std::string::npos) << mixed.err;
   EXPECT_EQ(keys({"revoke", "plant", "joystick"}).code, 2);
+}
+
+TEST_F(Keys, AreRevokedHoweverTheStoreIsNamed) {
+  ASSERT_EQ(keys({"create", "plant/"}).code, 0);
+  fs::create_directory_symlink(folder() / "plant", folder() / "linked");
+  for (const std::string store : {"plant/", "./plant//", "linked", "linked/"}) {
+    ASSERT_EQ(keys({"add", store, "--name", "joystick"}).code, 0) << store;
+    const std::string authority = text_of(folder() / "plant/identity_ca.pem");
+    const CommandResult revoked = keys({"revoke", store, "joystick"});
+    EXPECT_EQ(revoked.code, 0) << store << revoked.err;
+    EXPECT_FALSE(fs::exists(folder() / "plant/joystick")) << store;
+    EXPECT_NE(text_of(folder() / "plant/identity_ca.pem"), authority) << store;
+    EXPECT_EQ(keys({"check", store}).code, 0) << store;
+  }
+  // nothing is left beside the store or in it
+  for (const auto& entry : fs::recursive_directory_iterator(folder())) {
+    const std::string end = entry.path().extension();
+    EXPECT_TRUE(end != ".new" && end != ".old") << entry.path();
+  }
+  EXPECT_EQ(keys({"export", "plant/", "flex", "--to", "out/"}).code, 0);
+  EXPECT_EQ(problems("out/")["flex"], "");
+}
+
+TEST_F(Keys, ThatHaveExpiredAreRefusedAndTold) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  const fs::path io = folder() / "plant/io", store = folder() / "plant";
+  const auto openssl = [&](const std::vector<std::string>& arguments) {
+    const CommandResult result = run("/usr/bin/openssl", arguments, folder());
+    ASSERT_EQ(result.code, 0) << result.err;
+  };
+  const auto start = [&] {
+    return run("slewring",
+               {"node", "io", scene_file("first_steps.yaml"), "--session", "t", "--domain", domain(), "--keys", "plant",
+                "--join-timeout", "1"},
+               folder());
+  };
+  const auto expect_refused = [&] {
+    const CommandResult refused = start();
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_NE(refused.err.find("the keys of this process are not good; nothing was started; 'slewring keys check' "
+                               "tells what is wrong with them"),
+              std::string::npos)
+        << refused.err;
+  };
+  EXPECT_EQ(start().code, 1) << "good keys, and nobody else";
+  // permissions whose time is over
+  const std::string permissions = text_of(io / "permissions.p7s");
+  std::string over = text_of(io / "permissions.xml");
+  const std::size_t at = over.find("<not_after>") + std::string("<not_after>").size();
+  over.replace(at, 4, "2020");
+  over.replace(over.find("<not_before>") + std::string("<not_before>").size(), 4, "2019");
+  std::ofstream(io / "over.xml", std::ios::binary) << over;
+  openssl({"smime", "-sign", "-in", (io / "over.xml").string(), "-text", "-out", (io / "permissions.p7s").string(),
+           "-signer", (store / "permissions_ca.pem").string(), "-inkey", (store / "permissions_ca.key").string()});
+  expect_refused();
+  EXPECT_EQ(problems()["io"], "the permissions have expired");
+  std::ofstream(io / "permissions.p7s", std::ios::binary) << permissions;
+  EXPECT_EQ(problems()["io"], "");
+  // a certificate whose time is over
+  openssl({"req", "-new", "-config", (store / "openssl.cnf").string(), "-key", (io / "private_key.pem").string(),
+           "-out", (io / "request.pem").string(), "-subj", "/O=Slewring/CN=io"});
+  openssl({"x509", "-req", "-in", (io / "request.pem").string(), "-CA", (store / "identity_ca.pem").string(), "-CAkey",
+           (store / "identity_ca.key").string(), "-set_serial", "0x77", "-days", "-1", "-out",
+           (io / "certificate.pem").string()});
+  expect_refused();
+  EXPECT_NE(problems()["io"].find("certificate has expired"), std::string::npos) << problems()["io"];
+}
+
+TEST_F(Keys, AViewerLooksOnAndCanDoNothing) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  ASSERT_EQ(keys({"export", "plant", "viewer", "--to", "glass"}).code, 0);
+  Command session("slewring",
+                  {"run", scene_file("truck_crane.yaml"), "--keys", "plant", "--domain", domain(), "--session", "t",
+                   "--duration", "0", "--step", "10 ms", "--json"},
+                  folder());
+  const auto say = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--session", "t", "--domain", domain(), "--keys", "glass", "--identity", "viewer"});
+    return run("slewring", more, folder());
+  };
+  ASSERT_TRUE(wait_until([&] { return say({"watch", "Bag.position.y", "--count", "2"}).code == 0; })) << session.err();
+  const CommandResult named = say({"variables"});
+  EXPECT_EQ(named.code, 0) << named.err;
+  EXPECT_NE(named.out.find("Bag.position.y"), std::string::npos) << named.out;
+  for (const std::vector<std::string>& wish :
+       {std::vector<std::string>{"control", "stop"}, {"control", "reset"}, {"param", "set", "Bag.mass=900"}}) {
+    const CommandResult refused = say(wish);
+    EXPECT_EQ(refused.code, 2) << wish.back() << refused.err;
+    EXPECT_NE(refused.err.find("the keys of this process do not allow it"), std::string::npos) << refused.err;
+  }
+  EXPECT_FALSE(session.has_ended());
+  const CommandResult stopped =
+      run("slewring", {"control", "stop", "--session", "t", "--domain", domain(), "--keys", "plant"}, folder());
+  EXPECT_EQ(stopped.code, 0) << stopped.err;
+  EXPECT_EQ(session.wait().code, 0);
 }
 
 TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {

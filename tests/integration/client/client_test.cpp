@@ -303,5 +303,59 @@ TEST_F(ClientLibrary, GoesOnWhenANodeIsReplacedAndTheOneThatStoodStillWakesUp) {
   EXPECT_EQ(result, SLEWRING_ENDED) << slewring_error(client.get());
 }
 
+// what the library reads from the environment of its program
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
+  ~Environment() { unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+};
+
+TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemHearsNothing) {
+  session = std::make_unique<Session>(
+      std::vector<std::string>{"--pace", "real", "--duration", "60s", "--input", "none"}, kScene);
+  const std::string plant = (session->folder() / "plant").string();
+  const auto slewring = [&](std::vector<std::string> arguments) {
+    Program program(program_path("slewring"), arguments, session->folder() / arguments[1]);
+    EXPECT_EQ(program.wait(), 0) << program.out() << program.err();
+  };
+  slewring({"keys", "create", plant});
+  slewring({"keys", "add", plant, "--name", "joystick", "--session", session->name()});
+  slewring({"keys", "add", plant, "--name", "guest", "--session", "another_*"});
+  for (const Role role : kAllNodes) session->start(role, {"--keys", plant});
+  const auto refused = [&](double timeout) {
+    EXPECT_EQ(slewring_join(session->name().c_str(), "pid", session->domain(), "lo", "", timeout), nullptr);
+    return std::string(slewring_error(nullptr));
+  };
+  {
+    const Environment keys("SLEWRING_KEYS", plant), identity("SLEWRING_IDENTITY", "joystick");
+    const Client client = join("pid");
+    ASSERT_NE(client, nullptr);
+    const int moved = slewring_find(client.get(), "Input_Lift.raw", kSoon);
+    ASSERT_GE(moved, 0) << slewring_error(client.get());
+    const int lift = slewring_acquire(client.get(), "Input_Lift", kSoon);
+    ASSERT_GE(lift, 0) << slewring_error(client.get());
+    ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
+    ASSERT_EQ(slewring_write(client.get(), lift, 0.25), SLEWRING_OK) << slewring_error(client.get());
+    EXPECT_TRUE(reaches(client.get(), moved, 0.25)) << slewring_error(client.get());
+  }
+  {
+    const Environment keys("SLEWRING_KEYS", plant), identity("SLEWRING_IDENTITY", "guest");
+    EXPECT_NE(refused(2).find("the keys of this process do not allow it"), std::string::npos);
+  }
+  {
+    const Environment keys("SLEWRING_KEYS", plant), identity("SLEWRING_IDENTITY", "nobody");
+    EXPECT_NE(refused(2).find("has no keys of 'nobody'"), std::string::npos);
+  }
+  EXPECT_NE(refused(2).find("compare its name, domain, interface, peers and keys"), std::string::npos);
+  slewring({"control", "stop", "--session", session->name(), "--domain", std::to_string(session->domain()), "--keys",
+            plant});
+  EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+}
+
 }  // namespace
 }  // namespace slew::testing

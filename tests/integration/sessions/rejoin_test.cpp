@@ -194,8 +194,6 @@ TEST(ReplacedFlex, AloneOrWithAllOthersTheSessionGoesOnToTheSameBits) {
 
 class RunWithRejoin : public ::testing::Test {
  protected:
-  explicit RunWithRejoin(const char* duration = kDuration) : duration_(duration) {}
-
   // of a session in mid-motion
   void send_to(Role role, int signal) {
     ASSERT_TRUE(observer_.wait_for_step(300)) << run_.out() << run_.err();
@@ -212,13 +210,12 @@ class RunWithRejoin : public ::testing::Test {
     EXPECT_EQ(first_difference(recorded.chain(), undisturbed()), "");
   }
 
-  const char* duration_;
   ScratchFolder folder_;
   TestDomain domain_;
   Program run_{
       program_path("slewring"),
       {"run", kScene, "--session", "s", "--domain", std::to_string(domain_.number()), "--pace", "real", "--duration",
-       duration_, "--set", "session.rejoin=20s", "--out", (folder_.path() / "runs").string(), "--quiet"},
+       kDuration, "--set", "session.rejoin=20s", "--out", (folder_.path() / "runs").string(), "--quiet"},
       folder_.path() / "run"};
   Observer observer_{domain_.number(), "s"};
 };
@@ -233,27 +230,6 @@ TEST_F(RunWithRejoin, ReplacesANodeThatHangs) {
   expect_one_restart_and_undisturbed_bits();
   EXPECT_NE(run_.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos)
       << run_.err();
-}
-
-class LongRunWithRejoin : public RunWithRejoin {
- protected:
-  LongRunWithRejoin() : RunWithRejoin("60s") {}
-};
-
-TEST_F(LongRunWithRejoin, EndsWithCode4WhenANodeIsLostForTheFourthTime) {
-  std::uint32_t last = 0;
-  for (int loss = 0; loss < 4; ++loss) {
-    ASSERT_TRUE(observer_.wait_until([&] {
-      const auto& status = observer_.status(Role::mechanics);
-      return status && status->pid != last && status->state == NodeState::running;
-    })) << run_.err();
-    last = observer_.status(Role::mechanics)->pid;
-    kill(static_cast<pid_t>(last), SIGKILL);
-  }
-  EXPECT_EQ(run_.wait(), 4) << run_.out() << run_.err();
-  EXPECT_NE(run_.err().find("checkpoint (3 of 3)"), std::string::npos) << run_.err();
-  EXPECT_NE(run_.err().find("end with code 4 and close the recording"), std::string::npos) << run_.err();
-  EXPECT_EQ(read_session(folder_.path() / "runs").problem, "");
 }
 
 // a step of which neither node has a sample is no beginning

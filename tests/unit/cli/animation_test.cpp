@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/animation/machine_drawing.h"
+#include "math/rotation.h"
+#include "tests/support/played_page.h"
 
 namespace slew::cli {
 namespace {
@@ -111,6 +113,86 @@ TEST(Animation, IsAPictureOfTheInstantsInBothViews) {
   EXPECT_EQ(count("<g opacity"), 6u);
   EXPECT_EQ(count("<polyline"), 12u);  // an arm and a cylinder each
   EXPECT_EQ(count("nan"), 0u);
+}
+
+// ---- the page's script, run
+
+// what is drawn, back from px to m in the plane of the view
+constexpr const char* kDriver = R"(
+const W=800,H=600,s=Math.min(W,H)/2/reach;
+const drawn=(id,right,up)=>page.elements[id].context.lines.map(l=>({colour:l.colour,alpha:l.alpha,points:l.points.map(
+ ([x,y])=>[(x-W/2)/s+dot(middle,right),(H/2-y)/s+dot(middle,up)])}));
+const slide=n=>page.elements.time.oninput({target:{value:String(n)}}),now=()=>page.elements.now.textContent;
+)";
+
+class AnimationPage : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!testing::has_node()) GTEST_SKIP() << "there is no 'node' here, which runs the page's script";
+    // a turn about an axis that lies in none of the views' planes, and a way
+    motion_.poses.emplace_back();
+    const double third = 1 / std::sqrt(3.0);
+    for (int k = 0; k < 8; ++k) {
+      const double half = 0.2 * k, sine = third * std::sin(half);
+      motion_.time.push_back(k < 4 ? 0.01 * k : 0.1 + 0.01 * k);
+      motion_.poses[0].push_back(
+          {.position = {1 + 0.1 * k, 0.2 * k, -0.3 * k}, .orientation = {std::cos(half), sine, sine, sine}});
+    }
+    motion_.gaps = {{0.03, 0.14}};
+  }
+  [[nodiscard]] nlohmann::json play(const std::string& drive) const {
+    const nlohmann::json said = testing::played_page(animation_html(draw_machine(arm()), motion_),
+                                                     std::string(kDriver) + "function drive(){" + drive + "}");
+    EXPECT_FALSE(said.is_null());
+    return said;
+  }
+  // of the arm's line from (-1, 0, 0) to (1, 0, 0), seen along an axis; turn: of the view about y [rad]
+  void expect_drawn_at(const nlohmann::json& lines, std::size_t instant, bool is_top, double turn = 0) const {
+    const Pose& pose = motion_.poses[0][instant];
+    const math::Mat3 R = math::rotation_of(pose.orientation);
+    ASSERT_EQ(lines.size(), 2u) << "the arm and the cylinder";
+    for (std::size_t end = 0; end < 2; ++end) {
+      const math::Vec3 p = pose.position + R * math::Vec3{end == 0 ? -1.0 : 1.0, 0, 0};
+      const double right = p[0] * std::cos(turn) + p[2] * std::sin(turn), up = is_top ? -p[2] : p[1];
+      EXPECT_NEAR(lines[0]["points"][end][0].get<double>(), right, 2e-5) << instant;
+      EXPECT_NEAR(lines[0]["points"][end][1].get<double>(), up, 2e-5) << instant;
+      // the cylinder ends at the arm's far end, and begins at (0, -2, 0) of Ground
+      EXPECT_NEAR(lines[1]["points"][end][0].get<double>(), end == 0 ? 0 : right, 2e-5) << instant;
+      EXPECT_NEAR(lines[1]["points"][end][1].get<double>(), end == 0 ? (is_top ? 0 : -2) : up, 2e-5) << instant;
+    }
+  }
+
+  Motion motion_{"arm", "test", {}, {}, {}};
+};
+
+TEST_F(AnimationPage, TheSliderShowsABodyWhereItsPoseSays) {
+  const nlohmann::json said = play(R"(
+    const out=[];for(const n of [0,3,7,5]){slide(n);
+     out.push({now:now(),side:drawn('side',[1,0,0],[0,1,0]),top:drawn('top',[1,0,0],[0,0,-1])})}
+    page.elements.turn.value='90';page.elements.turn.oninput();out.push({side:drawn('side',[0,0,1],[0,1,0])});
+    return {frames:out,most:page.elements.time.max})");
+  EXPECT_EQ(said["most"], 7);
+  const std::size_t instants[] = {0, 3, 7, 5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    expect_drawn_at(said["frames"][i]["side"], instants[i], false);
+    expect_drawn_at(said["frames"][i]["top"], instants[i], true);
+  }
+  expect_drawn_at(said["frames"][4]["side"], 5, false, M_PI / 2);
+  EXPECT_EQ(said["frames"][1]["now"], "0.03 s");
+  EXPECT_EQ(said["frames"][2]["now"], "0.17 s");
+}
+
+TEST_F(AnimationPage, PlaysInTimeAndSaysWhereNothingWasRecorded) {
+  const nlohmann::json said = play(R"(
+    const out=[],go=ms=>{page.now=ms;page.frames.shift()(ms);
+     out.push({now:now(),k:+page.elements.time.value,alpha:page.elements.side.context.lines[0].alpha})};
+    page.elements.play.onclick();for(const ms of [15,60,145,171])go(ms);
+    page.elements.play.onclick();page.frames.shift()(200);out.push(page.frames.length);return out)");
+  EXPECT_EQ(said[0], (nlohmann::json{{"now", "0.01 s"}, {"k", 1}, {"alpha", 1}}));
+  EXPECT_EQ(said[1], (nlohmann::json{{"now", "0.06 s: not recorded"}, {"k", 3}, {"alpha", 0.25}}));
+  EXPECT_EQ(said[2], (nlohmann::json{{"now", "0.14 s"}, {"k", 4}, {"alpha", 1}}));
+  EXPECT_EQ(said[3]["k"], 0);  // behind the end it begins again
+  EXPECT_EQ(said[4], 0);       // it stands
 }
 
 }  // namespace

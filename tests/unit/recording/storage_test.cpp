@@ -12,6 +12,7 @@
 #include <new>
 #include <random>
 
+#include "core/file_size_limit.h"
 #include "recording/recovery.h"
 #include "sample_session.h"
 #include "tests/support/nightly.h"
@@ -23,7 +24,8 @@ namespace {
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
-    former_action_ = std::signal(SIGXFSZ, SIG_IGN);
+    former_action_ = std::signal(SIGXFSZ, SIG_DFL);
+    let_writes_fail_at_the_size_limit();  // as every program of ours
     getrlimit(RLIMIT_FSIZE, &former_);
     const rlimit limit = {bytes, former_.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);

@@ -1,0 +1,195 @@
+// Recordings in which blocks of variables are missing, as a slow disk or a network leaves them: nothing is drawn over
+// the gap, and no value comes to another instant.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "command.h"
+#include "recording/reader.h"
+#include "recording/writer.h"
+#include "sample_hashes.h"
+#include "transport/codec.h"
+#include "transport/wire.h"
+
+namespace slew::testing {
+namespace {
+
+using nlohmann::json;
+using recording::Reader;
+using recording::Writer;
+using IsLost = std::function<bool(const wire::VariableBlock&)>;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+json data_of(const std::filesystem::path& page) {
+  const std::string text = text_of(page), begin = "id=\"data\">";
+  const std::size_t from = text.find(begin) + begin.size();
+  return json::parse(text.substr(from, text.find("</script>", from) - from));
+}
+
+// Copies a recording but for the blocks that are lost; their number.
+int copy_without(const std::filesystem::path& from, const std::filesystem::path& to, const IsLost& is_lost) {
+  std::unique_ptr<Reader> reader;
+  EXPECT_EQ(Reader::open(from, reader).text, "");
+  std::unique_ptr<Writer> writer;
+  EXPECT_EQ(Writer::create(to, reader->identity(), {}, writer).text, "");
+  for (const auto& attachment : reader->attachments()) {
+    recording::Bytes content;
+    EXPECT_EQ(reader->read_attachment(attachment.name, content).text, "");
+    EXPECT_EQ(writer->add_attachment(attachment.name, attachment.media_type, content).text, "");
+  }
+  std::map<std::string, recording::ChannelId> channels;
+  for (const recording::RecordedChannel& channel : reader->channels()) {
+    EXPECT_EQ(
+        writer->add_channel({channel.topic, channel.type_name, channel.idl, channel.metadata}, channels[channel.topic])
+            .text,
+        "");
+  }
+  int lost = 0;
+  const auto step_ns = static_cast<std::uint64_t>(reader->identity().communication_step.ns);
+  const Status status = reader->for_each({}, [&](const recording::RecordedMessage& message) {
+    wire::VariableBlock block;
+    const bool is_block = message.channel->topic == "variables" && transport::decode(message.payload, block);
+    if (is_block && is_lost(block)) {
+      ++lost;
+      return Reader::Visit::go_on;
+    }
+    const recording::MessageStamp stamp = {0, static_cast<StepIndex>(message.log_time_ns / step_ns), message.sequence,
+                                           static_cast<std::int64_t>(message.publish_time_ns)};
+    EXPECT_EQ(writer->write(channels.at(message.channel->topic), stamp, message.payload).text, "");
+    return Reader::Visit::go_on;
+  });
+  EXPECT_EQ(status.text, "");
+  EXPECT_EQ(writer->close({{"exit_code", "3"}, {"end", "blocks are missing"}}).text, "");
+  return lost;
+}
+
+// Pendulums, so many that their variables come in several blocks; of the mechanics the first one is missing from 0.2 s
+// to 0.39 s, the last one at 0.7 s.
+class LostBlocks : public ::testing::Test {
+ protected:
+  static constexpr int kPendulums = 80;
+
+  // records 1 s, a value every 10 ms
+  std::string record(const std::string& scene) const {
+    const CommandResult run = slewring({"run", scene, "--in-process", "--pace", "free", "--duration", "1", "--set",
+                                        "recording.every=10", "--set", "session.step=1ms", "--out", "whole"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return only_recording_below(work_.path() / "whole").string();
+  }
+  void record_pendulums() {
+    std::ofstream scene(work_.path() / "pendulums.yaml");
+    scene << "bodies:\n";
+    for (int i = 0; i < kPendulums; ++i)
+      scene << "  B" << i << ": {position: [0, 0, 0], mass: 2 kg, center_of_mass: [" << 0.1 * (i + 1)
+            << ", 0, 0], inertia: [1, 1, 1]}\n";
+    scene << "joints:\n";
+    for (int i = 0; i < kPendulums; ++i) scene << "  J" << i << ": {type: revolute, body2: B" << i << "}\n";
+    scene.close();
+    whole_ = record("pendulums.yaml");
+    lossy_ = (work_.path() / "lossy.mcap").string();
+    std::uint32_t last = 0;
+    copy_without(whole_, work_.path() / "same.mcap", [&](const wire::VariableBlock& block) {
+      if (block.header.role == wire::Role::mechanics) last = std::max(last, block.first);
+      return false;
+    });
+    ASSERT_GT(last, 0u);
+    const int lost = copy_without(whole_, lossy_, [&](const wire::VariableBlock& block) {
+      const StepIndex step = block.header.step;
+      if (block.header.phase != wire::Phase::running || block.header.role != wire::Role::mechanics) return false;
+      return (block.first == 0 && step >= 200 && step < 400) || (block.first == last && step == 700);
+    });
+    ASSERT_EQ(lost, 20 + 1);
+  }
+  CommandResult slewring(const std::vector<std::string>& arguments) const {
+    return run("slewring", arguments, work_.path());
+  }
+
+  WorkFolder work_;
+  std::string whole_, lossy_;
+};
+
+TEST_F(LostBlocks, LeaveEveryPoseAtItsInstant) {
+  ASSERT_NO_FATAL_FAILURE(record_pendulums());
+  ASSERT_EQ(slewring({"animate", whole_, "-o", "whole.html"}).code, 0);
+  const CommandResult animated = slewring({"animate", lossy_, "-o", "lossy.html"});
+  ASSERT_EQ(animated.code, 0) << animated.err;
+  const json whole = data_of(work_.path() / "whole.html"), lossy = data_of(work_.path() / "lossy.html");
+  ASSERT_EQ(whole["time"].size(), 101u);
+  EXPECT_EQ(whole["gaps"], json::array());
+  ASSERT_EQ(lossy["time"].size(), 101u - 21u);
+  EXPECT_EQ(lossy["gaps"], (json{{0.19, 0.4}, {0.69, 0.71}}));
+  for (std::size_t i = 0; i < lossy["time"].size(); ++i) {
+    const auto k = static_cast<std::size_t>(std::lround(lossy["time"][i].get<double>() * 100));
+    ASSERT_EQ(whole["time"][k], lossy["time"][i]);
+    for (std::size_t body = 1; body < whole["bodies"].size(); ++body) {
+      const json& of_whole = whole["bodies"][body]["pose"];
+      const json& of_lossy = lossy["bodies"][body]["pose"];
+      for (std::size_t n = 0; n < 7; ++n) ASSERT_EQ(of_whole[7 * k + n], of_lossy[7 * i + n]) << body << " " << i;
+    }
+  }
+}
+
+TEST_F(LostBlocks, BreakTheLinesOfPlots) {
+  ASSERT_NO_FATAL_FAILURE(record_pendulums());
+  const std::string first = "B0.position.x";
+  const auto values = [&](const std::string& recording) {
+    const CommandResult plotted = slewring({"plot", recording, first, "-o", "plot.html"});
+    EXPECT_EQ(plotted.code, 0) << plotted.err;
+    return data_of(work_.path() / "plot.html");
+  };
+  const json whole = values(whole_), lossy = values(lossy_);
+  const auto gaps = [](const json& plot) {
+    const json& curve = plot["plots"][0]["panels"][0]["curves"][0];
+    std::vector<double> times;
+    for (std::size_t i = 0; i < curve["v"].size(); ++i) {
+      if (curve["v"][i].is_null()) times.push_back(plot["times"][0][i].get<double>());
+    }
+    return times;
+  };
+  EXPECT_EQ(gaps(whole), std::vector<double>{});
+  EXPECT_EQ(gaps(lossy), std::vector<double>{0.2});
+  const auto lines = [&](const std::string& recording) {
+    EXPECT_EQ(slewring({"plot", recording, first, "-o", "plot.svg"}).code, 0);
+    const std::string svg = text_of(work_.path() / "plot.svg"), title = "<title>" + first;
+    const std::string path = svg.substr(0, svg.find(title));
+    const std::size_t from = path.rfind(" d=\"");
+    return std::count(path.begin() + static_cast<std::ptrdiff_t>(from), path.end(), 'M');
+  };
+  EXPECT_EQ(lines(whole_), 1);
+  EXPECT_EQ(lines(lossy_), 2);
+}
+
+TEST_F(LostBlocks, CostAnExportedInputItsOwnRowsOnly) {
+  whole_ = record(scene_file("truck_crane.yaml"));
+  lossy_ = (work_.path() / "lossy.mcap").string();
+  ASSERT_EQ(copy_without(whole_, lossy_,
+                         [](const wire::VariableBlock& block) {
+                           return block.header.role == wire::Role::io && block.header.step == 500;
+                         }),
+            1);
+  const auto rows = [&](const std::string& recording) {
+    const CommandResult exported = slewring({"export", recording, "--input"});
+    EXPECT_EQ(exported.code, 0) << exported.err;
+    std::map<std::string, std::string> by_time;
+    std::istringstream text(exported.out);
+    for (std::string line; std::getline(text, line);) by_time[line.substr(0, line.find(','))] = line;
+    return by_time;
+  };
+  std::map<std::string, std::string> whole = rows(whole_);
+  EXPECT_EQ(whole.erase("0.5"), 1u);
+  EXPECT_EQ(rows(lossy_), whole);
+}
+
+}  // namespace
+}  // namespace slew::testing

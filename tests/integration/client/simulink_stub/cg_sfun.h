@@ -1,0 +1,3 @@
+/* In the place of Simulink's own end of an S-function: gives the test its functions. */
+const StubBlock stub_block = {mdlInitializeSizes, mdlInitializeSampleTimes, mdlStart, mdlOutputs, mdlUpdate,
+                              mdlTerminate};
