@@ -44,7 +44,8 @@ if(NOT SLEWRING_SANITIZE)
   target_link_options(slewring_flags INTERFACE -Wl,-z,relro -Wl,-z,now -Wl,-z,noexecstack)
 endif()
 if(SLEWRING_SANITIZE)
-  target_compile_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE} -fno-omit-frame-pointer)
+  target_compile_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
   target_link_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE})
 endif()
 
