@@ -205,6 +205,8 @@ bool take_part_wrongly(std::uint32_t domain) {
   dds_qset_durability(program.qos(), DDS_DURABILITY_VOLATILE);
   dds_qset_reliability(program.qos(), DDS_RELIABILITY_BEST_EFFORT, 0);
   static_cast<void>(program.writer(slewring_MechanismMessage_desc, "slewring/mechanism"));
+  // one message is to come, and the other program may know this reader before this one knows its writer
+  dds_qset_reliability(program.qos(), DDS_RELIABILITY_RELIABLE, DDS_SECS(10));
   const dds_entity_t done = program.reader(slewring_Health_desc, "slewring/health");
   if (!eventually([&] { return has_reader(fits) && has_match(done); })) return false;
   void* sample = nullptr;
