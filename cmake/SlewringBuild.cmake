@@ -46,6 +46,10 @@ endif()
 if(SLEWRING_SANITIZE)
   target_compile_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE} -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
+  # their checks double what the optimiser has to do: only fuzzers, and what computes, are worth the wait
+  if(NOT SLEWRING_BUILD_FUZZERS)
+    target_compile_options(slewring_flags INTERFACE $<$<NOT:$<BOOL:$<TARGET_PROPERTY:SLEWRING_COMPUTES>>>:-O1;-g1>)
+  endif()
   target_link_options(slewring_flags INTERFACE -fsanitize=${SLEWRING_SANITIZE})
 endif()
 
