@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bitset>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -121,9 +122,11 @@ bool take_fields(std::span<const std::byte> bytes, SavedSession& saved) {
   const auto states = fields.number<std::uint32_t>();
   if (states > wire::kRoles) return false;
   saved.states.assign(states, {});
+  std::bitset<wire::kRoles> roles;
   for (SavedState& of_role : saved.states) {
     const auto role = fields.number<std::uint32_t>();
-    if (role >= wire::kRoles) return false;
+    if (role >= wire::kRoles || roles.test(role)) return false;
+    roles.set(role);
     of_role.role = static_cast<wire::Role>(role);
     of_role.state.step = saved.step;
     of_role.state.state_hash = fields.number<std::uint64_t>();

@@ -400,6 +400,14 @@ TEST_F(SavedFile, OfANodeWithoutBytesComesBackToo) {
   EXPECT_EQ(read.scene_text, "");
 }
 
+TEST_F(SavedFile, WithTwoStatesOfOneRoleIsRefused) {
+  SavedSession saved = some();
+  saved.states.push_back(saved.states[1]);
+  ASSERT_EQ(write_saved(path_, saved, Replace::never).text, "");
+  SavedSession read;
+  EXPECT_EQ(read_saved(path_, read).code, ExitCode::bad_input);
+}
+
 TEST_F(SavedFile, CutOrChangedAnywhereIsRefused) {
   ASSERT_EQ(write_saved(path_, some(), Replace::never).text, "");
   std::ifstream file(path_, std::ios::binary);
