@@ -19,12 +19,17 @@ bool is_over(NodeState state) {
   return state == NodeState::ended || state == NodeState::fault;
 }
 
+// on the way to the first step; one that initialises was heard by all, and the others may have let it begin
+int progress(NodeState state) {
+  if (state < NodeState::initialising || is_over(state)) return 0;
+  return state == NodeState::initialising ? 1 : 2;
+}
+
 // of two claimants of a role: the one that is further on, else the one that started first, else the lower pid. The
 // clocks of two machines differ: what was recorded counts before them.
 bool goes_first(const wire::NodeStatus& a, const wire::NodeStatus& b) {
   if (is_over(a.state) != is_over(b.state)) return is_over(b.state);
-  const auto runs = [](NodeState state) { return state >= NodeState::ready && state <= NodeState::holding; };
-  if (runs(a.state) != runs(b.state)) return runs(a.state);
+  if (progress(a.state) != progress(b.state)) return progress(a.state) > progress(b.state);
   const bool a_records = a.recorded_step >= 0, b_records = b.recorded_step >= 0;
   if (a_records != b_records) return a_records;
   if (a.started_ns != b.started_ns) return a.started_ns < b.started_ns;

@@ -166,6 +166,23 @@ TEST_F(Member, TakesTheSuccessorOfANodeThatEndedBeforeTheStart) {
   EXPECT_EQ(member.peer(Role::hydraulics).status.pid, 1006u);
 }
 
+TEST_F(Member, KeepsTheProcessThatIsFurtherOnUntilAnotherOneIsAsFar) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  const auto heard_now = [&](std::uint32_t incarnation, NodeState state, std::int64_t started_ns) {
+    NodeStatus status = status_of(Role::hydraulics, incarnation, state);
+    status.started_ns = started_ns;
+    EXPECT_TRUE(hear(status).is_ok());
+    return member.peer(Role::hydraulics).incarnation;
+  };
+  EXPECT_EQ(heard_now(6, NodeState::joining, 20), 6u);
+  EXPECT_EQ(heard_now(6, NodeState::initialising, 20), 6u);
+  EXPECT_EQ(heard_now(5, NodeState::joining, 10), 6u) << "it started first, but the other one was heard by all";
+  EXPECT_EQ(heard_now(5, NodeState::initialising, 10), 5u);
+  EXPECT_EQ(heard_now(6, NodeState::ready, 20), 6u);
+  EXPECT_EQ(heard_now(5, NodeState::ready, 10), 5u);
+  EXPECT_EQ(heard_now(6, NodeState::holding, 20), 5u);
+}
+
 TEST_F(Member, CountsMessagesThatDoNotFitPerCause) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
