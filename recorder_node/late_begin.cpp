@@ -97,9 +97,11 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
   if (header.step != streams_.begin) return;
   const auto missing = missing_states_.find(part_.role);
   if (missing == missing_states_.end() || missing->second.has(part_)) return;
+  const bool is_whole = missing->second.take(part_);
+  if (!missing->second.has(part_)) return;  // it has no place in its state
   const auto place = static_cast<std::uint32_t>(part_.first / wire::kMaxStatePart);
   write(message, header.epoch, header.step, (static_cast<std::uint32_t>(part_.role) << 16) | place);
-  if (missing->second.take(part_)) missing_states_.erase(missing);
+  if (is_whole) missing_states_.erase(missing);
 }
 
 void RecorderNode::ask_for_states(std::int64_t now_ns) {
