@@ -176,6 +176,7 @@ class RecorderNode final : public node::Node {
     std::array<std::uint64_t, wire::kTopics> messages{};
   };
   std::optional<Gap> gap_;
+  bool has_told_of_waiting_ = false;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;

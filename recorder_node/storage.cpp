@@ -122,9 +122,18 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
 // In real pace nothing waits for the recorder: what the disk cannot take is left out, variables and health first.
 bool RecorderNode::is_left_out(Topic topic, StepIndex step, std::uint32_t epoch) {
   const std::size_t most = config_.limits.backlog_bytes;
-  if (most == 0 || member_.session().pace == wire::Pace::free) return false;
+  if (most == 0) return false;
   const std::size_t waiting = writer_->backlog_bytes();
   const bool is_full = waiting + config_.limits.chunk_bytes > most;
+  if (member_.session().pace == wire::Pace::free) {
+    if (is_full && !std::exchange(has_told_of_waiting_, true)) {
+      std::fprintf(stderr,
+                   "recorder: warning: the disk is slower than the session, which waits for it from step %lld on; "
+                   "nothing is lost; record elsewhere with --out DIR, or less with recording.every\n",
+                   static_cast<long long>(step));
+    }
+    return false;
+  }
   const bool is_slow = is_full || waiting > most / 2 || (gap_ && waiting > most / 4);
   if (!is_slow) {
     end_gap();

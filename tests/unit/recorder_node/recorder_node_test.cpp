@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -525,16 +526,16 @@ class HeldDisk final : public recording::FileCalls {
 
 class SlowDisk : public ::testing::Test {
  protected:
-  SlowDisk() {
+  explicit SlowDisk(wire::Pace pace = wire::Pace::real) {
     RecorderConfig config;
     config.file_calls = &disk_;
     config.keep_free = 0;
     config.limits.flush_period = milliseconds(1);
     config.limits.window_steps = 2;
     config.limits.chunk_bytes = 1'000;
-    config.limits.backlog_bytes = 40'000;
+    config.limits.backlog_bytes = kBacklog;
     bench_ = std::make_unique<RecorderBench>(std::move(config));
-    bench_->played.session.pace = wire::Pace::real;
+    bench_->played.session.pace = pace;
     bench_->join();
   }
   ~SlowDisk() override { disk_.release(); }
@@ -574,6 +575,7 @@ class SlowDisk : public ::testing::Test {
     return found;
   }
 
+  static constexpr std::size_t kBacklog = 40'000;
   HeldDisk disk_;
   std::unique_ptr<RecorderBench> bench_;
   std::unique_ptr<recording::Reader> reader_;
@@ -628,6 +630,36 @@ TEST_F(SlowDisk, ThatStandsStillCostsStepsTooAndNeverMoreMemory) {
   EXPECT_GE(std::stoi(gaps().front().at("left_out.tick")), 1);
   // variables had gone before
   EXPECT_LT(bench_->recorded(Topic::variables).size(), ticks.size());
+}
+
+class SlowDiskInFreePace : public SlowDisk {
+ protected:
+  SlowDiskInFreePace() : SlowDisk(wire::Pace::free) {}
+};
+
+TEST_F(SlowDiskInFreePace, IsWaitedForAndCostsNothing) {
+  constexpr StepIndex kSteps = 1'000;
+  disk_.hold();
+  std::atomic<bool> is_full = false;
+  std::thread releases([&] {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!is_full && std::chrono::steady_clock::now() < deadline) {
+      is_full = bench_->node->backlog_bytes() + 2'000 > kBacklog;
+      std::this_thread::yield();
+    }
+    disk_.release();
+  });
+  for (StepIndex step = 0; step < kSteps; ++step) {
+    say_step(step);
+    EXPECT_LE(bench_->node->backlog_bytes(), kBacklog);
+  }
+  releases.join();
+  EXPECT_TRUE(is_full);
+  finish(kSteps - 1);
+  EXPECT_EQ(bench_->node->lost(), 0u);
+  EXPECT_EQ(bench_->node->member().exit_code(), ExitCode::ok) << bench_->node->member().reason();
+  EXPECT_EQ(bench_->recorded(Topic::variables).size(), static_cast<std::size_t>(kSteps));
+  EXPECT_TRUE(gaps().empty());
 }
 
 // ---- a second recorder ----------------------------------------------------------------------------------------
@@ -688,6 +720,32 @@ TEST_F(Recorder, ThatComesToARunningSessionIsNoRivalBeforeItHasHeardTheFirst) {
   EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
   EXPECT_NE(node->member().reason().find("is held by process"), std::string::npos) << node->member().reason();
   EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST_F(Recorder, OfASessionThatGoesOnTakesNoPartOfAStateThatHasNoPlace) {
+  played.session.header.step = 100;
+  join();
+  wire::StatePart part;
+  part.header = played.header(Role::io, 100);
+  part.role = Role::mechanics;
+  part.total = 5;
+  part.bytes.resize(2);
+  const auto say_from = [&](std::uint32_t first) {
+    part.first = first;
+    played.say(Topic::state, part);
+    poll(kMs);
+  };
+  say_from(3);
+  say_from(0);
+  part.bytes.resize(5);
+  say_from(0);
+  say_from(0);
+  say_steps(100, 101);
+  say_end(101);
+  poll(node::kLinger.ns);
+  ASSERT_TRUE(node->is_finished());
+  EXPECT_EQ(summary("state.recorded"), "1");
+  EXPECT_EQ(summary("state.lost"), "2") << "those of io and of the hydraulics";
 }
 
 TEST_F(Recorder, ThatComesLateAndHearsOfNoFirstOneSaysSo) {
