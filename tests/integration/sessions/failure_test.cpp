@@ -100,7 +100,8 @@ void expect_named_and_ended(Session& session, Role victim, StepIndex killed_at, 
 
 TEST_P(KilledNode, IsNamedAndEndsTheSessionWithCode4) {
   std::mt19937_64 random(20'260'500 + static_cast<std::uint64_t>(GetParam()));
-  for (int round = 0; round < testing::rounds(3, 20); ++round) {
+  const int nightly = GetParam() == Role::recorder ? 100 : 20;
+  for (int round = 0; round < testing::rounds(3, nightly); ++round) {
     Session session({"--pace", "real", "--duration", "20s"});
     Observer& observer = session.observer();
     session.start_all();
