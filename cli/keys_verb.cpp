@@ -77,8 +77,9 @@ void add_keys(CLI::App& program, Action& action) {
   CLI::App* verb = program.add_subcommand("keys", "keys for sessions over a network: who may take part");
   verb->require_subcommand(1);
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  const auto sub = [&](const char* name, const char* text, ExitCode (*act)(const Options&)) {
+  const auto sub = [&](const char* name, const char* text, ExitCode (*act)(const Options&), const char* example) {
     CLI::App* one = verb->add_subcommand(name, text);
+    one->footer(fmt::format("Example:\n  slewring keys {} {}", name, example));
     one->add_option("store", options->store, "folder of the key store")->required()->type_name("STORE");
     one->callback([&action, options, act] { action = [options, act] { return act(*options); }; });
     return one;
@@ -92,20 +93,24 @@ void add_keys(CLI::App& program, Action& action) {
         ->type_name("PATTERN")
         ->capture_default_str();
   };
-  add_validity(sub("create", "a new store with keys for every role", create));
+  add_validity(sub("create", "a new store with keys for every role", create, "plant_keys --days 365"));
   CLI::App* adding =
-      sub("add", "keys for one more: a second controller, somebody who only looks on, a guest for one session", add);
+      sub("add", "keys for one more: a second controller, somebody who only looks on, a guest for one session", add,
+          "plant_keys --role controller --name joystick --session 'truck_*'");
   adding->add_option("--role", options->role, "what it may say and hear")
       ->check(CLI::IsMember(key_roles()))
       ->type_name("ROLE")
       ->capture_default_str();
   adding->add_option("--name", options->name, "its name; without it the role's")->type_name("NAME");
   add_validity(adding);
-  CLI::App* revoking = sub("revoke", "lets one take part no longer, and makes all other keys anew", revoke);
+  CLI::App* revoking =
+      sub("revoke", "lets one take part no longer, and makes all other keys anew", revoke, "plant_keys joystick");
   revoking->add_option("name", options->name, "whose keys")->required()->type_name("NAME");
-  CLI::App* checking = sub("check", "signatures, validity and permissions of a store or of what was exported", check);
+  CLI::App* checking =
+      sub("check", "signatures, validity and permissions of a store or of what was exported", check, "plant_keys");
   checking->add_flag("--json", options->is_json, "print JSON and nothing else");
-  CLI::App* exporting = sub("export", "copies what the holders of these keys need", export_keys);
+  CLI::App* exporting = sub("export", "copies what the holders of these keys need", export_keys,
+                            "plant_keys hydraulics recorder --to for_crane2");
   exporting->add_option("names", options->names, "whose keys")->required()->type_name("NAME");
   exporting->add_option("--to", options->to, "folder to copy into")->required()->type_name("DIR");
   verb->footer(
