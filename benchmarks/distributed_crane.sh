@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Steps per second of the distributed truck crane in `free` pace, beside a bare Cyclone star of the same shape measured
-# in the same minute. Prints a line per round and the medians' ratio.
+# in the same minute, and with keys (DDS Security, everything encrypted). Prints the figures of every round.
 #
 #   benchmarks/distributed_crane.sh BUILD_DIRECTORY [ROUNDS=5] [SECONDS=20]
 set -euo pipefail
@@ -20,12 +20,15 @@ crane() {
 }
 star() { "$bin/cyclone_star" 20000 1; }
 
+"$bin/slewring" keys create keys >/dev/null
 for round in $(seq "$rounds"); do
   # by assignment, so that a program that fails ends the script
   bare=$(star | tr '\n' ' ')
   recorded=$(crane)
   unrecorded=$(crane --no-record)
+  secured=$(crane --no-record --keys keys)
   echo "round $round: star: $bare"
-  echo "round $round: crane with recorder: $recorded steps/s, without: $unrecorded steps/s"
+  echo "round $round: crane with recorder: $recorded steps/s, without: $unrecorded steps/s, with keys and without" \
+    "recorder: $secured steps/s"
 done
 echo "load: $(cat /proc/loadavg)"
