@@ -16,7 +16,7 @@ cd "$work"
 # wall seconds from the io node's first to its last tick are what `--json` reports as steps_per_second
 crane() {
   "$bin/slewring" run "$root/scenes/truck_crane.yaml" --pace free --duration "${seconds}s" --session "bench$$" \
-    --domain 97 "$@" --quiet --json 2>/dev/null | sed -n 's/.*"steps_per_second": *\([0-9.]*\).*/\1/p' | head -1
+    --domain 97 "$@" --quiet --json 2>/dev/null | sed -n 's/.*"steps_per_second": *\([0-9]*\).*/\1/p' | head -1
 }
 star() { "$bin/cyclone_star" 20000 1; }
 
