@@ -592,9 +592,12 @@ void IoNode::watch(std::int64_t now_ns) {
     if (vacancy(role) != nullptr) continue;
     if (first == nullptr || peer.status.header.step < first->status.header.step) first = &peer;
   }
-  if (first != nullptr) {
+  // the others may have told of a loss a moment before it is seen here
+  const bool tells_of_loss = first != nullptr && static_cast<ExitCode>(first->status.exit_code) == ExitCode::node_lost;
+  const bool sees_loss = event == node::PeerEvent::gone || event == node::PeerEvent::lost;
+  if (first != nullptr && !(tells_of_loss && sees_loss)) {
     if (fault_seen_ns_ == 0) fault_seen_ns_ = now_ns;
-    if (now_ns - fault_seen_ns_ < kFaultGathering.ns) return;
+    if (now_ns - fault_seen_ns_ < (tells_of_loss ? kLossGathering : kFaultGathering).ns) return;
     const Role role = first->status.header.role;
     return begin_ending(static_cast<ExitCode>(first->status.exit_code),
                         member_.end_text(role, member_.describe_peer(role) + ": " + first->status.reason), now_ns);

@@ -97,6 +97,7 @@ inline constexpr SimDuration kStandstill = milliseconds(100);     // between two
 inline constexpr int kControllerWarnings = 20;                    // on standard error, of one session
 inline constexpr StepIndex kLoopMemory = 1024;                    // steps for which the loop time is measured
 inline constexpr SimDuration kFaultGathering = milliseconds(20);  // others may have gone wrong in the same step
+inline constexpr SimDuration kLossGathering = milliseconds(100);  // io sees for itself what another one lost
 
 class IoNode final : public node::Node {
  public:

@@ -171,7 +171,7 @@ void IoNode::tell_notices() {
     if (notice.has_channel) lease.holder = lease.controller;
     lease.reason = notice.reason.substr(0, wire::kMaxReasonLength);
     member_.publish(Topic::controller_lease, lease);
-    if (!notice.has_channel || warnings_left_ == 0) continue;
+    if (warnings_left_ == 0) continue;
     member_.warn(notice.reason + (--warnings_left_ > 0 ? "" : "; what follows of this kind is in the recording alone"));
   }
 }

@@ -364,6 +364,41 @@ TEST_F(Io, NamesTheNodeThatASignalEnded) {
   EXPECT_EQ(statuses.back().reason, node->member().reason());
 }
 
+TEST_F(Io, SaysItselfWhoIsLostThoughAnotherOneTellsItFirst) {
+  get_running();
+  run_to(10);
+  for (int i = 0; i < 19; ++i) {
+    played.say_status(Role::mechanics, NodeState::holding, 10);
+    poll(100 * kMs);
+  }
+  wire::NodeStatus fault = played.status(Role::mechanics, NodeState::fault, 10);
+  fault.exit_code = static_cast<std::int32_t>(ExitCode::node_lost);
+  fault.reason = "hydraulics (process 1002 on elsewhere) is gone; this node stopped after step 10";
+  played.say(Topic::node_status, fault);
+  poll(50 * kMs);
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  poll(60 * kMs);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::node_lost);
+  EXPECT_EQ(node->member().reason(),
+            "hydraulics (process 1002 on elsewhere) is gone; the session was held after step 10 and ended, what was "
+            "recorded up to there is valid");
+}
+
+TEST_F(Io, NamesTheNodeThatLostAnotherOneWhichIsHeardHere) {
+  get_running();
+  run_to(10);
+  wire::NodeStatus fault = played.status(Role::mechanics, NodeState::fault, 10);
+  fault.exit_code = static_cast<std::int32_t>(ExitCode::node_lost);
+  fault.reason = "hydraulics (process 1002 on elsewhere) is gone; this node stopped after step 10";
+  played.say(Topic::node_status, fault);
+  poll(kMs);
+  poll(kLossGathering.ns - kMs);
+  EXPECT_NE(node->member().state(), NodeState::ended);
+  poll(kMs);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::node_lost);
+  EXPECT_EQ(node->member().reason(), "mechanics (process 1001 on elsewhere): " + fault.reason);
+}
+
 TEST_F(Io, SaysEndInTheLastTickAndWhyInItsStatus) {
   get_running();
   run_to(10);
