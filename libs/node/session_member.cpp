@@ -383,10 +383,14 @@ bool SessionMember::may_be_replaced(Role role) const noexcept {
 void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
   const std::int64_t gap_ns = watched_ns_ == 0 ? 0 : now_ns - watched_ns_;
   watched_ns_ = now_ns;
+  // what was sent behind the last look's clock reading counts too
+  const std::int64_t sending_ns = sending_ns_ + std::exchange(sent_before_ns_, sending_ns_);
+  sending_ns_ = 0;
   if (gap_ns <= kStoodStill.ns) return;
   if (gap_ns > kLostAfter.ns) {
     stood_still_ns_ = gap_ns;
     stood_until_ns_ = now_ns;
+    stood_sending_ = sending_ns > gap_ns / 2;
   }
   for (Peer& peer : peers_) {
     if (peer.last_heard_ns == peer.excused_ns) continue;
@@ -467,12 +471,14 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
   const std::string own_loss = std::string(to_text(role_)) + " (process " + std::to_string(identity_.pid) + " on " +
                                machine_of(identity_.host) + ") is gone";
   const bool is_given_up = peer.status.reason.find(own_loss) != std::string::npos;
+  const std::string stood_still =
+      "stood still for " + seconds_text({stood_still_ns_}) + (stood_sending_ ? " (its network took nothing)" : "");
   const std::string remedy =
-      "; look for what stopped the process (a signal, a debugger, lack of memory or of processors)";
+      stood_sending_ ? "; look at the network of this machine (a cable, an interface that is down)"
+                     : "; look for what stopped the process (a signal, a debugger, lack of memory or of processors)";
   if (is_given_up && stood_still_ns_ > 0) {
-    return "this node stood still for " + seconds_text({stood_still_ns_}) + " at step " +
-           std::to_string(status_.header.step) + " and was given up after 2 s; session '" + session_.name +
-           "' has ended" + remedy;
+    return "this node " + stood_still + " at step " + std::to_string(status_.header.step) +
+           " and was given up after 2 s; session '" + session_.name + "' has ended" + remedy;
   }
   if (is_given_up) {
     return "this node ran, but was not heard for 2 s and was given up; look at the network from this machine to the "
@@ -481,8 +487,7 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
   }
   // the others may have given it up and have gone
   if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= kLostAfter.ns + kLinger.ns) {
-    return reason + "; this node itself had stood still for " + seconds_text({stood_still_ns_}) +
-           ", and after 2 s the others give a node up" + remedy;
+    return reason + "; this node itself had " + stood_still + ", and after 2 s the others give a node up" + remedy;
   }
   return reason;
 }
@@ -566,7 +571,9 @@ std::string SessionMember::missing_join_text() {
 }
 
 void SessionMember::send(Topic topic, std::span<const std::byte> bytes) noexcept {
+  const std::int64_t begin_ns = monotonic_ns();
   Status status = transport_.publish(topic, bytes);
+  sending_ns_ += monotonic_ns() - begin_ns;
   if (!status.is_ok() && send_failure_.is_ok()) send_failure_ = std::move(status);
 }
 

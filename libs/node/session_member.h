@@ -234,6 +234,9 @@ class SessionMember {
   std::int64_t watched_ns_ = 0;      // when the peers were looked at last
   std::int64_t stood_still_ns_ = 0;  // from one look to the next, when the others had time to give this process up
   std::int64_t stood_until_ns_ = 0;
+  std::int64_t sending_ns_ = 0;      // spent in sending since the peers were looked at last
+  std::int64_t sent_before_ns_ = 0;  // the same of the look before
+  bool stood_sending_ = false;
   std::vector<std::byte> buffer_;
 };
 

@@ -117,6 +117,8 @@ TEST_F(FaultyCable, OutFor3SecondsEndsTheSessionWithCode4) {
   for (const auto& [role, code] : session.wait_all()) {
     EXPECT_EQ(code, 4) << node::to_text(role) << "\n" << session.said();
     EXPECT_NE(session.node(role).err().find(" is gone; "), std::string::npos) << session.said();
+    // it is the cable
+    EXPECT_EQ(session.node(role).err().find("what stopped the process"), std::string::npos) << session.said();
   }
   const RecordedSession recorded = session.recorded();
   EXPECT_EQ(recorded.problem, "");

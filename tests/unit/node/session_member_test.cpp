@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/time.h"
 #include "node/session_member.h"
 #include "transport/in_process_bus.h"
 
@@ -275,6 +276,36 @@ TEST_F(Member, ThatStoodStillAndHearsNobodyAfterwardsSaysSo) {
   EXPECT_EQ(member.end_text(about, "io is gone"),
             "io is gone; this node itself had stood still for 30 s, and after 2 s the others give a node up; look for "
             "what stopped the process (a signal, a debugger, lack of memory or of processors)");
+}
+
+// A carrier whose cable is out: it sends when it is plugged in again.
+class Unplugged final : public transport::Transport {
+ public:
+  Status publish(Topic, std::span<const std::byte>) noexcept override {
+    sleep_until_monotonic(monotonic_ns() + 1'200 * kMs);
+    return Status::ok();
+  }
+  bool take(transport::Received&) override { return false; }
+  void wait_until(std::int64_t) override {}
+  std::vector<std::string> discovered_writers(Topic) override { return {}; }
+  std::vector<std::string> misfits() override { return {}; }
+};
+
+TEST_F(Member, ThatCouldNotSendIsToldToLookAtItsNetwork) {
+  Unplugged cable;
+  SessionMember sender{Role::mechanics, cable, kTopics};
+  ASSERT_TRUE(sender.adopt(description(), 0).is_ok());
+  const auto watch_sender = [&](std::int64_t now_ns) { return sender.watch_peers(now_ns, about); };
+  EXPECT_EQ(watch_sender(10 * kMs), PeerEvent::none);
+  sender.publish(Topic::node_status, status_of(Role::mechanics, 5));
+  EXPECT_EQ(watch_sender(11 * kMs), PeerEvent::none) << "a poll that read its clock before it sent";
+  EXPECT_EQ(watch_sender(2'211 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch_sender(2'221 * kMs + kSilentAfter.ns), PeerEvent::silent);
+  EXPECT_EQ(watch_sender(3'000 * kMs), PeerEvent::none);
+  EXPECT_EQ(watch_sender(4'212 * kMs), PeerEvent::lost);
+  EXPECT_EQ(sender.end_text(about, "io is gone"),
+            "io is gone; this node itself had stood still for 2 s (its network took nothing), and after 2 s the "
+            "others give a node up; look at the network of this machine (a cable, an interface that is down)");
 }
 
 // ---- other programs -------------------------------------------------------------------------------------------
