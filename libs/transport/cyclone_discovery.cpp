@@ -124,8 +124,9 @@ std::vector<dds_data_representation_id_t> representations(const dds_qos_t* qos) 
   return found;
 }
 
-// Why a reader that asks for `requested` does not hear a writer that offers `offered`; empty: it does.
-std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested) {
+// Why a reader that asks for `requested` does not hear a writer that offers `offered`, of the other program's side;
+// empty: it does.
+std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested, bool is_of_writer) {
   dds_reliability_kind_t offers{}, asks{};
   dds_duration_t ignored = 0;
   dds_qget_reliability(offered, &offers, &ignored);
@@ -134,7 +135,10 @@ std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested) {
   dds_durability_kind_t keeps{}, wants{};
   dds_qget_durability(offered, &keeps);
   dds_qget_durability(requested, &wants);
-  if (keeps < wants) return "a durability below the one that is asked for (transient local)";
+  if (keeps < wants) {
+    return is_of_writer ? "a durability below the one that is asked for (transient local)"
+                        : "a durability above the one that is offered (volatile)";
+  }
   const dds_data_representation_id_t written = representations(offered).front();
   const auto read = representations(requested);
   if (std::ranges::find(read, written) == read.end()) return "another data representation (XCDR1 is expected)";
@@ -184,11 +188,13 @@ std::vector<std::string> CycloneTransport::misfits() {
         } else if (types_[i] != nullptr && has_other_layout(endpoint, *types_[i])) {
           problem = fmt::format("type {}{}", endpoint.type_name, kOtherLayout);
         } else if (const Qos own = qos_of(own_endpoints[i]); own != nullptr) {
-          problem = is_writer ? qos_problem(endpoint.qos, own.get()) : qos_problem(own.get(), endpoint.qos);
+          problem =
+              is_writer ? qos_problem(endpoint.qos, own.get(), true) : qos_problem(own.get(), endpoint.qos, false);
         }
         if (problem.empty()) continue;
-        found.push_back(fmt::format("{} {} topic '{}' with {}; it is not heard; see idl/README.md",
-                                    description(endpoint.qos), is_writer ? "writes" : "reads", topic.name, problem));
+        found.push_back(fmt::format("{} {} topic '{}' with {}; it {}; see idl/README.md", description(endpoint.qos),
+                                    is_writer ? "writes" : "reads", topic.name, problem,
+                                    is_writer ? "is not heard" : "hears nothing"));
       }
     };
     for_each_endpoint(participant_, builtin_topic, name);

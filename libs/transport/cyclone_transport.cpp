@@ -89,16 +89,22 @@ constexpr std::int64_t kClockStep = 20'000'000;  // it was set back when it is b
   return fmt::format("{}:{}:{}", role, host, getpid());
 }
 
+// "; " and what Cyclone has said last, if anything
+[[nodiscard]] std::string last_words(CycloneDomain& domain) {
+  const std::string said = domain.log().last_line();
+  return said.empty() ? said : "; " + said;
+}
+
 [[nodiscard]] Status creation_error(const char* what, dds_return_t code, CycloneDomain& domain) {
   if (code == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY) {
     return Status::error(ExitCode::bad_input,
                          fmt::format("the keys of this process do not allow it the DDS {} of this session; nothing was "
                                      "started; 'slewring keys check' tells whether they are good; keys for other "
-                                     "sessions and roles are made with 'slewring keys add'; {}",
-                                     what, domain.log().last_line()));
+                                     "sessions and roles are made with 'slewring keys add'{}",
+                                     what, last_words(domain)));
   }
-  return Status::error(ExitCode::resources, fmt::format("cannot create the DDS {}: {}; {}", what, dds_strretcode(code),
-                                                        domain.log().last_line()));
+  return Status::error(ExitCode::resources,
+                       fmt::format("cannot create the DDS {}: {}{}", what, dds_strretcode(code), last_words(domain)));
 }
 
 // on Cyclone's receiving thread
@@ -143,8 +149,8 @@ Status CycloneTransport::create() {
     return Status::error(
         ExitCode::bad_input,
         fmt::format("the keys of this process are not good; nothing was started; 'slewring keys check' "
-                    "tells what is wrong with them; {}",
-                    domain_->log().last_line()));
+                    "tells what is wrong with them{}",
+                    last_words(*domain_)));
   }
   if (participant_ < 0) return creation_error("participant", participant_, *domain_);
   const Qos partition = partition_qos(options_.session);

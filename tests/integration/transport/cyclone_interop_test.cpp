@@ -234,8 +234,8 @@ TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
   EXPECT_EQ(
       misfits,
       (std::vector<std::string>{
-          who + "reads topic 'slewring/control_request' with a durability below the one that is asked for (transient "
-                "local); it is not heard; see idl/README.md",
+          who + "reads topic 'slewring/control_request' with a durability above the one that is offered (volatile); "
+                "it hears nothing; see idl/README.md",
           who + "writes topic 'slewring/mechanism' with reliability best effort, and reliable is asked for; it is "
                 "not heard; see idl/README.md",
           who + "writes topic 'slewring/session' with a durability below the one that is asked for (transient "
