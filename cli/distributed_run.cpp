@@ -175,7 +175,9 @@ class Supervisor {
 
   [[nodiscard]] bool is_place_held(const Node& node) const {
     const bool is_physics = node.role != Role::io && node.role != Role::recorder;
-    const bool runs = observer_->view().step() >= 0 && !observer_->view().is_over() && interrupts() == 0;
+    const NodeView& io = observer_->view().node(Role::io);
+    const bool runs =
+        io.is_known && io.status.state >= wire::NodeState::running && !observer_->view().is_over() && interrupts() == 0;
     return rejoin_.ns > 0 && is_physics && runs && deadline_ns_ == 0;
   }
 
@@ -298,7 +300,11 @@ class Supervisor {
         node.is_awaited = true;
         return say_kill(node, what_follows_of(node));
       }
-      report_kill(node, "; the others hold, end with code 4 and close the recording; run the session again");
+      report_kill(node,
+                  node.role == Role::recorder
+                      ? "; the others hold and end with code 4; 'slewring recover' makes the recording whole; run "
+                        "the session again"
+                      : "; the others hold, end with code 4 and close the recording; run the session again");
     }
     const bool is_wrong = end.signal != 0 || end.exit_code != 0;
     if (node.role == Role::io || is_wrong) {

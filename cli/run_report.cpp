@@ -228,13 +228,22 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
       report_variables(view_recording(*reader, Values::all), scene, report);
       report.lost = losses(*reader);
       const TickSpan span = tick_span(*reader);
-      report.steps = span.steps;
-      if (span.wall_time > 0) {
-        report.wall_time = span.wall_time;
-        report.paused_time = span.paused_time;
+      // a recording that could not go on knows less than what was seen of the session
+      const bool is_short = outcome.code == ExitCode::storage && span.steps < report.steps;
+      if (!is_short) {
+        report.steps = span.steps;
+        if (span.wall_time > 0) {
+          report.wall_time = span.wall_time;
+          report.paused_time = span.paused_time;
+        }
       }
-      if (report.steps > 0) {
+      if (span.steps > 0) {
         report.notes = explain_stalls(*reader, scene);
+        if (is_short) {
+          report.notes.push_back(
+              fmt::format("the recording ends after {}, and what is said of variables and losses is of it alone",
+                          duration_text(static_cast<double>(span.steps) * report.step)));
+        }
         for (std::string& flagged : explain_flags(*reader)) report.notes.push_back(std::move(flagged));
         keep_assets(scene, assets, outcome.recording);
         report.plots = write_plots(scene, outcome.recording);
