@@ -692,6 +692,9 @@ TEST_F(LockstepController, OneThatDiesIsHeldThenPutToNeutralAndEachIsTold) {
   ASSERT_EQ(told.size(), 1u);
   EXPECT_FALSE(told[0].is_granted);
   EXPECT_EQ(told[0].reason, "no value came for 5000 ms: channel Lever is free; acquire it again to go on");
+  const std::vector<std::string> printed = node->member().take_warnings();
+  ASSERT_FALSE(printed.empty());
+  EXPECT_EQ(printed.back(), told[0].reason);
 }
 
 TEST_F(LockstepController, OneThatIsBackInTimeIsWaitedForAgain) {
