@@ -1,0 +1,221 @@
+// Controllers that the ticks wait for.
+#include "tests/unit/io_node/played_io.h"
+
+namespace slew::io {
+namespace {
+
+class LockstepController : public Io {
+ protected:
+  void start(StepIndex delay, StepIndex every = 1) {
+    IoConfig lever = config();
+    lever.channels.push_back({.name = "Lever", .exchange = Exchange::lockstep, .delay = delay});
+    lever.gate.variables_every = every;
+    lever.variables_every = static_cast<std::uint32_t>(every);
+    lever.join_timeout = milliseconds(1000);
+    restart(std::move(lever));
+    join_all();
+  }
+  void say(wire::ControllerAction action, double value = 0, StepIndex based_on = kJoinStep) {
+    played.say(Topic::controller_input, wire::ControllerInput{"s", "pid", "Lever", action, value, 1, based_on});
+    poll();
+  }
+  // every sample is there: what may hold the next tick back is the controller
+  void give_samples() {
+    say_samples(node->next_step());
+    poll(kMs);
+  }
+  std::vector<wire::ControllerLease> leases() { return played.said<wire::ControllerLease>(Topic::controller_lease); }
+};
+
+TEST_F(LockstepController, StepZeroWaitsUntilItsChannelIsTaken) {
+  start(1);
+  live(900);
+  EXPECT_EQ(node->next_step(), 0);
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  EXPECT_EQ(node->member().reason(), "step 0 waits for a controller on channel Lever");
+  say(wire::ControllerAction::acquire);
+  EXPECT_EQ(node->member().state(), NodeState::running);
+  EXPECT_EQ(node->next_step(), 1);
+}
+
+TEST_F(LockstepController, ASessionWhoseControllerNeverComesEndsSayingSo) {
+  start(1);
+  live(1200);
+  EXPECT_EQ(node->next_step(), 0);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::failed);
+  EXPECT_EQ(
+      node->member().reason(),
+      "no controller took channel Lever within 1 s, and the scene has it as controller: lockstep; nothing was "
+      "computed; start the controller with the session (--join-timeout of io_node waits longer), or run with --set "
+      "Lever.controller=sampled");
+}
+
+TEST_F(LockstepController, APausedSessionWaitsForItWithoutEnd) {
+  start(1);
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  live(3000);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok);
+  EXPECT_EQ(node->next_step(), 0);
+}
+
+TEST_F(LockstepController, TheTickWaitsForTheValueOfItsStepAndTakesNoOther) {
+  start(2);
+  say(wire::ControllerAction::acquire);
+  give_samples();
+  ASSERT_EQ(node->next_step(), 2) << "ticks 0 and 1 are within the delay";
+  give_samples();
+  EXPECT_EQ(node->next_step(), 2);
+  say(wire::ControllerAction::write, 0.9, 1);
+  EXPECT_EQ(node->next_step(), 2) << "that is the value of the tick after the next";
+  say(wire::ControllerAction::write, 0.4, 0);
+  EXPECT_EQ(node->next_step(), 3);
+  say(wire::ControllerAction::write, -1, 0);  // too late
+  give_samples();
+  EXPECT_EQ(node->next_step(), 4);
+  const auto ticks = played.said<wire::Tick>(Topic::tick);
+  ASSERT_GE(ticks.size(), 4u);
+  const std::size_t first = ticks.size() - 4;
+  EXPECT_EQ(ticks[first].controls[0], 0);
+  EXPECT_EQ(ticks[first + 1].controls[0], 0);
+  EXPECT_EQ(ticks[first + 2].controls[0], 0.4);
+  EXPECT_EQ(ticks[first + 3].controls[0], 0.9);
+  EXPECT_EQ(ticks[first + 3].age[0], 2u);
+}
+
+TEST_F(LockstepController, OneThatDiesIsHeldThenPutToNeutralAndEachIsTold) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  for (StepIndex n = 0; n < 5; ++n) {
+    say(wire::ControllerAction::write, 0.5, n);
+    give_samples();
+  }
+  ASSERT_EQ(node->next_step(), 6);
+  static_cast<void>(leases());
+  give_samples();
+  EXPECT_EQ(node->next_step(), 6) << "it waits for 100 ms";
+  poll(98 * kMs);
+  EXPECT_EQ(node->next_step(), 6);
+  poll(2 * kMs);
+  EXPECT_EQ(node->next_step(), 7);
+  auto told = leases();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_TRUE(told[0].is_granted);
+  EXPECT_EQ(told[0].controller, "pid");
+  EXPECT_EQ(told[0].reason,
+            "tick 6 waited 100 ms for the value of 'pid' from step 5, its last one is from step 4; channel Lever holds "
+            "its value until it is in step again, for 200 ms");
+  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0.5);
+  run_to(220);  // nothing waits for it now
+  told = leases();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].reason, "'pid' has been out of step for 200 ms: channel Lever goes to neutral");
+  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0);
+  run_to(5300);
+  told = leases();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_FALSE(told[0].is_granted);
+  EXPECT_EQ(told[0].reason, "no value came for 5000 ms: channel Lever is free; acquire it again to go on");
+  const std::vector<std::string> printed = node->member().take_warnings();
+  ASSERT_FALSE(printed.empty());
+  EXPECT_EQ(printed.back(), told[0].reason);
+}
+
+TEST_F(LockstepController, OneThatIsBackInTimeIsWaitedForAgain) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  say(wire::ControllerAction::write, 0.5, 0);
+  give_samples();
+  give_samples();
+  poll(100 * kMs);
+  run_to(50);
+  static_cast<void>(leases());
+  say(wire::ControllerAction::write, 0.7, 30);  // too late still
+  run_to(51);
+  EXPECT_TRUE(leases().empty());
+  say(wire::ControllerAction::write, 0.6, 50);
+  give_samples();
+  const auto told = leases();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].reason, "'pid' is in step from tick 51 on; channel Lever had been without it since tick 2");
+  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0.6);
+  give_samples();
+  EXPECT_EQ(node->next_step(), 52);
+}
+
+TEST_F(LockstepController, ValuesOfStepsWithoutVariablesAreNotWaitedFor) {
+  start(1, 10);
+  say(wire::ControllerAction::acquire);
+  say(wire::ControllerAction::write, 0.5, 0);
+  run_to(11);
+  give_samples();
+  EXPECT_EQ(node->next_step(), 11) << "tick 11 takes the value of step 10";
+  say(wire::ControllerAction::write, 0.6, 10);
+  EXPECT_EQ(node->next_step(), 12);
+  run_to(21);
+}
+
+TEST_F(LockstepController, AValueThatIsNoNumberHoldsTheLastOneAndDoesNotStopTheTicks) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  say(wire::ControllerAction::write, 0.5, 0);
+  give_samples();
+  say(wire::ControllerAction::write, std::numeric_limits<double>::quiet_NaN(), 1);
+  give_samples();
+  EXPECT_EQ(node->next_step(), 3);
+  EXPECT_EQ(played.said<wire::Tick>(Topic::tick).back().controls[0], 0.5);
+}
+
+TEST_F(LockstepController, APauseIsNotItsFault) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  say(wire::ControllerAction::write, 0.5, 0);
+  give_samples();
+  ASSERT_EQ(node->next_step(), 2);
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  live(8000);
+  ASSERT_TRUE(request(wire::ControlAction::resume).is_accepted);
+  give_samples();
+  EXPECT_EQ(node->next_step(), 2);
+  say(wire::ControllerAction::write, 0.4, 1);
+  EXPECT_EQ(node->next_step(), 3);
+  for (const auto& lease : leases()) EXPECT_EQ(lease.reason, "");
+}
+
+TEST_F(LockstepController, AResetWaitsForItAgain) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  say(wire::ControllerAction::write, 0.5, 0);
+  give_samples();
+  ASSERT_TRUE(request(wire::ControlAction::reset).is_accepted);
+  poll(kMs);
+  for (const Role role : {Role::mechanics, Role::hydraulics}) {
+    wire::NodeStatus ready = played.status(role, NodeState::ready, 0);
+    ready.header.epoch = 1;
+    played.say(Topic::node_status, ready);
+  }
+  say_samples(0);
+  poll(kMs);
+  poll(kMs);
+  EXPECT_EQ(node->next_step(), 0);
+  say(wire::ControllerAction::write, 0.5, 0);
+  EXPECT_EQ(node->next_step(), 0) << "it has no channel";
+  say(wire::ControllerAction::acquire);
+  EXPECT_EQ(node->next_step(), 1);
+}
+
+TEST_F(LockstepController, LoopDelayIsAVariableInStepsAndInMilliseconds) {
+  start(2);
+  say(wire::ControllerAction::acquire);
+  for (StepIndex n = 0; n < 5; ++n) {
+    say(wire::ControllerAction::write, 0.5, n);
+    give_samples();
+  }
+  const auto values = last_variables();
+  EXPECT_EQ(values.at("Lever.loop_delay"), 2);
+  EXPECT_NEAR(values.at("Lever.loop_time_ms"), 2, 1e-9);
+  EXPECT_EQ(values.at("Lever.age"), 2);
+  EXPECT_EQ(values.at("session.late_controllers"), 0);
+}
+
+}  // namespace
+}  // namespace slew::io
