@@ -262,19 +262,20 @@ double missed(const wire::Health& health) noexcept {
   return static_cast<double>(health.overruns) / static_cast<double>(health.response.count);
 }
 
-Judgement judge(const wire::Health& health, const StressBounds& bounds) noexcept {
-  if (!is_stated(bounds) || health.response.count == 0) return Judgement::none;
-  const bool misses = bounds.max_miss >= 0 && missed(health) > bounds.max_miss;
-  const bool is_slow = bounds.p99 >= 0 && health.response.p99 > bounds.p99;
-  return misses || is_slow ? Judgement::over : Judgement::within;
+BrokenBounds broken_bounds(const wire::Health& health, const StressBounds& bounds) noexcept {
+  if (health.response.count == 0) return {};
+  return {.max_miss = bounds.max_miss >= 0 && missed(health) > bounds.max_miss,
+          .p99 = bounds.p99 >= 0 && health.response.p99 > bounds.p99};
 }
 
 Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept {
   // what the recorder lost is no deadline
   const bool has_run = cell.code == ExitCode::ok || cell.code == ExitCode::losses;
-  const bool is_measured = cell.nodes[static_cast<std::size_t>(Role::io)].response.count > 0;
-  if (is_stated(bounds) && cell.skipped.empty() && !(has_run && is_measured)) return Judgement::over;
-  return judge(cell.nodes[static_cast<std::size_t>(Role::io)], bounds);
+  const wire::Health& session = cell.nodes[static_cast<std::size_t>(Role::io)];
+  if (!is_stated(bounds) || !cell.skipped.empty()) return Judgement::none;
+  if (!has_run || session.response.count == 0) return Judgement::over;
+  const BrokenBounds broken = broken_bounds(session, bounds);
+  return broken.max_miss || broken.p99 ? Judgement::over : Judgement::within;
 }
 
 Stress run_stress(const StressWish& wish, const StressBounds& bounds, const StressProgress& progress) {

@@ -69,10 +69,16 @@ struct Stress {
 // Largest share of judged steps that overran; 0 when none was judged.
 [[nodiscard]] double missed(const wire::Health& health) noexcept;
 
+// Which of the stated bounds were not kept; neither when nothing was measured.
+struct BrokenBounds {
+  bool max_miss = false, p99 = false;
+};
+[[nodiscard]] BrokenBounds broken_bounds(const wire::Health& health, const StressBounds& bounds) noexcept;
+
 enum class Judgement : std::uint8_t { none, within, over };
-// Against the stated bounds; none when there are none, or nothing was measured. A session that failed is over.
+// Of the session against the stated bounds; none when there are none, or it was not run. One that failed, or in which
+// nothing was measured, is over.
 [[nodiscard]] Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept;
-[[nodiscard]] Judgement judge(const wire::Health& health, const StressBounds& bounds) noexcept;
 
 // doing, share of the whole; false ends it, with the cells that are done.
 using StressProgress = std::function<bool(std::string_view doing, double share)>;

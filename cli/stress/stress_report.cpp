@@ -29,6 +29,15 @@ double work_of(const StressCell& cell) {
   return work;
 }
 
+// which of the bounds that the session broke the bare loops broke too
+std::string shared_with_yardstick(const StressCell& cell, const StressBounds& bounds) {
+  const BrokenBounds session = broken_bounds(session_of(cell), bounds), bare = broken_bounds(cell.yardstick, bounds);
+  const bool misses = session.max_miss && bare.max_miss, is_slow = session.p99 && bare.p99;
+  if (!misses && !is_slow) return "";
+  if (misses == session.max_miss && is_slow == session.p99) return ", as the yardstick";
+  return misses ? ", as the yardstick in misses alone" : ", as the yardstick at p99 alone";
+}
+
 std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
   if (!cell.skipped.empty()) return "not run: " + cell.skipped;
   if (cell.code != ExitCode::ok && cell.code != ExitCode::losses) {
@@ -40,7 +49,7 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
     case Judgement::within:
       return "within";
     case Judgement::over:
-      return judge(cell.yardstick, bounds) == Judgement::over ? "over, as the yardstick" : "over";
+      return "over" + shared_with_yardstick(cell, bounds);
   }
   return "";
 }

@@ -1,0 +1,60 @@
+// What a stress test says of a cell, against stated bounds and a yardstick.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/stress/stress_report.h"
+
+namespace slew::cli {
+namespace {
+
+wire::Health timing(double missed, double p99) {
+  wire::Health health;
+  health.response.count = 1000;
+  health.overruns = static_cast<std::uint64_t>(1000 * missed);
+  health.response.p99 = p99;
+  return health;
+}
+
+struct Told {
+  std::string verdict;
+  int code;
+};
+
+Told tell(const wire::Health& session, const wire::Health& yardstick, StressBounds bounds = {0.01, 500e-6}) {
+  Stress stress;
+  stress.bounds = bounds;
+  StressCell& cell = stress.cells.emplace_back();
+  cell.nodes[static_cast<std::size_t>(wire::Role::io)] = session;
+  cell.yardstick = yardstick;
+  const auto json = nlohmann::json::parse(report_json(stress));
+  return {json.at("cells").at(0).at("verdict"), json.at("exit_code")};
+}
+
+TEST(StressVerdict, SaysWhichBoundsTheBareLoopsBreakToo) {
+  const wire::Health good = timing(0.005, 400e-6), late = timing(0.02, 400e-6), slow = timing(0.005, 600e-6),
+                     bad = timing(0.02, 600e-6);
+  EXPECT_EQ(tell(good, bad).verdict, "within");
+  EXPECT_EQ(tell(good, bad).code, 0);
+  EXPECT_EQ(tell(bad, bad).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(bad, bad).code, 3);
+  EXPECT_EQ(tell(late, bad).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(bad, good).verdict, "over");
+  EXPECT_EQ(tell(late, slow).verdict, "over") << "each is over another bound";
+  EXPECT_EQ(tell(bad, late).verdict, "over, as the yardstick in misses alone");
+  EXPECT_EQ(tell(bad, slow).verdict, "over, as the yardstick at p99 alone");
+}
+
+TEST(StressVerdict, IsGivenOfWhatIsStatedAlone) {
+  EXPECT_EQ(tell(timing(1, 1), timing(1, 1), {}).verdict, "");
+  EXPECT_EQ(tell(timing(1, 1), timing(1, 1), {}).code, 0);
+  EXPECT_EQ(tell(timing(1, 400e-6), timing(1, 1), {-1, 500e-6}).verdict, "within");
+}
+
+TEST(StressVerdict, NothingMeasuredKeepsNoBound) {
+  EXPECT_EQ(tell({}, {}).verdict, "over");
+  EXPECT_EQ(tell({}, {}).code, 3);
+}
+
+}  // namespace
+}  // namespace slew::cli
