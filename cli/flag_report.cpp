@@ -93,7 +93,7 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   for (const auto& [role, entry] : late) {
     if (entry.steps == 0 && entry.lost == 0) continue;
     sentences.push_back(
-        fmt::format("{}: free-running, {} of {} without the partner's sample ({:.2g} %), {} in a row at "
+        fmt::format("{}: free-running, {} of {} without the partner's sample ({:.3g} %), {} in a row at "
                     "most; {} never used",
                     node::to_text(role), entry.steps, counted(entry.all, "step", "steps"),
                     100.0 * static_cast<double>(entry.steps) / static_cast<double>(entry.all), entry.longest,

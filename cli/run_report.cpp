@@ -111,7 +111,7 @@ void add_deadlines(const RunReport& report, std::vector<std::vector<std::string>
   if (io.response.count > 0) {
     rows.push_back(
         {"deadline",
-         fmt::format("{} of {} later than {} ({:.2g} %), {} in a row at most; response {} median, {} p99, {} "
+         fmt::format("{} of {} later than {} ({:.3g} %), {} in a row at most; response {} median, {} p99, {} "
                      "max; release {} late p99",
                      io.overruns, counted(io.response.count, "step", "steps"), duration_text(report.step),
                      100.0 * static_cast<double>(io.overruns) / static_cast<double>(io.response.count),
