@@ -249,8 +249,8 @@ class IoNode final : public node::Node {
   std::int64_t last_tick_ns_ = 0;
   std::vector<std::int64_t> input_ns_;  // by channel, when the newest value came that no tick has used; 0: none
   std::array<wire::Health, wire::kRoles> healths_;
-  std::uint32_t told_verdicts_ = 0;       // kinds that were told on standard error, a bit each
-  std::int64_t controllers_due_ns_ = 0;   // 0: no step 0 waits for a controller to take its channel
+  bool has_told_slip_ = false, has_told_shedding_ = false;  // on standard error; what follows is in the recording
+  std::int64_t controllers_due_ns_ = 0;                     // 0: no step 0 waits for a controller to take its channel
   std::int64_t controllers_wait_ns_ = 0;  // since when tick n_ waits for controllers alone; 0: it does not
   std::vector<std::int64_t> tick_ns_;     // wall time of the last ticks, by step modulo their number
   std::int64_t deadline_ns_ = 0;          // of the stage

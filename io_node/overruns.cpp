@@ -3,8 +3,8 @@
 
 namespace slew::io {
 
-// A change that the overrun policy makes is an event: an answer that nobody asked for, in the recording; the first of a
-// kind is told to the user.
+// A change that the overrun policy makes is an event: an answer that nobody asked for, in the recording; a hold and the
+// first slip are told to the user.
 void IoNode::obey(const std::optional<Verdict>& verdict, std::int64_t now_ns) {
   if (!verdict || verdict->why.empty()) return;
   const char* then = "";
@@ -14,9 +14,8 @@ void IoNode::obey(const std::optional<Verdict>& verdict, std::int64_t now_ns) {
   }
   const std::string text = verdict->why + then;
   tell_event(text);
-  const std::uint32_t kind = 1u << static_cast<unsigned>(verdict->what);
-  if (verdict->what != Overrun::stop && (told_verdicts_ & kind) == 0) member_.warn(text);
-  told_verdicts_ |= kind;
+  if (verdict->what == Overrun::hold || (verdict->what == Overrun::slip && !has_told_slip_)) member_.warn(text);
+  has_told_slip_ |= verdict->what == Overrun::slip;
   if (verdict->what == Overrun::hold) {
     is_paused_ = true;
     single_steps_ = 0;
@@ -40,9 +39,8 @@ void IoNode::shed_load() {
   if (event.empty()) return;
   tell_event(event);
   ++timing().transitions;
-  constexpr std::uint32_t kShed = 1u << 31;
-  if ((told_verdicts_ & kShed) == 0) member_.warn(event + "; what follows of this kind is in the recording alone");
-  told_verdicts_ |= kShed;
+  if (!has_told_shedding_) member_.warn(event + "; what follows of this kind is in the recording alone");
+  has_told_shedding_ = true;
 }
 
 void IoNode::keep_books(std::int64_t now_ns) noexcept {

@@ -115,8 +115,8 @@ std::optional<Verdict> SessionClock::completed(StepIndex step, StepIndex n, std:
     timing_.add_response(response_ns, response_ns > H_);
     const auto run = static_cast<std::int64_t>(timing_.overrun_run.load(kRelaxed));
     if (rules_.policy == Overrun::slip || rules_.after == 0 || run != rules_.after) continue;
-    verdict = overrun(n, std::to_string(run) + " steps in a row were longer than " + milliseconds_text(H_) +
-                             " (session.overrun_after), the last one " + milliseconds_text(response_ns));
+    verdict = overrun(n, "the last " + std::to_string(run) + " steps were longer than " + milliseconds_text(H_) +
+                             " (session.overrun_after), the newest of them " + milliseconds_text(response_ns));
   }
   return verdict;
 }

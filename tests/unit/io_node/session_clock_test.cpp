@@ -108,7 +108,7 @@ TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
     const std::optional<Verdict> third = step(kMs);
     ASSERT_TRUE(third);
     EXPECT_EQ(third->what, policy);
-    EXPECT_NE(third->why.find("3 steps in a row were longer than 1.0 ms (session.overrun_after)"), std::string::npos)
+    EXPECT_NE(third->why.find("the last 3 steps were longer than 1.0 ms (session.overrun_after)"), std::string::npos)
         << third->why;
     n = 0;
   }
