@@ -105,7 +105,7 @@ ExitCode plot(const Options& options) {
                   "the scene of this recording has no plots; nothing was written; name the variables to plot");
   }
   if (!options.output.empty()) return draw(read_plots(scene, *reader), look, options.output);
-  fmt::print("{}\n", write_plots(scene, reader->path().string()));
+  fmt::print("{}\n", write_plots(scene, *reader));
   return ExitCode::ok;
 }
 

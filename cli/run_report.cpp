@@ -188,13 +188,12 @@ plotting::PlotOptions plot_heading(const recording::Reader& reader) {
   return options;
 }
 
-std::string write_plots(const scene::Scene& scene, const std::string& recording) {
-  const auto reader = open_recording(recording);
-  const std::vector<plotting::Plot> plots = read_plots(scene, *reader);
+std::string write_plots(const scene::Scene& scene, const recording::Reader& reader) {
+  const std::vector<plotting::Plot> plots = read_plots(scene, reader);
   if (plots.empty()) return "";
   const std::filesystem::path path =
-      std::filesystem::path(recording).parent_path() / (recording::file_name(scene.name) + ".svg");
-  const std::string text = plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(*reader));
+      reader.path().parent_path() / (recording::file_name(scene.name) + ".svg");
+  const std::string text = plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(reader));
   if (!replace_file(path, [&text](const auto& part) { return put_text(part, text); }).is_ok()) {
     throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
                                                       "; the recording is complete; free some space and use 'slewring "
@@ -246,7 +245,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
         }
         for (std::string& flagged : explain_flags(*reader)) report.notes.push_back(std::move(flagged));
         keep_assets(scene, assets, outcome.recording);
-        report.plots = write_plots(scene, outcome.recording);
+        report.plots = write_plots(scene, *reader);
       }
     } catch (const cli_support::Failure& failure) {
       // of a session that failed before its first step there is nothing to read, and that is no further failure

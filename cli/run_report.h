@@ -67,6 +67,6 @@ void print(const RunReport& report);
 [[nodiscard]] plotting::PlotOptions plot_heading(const recording::Reader& reader);
 
 // Writes these plots as one picture beside the recording. Returns its path; empty when the scene has none.
-[[nodiscard]] std::string write_plots(const scene::Scene& scene, const std::string& recording);
+[[nodiscard]] std::string write_plots(const scene::Scene& scene, const recording::Reader& reader);
 
 }  // namespace slew::cli
