@@ -472,10 +472,11 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
                                machine_of(identity_.host) + ") is gone";
   const bool is_given_up = peer.status.reason.find(own_loss) != std::string::npos;
   const std::string stood_still =
-      "stood still for " + seconds_text({stood_still_ns_}) + (stood_sending_ ? " (its network took nothing)" : "");
+      "stood still for " + seconds_text({stood_still_ns_}) + (stood_sending_ ? " while it sent" : "");
+  // who was stopped just then sent too
   const std::string remedy =
-      stood_sending_ ? "; look at the network of this machine (a cable, an interface that is down)"
-                     : "; look for what stopped the process (a signal, a debugger, lack of memory or of processors)";
+      std::string("; look for what stopped the process (a signal, a debugger, lack of memory or of processors)") +
+      (stood_sending_ ? " or took nothing from it (a cable that is out, an interface that is down)" : "");
   if (is_given_up && stood_still_ns_ > 0) {
     return "this node " + stood_still + " at step " + std::to_string(status_.header.step) +
            " and was given up after 2 s; session '" + session_.name + "' has ended" + remedy;

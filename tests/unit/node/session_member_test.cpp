@@ -304,8 +304,9 @@ TEST_F(Member, ThatCouldNotSendIsToldToLookAtItsNetwork) {
   EXPECT_EQ(watch_sender(3'000 * kMs), PeerEvent::none);
   EXPECT_EQ(watch_sender(4'212 * kMs), PeerEvent::lost);
   EXPECT_EQ(sender.end_text(about, "io is gone"),
-            "io is gone; this node itself had stood still for 2 s (its network took nothing), and after 2 s the "
-            "others give a node up; look at the network of this machine (a cable, an interface that is down)");
+            "io is gone; this node itself had stood still for 2 s while it sent, and after 2 s the others give a node "
+            "up; look for what stopped the process (a signal, a debugger, lack of memory or of processors) or took "
+            "nothing from it (a cable that is out, an interface that is down)");
 }
 
 // ---- other programs -------------------------------------------------------------------------------------------
