@@ -31,6 +31,8 @@ constexpr int kNotExecuted = static_cast<int>(ExitCode::resources);
   dup2(nothing, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
+  // the supervisor's sockets are not the node's
+  close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);
   // signals that the supervisor handles or ignores are the node's own matter
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGHUP}) std::signal(signal, SIG_DFL);
   sigset_t none;

@@ -414,13 +414,18 @@ class Supervisor {
       // one that had to be killed although nobody asked the session to end is a lost one
       const ExitCode of_killed = interrupt_code() != 0 ? ExitCode::terminated : ExitCode::node_lost;
       const auto of_node = end.signal != 0 ? of_killed : static_cast<ExitCode>(end.exit_code);
-      if (node.role == Role::io) of_io = of_node;
-      if (node.role != Role::io && of_others == ExitCode::ok) of_others = of_node;
+      if (node.role == Role::io) {
+        of_io = of_node;
+      } else if (of_others == ExitCode::ok && !(node.is_asked_to_end && of_node == ExitCode::terminated)) {
+        of_others = of_node;
+      }
     }
     const bool was_asked_to_end = of_io == ExitCode::interrupted || of_io == ExitCode::terminated;
     if (interrupt_code() != 0 && (of_io == ExitCode::ok || was_asked_to_end)) {
       return static_cast<ExitCode>(interrupt_code());
     }
+    // io was asked to end because of another one
+    if (was_asked_to_end && nodes_.front().is_asked_to_end && of_others != ExitCode::ok) return of_others;
     return of_io != ExitCode::ok ? of_io : of_others;
   }
 

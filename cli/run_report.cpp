@@ -191,8 +191,7 @@ plotting::PlotOptions plot_heading(const recording::Reader& reader) {
 std::string write_plots(const scene::Scene& scene, const recording::Reader& reader) {
   const std::vector<plotting::Plot> plots = read_plots(scene, reader);
   if (plots.empty()) return "";
-  const std::filesystem::path path =
-      reader.path().parent_path() / (recording::file_name(scene.name) + ".svg");
+  const std::filesystem::path path = reader.path().parent_path() / (recording::file_name(scene.name) + ".svg");
   const std::string text = plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(reader));
   if (!replace_file(path, [&text](const auto& part) { return put_text(part, text); }).is_ok()) {
     throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +

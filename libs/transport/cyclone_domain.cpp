@@ -142,7 +142,14 @@ Status enough_resources() {
   return Status::ok();
 }
 
+bool is_bound_to(int fd, const std::string& interface) {
+  std::array<char, IFNAMSIZ> device{};
+  socklen_t size = device.size();
+  return getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, device.data(), &size) == 0 && interface == device.data();
+}
+
 // Cyclone binds what it receives with to all addresses. Those sockets of this process hear loopback alone from now on.
+// To bind one a second time needs CAP_NET_RAW.
 Status confine_to_loopback(const std::string& interface) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     const int fd = std::atoi(entry.path().filename().c_str());
@@ -153,13 +160,14 @@ Status confine_to_loopback(const std::string& interface) {
     if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &type_size) != 0 || type != SOCK_DGRAM) continue;
     if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) continue;
     if (address.sin_family != AF_INET || address.sin_addr.s_addr != htonl(INADDR_ANY)) continue;
-    if (setsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(), static_cast<socklen_t>(interface.size())) == 0) {
+    if (is_bound_to(fd, interface) ||
+        setsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(), static_cast<socklen_t>(interface.size())) == 0) {
       continue;
     }
     return Status::error(
         ExitCode::resources,
-        fmt::format("cannot keep port {} to {}: {}; other machines could reach this process; Linux 5.7 "
-                    "or later is needed",
+        fmt::format("cannot keep port {} to {}: {}; other machines could reach this process, which ends; use "
+                    "Linux 5.7 or later, or give it CAP_NET_RAW",
                     ntohs(address.sin_port), interface, std::strerror(errno)));
   }
   return Status::ok();

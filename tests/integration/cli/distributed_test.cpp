@@ -3,6 +3,8 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "../../support/test_domain.h"
@@ -94,6 +96,20 @@ TEST_F(Distributed, ARunWithoutTheNodesProgramsSaysSoWithCode7) {
   const CommandResult result = run(alone.string(), with_domain({"run", scene_file("first_steps.yaml")}), work_.path());
   EXPECT_EQ(result.code, 7) << result.err;
   EXPECT_NE(result.err.find("build it, or install all programs together"), std::string::npos) << result.err;
+}
+
+TEST_F(Distributed, ANodeThatCannotBeginGivesTheRunItsCode) {
+  std::filesystem::copy_file(program_file("slewring"), work_.path() / "slewring");
+  for (const char* node : {"io_node", "hydraulics_node", "recorder_node"}) {
+    std::filesystem::create_symlink(program_file(node), work_.path() / node);
+  }
+  const std::filesystem::path broken = work_.path() / "mechanics_node";
+  std::ofstream(broken) << "#!/bin/sh\nsleep 1\necho 'mechanics_node: nothing works here' >&2\nexit 7\n";
+  std::filesystem::permissions(broken, std::filesystem::perms::owner_all);
+  const CommandResult result = run((work_.path() / "slewring").string(),
+                                   with_domain({"run", scene_file("truck_crane.yaml"), "--quiet"}), work_.path());
+  EXPECT_EQ(result.code, 7) << result.err;
+  EXPECT_NE(result.err.find("mechanics_node: nothing works here"), std::string::npos) << result.err;
 }
 
 TEST_F(Distributed, VerbsLookAtAndChangeARunningSession) {
