@@ -30,7 +30,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       parameters_(config_.parameters, config_.step),
       is_paused_(config_.starts_paused),
       clock_(config_.step, config_.overrun, timing()),
-      shedding_(config_.shed),
+      shedding_(config_.shed, (config_.required_roles & bit(Role::flex)) != 0 ? View::flex : View::none),
       input_ns_(config_.channels.size()),
       tick_ns_(static_cast<std::size_t>(kLoopMemory)),
       script_raw_(config_.channels.size(), kSaysNothing) {
@@ -360,9 +360,11 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
     }
     if (is_withheld()) {
       controllers_wait_ns_ = 0;
+      waits_for_.reset();
       return any;
     }
     if (!has_its_controllers(now_ns)) return any;
+    measure_wait(now_ns);
     if (!partners_allow(n_)) {
       ask_for_missing(now_ns);
       return any;
@@ -416,6 +418,17 @@ bool IoNode::may_wait_for_controllers(std::int64_t now_ns) noexcept {
   if (longest.ns == 0) return false;
   if (controllers_wait_ns_ == 0) controllers_wait_ns_ = now_ns;
   return now_ns - controllers_wait_ns_ < longest.ns;
+}
+
+// A tick that is due waits for the role whose sample is missing.
+void IoNode::measure_wait(std::int64_t now_ns) noexcept {
+  const std::int64_t from_ns = std::max(waits_since_ns_, due_ns(n_));
+  if (waits_for_ && clock_.is_judged(n_) && now_ns > from_ns) {
+    std::atomic<std::int64_t>& waited_ns = timing().waited_ns[static_cast<std::size_t>(*waits_for_)];
+    waited_ns.store(waited_ns.load(std::memory_order_relaxed) + now_ns - from_ns, std::memory_order_relaxed);
+  }
+  waits_for_ = holds_back(n_);
+  waits_since_ns_ = now_ns;
 }
 
 void IoNode::ask_for_missing(std::int64_t now_ns) {

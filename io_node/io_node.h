@@ -140,6 +140,7 @@ class IoNode final : public node::Node {
   [[nodiscard]] bool partners_allow(StepIndex n) const noexcept;
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept;
   void ask_for_missing(std::int64_t now_ns);
+  void measure_wait(std::int64_t now_ns) noexcept;
   void issue_tick(std::int64_t now_ns);
   [[nodiscard]] std::int64_t oldest_unused_input() noexcept;
   void send_tick(StepIndex step);
@@ -249,11 +250,14 @@ class IoNode final : public node::Node {
   std::int64_t last_tick_ns_ = 0;
   std::vector<std::int64_t> input_ns_;  // by channel, when the newest value came that no tick has used; 0: none
   std::array<wire::Health, wire::kRoles> healths_;
-  bool has_told_slip_ = false, has_told_shedding_ = false;  // on standard error; what follows is in the recording
-  std::int64_t controllers_due_ns_ = 0;                     // 0: no step 0 waits for a controller to take its channel
+  bool has_told_slip_ = false;            // on standard error; what follows is in the recording
+  std::uint32_t told_levels_ = 0;         // of shedding, a bit each, likewise
+  std::int64_t controllers_due_ns_ = 0;   // 0: no step 0 waits for a controller to take its channel
   std::int64_t controllers_wait_ns_ = 0;  // since when tick n_ waits for controllers alone; 0: it does not
-  std::vector<std::int64_t> tick_ns_;     // wall time of the last ticks, by step modulo their number
-  std::int64_t deadline_ns_ = 0;          // of the stage
+  std::optional<wire::Role> waits_for_;   // whose sample the next tick waits for
+  std::int64_t waits_since_ns_ = 0;
+  std::vector<std::int64_t> tick_ns_;  // wall time of the last ticks, by step modulo their number
+  std::int64_t deadline_ns_ = 0;       // of the stage
   int warnings_left_ = kControllerWarnings;
   node::ResendClock resend_;
   std::int64_t fault_seen_ns_ = 0;

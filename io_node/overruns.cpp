@@ -39,8 +39,9 @@ void IoNode::shed_load() {
   if (event.empty()) return;
   tell_event(event);
   ++timing().transitions;
-  if (!has_told_shedding_) member_.warn(event + "; what follows of this kind is in the recording alone");
-  has_told_shedding_ = true;
+  const std::uint32_t level = 1u << static_cast<unsigned>(shedding_.level());
+  if ((told_levels_ & level) == 0) member_.warn(event + "; the next time this is in the recording alone");
+  told_levels_ |= level;
 }
 
 void IoNode::keep_books(std::int64_t now_ns) noexcept {

@@ -64,6 +64,7 @@ class SessionClock {
 
   // The books as of now, into the node's timing. n: the next tick.
   void close(StepIndex n, std::int64_t now_ns) noexcept;
+  [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - first_) * H_ >= rules_.grace.ns; }
   [[nodiscard]] std::int64_t slip_ns() const noexcept { return all_slips_ns_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
 
@@ -74,7 +75,6 @@ class SessionClock {
     std::int64_t due_ns = 0, sent_ns = 0, input_ns = 0;
   };
 
-  [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - first_) * H_ >= rules_.grace.ns; }
   [[nodiscard]] Issued& issued(StepIndex n) noexcept { return issued_[static_cast<std::size_t>(n) % kDepth]; }
   [[nodiscard]] std::string in_words(const char* what, StepIndex n) const;
   StepIndex give_up(std::int64_t lag_ns) noexcept;

@@ -267,6 +267,9 @@ void PhysicsNode::receive_sample(std::span<const std::byte> bytes, Topic topic, 
   }
   if (!member_.fits(header, topic)) return;
   member_.heard(header, topic, now_ns);
+  samples_.for_each_missing(n_, [&](Role role, Topic missing, StepIndex) {
+    if (missing == topic) step_timing_.came(role, now_ns);
+  });
   samples_.receive(bytes, header, topic, n_, member_.refusals());
   if (is_follower() && header.phase == Phase::running && header.step > n_) measure_release(header.step);
 }

@@ -85,11 +85,19 @@ bool StepTiming::is_late() const noexcept {
   return deadline_ns_ > 0 && step_ >= first_ && computed_ns_ - release_.released_ns > deadline_ns_;
 }
 
+// How long the release was held back, as every tick is, by the partner whose sample came last: from when it was due,
+// or, where nothing has a time, from the end of the step before.
+std::int64_t StepTiming::held_back_ns() const noexcept {
+  const std::int64_t due_ns = deadline_ns_ > 0 ? std::max(published_ns_, released_ns_ + deadline_ns_) : published_ns_;
+  return std::max<std::int64_t>(0, std::min(came_.ns, release_.in_hand_ns) - due_ns);
+}
+
 void StepTiming::published() noexcept {
   const std::int64_t now_ns = monotonic_ns(), cpu_ns = thread_cpu_ns();
-  const std::int64_t before_ns = published_ns_, cpu_before_ns = cpu_ns_;
+  const std::int64_t before_ns = published_ns_, cpu_before_ns = cpu_ns_, held_ns = held_back_ns();
   published_ns_ = now_ns;
   cpu_ns_ = cpu_ns;
+  released_ns_ = release_.released_ns;
   const wire::Role partner = std::exchange(partner_, wire::Role::io);
   if (step_ < first_) return;
   timing_.release_jitter.record(release_.in_hand_ns - release_.released_ns);
@@ -102,7 +110,9 @@ void StepTiming::published() noexcept {
     const std::int64_t to_io_ns =
         partner == wire::Role::io ? begin_ns_ - before_ns
                                   : std::clamp<std::int64_t>(release_.in_hand_ns - before_ns, 0, begin_ns_ - before_ns);
-    add(timing_.waited_ns[0], to_io_ns);
+    const std::int64_t of_partner_ns = std::min(held_ns, to_io_ns);
+    add(timing_.waited_ns[0], to_io_ns - of_partner_ns);
+    add(timing_.waited_ns[static_cast<std::size_t>(came_.partner)], of_partner_ns);
     if (partner != wire::Role::io) {
       add(timing_.waited_ns[static_cast<std::size_t>(partner)], begin_ns_ - before_ns - to_io_ns);
     }

@@ -92,6 +92,8 @@ class StepTiming {
   void release(StepIndex step, std::int64_t released_ns) noexcept;
   // The step waits for a partner although it is released.
   void waits_for(wire::Role partner) noexcept { partner_ = partner; }
+  // The sample has come without which the next step cannot be done.
+  void came(wire::Role partner, std::int64_t now_ns) noexcept { came_ = {partner, now_ns}; }
   void begin(StepIndex step) noexcept;
   void computed() noexcept;
   // The step's response so far is beyond the deadline.
@@ -115,9 +117,15 @@ class StepTiming {
   StepIndex step_ = kJoinStep;
   Release release_;
   wire::Role partner_ = wire::Role::io;
+  struct Came {
+    wire::Role partner = wire::Role::io;
+    std::int64_t ns = 0;
+  } came_;
   std::int64_t begin_ns_ = 0, computed_ns_ = 0;
   // of the one before
-  std::int64_t published_ns_ = 0, cpu_ns_ = 0;
+  std::int64_t published_ns_ = 0, cpu_ns_ = 0, released_ns_ = 0;
+
+  [[nodiscard]] std::int64_t held_back_ns() const noexcept;
 };
 
 }  // namespace slew::node

@@ -269,6 +269,9 @@ void read_flexible_bodies(const Surroundings& surroundings, Scene& scene, Proble
   if (scene.session.flexible != coupling::ElasticExchange::once && !scene.has_modes()) {
     warnings.push_back({"session.flexible", "it has no effect: no body of the scene keeps modes", "", ""});
   }
+  if (scene.session.shed == ShedLoad::view && !scene.has_flexible_bodies()) {
+    warnings.push_back({"session.shed", "view leaves out nothing here: no body of the scene bends", "", "variables"});
+  }
 }
 
 bool Scene::has_modes() const noexcept {

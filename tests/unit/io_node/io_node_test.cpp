@@ -182,6 +182,25 @@ TEST_F(Io, KeepsBooksThatBalanceOverLagsPausesAndSingleSteps) {
   EXPECT_EQ(node->timing().overruns, overruns) << "a pause is no overrun";
 }
 
+TEST_F(Io, CountsForWhomTicksWaitThatAreDue) {
+  get_running();
+  run_to(10);
+  const auto waited = [this](Role role) { return node->timing().waited_ns[static_cast<std::size_t>(role)].load(); };
+  EXPECT_EQ(waited(Role::mechanics), 0) << "nobody was late";
+  poll(5 * kMs);
+  played.say_mechanism(10);
+  poll();
+  const std::int64_t of_mechanics = waited(Role::mechanics);
+  EXPECT_GE(of_mechanics, 4 * kMs);
+  EXPECT_LE(of_mechanics, 5 * kMs);
+  poll(2 * kMs);
+  played.say_actuators(10);
+  poll();
+  EXPECT_EQ(node->next_step(), 11);
+  EXPECT_EQ(waited(Role::mechanics), of_mechanics);
+  EXPECT_EQ(waited(Role::hydraulics), 2 * kMs);
+}
+
 TEST_F(Io, MeasuresFromAControllersValueToTheSamplesThatUsedIt) {
   IoConfig lever = config();
   lever.channels.push_back({.name = "Lever"});
@@ -222,11 +241,12 @@ TEST_F(Io, MeasuresFromTheOldestValueThatATickUses) {
 
 TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
   IoConfig shedding = config();
-  shedding.shed = Shed::view;
+  shedding.shed = Shed::variables;
   shedding.overrun.lag = milliseconds(1'000'000);
   restart(std::move(shedding));
   get_running();
-  constexpr auto kShed = static_cast<std::uint32_t>(wire::TickFlag::shed_view);
+  constexpr auto kShed = static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
+                         static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
   const auto flags = [this] { return played.said<wire::Tick>(Topic::tick).back().flags; };
   run_to(150);
   EXPECT_EQ(flags() & kShed, 0u);
@@ -235,11 +255,13 @@ TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
     say_samples(node->next_step());
     poll();
   }
-  EXPECT_EQ(flags(), kShed) << "the flex node's values alone are left out";
+  EXPECT_EQ(flags(), kShed);
   const auto events = played.said<wire::ControlReply>(Topic::control_reply);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events.front().request, 0u);
   EXPECT_EQ(events.front().reason.rfind("session.shed: ", 0), 0u) << events.front().reason;
+  EXPECT_EQ(node->member().take_warnings().back(),
+            events.front().reason + "; the next time this is in the recording alone");
   EXPECT_EQ(node->timing().transitions, 1u);
 }
 

@@ -17,7 +17,7 @@ class Shedding : public ::testing::Test {
     }
     return events;
   }
-  LoadShedding shedding{Shed::variables};
+  LoadShedding shedding{Shed::variables, View::flex};
   Steering steering = Steering::nobody;
   StepIndex n = 0;
   std::uint64_t judged = 0, overruns = 0;
@@ -30,7 +30,7 @@ TEST_F(Shedding, GoesLevelByLevelTheViewFirst) {
             "session.shed: at step 399 5 of the last 100 steps overran: from now on the values of the flex node's "
             "variables are left out");
   EXPECT_EQ(shedding.level(), Shed::view);
-  EXPECT_NE(go(100, 50).find("all variables"), std::string::npos);
+  EXPECT_NE(go(100, 50).find("all physics nodes"), std::string::npos);
   EXPECT_EQ(shedding.level(), Shed::variables);
   EXPECT_EQ(go(1000, 100), "") << "there is nothing more";
 }
@@ -57,10 +57,25 @@ TEST_F(Shedding, AControllerKeepsItsVariables) {
   EXPECT_EQ(shedding.level(), Shed::view);
 }
 
-TEST_F(Shedding, GoesNoFurtherThanItMay) {
-  shedding = LoadShedding(Shed::none);
+TEST_F(Shedding, WithoutAFlexNodeThereIsNoView) {
+  shedding = LoadShedding(Shed::variables, View::none);
+  EXPECT_NE(go(100, 5).find("all physics nodes"), std::string::npos);
+  EXPECT_EQ(shedding.level(), Shed::variables);
+  EXPECT_NE(go(2100, 0).find("nothing is left out"), std::string::npos);
+  EXPECT_EQ(shedding.level(), Shed::none);
+  go(100, 5);
+  ASSERT_EQ(shedding.level(), Shed::variables);
+  steering = Steering::controllers;
+  EXPECT_NE(go(1, 0).find("a controller steers: from now on nothing is left out"), std::string::npos);
+  EXPECT_EQ(go(500, 50), "");
+  shedding = LoadShedding(Shed::view, View::none);
   EXPECT_EQ(go(1000, 100), "");
-  shedding = LoadShedding(Shed::view);
+}
+
+TEST_F(Shedding, GoesNoFurtherThanItMay) {
+  shedding = LoadShedding(Shed::none, View::flex);
+  EXPECT_EQ(go(1000, 100), "");
+  shedding = LoadShedding(Shed::view, View::flex);
   go(1000, 100);
   EXPECT_EQ(shedding.level(), Shed::view);
 }

@@ -72,6 +72,22 @@ TEST_F(Timing, WaitingIsCountedForIoUntilTheReleaseAndThenForThePartner) {
   EXPECT_EQ(timing->waited_ns[2], for_partner) << "this one waited for io again";
 }
 
+TEST_F(Timing, AReleaseThatAPartnerHeldBackIsWaitedForWithThePartner) {
+  steps.set_deadline({kHour});
+  step(0, 2 * kHour);
+  steps.came(Role::hydraulics, monotonic_ns());
+  step(1, 0);
+  const std::int64_t late_ns = timing->waited_ns[2];
+  EXPECT_GT(late_ns, 0) << "step 1 was due an hour ago";
+  steps.came(Role::hydraulics, monotonic_ns());
+  step(2, 0);
+  EXPECT_EQ(timing->waited_ns[2], late_ns) << "step 2 is due in an hour, whenever the sample comes";
+  steps.set_deadline({0});
+  steps.came(Role::hydraulics, monotonic_ns());
+  step(3, 0);
+  EXPECT_GT(timing->waited_ns[2], late_ns) << "as fast as possible";
+}
+
 TEST_F(Timing, AStepWithoutReleaseBeginsAtOnce) {
   steps.set_deadline({kHour});
   steps.begin(5);
