@@ -6,6 +6,7 @@
 #include "cli/display.h"
 #include "cli/flag_report.h"
 #include "cli/recorded.h"
+#include "cli/recorded_events.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "node/identity.h"
@@ -17,6 +18,7 @@ namespace {
 struct Options {
   std::string recording;
   bool is_verifying = false;
+  bool has_all_events = false;
   bool is_json = false;
 };
 
@@ -83,6 +85,28 @@ std::vector<std::string> gaps_of(const recording::Reader& reader) {
   return gaps;
 }
 
+nlohmann::json events_json(const recording::Reader& reader) {
+  nlohmann::json events = nlohmann::json::array();
+  for (const RecordedEvent& event : recorded_events(reader)) {
+    events.push_back({{"step", event.step}, {"epoch", event.epoch}, {"text", event.text}});
+  }
+  return events;
+}
+
+// The first ones, unless all are asked for.
+void add_events(const recording::Reader& reader, bool has_all, std::vector<std::vector<std::string>>& rows) {
+  constexpr std::size_t kShown = 10;
+  const std::vector<RecordedEvent> events = recorded_events(reader);
+  const std::size_t shown = has_all ? events.size() : std::min(kShown, events.size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    const RecordedEvent& event = events[i];
+    rows.push_back(
+        {"event", fmt::format("step {}{}: {}", event.step,
+                              event.epoch == 0 ? "" : fmt::format(" of epoch {}", event.epoch), event.text)});
+  }
+  if (shown < events.size()) rows.push_back({"event", fmt::format("{} more: --events", events.size() - shown)});
+}
+
 nlohmann::json to_json(const recording::Reader& reader, double simulated) {
   const recording::SessionIdentity& identity = reader.identity();
   nlohmann::json topics = nlohmann::json::object();
@@ -103,10 +127,11 @@ nlohmann::json to_json(const recording::Reader& reader, double simulated) {
           {"end", end_of(reader)},
           {"gaps", gaps_of(reader)},
           {"notes", explain_flags(reader)},
+          {"events", events_json(reader)},
           {"topics", topics}};
 }
 
-void print(const recording::Reader& reader, double simulated) {
+void print(const recording::Reader& reader, double simulated, bool has_all_events) {
   const recording::SessionIdentity& identity = reader.identity();
   const TickSpan span = tick_span(reader);
   std::vector<std::vector<std::string>> rows = {
@@ -126,6 +151,7 @@ void print(const recording::Reader& reader, double simulated) {
   }
   for (std::string& gap : gaps_of(reader)) rows.push_back({"gap", std::move(gap)});
   for (std::string& flagged : explain_flags(reader)) rows.push_back({"note", std::move(flagged)});
+  add_events(reader, has_all_events, rows);
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
     rows.push_back({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});
   }
@@ -139,7 +165,7 @@ ExitCode show(const Options& options) {
   if (options.is_json) {
     fmt::print("{}\n", to_json(*reader, simulated).dump(2));
   } else {
-    print(*reader, simulated);
+    print(*reader, simulated, options.has_all_events);
     if (options.is_verifying) fmt::print("every byte was read and every checksum fits\n");
   }
   return ExitCode::ok;
@@ -152,6 +178,8 @@ void add_info(CLI::App& program, Action& action) {
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
   verb->add_flag("--verify", options->is_verifying, "read every byte and compare every checksum");
+  verb->add_flag("--events", options->has_all_events,
+                 "all requests, overruns, changes of shedding and of controllers, not the first ten alone");
   verb->add_flag("--json", options->is_json, "for machines");
   verb->footer("Example:\n  slewring info runs/truck_crane-20260501-102030");
   verb->callback([&action, options] { action = [options] { return show(*options); }; });

@@ -67,6 +67,19 @@ void report_variables(const SessionView& view, const scene::Scene& scene, RunRep
   }
 }
 
+// what was left out under load
+void report_left_out(const SessionView& view, RunReport& report) {
+  for (const Role role : wire::kPhysicsRoles) {
+    const NodeView& node = view.node(role);
+    if (node.blocks_left_out == 0) continue;
+    report.notes.push_back(
+        fmt::format("{}: {} of {} of its variables left out (session.shed){}; ranges and values at "
+                    "the end are of the others",
+                    node::to_text(role), node.blocks_left_out, counted(node.blocks, "block", "blocks"),
+                    node.left_out_since ? fmt::format(", from step {} to the end", *node.left_out_since) : ""));
+  }
+}
+
 std::string losses(const recording::Reader& reader) {
   const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
   if (summary == nullptr) return "unknown: the recording was not closed";
@@ -103,6 +116,18 @@ std::string timing_text(const wire::Health& health) {
   if (health.allocations >= 0)
     text += counted(static_cast<std::uint64_t>(health.allocations), "heap call; ", "heap calls; ");
   return text;
+}
+
+// of io: for whom ticks waited that were due
+std::string waits_text(const wire::Health& io) {
+  std::string text;
+  for (const Role role : wire::kPhysicsRoles) {
+    const double waited = io.waited[static_cast<std::size_t>(role)];
+    if (waited == 0) continue;
+    text +=
+        fmt::format("{}{} for {}", text.empty() ? "ticks waited " : ", ", duration_text(waited), node::to_text(role));
+  }
+  return text.empty() ? "" : text + "; ";
 }
 
 // How the session kept its deadlines, as io saw it.
@@ -219,11 +244,13 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
   }
   if (outcome.recording.empty()) {
     report_variables(outcome.view, scene, report);
+    report_left_out(outcome.view, report);
   } else {
     // the recording has every message; an observer may have missed some
     try {
       const auto reader = open_recording(outcome.recording);
-      report_variables(view_recording(*reader, Values::all), scene, report);
+      const SessionView recorded = view_recording(*reader, Values::all);
+      report_variables(recorded, scene, report);
       report.lost = losses(*reader);
       const TickSpan span = tick_span(*reader);
       // a recording that could not go on knows less than what was seen of the session
@@ -237,6 +264,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
       }
       if (span.steps > 0) {
         report.notes = explain_stalls(*reader, scene);
+        report_left_out(recorded, report);
         if (is_short) {
           report.notes.push_back(
               fmt::format("the recording ends after {}, and what is said of variables and losses is of it alone",
@@ -277,6 +305,7 @@ void print(const RunReport& report) {
   }
   for (const NodeReport& node : report.nodes) {
     std::string text;
+    if (node.role == node::to_text(Role::io)) text += waits_text(node.health);
     if (node.times.sum > 0) {
       text = fmt::format("step {} mean, {} max; ", duration_text(node.times.mean()), duration_text(node.times.max));
       text += timing_text(node.health);

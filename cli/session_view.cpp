@@ -140,6 +140,14 @@ void SessionView::take_directory(std::span<const std::byte> bytes) {
 void SessionView::take_block(std::span<const std::byte> bytes) {
   if (!transport::decode(bytes, block_) || node_of(block_.header) == nullptr) return;
   if (block_.header.phase != wire::Phase::running) return;
+  NodeView& node = *node_of(block_.header);
+  ++node.blocks;
+  if (!block_.values.empty()) {
+    node.left_out_since.reset();
+  } else {
+    ++node.blocks_left_out;
+    if (!node.left_out_since) node.left_out_since = block_.header.step;
+  }
   std::vector<VariableView>& variables = variables_[static_cast<std::size_t>(block_.header.role)];
   if (variables.size() < block_.first + block_.values.size()) variables.resize(block_.first + block_.values.size());
   for (std::size_t i = 0; i < block_.values.size(); ++i) {
@@ -150,6 +158,11 @@ void SessionView::take_block(std::span<const std::byte> bytes) {
     variable.step = block_.header.step;
   }
   step_ = std::max(step_, block_.header.step);
+}
+
+bool SessionView::is_left_out(std::string_view name) const {
+  const auto found = index_.find(name);
+  return found != index_.end() && nodes_[found->second.first].left_out_since;
 }
 
 bool is_pause(const wire::NodeStatus& io) noexcept {

@@ -31,6 +31,9 @@ struct NodeView {
   wire::Health health;
   StepTimes times;
   std::uint64_t steps_seen = 0;  // Health::steps_done of the last health message
+  // blocks of its variables, and those of them without values: left out under load
+  std::uint64_t blocks = 0, blocks_left_out = 0;
+  std::optional<StepIndex> left_out_since;
 };
 
 struct VariableView {
@@ -67,6 +70,8 @@ class SessionView {
   // All variables known so far, by role and index.
   [[nodiscard]] std::vector<const VariableView*> variables() const;
   [[nodiscard]] const VariableView* find(std::string_view name) const;
+  // Its values are left out at present: who publishes them is to do less.
+  [[nodiscard]] bool is_left_out(std::string_view name) const;
   // io_node's last answer to this controller about a channel; null before.
   [[nodiscard]] const wire::ControllerLease* lease(const std::string& controller, const std::string& channel) const;
 

@@ -46,7 +46,11 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
     nlohmann::json line = {{"step", step}, {"time", time}};
     for (const std::string& name : names) {
       const VariableView& variable = *view.find(name);
-      if (variable.step >= 0) line["values"][name] = variable.value;
+      if (view.is_left_out(name)) {
+        line["left_out"].push_back(name);
+      } else if (variable.step >= 0) {
+        line["values"][name] = variable.value;
+      }
     }
     fmt::print("{}\n", line.dump());
   } else {
@@ -54,7 +58,10 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
     const char* const missing = view.is_paused() ? "comes with the next step, after the pause" : "not yet published";
     for (const std::string& name : names) {
       const VariableView& variable = *view.find(name);
-      line += fmt::format("  {} {}", name, variable.step >= 0 ? quantity_text(variable.value, variable.unit) : missing);
+      line += fmt::format("  {} {}", name,
+                          view.is_left_out(name) ? "left out (session.shed)"
+                          : variable.step >= 0   ? quantity_text(variable.value, variable.unit)
+                                                 : missing);
     }
     fmt::print("{}\n", line);
   }

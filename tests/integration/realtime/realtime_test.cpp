@@ -187,6 +187,24 @@ TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterTheirFirstStep) {
   }
 }
 
+TEST_F(RealTime, WhatIsLeftOutUnderLoadIsTold) {
+  const CommandResult result = run_crane(
+      {"--step", "10 us", "--duration", "0.02", "--set", "session.shed=variables", "--set", "session.start_grace=0 s"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  for (const char* role : {"mechanics", "hydraulics"}) {
+    EXPECT_NE(result.out.find(std::string(role) + ": "), std::string::npos) << result.out;
+  }
+  EXPECT_NE(result.out.find(" blocks of its variables left out (session.shed), from step "), std::string::npos)
+      << result.out;
+  EXPECT_NE(result.err.find("io: warning: session.shed: at step "), std::string::npos) << result.err;
+  const std::filesystem::path folder = *std::filesystem::directory_iterator(work_.path() / "runs");
+  const CommandResult info = run("slewring", {"info", folder.string(), "--json"}, work_.path());
+  const json events = json::parse(info.out).at("events");
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const json& event) {
+    return event.at("text").get<std::string>().starts_with("session.shed: at step ") && event.at("step") > 0;
+  })) << info.out;
+}
+
 TEST_F(RealTime, StopsASessionThatCannotKeepUpWithCode3) {
   // a step of 10 us is beyond any machine with processes
   const CommandResult result = run_crane({"--step", "10 us", "--duration", "2", "--no-record", "--set",

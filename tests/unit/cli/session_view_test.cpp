@@ -87,6 +87,25 @@ TEST_F(SessionViewTest, KeepsValueAndExtremesOfEveryVariable) {
   EXPECT_EQ(view.find("C.force"), nullptr);
 }
 
+TEST_F(SessionViewTest, KnowsWhatIsLeftOut) {
+  SessionView view("crane");
+  tell(view, session_);
+  tell(view, directory(Role::mechanics, 1, 0, {"Cyl.force"}));
+  tell(view, directory(Role::io, 1, 0, {"session.lag"}));
+  tell(view, block(Role::mechanics, 1, {3}));
+  EXPECT_FALSE(view.is_left_out("Cyl.force"));
+  tell(view, block(Role::mechanics, 2, {}));
+  tell(view, block(Role::mechanics, 3, {}));
+  tell(view, block(Role::io, 3, {0}));
+  EXPECT_TRUE(view.is_left_out("Cyl.force"));
+  EXPECT_FALSE(view.is_left_out("session.lag"));
+  EXPECT_EQ(view.node(Role::mechanics).left_out_since, 2);
+  tell(view, block(Role::mechanics, 4, {5}));
+  EXPECT_FALSE(view.is_left_out("Cyl.force"));
+  EXPECT_EQ(view.node(Role::mechanics).blocks_left_out, 2u);
+  EXPECT_EQ(view.node(Role::mechanics).blocks, 4u);
+}
+
 TEST_F(SessionViewTest, NamesThatComeBeforeTheSessionAreKept) {
   SessionView view("crane");
   tell(view, directory(Role::mechanics, 1, 0, {"A.force"}));

@@ -1,0 +1,91 @@
+#include "cli/recorded_events.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "cli_support/failure.h"
+#include "node/identity.h"
+#include "transport/codec.h"
+#include "transport/wire.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::ControlAction;
+using wire::Topic;
+using Visit = recording::Reader::Visit;
+
+std::string request_text(const wire::ControlRequest& request) {
+  switch (request.action) {
+    case ControlAction::set_parameter:
+      return fmt::format(
+          "set {} to {:g}{}", request.path, request.value,
+          request.over_ns > 0 ? fmt::format(" over {:g} s", static_cast<double>(request.over_ns) * 1e-9) : "");
+    case ControlAction::get_parameter:
+      return "get " + request.path;
+    case ControlAction::pause:
+      return "pause";
+    case ControlAction::resume:
+      return "resume";
+    case ControlAction::step:
+      return fmt::format("step {:g}", request.value);
+    case ControlAction::reset:
+      return "reset";
+    case ControlAction::stop:
+      return "stop";
+    case ControlAction::save:
+      return "save";
+    case ControlAction::load:
+      return "load";
+  }
+  return "request";
+}
+
+std::string with_reason(std::string text, const std::string& reason) {
+  return reason.empty() ? text : text + ": " + reason;
+}
+
+std::string lease_text(const wire::ControllerLease& lease) {
+  const std::string what = lease.is_granted ? "controller {} has channel {}" : "controller {} does not have channel {}";
+  return with_reason(fmt::format(fmt::runtime(what), lease.controller, lease.channel), lease.reason);
+}
+
+}  // namespace
+
+std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
+  std::map<std::uint64_t, wire::ControlRequest> requests;
+  std::vector<RecordedEvent> events;
+  const auto topic = [](Topic which) { return std::string(node::to_text(which)); };
+  recording::MessageFilter filter;
+  filter.topics = {topic(Topic::control_request)};
+  // a damaged chunk ends the reading; what was in front of it counts
+  static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
+    wire::ControlRequest request;
+    if (transport::decode(message.payload, request)) requests[request.request] = std::move(request);
+    return Visit::go_on;
+  }));
+  filter.topics = {topic(Topic::control_reply), topic(Topic::controller_lease)};
+  static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
+    wire::ControlReply reply;
+    wire::ControllerLease lease;
+    if (message.channel->topic == filter.topics[1]) {
+      if (transport::decode(message.payload, lease)) {
+        events.push_back({lease.header.step, lease.header.epoch, lease_text(lease)});
+      }
+    } else if (transport::decode(message.payload, reply)) {
+      const auto asked = requests.find(reply.request);
+      const std::string answer = reply.is_accepted ? "accepted" : "refused";
+      const std::string text =
+          reply.request == 0
+              ? reply.reason
+              : with_reason((asked == requests.end() ? "request" : request_text(asked->second)) + " " + answer,
+                            reply.reason);
+      events.push_back({reply.header.step, reply.header.epoch, text});
+    }
+    return Visit::go_on;
+  }));
+  return events;
+}
+
+}  // namespace slew::cli
