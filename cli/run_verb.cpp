@@ -10,6 +10,7 @@
 #include "cli/run_session.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
+#include "cli_support/number_range.h"
 
 namespace slew::cli {
 
@@ -94,7 +95,7 @@ void add_running_options(CLI::App& verb, RunOptions& options) {
       ->capture_default_str();
   verb.add_option("--keep-free", options.keep_free_mb,
                   "room on its file system that the recording leaves to others; 0: none")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(cli_support::number_range(0.0, 1e9))
       ->type_name("MB")
       ->capture_default_str();
   verb.add_flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");

@@ -7,6 +7,7 @@
 #include "cli/session_view.h"
 #include "cli/survey.h"
 #include "cli/verbs.h"
+#include "cli_support/number_range.h"
 #include "node/identity.h"
 
 namespace slew::cli {
@@ -94,7 +95,7 @@ void add_sessions(CLI::App& program, Action& action) {
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   cli_support::add_network_options(*verb, options->network);
   verb->add_option("--time", options->seconds, "seconds to listen")
-      ->check(CLI::Range(0.1, 60.0))
+      ->check(cli_support::number_range(0.1, 60.0))
       ->type_name("S")
       ->capture_default_str();
   verb->add_flag("--json", options->is_json, "for machines");

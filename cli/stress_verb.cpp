@@ -10,6 +10,7 @@
 #include "cli/text_output.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
+#include "cli_support/number_range.h"
 
 namespace slew::cli {
 namespace {
@@ -91,7 +92,7 @@ void add_what(CLI::App& verb, Options& options) {
       ->capture_default_str();
   verb.add_flag("!--no-record", wish.scene.is_recording, "without a recorder");
   verb.add_option("--seconds", wish.seconds, "session time of every cell; a quarter of it more for the yardstick")
-      ->check(CLI::Range(0.5, 86400.0))
+      ->check(cli_support::number_range(0.5, 86400.0))
       ->type_name("S")
       ->capture_default_str();
 }
@@ -115,7 +116,7 @@ void add_cells(CLI::App& verb, Options& options) {
       ->type_name("LIST")
       ->group("Cells");
   verb.add_option("--add-work", options.wish.works_us, "CPU time added to every step of each physics node")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(cli_support::number_range(0.0, 1e6))
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("US")
@@ -129,12 +130,12 @@ void add_verdict(CLI::App& verb, Options& options) {
   verb.add_option_function<double>(
           "--max-miss", [&options](double percent) { options.bounds.max_miss = percent / 100; },
           "most steps that may be longer than the communication step")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(cli_support::number_range(0.0, 100.0))
       ->type_name("PERCENT")
       ->group("Verdict");
   verb.add_option_function<double>(
           "--p99", [&options](double us) { options.bounds.p99 = us * 1e-6; }, "longest response of 99 % of the steps")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(cli_support::number_range(0.0, 1e9))
       ->type_name("US")
       ->group("Verdict");
 }

@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "cli_support/number_range.h"
 #include "node/driver.h"
 
 namespace slew::cli {
@@ -89,7 +90,7 @@ void add_watch(CLI::App& program, Action& action) {
   verb->add_option("variables", options->variables, "names, or patterns with * and ?")->required()->type_name("VAR");
   cli_support::add_session_options(*verb, options->session, false);
   verb->add_option("--every", options->interval, "seconds between two lines")
-      ->check(CLI::Range(0.01, 3600.0))
+      ->check(cli_support::number_range(0.01, 3600.0))
       ->type_name("S")
       ->capture_default_str();
   verb->add_option("--count", options->count, "end after so many lines; 0: with the session")

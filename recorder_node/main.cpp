@@ -3,6 +3,7 @@
 
 #include "cli_support/carrier.h"
 #include "cli_support/node_program.h"
+#include "cli_support/number_range.h"
 #include "cli_support/subsystem_factory.h"
 #include "recorder_node/recorder_node.h"
 
@@ -43,7 +44,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   double keep_free_mb = static_cast<double>(recorder::kKeepFreeBytes) * 1e-6;
   app.add_option("--keep-free", keep_free_mb, "room on the file system that is left to others; 0: none")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(cli_support::number_range(0.0, 1e9))
       ->type_name("MB")
       ->capture_default_str();
   cli_support::add_version(app);

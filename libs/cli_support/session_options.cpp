@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli_support/number_range.h"
 #include "transport/cyclone_domain.h"
 #include "transport/wire.h"
 
@@ -90,7 +91,7 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
 
 void add_join_timeout(CLI::App& app, NodeOptions& options) {
   app.add_option("--join-timeout", options.join_timeout, "seconds to wait for the other nodes of the session")
-      ->check(CLI::Range(0.1, 86400.0))
+      ->check(number_range(0.1, 86400.0))
       ->type_name("S")
       ->capture_default_str()
       ->group("Session");
@@ -98,7 +99,7 @@ void add_join_timeout(CLI::App& app, NodeOptions& options) {
 
 void add_finding_options(CLI::App& app, NodeOptions& options) {
   app.add_option("--session-timeout", options.session_timeout, "seconds to wait for the session")
-      ->check(CLI::Range(0.1, 86400.0))
+      ->check(number_range(0.1, 86400.0))
       ->type_name("S")
       ->capture_default_str()
       ->group("Session");
@@ -117,7 +118,7 @@ void add_physics_node_options(CLI::App& app, NodeOptions& options) {
       ->capture_default_str();
   app.add_option("--add-work", options.added_work_us,
                  "CPU time that every step burns beside its own, to see what the machine bears")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_range(0.0, 1e6))
       ->type_name("US")
       ->group("Real time");
 }
