@@ -56,7 +56,7 @@ class Supervisor {
     for (const scene::CpuPlace& place : cpus_) {
       const auto role = std::find_if(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
                                      [&](Role of_place) { return node::to_text(of_place) == place.role; });
-      if (role != std::end(wire::kNodeRoles) && is_ours(*role)) check_cpu(place);
+      if (role != std::end(wire::kNodeRoles)) check_place(*role, place);
     }
     if (options.scene.input == "keyboard") keyboard_.emplace(scene);
   }
@@ -116,6 +116,17 @@ class Supervisor {
 
   // before anything is started
   static void check_cpu(const scene::CpuPlace& place) {
+  void check_place(Role role, const scene::CpuPlace& place) const {
+    // the list of a scene may name more than this session has
+    if ((roles_ & bit(role)) == 0 && !options_.cpus.empty()) {
+      throw cli_support::Failure(
+          ExitCode::bad_input,
+          fmt::format("--cpu {}={}: this session has no {} node; nothing was started; leave it out", place.role,
+                      place.cpu, place.role));
+    }
+    if (is_ours(role)) check_cpu(place);
+  }
+
     const std::vector<int> cpus = usable_cpus();
     if (std::binary_search(cpus.begin(), cpus.end(), place.cpu)) return;
     throw cli_support::Failure(

@@ -106,6 +106,17 @@ TEST_F(RealTime, AProcessorThatIsNotThereIsRefusedByNameOfThoseThatAre) {
   EXPECT_NE(role.err.find("'mechanic' is no role"), std::string::npos) << role.err;
 }
 
+TEST_F(RealTime, APlaceForANodeThatTheSessionDoesNotHaveIsRefusedOnTheCommandLine) {
+  for (const char* place : {"flex=0", "recorder=0"}) {
+    const CommandResult result = run_crane({"--no-record", "--cpu", place, "--duration", "0.1"});
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.err.find("slewring: --cpu " + std::string(place) + ": this session has no "), std::string::npos)
+        << result.err;
+  }
+  // the list of a scene is for all its runs
+  EXPECT_EQ(run_crane({"--no-record", "--set", "session.cpus='flex=0, recorder=0'", "--duration", "0.1"}).code, 0);
+}
+
 // the sanitizers make mlockall a call that does nothing, for their own memory is larger than any machine's
 constexpr bool kLocksMemory = AllocationGuard::kCounts;
 
