@@ -286,6 +286,10 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
   const io::SessionScene session = io::load_session_scene(wish.scene);
   const scene::Scene& scene = session.scene;
   stress.scene = scene.name;
+bool has_stepped(const StressCell& cell) noexcept {
+  return cell.steps > 0;
+}
+
   if (stress.wish.session.session.empty()) {
     stress.wish.session.session = cli_support::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
   }

@@ -66,6 +66,9 @@ struct Stress {
   std::vector<StressCell> cells;
 };
 
+// It was run, and its session began: there is something to tell of it.
+[[nodiscard]] bool has_stepped(const StressCell& cell) noexcept;
+
 // Largest share of judged steps that overran; 0 when none was judged.
 [[nodiscard]] double missed(const wire::Health& health) noexcept;
 

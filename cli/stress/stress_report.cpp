@@ -40,6 +40,7 @@ std::string shared_with_yardstick(const StressCell& cell, const StressBounds& bo
 
 std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
   if (!cell.skipped.empty()) return "not run: " + cell.skipped;
+  if (cell.code == ExitCode::interrupted || cell.code == ExitCode::terminated) return "interrupted";
   if (cell.code != ExitCode::ok && cell.code != ExitCode::losses) {
     return fmt::format("failed with code {}", static_cast<int>(cell.code));
   }
@@ -56,6 +57,8 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
 
 std::vector<std::string> row_of(const std::string& what, const wire::Health& health) {
   const wire::Quantiles& response = health.response;
+  // zeros would read as if they had been measured
+  if (response.count == 0) return {what, "-", "-", "-", "-", "-", "-", "-", "-", "-"};
   return {what,
           std::to_string(response.count),
           std::to_string(health.overruns),
@@ -75,14 +78,15 @@ std::string table_of(const Stress& stress) {
   for (const StressCell& cell : stress.cells) {
     const std::vector<std::string> cells = {std::string(to_text(cell.scheduling)), to_text(cell.load),
                                             fmt::format("{:g}", cell.work_us)};
-    const std::vector<std::string> around = {fmt::format("{:.1f}", cell.load_average),
-                                             fmt::format("{:.2f}", 100 * cell.steal)};
+    std::vector<std::string> around = {fmt::format("{:.1f}", cell.load_average),
+                                       fmt::format("{:.2f}", 100 * cell.steal)};
+    if (!has_stepped(cell)) around = {"-", "-"};
     std::vector<std::string> session = cells;
     for (std::string& text : row_of("session", session_of(cell))) session.push_back(std::move(text));
     session.insert(session.end(), around.begin(), around.end());
     session.push_back(verdict_text(cell, stress.bounds));
     rows.push_back(std::move(session));
-    if (!cell.skipped.empty()) continue;
+    if (cell.yardstick.response.count == 0) continue;
     std::vector<std::string> yardstick = {"", "", ""};
     const std::string name = fmt::format("yardstick {} us", microseconds_text(work_of(cell)));
     for (std::string& text : row_of(name, cell.yardstick)) yardstick.push_back(std::move(text));
@@ -126,6 +130,15 @@ nlohmann::json node_of(const wire::Health& health) {
   return node;
 }
 
+nlohmann::json yardstick_of(const StressCell& cell) {
+  nlohmann::json yardstick = timing_of(cell.yardstick);
+  yardstick["work"] = work_of(cell);
+  for (const YardstickLoop& loop : cell.yardstick_loops) {
+    yardstick["loops"][std::string(node::to_text(loop.role))] = loop.work.seconds();
+  }
+  return yardstick;
+}
+
 nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
   const wire::Health& io = session_of(cell);
   nlohmann::json json = {{"scheduling", to_text(cell.scheduling)},
@@ -136,12 +149,9 @@ nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
   json["exit_code"] = static_cast<int>(cell.code);
   json["messages"] = cell.messages;
   json["steps"] = cell.steps;
+  if (!has_stepped(cell)) return json;
   json["session"] = timing_of(io);
-  json["yardstick"] = timing_of(cell.yardstick);
-  json["yardstick"]["work"] = work_of(cell);
-  for (const YardstickLoop& loop : cell.yardstick_loops) {
-    json["yardstick"]["loops"][std::string(node::to_text(loop.role))] = loop.work.seconds();
-  }
+  if (cell.yardstick.response.count > 0) json["yardstick"] = yardstick_of(cell);
   json["load_average"] = cell.load_average;
   json["steal"] = cell.steal;
   json["busy"] = cell.busy;
@@ -171,7 +181,7 @@ std::string heading(const Stress& stress) {
 std::string report_text(const Stress& stress) {
   std::string text = heading(stress) + "\n" + table_of(stress);
   for (const StressCell& cell : stress.cells) {
-    if (cell.skipped.empty()) text += books_of(cell) + "\n";
+    if (has_stepped(cell)) text += books_of(cell) + "\n";
   }
   for (const StressCell& cell : stress.cells) {
     for (const std::string& message : cell.messages) text += message + "\n";

@@ -56,5 +56,41 @@ TEST(StressVerdict, NothingMeasuredKeepsNoBound) {
   EXPECT_EQ(tell({}, {}).code, 3);
 }
 
+// a cell that ended with this code before its first step, and without a word
+Stress not_begun(ExitCode code) {
+  Stress stress;
+  StressCell& cell = stress.cells.emplace_back();
+  cell.code = code;
+  cell.step = 1e-3;
+  cell.yardstick_loops.resize(4);
+  return stress;
+}
+
+TEST(StressVerdict, NothingIsToldOfACellThatDidNotBegin) {
+  const Stress stress = not_begun(ExitCode::failed);
+  const std::string text = report_text(stress);
+  EXPECT_NE(text.find("failed with code 1"), std::string::npos) << text;
+  EXPECT_EQ(text.find("steps due"), std::string::npos) << text;
+  EXPECT_EQ(text.find("yardstick"), std::string::npos) << text;
+  EXPECT_EQ(text.find("0.000"), std::string::npos) << text;
+  const auto json = nlohmann::json::parse(report_json(stress)).at("cells").at(0);
+  EXPECT_EQ(json.at("exit_code"), 1);
+  EXPECT_EQ(json.at("steps"), 0);
+  for (const char* measured : {"session", "yardstick", "books"}) EXPECT_FALSE(json.contains(measured)) << measured;
+}
+
+TEST(StressVerdict, WhatSomebodyEndedIsInterrupted) {
+  for (const ExitCode code : {ExitCode::interrupted, ExitCode::terminated}) {
+    Stress stress = not_begun(code);
+    const std::string text = report_text(stress);
+    EXPECT_NE(text.find("interrupted"), std::string::npos) << text;
+    EXPECT_EQ(text.find("failed"), std::string::npos) << text;
+    EXPECT_EQ(text.find("steps due"), std::string::npos) << text;
+    // of one that had begun there is something to tell
+    stress.cells.front().steps = 100;
+    EXPECT_NE(report_text(stress).find("steps due"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace slew::cli
