@@ -1,6 +1,7 @@
 // `slewring stress SCENE`: how well this machine keeps a scene's deadlines.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -29,6 +30,16 @@ struct LoadOptions {
   std::string kind, folder;
 };
 
+// A cell for each, the first of every value.
+template <typename T>
+void leave_out_repeats(std::vector<T>& values) {
+  std::vector<T> kept;
+  for (const T& value : values) {
+    if (std::find(kept.begin(), kept.end(), value) == kept.end()) kept.push_back(value);
+  }
+  values = std::move(kept);
+}
+
 void complete(Options& options) {
   StressWish& wish = options.wish;
   const bool all = options.is_matrix;
@@ -40,6 +51,9 @@ void complete(Options& options) {
     options.loads = all ? std::vector<std::string>{"none", "cpu", "mixed"} : std::vector<std::string>{"none"};
   }
   if (wish.works_us.empty()) wish.works_us = all ? std::vector<double>{0, 200} : std::vector<double>{0};
+  leave_out_repeats(options.schedulings);
+  leave_out_repeats(options.loads);
+  leave_out_repeats(wish.works_us);
   for (const std::string& text : options.schedulings) {
     wish.schedulings.push_back(text == "fifo" ? Scheduling::fifo : Scheduling::normal);
   }
@@ -47,12 +61,14 @@ void complete(Options& options) {
     wish.loads.push_back(text == "cpu" ? Load::cpu : text == "mixed" ? Load::mixed : Load::none);
   }
   wish.scene.pace = "real";
+  static_cast<void>(cli_support::load_scene(wish.scene));     // what is replaced below is refused as everywhere
   wish.scene.overrides.emplace_back("session.overrun=slip");  // a cell goes on to its end
   wish.scene.duration = fmt::format("{} s", wish.seconds);
 }
 
 ExitCode run(Options options) {
   complete(options);
+  if (!options.page.empty()) require_writable(options.page);
   count_interrupts();
   Stress stress;
   {
@@ -98,11 +114,14 @@ void add_what(CLI::App& verb, Options& options) {
 }
 
 void add_cells(CLI::App& verb, Options& options) {
-  verb.add_flag("--matrix", options.is_matrix,
-                "all cells: normal and fifo, no, cpu and mixed load, 0 and 200 us added; without it one of them")
-      ->group("Cells");
-  verb.add_flag("--rt", options.is_real_time, "the one cell with SCHED_FIFO")->group("Cells");
+  CLI::Option* matrix =
+      verb.add_flag("--matrix", options.is_matrix,
+                    "all cells: normal and fifo, no, cpu and mixed load, 0 and 200 us added; without it one of them")
+          ->group("Cells");
+  CLI::Option* real_time =
+      verb.add_flag("--rt", options.is_real_time, "the one cell with SCHED_FIFO")->excludes(matrix)->group("Cells");
   verb.add_option("--scheduling", options.schedulings, "normal, fifo")
+      ->excludes(real_time)
       ->check(CLI::IsMember({"normal", "fifo"}))
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -1,6 +1,8 @@
 #include "cli/text_output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -45,6 +47,31 @@ Status put_text(const std::filesystem::path& path, const std::string& text) {
   file << text;
   file.close();
   return file ? Status::ok() : failed(path, std::strerror(errno));
+}
+
+void require_writable(const std::string& path) {
+  if (path == "-") return;
+  std::error_code error;
+  const std::filesystem::file_status there = std::filesystem::status(path, error);
+  errno = 0;
+  bool is_writable = false;
+  if (std::filesystem::is_directory(there)) {
+    errno = EISDIR;
+  } else if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
+    is_writable = access(path.c_str(), W_OK) == 0;
+  } else {
+    const std::string part = path + ".part";
+    const int file = open(part.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0666);
+    is_writable = file >= 0;
+    if (is_writable) {
+      close(file);
+      std::filesystem::remove(part, error);
+    }
+  }
+  if (is_writable) return;
+  throw cli_support::Failure(
+      ExitCode::storage, fmt::format("{}: cannot be written ({}); nothing was done; choose another place with -o", path,
+                                     std::strerror(errno)));
 }
 
 void write_text(const std::string& path, const std::string& text) {

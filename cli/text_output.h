@@ -18,6 +18,9 @@ namespace slew::cli {
 // Writes to the path as it is. Error storage.
 [[nodiscard]] Status put_text(const std::filesystem::path& path, const std::string& text);
 
+// Before long work: throws Failure (storage) when write_text() could not write there now. What is there stays as it is.
+void require_writable(const std::string& path);
+
 // Replaces a file; "-" is standard output. Throws Failure (storage).
 void write_text(const std::string& path, const std::string& text);
 
