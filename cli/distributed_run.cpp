@@ -50,7 +50,8 @@ class Supervisor {
         text_(scene),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
-        rejoin_(duration_of_seconds(scene.session.rejoin)) {
+        rejoin_(duration_of_seconds(scene.session.rejoin)),
+        is_refusal_told_(options.is_refusal_told) {
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
     cli_support::require(scene::parse_cpu_places(places, cpus_));
     for (const scene::CpuPlace& place : cpus_) {
@@ -115,7 +116,6 @@ class Supervisor {
   }
 
   // before anything is started
-  static void check_cpu(const scene::CpuPlace& place) {
   void check_place(Role role, const scene::CpuPlace& place) const {
     // the list of a scene may name more than this session has
     if ((roles_ & bit(role)) == 0 && !options_.cpus.empty()) {
@@ -127,6 +127,7 @@ class Supervisor {
     if (is_ours(role)) check_cpu(place);
   }
 
+  static void check_cpu(const scene::CpuPlace& place) {
     const std::vector<int> cpus = usable_cpus();
     if (std::binary_search(cpus.begin(), cpus.end(), place.cpu)) return;
     throw cli_support::Failure(
@@ -452,6 +453,7 @@ class Supervisor {
     outcome.steps = std::max<StepIndex>(0, outcome.view.step() - begin_);
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();
+    outcome.is_refusal_told = is_refusal_told_;
     return outcome;
   }
 
@@ -470,7 +472,7 @@ class Supervisor {
   bool is_node_killed_ = false;
   bool is_recorder_awaited_ = false;  // it still writes when everybody else has ended
   bool is_ending_ = false;
-  bool is_refusal_told_ = false;
+  bool is_refusal_told_;
   int obeyed_ = 0;
   std::int64_t deadline_ns_ = 0;
   std::int64_t asked_ns_ = 0;  // when those that were left were asked to end

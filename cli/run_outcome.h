@@ -25,8 +25,9 @@ struct RunOptions {
   bool is_monolithic = false;
   std::string rtol;  // of a monolithic run; empty: the scene's
   bool is_real_time = false;
-  std::string cpus;          // "mechanics=1, hydraulics=0"; empty: as the scene says
-  double added_work_us = 0;  // CPU time that every step of a physics node burns beside its own
+  bool is_refusal_told = false;  // that it was refused: not once more
+  std::string cpus;              // "mechanics=1, hydraulics=0"; empty: as the scene says
+  double added_work_us = 0;      // CPU time that every step of a physics node burns beside its own
   // of a distributed run, some 50 times a second; false asks the session to end
   std::function<bool(Observer&, std::int64_t now_ns)> each_round;
   bool is_json = false;
@@ -52,6 +53,7 @@ class RunClock {
 struct RunOutcome {
   ExitCode code = ExitCode::ok;
   bool has_begun = false;             // the session came into being
+  bool is_refusal_told = false;       // of real-time scheduling or locked memory
   std::vector<std::string> messages;  // why it did not end well, the cause first
   std::string recording;              // path; empty: none
   SessionView view;                   // as seen while it ran

@@ -6,11 +6,13 @@
 //           (4 MiB each) and sends datagrams of 1400 bytes to itself
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/child_process.h"
+#include "core/status.h"
 
 namespace slew::cli {
 
@@ -24,11 +26,16 @@ class LoadProcesses {
   // folder: where the files of a mixed load come and go.
   LoadProcesses(Load load, const std::string& folder);
 
+  // Error when one of them has ended: with its exit code and last words; what was measured then was measured without
+  // it. Does not block.
+  [[nodiscard]] Status check();
+
  private:
+  Load load_;
   std::vector<std::unique_ptr<ChildProcess>> processes_;
 };
 
-// For such a process: works until it is killed. kind: cpu, memory, disk, network.
+// For such a process: works until it is killed; throws Failure when it cannot. kind: cpu, memory, disk, network.
 void work_as(const std::string& kind, const std::string& folder);
 
 }  // namespace slew::cli

@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <thread>
 
 #include "cli/distributed_run.h"
+#include "cli/interrupts.h"
 #include "cli/observer.h"
+#include "cli/stress/passing_folder.h"
 #include "cli/stress/yardstick.h"
 #include "cli_support/failure.h"
 #include "io_node/scene_config.h"
@@ -210,13 +212,37 @@ std::string name_of(const StressCell& cell) {
   return fmt::format("{}, load {}, {:g} us added", to_text(cell.scheduling), to_text(cell.load), cell.work_us);
 }
 
-void run_cell(const StressWish& wish, const io::SessionScene& session, StressCell& cell,
-              const std::function<bool(double)>& progress) {
+// The recorder's remedies name an option of `run`.
+std::string in_words_of_stress(std::string message) {
+  const auto replace = [&message](std::string_view what, std::string_view by) {
+    const std::size_t at = message.find(what);
+    if (at != std::string::npos) message.replace(at, what.size(), by);
+  };
+  replace("--out DIR, or leave less with --keep-free MB", "--folder DIR");
+  replace("--out DIR", "--folder DIR");
+  return message;
+}
+
+// What came of the session, and of the load beside it.
+void conclude(const RunOutcome& outcome, const Status& load, StressCell& cell) {
+  cell.code = outcome.code;
+  for (const std::string& message : without_echoes(outcome.messages)) {
+    cell.messages.push_back(in_words_of_stress(message));
+  }
+  cell.steps = outcome.steps;
+  if (load.is_ok() || interrupts() > 0) return;
+  // the session was asked to end: that it did is no message
+  if (outcome.code == ExitCode::ok || outcome.code == ExitCode::terminated) cell.messages.clear();
+  cell.messages.insert(cell.messages.begin(), load.text);
+  cell.code = load.code;
+}
+
+void run_cell(const StressWish& wish, const io::SessionScene& session, const std::string& folder, StressCell& cell,
+              bool& is_refusal_told, const std::function<bool(double)>& progress) {
   const scene::Scene& scene = session.scene;
-  const std::string runs = wish.folder + "/stress-" + std::to_string(getpid());
-  std::error_code ignored;
-  std::filesystem::create_directories(runs, ignored);
+  const std::string runs = folder + "/recordings";
   RunOptions options = options_of(wish, cell, runs);
+  options.is_refusal_told = is_refusal_told;
   const std::string places = wish.cpus.empty() ? scene.session.cpus : wish.cpus;
   YardstickRules rules;
   rules.step = scene.session.step_duration();
@@ -224,30 +250,33 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, StressCel
   const auto recording = wish.scene.is_recording ? io::Recording::required : io::Recording::none;
   rules.loops = loops_of(cell.scheduling, io::required_roles(scene, recording), places);
   CellWatch watch(rules, scene.session.steps(), cell);
+  Status of_load;
+  std::optional<LoadProcesses> load;
   options.each_round = [&](Observer& observer, std::int64_t now_ns) {
     watch.look(observer, now_ns);
+    if (of_load.is_ok()) of_load = load->check();
+    if (!of_load.is_ok()) return false;
     const auto step = static_cast<double>(std::max<StepIndex>(0, observer.view().step()));
     return progress(step / static_cast<double>(scene.session.steps()));
   };
   const CpuTicks before = cpu_ticks();
-  RunOutcome outcome;
-  {
-    const LoadProcesses load(cell.load, runs);
-    outcome = run_distributed(options, session);
-    cell.load_average = load_average();
-  }
+  load.emplace(cell.load, folder);
+  const RunOutcome outcome = run_distributed(options, session);
+  cell.load_average = load_average();
+  if (of_load.is_ok()) of_load = load->check();
+  load.reset();
+  is_refusal_told = outcome.is_refusal_told;
   const CpuTicks after = cpu_ticks();
   watch.finish();
   cell.steal = steal_between(before, after);
   cell.busy = busy_between(before, after);
-  cell.code = outcome.code;
-  cell.messages = without_echoes(outcome.messages);
-  cell.steps = outcome.steps;
+  conclude(outcome, of_load, cell);
   cell.step = scene.session.step;
   if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;
   for (const Role role : wire::kNodeRoles) cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;
   const std::string of_session = io::problem_of_books(outcome.view.node(Role::io).health, rules.step);
-  if (!of_session.empty()) cell.books = "session: " + of_session;
+  if (has_stepped(cell) && !of_session.empty()) cell.books = "session: " + of_session;
+  std::error_code ignored;
   std::filesystem::remove_all(runs, ignored);
 }
 
@@ -255,6 +284,10 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, StressCel
 
 std::string_view to_text(Scheduling scheduling) {
   return scheduling == Scheduling::fifo ? "FIFO" : "normal";
+}
+
+bool has_stepped(const StressCell& cell) noexcept {
+  return cell.steps > 0;
 }
 
 double missed(const wire::Health& health) noexcept {
@@ -286,10 +319,6 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
   const io::SessionScene session = io::load_session_scene(wish.scene);
   const scene::Scene& scene = session.scene;
   stress.scene = scene.name;
-bool has_stepped(const StressCell& cell) noexcept {
-  return cell.steps > 0;
-}
-
   if (stress.wish.session.session.empty()) {
     stress.wish.session.session = cli_support::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
   }
@@ -316,12 +345,14 @@ bool has_stepped(const StressCell& cell) noexcept {
       }
     }
   }
+  const PassingFolder folder(wish.folder);
+  bool is_refusal_told = false;
   const double all = static_cast<double>(stress.cells.size());
   for (std::size_t i = 0; i < stress.cells.size(); ++i) {
     StressCell& cell = stress.cells[i];
     if (!cell.skipped.empty()) continue;
     bool goes_on = true;
-    run_cell(stress.wish, session, cell, [&](double share) {
+    run_cell(stress.wish, session, folder.path(), cell, is_refusal_told, [&](double share) {
       goes_on = goes_on && progress(name_of(cell), (static_cast<double>(i) + std::min(1.0, share)) / all);
       return goes_on;
     });

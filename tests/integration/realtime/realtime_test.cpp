@@ -171,6 +171,19 @@ TEST_F(RealTime, MemoryThatMayNotBeLockedLeavesTheScheduling) {
   EXPECT_EQ(result.err.find("SCHED_FIFO"), std::string::npos) << result.err;
 }
 
+TEST_F(RealTime, StressTellsOnceThatMemoryMayNotBeLocked) {
+  if (!kLocksMemory) GTEST_SKIP() << "the sanitizers lock no memory";
+  if (geteuid() != 0) GTEST_SKIP() << "needs the right to SCHED_FIFO: run it as root";
+  const CommandResult result =
+      run_without("ipc_lock", {"stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()),
+                               "--rt", "--add-work", "0,10", "--seconds", "1.1", "--quiet", "--no-record"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const std::string refusal = "locking memory was refused (";
+  const std::size_t first = result.err.find(refusal);
+  ASSERT_NE(first, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "said twice: " << result.err;
+}
+
 TEST_F(RealTime, ABoundThatCouldNotBeMeasuredIsNotKept) {
   rlimit allowed{};
   getrlimit(RLIMIT_RTPRIO, &allowed);

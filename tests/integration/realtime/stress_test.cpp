@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -16,10 +18,20 @@ using nlohmann::json;
 
 class Stress : public ::testing::Test {
  protected:
-  CommandResult stress(std::vector<std::string> more) const {
+  std::vector<std::string> arguments(std::vector<std::string> more) const {
     more.insert(more.begin(), {"stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()),
                                "--quiet", "--seconds", "2"});
-    return run("slewring", more, work_.path());
+    return more;
+  }
+  CommandResult stress(std::vector<std::string> more) const {
+    return run("slewring", arguments(std::move(more)), work_.path());
+  }
+  void expect_refused(const std::vector<std::string>& more, int code, const std::string& says) const {
+    const CommandResult result = stress(more);
+    EXPECT_EQ(result.code, code) << result.err;
+    EXPECT_NE(result.err.find(says), std::string::npos) << result.err << "\nexpected: " << says;
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
   }
   static void expect_ordered(const json& times) {
     EXPECT_GT(times.at("count"), 0);
@@ -83,7 +95,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   EXPECT_NE(text.find("normal, load mixed, 0 us added"), std::string::npos);
   EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "asks for nothing from elsewhere";
   // what came is gone again
-  EXPECT_TRUE(std::filesystem::is_empty(work_.path() / "runs"));
+  EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
 }
 
 TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
@@ -97,10 +109,13 @@ TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
 TEST_F(Stress, WorkThatIsAddedIsDone) {
   // twice the step's time: every step overruns, all of them in a row, and the session falls behind; it goes on to its
   // end whatever the scene would have it do
-  const CommandResult result = stress({"--json", "--no-record", "--add-work", "2000", "--set",
-                                       "session.start_grace=0 s", "--set", "session.overrun=hold"});
+  const CommandResult result =
+      stress({"--json", "--no-record", "--add-work", "2000,2e3", "--load", "none,none", "--scheduling", "normal,normal",
+              "--set", "session.start_grace=0 s", "--set", "session.overrun=hold"});
   ASSERT_EQ(result.code, 0) << result.err;
-  const json cell = json::parse(result.out).at("cells").at(0);
+  const json cells = json::parse(result.out).at("cells");
+  ASSERT_EQ(cells.size(), 1u) << "what is named twice is measured once";
+  const json& cell = cells.at(0);
   EXPECT_GE(cell.at("nodes").at("mechanics").at("execution").at("min"), 2e-3);
   EXPECT_GE(cell.at("session").at("missed_share"), 0.99);
   EXPECT_GE(cell.at("yardstick").at("missed_share"), 0.99);
@@ -116,6 +131,53 @@ TEST_F(Stress, RefusesWhatHasNoDeadline) {
   const CommandResult result = stress({"--set", "session.solution=monolithic"});
   EXPECT_EQ(result.code, 2);
   EXPECT_NE(result.err.find("a monolithic solution has no deadline"), std::string::npos) << result.err;
+}
+
+TEST_F(Stress, RefusesBeforeAnythingIsMeasuredAndLeavesNothing) {
+  expect_refused({"--rt", "--scheduling", "normal"}, 2, "--rt excludes --scheduling");
+  expect_refused({"--rt", "--matrix"}, 2, "excludes --rt");
+  expect_refused({"--set", "session.overrun=halt"}, 2, "session.overrun=halt: is 'halt'; expected slip, hold or stop");
+  expect_refused({"--cpu", "mechanics=1000"}, 2, "mechanics=1000: there is no processor 1000");
+  expect_refused({"--cpu", "flex=0"}, 2, "--cpu flex=0: this session has no flex node; nothing was started");
+  expect_refused({"--input", "nofile.csv"}, 2, "nofile.csv: cannot be read");
+  expect_refused({"--folder", "/dev/null/x"}, 6, "; nothing was run; choose another folder with --folder DIR");
+  expect_refused({"-o", "/nonexistent/x.html"}, 6,
+                 "/nonexistent/x.html: cannot be written (No such file or directory); nothing was done; choose another "
+                 "place with -o");
+  expect_refused({"-o", "."}, 6, ".: cannot be written (Is a directory)");
+}
+
+TEST_F(Stress, ALoadThatCannotWorkFailsItsCell) {
+  // less than a file of the load
+  std::vector<std::string> command = arguments({"--no-record", "--json", "--load", "mixed", "--max-miss", "100"});
+  command.insert(command.begin(), {"--fsize=1000000:1000000", program_file("slewring").string()});
+  const CommandResult result = run("/usr/bin/prlimit", command, work_.path());
+  EXPECT_EQ(result.code, 6) << result.err;
+  const json cell = json::parse(result.out).at("cells").at(0);
+  EXPECT_EQ(cell.at("verdict"), "failed with code 6");
+  ASSERT_EQ(cell.at("messages").size(), 1u) << cell;
+  const std::string message = cell.at("messages").at(0);
+  EXPECT_TRUE(message.starts_with("load mixed: its disk process (")) << message;
+  EXPECT_NE(message.find("exited with code 6, and what is measured without it is no result; runs/stress-"),
+            std::string::npos)
+      << message;
+  EXPECT_NE(message.find(": cannot be written (File too large); the disk is no load; free space, or"),
+            std::string::npos)
+      << message;
+}
+
+TEST_F(Stress, ALoadThatIsKilledFailsItsCell) {
+  Command session("slewring", arguments({"--no-record", "--load", "cpu"}), work_.path());
+  pid_t load = 0;
+  ASSERT_TRUE(wait_until([&] { return (load = child_of(session.pid(), "slewring")) > 0; }));
+  kill(load, SIGKILL);
+  const CommandResult result = session.wait();
+  EXPECT_EQ(result.code, 1) << result.err;
+  EXPECT_NE(result.out.find("failed with code 1"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("was killed by signal 9 (Killed), and what is measured without it is no result; find out"),
+            std::string::npos)
+      << result.out;
+  EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
 }
 
 }  // namespace
