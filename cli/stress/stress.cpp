@@ -121,7 +121,7 @@ class CellWatch {
       case Stage::pausing:
         if (view.is_over()) stage_ = Stage::stepping;
         if (!view.is_paused()) return ask_again(observer, wire::ControlAction::pause, now_ns);
-        measure();
+        measure(view);
         stage_ = Stage::measuring;
         return;
       case Stage::measuring:
@@ -153,9 +153,13 @@ class CellWatch {
     return std::max<StepIndex>(1, std::llround(std::ceil(seconds / kLongestSlice)));
   }
 
-  void measure() {
+  void measure(const SessionView& view) {
     if (done_ == 0) {
-      for (YardstickLoop& loop : rules_.loops) loop.work = work_.of_step(loop.role);
+      for (YardstickLoop& loop : rules_.loops) {
+        loop.work = work_.of_step(loop.role);
+        if (loop.ends_step)
+          loop.computing = std::min(loop.work, duration_of_seconds(view.node(loop.role).health.execution.p50));
+      }
     }
     const double session = rules_.step.seconds() * static_cast<double>(steps_);
     yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));

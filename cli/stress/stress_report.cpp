@@ -134,7 +134,9 @@ nlohmann::json yardstick_of(const StressCell& cell) {
   nlohmann::json yardstick = timing_of(cell.yardstick);
   yardstick["work"] = work_of(cell);
   for (const YardstickLoop& loop : cell.yardstick_loops) {
-    yardstick["loops"][std::string(node::to_text(loop.role))] = loop.work.seconds();
+    const std::string role(node::to_text(loop.role));
+    yardstick["loops"][role] = loop.work.seconds();
+    yardstick["computing"][role] = loop.computing.seconds();
   }
   return yardstick;
 }

@@ -81,9 +81,11 @@ void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
     last_ns = monotonic_ns();
     static_cast<void>(clock.keep_time(n, last_ns));
     clock.ran(n, last_ns);
-    burn(rules.loops.front().work);
+    const YardstickLoop& own = rules.loops.front();
+    burn(own.computing);
     wait_for(done_, awaited);
     static_cast<void>(clock.completed(n + 1, n + 1, monotonic_ns()));
+    burn(own.work - own.computing);
   }
   clock.close(n, monotonic_ns());
   release(kNoMore, 0);
@@ -103,8 +105,9 @@ void Yardstick::follow(const YardstickLoop& loop) noexcept {
     round = round_;
     if (round == kNoMore) return;
     sleep_until_monotonic(due_ns_);
-    burn(loop.work);
+    burn(loop.computing);
     if (loop.ends_step) count(done_);
+    burn(loop.work - loop.computing);
   }
 }
 

@@ -1,7 +1,8 @@
 // What the machine itself can do: bare loops that sleep with clock_nanosleep until the time of a step and burn as much
-// CPU time as the processes of the session do in it, one loop for each, all released at once. Nothing is sent and
-// nobody is waited for but at the end of a step. Lag, catching up and missing follow io_node's rules
-// (io_node/session_clock.h).
+// CPU time as the processes of the session do in it, one loop for each, all released at once. A step has ended when the
+// loops have computed what the nodes compute in it; what the session's processes need beside that (the middleware, io,
+// the recorder) is burned behind its end, though some of it is in front of the session's. Nothing is sent. Lag,
+// catching up and missing follow io_node's rules (io_node/session_clock.h).
 #pragma once
 
 #include <atomic>
@@ -20,6 +21,7 @@ namespace slew::cli {
 struct YardstickLoop {
   wire::Role role = wire::Role::io;  // whose process it stands for
   SimDuration work;                  // CPU time of a step
+  SimDuration computing;             // of it in front of the step's end
   int priority = 0;                  // SCHED_FIFO; 0: normal scheduling
   int cpu = -1;                      // processor; -1: any
   bool ends_step = true;             // else a load: the step does not wait for it

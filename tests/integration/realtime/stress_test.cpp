@@ -80,7 +80,11 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     }
     EXPECT_EQ(loops.size(), 4u);
     EXPECT_NEAR(cell.at("yardstick").at("work"), work, 1e-12);
-    EXPECT_GE(cell.at("yardstick").at("response").at("min"), loops.at("mechanics"));
+    const json& computing = cell.at("yardstick").at("computing");
+    EXPECT_GT(computing.at("mechanics"), 0);
+    EXPECT_EQ(computing.at("io"), 0);
+    for (const auto& [role, part] : computing.items()) EXPECT_LE(part, loops.at(role)) << role;
+    EXPECT_GE(cell.at("yardstick").at("response").at("min"), computing.at("mechanics"));
     for (const char* role : {"mechanics", "hydraulics"}) {
       const json& node = cell.at("nodes").at(role);
       for (const char* time : {"response", "execution", "cpu_time", "wait", "release_jitter"}) {
