@@ -83,16 +83,17 @@ void tell_warnings(Node& node) {
   }
 }
 
-// Heap calls of the loop's thread since the node's first step.
+// Heap calls of the loop's thread since the node was READY.
 class LoopHeap {
  public:
   LoopHeap(Node& node, HeapMeter meter) : node_(node), meter_(meter) {}
   void after_poll() noexcept {
     if (meter_ == nullptr) return;
     const HeapCalls now = meter_();
-    const HealthState& h = node_.health();
-    const bool has_begun = node_.member().role() == wire::Role::recorder ? h.step.load() >= 0 : h.steps_done.load() > 0;
-    if (!has_begun) {
+    // the poll in which it gets READY does INIT; io is told the READY of all others before it ticks
+    if (!is_ready_) {
+      const bool is_io = node_.member().role() == wire::Role::io;
+      is_ready_ = node_.member().state() >= (is_io ? wire::NodeState::running : wire::NodeState::ready);
       before_ = now;
       return;
     }
@@ -105,6 +106,7 @@ class LoopHeap {
   Node& node_;
   HeapMeter meter_;
   HeapCalls before_;
+  bool is_ready_ = false;
 };
 
 }  // namespace

@@ -199,7 +199,7 @@ TEST_F(RealTime, ABoundThatCouldNotBeMeasuredIsNotKept) {
   EXPECT_EQ(run_without("sys_nice", stress).code, 7);
 }
 
-TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterTheirFirstStep) {
+TEST_F(RealTime, NodesTakeNothingFromTheHeapAfterReady) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "a sanitizer is in front of malloc";
   const CommandResult result = run_crane({"--duration", "3", "--pace", "real", "--step", "2 ms", "--json", "--set",
                                           "Bag.mass=400kg", "--set", "session.overrun_lag=60s"});
