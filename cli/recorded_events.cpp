@@ -47,8 +47,8 @@ std::string with_reason(std::string text, const std::string& reason) {
 }
 
 std::string lease_text(const wire::ControllerLease& lease) {
-  const std::string what = lease.is_granted ? "controller {} has channel {}" : "controller {} does not have channel {}";
-  return with_reason(fmt::format(fmt::runtime(what), lease.controller, lease.channel), lease.reason);
+  const char* const what = !lease.is_granted ? "does not have" : lease.holder.empty() ? "has released" : "has";
+  return with_reason(fmt::format("controller {} {} channel {}", lease.controller, what, lease.channel), lease.reason);
 }
 
 }  // namespace

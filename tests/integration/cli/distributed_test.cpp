@@ -180,6 +180,10 @@ TEST_F(Distributed, APauseIsNeitherRunningTimeNorSlip) {
   EXPECT_GT(report.at("wall_time"), 0);
   EXPECT_LT(report.at("slip"), paused / 2);
   for (const auto& [role, node] : report.at("nodes").items()) EXPECT_EQ(node.at("refused_messages"), 0) << role;
+  const std::string info = offline({"info", work_.recording().string(), "--events"}).out;
+  for (const char* event : {": pause accepted", ": resume accepted", ": stop accepted"}) {
+    EXPECT_NE(info.find(event), std::string::npos) << info;
+  }
 }
 
 TEST_F(Distributed, WithoutFilesOrMemoryNothingIsStarted) {
