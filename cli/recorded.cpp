@@ -173,17 +173,21 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
                                           const TimeRange& range) {
   // names and places
   std::map<std::string, std::pair<std::pair<wire::Role, std::uint32_t>, std::string>> known;
-  std::vector<std::string> names;
   read_all(reader, only({Topic::variable_directory}), [&](const recording::RecordedMessage& message) {
     wire::VariableDirectory directory;
     if (!transport::decode(message.payload, directory)) return Visit::go_on;
     for (std::size_t i = 0; i < directory.entries.size(); ++i) {
       const std::pair place(directory.header.role, directory.first + static_cast<std::uint32_t>(i));
       const wire::VariableEntry& entry = directory.entries[i];
-      if (known.emplace(entry.name, std::pair(place, entry.unit)).second) names.push_back(entry.name);
+      known.emplace(entry.name, std::pair(place, entry.unit));
     }
     return Visit::go_on;
   });
+  // in the order of roles and places, whichever node was heard first
+  std::vector<std::string> names;
+  for (const auto& entry : known) names.push_back(entry.first);
+  std::sort(names.begin(), names.end(),
+            [&](const std::string& a, const std::string& b) { return known.at(a).first < known.at(b).first; });
   Places places;
   std::vector<plotting::Series> curves;
   for (const std::string& name : cli_support::choose(patterns, names)) {

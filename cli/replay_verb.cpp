@@ -74,7 +74,8 @@ ExitCode run_until(const Options& options) {
   const ReplayResult result = replay(*reader, OnDifference::stop, assets, &end);
   if (const int stop = node::stop_requested.load(); stop != 0) return static_cast<ExitCode>(stop);
   if (!result.is_equal()) {
-    throw Failure(ExitCode::failed, result.problem + "; nothing was saved or started; replay it with its own build");
+    throw Failure(ExitCode::failed, result.problem + "; nothing was saved or started" +
+                                        (result.different > 0 ? "; replay it with its own build" : ""));
   }
   end.saved.build = node::build_id();
   if (!options.is_json) {
@@ -125,14 +126,15 @@ ExitCode run(const Options& options) {
       fmt::print("not in the recording and not compared: {}\n", counted(result.unrecorded, "sample", "samples"));
     }
   }
-  const bool is_same_build = reader->identity().build == node::build_id();
+  // a gap is no build's fault
+  const bool may_be_build = result.different > 0 && reader->identity().build != node::build_id();
   if (!result.is_equal()) {
     std::fflush(stdout);
     std::fprintf(stderr, "slewring: %s%s\n", result.problem.c_str(),
-                 is_same_build ? ""
-                               : ("; the recording was made by build " + reader->identity().build + ", this is " +
-                                  node::build_id() + ": replay it with its own build")
-                                     .c_str());
+                 may_be_build ? ("; the recording was made by build " + reader->identity().build + ", this is " +
+                                 node::build_id() + ": replay it with its own build")
+                                    .c_str()
+                              : "");
   }
   if (!options.is_verifying) return ExitCode::ok;
   if (!result.is_equal()) return ExitCode::failed;

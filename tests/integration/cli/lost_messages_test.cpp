@@ -1,5 +1,5 @@
-// Recordings in which blocks of variables are missing, as a slow disk or a network leaves them: nothing is drawn over
-// the gap, and no value comes to another instant.
+// Recordings in which blocks of variables or a tick are missing, as a slow disk or a network leaves them: nothing is
+// drawn over the gap, no value comes to another instant, and the gap is named. Nodes come in any order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,16 +37,38 @@ json data_of(const std::filesystem::path& page) {
   return json::parse(text.substr(from, text.find("</script>", from) - from));
 }
 
-// Copies a recording but for the blocks that are lost; their number.
-int copy_without(const std::filesystem::path& from, const std::filesystem::path& to, const IsLost& is_lost) {
+struct Message {
+  std::string topic;
+  recording::MessageStamp stamp;
+  recording::Bytes payload;
+};
+
+// What of a recording may be changed in a copy.
+struct Content {
+  recording::SessionIdentity identity;
+  std::vector<Message> messages;
+};
+
+void copy_changed(const std::filesystem::path& from, const std::filesystem::path& to,
+                  const std::function<void(Content&)>& change) {
   std::unique_ptr<Reader> reader;
   EXPECT_EQ(Reader::open(from, reader).text, "");
+  Content content{reader->identity(), {}};
+  const auto step_ns = static_cast<std::uint64_t>(reader->identity().communication_step.ns);
+  const Status status = reader->for_each({}, [&](const recording::RecordedMessage& message) {
+    const recording::MessageStamp stamp = {0, static_cast<StepIndex>(message.log_time_ns / step_ns), message.sequence,
+                                           static_cast<std::int64_t>(message.publish_time_ns)};
+    content.messages.push_back({message.channel->topic, stamp, {message.payload.begin(), message.payload.end()}});
+    return Reader::Visit::go_on;
+  });
+  EXPECT_EQ(status.text, "");
+  change(content);
   std::unique_ptr<Writer> writer;
-  EXPECT_EQ(Writer::create(to, reader->identity(), {}, writer).text, "");
+  EXPECT_EQ(Writer::create(to, content.identity, {}, writer).text, "");
   for (const auto& attachment : reader->attachments()) {
-    recording::Bytes content;
-    EXPECT_EQ(reader->read_attachment(attachment.name, content).text, "");
-    EXPECT_EQ(writer->add_attachment(attachment.name, attachment.media_type, content).text, "");
+    recording::Bytes bytes;
+    EXPECT_EQ(reader->read_attachment(attachment.name, bytes).text, "");
+    EXPECT_EQ(writer->add_attachment(attachment.name, attachment.media_type, bytes).text, "");
   }
   std::map<std::string, recording::ChannelId> channels;
   for (const recording::RecordedChannel& channel : reader->channels()) {
@@ -55,28 +77,27 @@ int copy_without(const std::filesystem::path& from, const std::filesystem::path&
             .text,
         "");
   }
-  int lost = 0;
-  const auto step_ns = static_cast<std::uint64_t>(reader->identity().communication_step.ns);
-  const Status status = reader->for_each({}, [&](const recording::RecordedMessage& message) {
-    wire::VariableBlock block;
-    const bool is_block = message.channel->topic == "variables" && transport::decode(message.payload, block);
-    if (is_block && is_lost(block)) {
-      ++lost;
-      return Reader::Visit::go_on;
-    }
-    const recording::MessageStamp stamp = {0, static_cast<StepIndex>(message.log_time_ns / step_ns), message.sequence,
-                                           static_cast<std::int64_t>(message.publish_time_ns)};
-    EXPECT_EQ(writer->write(channels.at(message.channel->topic), stamp, message.payload).text, "");
-    return Reader::Visit::go_on;
+  for (const Message& message : content.messages) {
+    EXPECT_EQ(writer->write(channels.at(message.topic), message.stamp, message.payload).text, "");
+  }
+  EXPECT_EQ(writer->close({{"exit_code", "3"}, {"end", "messages are missing"}}).text, "");
+}
+
+// Copies a recording but for the blocks that are lost; their number.
+int copy_without(const std::filesystem::path& from, const std::filesystem::path& to, const IsLost& is_lost) {
+  std::size_t lost = 0;
+  copy_changed(from, to, [&](Content& content) {
+    lost = std::erase_if(content.messages, [&](const Message& message) {
+      wire::VariableBlock block;
+      return message.topic == "variables" && transport::decode(message.payload, block) && is_lost(block);
+    });
   });
-  EXPECT_EQ(status.text, "");
-  EXPECT_EQ(writer->close({{"exit_code", "3"}, {"end", "blocks are missing"}}).text, "");
-  return lost;
+  return static_cast<int>(lost);
 }
 
 // Pendulums, so many that their variables come in several blocks; of the mechanics the first one is missing from 0.2 s
 // to 0.39 s, the last one at 0.7 s.
-class LostBlocks : public ::testing::Test {
+class LostMessages : public ::testing::Test {
  protected:
   static constexpr int kPendulums = 80;
 
@@ -119,7 +140,7 @@ class LostBlocks : public ::testing::Test {
   std::string whole_, lossy_;
 };
 
-TEST_F(LostBlocks, LeaveEveryPoseAtItsInstant) {
+TEST_F(LostMessages, LeaveEveryPoseAtItsInstant) {
   ASSERT_NO_FATAL_FAILURE(record_pendulums());
   ASSERT_EQ(slewring({"animate", whole_, "-o", "whole.html"}).code, 0);
   const CommandResult animated = slewring({"animate", lossy_, "-o", "lossy.html"});
@@ -140,7 +161,7 @@ TEST_F(LostBlocks, LeaveEveryPoseAtItsInstant) {
   }
 }
 
-TEST_F(LostBlocks, BreakTheLinesOfPlots) {
+TEST_F(LostMessages, BreakTheLinesOfPlots) {
   ASSERT_NO_FATAL_FAILURE(record_pendulums());
   const std::string first = "B0.position.x";
   const auto values = [&](const std::string& recording) {
@@ -170,7 +191,7 @@ TEST_F(LostBlocks, BreakTheLinesOfPlots) {
   EXPECT_EQ(lines(lossy_), 2);
 }
 
-TEST_F(LostBlocks, CostAnExportedInputItsOwnRowsOnly) {
+TEST_F(LostMessages, CostAnExportedInputItsOwnRowsOnly) {
   whole_ = record(scene_file("truck_crane.yaml"));
   lossy_ = (work_.path() / "lossy.mcap").string();
   ASSERT_EQ(copy_without(whole_, lossy_,
@@ -189,6 +210,34 @@ TEST_F(LostBlocks, CostAnExportedInputItsOwnRowsOnly) {
   std::map<std::string, std::string> whole = rows(whole_);
   EXPECT_EQ(whole.erase("0.5"), 1u);
   EXPECT_EQ(rows(lossy_), whole);
+}
+
+TEST_F(LostMessages, OfATickAreAGapAndNoOtherBuildsFault) {
+  ASSERT_NO_FATAL_FAILURE(record_pendulums());
+  copy_changed(whole_, lossy_, [](Content& content) {
+    content.identity.build = "another build";
+    EXPECT_EQ(
+        std::erase_if(content.messages,
+                      [](const Message& message) { return message.topic == "tick" && message.stamp.step == 300; }),
+        1u);
+  });
+  const CommandResult replayed = slewring({"replay", lossy_, "--verify"});
+  EXPECT_EQ(replayed.code, 1);
+  EXPECT_EQ(replayed.err, "slewring: gap: tick 300 of epoch 0 is missing, tick 301 follows\n");
+}
+
+TEST_F(LostMessages, AndTheirOrderDoNotMoveColumns) {
+  whole_ = record(scene_file("truck_crane.yaml"));
+  const std::string turned = (work_.path() / "turned.mcap").string();
+  copy_changed(whole_, turned, [](Content& content) {
+    const auto is_name = [](const Message& message) { return message.topic == "variable_directory"; };
+    const auto values = std::stable_partition(content.messages.begin(), content.messages.end(), is_name);
+    ASSERT_GT(values - content.messages.begin(), 2);
+    std::reverse(content.messages.begin(), values);
+  });
+  const CommandResult whole = slewring({"export", whole_}), of_turned = slewring({"export", turned});
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  EXPECT_EQ(of_turned.out, whole.out);
 }
 
 }  // namespace
