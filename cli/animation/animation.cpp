@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "cli/plotting/html_text.h"
 #include "cli/plotting/svg_text.h"
@@ -136,6 +137,12 @@ class View {
     top_ = top;
     return scale_ * (high_[1] - low_[1]);
   }
+  // what lies outside is not seen
+  [[nodiscard]] std::string clip(std::string_view id) const {
+    return fmt::format(
+        "<clipPath id=\"{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/></clipPath>\n", id,
+        left_, top_, scale_ * (high_[0] - low_[0]), scale_ * (high_[1] - low_[1]));
+  }
   [[nodiscard]] std::string at(const math::Vec3& point) const {
     return fmt::format("{:.1f},{:.1f}", left_ + scale_ * (math::dot(point, right_) - low_[0]),
                        top_ + scale_ * (high_[1] - math::dot(point, up_)));
@@ -215,6 +222,12 @@ std::string animation_svg(const MachineDrawing& machine, const Motion& motion) {
         }
       }
     }
+    for (const LinkDrawing& link : machine.links) {
+      for (std::size_t k = 0; k < count; ++k) {
+        view->hold(placed(motion, link.body1, k, link.point1));
+        view->hold(placed(motion, link.body2, k, link.point2));
+      }
+    }
   }
   const double width = (kPictureWidth - kGap) / 2;
   const double height =
@@ -228,11 +241,18 @@ std::string animation_svg(const MachineDrawing& machine, const Motion& motion) {
       "class=\"heading\" x=\"12\" y=\"58\">side</text>\n<text class=\"heading\" x=\"{7:.0f}\" y=\"58\">top</text>\n",
       kPictureWidth, height, plotting::kStyle, escaped(motion.title), escaped(motion.subtitle), motion.time.front(),
       motion.time.back(), width + kGap);
-  for (const View* view : {&side, &top}) {
+  for (const auto& [view, name] : {std::pair(&side, "side"), std::pair(&top, "top")}) {
+    out += view->clip(name) + fmt::format("<g clip-path=\"url(#{})\">\n", name);
+    for (const Polyline& line : machine.bodies[0].lines) {
+      std::vector<math::Vec3> points;
+      for (const Triple& point : line) points.push_back(to_vec(point));
+      add_line(out, *view, points, "stroke=\"#b5b5b5\"");
+    }
     for (std::size_t k = 0; k < count; ++k) {
       const double share = count == 1 ? 1 : static_cast<double>(k) / static_cast<double>(count - 1);
       add_instant(out, *view, machine, motion, k, kFaintest + (1 - kFaintest) * share * share);
     }
+    out += "</g>\n";
   }
   return out + "</svg>\n";
 }

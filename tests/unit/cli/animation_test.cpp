@@ -104,14 +104,24 @@ TEST(Animation, IsAPageOfItsOwn) {
 }
 
 TEST(Animation, IsAPictureOfTheInstantsInBothViews) {
-  const std::string svg = animation_svg(draw_machine(arm()), turning(3));
+  multibody::MechanicsDef mechanics = arm();
+  multibody::ShapeDef plate;  // on the ground, greater than the picture
+  plate.type = contact::ShapeType::triangle_mesh;
+  plate.body = "Ground";
+  plate.vertices = {-9, 0, -9, 9, 0, -9, 0, 0, 9};
+  plate.triangles = {0, 1, 2};
+  mechanics.shapes = {plate};
+  const std::string svg = animation_svg(draw_machine(mechanics), turning(3));
   const auto count = [&svg](const std::string& what) {
     std::size_t found = 0;
     for (std::size_t at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) ++found;
     return found;
   };
   EXPECT_EQ(count("<g opacity"), 6u);
-  EXPECT_EQ(count("<polyline"), 12u);  // an arm and a cylinder each
+  // an arm and a cylinder each, and the ground's three edges once in each view
+  EXPECT_EQ(count("<polyline"), 12u + 6u);
+  EXPECT_EQ(count("#b5b5b5"), 6u);
+  EXPECT_EQ(count("clip-path"), 2u);
   EXPECT_EQ(count("nan"), 0u);
 }
 
