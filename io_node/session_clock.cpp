@@ -59,7 +59,7 @@ std::optional<Verdict> SessionClock::keep_time(StepIndex n, std::int64_t now_ns)
     return Verdict{Overrun::slip, in_words("slip", n) + "the session has kept up with the wall clock for 1 s again, " +
                                       std::to_string(skipped_) + " steps were given up so far"};
   }
-  const StepIndex steps = rules_.policy == Overrun::stop && is_judged(n) ? 0 : give_up(lag_ns);
+  const StepIndex steps = rules_.policy == Overrun::stop && is_judged(n) ? 0 : give_up(n, lag_ns);
   if (!is_judged(n)) return Verdict{Overrun::slip, ""};
   if (rules_.policy != Overrun::slip) {
     return overrun(n, "the session was " + milliseconds_text(lag_ns) + " behind the wall clock (session.overrun_lag " +
@@ -74,9 +74,10 @@ std::optional<Verdict> SessionClock::keep_time(StepIndex n, std::int64_t now_ns)
                                     " steps of wall time were given up"};
 }
 
-// in whole steps
-StepIndex SessionClock::give_up(std::int64_t lag_ns) noexcept {
+// In whole steps, of which the first has been due for the whole lag. Some 10 ns for each: little beside what it lasted.
+StepIndex SessionClock::give_up(StepIndex n, std::int64_t lag_ns) noexcept {
   const StepIndex steps = lag_ns / H_;
+  for (StepIndex i = 0; is_judged(n) && i < steps; ++i) timing_.add_given_up(lag_ns - i * H_);
   base_ns_ += steps * H_;
   all_slips_ns_ += steps * H_;
   skipped_ += static_cast<std::uint64_t>(steps);
@@ -95,7 +96,6 @@ void SessionClock::ran(StepIndex n, std::int64_t now_ns) noexcept {
   const std::int64_t before_ns = cpu_ns_;
   cpu_ns_ = node::thread_cpu_ns();
   if (!is_judged(n)) return;
-  timing_.release_jitter.record(now_ns - tick.due_ns);
   timing_.last_release_jitter_ns.store(now_ns - tick.due_ns, kRelaxed);
   if (before_ns != 0) timing_.cpu_time.record(cpu_ns_ - before_ns);
 }
@@ -113,6 +113,7 @@ std::optional<Verdict> SessionClock::completed(StepIndex step, StepIndex n, std:
     if (tick.input_ns != 0) timing_.input_latency.record(now_ns - tick.input_ns);
     const std::int64_t response_ns = now_ns - tick.due_ns;
     timing_.add_response(response_ns, response_ns > H_);
+    timing_.release_jitter.record(tick.sent_ns - tick.due_ns);
     const auto run = static_cast<std::int64_t>(timing_.overrun_run.load(kRelaxed));
     if (rules_.policy == Overrun::slip || rules_.after == 0 || run != rules_.after) continue;
     verdict = overrun(n, "the last " + std::to_string(run) + " steps were longer than " + milliseconds_text(H_) +
@@ -145,6 +146,10 @@ std::string problem_of_books(const node::SessionBooks& books, SimDuration step) 
 std::string problem_of_books(const wire::Health& io, SimDuration step) {
   return problem_of_books(node::SessionBooks{io.header.step, io.steps_due, io.steps_skipped, io.lag_ns, io.rest_ns},
                           step);
+}
+
+std::uint64_t judged_steps_given_up(const wire::Health& io) noexcept {
+  return io.response.count - std::min(io.response.count, io.release_jitter.count);
 }
 
 }  // namespace slew::io

@@ -13,6 +13,10 @@
 // The response of step n goes from the time at which it was due to the arrival of the last sample n+1 that io needs;
 // the step overran when that is longer than H, because then Tick n+1 cannot be in time. Steps before the end of the
 // start-up grace are not judged.
+//
+// A step of wall time that is given up after the grace was due and was not there: it overran, and its response is the
+// time for which it had been due by then. Whoever is held up for k steps thus has k late responses and not one, and
+// the responses are as many as the steps that were due, done or given up; release jitter is of those done alone.
 #pragma once
 
 #include <array>
@@ -77,7 +81,7 @@ class SessionClock {
 
   [[nodiscard]] Issued& issued(StepIndex n) noexcept { return issued_[static_cast<std::size_t>(n) % kDepth]; }
   [[nodiscard]] std::string in_words(const char* what, StepIndex n) const;
-  StepIndex give_up(std::int64_t lag_ns) noexcept;
+  StepIndex give_up(StepIndex n, std::int64_t lag_ns) noexcept;
   // The verdict of `hold` or `stop`.
   [[nodiscard]] Verdict overrun(StepIndex n, const std::string& why);
 
@@ -100,5 +104,8 @@ class SessionClock {
 [[nodiscard]] std::string problem_of_books(const node::SessionBooks& books, SimDuration step);
 // The same from what io's health says.
 [[nodiscard]] std::string problem_of_books(const wire::Health& io, SimDuration step);
+
+// How many of the judged steps were given up, by what io's health says.
+[[nodiscard]] std::uint64_t judged_steps_given_up(const wire::Health& io) noexcept;
 
 }  // namespace slew::io

@@ -25,8 +25,16 @@ void add(std::atomic<T>& to, T what) noexcept {
 }  // namespace
 
 void NodeTiming::add_response(std::int64_t ns, bool is_late) noexcept {
-  response.record(ns);
   last_response_ns.store(ns, kRelaxed);
+  judge(ns, is_late);
+}
+
+void NodeTiming::add_given_up(std::int64_t ns) noexcept {
+  judge(ns, true);
+}
+
+void NodeTiming::judge(std::int64_t ns, bool is_late) noexcept {
+  response.record(ns);
   // the reader takes it away meanwhile: then this step's is the largest since
   if (ns > response_recent_ns.load(kRelaxed)) response_recent_ns.store(ns, kRelaxed);
   if (!is_late) {

@@ -53,20 +53,25 @@ class BooksCell {
 struct NodeTiming {
   HdrHistogram release_jitter, execution, cpu_time, wait, response;
   HdrHistogram input_latency;  // io: from a controller's value to the samples that first used it
-  std::array<std::atomic<std::int64_t>, 4> waited_ns{};  // for io, mechanics, hydraulics, flex, together
+  std::array<std::atomic<std::int64_t>, 4> waited_ns{};  // for io (of io: for controllers), mechanics, hydraulics, flex
   std::atomic<std::int64_t> response_recent_ns{0};       // largest since it was last taken
   std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::uint64_t> longest_overrun{0};  // steps in a row
   std::atomic<std::uint64_t> overrun_run{0};      // steps in a row up to now
   // newest step, for who shows them
   std::atomic<std::int64_t> last_response_ns{0}, last_release_jitter_ns{0};
-  // heap calls in the loop since READY; -1: nobody counts them
+  // heap calls in the loop from the first step on; -1: nobody counts them
   std::atomic<std::int64_t> allocations{-1}, carrier_allocations{-1};
   std::atomic<std::uint64_t> transitions{0};  // of the overrun policy, by io
   BooksCell books;                            // by io
 
   // A step's response, against the deadline where there is one.
   void add_response(std::int64_t ns, bool is_late) noexcept;
+  // A step that nobody does, although it was due so long ago: as one that overran.
+  void add_given_up(std::int64_t ns) noexcept;
+
+ private:
+  void judge(std::int64_t ns, bool is_late) noexcept;
 };
 
 [[nodiscard]] wire::Quantiles quantiles_of(const HdrHistogram& histogram) noexcept;

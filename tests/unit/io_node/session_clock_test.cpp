@@ -88,6 +88,45 @@ TEST_F(Clock, GivesUpWholeStepsOfALagBeyondItsLimit) {
   EXPECT_EQ(problem(), "");
 }
 
+TEST_F(Clock, AStepThatWasGivenUpIsAMissWithTheTimeForWhichItWasDue) {
+  rules(Overrun::slip);
+  for (int i = 0; i < 100; ++i) step(kMs / 10);
+  step(800 * kMs + kMs / 2);
+  for (int i = 0; i < 100; ++i) step(kMs / 10);
+  // 799.5 ms behind: the step that lasted, 799 that were due meanwhile, and the next, half a step late and in time
+  EXPECT_EQ(clock->skipped(), 799u);
+  EXPECT_EQ(timing->overruns, 800u);
+  EXPECT_EQ(timing->longest_overrun, 800u);
+  EXPECT_EQ(timing->response.count(), 201u + 799u) << "all steps that were due";
+  const wire::Quantiles response = node::quantiles_of(timing->response);
+  EXPECT_NEAR(response.p50, 0.3, 0.01) << "half of the time nothing came";
+  EXPECT_NEAR(response.p99, 0.79, 0.01);
+  EXPECT_EQ(timing->response.max(), 800 * kMs + kMs / 2);
+  EXPECT_EQ(timing->last_response_ns, kMs / 10);
+  wire::Health io;
+  io.response = response;
+  io.release_jitter = node::quantiles_of(timing->release_jitter);
+  EXPECT_EQ(judged_steps_given_up(io), 799u);
+  EXPECT_EQ(problem(), "");
+}
+
+TEST_F(Clock, AStepThatWasGivenUpInTheGraceIsNoMiss) {
+  rules(Overrun::slip, 0, milliseconds(20));
+  step(kMs / 10);
+  step(800 * kMs);
+  for (; n < 60;) step(kMs / 10);
+  EXPECT_EQ(clock->skipped(), 799u);
+  EXPECT_EQ(timing->overruns, 0u);
+  EXPECT_EQ(timing->response.count(), 40u);
+  // a hold counts what it gives up, and goes on with none in a row
+  rules(Overrun::hold);
+  n = 0;
+  step(60 * kMs);
+  EXPECT_TRUE(step(kMs / 10));
+  EXPECT_EQ(timing->overruns, 60u);
+  EXPECT_EQ(timing->longest_overrun, 60u);
+}
+
 TEST_F(Clock, HoldsOrStopsByTheLagOrByTheStepsInARow) {
   for (const Overrun policy : {Overrun::hold, Overrun::stop}) {
     rules(policy);
