@@ -14,6 +14,7 @@ void IoNode::obey(const std::optional<Verdict>& verdict, std::int64_t now_ns) {
   }
   const std::string text = verdict->why + then;
   tell_event(text);
+  if (verdict->is_for_recording_alone) return;
   if (verdict->what == Overrun::hold || (verdict->what == Overrun::slip && !has_told_slip_)) member_.warn(text);
   has_told_slip_ |= verdict->what == Overrun::slip;
   if (verdict->what == Overrun::hold) {

@@ -1,6 +1,7 @@
 #include "io_node/session_clock.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace slew::io {
 namespace {
@@ -26,7 +27,8 @@ std::int64_t behind(std::int64_t rest_ns, std::int64_t H) noexcept {
 }  // namespace
 
 void SessionClock::begin(StepIndex n, std::int64_t now_ns) noexcept {
-  first_ = n;
+  ran_ = grace_from_ = n;
+  grace_slips_ = 0;
   start_ns_ = base_ns_ = now_ns - n * H_;
   excused_ns_ = 0;
   skipped_ = 0;
@@ -51,6 +53,13 @@ std::string SessionClock::in_words(const char* what, StepIndex n) const {
 }
 
 std::optional<Verdict> SessionClock::keep_time(StepIndex n, std::int64_t now_ns) {
+  if (grace_slips_ > 0 && is_judged(n)) {
+    add(timing_.transitions, 1);
+    return Verdict{Overrun::slip,
+                   in_words("slip", n) + "the start-up grace (session.start_grace) is over, in which " +
+                       std::to_string(std::exchange(grace_slips_, 0)) + " steps of wall time were given up",
+                   true};
+  }
   const std::int64_t lag_ns = now_ns - due_ns(n);
   if (lag_ns <= rules_.lag.ns) {
     if (slipped_ns_ == 0 || now_ns - slipped_ns_ < kCalmNs) return std::nullopt;
@@ -60,7 +69,10 @@ std::optional<Verdict> SessionClock::keep_time(StepIndex n, std::int64_t now_ns)
                                       std::to_string(skipped_) + " steps were given up so far"};
   }
   const StepIndex steps = rules_.policy == Overrun::stop && is_judged(n) ? 0 : give_up(n, lag_ns);
-  if (!is_judged(n)) return Verdict{Overrun::slip, ""};
+  if (!is_judged(n)) {
+    grace_slips_ += steps;
+    return Verdict{Overrun::slip, ""};
+  }
   if (rules_.policy != Overrun::slip) {
     return overrun(n, "the session was " + milliseconds_text(lag_ns) + " behind the wall clock (session.overrun_lag " +
                           milliseconds_text(rules_.lag.ns) + ")");
@@ -91,6 +103,7 @@ Verdict SessionClock::overrun(StepIndex n, const std::string& why) {
 }
 
 void SessionClock::ran(StepIndex n, std::int64_t now_ns) noexcept {
+  ++ran_;
   Issued& tick = issued(n);
   tick = {n, due_ns(n), now_ns, 0};
   const std::int64_t before_ns = cpu_ns_;
@@ -125,7 +138,7 @@ std::optional<Verdict> SessionClock::completed(StepIndex step, StepIndex n, std:
 void SessionClock::close(StepIndex n, std::int64_t now_ns) noexcept {
   const std::int64_t elapsed_ns = now_ns - start_ns_ - excused_ns_;
   const auto due = elapsed_ns < 0 ? 0 : static_cast<std::uint64_t>(elapsed_ns / H_) + 1;
-  timing_.books.write({n, due, skipped_, elapsed_ns - n * H_, now_ns - due_ns(n)});
+  timing_.books.write({n, due, skipped_, elapsed_ns - n * H_, now_ns - due_ns(ran_)});
 }
 
 std::string problem_of_books(const node::SessionBooks& books, SimDuration step) {

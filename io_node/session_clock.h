@@ -8,7 +8,9 @@
 //   steps due = run + skipped + behind       behind: due and not done yet
 //   lag       = slips + rest                 lag: wall time since step n was due at first, without what was excused
 //
-// in whole nanoseconds. The left sides come from the clock and the start alone, the right sides from what was counted.
+// in whole nanoseconds. The left sides come from the clock and the start alone, the right sides from what was counted:
+// ticks as they go out, steps as they are given up. A tick that is counted and does not go out, or the other way round,
+// upsets both.
 //
 // The response of step n goes from the time at which it was due to the arrival of the last sample n+1 that io needs;
 // the step overran when that is longer than H, because then Tick n+1 cannot be in time. Steps before the end of the
@@ -42,6 +44,7 @@ struct OverrunRules {
 struct Verdict {
   Overrun what = Overrun::slip;
   std::string why;  // an event: for the recording and the user; empty: nothing to tell
+  bool is_for_recording_alone = false;
 };
 
 class SessionClock {
@@ -51,6 +54,8 @@ class SessionClock {
 
   // Step n, the first of an epoch, is due now: 0, or that of a saved state.
   void begin(StepIndex n, std::int64_t now_ns) noexcept;
+  // Who computes step n has begun just now: its first steps are not judged either.
+  void begin_grace(StepIndex n) noexcept { grace_from_ = n; }
   // The next step n is not due before now: somebody wanted the pause.
   void excuse(StepIndex n, std::int64_t now_ns) noexcept;
   // Nobody judges the steps that are under way: one of their nodes is gone.
@@ -68,7 +73,7 @@ class SessionClock {
 
   // The books as of now, into the node's timing. n: the next tick.
   void close(StepIndex n, std::int64_t now_ns) noexcept;
-  [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - first_) * H_ >= rules_.grace.ns; }
+  [[nodiscard]] bool is_judged(StepIndex n) const noexcept { return (n - grace_from_) * H_ >= rules_.grace.ns; }
   [[nodiscard]] std::int64_t slip_ns() const noexcept { return all_slips_ns_; }
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_; }
 
@@ -89,7 +94,9 @@ class SessionClock {
   OverrunRules rules_;
   node::NodeTiming& timing_;
   std::array<Issued, kDepth> issued_{};
-  StepIndex first_ = 0;          // of this epoch
+  StepIndex grace_from_ = 0;     // the first step of this epoch, or of a process that took a place over
+  StepIndex grace_slips_ = 0;    // given up while nobody judged, and not told yet
+  StepIndex ran_ = 0;            // the first step of this epoch and as many as went out
   std::int64_t start_ns_ = 0;    // wall time of step 0, as it were when the first step is a later one
   std::int64_t excused_ns_ = 0;  // since then
   std::int64_t base_ns_ = 0;     // start, what was excused and what was given up

@@ -325,6 +325,9 @@ void validate(const SessionDef& session, Problems& errors, Problems& warnings) {
   if (session.step < kMinUsualStep || session.step > kMaxUsualStep) {
     warnings.push_back({"session.step", fmt::format("{} ms is outside 0.1 to 10 ms", session.step * 1e3), "", ""});
   }
+  if (session.overrun_after > 0 && session.overrun == OverrunPolicy::slip) {
+    warnings.push_back({"session.overrun_after", "it has no effect with session.overrun: slip", "hold or stop", ""});
+  }
   if (session.mode == ExchangeMode::free_running) validate_free_running(session, errors);
   const double exchange = session.step * static_cast<double>(session.exchange_every);
   if (session.exchange_every > 1 && exchange > kMaxStep * (1 + 1e-9)) {

@@ -119,6 +119,14 @@ TEST(Load, AnUnusualStepIsAWarningAndNotAnError) {
   EXPECT_EQ(scene.warnings[0], "test:1:17: session.step: 0.05 ms is outside 0.1 to 10 ms");
 }
 
+TEST(Load, ANumberOfOverrunsThatNoPolicyLooksAtIsToldAsAWarning) {
+  const Scene slip = load_text("session: {overrun_after: 5}\n" + kPendulum, "test");
+  ASSERT_EQ(slip.warnings.size(), 1u);
+  EXPECT_EQ(slip.warnings[0],
+            "test:1:26: session.overrun_after: it has no effect with session.overrun: slip; expected hold or stop");
+  EXPECT_TRUE(load_text("session: {overrun_after: 5, overrun: hold}\n" + kPendulum, "test").warnings.empty());
+}
+
 TEST(Load, TheWindowFollowsThePaceWhenItIsNotGiven) {
   EXPECT_EQ(load_text(kPendulum, "test").session.window_steps(), 1);
   EXPECT_EQ(load_text(kPendulum, "test", {"session.pace=free"}).session.window_steps(), 4);
