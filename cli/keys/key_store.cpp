@@ -375,6 +375,17 @@ std::string problem_of_signature(const std::string& document, const std::string&
   return is_good ? "" : fmt::format("{} is not signed by {}", document, authority);
 }
 
+// Of a signed document: whether it says what is signed today, line ends apart.
+std::string problem_of_governance(const fs::path& document) {
+  std::string text = read_file(document);
+  std::erase(text, '\r');
+  if (text.find(governance_xml()) != std::string::npos) return "";
+  return fmt::format(
+      "{} is that of another version and protects otherwise; 'slewring keys create' makes a store anew, to be exported "
+      "to every machine",
+      document.string());
+}
+
 // As the document writes times, of which the later one is the greater text; empty: it names none.
 std::string permissions_end(const std::string& document) {
   constexpr std::string_view kBegin = "<not_after>";
@@ -438,6 +449,7 @@ std::vector<KeyFinding> check_keys(const fs::path& folder) {
     whole.problem = problem_of_signature((folder / transport::kGovernance).string(),
                                          (folder / transport::kPermissionsAuthority).string());
   }
+  if (whole.problem.empty()) whole.problem = problem_of_governance(folder / transport::kGovernance);
   whole.expires = trimmed(run_openssl({"x509", "-in", authority.string(), "-noout", "-enddate"}));
   whole.expires = whole.expires.substr(whole.expires.find('=') + 1);
   std::vector<KeyFinding> findings = {whole};

@@ -36,7 +36,7 @@ std::string governance_xml() {
   <enable_join_access_control>true</enable_join_access_control>
   <discovery_protection_kind>ENCRYPT</discovery_protection_kind>
   <liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>
-  <rtps_protection_kind>NONE</rtps_protection_kind>
+  <rtps_protection_kind>SIGN_WITH_ORIGIN_AUTHENTICATION</rtps_protection_kind>
   <topic_access_rules><topic_rule>
    <topic_expression>*</topic_expression>
    <enable_discovery_protection>true</enable_discovery_protection>

@@ -7,7 +7,9 @@
 
 namespace slew::cli {
 
-// Only participants with a certificate of the store take part; discovery and data are encrypted (AES-GCM).
+// Only participants with a certificate of the store take part; discovery and data are encrypted (AES-GCM), and every
+// packet is signed as a whole, for each of those that it is for (AES-GMAC): without that, data that were overheard
+// could be sent again under other sequence numbers, and what counts them (HEARTBEAT, GAP, ACKNACK) could be forged.
 [[nodiscard]] std::string governance_xml();
 
 struct Grant {

@@ -1,0 +1,136 @@
+// What somebody without keys can do to those who have them by sending packets in their names: nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "command.h"
+#include "stranger.h"
+#include "tests/integration/transport/child_process.h"
+#include "tests/integration/transport/waiting.h"
+#include "tests/support/test_domain.h"
+#include "transport/codec.h"
+#include "transport/cyclone_transport.h"
+#include "transport/protection.h"
+
+namespace slew::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using transport::CycloneTransport;
+using wire::Topic;
+
+constexpr std::uint32_t kAhead = 50;               // samples that are forged
+constexpr std::int64_t kPause = 5'000'000;         // ns between two genuine ones
+constexpr std::int64_t kDeadline = 5'000'000'000;  // ns for the genuine ones after the forged ones
+
+std::unique_ptr<CycloneTransport> open(std::uint32_t domain, const std::string& store, const char* identity,
+                                       transport::TopicSet writes, transport::TopicSet reads) {
+  transport::CycloneNetwork network{domain, "lo", {}};
+  std::unique_ptr<CycloneTransport> opened;
+  if (!transport::protect(network, {store, identity}).is_ok()) return nullptr;
+  if (!CycloneTransport::open(network, {"s", identity, writes, reads}, opened).is_ok()) return nullptr;
+  return opened;
+}
+
+// writes 0, 1, 2, ... until it is ended
+bool write_numbers(std::uint32_t domain, const std::string& store) {
+  const auto transport = open(domain, store, "controller", {Topic::controller_input}, {});
+  if (transport == nullptr) return false;
+  transport::ByteBuffer bytes;
+  for (std::uint64_t number = 0;; ++number) {
+    wire::ControllerInput input{"s", "controller", "Input", wire::ControllerAction::write, 0, number, -1};
+    if (!transport::encode(input, bytes) || !transport->publish(Topic::controller_input, bytes).is_ok()) return false;
+    sleep_until_monotonic(monotonic_ns() + kPause);
+  }
+}
+
+class StrangerWith : public ::testing::TestWithParam<Forgery> {
+ protected:
+  void SetUp() override { ASSERT_EQ(run("slewring", {"keys", "create", "plant"}, work_.path()).code, 0); }
+  // the governance of before the packets were signed
+  void sign_no_packets() {
+    std::ifstream file(store() / "governance.xml");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string kind = "SIGN_WITH_ORIGIN_AUTHENTICATION";
+    text.replace(text.find(kind), kind.size(), "NONE");
+    std::ofstream(store() / "governance.xml") << text;
+    const CommandResult made =
+        run("/usr/bin/openssl",
+            {"smime", "-sign", "-in", store() / "governance.xml", "-text", "-out", store() / "governance.p7s",
+             "-signer", store() / "permissions_ca.pem", "-inkey", store() / "permissions_ca.key"},
+            work_.path());
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  // Numbers that a reader takes from when the forged packets have been sent; fewer when they stop coming.
+  std::vector<std::uint64_t> read_numbers(Forgery forgery, std::size_t count) {
+    ChildProcess writer([&] { return write_numbers(domain_.number(), store()); });
+    Stranger stranger(domain_.number());
+    std::vector<std::uint64_t> numbers;
+    skip_reason_ = stranger.problem();
+    if (!skip_reason_.empty()) return numbers;
+    const auto reader = open(domain_.number(), store(), "io", {}, {Topic::controller_input});
+    EXPECT_NE(reader, nullptr);
+    transport::Received message;
+    while (!stranger.has_heard(20)) {
+      if (!next(*reader, message)) return numbers;
+    }
+    stranger.forge(forgery, kAhead);
+    const std::int64_t deadline = monotonic_ns() + kDeadline;
+    wire::ControllerInput input;
+    while (numbers.size() < count && next(*reader, message, std::max<std::int64_t>(0, deadline - monotonic_ns()))) {
+      if (transport::decode(message.bytes, input)) numbers.push_back(input.sequence);
+    }
+    return numbers;
+  }
+  static bool are_in_order(const std::vector<std::uint64_t>& numbers) {
+    return std::ranges::adjacent_find(numbers, [](auto a, auto b) { return b != a + 1; }) == numbers.end();
+  }
+  [[nodiscard]] fs::path store() const { return work_.path() / "plant"; }
+
+  WorkFolder work_;
+  TestDomain domain_;
+  std::string skip_reason_;
+};
+
+constexpr std::size_t kEnough = 3 * kAhead;
+
+TEST_P(StrangerWith, IsNotHeard) {
+  const std::vector<std::uint64_t> numbers = read_numbers(GetParam(), kEnough);
+  if (!skip_reason_.empty()) GTEST_SKIP() << "packets cannot be overheard here: " << skip_reason_;
+  EXPECT_EQ(numbers.size(), kEnough);
+  EXPECT_TRUE(are_in_order(numbers));
+}
+
+// or the test above would show nothing
+TEST_P(StrangerWith, WouldBeHeardIfPacketsWereNotSigned) {
+  sign_no_packets();
+  const CommandResult checked = run("slewring", {"keys", "check", "plant"}, work_.path());
+  EXPECT_EQ(checked.code, 1);
+  EXPECT_NE(checked.out.find("is that of another version and protects otherwise"), std::string::npos) << checked.out;
+  const std::vector<std::uint64_t> numbers = read_numbers(GetParam(), kEnough);
+  if (!skip_reason_.empty()) GTEST_SKIP() << "packets cannot be overheard here: " << skip_reason_;
+  EXPECT_FALSE(numbers.size() == kEnough && are_in_order(numbers));
+}
+
+std::string name_of(const ::testing::TestParamInfo<Forgery>& forgery) {
+  switch (forgery.param) {
+    case Forgery::newer:
+      return "NewerSamples";
+    case Forgery::newer_unwrapped:
+      return "NewerSamplesUnwrapped";
+    case Forgery::gap:
+      return "Gap";
+    case Forgery::heartbeat:
+      return "Heartbeat";
+  }
+  return "";
+}
+
+INSTANTIATE_TEST_SUITE_P(Forged, StrangerWith,
+                         ::testing::Values(Forgery::newer, Forgery::newer_unwrapped, Forgery::gap, Forgery::heartbeat),
+                         name_of);
+
+}  // namespace
+}  // namespace slew::testing
