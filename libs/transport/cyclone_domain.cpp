@@ -8,6 +8,7 @@
 #include <net/if.h>
 #include <netinet/in.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 namespace slew::transport {
 namespace {
 
+constexpr std::uint32_t kFirstPort = 7400, kPortsOfDomain = 250;  // RTPS 2.5, 9.6.2
 constexpr std::size_t kFiles = 16;
 constexpr std::size_t kSpace = std::size_t{256} << 20;  // bytes of addresses
 
@@ -142,33 +144,59 @@ Status enough_resources() {
   return Status::ok();
 }
 
+// A UDP socket of this process that hears all addresses. A number of a file is used again, an inode is not.
+struct OpenSocket {
+  int fd;
+  ino_t inode;
+  std::uint16_t port;
+};
+
+std::vector<OpenSocket> sockets_on_all_addresses() {
+  std::vector<OpenSocket> found;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", gone)) {
+    const int fd = std::atoi(entry.path().filename().c_str());
+    sockaddr_in address{};
+    socklen_t size = sizeof address;
+    int type = 0;
+    socklen_t type_size = sizeof type;
+    struct stat status {};
+    if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &type_size) != 0 || type != SOCK_DGRAM) continue;
+    if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) continue;
+    if (address.sin_family != AF_INET || address.sin_addr.s_addr != htonl(INADDR_ANY)) continue;
+    if (fstat(fd, &status) == 0) found.push_back({fd, status.st_ino, ntohs(address.sin_port)});
+  }
+  return found;
+}
+
 bool is_bound_to(int fd, const std::string& interface) {
   std::array<char, IFNAMSIZ> device{};
   socklen_t size = device.size();
   return getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, device.data(), &size) == 0 && interface == device.data();
 }
 
-// Cyclone binds what it receives with to all addresses. Those sockets of this process hear loopback alone from now on.
-// To bind one a second time needs CAP_NET_RAW.
-Status confine_to_loopback(const std::string& interface) {
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    const int fd = std::atoi(entry.path().filename().c_str());
-    sockaddr_in address{};
-    socklen_t size = sizeof address;
-    int type = 0;
-    socklen_t type_size = sizeof type;
-    if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &type_size) != 0 || type != SOCK_DGRAM) continue;
-    if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) continue;
-    if (address.sin_family != AF_INET || address.sin_addr.s_addr != htonl(INADDR_ANY)) continue;
-    if (is_bound_to(fd, interface) ||
-        setsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(), static_cast<socklen_t>(interface.size())) == 0) {
+bool is_port_of(std::uint16_t port, std::uint32_t domain) {
+  const std::uint32_t first = kFirstPort + kPortsOfDomain * domain;
+  return port >= first && port < first + kPortsOfDomain;
+}
+
+// Cyclone binds what it receives with to all addresses. Those sockets hear loopback alone from now on: they are the
+// ones on ports of this domain that were not there before it. Sockets of the program itself are left alone. To bind one
+// a second time needs CAP_NET_RAW.
+Status confine_to_loopback(const CycloneNetwork& network, const std::vector<OpenSocket>& before) {
+  const std::string& interface = network.interface;
+  for (const OpenSocket& socket : sockets_on_all_addresses()) {
+    const bool was_there = std::ranges::find(before, socket.inode, &OpenSocket::inode) != before.end();
+    if (was_there || !is_port_of(socket.port, network.domain)) continue;
+    if (is_bound_to(socket.fd, interface) || setsockopt(socket.fd, SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(),
+                                                        static_cast<socklen_t>(interface.size())) == 0) {
       continue;
     }
     return Status::error(
         ExitCode::resources,
         fmt::format("cannot keep port {} to {}: {}; other machines could reach this process, which ends; use "
                     "Linux 5.7 or later, or give it CAP_NET_RAW",
-                    ntohs(address.sin_port), interface, std::strerror(errno)));
+                    socket.port, interface, std::strerror(errno)));
   }
   return Status::ok();
 }
@@ -237,6 +265,7 @@ Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<Cyclon
 
   std::shared_ptr<CycloneDomain> opened(new CycloneDomain(network.domain, network.security.has_value()));
   opened->log_.set_echo(CycloneLog::Echo::off);
+  const std::vector<OpenSocket> before = sockets_on_all_addresses();
   opened->handle_ = dds_create_domain(network.domain, cyclone_xml(network, own_address).c_str());
   if (opened->handle_ == DDS_RETCODE_PRECONDITION_NOT_MET) {
     return Status::error(ExitCode::failed,
@@ -253,7 +282,7 @@ Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<Cyclon
                                                           network.interface, reason, remedy));
   }
   if (!leaves_machine(network.interface)) {
-    if (Status status = confine_to_loopback(network.interface); !status.is_ok()) return status;
+    if (Status status = confine_to_loopback(network, before); !status.is_ok()) return status;
   }
   opened->log_.set_echo(CycloneLog::Echo::on);
   domain = std::move(opened);

@@ -1,9 +1,9 @@
 // A DDS domain of this process: the one place that configures Cyclone.
 //
 // Unicast only, on one interface; nothing is sent beyond loopback unless another interface is named. On loopback the
-// sockets hear that interface alone; on another one they are bound to all addresses (Cyclone's way, and processes of
-// one host reach each other through loopback): that is no firewall. Loss is repaired within 8 to 15 ms. UDP ports:
-// 7400 + 250 domain + 10 .. 129, two per process.
+// domain's sockets hear that interface alone, those of the program itself are left as they are; on another one they are
+// bound to all addresses (Cyclone's way, and processes of one host reach each other through loopback): that is no
+// firewall. Loss is repaired within 8 to 15 ms. UDP ports: 7400 + 250 domain + 10 .. 129, two per process.
 // CYCLONEDDS_URI is not consulted. One domain per number and process; several transports share it.
 #pragma once
 
