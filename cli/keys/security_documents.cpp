@@ -36,14 +36,14 @@ std::string governance_xml() {
   <enable_join_access_control>true</enable_join_access_control>
   <discovery_protection_kind>ENCRYPT</discovery_protection_kind>
   <liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>
-  <rtps_protection_kind>SIGN_WITH_ORIGIN_AUTHENTICATION</rtps_protection_kind>
+  <rtps_protection_kind>NONE</rtps_protection_kind>
   <topic_access_rules><topic_rule>
    <topic_expression>*</topic_expression>
    <enable_discovery_protection>true</enable_discovery_protection>
    <enable_liveliness_protection>true</enable_liveliness_protection>
    <enable_read_access_control>true</enable_read_access_control>
    <enable_write_access_control>true</enable_write_access_control>
-   <metadata_protection_kind>NONE</metadata_protection_kind>
+   <metadata_protection_kind>SIGN_WITH_ORIGIN_AUTHENTICATION</metadata_protection_kind>
    <data_protection_kind>ENCRYPT</data_protection_kind>
   </topic_rule></topic_access_rules>
  </domain_rule></domain_access_rules>

@@ -8,8 +8,9 @@
 namespace slew::cli {
 
 // Only participants with a certificate of the store take part; discovery and data are encrypted (AES-GCM), and every
-// packet is signed as a whole, for each of those that it is for (AES-GMAC): without that, data that were overheard
-// could be sent again under other sequence numbers, and what counts them (HEARTBEAT, GAP, ACKNACK) could be forged.
+// submessage of readers and writers is signed for each of those that it is for (AES-GMAC): without that, data that were
+// overheard could be sent again under other sequence numbers, and what counts them (HEARTBEAT, GAP, ACKNACK) forged.
+// Not whole packets (rtps_protection_kind): with that Cyclone 0.10.2 cannot repair all losses while keys are exchanged.
 [[nodiscard]] std::string governance_xml();
 
 struct Grant {

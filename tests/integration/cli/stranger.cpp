@@ -28,11 +28,10 @@ enum Submessage : std::uint8_t {
   acknack = 0x06,
   heartbeat = 0x07,
   gap = 0x08,
-  info_source = 0x0c,
   info_destination = 0x0e,
   data = 0x15,
-  srtps_prefix = 0x33,
-  srtps_postfix = 0x34,
+  signed_prefix = 0x31,
+  signed_postfix = 0x32,
 };
 constexpr std::size_t kPrefix = 12;  // bytes that the names of a process's readers and writers begin with, at 8
 
@@ -78,12 +77,27 @@ std::vector<std::uint8_t> renumbered(std::vector<std::uint8_t> packet, std::uint
   return packet;
 }
 
-std::vector<std::uint8_t> unwrapped(const std::vector<std::uint8_t>& packet) {
+// without what a signature is made of
+std::vector<std::uint8_t> without(const std::vector<std::uint8_t>& packet, std::initializer_list<std::uint8_t> ids) {
   std::vector<std::uint8_t> out(packet.begin(), packet.begin() + kHeader);
   for_each_submessage(packet, [&](std::uint8_t id, std::size_t begin, std::size_t, std::size_t end) {
-    if (id == Submessage::srtps_prefix || id == Submessage::srtps_postfix || id == Submessage::info_source) return;
+    if (std::ranges::find(ids, id) != ids.end()) return;
     out.insert(out.end(), packet.begin() + static_cast<std::ptrdiff_t>(begin),
                packet.begin() + static_cast<std::ptrdiff_t>(end));
+  });
+  return out;
+}
+
+// the same, its last submessage behind the beginning of a signature in the sample
+std::vector<std::uint8_t> behind_prefix(const std::vector<std::uint8_t>& message,
+                                        const std::vector<std::uint8_t>& sample) {
+  std::size_t last = kHeader;
+  for_each_submessage(message, [&](std::uint8_t, std::size_t begin, std::size_t, std::size_t) { last = begin; });
+  std::vector<std::uint8_t> out = message;
+  for_each_submessage(sample, [&](std::uint8_t id, std::size_t begin, std::size_t, std::size_t end) {
+    if (id != Submessage::signed_prefix || out.size() > message.size()) return;
+    out.insert(out.begin() + static_cast<std::ptrdiff_t>(last), sample.begin() + static_cast<std::ptrdiff_t>(begin),
+               sample.begin() + static_cast<std::ptrdiff_t>(end));
   });
   return out;
 }
@@ -181,21 +195,30 @@ void Stranger::forge(Forgery kind, std::uint32_t count) const {
     reader = reader_;
   }
   std::vector<Bytes> forged;
+  const auto count_up = [&](const auto& forge_one) {
+    for (std::uint32_t ahead = 1; ahead <= count; ++ahead) {
+      forged.push_back(forge_one(renumbered(last.packet, last.number + ahead)));
+    }
+  };
+  const auto say = [&](std::uint8_t id, const std::vector<std::uint32_t>& words) {
+    forged.push_back(message(last.packet, last.body, reader, id, words));
+    forged.push_back(behind_prefix(forged.back(), last.packet));
+  };
   switch (kind) {
     case Forgery::newer:
-    case Forgery::newer_unwrapped:
-      for (std::uint32_t ahead = 1; ahead <= count; ++ahead) {
-        const Bytes packet = renumbered(last.packet, last.number + ahead);
-        forged.push_back(kind == Forgery::newer ? packet : unwrapped(packet));
-      }
+      count_up([](Bytes packet) { return packet; });
+      break;
+    case Forgery::newer_unsigned:
+      count_up([](const Bytes& packet) {
+        return without(packet, {Submessage::signed_prefix, Submessage::signed_postfix});
+      });
+      count_up([](const Bytes& packet) { return without(packet, {Submessage::signed_postfix}); });
       break;
     case Forgery::gap:
-      forged.push_back(message(last.packet, last.body, reader, Submessage::gap,
-                               {0, last.number + 1, 0, last.number + kMillion, 32, 0}));
+      say(Submessage::gap, {0, last.number + 1, 0, last.number + kMillion, 32, 0});
       break;
     case Forgery::heartbeat:
-      forged.push_back(message(last.packet, last.body, reader, Submessage::heartbeat,
-                               {0, last.number + kMillion, 0, last.number + kMillion, kMillion}));
+      say(Submessage::heartbeat, {0, last.number + kMillion, 0, last.number + kMillion, kMillion});
       break;
   }
   const int out = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);

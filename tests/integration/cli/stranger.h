@@ -13,10 +13,10 @@
 namespace slew::testing {
 
 enum class Forgery : std::uint8_t {
-  newer,            // what was overheard, with a higher sequence number
-  newer_unwrapped,  // that as well, without what signs the packet
-  gap,              // GAP: the next million samples are of no matter
-  heartbeat,        // HEARTBEAT: the next million samples are gone
+  newer,           // what was overheard, with a higher sequence number
+  newer_unsigned,  // that as well, without its signature or the end of it
+  gap,             // GAP: the next million samples are of no matter
+  heartbeat,       // HEARTBEAT: the next million samples are gone
 };
 
 class Stranger {

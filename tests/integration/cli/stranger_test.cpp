@@ -49,8 +49,8 @@ bool write_numbers(std::uint32_t domain, const std::string& store) {
 class StrangerWith : public ::testing::TestWithParam<Forgery> {
  protected:
   void SetUp() override { ASSERT_EQ(run("slewring", {"keys", "create", "plant"}, work_.path()).code, 0); }
-  // the governance of before the packets were signed
-  void sign_no_packets() {
+  // the governance of before anything but the data was protected
+  void sign_nothing() {
     std::ifstream file(store() / "governance.xml");
     std::string text{std::istreambuf_iterator<char>(file), {}};
     const std::string kind = "SIGN_WITH_ORIGIN_AUTHENTICATION";
@@ -104,8 +104,8 @@ TEST_P(StrangerWith, IsNotHeard) {
 }
 
 // or the test above would show nothing
-TEST_P(StrangerWith, WouldBeHeardIfPacketsWereNotSigned) {
-  sign_no_packets();
+TEST_P(StrangerWith, WouldBeHeardIfNothingWereSigned) {
+  sign_nothing();
   const CommandResult checked = run("slewring", {"keys", "check", "plant"}, work_.path());
   EXPECT_EQ(checked.code, 1);
   EXPECT_NE(checked.out.find("is that of another version and protects otherwise"), std::string::npos) << checked.out;
@@ -118,8 +118,8 @@ std::string name_of(const ::testing::TestParamInfo<Forgery>& forgery) {
   switch (forgery.param) {
     case Forgery::newer:
       return "NewerSamples";
-    case Forgery::newer_unwrapped:
-      return "NewerSamplesUnwrapped";
+    case Forgery::newer_unsigned:
+      return "NewerSamplesUnsigned";
     case Forgery::gap:
       return "Gap";
     case Forgery::heartbeat:
@@ -129,7 +129,7 @@ std::string name_of(const ::testing::TestParamInfo<Forgery>& forgery) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forged, StrangerWith,
-                         ::testing::Values(Forgery::newer, Forgery::newer_unwrapped, Forgery::gap, Forgery::heartbeat),
+                         ::testing::Values(Forgery::newer, Forgery::newer_unsigned, Forgery::gap, Forgery::heartbeat),
                          name_of);
 
 }  // namespace
