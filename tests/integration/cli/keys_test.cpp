@@ -1,6 +1,7 @@
 // Key stores: made, checked, exported, revoked; sessions with keys, and those who have none.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -127,6 +128,97 @@ TEST_F(Keys, AreRevokedHoweverTheStoreIsNamed) {
   EXPECT_EQ(problems("out/")["flex"], "");
 }
 
+TEST_F(Keys, LeaveFoldersAndFilesOfOthersAsTheyAre) {
+  constexpr fs::perms kOpen = fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec;
+  const auto mode = [&](const char* path) { return fs::status(folder() / path).permissions(); };
+  const auto make_folder = [&](const char* path) {
+    fs::create_directory(folder() / path);
+    fs::permissions(folder() / path, kOpen);
+  };
+  // an empty folder that is there keeps its mode; keys are private in it
+  make_folder("plant");
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  EXPECT_EQ(mode("plant"), kOpen);
+  for (const char* key : {"plant/identity_ca.key", "plant/permissions_ca.key", "plant/io/private_key.pem"}) {
+    EXPECT_EQ(mode(key), fs::perms::owner_read | fs::perms::owner_write) << key;
+  }
+  // one with something else in it is refused, also the store itself
+  make_folder("home");
+  std::ofstream(folder() / "home/letter") << "dear";
+  for (const char* to : {"home", "home/letter", "plant"}) {
+    const CommandResult refused = keys({"export", "plant", "io", "--to", to});
+    EXPECT_EQ(refused.code, 2) << to;
+    EXPECT_NE(refused.err.find("nothing was copied"), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(keys({"create", "home/letter"}).code, 2);
+  EXPECT_EQ(mode("home"), kOpen);
+  EXPECT_FALSE(fs::exists(folder() / "home/io"));
+  make_folder("out");
+  ASSERT_EQ(keys({"export", "plant", "io", "--to", "out"}).code, 0);
+  EXPECT_EQ(mode("out"), kOpen);
+  EXPECT_EQ(mode("out/io/private_key.pem"), fs::perms::owner_read | fs::perms::owner_write);
+  // what lies beside the store or in it survives a revocation
+  for (const char* path : {"plant.old", "plant.new", "plant/notes"}) {
+    make_folder(path);
+    std::ofstream(folder() / path / "text") << path;
+  }
+  ASSERT_EQ(keys({"revoke", "plant", "flex"}).code, 0);
+  for (const char* path : {"plant.old", "plant.new", "plant/notes"}) {
+    EXPECT_EQ(text_of(folder() / path / "text"), path);
+  }
+  EXPECT_EQ(mode("plant"), kOpen);
+  EXPECT_FALSE(fs::exists(folder() / "plant/flex"));
+  EXPECT_EQ(keys({"check", "plant"}).code, 0);
+  for (const auto& entry : fs::directory_iterator(folder())) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with("plant.") && entry.path().extension() != ".old" &&
+                 entry.path().extension() != ".new")
+        << entry.path();
+  }
+}
+
+TEST_F(Keys, AreNotAddedUnderANameThatIsSomethingElse) {
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  fs::create_directory(folder() / "plant/notes");
+  fs::create_symlink("nowhere", folder() / "plant/link");
+  std::map<std::string, std::string> before;
+  const auto all = [&] {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder() / "plant")) {
+      files[entry.path()] = entry.is_regular_file() ? text_of(entry.path()) : "";
+    }
+    return files;
+  };
+  before = all();
+  for (const std::string name : {"identity_ca.key", "permissions_ca.pem", "governance.p7s", "identities.json", "..",
+                                 ".", ".next", "notes", "link"}) {
+    const CommandResult refused = keys({"add", "plant", "--name", name});
+    EXPECT_EQ(refused.code, 2) << name;
+    EXPECT_NE(refused.err.find("nothing was changed"), std::string::npos) << refused.err;
+    EXPECT_EQ(all(), before) << name;
+  }
+  EXPECT_EQ(keys({"check", "plant"}).code, 0);
+}
+
+TEST_F(Keys, AreGoodFromADayBeforeTheyWereMade) {
+  ASSERT_EQ(keys({"create", "plant", "--days", "30"}).code, 0);
+  const auto now = std::chrono::system_clock::now();
+  for (const char* file : {"identity_ca.pem", "permissions_ca.pem", "io/certificate.pem", "viewer/certificate.pem"}) {
+    const auto is_good = [&](std::chrono::hours later) {
+      const auto at = std::chrono::system_clock::to_time_t(now + later);
+      return run("/usr/bin/openssl",
+                 {"verify", "-attime", std::to_string(at), "-CAfile",
+                  (folder() / "plant" / (file[0] == 'p' ? "permissions_ca.pem" : "identity_ca.pem")).string(),
+                  (folder() / "plant" / file).string()},
+                 folder())
+                 .code == 0;
+    };
+    EXPECT_FALSE(is_good(std::chrono::hours(-25))) << file;
+    EXPECT_TRUE(is_good(std::chrono::hours(-23))) << file;
+    EXPECT_TRUE(is_good(std::chrono::hours(24 * 30 - 1))) << file;
+    EXPECT_FALSE(is_good(std::chrono::hours(24 * 30 + 1))) << file;
+  }
+}
+
 TEST_F(Keys, ThatHaveExpiredAreRefusedAndTold) {
   ASSERT_EQ(keys({"create", "plant"}).code, 0);
   const fs::path io = folder() / "plant/io", store = folder() / "plant";
@@ -163,7 +255,8 @@ TEST_F(Keys, ThatHaveExpiredAreRefusedAndTold) {
   std::ofstream(io / "permissions.p7s", std::ios::binary) << permissions;
   EXPECT_EQ(problems()["io"], "");
   // a certificate whose time is over
-  openssl({"req", "-new", "-config", (store / "openssl.cnf").string(), "-key", (io / "private_key.pem").string(),
+  std::ofstream(folder() / "openssl.cnf") << "[req]\nprompt = no\ndistinguished_name = name\n[name]\nO = Slewring\n";
+  openssl({"req", "-new", "-config", (folder() / "openssl.cnf").string(), "-key", (io / "private_key.pem").string(),
            "-out", (io / "request.pem").string(), "-subj", "/O=Slewring/CN=io"});
   openssl({"x509", "-req", "-in", (io / "request.pem").string(), "-CA", (store / "identity_ca.pem").string(), "-CAkey",
            (store / "identity_ca.key").string(), "-set_serial", "0x77", "-days", "-1", "-out",
