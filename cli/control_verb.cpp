@@ -134,8 +134,8 @@ ExitCode save(const Options& options) {
   return ExitCode::ok;
 }
 
-// Empty when both are the same machine; else what differs first. Duration, pace, how deadlines are kept, script, and
-// which variables are recorded and plotted are no part of the machine.
+// Empty when both are the same machine; else what differs first. Duration, pace, how deadlines are kept, script, who
+// moves the inputs, and which variables are recorded and plotted are no part of the machine.
 std::string difference_of(const io::SavedSession& saved, const wire::SessionDescription& running) {
   scene::Scene a = scene::load_text(saved.scene_text, saved.scene_name);
   scene::Scene b = scene::load_text(running.scene_text, running.scene_name);
@@ -153,6 +153,12 @@ std::string difference_of(const io::SavedSession& saved, const wire::SessionDesc
   b.script = a.script;
   b.recording.variables = a.recording.variables;
   b.plots = a.plots;
+  for (std::size_t i = 0; i < std::min(a.inputs.size(), b.inputs.size()); ++i) {
+    b.inputs[i].controller = a.inputs[i].controller;
+    b.inputs[i].controller_delay = a.inputs[i].controller_delay;
+    b.inputs[i].controller_wait = a.inputs[i].controller_wait;
+    b.inputs[i].supervisor = a.inputs[i].supervisor;
+  }
   std::istringstream of_a(scene::canonical_text(a)), of_b(scene::canonical_text(b));
   std::string line_a, line_b, element;
   while (true) {

@@ -176,7 +176,10 @@ void add_replay(CLI::App& program, Action& action) {
       ->check(CLI::IsMember({"real", "free"}))
       ->type_name("PACE")
       ->group("Going on");
-  verb->add_option("--set", options->run.scene.overrides, "with --then-live: change a live parameter at that time")
+  verb->add_option(
+          "--set", options->run.scene.overrides,
+          "with --then-live: change a live parameter at that time, or who moves an input from there on, such as "
+          "Input_Lift.controller=sampled")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false)
       ->group("Going on");

@@ -1,5 +1,8 @@
 #include "cli_support/scene_options.h"
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "cli_support/failure.h"
@@ -50,7 +53,7 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
   app.add_option("scene", options.file, "scene file")->type_name("SCENE");
   app.add_option("--from", options.from,
                  "go on with a saved session ('slewring control save') in the place of a scene; --set then changes "
-                 "live parameters")
+                 "live parameters and who moves an input (controller, supervisor)")
       ->type_name("FILE")
       ->group("Scene");
   app.add_option("--assets", options.assets, "with --from: folder with the scene's files; without it this one")
@@ -109,23 +112,40 @@ scene::Scene load_scene(const SceneOptions& options) {
   return with_input(scene::load_file(options.file, overrides), options);
 }
 
+namespace {
+
+// Who moves an input is no part of the state that a session goes on from: io_node's has its value and its ramp alone.
+constexpr std::string_view kOfController[] = {".controller", ".controller_delay", ".controller_wait", ".supervisor"};
+
+bool is_of_controller(const std::string& setting) {
+  const std::string_view path = std::string_view(setting).substr(0, setting.find('='));
+  return std::any_of(std::begin(kOfController), std::end(kOfController),
+                     [path](std::string_view key) { return path.ends_with(key); });
+}
+
+}  // namespace
+
 ContinuedScene continue_scene(const SceneOptions& options, const std::string& scene_text,
                               const std::string& scene_name) {
   if (!options.step.empty()) {
     throw Failure(ExitCode::bad_input,
                   "the step of a saved session is a part of its state; nothing was started; leave --step out");
   }
-  ContinuedScene continued{with_input(scene::load_text(scene_text, scene_name, of_session(options),
-                                                       options.assets.empty() ? "." : options.assets),
-                                      options),
-                           {}};
+  scene::Overrides overrides = of_session(options);
+  std::copy_if(options.overrides.begin(), options.overrides.end(), std::back_inserter(overrides), is_of_controller);
+  ContinuedScene continued{
+      with_input(scene::load_text(scene_text, scene_name, overrides, options.assets.empty() ? "." : options.assets),
+                 options),
+      {}};
   scene::ParameterDirectory directory(continued.scene);
   for (const std::string& setting : options.overrides) {
+    if (is_of_controller(setting)) continue;
     scene::Assignment change = directory.parse_assignment(setting);
     if (!change.status.is_ok()) {
       throw Failure(ExitCode::bad_input, "--set " + setting + ": " + change.status.text +
-                                             "; a session that goes on takes changes of live parameters only; nothing "
-                                             "was started");
+                                             "; a session that goes on takes changes of live parameters, and of the "
+                                             "controller, controller_delay, controller_wait and supervisor of inputs, "
+                                             "only; nothing was started");
     }
     continued.changes.push_back(std::move(change));
   }

@@ -31,8 +31,9 @@ void add_scene_options(CLI::App& app, SceneOptions& options);
 // scene::LoadError.
 [[nodiscard]] scene::Scene load_scene(const SceneOptions& options);
 
-// The scene of a saved session with what may be different where it goes on: duration, pace and input become part of its
-// text; settings are changes of live parameters. Throws Failure or scene::LoadError.
+// The scene of a saved session with what may be different where it goes on: duration, pace, input, and settings of who
+// moves an input (controller, controller_delay, controller_wait, supervisor) become part of its text; all other
+// settings are changes of live parameters. Throws Failure or scene::LoadError.
 struct ContinuedScene {
   scene::Scene scene;
   std::vector<scene::Assignment> changes;

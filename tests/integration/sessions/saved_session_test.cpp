@@ -1,6 +1,7 @@
 // Sessions that are saved at a step and go on from there: the same bits as if they had never stopped.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -20,6 +21,7 @@ using wire::Role;
 constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
 constexpr const char* kDuration = "1.6s";
 constexpr StepIndex kSteps = 1600;
+constexpr std::size_t kLift = 1;  // place of Input_Lift in a tick
 
 const HashChain& undisturbed() {
   static const RecordedSession session = [] {
@@ -111,7 +113,7 @@ TEST_F(SavedSession, TakesChangesOfLiveParametersAndRefusesOthers) {
   with = from;
   with.insert(with.end(), {"--set", "session.exchange_every=2"});
   EXPECT_EQ(slewring(with, folder_.path() / "run", &said), 2);
-  EXPECT_NE(said.find("live parameters only"), std::string::npos) << said;
+  EXPECT_NE(said.find("takes changes of live parameters, and of the controller"), std::string::npos) << said;
   with = from;
   with.insert(with.end(), {"--duration", "0.1s"});
   EXPECT_EQ(slewring(with, folder_.path() / "run", &said), 2);
@@ -123,7 +125,8 @@ TEST_F(SavedSession, TakesChangesOfLiveParametersAndRefusesOthers) {
 TEST_F(SavedSession, IsLoadedIntoARunningSessionOfTheSceneAndIntoNoOther) {
   save_in_mid_motion();
   {
-    Session session({"--pace", "free", "--duration", kDuration});
+    // who may move an input is no part of the machine
+    Session session({"--pace", "free", "--duration", kDuration, "--set", "Input_Lift.supervisor=boss"});
     Observer& observer = session.observer();
     session.start_all();
     ASSERT_TRUE(observer.wait_for_step(100)) << session.said();
@@ -208,7 +211,6 @@ TEST_F(SavedSession, BehindARecordingIsSteeredByAController) {
   ASSERT_TRUE(observer.wait_for_step(800)) << live.err();
   EXPECT_GE(observer.step(), 800);
   ASSERT_TRUE(observer.acquire("a", "Input_Lift").is_granted);
-  constexpr std::size_t kLift = 1;
   const auto is_moved = [&] {
     return observer.tick().controls.size() > kLift && observer.tick().controls[kLift] == 500;
   };
@@ -224,6 +226,50 @@ TEST_F(SavedSession, BehindARecordingIsSteeredByAController) {
   EXPECT_EQ(read_session(recording).chain().begin()->first, 800);
   std::string said;
   EXPECT_EQ(slewring({"replay", recording, "--verify"}, folder_.path() / "verify", &said), 0) << said;
+}
+
+// What was made with a controller that every tick waits for goes on without it: in the hands of the script, or of
+// nobody.
+TEST_F(SavedSession, OfALockstepControllerIsHandedOver) {
+  Session session({"--pace", "free", "--duration", kDuration, "--set", "Input_Lift.controller=lockstep"});
+  session.start_all();
+  // one that takes its channel and says nothing: it is held, then put to neutral
+  ASSERT_TRUE(session.observer().acquire("a", "Input_Lift").is_granted) << session.said();
+  ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
+  const std::string recording = only_recording(session.runs()).string();
+  std::string said;
+  const auto replay_on = [&](const std::string& name, const std::vector<std::string>& how) {
+    const std::filesystem::path runs = folder_.path() / name;
+    std::vector<std::string> arguments = {"replay", recording, "--until",    "0.8s", "--then-live", "--pace",
+                                          "free",   "--quiet", "--duration", "2s",   "--out",       runs.string()};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    ASSERT_EQ(slewring(arguments, folder_.path() / (name + "_run"), &said), 0) << said;
+    const RecordedSession recorded = read_session(runs);
+    EXPECT_EQ(recorded.problem, "");
+    EXPECT_EQ(recorded.chain().begin()->first, 800);
+    EXPECT_EQ(recorded.last_complete_step(), 2000);
+    const bool has_moved = std::any_of(recorded.ticks.at(0).begin(), recorded.ticks.at(0).end(), [](const auto& tick) {
+      return tick.second.controls.size() > kLift && tick.second.controls[kLift] != 0;
+    });
+    EXPECT_EQ(has_moved, name == "script");
+    EXPECT_EQ(slewring({"replay", only_recording(runs).string(), "--verify"}, folder_.path() / "verify", &said), 0)
+        << said;
+  };
+  const TestDomain domain;
+  replay_on("script", {"--set", "Input_Lift.controller=sampled", "--input", "script", "--domain",
+                       std::to_string(domain.number())});
+  replay_on("nobody", {"--set", "Input_Lift.controller=sampled", "--set", "Input_Lift.supervisor=boss", "--input",
+                       "none", "--in-process"});
+  // a saved state alike
+  ASSERT_EQ(slewring({"replay", recording, "--until", "0.8s", "--save", file()}, folder_.path() / "save", &said), 0)
+      << said;
+  std::vector<std::string> from = {"run",          "--from",  file(),
+                                   "--in-process", "--quiet", "--pace",
+                                   "free",         "--out",   (folder_.path() / "from").string()};
+  EXPECT_EQ(slewring(from, folder_.path() / "from_run", &said), 2);
+  EXPECT_NE(said.find("--set Input_Lift.controller=sampled"), std::string::npos) << said;
+  from.insert(from.end(), {"--set", "Input_Lift.controller=sampled"});
+  EXPECT_EQ(slewring(from, folder_.path() / "from_run", &said), 0) << said;
 }
 
 // A recorder that comes when the session has begun.

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "build_paths.h"
+#include "cli_support/failure.h"
 #include "io_node/scene_config.h"
 
 namespace slew::cli_support {
@@ -86,6 +87,30 @@ TEST_F(SceneOptionsTest, NoneAndKeyboardLeaveNoScript) {
     EXPECT_TRUE(scene.script.is_empty()) << input;
     EXPECT_EQ(scene.expanded_text.find("\nscript"), std::string::npos) << input;
   }
+}
+
+TEST_F(SceneOptionsTest, WhoMovesAnInputMayBeAnotherWhereASessionGoesOn) {
+  options_.overrides = {"Input_Lift.controller=lockstep", "Input_Lift.controller_delay=3"};
+  const scene::Scene saved = load_scene(options_);
+  SceneOptions on;
+  on.overrides = {"Input_Lift.controller=sampled", "Input_Lift.controller_wait=2 s", "Input_Slew.supervisor=boss",
+                  "Bag.mass=750 kg"};
+  const ContinuedScene continued = continue_scene(on, saved.expanded_text, saved.name);
+  const scene::Scene again = scene::load_text(continued.scene.expanded_text, "again");
+  for (const scene::InputDef& input : again.inputs) {
+    EXPECT_EQ(input.controller, scene::ControllerMode::sampled);
+    EXPECT_EQ(input.supervisor, input.name == "Input_Slew" ? "boss" : "");
+    if (input.name != "Input_Lift") continue;
+    EXPECT_EQ(input.controller_delay, 3);
+    EXPECT_EQ(input.controller_wait, 2);
+  }
+  ASSERT_EQ(continued.changes.size(), 1u);
+  EXPECT_EQ(continued.changes[0].path, "Bag.mass");
+  // of the same field a wrong value, and another one of the same input
+  on.overrides = {"Input_Lift.controller=somehow"};
+  EXPECT_THROW(static_cast<void>(continue_scene(on, saved.expanded_text, saved.name)), scene::LoadError);
+  on.overrides = {"Input_Lift.ramp=1 s"};
+  EXPECT_THROW(static_cast<void>(continue_scene(on, saved.expanded_text, saved.name)), Failure);
 }
 
 TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
