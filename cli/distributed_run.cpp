@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "cli/child_process.h"
 #include "cli/interrupts.h"
@@ -356,11 +357,14 @@ class Supervisor {
     }
   }
 
+  // A Ctrl-C behind the first signal kills who is left, and so does the first one when only a slow disk is waited for.
   void obey_interrupts() {
     const int count = interrupts();
     if (count == obeyed_) return;
-    obeyed_ = count;
-    if (count > 1 || is_recorder_awaited_) return send_to_all(SIGKILL);
+    const bool is_first = std::exchange(obeyed_, count) == 0;
+    const int meant = ctrl_cs();
+    const bool is_ctrl_c = meant != std::exchange(obeyed_ctrl_cs_, meant);
+    if (is_ctrl_c && (!is_first || is_recorder_awaited_)) return send_to_all(SIGKILL);
     end_session();
   }
 
@@ -369,9 +373,10 @@ class Supervisor {
     is_ending_ = true;
     if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
     if (is_ours(Role::io)) {
-      // io ends the session in order: END, the recorder closes, everybody leaves
+      // io ends the session in order: END, the recorder closes, everybody leaves; its code is in the recording
+      const bool is_ctrl_c = interrupt_code() == static_cast<int>(ExitCode::interrupted);
       nodes_.front().is_asked_to_end = true;
-      nodes_.front().process->send_signal(SIGTERM);
+      nodes_.front().process->send_signal(is_ctrl_c ? SIGINT : SIGTERM);
       return;
     }
     wire::ControlRequest request;
@@ -473,7 +478,8 @@ class Supervisor {
   bool is_recorder_awaited_ = false;  // it still writes when everybody else has ended
   bool is_ending_ = false;
   bool is_refusal_told_;
-  int obeyed_ = 0;
+  int obeyed_ = 0;  // signals, and of them those by Ctrl-C that were meant
+  int obeyed_ctrl_cs_ = 0;
   std::int64_t deadline_ns_ = 0;
   std::int64_t asked_ns_ = 0;  // when those that were left were asked to end
   std::int64_t started_wall_ns_ = 0;

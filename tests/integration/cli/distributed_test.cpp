@@ -240,8 +240,29 @@ TEST_F(Distributed, CtrlCEndsInOrderWithAValidRecording) {
   const CommandResult result = session->wait();
   EXPECT_EQ(result.code, 130) << result.err;
   EXPECT_EQ(offline({"replay", work_.recording().string(), "--verify"}).code, 0);
-  const std::string end = "closed in order; the session ended with code 143: terminated by SIGTERM";
+  const std::string end = "closed in order; the session ended with code 130: interrupted by SIGINT";
   EXPECT_NE(offline({"info", work_.recording().string()}).out.find(end), std::string::npos);
+}
+
+// a terminal that is closed, timeout(1), a key that repeats
+TEST_F(Distributed, SignalsThatComeTwiceEndInOrderToo) {
+  const std::vector<std::vector<int>> all = {
+      {SIGHUP, SIGHUP}, {SIGHUP, SIGTERM}, {SIGTERM, SIGTERM, SIGHUP}, {SIGINT, SIGINT}};
+  for (const std::vector<int>& signals : all) {
+    const std::string which = std::to_string(&signals - all.data());
+    SCOPED_TRACE("case " + which);
+    const auto session = start("truck_crane.yaml", {"--duration", "0", "--out", "runs_" + which});
+    ASSERT_TRUE(wait_until_running(*session)) << session->err();
+    for (const int signal : signals) session->send(signal);
+    const CommandResult result = session->wait();
+    const std::string code = signals[0] == SIGINT ? "130" : "143";
+    EXPECT_EQ(std::to_string(result.code), code) << result.err;
+    EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
+    const std::string recording = only_recording_below(work_.path() / ("runs_" + which)).string();
+    EXPECT_NE(offline({"info", recording}).out.find("closed in order; the session ended with code " + code),
+              std::string::npos);
+    EXPECT_EQ(offline({"replay", recording, "--verify"}).code, 0);
+  }
 }
 
 // of a disk that confirms the recording only after so many seconds
@@ -250,12 +271,12 @@ class SlowDisk : public Distributed {
   void SetUp() override {
     if (!std::string_view(SLEWRING_SANITIZER).empty()) GTEST_SKIP() << "the sanitizer wants to be loaded first";
   }
-  std::unique_ptr<Command> start_with(int seconds) const {
+  std::unique_ptr<Command> start_with(int seconds, const std::string& duration = "0.2") const {
     return std::make_unique<Command>(
         "/usr/bin/env",
         with_domain({"LD_PRELOAD=" SLEWRING_SLOW_DISK, "SLEWRING_SLOW_DISK=" + std::to_string(seconds),
                      program_file("slewring").string(), "run", scene_file("first_steps.yaml"), "--pace", "free",
-                     "--duration", "0.2"}),
+                     "--duration", duration}),
         work_.path());
   }
 };
@@ -278,6 +299,28 @@ TEST_F(SlowDisk, IsNotWaitedForAfterCtrlC) {
   EXPECT_NE(result.err.find("was killed while it wrote; 'slewring recover' makes the recording whole"),
             std::string::npos)
       << result.err;
+}
+
+TEST_F(SlowDisk, IsWaitedForAfterATermAndAHangup) {
+  const auto session = start_with(8);
+  ASSERT_TRUE(wait_until([&] { return session->err().find("still writes") != std::string::npos; })) << session->err();
+  for (const int signal : {SIGTERM, SIGHUP, SIGTERM}) session->send(signal);
+  const CommandResult result = session->wait();
+  EXPECT_EQ(result.code, 143) << result.err;
+  EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
+  EXPECT_NE(offline({"info", work_.recording().string()}).out.find("closed in order"), std::string::npos);
+}
+
+TEST_F(SlowDisk, IsNotWaitedForAfterASecondCtrlC) {
+  const auto session = start_with(600, "0");
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  session->send(SIGINT);
+  ASSERT_TRUE(wait_until([&] { return session->err().find("still writes") != std::string::npos; })) << session->err();
+  EXPECT_EQ(session->err().find("killed"), std::string::npos) << session->err();
+  session->send(SIGINT);
+  const CommandResult result = session->wait();
+  EXPECT_EQ(result.code, 130) << result.err;
+  EXPECT_NE(result.err.find("was killed while it wrote"), std::string::npos) << result.err;
 }
 
 TEST_F(Distributed, CtrlCBeforeTheFirstStepIsOrderlyToo) {
