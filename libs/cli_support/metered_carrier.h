@@ -14,6 +14,9 @@ class MeteredCarrier final : public transport::Transport {
 
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
   bool take(transport::Received& message) override;
+  [[nodiscard]] transport::WriterSight see_writer(wire::Topic topic, std::uint64_t writer) override {
+    return carrier_->see_writer(topic, writer);
+  }
   void wait_until(std::int64_t monotonic_deadline_ns) override;
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
   [[nodiscard]] std::vector<std::string> misfits() override { return carrier_->misfits(); }

@@ -6,10 +6,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fnmatch.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <climits>
 #include <cstring>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "transport/cyclone_sertype.h"
 #include "transport/cyclone_transport.h"
@@ -18,6 +23,7 @@ namespace slew::transport {
 namespace {
 
 constexpr std::uint32_t kMaxEndpoints = 2048;  // of all topics in the domain, written or read
+constexpr std::size_t kMaxMatched = 256;       // writers of one topic
 constexpr const char* kOtherLayout = " of another layout (built from another idl/slewring.idl)";
 
 constexpr std::string_view kSessions = "slewring/";  // the partitions' names begin so
@@ -53,8 +59,12 @@ Partitions partitions_of(const dds_qos_t* qos) {
   return found;
 }
 
-// "role on host h, pid p" from the user data role:host:pid of our writers
-std::string description(const dds_qos_t* qos) {
+// of the user data role:host:pid of our writers
+struct ToldProcess {
+  std::string role, host, pid;
+};
+
+std::optional<ToldProcess> told_process(const dds_qos_t* qos) {
   void* data = nullptr;
   std::size_t size = 0;
   std::string text;
@@ -62,9 +72,36 @@ std::string description(const dds_qos_t* qos) {
   dds_free(data);
   const std::size_t first = text.find(':');
   const std::size_t last = text.rfind(':');
-  if (first == std::string::npos || first == last) return "a program that is not of Slewring";
-  return fmt::format("{} on host {}, pid {}", text.substr(0, first), text.substr(first + 1, last - first - 1),
-                     text.substr(last + 1));
+  if (first == std::string::npos || first == last) return std::nullopt;
+  return ToldProcess{text.substr(0, first), text.substr(first + 1, last - first - 1), text.substr(last + 1)};
+}
+
+std::string process_text(const std::string& host, const std::string& pid) {
+  return fmt::format("process {} on {}", pid, host);
+}
+
+std::string description(const dds_qos_t* qos) {
+  const std::optional<ToldProcess> told = told_process(qos);
+  if (!told) return "a program that is not of Slewring";
+  return fmt::format("{} on host {}, pid {}", told->role, told->host, told->pid);
+}
+
+// of both halves: entities of one participant differ in the second alone
+std::uint64_t number_of(const dds_guid_t& guid) {
+  std::uint64_t halves[2];
+  static_assert(sizeof halves == sizeof guid.v);
+  std::memcpy(halves, guid.v, sizeof halves);
+  const std::uint64_t number = halves[0] * 0x9e3779b97f4a7c15u + halves[1];
+  return number != 0 ? number : 1;
+}
+
+struct EndpointDeleter {
+  void operator()(dds_builtintopic_endpoint_t* endpoint) const { dds_builtintopic_free_endpoint(endpoint); }
+};
+using MatchedWriter = std::unique_ptr<dds_builtintopic_endpoint_t, EndpointDeleter>;
+
+MatchedWriter matched(dds_entity_t reader, dds_instance_handle_t handle) {
+  return MatchedWriter(dds_get_matched_publication_data(reader, handle));
 }
 
 // whether the layouts are known and differ; other vendors tell nothing
@@ -155,6 +192,12 @@ std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested, bo
 
 }  // namespace
 
+std::string CycloneTransport::own_process() {
+  char host[HOST_NAME_MAX + 1] = "";
+  gethostname(host, sizeof host - 1);
+  return process_text(host, std::to_string(getpid()));
+}
+
 std::vector<std::string> CycloneTransport::discovered_writers(wire::Topic topic) {
   std::vector<std::string> writers;
   for_each_endpoint(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION,
@@ -168,6 +211,32 @@ std::vector<std::string> CycloneTransport::discovered_writers(wire::Topic topic)
                     });
   std::ranges::sort(writers);
   return writers;
+}
+
+// The middleware is asked once for each of its handles: no memory is taken in a step.
+std::uint64_t CycloneTransport::writer_of(wire::Topic topic, std::uint64_t handle) {
+  if (topic != wire::Topic::controller_input) return 0;
+  for (const KnownWriter& known : known_writers_) {
+    if (known.handle == handle) return known.writer;
+  }
+  const MatchedWriter writer = matched(readers_[static_cast<std::size_t>(topic)], handle);
+  if (writer == nullptr) return 0;  // it has left before its message was taken
+  known_writers_[next_known_] = {handle, number_of(writer->key)};
+  return known_writers_[std::exchange(next_known_, (next_known_ + 1) % known_writers_.size())].writer;
+}
+
+WriterSight CycloneTransport::see_writer(wire::Topic topic, std::uint64_t writer) {
+  const dds_entity_t reader = readers_[static_cast<std::size_t>(topic)];
+  std::array<dds_instance_handle_t, kMaxMatched> handles{};
+  const dds_return_t count = dds_get_matched_publications(reader, handles.data(), handles.size());
+  if (writer == 0 || count < 0 || static_cast<std::size_t>(count) > handles.size()) return {};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const MatchedWriter found = matched(reader, handles[i]);
+    if (found == nullptr || number_of(found->key) != writer) continue;
+    const std::optional<ToldProcess> told = told_process(found->qos);
+    return {false, told ? process_text(told->host, told->pid) : std::string()};
+  }
+  return {true, {}};
 }
 
 std::vector<std::string> CycloneTransport::misfits() {

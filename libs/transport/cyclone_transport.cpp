@@ -224,7 +224,7 @@ bool CycloneTransport::take(Received& message) {
   if (batch_next_ == batch_count_ && !refill()) return false;
   const std::size_t i = batch_next_++;
   taken_ = batch_[i];
-  message = {batch_topic_, bytes_of(*taken_), batch_source_ns_[i]};
+  message = {batch_topic_, bytes_of(*taken_), batch_source_ns_[i], batch_writer_[i]};
   return true;
 }
 
@@ -250,6 +250,7 @@ bool CycloneTransport::refill() {
       }
       batch_[batch_count_] = samples[i];
       batch_source_ns_[batch_count_] = about[i].source_timestamp;
+      batch_writer_[batch_count_] = writer_of(batch_topic_, about[i].publication_handle);
       ++batch_count_;
     }
     if (batch_count_ > 0) return true;

@@ -61,6 +61,7 @@ class CycloneTransport final : public Transport {
 
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
   bool take(Received& message) override;
+  [[nodiscard]] WriterSight see_writer(wire::Topic topic, std::uint64_t writer) override;
   void wait_until(std::int64_t monotonic_deadline_ns) override;
   // "mechanics on host crane2, pid 812, type slewring::Tick"; of all vendors, in this session's partition
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
@@ -68,6 +69,8 @@ class CycloneTransport final : public Transport {
   // ownership and deadline.
   [[nodiscard]] std::vector<std::string> misfits() override;
 
+  // This process as others see it in WriterSight.
+  [[nodiscard]] static std::string own_process();
   // Readers of other participants that match the writer of this topic now.
   [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const;
 
@@ -80,6 +83,7 @@ class CycloneTransport final : public Transport {
   [[nodiscard]] Status create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber);
   [[nodiscard]] bool refill();
   void look_at_the_clock() noexcept;
+  [[nodiscard]] std::uint64_t writer_of(wire::Topic topic, std::uint64_t handle);
 
   std::shared_ptr<CycloneDomain> domain_;
   const CycloneOptions options_;
@@ -95,6 +99,14 @@ class CycloneTransport final : public Transport {
 
   std::array<ddsi_serdata*, kBatch> batch_{};
   std::array<std::int64_t, kBatch> batch_source_ns_{};
+  std::array<std::uint64_t, kBatch> batch_writer_{};
+  // Cyclone's handle of a writer, which is another one when it was lost and found again, and what it is here
+  struct KnownWriter {
+    std::uint64_t handle = 0;
+    std::uint64_t writer = 0;
+  };
+  std::array<KnownWriter, 32> known_writers_{};
+  std::size_t next_known_ = 0;  // place of the next one
   std::size_t batch_count_ = 0;
   std::size_t batch_next_ = 0;
   wire::Topic batch_topic_ = wire::Topic::session;

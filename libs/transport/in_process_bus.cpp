@@ -18,8 +18,10 @@ InProcessEndpoint::InProcessEndpoint(InProcessBus& bus, InProcessOptions options
   const std::lock_guard lock(bus_.mutex_);
   // what earlier writers keep for late readers
   for (const InProcessEndpoint* writer : bus_.endpoints_) {
-    for (const Message& message : writer->kept_) receive(message.topic, message.bytes, message.source_ns);
+    for (const Message& message : writer->kept_)
+      receive(message.topic, message.bytes, message.source_ns, writer->number_);
   }
+  number_ = ++bus_.last_number_;
   bus_.endpoints_.push_back(this);
 }
 
@@ -37,7 +39,7 @@ Status InProcessEndpoint::publish(wire::Topic topic, std::span<const std::byte> 
   const std::lock_guard lock(bus_.mutex_);
   keep(topic, bytes, now);
   for (InProcessEndpoint* reader : bus_.endpoints_) {
-    if (reader != this) reader->receive(topic, bytes, now);
+    if (reader != this) reader->receive(topic, bytes, now, number_);
   }
   return Status::ok();
 }
@@ -49,11 +51,12 @@ void InProcessEndpoint::keep(wire::Topic topic, std::span<const std::byte> bytes
   if (std::count_if(kept_.begin(), kept_.end(), is_of_topic) == depth) {
     kept_.erase(std::find_if(kept_.begin(), kept_.end(), is_of_topic));
   }
-  kept_.push_back({topic, source_ns, {bytes.begin(), bytes.end()}});
+  kept_.push_back({topic, source_ns, {bytes.begin(), bytes.end()}, number_});
 }
 
 // the bus's mutex is held
-void InProcessEndpoint::receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns) {
+void InProcessEndpoint::receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns,
+                                std::uint64_t writer) {
   if (!options_.reads.contains(topic)) return;
   if (count_ == inbox_.size() && count_ < InProcessBus::kInboxLimit) grow();
   if (count_ == inbox_.size()) {
@@ -64,6 +67,7 @@ void InProcessEndpoint::receive(wire::Topic topic, std::span<const std::byte> by
   Message& slot = inbox_[(first_ + count_) % inbox_.size()];
   slot.topic = topic;
   slot.source_ns = source_ns;
+  slot.writer = topic == wire::Topic::controller_input ? writer : 0;
   slot.bytes.assign(bytes.begin(), bytes.end());
   ++count_;
   has_message_.notify_one();
@@ -84,8 +88,15 @@ bool InProcessEndpoint::take(Received& message) {
   std::swap(taken_, inbox_[first_]);
   first_ = (first_ + 1) % inbox_.size();
   --count_;
-  message = {taken_.topic, taken_.bytes, taken_.source_ns};
+  message = {taken_.topic, taken_.bytes, taken_.source_ns, taken_.writer};
   return true;
+}
+
+WriterSight InProcessEndpoint::see_writer(wire::Topic, std::uint64_t writer) {
+  const std::lock_guard lock(bus_.mutex_);
+  const bool is_there = std::any_of(bus_.endpoints_.begin(), bus_.endpoints_.end(),
+                                    [writer](const InProcessEndpoint* one) { return one->number_ == writer; });
+  return {.has_left = writer != 0 && !is_there};
 }
 
 void InProcessEndpoint::wait_until(std::int64_t monotonic_deadline_ns) {

@@ -40,6 +40,7 @@ class InProcessEndpoint final : public Transport {
 
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override;
   bool take(Received& message) override;
+  [[nodiscard]] WriterSight see_writer(wire::Topic topic, std::uint64_t writer) override;
   void wait_until(std::int64_t monotonic_deadline_ns) override;
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
   [[nodiscard]] std::vector<std::string> misfits() override { return {}; }  // there are none on a bus
@@ -54,14 +55,16 @@ class InProcessEndpoint final : public Transport {
     wire::Topic topic = wire::Topic::session;
     std::int64_t source_ns = 0;
     std::vector<std::byte> bytes;
+    std::uint64_t writer = 0;
   };
 
-  void receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns);
+  void receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns, std::uint64_t writer);
   void grow();
   void keep(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns);
 
   InProcessBus& bus_;
   const InProcessOptions options_;
+  std::uint64_t number_ = 0;    // of this endpoint at its bus, from 1 on
   std::vector<Message> inbox_;  // ring
   std::size_t first_ = 0;
   std::size_t count_ = 0;
@@ -81,6 +84,7 @@ class InProcessBus {
 
   mutable std::mutex mutex_;  // guards all endpoints' inboxes and kept messages
   std::vector<InProcessEndpoint*> endpoints_;
+  std::uint64_t last_number_ = 0;  // of all endpoints that there were
 };
 
 }  // namespace slew::transport

@@ -21,6 +21,14 @@ struct Received {
   wire::Topic topic = wire::Topic::session;
   std::span<const std::byte> bytes;  // encapsulation header (4 bytes) and CDR
   std::int64_t source_ns = 0;        // writer's wall clock at the write
+  // Tells the writers of controller_input apart, also after one was lost from sight and found again. 0: not known.
+  std::uint64_t writer = 0;
+};
+
+// What the carrier knows of a writer.
+struct WriterSight {
+  bool has_left = false;  // it is known to be there no more
+  std::string process{};  // "process 812 on crane2"; empty: not known
 };
 
 class Transport {
@@ -32,6 +40,9 @@ class Transport {
 
   // Next received message of any subscribed topic; false when there is none now. One thread only.
   virtual bool take(Received& message) = 0;
+
+  // Who is behind Received::writer. Thread of take().
+  [[nodiscard]] virtual WriterSight see_writer(wire::Topic, std::uint64_t) { return {}; }
 
   // Blocks until a message may be there or the monotonic deadline passes.
   virtual void wait_until(std::int64_t monotonic_deadline_ns) = 0;

@@ -69,6 +69,32 @@ TEST_F(CycloneBus, CarriesMessagesInOrder) {
   }
 }
 
+TEST_F(CycloneBus, TellsTheWritersOfValuesApartAndWhoHasLeft) {
+  const auto io = connect("a", "io", {}, {Topic::controller_input});
+  const auto a = connect("a", "controller", {Topic::controller_input}, {});
+  auto b = connect("a", "controller", {Topic::controller_input}, {});
+  ASSERT_TRUE(eventually([&] { return a->matched_readers(Topic::controller_input) == 1; }));
+  ASSERT_TRUE(eventually([&] { return b->matched_readers(Topic::controller_input) == 1; }));
+  wire::ControllerInput input;
+  ByteBuffer bytes;
+  ASSERT_TRUE(encode(input, bytes));
+  Received message;
+  const auto writer = [&](CycloneTransport& from) {
+    EXPECT_TRUE(from.publish(Topic::controller_input, bytes).is_ok());
+    EXPECT_TRUE(next(*io, message));
+    return message.writer;
+  };
+  const std::uint64_t of_a = writer(*a), of_b = writer(*b);
+  EXPECT_NE(of_a, 0u);
+  EXPECT_NE(of_b, 0u);
+  EXPECT_NE(of_a, of_b);
+  EXPECT_EQ(writer(*a), of_a);
+  EXPECT_EQ(io->see_writer(Topic::controller_input, of_a).process, CycloneTransport::own_process());
+  b.reset();
+  EXPECT_TRUE(eventually([&] { return io->see_writer(Topic::controller_input, of_b).has_left; }));
+  EXPECT_FALSE(io->see_writer(Topic::controller_input, of_a).has_left);
+}
+
 TEST_F(CycloneBus, AnEndpointDoesNotHearItself) {
   const auto a = connect("a", "io", TopicSet::all(), TopicSet::all());
   const auto b = connect("a", "mechanics", TopicSet::all(), TopicSet::all());

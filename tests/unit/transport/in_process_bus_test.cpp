@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <memory>
 #include <thread>
 
 #include "core/allocation_guard.h"
@@ -49,6 +50,28 @@ TEST(InProcessBus, DeliversInTheOrderOfPublishingWhoeverPublishes) {
   ASSERT_EQ(heard.size(), 200u);
   for (std::uint64_t i = 0; i < 200; ++i) EXPECT_EQ(heard[i], i);
   EXPECT_EQ(take_all(b).size(), 67u);
+}
+
+TEST(InProcessBus, TellsTheWritersOfValuesApartAndWhoHasLeft) {
+  InProcessBus bus;
+  InProcessEndpoint io(bus, {"io", {}, {Topic::controller_input, Topic::tick}});
+  InProcessEndpoint a(bus, {"a", {Topic::controller_input, Topic::tick}, {}});
+  auto b = std::make_unique<InProcessEndpoint>(bus, InProcessOptions{"b", {Topic::controller_input}, {}});
+  Received message;
+  const auto writer = [&](InProcessEndpoint& from, Topic topic) {
+    EXPECT_TRUE(from.publish(topic, NumberedBytes(1).bytes).is_ok());
+    EXPECT_TRUE(io.take(message));
+    return message.writer;
+  };
+  const std::uint64_t of_a = writer(a, Topic::controller_input), of_b = writer(*b, Topic::controller_input);
+  EXPECT_NE(of_a, 0u);
+  EXPECT_NE(of_a, of_b);
+  EXPECT_EQ(writer(a, Topic::controller_input), of_a);
+  EXPECT_EQ(writer(a, Topic::tick), 0u) << "nobody asks";
+  b.reset();
+  EXPECT_FALSE(io.see_writer(Topic::controller_input, of_a).has_left);
+  EXPECT_TRUE(io.see_writer(Topic::controller_input, of_b).has_left);
+  EXPECT_FALSE(io.see_writer(Topic::controller_input, 0).has_left) << "not known";
 }
 
 TEST(InProcessBus, AnEndpointDoesNotHearItselfNorUnwantedTopics) {
