@@ -63,7 +63,7 @@ ChildProcess::ChildProcess(std::string name, const std::string& program, const s
   std::array<int, 2> pipe_ends{};
   if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) {
     throw Failure(ExitCode::resources,
-                  fmt::format("no pipe for {} ({}); nothing runs; close other programs", name_, strerror(errno)));
+                  fmt::format("no pipe for {} ({}); it is not started; close other programs", name_, strerror(errno)));
   }
   const pid_t parent = getpid();
   pid_ = fork();
@@ -71,9 +71,8 @@ ChildProcess::ChildProcess(std::string name, const std::string& program, const s
     const std::string reason = strerror(errno);
     close(pipe_ends[0]);
     close(pipe_ends[1]);
-    throw Failure(
-        ExitCode::resources,
-        fmt::format("no process for {} ({}); the session is not started; close other programs", name_, reason));
+    throw Failure(ExitCode::resources,
+                  fmt::format("no process for {} ({}); it is not started; close other programs", name_, reason));
   }
   if (pid_ == 0) become(program.c_str(), pointers.data(), pipe_ends[1], parent);
   setpgid(pid_, pid_);

@@ -24,6 +24,7 @@
 #include "node/session_member.h"
 #include "recording/run_directory.h"
 #include "scene/cpu_places.h"
+#include "transport/given_up.h"
 
 namespace slew::cli {
 namespace {
@@ -38,6 +39,8 @@ constexpr std::int64_t kTermNs = 1'500'000'000;
 constexpr std::int64_t kWritingNs = 600'000'000'000;
 // a node that is killed again and again has a cause that a restart does not remove
 constexpr int kMostRestarts = 3;
+// from a start that failed to the next one
+constexpr std::int64_t kStartAgainNs = 500'000'000;
 
 class Supervisor {
  public:
@@ -97,6 +100,9 @@ class Supervisor {
     bool is_awaited = false;  // it was killed, and is started again, or by somebody else, when io holds its place
     bool is_replaced_elsewhere = false;  // by a process that was started by hand
     bool is_killed_as_lost = false;
+    bool is_failure_told = false;
+    bool has_come = false;           // into the place that it was started for
+    std::int64_t not_before_ns = 0;  // of its next start
   };
 
   // values are needed for the status line, and for the summary of a run that is not recorded here
@@ -210,34 +216,77 @@ class Supervisor {
   [[nodiscard]] bool is_taken_by_another(const Node& node) const {
     const NodeView& view = observer_->view().node(node.role);
     return view.is_known && view.status.state < wire::NodeState::ended &&
-           view.status.pid != static_cast<std::uint32_t>(node.process->pid());
+           view.status.pid != static_cast<std::uint32_t>(node.process->pid()) &&
+           !transport::is_given_up(observer_->view().session(), view.status.header);
+  }
+
+  // What was heard of it last; null: nothing.
+  [[nodiscard]] const NodeView* heard_of(const Node& node) const {
+    const NodeView& view = observer_->view().node(node.role);
+    const bool is_it = view.is_known && view.status.pid == static_cast<std::uint32_t>(node.process->pid());
+    return is_it ? &view : nullptr;
+  }
+
+  // io holds a place until who came for it is ready.
+  [[nodiscard]] bool has_come(const Node& node) const {
+    const NodeView* view = heard_of(node);
+    if (view == nullptr) return false;
+    const wire::NodeState state = view->status.state;
+    const bool has_stepped =
+        view->health.header.incarnation == view->status.header.incarnation && view->health.steps_done > 0;
+    return has_stepped || (state >= wire::NodeState::ready && state < wire::NodeState::ended);
+  }
+
+  // io holds the place further for the next one: it has given up this one, or never heard of it.
+  [[nodiscard]] bool is_place_free(const Node& node) const {
+    const bool was_unheard = node.process->poll_end()->signal == 0 && heard_of(node) == nullptr;
+    return has_lost_its_place(node) || was_unheard;
+  }
+
+  void kill_those_given_up() {
+    for (Node& node : nodes_) {
+      if (node.process->poll_end() || node.is_killed_as_lost || !has_lost_its_place(node)) continue;
+      status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                  ") was silent for 2 s and has lost its place; it is killed");
+      node.is_killed_as_lost = true;
+      node.process->send_signal(SIGKILL);
+    }
   }
 
   void start_again() {
+    kill_those_given_up();
     for (Node& node : nodes_) {
-      if (!node.process->poll_end() && !node.is_killed_as_lost && has_lost_its_place(node)) {
-        status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
-                    ") was silent for 2 s and has lost its place; it is killed");
-        node.is_killed_as_lost = true;
-        node.process->send_signal(SIGKILL);
-      }
+      node.has_come = node.has_come || has_come(node);
       if (!node.is_awaited) continue;
       if (observer_->view().is_over() || deadline_ns_ != 0) {
         node.is_awaited = false;
         // who asked the session to end did not wait for it
         if (interrupts() > 0) continue;
         report_kill(node, "; the others end with code 4 and close the recording; run the session again");
-      } else if (has_lost_its_place(node)) {
+      } else if (is_place_free(node)) {
         node.is_replaced_elsewhere = is_taken_by_another(node);
-        if (!node.is_replaced_elsewhere && node.restarts == kMostRestarts) continue;
-        node.given_up_before = places_given_up(node.role);
-        node.is_awaited = false;
-        if (node.is_replaced_elsewhere) continue;
-        node.process = make(node.role);
-        node.is_reported = node.is_killed_as_lost = false;
-        ++node.restarts;
+        if (node.is_replaced_elsewhere) {
+          node.is_awaited = false;
+        } else if (node.restarts < kMostRestarts && monotonic_ns() >= node.not_before_ns) {
+          start_in_its_place(node);
+        }
       }
     }
+  }
+
+  // Without a pipe or a process for it the place is held all the same.
+  void start_in_its_place(Node& node) {
+    try {
+      node.process = make(node.role);
+    } catch (const cli_support::Failure& failure) {
+      node.not_before_ns = monotonic_ns() + kStartAgainNs;
+      if (std::exchange(node.is_failure_told, true)) return;
+      return status_.say(std::string("slewring: ") + failure.what() +
+                         "; the others hold, and it is tried again until one comes or they end");
+    }
+    node.given_up_before = places_given_up(node.role);
+    node.is_awaited = node.is_reported = node.is_killed_as_lost = node.is_failure_told = node.has_come = false;
+    ++node.restarts;
   }
 
   // ---- watching -----------------------------------------------------------------------------------------------
@@ -280,7 +329,8 @@ class Supervisor {
                                 line.find("because of a fault elsewhere") != std::string::npos;
     const bool is_warning = line.find("warning") != std::string::npos;
     if (is_warning || line.find("_node: ") == std::string::npos) return status_.say(line);
-    (is_consequence ? consequences_ : causes_).push_back(line);
+    std::vector<std::string>& kept = is_consequence ? consequences_ : causes_;
+    if (std::find(kept.begin(), kept.end(), line) == kept.end()) kept.push_back(line);
   }
 
   void say_kill(const Node& node, const std::string& what_follows) {
@@ -308,7 +358,11 @@ class Supervisor {
   void report_end(Node& node) {
     node.is_reported = true;
     const ProcessEnd& end = *node.process->poll_end();
-    if ((end.signal != 0 || has_lost_its_place(node)) && !node.is_asked_to_end) {
+    node.has_come = node.has_come || has_come(node);
+    // whose place io holds further
+    const bool has_not_come = node.restarts > 0 && end.exit_code != 0 && !node.has_come && is_place_held(node);
+    if (has_not_come) node.not_before_ns = monotonic_ns() + kStartAgainNs;
+    if ((end.signal != 0 || has_lost_its_place(node) || has_not_come) && !node.is_asked_to_end) {
       if (is_place_held(node)) {
         node.is_awaited = true;
         return say_kill(node, what_follows_of(node));

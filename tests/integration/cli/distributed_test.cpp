@@ -1,6 +1,8 @@
 // Sessions as processes, and the verbs that look at them and change them.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -388,6 +390,57 @@ TEST_F(Distributed, ANodeThatDiesForTheFourthTimeEndsTheSessionWithCode4AsTheRec
   EXPECT_NE(result.err.find("is gone, and no other process took its place within 2 s"), std::string::npos)
       << result.err;
   EXPECT_EQ(result.err.find("does not end"), std::string::npos) << result.err;
+  const std::string told = offline({"info", work_.recording().string()}).out;
+  EXPECT_NE(told.find("closed in order; the session ended with code 4: mechanics"), std::string::npos) << told;
+}
+
+TEST_F(Distributed, ANodeThatCannotBeStartedAgainLeavesItsPlaceHeld) {
+  const auto session = start("truck_crane.yaml", {"--duration", "0", "--set", "session.rejoin=60s", "--session", "r"});
+  ASSERT_TRUE(wait_until_running(*session)) << session->err();
+  ASSERT_EQ(slewring({"watch", "Bag.position.y", "--count", "5"}).code, 0);  // a checkpoint has come
+  // no pipe can be had from now on
+  rlimit before{}, none{};
+  ASSERT_EQ(prlimit(session->pid(), RLIMIT_NOFILE, nullptr, &before), 0);
+  none = {STDERR_FILENO + 1, before.rlim_max};
+  ASSERT_EQ(prlimit(session->pid(), RLIMIT_NOFILE, &none, nullptr), 0);
+  kill(child_of(session->pid(), "mechanics_node"), SIGKILL);
+  const auto says = [&](const char* text) { return session->err().find(text) != std::string::npos; };
+  EXPECT_TRUE(wait_until([&] { return says("slewring: no pipe for mechanics (") || session->has_ended(); }));
+  EXPECT_TRUE(says("; it is not started; close other programs; the others hold, and it is tried again until one comes"))
+      << session->err();
+  ASSERT_FALSE(session->has_ended()) << session->err();
+  ASSERT_EQ(prlimit(session->pid(), RLIMIT_NOFILE, &before, nullptr), 0);
+  EXPECT_TRUE(wait_until([&] { return says(" goes on in the place of ") || session->has_ended(); })) << session->err();
+  EXPECT_EQ(slewring({"control", "stop"}).code, 0);
+  EXPECT_EQ(session->wait().code, 0) << session->err();
+  EXPECT_EQ(offline({"replay", work_.recording().string(), "--verify"}).code, 0);
+}
+
+TEST_F(Distributed, ANodeWhoseProgramIsGoneEndsTheSessionAtTheEndOfTheHold) {
+  std::filesystem::copy_file(program_file("slewring"), work_.path() / "slewring");
+  for (const char* node : {"io_node", "mechanics_node", "hydraulics_node", "recorder_node"}) {
+    std::filesystem::create_symlink(program_file(node), work_.path() / node);
+  }
+  Command session((work_.path() / "slewring").string(),
+                  with_domain({"run", scene_file("truck_crane.yaml"), "--duration", "0", "--step", "10 ms", "--set",
+                               "session.rejoin=6s", "--session", "r"}),
+                  work_.path());
+  ASSERT_TRUE(wait_until_running(session)) << session.err();
+  ASSERT_EQ(slewring({"watch", "Bag.position.y", "--count", "5"}).code, 0);  // a checkpoint has come
+  const pid_t pid = child_of(session.pid(), "mechanics_node");
+  ASSERT_GT(pid, 0);
+  std::filesystem::remove(work_.path() / "mechanics_node");
+  kill(pid, SIGKILL);
+  const CommandResult result = session.wait();
+  EXPECT_EQ(result.code, 4) << result.err;
+  for (const char* said :
+       {") exited with code 7; the others hold, and it is started again with the state of its last checkpoint (3 of 3)",
+        ") exited with code 7; it was started again 3 times and is not any more; the others hold for 6 s in case that "
+        "somebody else starts one ('slewring node mechanics --session r')",
+        "is gone, and no other process took its place within 6 s",
+        "/mechanics_node: No such file or directory; build"}) {
+    EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
+  }
   const std::string told = offline({"info", work_.recording().string()}).out;
   EXPECT_NE(told.find("closed in order; the session ended with code 4: mechanics"), std::string::npos) << told;
 }
