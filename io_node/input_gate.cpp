@@ -15,7 +15,7 @@ std::string milliseconds_text(SimDuration time) {
 }  // namespace
 
 InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, SimDuration communication_step)
-    : config_(config), H_(communication_step.seconds()) {
+    : config_(std::move(config)), H_(communication_step.seconds()) {
   for (ChannelConfig& channel : channels) {
     Channel state;
     state.config = std::move(channel);
@@ -31,6 +31,7 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
 void InputGate::take_lease(std::size_t index, std::string reason) {
   Channel& channel = channels_[index];
   if (channel.holder.empty()) return;
+  static_cast<void>(note_told(index, channel.holder, channel.writer, latest_ns_));
   notices_.push_back({index, std::exchange(channel.holder, {}), false, std::move(reason)});
 }
 
@@ -75,9 +76,72 @@ int InputGate::find(std::string_view name) const noexcept {
   return -1;
 }
 
+// ---- leases ---------------------------------------------------------------------------------------------------
+
+bool InputGate::is_holder(const Channel& channel, const std::string& controller, std::uint64_t writer) const noexcept {
+  const bool is_its_process = writer == 0 || channel.writer == 0 || writer == channel.writer;
+  return !controller.empty() && channel.holder == controller && is_its_process;
+}
+
+transport::WriterSight InputGate::see_holder(const Channel& channel) const {
+  return config_.see_writer ? config_.see_writer(channel.writer) : transport::WriterSight{};
+}
+
+// to a controller that does not hold it
+std::string InputGate::held_text(const Channel& channel, const std::string& controller) const {
+  const std::string& name = channel.config.name;
+  if (channel.holder.empty()) {
+    return "'" + controller + "' does not hold channel " + name + ": it is free; acquire it again to go on";
+  }
+  if (channel.holder == controller) {
+    const std::string process = see_holder(channel).process;
+    return "channel " + name + " is held by another process named '" + controller + "'" +
+           (process.empty() ? "" : " (" + process + ")") + "; give one of the two another name, or stop one";
+  }
+  return "channel " + name + " is held by '" + channel.holder +
+         "'; wait until it releases it, or until it has been silent for " + milliseconds_text(config_.release_after);
+}
+
+// False: it was told a moment ago, or so many others were that this one has to wait.
+bool InputGate::note_told(std::size_t channel, const std::string& controller, std::uint64_t writer,
+                          std::int64_t now_ns) {
+  Told* place = nullptr;
+  for (Told& told : told_) {
+    if (told.channel == channel && told.writer == writer && told.controller == controller) {
+      place = &told;
+      break;
+    }
+    if (place == nullptr || told.at_ns < place->at_ns) place = &told;
+  }
+  if (now_ns - place->at_ns < kTellAgain.ns) return false;
+  *place = {channel, controller, writer, now_ns};
+  return true;
+}
+
+std::optional<LeaseAnswer> InputGate::answer_to_write(std::size_t index, const std::string& controller,
+                                                      std::int64_t now_ns, std::uint64_t writer) {
+  const Channel& channel = channels_[index];
+  if (controller.empty() || is_holder(channel, controller, writer)) return std::nullopt;
+  if (!note_told(index, controller, writer, now_ns)) return std::nullopt;
+  return LeaseAnswer{false, channel.holder, held_text(channel, controller)};
+}
+
+// Its holder wants no more: what moves it now, and that no tick waits, is worth a word in mid-run.
+void InputGate::set_free(std::size_t index, StepIndex n) {
+  Channel& channel = channels_[index];
+  const std::string holder = std::exchange(channel.holder, {});
+  channel.last_value = kJoinStep;
+  if (channel.config.exchange == Exchange::sampled || n <= begin_step_) return;
+  notices_.push_back({index, "", false,
+                      "'" + holder + "' has released channel " + channel.config.name +
+                          " (controller: lockstep): it is free from tick " + std::to_string(n) +
+                          " on, and no tick waits for a controller until one is in step with it"});
+}
+
 // to a new holder; a lockstep channel is in step from the first tick on, or when its controller has caught up
-void InputGate::give(Channel& channel, const std::string& controller, std::int64_t now_ns) {
+void InputGate::give(Channel& channel, const std::string& controller, std::int64_t now_ns, std::uint64_t writer) {
   channel.holder = controller;
+  channel.writer = writer;
   channel.based_on = channel.last_sent = channel.last_value = kJoinStep;
   std::fill(channel.early.begin(), channel.early.end(), Early{});
   channel.pace = next_step_ == begin_step_ ? Pace::in_step : Pace::neutral;
@@ -85,28 +149,32 @@ void InputGate::give(Channel& channel, const std::string& controller, std::int64
   channel.out_since_ns = now_ns;
 }
 
-LeaseAnswer InputGate::acquire(std::size_t index, const std::string& controller, std::int64_t now_ns) {
+LeaseAnswer InputGate::acquire(std::size_t index, const std::string& controller, std::int64_t now_ns,
+                               std::uint64_t writer) {
   Channel& channel = channels_[index];
-  if (!channel.holder.empty() && channel.holder != controller) {
-    return {false, channel.holder,
-            "channel " + channel.config.name + " is held by '" + channel.holder +
-                "'; wait until it releases it, or until it has been silent for " +
-                milliseconds_text(config_.release_after)};
+  bool is_again = is_holder(channel, controller, writer);
+  // a process that died and was started again need not wait for the silence of the first
+  const bool has_left = !is_again && channel.holder == controller && see_holder(channel).has_left;
+  if (!is_again && !channel.holder.empty() && !has_left) {
+    static_cast<void>(note_told(index, controller, writer, now_ns));
+    return {false, channel.holder, held_text(channel, controller)};
   }
   // asking again is a sign of life and moves nothing: the answer to the first time may still be on its way
-  if (channel.holder != controller) {
+  if (!is_again) {
     channel.controller_raw = channel.config.neutral;
-    give(channel, controller, now_ns);
+    give(channel, controller, now_ns, writer);
   }
+  if (writer != 0) channel.writer = writer;
   channel.written_ns = now_ns;
   channel.is_silent = false;
   channel.last_value = kJoinStep;
   return {true, controller, ""};
 }
 
-LeaseAnswer InputGate::take_over(std::size_t index, const std::string& controller, std::int64_t now_ns) {
+LeaseAnswer InputGate::take_over(std::size_t index, const std::string& controller, std::int64_t now_ns,
+                                 std::uint64_t writer) {
   Channel& channel = channels_[index];
-  if (channel.holder.empty() || channel.holder == controller) return acquire(index, controller, now_ns);
+  if (channel.holder.empty() || channel.holder == controller) return acquire(index, controller, now_ns, writer);
   const std::string& name = channel.config.name;
   if (channel.config.supervisor != controller) {
     const std::string who = channel.config.supervisor.empty()
@@ -114,25 +182,30 @@ LeaseAnswer InputGate::take_over(std::size_t index, const std::string& controlle
                                 : "only '" + channel.config.supervisor + "' may take it over (" + name + ".supervisor)";
     return {false, channel.holder, "channel " + name + " is held by '" + channel.holder + "', and " + who};
   }
+  latest_ns_ = now_ns;
   take_lease(index, "'" + controller + "' has taken over channel " + name);
   // the value stays until the new holder writes
-  give(channel, controller, now_ns);
+  give(channel, controller, now_ns, writer);
   if (channel.pace == Pace::neutral) channel.pace = Pace::holding;
   channel.written_ns = now_ns;
   channel.is_silent = false;
   return {true, controller, ""};
 }
 
-LeaseAnswer InputGate::release(std::size_t index, const std::string& controller, StepIndex based_on) {
+LeaseAnswer InputGate::release(std::size_t index, const std::string& controller, StepIndex based_on,
+                               std::uint64_t writer) {
   Channel& channel = channels_[index];
-  if (channel.holder != controller) {
-    return {false, channel.holder, "'" + controller + "' does not hold channel " + channel.config.name};
+  if (!is_holder(channel, controller, writer)) {
+    const bool is_namesake = !controller.empty() && channel.holder == controller;
+    return {false, channel.holder,
+            is_namesake ? held_text(channel, controller)
+                        : "'" + controller + "' does not hold channel " + channel.config.name};
   }
   const bool is_in_step = channel.config.exchange == Exchange::lockstep && channel.pace == Pace::in_step;
   if (is_in_step && based_on >= 0) {
     channel.last_value = based_on;
   } else {
-    channel.holder.clear();
+    set_free(index, next_step_);
   }
   return {true, "", ""};
 }
@@ -145,9 +218,9 @@ double InputGate::accepted(Channel& channel, double raw) noexcept {
 }
 
 bool InputGate::write(std::size_t index, const std::string& controller, double raw, StepIndex now_step,
-                      std::int64_t now_ns, StepIndex based_on) {
+                      std::int64_t now_ns, StepIndex based_on, std::uint64_t writer) {
   Channel& channel = channels_[index];
-  if (channel.holder != controller || controller.empty() || channel.last_value >= 0) {
+  if (!is_holder(channel, controller, writer) || channel.last_value >= 0) {
     ++rejected_no_lease_;
     return false;
   }
@@ -283,6 +356,7 @@ void InputGate::advance_sampled(std::size_t index, StepIndex n, std::int64_t now
 
 void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns) {
   next_step_ = n + 1;
+  latest_ns_ = now_ns;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
     const bool is_lockstep = channel.config.exchange == Exchange::lockstep;
@@ -294,10 +368,7 @@ void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::in
       take_lease(i, "no value came for " + milliseconds_text(config_.release_after) + ": channel " +
                         channel.config.name + " is free; acquire it again to go on");
     }
-    if (is_through(channel, n)) {
-      channel.holder.clear();
-      channel.last_value = kJoinStep;
-    }
+    if (!channel.holder.empty() && is_through(channel, n)) set_free(i, n);
     // source
     double raw = channel.config.neutral;
     if (!channel.holder.empty()) {

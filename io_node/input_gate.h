@@ -4,10 +4,12 @@
 // digital; what is outside is held at the bound and counted), dead zone (|raw| below it is cut to 0, nothing is
 // rescaled), operator ramp and rate limit (the slower one), scale. The result is the control value of the tick.
 //
-// Who may move a channel is a lease: the first controller that asks holds it until it releases it or falls silent. A
-// silent holder's channel goes to neutral after `neutral_after` and is free again after `release_after`; a reset frees
-// all channels. A channel's supervisor may take it from its holder; the channel then keeps its value until the new one
-// writes. Who loses a channel so is to be told.
+// Who may move a channel is a lease: the first controller that asks holds it until it releases it or falls silent. It
+// is a process of a name: another one of that name is refused while the first is there. A silent holder's channel goes
+// to neutral after `neutral_after` and is free again after `release_after`; a reset frees all channels. A channel's
+// supervisor may take it from its holder; the channel then keeps its value until the new one writes. Who loses a
+// channel so is to be told; who goes on writing without holding it is told again, at most once a second, since the
+// first telling may not have reached it.
 //
 // A `sampled` channel takes the latest value that has come. A `lockstep` channel takes, in the tick of step n, the
 // value that was computed from the variables of step
@@ -18,7 +20,10 @@
 // until its controller has sent b(n) in time for some tick n. Each of these changes is a notice.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +33,7 @@
 #include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "core/time.h"
+#include "transport/transport.h"
 
 namespace slew::io {
 
@@ -60,7 +66,12 @@ struct GateConfig {
   SimDuration neutral_after = milliseconds(200);
   SimDuration release_after = milliseconds(5000);
   StepIndex variables_every = 1;  // k of (1)
+  // What is known of a writer; empty: nothing is.
+  std::function<transport::WriterSight(std::uint64_t writer)> see_writer{};
 };
+
+// Between two answers to one who writes without holding the channel.
+inline constexpr SimDuration kTellAgain = milliseconds(1000);
 
 struct LeaseAnswer {
   bool is_granted = false;
@@ -69,10 +80,10 @@ struct LeaseAnswer {
 };
 
 // What a controller is to be told without having asked: it has lost its channel, or a lockstep channel has fallen out
-// of step or is back in it.
+// of step or is back in it. Or the user alone: nobody answers for a lockstep channel any more.
 struct Notice {
   std::size_t channel = 0;
-  std::string controller;
+  std::string controller;  // empty: the user alone
   bool has_channel = false;
   std::string reason;
 };
@@ -85,15 +96,22 @@ class InputGate {
   // Channel by name; -1 when there is none.
   [[nodiscard]] int find(std::string_view name) const noexcept;
 
-  [[nodiscard]] LeaseAnswer acquire(std::size_t channel, const std::string& controller, std::int64_t now_ns);
+  // writer: which of the processes of that name it is (Received::writer), 0 when that is not known.
+  [[nodiscard]] LeaseAnswer acquire(std::size_t channel, const std::string& controller, std::int64_t now_ns,
+                                    std::uint64_t writer = 0);
   // Takes the channel from its holder, which only the supervisor may; a free channel is acquired.
-  [[nodiscard]] LeaseAnswer take_over(std::size_t channel, const std::string& controller, std::int64_t now_ns);
+  [[nodiscard]] LeaseAnswer take_over(std::size_t channel, const std::string& controller, std::int64_t now_ns,
+                                      std::uint64_t writer = 0);
   // A lockstep channel that is in step keeps its controller's values up to that of step based_on and is free after it.
-  [[nodiscard]] LeaseAnswer release(std::size_t channel, const std::string& controller, StepIndex based_on = kJoinStep);
+  [[nodiscard]] LeaseAnswer release(std::size_t channel, const std::string& controller, StepIndex based_on = kJoinStep,
+                                    std::uint64_t writer = 0);
   // A controller's value, computed from the variables of step based_on (-1: it does not say), when the tick of now_step
   // is the next. False when it was rejected, counted: no lease, not finite, or on a lockstep channel too late.
   bool write(std::size_t channel, const std::string& controller, double raw, StepIndex now_step, std::int64_t now_ns,
-             StepIndex based_on = kJoinStep);
+             StepIndex based_on = kJoinStep, std::uint64_t writer = 0);
+  // What who has written is to be told now; nothing when it holds the channel, or has been told a moment ago.
+  [[nodiscard]] std::optional<LeaseAnswer> answer_to_write(std::size_t channel, const std::string& controller,
+                                                           std::int64_t now_ns, std::uint64_t writer = 0);
 
   // First lockstep channel without a holder; -1: none.
   [[nodiscard]] int vacant() const noexcept;
@@ -141,6 +159,7 @@ class InputGate {
   struct Channel {
     ChannelConfig config;
     std::string holder;
+    std::uint64_t writer = 0;  // of the holder; 0: not known
     double controller_raw = 0;
     StepIndex written_step = 0;
     std::int64_t written_ns = 0;  // wall clock of the last sign of life
@@ -159,9 +178,23 @@ class InputGate {
     std::uint32_t age = 0;
   };
 
+  // Who was told last that it does not hold a channel.
+  struct Told {
+    std::size_t channel = 0;
+    std::string controller;
+    std::uint64_t writer = 0;
+    std::int64_t at_ns = INT64_MIN / 2;
+  };
+
   double accepted(Channel& channel, double raw) noexcept;
+  [[nodiscard]] bool is_holder(const Channel& channel, const std::string& controller,
+                               std::uint64_t writer) const noexcept;
+  [[nodiscard]] transport::WriterSight see_holder(const Channel& channel) const;
+  [[nodiscard]] std::string held_text(const Channel& channel, const std::string& controller) const;
+  bool note_told(std::size_t channel, const std::string& controller, std::uint64_t writer, std::int64_t now_ns);
+  void set_free(std::size_t channel, StepIndex n);
   [[nodiscard]] bool is_through(const Channel& channel, StepIndex n) const noexcept;
-  void give(Channel& channel, const std::string& controller, std::int64_t now_ns);
+  void give(Channel& channel, const std::string& controller, std::int64_t now_ns, std::uint64_t writer);
   void take_lease(std::size_t channel, std::string reason);
   [[nodiscard]] StepIndex needed(const Channel& channel, StepIndex n) const noexcept;
   bool keep_early(Channel& channel, double raw, StepIndex now_step, StepIndex based_on);
@@ -171,6 +204,8 @@ class InputGate {
 
   std::vector<Channel> channels_;
   std::vector<Notice> notices_;
+  std::array<Told, 16> told_;  // the last ones: who is not among them is told at once
+  std::int64_t latest_ns_ = 0;
   StepIndex begin_step_ = 0;  // first tick of the epoch
   StepIndex next_step_ = 0;   // the tick that is made next
   GateConfig config_;

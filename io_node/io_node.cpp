@@ -21,12 +21,20 @@ constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
 
 constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
+// A gate that can look for the processes behind controllers.
+GateConfig seeing(GateConfig gate, transport::Transport& transport) {
+  gate.see_writer = [&transport](std::uint64_t writer) {
+    return transport.see_writer(Topic::controller_input, writer);
+  };
+  return gate;
+}
+
 }  // namespace
 
 IoNode::IoNode(transport::Transport& transport, IoConfig config)
     : member_(Role::io, transport, kOwnTopics),
       config_(std::move(config)),
-      gate_(config_.channels, config_.gate, config_.step),
+      gate_(config_.channels, seeing(config_.gate, transport), config_.step),
       parameters_(config_.parameters, config_.step),
       is_paused_(config_.starts_paused),
       clock_(config_.step, config_.overrun, timing()),
@@ -108,6 +116,7 @@ void IoNode::update_health() noexcept {
 // ---- receiving ------------------------------------------------------------------------------------------------
 
 void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
+  writer_ = message.writer;
   switch (message.topic) {
     case Topic::session:
       return receive_session(message.bytes);

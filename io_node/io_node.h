@@ -120,6 +120,7 @@ class IoNode final : public node::Node {
   void withdraw_session();
   void receive_sample(std::span<const std::byte> bytes, wire::Topic topic, std::int64_t now_ns);
   void receive_controller(std::span<const std::byte> bytes, std::int64_t now_ns);
+  void tell_lease(LeaseAnswer answer);
   void receive_control(std::span<const std::byte> bytes, std::int64_t now_ns);
   void receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns);
 
@@ -249,6 +250,7 @@ class IoNode final : public node::Node {
   LoadShedding shedding_;
   std::int64_t last_tick_ns_ = 0;
   std::vector<std::int64_t> input_ns_;  // by channel, when the newest value came that no tick has used; 0: none
+  std::uint64_t writer_ = 0;            // of the message that is being received
   std::array<wire::Health, wire::kRoles> healths_;
   bool has_told_slip_ = false;            // on standard error; what follows is in the recording
   std::uint32_t told_levels_ = 0;         // of shedding, a bit each, likewise

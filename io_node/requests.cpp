@@ -24,27 +24,34 @@ void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t n
   const bool is_known = found >= 0 && !input_.controller.empty();
   // in every step: no memory is taken for it
   if (is_known && input_.action == wire::ControllerAction::write) {
-    if (gate_.write(channel, input_.controller, input_.value, n_, now_ns, input_.based_on_step)) {
+    if (gate_.write(channel, input_.controller, input_.value, n_, now_ns, input_.based_on_step, writer_)) {
       input_ns_[channel] = now_ns;
+    } else if (std::optional<LeaseAnswer> told = gate_.answer_to_write(channel, input_.controller, now_ns, writer_)) {
+      tell_lease(std::move(*told));
     }
     return;
   }
+  if (!is_known) {
+    return tell_lease(
+        {false, "", found < 0 ? "the scene has no input '" + input_.channel + "'" : "a controller needs a name"});
+  }
+  LeaseAnswer answer = input_.action == wire::ControllerAction::release
+                           ? gate_.release(channel, input_.controller, input_.based_on_step, writer_)
+                       : input_.value == wire::kTakeOver ? gate_.take_over(channel, input_.controller, now_ns, writer_)
+                                                         : gate_.acquire(channel, input_.controller, now_ns, writer_);
+  tell_notices();
+  tell_lease(std::move(answer));
+}
+
+// to the controller whose message was received
+void IoNode::tell_lease(LeaseAnswer answer) {
   wire::ControllerLease lease;
+  lease.header = member_.header(Phase::running, n_);
   lease.controller = input_.controller;
   lease.channel = input_.channel;
-  if (!is_known) {
-    lease.reason = found < 0 ? "the scene has no input '" + input_.channel + "'" : "a controller needs a name";
-  } else {
-    LeaseAnswer answer = input_.action == wire::ControllerAction::release
-                             ? gate_.release(channel, input_.controller, input_.based_on_step)
-                         : input_.value == wire::kTakeOver ? gate_.take_over(channel, input_.controller, now_ns)
-                                                           : gate_.acquire(channel, input_.controller, now_ns);
-    lease.is_granted = answer.is_granted;
-    lease.holder = std::move(answer.holder);
-    lease.reason = answer.reason.substr(0, wire::kMaxReasonLength);
-    tell_notices();
-  }
-  lease.header = member_.header(Phase::running, n_);
+  lease.is_granted = answer.is_granted;
+  lease.holder = std::move(answer.holder);
+  lease.reason = answer.reason.substr(0, wire::kMaxReasonLength);
   member_.publish(Topic::controller_lease, lease);
 }
 
@@ -163,14 +170,18 @@ void IoNode::receive_resend(std::span<const std::byte> bytes, std::int64_t now_n
 
 void IoNode::tell_notices() {
   for (Notice& notice : gate_.take_notices()) {
-    wire::ControllerLease lease;
-    lease.header = member_.header(Phase::running, n_);
-    lease.controller = std::move(notice.controller);
-    lease.channel = gate_.config(notice.channel).name;
-    lease.is_granted = notice.has_channel;
-    if (notice.has_channel) lease.holder = lease.controller;
-    lease.reason = notice.reason.substr(0, wire::kMaxReasonLength);
-    member_.publish(Topic::controller_lease, lease);
+    if (notice.controller.empty()) {
+      tell_event(notice.reason);
+    } else {
+      wire::ControllerLease lease;
+      lease.header = member_.header(Phase::running, n_);
+      lease.controller = std::move(notice.controller);
+      lease.channel = gate_.config(notice.channel).name;
+      lease.is_granted = notice.has_channel;
+      if (notice.has_channel) lease.holder = lease.controller;
+      lease.reason = notice.reason.substr(0, wire::kMaxReasonLength);
+      member_.publish(Topic::controller_lease, lease);
+    }
     if (warnings_left_ == 0) continue;
     member_.warn(notice.reason + (--warnings_left_ > 0 ? "" : "; what follows of this kind is in the recording alone"));
   }

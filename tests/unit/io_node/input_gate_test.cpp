@@ -163,6 +163,100 @@ TEST(InputGate, DigitalInputIsZeroOrOne) {
   EXPECT_EQ(gate.control(0), 0);
 }
 
+TEST(InputGate, WhoWritesWithoutHoldingTheChannelIsToldWhoHoldsItOnceASecond) {
+  InputGate gate = crane_gate();
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  // silent for so long that it loses the channel, and does not hear that
+  gate.advance(0, std::vector<double>{0, 0}, 5001 * kMs);
+  static_cast<void>(gate.take_notices());
+  EXPECT_FALSE(gate.write(1, "pid", 1, 1, 5500 * kMs));
+  EXPECT_FALSE(gate.answer_to_write(1, "pid", 5500 * kMs)) << "it may be on its way";
+  std::optional<LeaseAnswer> told = gate.answer_to_write(1, "pid", 7000 * kMs);
+  ASSERT_TRUE(told.has_value());
+  EXPECT_FALSE(told->is_granted);
+  EXPECT_EQ(told->holder, "");
+  EXPECT_EQ(told->reason, "'pid' does not hold channel Input_Lift: it is free; acquire it again to go on");
+  EXPECT_FALSE(gate.answer_to_write(1, "pid", 7999 * kMs));
+  ASSERT_TRUE(gate.acquire(1, "joystick", 8000 * kMs).is_granted);
+  told = gate.answer_to_write(1, "pid", 8000 * kMs);
+  ASSERT_TRUE(told.has_value());
+  EXPECT_EQ(told->holder, "joystick");
+  EXPECT_NE(told->reason.find("channel Input_Lift is held by 'joystick'"), std::string::npos) << told->reason;
+  // another channel is another matter, and who holds the channel is told nothing
+  EXPECT_TRUE(gate.answer_to_write(0, "pid", 8000 * kMs).has_value());
+  EXPECT_FALSE(gate.answer_to_write(1, "joystick", 20'000 * kMs));
+  EXPECT_FALSE(gate.answer_to_write(1, "", 20'000 * kMs));
+}
+
+TEST(InputGate, AfterAResetWhoGoesOnWritingIsToldThatTheChannelIsFree) {
+  InputGate gate = crane_gate();
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  gate.advance(0, std::vector<double>{0, 0}, kMs);
+  gate.reset();
+  EXPECT_FALSE(gate.answer_to_write(1, "pid", 2 * kMs)) << "what it wrote before it heard of the reset";
+  EXPECT_TRUE(gate.answer_to_write(1, "pid", 1500 * kMs).has_value());
+}
+
+TEST(InputGate, HoweverManyWriteWithoutAChannelAFewAreToldASecond) {
+  InputGate gate = crane_gate();
+  int told = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    told += gate.answer_to_write(0, "stranger" + std::to_string(i), 10'000 * kMs + i * 100'000).has_value() ? 1 : 0;
+  }
+  EXPECT_GE(told, 16);
+  EXPECT_LE(told, 32);
+}
+
+// ---- two processes of one name --------------------------------------------------------------------------------
+
+TEST(InputGate, ASecondProcessOfTheHoldersNameIsRefusedAndMovesNothing) {
+  GateConfig config;
+  config.see_writer = [](std::uint64_t writer) {
+    return transport::WriterSight{false, writer == 7 ? "process 812 on crane2" : ""};
+  };
+  InputGate gate({channel("Lever", 1, 0)}, config, milliseconds(1));
+  ASSERT_TRUE(gate.acquire(0, "pid", 0, 7).is_granted);
+  EXPECT_TRUE(gate.acquire(0, "pid", 0, 7).is_granted);
+  const LeaseAnswer refused = gate.acquire(0, "pid", 0, 8);
+  EXPECT_FALSE(refused.is_granted);
+  EXPECT_EQ(refused.holder, "pid");
+  EXPECT_EQ(refused.reason,
+            "channel Lever is held by another process named 'pid' (process 812 on crane2); give one of the two another "
+            "name, or stop one");
+  EXPECT_FALSE(gate.take_over(0, "pid", 0, 8).is_granted);
+  EXPECT_FALSE(gate.release(0, "pid", kJoinStep, 8).is_granted);
+  EXPECT_TRUE(gate.write(0, "pid", 0.5, 0, 0, kJoinStep, 7));
+  EXPECT_FALSE(gate.write(0, "pid", -1, 0, 0, kJoinStep, 8));
+  EXPECT_EQ(gate.rejected_no_lease(), 1u);
+  gate.advance(0, std::vector<double>{0}, kMs);
+  EXPECT_EQ(gate.raw(0), 0.5);
+  const std::optional<LeaseAnswer> told = gate.answer_to_write(0, "pid", 2000 * kMs, 8);
+  ASSERT_TRUE(told.has_value());
+  EXPECT_EQ(told->reason, refused.reason);
+  // a carrier that does not know its writers cannot tell them apart
+  EXPECT_TRUE(gate.write(0, "pid", 0.6, 0, 0));
+  // when the first has fallen silent the second has it
+  gate.advance(1, std::vector<double>{0}, 8000 * kMs);
+  EXPECT_TRUE(gate.acquire(0, "pid", 8000 * kMs, 8).is_granted);
+  EXPECT_FALSE(gate.write(0, "pid", -1, 1, 8000 * kMs, kJoinStep, 7));
+}
+
+TEST(InputGate, AControllerThatIsStartedAgainHasItsChannelAtOnceWhenItsOldProcessIsKnownToBeGone) {
+  bool has_left = false;
+  GateConfig config;
+  config.see_writer = [&has_left](std::uint64_t) { return transport::WriterSight{.has_left = has_left}; };
+  InputGate gate({channel("Lever", 1, 0)}, config, milliseconds(1));
+  ASSERT_TRUE(gate.acquire(0, "pid", 0, 7).is_granted);
+  gate.write(0, "pid", 0.5, 0, 0, kJoinStep, 7);
+  EXPECT_FALSE(gate.acquire(0, "pid", 10 * kMs, 8).is_granted);
+  has_left = true;
+  EXPECT_FALSE(gate.acquire(0, "joystick", 10 * kMs, 9).is_granted) << "another name waits for the silence";
+  EXPECT_TRUE(gate.acquire(0, "pid", 10 * kMs, 8).is_granted);
+  gate.advance(0, std::vector<double>{0}, 11 * kMs);
+  EXPECT_EQ(gate.raw(0), 0) << "the new one has said nothing yet";
+  EXPECT_TRUE(gate.write(0, "pid", -0.5, 1, 12 * kMs, kJoinStep, 8));
+}
+
 // ---- taking over ----------------------------------------------------------------------------------------------
 
 TEST(InputGate, OnlyTheSupervisorTakesAChannelFromItsHolder) {
@@ -275,7 +369,29 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   gate.advance(4, std::vector<double>{0.3}, 0);
   EXPECT_EQ(gate.raw(0), 0.3) << "the script's";
   EXPECT_TRUE(gate.acquire(0, "other", 0).is_granted);
-  EXPECT_TRUE(gate.take_notices().empty());
+  // the user is told that nobody answers for it, and nobody else
+  const std::vector<Notice> told = gate.take_notices();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].controller, "");
+  EXPECT_EQ(told[0].reason,
+            "'pid' has released channel Lever (controller: lockstep): it is free from tick 4 on, and no tick waits for "
+            "a controller until one is in step with it");
+}
+
+TEST(InputGate, AControllerThatLeavesBeforeItHasAnsweredABlockIsNotWaitedFor) {
+  ChannelConfig lever = channel("Lever", 1, 0);
+  lever.exchange = Exchange::lockstep;
+  InputGate gate({lever}, GateConfig{}, milliseconds(1));
+  ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
+  gate.advance(0, std::vector<double>{0}, 0);
+  // it has answered the block of step 0 and read that of step 1
+  gate.write(0, "pid", 0.5, 1, 0, 0);
+  gate.advance(1, std::vector<double>{0}, 0);
+  EXPECT_TRUE(gate.release(0, "pid", 0).is_granted);
+  EXPECT_EQ(gate.awaited(2).ns, 0);
+  gate.advance(2, std::vector<double>{0.3}, 0);
+  EXPECT_EQ(gate.raw(0), 0.3);
+  EXPECT_EQ(gate.fell_out_of_step(), 0u);
 }
 
 TEST(InputGate, ALockstepChannelOfASavedSessionIsAwaitedAsAtStepZero) {
@@ -366,13 +482,13 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
       const double value = below(10) == 0 ? kNan : static_cast<double>(below(5) - 2);
       switch (below(8)) {
         case 0:
-          static_cast<void>(gate.acquire(channel, who, now_ns));
+          static_cast<void>(gate.acquire(channel, who, now_ns, below(3)));
           break;
         case 1:
-          static_cast<void>(gate.take_over(channel, who, now_ns));
+          static_cast<void>(gate.take_over(channel, who, now_ns, below(3)));
           break;
         case 2:
-          static_cast<void>(gate.release(channel, who, n + below(8) - 6));
+          static_cast<void>(gate.release(channel, who, n + below(8) - 6, below(3)));
           break;
         case 3:
           if (below(100) == 0) {
@@ -383,7 +499,9 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
           break;
         case 4:
         case 5:
-          gate.write(channel, who, value, n, now_ns, n + below(10) - 8);
+          if (!gate.write(channel, who, value, n, now_ns, n + below(10) - 8, below(3))) {
+            static_cast<void>(gate.answer_to_write(channel, who, now_ns, below(3)));
+          }
           break;
         default:
           gate.advance(n, std::vector<double>{0, 0.5, 1}, now_ns);

@@ -203,6 +203,47 @@ TEST_F(LockstepController, AResetWaitsForItAgain) {
   EXPECT_EQ(node->next_step(), 1);
 }
 
+TEST_F(LockstepController, OneThatLeavesInMidRunIsAnEventAndAWarning) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  for (StepIndex n = 0; n < 5; ++n) {
+    say(wire::ControllerAction::write, 0.5, n);
+    give_samples();
+  }
+  static_cast<void>(leases());
+  static_cast<void>(node->member().take_warnings());
+  say(wire::ControllerAction::release, 0, 4);
+  run_to(20);
+  const std::string expected =
+      "'pid' has released channel Lever (controller: lockstep): it is free from tick 6 on, and no tick waits for a "
+      "controller until one is in step with it";
+  EXPECT_EQ(node->member().take_warnings(), std::vector<std::string>{expected});
+  const auto events = played.said<wire::ControlReply>(Topic::control_reply);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].reason, expected);
+  const auto told = leases();
+  ASSERT_EQ(told.size(), 1u) << "the answer to the release";
+  EXPECT_TRUE(told[0].is_granted);
+}
+
+TEST_F(LockstepController, OneThatDidNotHearOfAResetIsToldWhenItGoesOnWriting) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  say(wire::ControllerAction::write, 0.5, 0);
+  give_samples();
+  ASSERT_TRUE(request(wire::ControlAction::reset).is_accepted);
+  static_cast<void>(leases());
+  poll(1500 * kMs);
+  say(wire::ControllerAction::write, 0.5, 1);
+  say(wire::ControllerAction::write, 0.5, 2);
+  const auto told = leases();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_FALSE(told[0].is_granted);
+  EXPECT_EQ(told[0].controller, "pid");
+  EXPECT_EQ(told[0].holder, "");
+  EXPECT_EQ(told[0].reason, "'pid' does not hold channel Lever: it is free; acquire it again to go on");
+}
+
 TEST_F(LockstepController, LoopDelayIsAVariableInStepsAndInMilliseconds) {
   start(2);
   say(wire::ControllerAction::acquire);
