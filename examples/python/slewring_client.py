@@ -20,6 +20,7 @@ def _load():
     text, number, handle, session = ctypes.c_char_p, ctypes.c_double, ctypes.c_int, ctypes.c_void_p
     signatures = {
         "join": (session, [text, text, ctypes.c_uint, text, text, number]),
+        "join_code": (handle, []),
         "leave": (None, [session]),
         "error": (text, [session]),
         "step_size": (number, [session]),
@@ -31,6 +32,7 @@ def _load():
         "step": (handle, [session, number]),
         "latest": (handle, [session, number]),
         "present_step": (ctypes.c_longlong, [session]),
+        "blocks_missed": (ctypes.c_longlong, [session]),
         "time": (number, [session]),
         "write": (handle, [session, handle, number]),
         "notice": (text, [session]),
@@ -55,7 +57,7 @@ class Session:
         self._session = self._c.slewring_join(
             session.encode(), controller.encode(), domain, interface.encode(), peers.encode(), timeout)
         if not self._session:
-            raise Error(FAILED, self._c.slewring_error(None).decode())
+            raise Error(self._c.slewring_join_code(), self._c.slewring_error(None).decode())
 
     def __enter__(self):
         return self
@@ -88,10 +90,19 @@ class Session:
     def release(self, channel):
         self._checked(self._c.slewring_release(self._session, channel))
 
-    def step(self, timeout=10.0):
-        """Waits for the next block of variables; False when the session has ended."""
-        result = self._c.slewring_step(self._session, timeout)
+    def step(self, timeout=None):
+        """Waits for the next block of variables; False when the session has ended.
+
+        Without a time it waits through a pause, and Ctrl-C ends it; with one no block in time is an Error, TIMEOUT.
+        """
+        result = self._c.slewring_step(self._session, 1.0 if timeout is None else timeout)
+        while result == TIMEOUT and timeout is None:
+            result = self._c.slewring_step(self._session, 1.0)
         return result != ENDED and self._checked(result) == OK
+
+    @property
+    def blocks_missed(self):
+        return self._c.slewring_blocks_missed(self._session)
 
     def write(self, channel, value):
         self._checked(self._c.slewring_write(self._session, channel, value))

@@ -22,6 +22,8 @@ constexpr std::size_t kBeforeSession = 4096;
 constexpr std::size_t kWaitingSteps = 4096;
 constexpr std::int64_t kAskAgainNs = 200'000'000;
 constexpr std::int64_t kLongestSleepNs = 50'000'000;
+// more than a wait is late under load: the process was stopped, or its machine slept
+constexpr std::int64_t kStandstillNs = 200'000'000;
 constexpr SimDuration kDirectoryGrace = milliseconds(300);  // of other nodes after io's, which is the last
 
 std::string in_seconds(SimDuration time) {
@@ -101,22 +103,29 @@ ClientSession::~ClientSession() {
   if (carrier_ == nullptr) return;
   for (const Channel& channel : channels_) {
     if (channel.lease == Lease::held && !is_over_) {
-      static_cast<void>(send(channel.name, wire::ControllerAction::release, 0));
+      static_cast<void>(send(channel.name, wire::ControllerAction::release, 0, channel.answered));
     }
   }
 }
 
 // ---- receiving ------------------------------------------------------------------------------------------------
 
+// Time in which this process itself stood still is no time in which nothing came.
 template <typename Done>
 bool ClientSession::wait_for(Done done, SimDuration timeout) {
-  const std::int64_t deadline_ns = monotonic_ns() + timeout.ns;
+  std::int64_t seen_ns = monotonic_ns();  // when it was awake last, or is to be
+  std::int64_t deadline_ns = seen_ns + timeout.ns;
   while (true) {
     drain();
     if (done()) return true;
     const std::int64_t now_ns = monotonic_ns();
-    if (now_ns >= deadline_ns) return false;
-    carrier_->wait_until(std::min(deadline_ns, now_ns + kLongestSleepNs));
+    if (now_ns - seen_ns > kStandstillNs) deadline_ns += now_ns - seen_ns;
+    if (now_ns >= deadline_ns) {
+      drain();
+      return done();
+    }
+    seen_ns = std::min(deadline_ns, now_ns + kLongestSleepNs);
+    carrier_->wait_until(seen_ns);
   }
 }
 
@@ -201,7 +210,24 @@ void ClientSession::begin_epoch(std::uint32_t epoch) {
   blocks_.clear();
   only_newest_ = false;
   step_ = kJoinStep;
+  newest_of_ = {};
+  for (Channel& channel : channels_) {
+    channel.answered = kJoinStep;
+    if (channel.lease != Lease::held) continue;
+    channel.lease = Lease::lost;
+    channel.reason =
+        "the session was reset: channel " + channel.name + " is at neutral and free; acquire it again to go on";
+  }
   std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN());
+}
+
+// A refusal that does not mean this process and what it asks for now.
+bool ClientSession::is_of_another(const wire::ControllerLease& message, const Channel& channel) const {
+  // another process of this name was told that this one holds the channel
+  const bool is_held_here = message.holder == options_.controller && message.reason.find(process_) != std::string::npos;
+  if (channel.lease == Lease::held) return is_held_here;
+  // a free channel that there is is given to who asks: this answers what was written before
+  return channel.lease == Lease::asked && channel.was_held && message.holder.empty();
 }
 
 void ClientSession::take_lease(std::span<const std::byte> bytes) {
@@ -215,14 +241,19 @@ void ClientSession::take_lease(std::span<const std::byte> bytes) {
   const bool has_it = message.is_granted && message.holder == options_.controller;
   if (has_it && channel->lease == Lease::asked) {
     channel->lease = Lease::held;
+    channel->was_held = true;
+    channel->answered = kJoinStep;
     if (message.header.step > 0) only_newest_ = true;
+  } else if (!message.is_granted && is_of_another(message, *channel)) {
+    return;
   } else if (channel->lease == Lease::asked && !message.is_granted) {
     channel->lease = Lease::refused;
   } else if (channel->lease == Lease::held && !message.is_granted) {
     channel->lease = Lease::lost;
+  } else if (channel->lease == Lease::lost) {
+    return;  // why it was lost was said before
   }
   channel->reason = message.reason;
-  channel->holder = message.holder;
   if (has_it && !message.reason.empty()) notices_.push_back(message.reason);
 }
 
@@ -270,14 +301,34 @@ double ClientSession::value(int handle) const noexcept {
   return is_known ? values_[static_cast<std::size_t>(handle)] : std::numeric_limits<double>::quiet_NaN();
 }
 
+// The smallest distance of two blocks of one node is that of all.
+void ClientSession::note_distance(const wire::Header& header) noexcept {
+  const auto role = static_cast<std::size_t>(header.role);
+  if (role >= newest_of_.size()) return;
+  const StepIndex before = newest_of_[role].value_or(header.step);
+  const StepIndex distance = header.step - before;
+  if (distance > 0 && (steps_per_block_ == 0 || distance < steps_per_block_)) steps_per_block_ = distance;
+  newest_of_[role] = std::max(before, header.step);
+}
+
+// Of all the blocks between the first step and the present one those that came: read, passed over, or left out by the
+// session on purpose.
+std::uint64_t ClientSession::blocks_missed() const noexcept {
+  if (steps_per_block_ == 0) return 0;
+  const StepIndex due = steps_passed_ / steps_per_block_;
+  return due > blocks_come_ ? static_cast<std::uint64_t>(due - blocks_come_) : 0;
+}
+
 void ClientSession::place(const wire::VariableBlock& message) {
   const StepIndex step = message.header.step;
+  note_distance(message.header);
   if (step <= step_) return;
   if (blocks_.size() >= kWaitingSteps) blocks_.erase(blocks_.begin());
   Block& block = blocks_[step];
   block.values.resize(wanted_.size());
   block.has.resize(wanted_.size());
   block.has_own = block.has_own || message.header.role == Role::io;
+  block.is_left_out = block.is_left_out || message.values.empty();
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
     const Named& wanted = wanted_[i];
     if (wanted.role != message.header.role || wanted.index < message.first) continue;
@@ -315,8 +366,8 @@ bool ClientSession::choose(Which which) {
       if (which == Which::next && !only_newest_) break;
       ++block;
     } else if (chosen == blocks_.end() && can_never_be_complete(block)) {
+      if (step_ >= 0 && block->second.is_left_out) ++blocks_come_;
       block = blocks_.erase(block);
-      ++missed_;
     } else if (which == Which::next && !only_newest_) {
       break;
     } else {
@@ -324,7 +375,12 @@ bool ClientSession::choose(Which which) {
     }
   }
   if (chosen == blocks_.end()) return false;
-  if (step_ >= 0 && which == Which::next) steps_per_block_ = chosen->first - step_;
+  if (step_ >= 0) {
+    steps_passed_ += chosen->first - step_;
+    blocks_come_ += std::count_if(blocks_.begin(), std::next(chosen), [this](const auto& block) {
+      return block.second.is_left_out || is_complete(block.second);
+    });
+  }
   step_ = chosen->first;
   values_ = chosen->second.values;
   blocks_.erase(blocks_.begin(), std::next(chosen));
@@ -362,7 +418,8 @@ Answer ClientSession::ended() const {
 
 // ---- channels -------------------------------------------------------------------------------------------------
 
-Answer ClientSession::send(const std::string& channel, wire::ControllerAction action, double value) {
+Answer ClientSession::send(const std::string& channel, wire::ControllerAction action, double value,
+                           StepIndex based_on) {
   wire::ControllerInput input;
   input.session = options_.session;
   input.controller = options_.controller;
@@ -370,7 +427,7 @@ Answer ClientSession::send(const std::string& channel, wire::ControllerAction ac
   input.action = action;
   input.value = value;
   input.sequence = ++sequence_;
-  input.based_on_step = step_;
+  input.based_on_step = based_on;
   if (!transport::encode(input, buffer_)) return {Code::bad_argument, "'" + channel + "' is no name of a channel"};
   const Status status = carrier_->publish(Topic::controller_input, buffer_);
   return status.is_ok() ? Answer{} : Answer{Code::failed, status.text};
@@ -378,8 +435,9 @@ Answer ClientSession::send(const std::string& channel, wire::ControllerAction ac
 
 Answer ClientSession::acquire(const std::string& name, double how, SimDuration timeout, int& handle) {
   if (!is_name(name)) return {Code::bad_argument, "'" + name + "' is no name of a channel"};
+  drain();  // what was said before it asked is no answer
   auto channel = std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == name; });
-  if (channel == channels_.end()) channel = channels_.insert(channels_.end(), Channel{name, Lease::none, {}, {}});
+  if (channel == channels_.end()) channel = channels_.insert(channels_.end(), Channel{name});
   const auto index = static_cast<std::size_t>(channel - channels_.begin());
   if (channels_[index].lease != Lease::held) channels_[index].lease = Lease::asked;
   // asked again until it is answered: the first may go before the session is found
@@ -389,7 +447,7 @@ Answer ClientSession::acquire(const std::string& name, double how, SimDuration t
     if (channels_[index].lease != Lease::asked || is_over_) return true;
     if (monotonic_ns() < ask_ns) return false;
     ask_ns = monotonic_ns() + kAskAgainNs;
-    sent = send(name, wire::ControllerAction::acquire, how);
+    sent = send(name, wire::ControllerAction::acquire, how, step_);
     return sent.code != Code::ok;
   };
   const bool in_time = wait_for(is_decided, timeout);
@@ -412,19 +470,21 @@ Answer ClientSession::release(int channel) {
   Channel& released = channels_[static_cast<std::size_t>(channel)];
   if (released.lease != Lease::held) return {Code::lost, "channel " + released.name + " is not held"};
   released.lease = Lease::none;
-  return send(released.name, wire::ControllerAction::release, 0);
+  // a lockstep channel is free after the ticks of the last value that was sent, not of the last block that was read
+  return send(released.name, wire::ControllerAction::release, 0, released.answered);
 }
 
 Answer ClientSession::write(int channel, double value) {
   if (channel < 0 || static_cast<std::size_t>(channel) >= channels_.size()) {
     return {Code::bad_argument, std::to_string(channel) + " is no handle of a channel"};
   }
-  const Channel& written = channels_[static_cast<std::size_t>(channel)];
+  Channel& written = channels_[static_cast<std::size_t>(channel)];
   if (written.lease != Lease::held) {
     return {Code::lost, "channel " + written.name + " is not held" +
                             (written.reason.empty() ? std::string() : ": " + written.reason)};
   }
-  return send(written.name, wire::ControllerAction::write, value);
+  written.answered = step_;
+  return send(written.name, wire::ControllerAction::write, value, step_);
 }
 
 bool ClientSession::take_notice(std::string& text) {

@@ -4,10 +4,12 @@
 // it. Messages of an older epoch or of another session are passed over. One thread at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -64,7 +66,7 @@ class ClientSession {
   [[nodiscard]] StepIndex present_step() const noexcept { return step_; }
   [[nodiscard]] SimDuration step_size() const noexcept { return {description_.step_ns}; }
   [[nodiscard]] StepIndex steps_per_block() const noexcept { return steps_per_block_; }
-  [[nodiscard]] std::uint64_t blocks_missed() const noexcept { return missed_; }
+  [[nodiscard]] std::uint64_t blocks_missed() const noexcept;
 
   // The text of the last failure, and the last notice, for the C functions that hand out pointers.
   std::string error;
@@ -75,8 +77,9 @@ class ClientSession {
   struct Channel {
     std::string name;
     Lease lease = Lease::none;
-    std::string reason;
-    std::string holder;
+    std::string reason{};
+    bool was_held = false;
+    StepIndex answered = kJoinStep;  // step of the last value that was written since it is held; -1: none
   };
   // A message that came before the session was known: its writer was found before io's.
   struct Early {
@@ -88,7 +91,8 @@ class ClientSession {
     std::vector<double> values;
     std::vector<bool> has;
     std::size_t count = 0;
-    bool has_own = false;  // the session's own block of the step
+    bool has_own = false;      // the session's own block of the step
+    bool is_left_out = false;  // a node says that it leaves its values out
   };
 
   explicit ClientSession(JoinOptions options) : options_(std::move(options)) {}
@@ -103,15 +107,18 @@ class ClientSession {
   void take_block(std::span<const std::byte> bytes);
   [[nodiscard]] bool is_ours(const wire::Header& header) const noexcept;
   void begin_epoch(std::uint32_t epoch);
+  void note_distance(const wire::Header& header) noexcept;
   void place(const wire::VariableBlock& block);
   bool choose(Which which);
   [[nodiscard]] bool is_complete(const Block& block) const noexcept;
   [[nodiscard]] bool can_never_be_complete(std::map<StepIndex, Block>::const_iterator block) const noexcept;
-  Answer send(const std::string& channel, wire::ControllerAction action, double value);
+  [[nodiscard]] bool is_of_another(const wire::ControllerLease& message, const Channel& channel) const;
+  Answer send(const std::string& channel, wire::ControllerAction action, double value, StepIndex based_on);
   [[nodiscard]] const Named* named(const std::string& name) const noexcept;
   [[nodiscard]] Answer ended() const;
 
   JoinOptions options_;
+  const std::string process_ = transport::CycloneTransport::own_process();  // as io names it in a refusal
   std::unique_ptr<transport::CycloneTransport> carrier_;
   bool has_session_ = false;
   std::vector<Early> before_session_;
@@ -127,8 +134,10 @@ class ClientSession {
   bool only_newest_ = false;                    // of the next step: a channel was acquired in mid-run
   std::vector<double> values_;                  // of step_, by handle
   StepIndex step_ = kJoinStep;
-  StepIndex steps_per_block_ = 0;
-  std::uint64_t missed_ = 0;
+  std::array<std::optional<StepIndex>, wire::kRoles> newest_of_;  // step of each node's newest block
+  StepIndex steps_per_block_ = 0;                                 // the smallest distance of two; 0: not known yet
+  StepIndex steps_passed_ = 0;                                    // from the first block of each epoch on
+  StepIndex blocks_come_ = 0;                                     // in them
   std::vector<Channel> channels_;
   std::deque<std::string> notices_;
   std::uint64_t sequence_ = 0;

@@ -19,9 +19,9 @@ using slew::client::ClientSession;
 using slew::client::Code;
 
 // of a join that failed, when there is no session that could keep it
-std::string& join_error() {
-  thread_local std::string text;
-  return text;
+Answer& join_answer() {
+  thread_local Answer answer;
+  return answer;
 }
 
 constexpr double kLongestWait = 1e9;  // s
@@ -50,7 +50,7 @@ template <typename Action>
 int guarded(slewring_session* session, Action action) {
   if (session == nullptr) {
     // after a join that failed its reason is what one wants to read
-    if (join_error().empty()) join_error() = "the session is NULL";
+    if (join_answer().text.empty()) join_answer().text = "the session is NULL";
     return SLEWRING_BAD_ARGUMENT;
   }
   Answer answer;
@@ -80,10 +80,10 @@ slewring_session* slewring_join(const char* session, const char* controller, uns
     options.network.peers = split(text_of(peers));
     std::unique_ptr<ClientSession> client;
     const Answer answer = ClientSession::join(options, duration(timeout_s), client);
-    join_error() = answer.text;
+    join_answer() = answer;
     return client != nullptr ? new slewring_session{std::move(client)} : nullptr;
   } catch (const std::exception& error) {
-    join_error() = error.what();
+    join_answer() = {Code::failed, error.what()};
     return nullptr;
   }
 }
@@ -93,7 +93,11 @@ void slewring_leave(slewring_session* session) {
 }
 
 const char* slewring_error(const slewring_session* session) {
-  return session != nullptr ? session->client->error.c_str() : join_error().c_str();
+  return session != nullptr ? session->client->error.c_str() : join_answer().text.c_str();
+}
+
+int slewring_join_code(void) {
+  return static_cast<int>(join_answer().code);
 }
 
 double slewring_step_size(const slewring_session* session) {

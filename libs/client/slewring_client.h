@@ -3,8 +3,11 @@
 //   slewring_session* s = slewring_join("truck_crane", "pid", 0, "lo", "", 10);
 //   int stroke = slewring_find(s, "Cyl_Lift.stroke", 5);
 //   int lift = slewring_acquire(s, "Input_Lift", 5);
-//   while (slewring_step(s, 1) == SLEWRING_OK)
-//     slewring_write(s, lift, 20 * (0.86 - slewring_value(s, stroke)));
+//   int code = SLEWRING_OK;
+//   while (code == SLEWRING_OK || code == SLEWRING_TIMEOUT) {  // the latter is a pause
+//     code = slewring_step(s, 1);
+//     if (code == SLEWRING_OK) slewring_write(s, lift, 20 * (0.86 - slewring_value(s, stroke)));
+//   }
 //   slewring_leave(s);
 //
 // Order: join, find the variables, acquire the channels, then one round per step: wait, read, write. slewring_step()
@@ -47,9 +50,13 @@ enum {
 // A session with keys needs SLEWRING_KEYS=DIR in the environment, and SLEWRING_IDENTITY=NAME when that is not
 // "controller" (`slewring keys`); an interface that leaves this machine is refused without, unless
 // SLEWRING_INSECURE_LAN=1 is there.
-// NULL on failure; slewring_error(NULL) then has the reason, on the same thread.
+// NULL on failure; on the same thread slewring_error(NULL) then has the reason and slewring_join_code() the code:
+// SLEWRING_TIMEOUT (no such session was heard), SLEWRING_REFUSED (another protocol version), SLEWRING_BAD_ARGUMENT
+// (names, domain, interface, keys) or SLEWRING_FAILED.
 SLEWRING_API slewring_session* slewring_join(const char* session, const char* controller, unsigned domain,
                                              const char* interface_name, const char* peers, double timeout_s);
+// Code of this thread's last slewring_join(); SLEWRING_OK when it gave a session, or there was none.
+SLEWRING_API int slewring_join_code(void);
 // Gives the channels back, a lockstep one after the ticks of the last value, and frees everything. NULL is allowed.
 SLEWRING_API void slewring_leave(slewring_session* session);
 
@@ -76,11 +83,13 @@ SLEWRING_API int slewring_acquire(slewring_session* session, const char* channel
 SLEWRING_API int slewring_take_over(slewring_session* session, const char* channel, double timeout_s);
 SLEWRING_API int slewring_release(slewring_session* session, int channel);
 
-// Waits for the next block of all variables that were found; without any, for the next of the session's own.
+// Waits for the next block of all variables that were found; without any, for the next of the session's own. Time in
+// which this process itself stood still does not count.
 SLEWRING_API int slewring_step(slewring_session* session, double timeout_s);
 // The same, but passes over all blocks that are older than the newest: for sampled channels and displays.
 SLEWRING_API int slewring_latest(slewring_session* session, double timeout_s);
-// Step of the present values, -1 before the first; its time in the session [s]; how many blocks never came.
+// Step of the present values, -1 before the first; its time in the session [s]; how many blocks of the epochs so far
+// never came, as of the smallest distance of two blocks: this program was too slow for them, or they were lost.
 SLEWRING_API long long slewring_present_step(const slewring_session* session);
 SLEWRING_API double slewring_time(const slewring_session* session);
 SLEWRING_API long long slewring_blocks_missed(const slewring_session* session);

@@ -5,6 +5,8 @@
 //   const slewring::Channel lift = session.acquire("Input_Lift");
 //   while (session.step()) session.write(lift, 20 * (0.86 - session.value(stroke)));
 //
+// step() without a time waits through a pause; with one it throws SLEWRING_TIMEOUT when no block comes.
+//
 // Needs C++17 (the braces above C++20). Every failure is a slewring::Error with code() and a sentence, but the end of
 // the session, at which step() and latest() give false.
 #ifndef SLEWRING_CLIENT_HPP
@@ -49,7 +51,7 @@ class Session {
   explicit Session(const Options& options)
       : session_(slewring_join(options.session.c_str(), options.controller.c_str(), options.domain,
                                options.interface_name.c_str(), options.peers.c_str(), options.timeout)) {
-    if (!session_) throw Error(SLEWRING_FAILED, slewring_error(nullptr));
+    if (!session_) throw Error(slewring_join_code(), slewring_error(nullptr));
   }
 
   double step_size() const { return slewring_step_size(session_.get()); }
@@ -67,9 +69,12 @@ class Session {
   void release(Channel channel) { checked(slewring_release(session_.get(), channel.handle)); }
   void write(Channel channel, double value) { checked(slewring_write(session_.get(), channel.handle, value)); }
 
-  // Next block, or the newest; false when the session has ended.
-  bool step(double timeout = 10) { return has_come(slewring_step(session_.get(), timeout)); }
-  bool latest(double timeout = 10) { return has_come(slewring_latest(session_.get(), timeout)); }
+  // Next block, or the newest; false when the session has ended. Without a time-out [s] they wait as long as it takes.
+  bool step() { return waits(slewring_step); }
+  bool step(double timeout) { return has_come(slewring_step(session_.get(), timeout)); }
+  bool latest() { return waits(slewring_latest); }
+  bool latest(double timeout) { return has_come(slewring_latest(session_.get(), timeout)); }
+  long long blocks_missed() const { return slewring_blocks_missed(session_.get()); }
   long long present_step() const { return slewring_present_step(session_.get()); }
   double time() const { return slewring_time(session_.get()); }
 
@@ -85,6 +90,11 @@ class Session {
   int checked(int result) const {
     if (result < 0) throw Error(result, slewring_error(session_.get()));
     return result;
+  }
+  bool waits(int (*next)(slewring_session*, double)) {
+    int result = SLEWRING_TIMEOUT;
+    while (result == SLEWRING_TIMEOUT) result = next(session_.get(), 10);
+    return has_come(result);
   }
   bool has_come(int result) const { return result != SLEWRING_ENDED && checked(result) == SLEWRING_OK; }
 

@@ -1,5 +1,5 @@
 // The client library against sessions of real processes: several controllers on different channels, digital inputs,
-// taking over, a reset, the end, and every refusal.
+// taking over, a reset, the end, every refusal, and controllers that stand still, die or are there twice.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -56,6 +56,25 @@ class ClientLibrary : public ::testing::Test {
       if (slewring_value(client, variable) == value) return true;
     }
     return false;
+  }
+  // a controller in a process of its own, which prints what it is told
+  [[nodiscard]] std::unique_ptr<Program> start_probe(const std::string& name, const std::string& output) const {
+    const std::vector<std::string> arguments = {session->name(), std::to_string(session->domain()), name, "Input_Lift"};
+    return std::make_unique<Program>(program_path("client_probe"), arguments, session->folder() / output);
+  }
+  // reads blocks until the step, so that a test's patience is in steps of the session
+  static void read_to(slewring_session* client, long long step) {
+    while (slewring_present_step(client) < step) {
+      ASSERT_EQ(slewring_latest(client, kSoon), SLEWRING_OK) << slewring_error(client);
+    }
+  }
+  // reads blocks until the program has printed the words
+  [[nodiscard]] static bool comes_to_say(slewring_session* client, const Program& program, const std::string& words) {
+    const auto has_said = [&] { return program.out().find(words) != std::string::npos; };
+    for (int i = 0; i < 3000 && !has_said(); ++i) {
+      if (slewring_latest(client, kSoon) != SLEWRING_OK) return false;
+    }
+    return has_said();
   }
   void stop() {
     control("stop");
@@ -203,7 +222,9 @@ TEST_F(ClientLibrary, AfterAResetALockstepControllerAcquiresAgainAndBeginsAtStep
 }
 
 TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
+  EXPECT_EQ(slewring_join_code(), SLEWRING_OK);
   EXPECT_EQ(slewring_join("nobody", "pid", 3, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join_code(), SLEWRING_TIMEOUT);
   EXPECT_STREQ(slewring_error(nullptr),
                "no session 'nobody' was heard in domain 3 on lo within 0.2 s; start it first, and compare its name, "
                "domain, interface, peers and keys");
@@ -212,10 +233,23 @@ TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
   EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'nobody' was heard"), std::string::npos);
   EXPECT_EQ(slewring_join("nobody", "", 3, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no name of a controller"), std::string::npos);
+  EXPECT_EQ(slewring_join_code(), SLEWRING_BAD_ARGUMENT);
   EXPECT_EQ(slewring_join("no*body", "pid", 3, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no session name"), std::string::npos);
   EXPECT_EQ(slewring_join("nobody", "pid", 231, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("DDS domain 231 is out of range"), std::string::npos);
+  EXPECT_EQ(slewring_join_code(), SLEWRING_BAD_ARGUMENT);
+  try {
+    slewring::Options absent;
+    absent.session = "nobody";
+    absent.controller = "pid";
+    absent.domain = 3;
+    absent.timeout = 0.2;
+    const slewring::Session joined(absent);
+    ADD_FAILURE() << "there is no such session";
+  } catch (const slewring::Error& error) {
+    EXPECT_EQ(error.code(), SLEWRING_TIMEOUT);
+  }
   EXPECT_EQ(slewring_join(nullptr, nullptr, 0, nullptr, nullptr, 0), nullptr);
   EXPECT_EQ(slewring_step(nullptr, 0), SLEWRING_BAD_ARGUMENT);
   EXPECT_EQ(slewring_variable_name(nullptr, 0), nullptr);
@@ -273,6 +307,155 @@ TEST_F(ClientLibrary, TheHeaderForCxxThrowsAndReleasesAtTheEnd) {
   stop();
   while (third.step()) {
   }
+}
+
+// ---- controllers that leave, stand still, die or are there twice ----------------------------------------------
+
+TEST_F(ClientLibrary, WhoLeavesALockstepChannelAfterReadingABlockIsNotWaitedFor) {
+  start({"--set", "Input_Lift.controller=lockstep", "--set", "Input_Lift.controller_wait=4 s", "--set",
+         "recording.every=1"});
+  const Client reader = join("reader");
+  const int late = slewring_find(reader.get(), "session.late_controllers", kSoon);
+  ASSERT_GE(late, 0);
+  {
+    const Client client = join("pid");
+    const int lift = slewring_acquire(client.get(), "Input_Lift", kSoon);
+    ASSERT_GE(lift, 0) << slewring_error(client.get());
+    while (slewring_present_step(client.get()) < 200) {
+      ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
+      ASSERT_EQ(slewring_write(client.get(), lift, 0.5), SLEWRING_OK) << slewring_error(client.get());
+    }
+    // it reads one more, finds that it is done, and leaves
+    ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
+  }
+  read_to(reader.get(), 400);
+  EXPECT_EQ(slewring_value(reader.get(), late), 0);
+  const std::string said = session->said();
+  EXPECT_EQ(said.find("waited"), std::string::npos) << said;
+  EXPECT_NE(said.find("warning: 'pid' has released channel Input_Lift (controller: lockstep): it is free from tick"),
+            std::string::npos)
+      << said;
+  stop();
+}
+
+TEST_F(ClientLibrary, WhoStoodStillLongerThanTheMiddlewareKnowsItLearnsThatItsChannelIsGone) {
+  start();
+  const Client reader = join("reader");
+  const auto probe = start_probe("probe", "probe");
+  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  probe->send(SIGSTOP);
+  // nobody hears it for 2 s, and it has been silent for 5 s
+  read_to(reader.get(), slewring_present_step(reader.get()) + 7500);
+  probe->send(SIGCONT);
+  EXPECT_TRUE(comes_to_say(reader.get(), *probe,
+                           "lost: 'probe' does not hold channel Input_Lift: it is free; acquire it again to go on\n"
+                           "acquired"))
+      << probe->out() << session->said();
+  stop();
+}
+
+TEST_F(ClientLibrary, WhoStoodStillOverAResetLearnsOfIt) {
+  start();
+  const Client reader = join("reader");
+  const auto probe = start_probe("probe", "probe");
+  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  probe->send(SIGSTOP);
+  control("reset");
+  read_to(reader.get(), slewring_present_step(reader.get()) + 20);
+  read_to(reader.get(), 3000);
+  probe->send(SIGCONT);
+  EXPECT_TRUE(comes_to_say(reader.get(), *probe, "lost: ")) << probe->out() << session->said();
+  EXPECT_TRUE(comes_to_say(reader.get(), *probe, "go on\nacquired")) << probe->out() << session->said();
+  stop();
+}
+
+TEST_F(ClientLibrary, ItsOwnStandstillIsNoTimeOut) {
+  start();
+  const Client reader = join("reader");
+  const auto probe = start_probe("probe", "probe");
+  ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
+  for (int i = 0; i < 3; ++i) {
+    read_to(reader.get(), slewring_present_step(reader.get()) + 200);
+    probe->send(SIGSTOP);
+    read_to(reader.get(), slewring_present_step(reader.get()) + 1500);  // its time-out is 1 s
+    probe->send(SIGCONT);
+  }
+  read_to(reader.get(), slewring_present_step(reader.get()) + 200);
+  EXPECT_EQ(probe->out(), "acquired\n") << session->said();
+  stop();
+}
+
+TEST_F(ClientLibrary, OfTwoProcessesOfOneNameTheSecondIsRefusedUntilTheFirstIsGone) {
+  start();
+  const Client reader = join("reader");
+  const int raw = slewring_find(reader.get(), "Input_Lift.raw", kSoon);
+  ASSERT_GE(raw, 0);
+  const auto first = start_probe("probe", "first");
+  ASSERT_TRUE(comes_to_say(reader.get(), *first, "acquired")) << session->said();
+  const auto second = start_probe("probe", "second");
+  EXPECT_EQ(second->wait(), 0);
+  const std::string process = "(process " + std::to_string(first->pid()) + " on ";
+  EXPECT_NE(second->out().find("refused: channel Input_Lift is held by another process named 'probe' " + process),
+            std::string::npos)
+      << second->out();
+  // the first was not meant, and goes on
+  read_to(reader.get(), slewring_present_step(reader.get()) + 500);
+  EXPECT_EQ(first->out(), "acquired\n");
+  EXPECT_EQ(slewring_value(reader.get(), raw), 0.375);
+  first->send(SIGKILL);
+  static_cast<void>(first->wait());
+  // the middleware knows it for 2 s more
+  std::unique_ptr<Program> third;
+  for (int i = 0; i < 100; ++i) {
+    third = start_probe("probe", "third" + std::to_string(i));
+    ASSERT_TRUE(comes_to_say(reader.get(), *third, "d")) << session->said();
+    if (third->out() == "acquired\n") break;
+  }
+  EXPECT_EQ(third->out(), "acquired\n");
+  stop();
+}
+
+TEST_F(ClientLibrary, TwoSessionsOfOneProcessUnderOneNameAreTwoControllers) {
+  start();
+  const Client first = join("pid"), second = join("pid");
+  const int lift = slewring_acquire(first.get(), "Input_Lift", kSoon);
+  ASSERT_GE(lift, 0) << slewring_error(first.get());
+  EXPECT_EQ(slewring_acquire(second.get(), "Input_Lift", kSoon), SLEWRING_REFUSED);
+  EXPECT_NE(std::string(slewring_error(second.get())).find("is held by another process named 'pid'"), std::string::npos)
+      << slewring_error(second.get());
+  ASSERT_EQ(slewring_step(first.get(), kSoon), SLEWRING_OK) << slewring_error(first.get());
+  EXPECT_EQ(slewring_write(first.get(), lift, 0.5), SLEWRING_OK) << slewring_error(first.get());
+  stop();
+}
+
+TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
+  start({"--set", "recording.every=1"});
+  const Client reader = join("reader"), slow = join("slow");
+  const int stroke = slewring_find(slow.get(), "Cyl_Lift.stroke", kSoon);
+  ASSERT_GE(stroke, 0);
+  const auto read = [&](int blocks) {
+    for (int i = 0; i < blocks; ++i) ASSERT_EQ(slewring_step(slow.get(), kSoon), SLEWRING_OK);
+  };
+  read(50);
+  const long long first = slewring_present_step(slow.get());
+  EXPECT_EQ(slewring_blocks_missed(slow.get()), 0);
+  // it computes for longer than what is kept for it
+  read_to(reader.get(), first + 8000);
+  int blocks = 0;
+  while (slewring_present_step(slow.get()) < first + 8000) {
+    read(1);
+    ++blocks;
+  }
+  const long long passed = slewring_present_step(slow.get()) - first;
+  EXPECT_LT(blocks, passed);
+  EXPECT_EQ(slewring_blocks_missed(slow.get()), passed - blocks);
+  EXPECT_EQ(slewring_steps_per_block(slow.get()), 1);
+  // passing over what has come is no loss
+  const long long before = slewring_blocks_missed(slow.get());
+  read_to(reader.get(), slewring_present_step(slow.get()) + 300);
+  ASSERT_EQ(slewring_latest(slow.get(), kSoon), SLEWRING_OK);
+  EXPECT_EQ(slewring_blocks_missed(slow.get()), before);
+  stop();
 }
 
 TEST_F(ClientLibrary, GoesOnWhenANodeIsReplacedAndTheOneThatStoodStillWakesUp) {

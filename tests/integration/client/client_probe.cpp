@@ -1,0 +1,65 @@
+// A controller that prints what the library tells it, a line each, for tests that stop it, kill it and start it twice.
+//
+//   client_probe SESSION DOMAIN NAME CHANNEL
+#include <cstdio>
+#include <cstdlib>
+
+#include "client/slewring_client.h"
+
+namespace {
+
+constexpr double kSoon = 20;      // s
+constexpr double kStepTime = 1;   // s, for a block to come
+constexpr double kStick = 0.375;  // of every answer
+
+void say(const char* what, const char* text = "") {
+  std::printf("%s%s\n", what, text);
+  std::fflush(stdout);
+}
+
+// the channel's handle, or below zero
+int take(slewring_session* session, const char* channel) {
+  const int handle = slewring_acquire(session, channel, kSoon);
+  if (handle < 0) {
+    say("refused: ", slewring_error(session));
+  } else {
+    say("acquired");
+  }
+  return handle;
+}
+
+void follow(slewring_session* session, const char* name) {
+  int channel = take(session, name);
+  while (channel >= 0) {
+    switch (slewring_step(session, kStepTime)) {
+      case SLEWRING_OK:
+        slewring_write(session, channel, kStick);
+        break;
+      case SLEWRING_TIMEOUT:
+        say("timeout: ", slewring_error(session));
+        break;
+      case SLEWRING_LOST:
+        say("lost: ", slewring_error(session));
+        channel = take(session, name);
+        break;
+      default:
+        say("ended: ", slewring_error(session));
+        channel = -1;
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 5) return 2;
+  slewring_session* session =
+      slewring_join(argv[1], argv[3], static_cast<unsigned>(std::atoi(argv[2])), "lo", "", kSoon);
+  if (session == nullptr) {
+    say("not joined: ", slewring_error(nullptr));
+    return 1;
+  }
+  follow(session, argv[4]);
+  slewring_leave(session);
+  return 0;
+}
