@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 
 #include "options.h"
@@ -16,7 +17,8 @@ constexpr char kUsage[] =
     "usage: pid_controller --session NAME [--variable Cyl_Lift.stroke] [--channel Input_Lift] [--target 0.86]\n"
     "         [--kp 60] [--ki 40] [--kd 2] [--filter 0.02] [--overlap 0.32] [--tolerance 0.001] [--seconds 15]\n"
     "         [--name pid] [--domain 0] [--interface lo] [--peers ADDRESS,ADDRESS]\n"
-    "--seconds is time of the session. Example, with `slewring run scenes/truck_crane.yaml --input none --duration 0`\n"
+    "--seconds is time of the session; a paused one is waited for; Ctrl-C ends it. Example, with `slewring run "
+    "scenes/truck_crane.yaml --input none --duration 0`\n"
     "in another terminal:\n"
     "  pid_controller --session truck_crane --target 0.86 --kp 60 --ki 40\n";
 
@@ -42,6 +44,20 @@ struct Pid {
 // the valve does nothing below this stick value: the controller's output begins beyond it
 double over_the_overlap(double u, double overlap, double rest) {
   return std::fabs(u) < rest ? 0 : std::copysign(overlap + (1 - overlap) * std::fabs(u), u);
+}
+
+volatile std::sig_atomic_t is_stopped = 0;  // by Ctrl-C: the channel is given back
+
+// Next block; false when the session has ended, or this program is to.
+bool next_block(slewring::Session& session) {
+  while (is_stopped == 0) {
+    try {
+      return session.step(1);
+    } catch (const slewring::Error& error) {
+      if (error.code() != SLEWRING_TIMEOUT) throw;  // that is a pause
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -77,7 +93,8 @@ int main(int argc, char** argv) {
     const slewring::Channel channel = session.acquire(channel_name);
 
     double begin = -1, last = 0, worst = 0;
-    while (session.step()) {
+    std::signal(SIGINT, [](int) { is_stopped = 1; });
+    while (next_block(session)) {
       const double now = session.time();
       if (begin < 0) begin = last = now;
       if (now - begin > options.seconds) break;

@@ -62,9 +62,10 @@ bool run(const SessionOptions& options, const Loop& loop) {
   int steady = 0;
   while (steady < kSteady && std::chrono::duration<double>(Clock::now() - begin).count() < options.seconds) {
     try {
-      if (!session.step()) break;
+      if (!session.step(1)) break;
       session.write(channel, loop.stick(session.value(variable)));
     } catch (const slewring::Error& error) {
+      if (error.code() == SLEWRING_TIMEOUT) continue;  // a pause
       if (error.code() != SLEWRING_LOST) throw;
       std::fprintf(stderr, "position_controller: %s\n", error.what());
       channel = take(session, loop);

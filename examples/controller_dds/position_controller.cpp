@@ -215,6 +215,8 @@ class Loop {
   void read_lease() {
     take_all<slewring_ControllerLease>(e_.lease, [&](const slewring_ControllerLease& lease) {
       if (options_.name != lease.controller || options_.channel != lease.channel) return;
+      // another process of this name was refused the channel that this one holds
+      if (has_lease_ && !lease.is_granted && options_.name == lease.holder) return;
       const bool is_taken_away = has_lease_ && !lease.is_granted && *lease.holder == '\0';
       has_lease_ = lease.is_granted && options_.name == lease.holder;
       if (is_taken_away) {

@@ -38,7 +38,14 @@ def main():
         variable = session.find(o.variable)
         channel = session.acquire(o.channel)
         steady = 0
-        while steady < 100 and time.monotonic() - begin < o.seconds and session.step():
+        while steady < 100 and time.monotonic() - begin < o.seconds:
+            try:
+                if not session.step(1.0):
+                    break
+            except slewring_client.Error as error:
+                if error.code == slewring_client.TIMEOUT:
+                    continue  # a pause
+                raise
             session.write(channel, stick(session.value(variable)))
             steady = steady + 1 if abs(o.target - session.value(variable)) < o.tolerance else 0
         print(f"{o.variable} = {session.value(variable):.5f}, target {o.target:.5f}: "
@@ -50,4 +57,5 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except slewring_client.Error as error:
-        sys.exit(f"position_controller: {'refused: ' if error.code == slewring_client.REFUSED else ''}{error}")
+        kind = {slewring_client.REFUSED: "refused: ", slewring_client.TIMEOUT: "timeout: "}.get(error.code, "")
+        sys.exit(f"position_controller: {kind}{error}")

@@ -8,7 +8,7 @@
  *   domain      0
  *   variables   'Cyl_Lift.stroke,Cyl_Lift.force'   one output element each
  *   channels    'Input_Lift'                       one input element each
- *   period      0.01                               session.step x recording.every [s]
+ *   period      0.01                               session.step x recording.every [s]; another one ends the model
  *   interface   'lo'                               network interface of the session
  *   peers       ''                                 other machines' addresses with commas, for a session beyond this one
  *
@@ -20,6 +20,7 @@
 #define S_FUNCTION_NAME slewring_sfun
 #define S_FUNCTION_LEVEL 2
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,15 +29,20 @@
 
 #define MAX_NAMES 64
 #define MAX_TEXT 4096
-#define TIMEOUT 10.0 /* s */
+#define TIMEOUT 10.0   /* s */
+#define PAUSE_WAITS 60 /* as often for a block: a session may be paused for ten minutes */
+#define SEEN_BLOCKS 5  /* from then on their distance is known, also when one was lost */
 
 enum { SESSION, CONTROLLER, DOMAIN, VARIABLES, CHANNELS, PERIOD, INTERFACE, PEERS, PARAMETERS };
 
-/* number of names in a list with commas; each name is cut off in place */
+/* number of names in a list with commas; each name is cut off in place, and no more than MAX_NAMES are kept */
 static int split(char* list, char* names[MAX_NAMES]) {
   int count = 0;
   char* name = strtok(list, ",");
-  for (; name != NULL && count < MAX_NAMES; name = strtok(NULL, ",")) names[count++] = name;
+  for (; name != NULL; name = strtok(NULL, ",")) {
+    if (count < MAX_NAMES) names[count] = name;
+    ++count;
+  }
   return count;
 }
 
@@ -45,9 +51,34 @@ static void read_text(SimStruct* S, int parameter, char text[MAX_TEXT]) {
   mxGetString(ssGetSFcnParam(S, parameter), text, MAX_TEXT);
 }
 
+/* number of names; -1, and the simulation ends, when there are more than are kept */
 static int read_list(SimStruct* S, int parameter, char text[MAX_TEXT], char* names[MAX_NAMES]) {
+  static char problem[256];
+  int count, is_cut;
   read_text(S, parameter, text);
-  return split(text, names);
+  is_cut = strlen(text) >= MAX_TEXT - 1;
+  count = split(text, names);
+  if (count <= MAX_NAMES && !is_cut) return count;
+  snprintf(problem, sizeof problem,
+           "slewring_sfun: parameter %d has too many names: at most %d, %d characters; use a "
+           "second block with a controller name of its own",
+           parameter + 1, MAX_NAMES, MAX_TEXT - 2);
+  ssSetErrorStatus(S, problem);
+  return -1;
+}
+
+/* 0, and the simulation ends, when the model's time is not the session's */
+static int has_the_period(SimStruct* S, slewring_session* session) {
+  static char problem[256];
+  const double period = mxGetScalar(ssGetSFcnParam(S, PERIOD));
+  const double blocks = slewring_step_size(session) * slewring_steps_per_block(session);
+  if (fabs(blocks - period) <= 1e-6 * blocks) return 1;
+  snprintf(problem, sizeof problem,
+           "slewring_sfun: the period is %g s, and the session has a block of variables every "
+           "%g s (session.step times recording.every); give the block and the solver that period",
+           period, blocks);
+  ssSetErrorStatus(S, problem);
+  return 0;
 }
 
 /* the sentence of the library ends the simulation */
@@ -65,14 +96,15 @@ static void mdlInitializeSizes(SimStruct* S) {
   if (ssGetNumSFcnParams(S) != ssGetSFcnParamsCount(S)) return;
   variables = read_list(S, VARIABLES, text, names);
   channels = read_list(S, CHANNELS, text, names);
+  if (variables < 0 || channels < 0) return;
   if (!ssSetNumOutputPorts(S, 1) || !ssSetNumInputPorts(S, 1)) return;
   ssSetOutputPortWidth(S, 0, variables);
   ssSetInputPortWidth(S, 0, channels);
   ssSetInputPortRequiredContiguous(S, 0, 1);
   ssSetInputPortDirectFeedThrough(S, 0, 0);
   ssSetNumSampleTimes(S, 1);
-  ssSetNumPWork(S, 1);                    /* the session */
-  ssSetNumIWork(S, variables + channels); /* its handles */
+  ssSetNumPWork(S, 1);                        /* the session */
+  ssSetNumIWork(S, variables + channels + 1); /* its handles, and how many blocks have come, up to SEEN_BLOCKS */
   ssSetOptions(S, SS_OPTION_CALL_TERMINATE_ON_EXIT);
 }
 
@@ -116,16 +148,17 @@ static void mdlStart(SimStruct* S) {
     }
     ssSetIWorkValue(S, next++, handle);
   }
+  ssSetIWorkValue(S, next, 0);
 }
 
-/* waits for the next block */
+/* waits for the next block; `slewring control stop` ends a session that is paused, and the model with it */
 static void mdlOutputs(SimStruct* S, int_T task) {
   slewring_session* session = (slewring_session*)ssGetPWorkValue(S, 0);
   real_T* y = ssGetOutputPortRealSignal(S, 0);
-  const int width = ssGetOutputPortWidth(S, 0);
-  const int code = slewring_step(session, TIMEOUT);
-  int i;
+  const int width = ssGetOutputPortWidth(S, 0), seen = width + ssGetInputPortWidth(S, 0);
+  int i, code = slewring_step(session, TIMEOUT);
   (void)task;
+  for (i = 1; code == SLEWRING_TIMEOUT && i < PAUSE_WAITS; ++i) code = slewring_step(session, TIMEOUT);
   if (code == SLEWRING_ENDED) {
     ssSetStopRequested(S, 1);
     return;
@@ -133,6 +166,10 @@ static void mdlOutputs(SimStruct* S, int_T task) {
   if (code != SLEWRING_OK) {
     fail(S, session);
     return;
+  }
+  if (ssGetIWorkValue(S, seen) < SEEN_BLOCKS) {
+    ssSetIWorkValue(S, seen, ssGetIWorkValue(S, seen) + 1);
+    if (ssGetIWorkValue(S, seen) == SEEN_BLOCKS && !has_the_period(S, session)) return;
   }
   for (i = 0; i < width; ++i) y[i] = slewring_value(session, ssGetIWorkValue(S, i));
 }

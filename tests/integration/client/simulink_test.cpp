@@ -57,7 +57,7 @@ TEST_F(SimulinkBlock, ReadsVariablesAndMovesItsChannel) {
   EXPECT_EQ(block_.wanted, block_.given);
   EXPECT_EQ(block_.outputs, 2);
   EXPECT_EQ(block_.inputs, 1);
-  EXPECT_EQ(block_.handles, 3);
+  EXPECT_EQ(block_.handles, 4);  // and the number of blocks
   EXPECT_EQ(block_.period, 0.01);
   step();
   const double before = block_.y[0];
@@ -72,6 +72,33 @@ TEST_F(SimulinkBlock, ReadsVariablesAndMovesItsChannel) {
   EXPECT_GE(std::fabs(block_.y[0] - before), 1e-3);
   stub_block.terminate(&block_);
   EXPECT_EQ(block_.pwork, nullptr);
+}
+
+TEST_F(SimulinkBlock, APeriodThatIsNotTheSessionsEndsTheModel) {
+  block_.parameters[5].number = 0.02;
+  begin();
+  ASSERT_EQ(block_.error, nullptr) << block_.error << session_.said();
+  for (int k = 0; k < 20 && block_.error == nullptr; ++k) step();
+  ASSERT_NE(block_.error, nullptr);
+  EXPECT_STREQ(block_.error,
+               "slewring_sfun: the period is 0.02 s, and the session has a block of variables every 0.01 s "
+               "(session.step times recording.every); give the block and the solver that period");
+  stub_block.terminate(&block_);
+}
+
+TEST_F(SimulinkBlock, MoreNamesThanItReadsAreAnErrorAndNotCutOff) {
+  std::string names = "a";
+  for (int i = 0; i < 64; ++i) names += ",a" + std::to_string(i);
+  block_.parameters[3].text = names.c_str();
+  stub_block.sizes(&block_);
+  ASSERT_NE(block_.error, nullptr);
+  EXPECT_NE(std::string(block_.error).find("parameter 4 has too many names: at most 64"), std::string::npos)
+      << block_.error;
+  block_.error = nullptr;
+  names.resize(5000, 'x');
+  block_.parameters[3].text = names.c_str();
+  stub_block.sizes(&block_);
+  EXPECT_NE(block_.error, nullptr);
 }
 
 TEST_F(SimulinkBlock, EndsTheModelWithTheReasonOfTheLibrary) {

@@ -1,6 +1,8 @@
 // The example controllers, built as a user builds them (projects of their own), close their loop on a real session.
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "build_paths.h"
 #include "direct_chain.h"
 #include "example_programs.h"
@@ -104,6 +106,45 @@ TEST_P(ControllerExample, SaysWhoHoldsTheChannelWhenItIsRefused) {
   stop();
 }
 
+TEST_P(ControllerExample, ASecondOneOfItsNameIsRefusedAndTheFirstGoesOn) {
+  const auto start = [this](const std::string& output) {
+    // a target that it does not reach
+    const std::vector<std::string> arguments = {
+        "--session", session.name(), "--domain",  std::to_string(session.domain()),
+        "--target",  "1.4",          "--seconds", "60"};
+    return std::make_unique<Program>(path, arguments, session.folder() / output);
+  };
+  const auto raw = [this] { return session.observer().variable("Input_Lift.raw").value_or(0); };
+  const auto first = start("first");
+  ASSERT_TRUE(session.observer().wait_until([&] { return raw() > 0; })) << first->err() << session.said();
+  const auto second = start("second");
+  EXPECT_EQ(second->wait(), 1) << second->out();
+  EXPECT_NE(second->err().find("is held by another process named 'position_controller'"), std::string::npos)
+      << second->err();
+  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.said();
+  EXPECT_TRUE(first->is_running()) << first->err();
+  EXPECT_GT(raw(), 0) << first->err() << session.said();
+  EXPECT_EQ(first->err(), "");
+  stop();
+}
+
+TEST_P(ControllerExample, APauseDoesNotEndIt) {
+  const std::vector<std::string> arguments = {
+      "--session", session.name(), "--domain", std::to_string(session.domain()), "--target", "1.4", "--seconds", "60"};
+  Program program(path, arguments, session.folder() / "controller");
+  const auto raw = [this] { return session.observer().variable("Input_Lift.raw").value_or(0); };
+  ASSERT_TRUE(session.observer().wait_until([&] { return raw() > 0; })) << program.err() << session.said();
+  ASSERT_TRUE(session.observer().request(wire::ControlAction::pause).is_accepted);
+  // three times as long as it waits for a block
+  ASSERT_TRUE(session.observer().wait_for_healths(Role::io, 30)) << session.said();
+  EXPECT_TRUE(program.is_running()) << program.err();
+  ASSERT_TRUE(session.observer().request(wire::ControlAction::resume).is_accepted);
+  ASSERT_TRUE(session.observer().wait_for_step(session.observer().step() + 1000)) << session.said();
+  EXPECT_TRUE(program.is_running()) << program.err();
+  EXPECT_GT(raw(), 0) << program.err() << session.said();
+  stop();
+}
+
 // The other programs of the client library's example, on a session of their own.
 class ClientExamples : public ::testing::Test {
  protected:
@@ -141,6 +182,21 @@ TEST_F(ClientExamples, TheShortestOneMovesTheCylinderAndGivesTheChannelBack) {
   stop();
 }
 
+TEST_F(ClientExamples, TheShortestOneWaitsThroughAPauseAndCtrlCGivesTheChannelBack) {
+  const std::string path = build_example(kControllerExamples[0], "first_controller");
+  start();
+  Program first(path, {session->name(), domain()}, session->folder() / "first");
+  const auto is_held = [&] { return session->observer().variable("Input_Lift.raw").value_or(0) == 0.5; };
+  ASSERT_TRUE(session->observer().wait_until(is_held)) << first.err() << session->said();
+  ASSERT_TRUE(session->observer().request(wire::ControlAction::pause).is_accepted);
+  ASSERT_TRUE(session->observer().wait_for_healths(Role::io, 25)) << session->said();
+  EXPECT_TRUE(first.is_running()) << first.out() << first.err();
+  first.send(SIGINT);
+  EXPECT_EQ(first.wait(), 0) << first.err();
+  EXPECT_TRUE(session->observer().acquire("other", "Input_Lift").is_granted);
+  stop();
+}
+
 TEST_F(ClientExamples, TheSameLoopInPython) {
   if (is_sanitized()) GTEST_SKIP() << "the interpreter cannot load a library with a sanitizer in it";
   start();
@@ -152,6 +208,13 @@ TEST_F(ClientExamples, TheSameLoopInPython) {
   Program python("/usr/bin/env", arguments, session->folder() / "python");
   EXPECT_EQ(python.wait(), 0) << python.out() << python.err();
   EXPECT_NE(python.out().find(": reached"), std::string::npos) << python.out();
+
+  std::vector<std::string> to_nobody = arguments;
+  to_nobody[4] = "nobody";
+  to_nobody.insert(to_nobody.end(), {"--seconds", "1"});
+  Program alone("/usr/bin/env", to_nobody, session->folder() / "alone");
+  EXPECT_EQ(alone.wait(), 1);
+  EXPECT_NE(alone.err().find("timeout: no session 'nobody' was heard"), std::string::npos) << alone.err();
 
   ASSERT_TRUE(session->observer().acquire("somebody_else", "Input_Lift").is_granted);
   Program refused("/usr/bin/env", arguments, session->folder() / "refused");
