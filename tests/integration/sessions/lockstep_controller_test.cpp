@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <sstream>
 #include <thread>
 
 #include "build_paths.h"
@@ -70,6 +71,16 @@ std::unique_ptr<Program> start_controller(const Session& session, const std::str
                                    session.folder() / name);
 }
 
+std::string warnings_without_releases(const std::string& said) {
+  std::istringstream lines(said);
+  std::string warnings;
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_release = line.find("has released channel") != std::string::npos;
+    if (line.find("warning") != std::string::npos && !is_release) warnings += line + "\n";
+  }
+  return warnings;
+}
+
 struct LoopRun {
   RecordedSession recorded;
   std::string lift_words;  // what the lifting loop printed
@@ -85,7 +96,8 @@ LoopRun run_loops(Session& session, const std::string& program, const Place& pla
       {"--variable", "Body_Pillar.position", "--channel", "Input_Slew", "--target", "-0.2", "--gain", "8"}, place);
   EXPECT_EQ(session.wait_all(60'000'000'000), all_ok()) << session.said();
   EXPECT_TRUE(lift->wait().has_value());
-  EXPECT_EQ(session.said().find("warning"), std::string::npos) << session.said();
+  // when a loop has reached its target it leaves: that is all that there is to say
+  EXPECT_EQ(warnings_without_releases(session.said()), "") << session.said();
   return {session.recorded(), lift->out() + lift->err()};
 }
 
@@ -111,9 +123,10 @@ TEST_P(LockstepLoop, GivesTheSameBitsInEveryRunUnderLoadToo) {
   const scene::Scene scene = load_scene(kScene, "3s", {"recording.every=1"});
   EXPECT_EQ(first_difference(chain_of_ticks(scene, first.ticks.at(0)), physics_only(first.chain())), "");
 
-  const int runs = rounds(3, 20);
-  for (int i = 1; i < runs; ++i) {
-    const Burners burners(i % 2 == 1 ? 2 * std::thread::hardware_concurrency() : 0);
+  // the first one had the machine to itself; these share it
+  const int runs = rounds(2, 20);
+  for (int i = 1; i <= runs; ++i) {
+    const Burners burners(2 * std::thread::hardware_concurrency());
     const LoopRun again = run_loops(program);
     ASSERT_EQ(first_difference(again.recorded.chain(), first.chain()), "") << "run " << i;
   }
