@@ -149,6 +149,9 @@ class Supervisor {
   [[nodiscard]] std::unique_ptr<ChildProcess> make(Role role) const {
     std::vector<std::string> arguments;
     if (role == Role::io) arguments = cli_support::scene_arguments(options_.scene);
+    if (role != Role::recorder && options_.join_timeout) {
+      arguments.insert(arguments.end(), {"--join-timeout", fmt::format("{}", *options_.join_timeout)});
+    }
     arguments.insert(arguments.end(), {"--session", options_.session.session});
     if (role == Role::mechanics || role == Role::hydraulics || role == Role::flex) {
       arguments.insert(arguments.end(), {"--assets", options_.assets()});

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,10 @@ class Observer;
 struct RunOptions {
   cli_support::SceneOptions scene;
   cli_support::SessionOptions session;
-  std::string runs = "runs";        // folder of the recordings
-  double keep_free_mb = 256;        // room that a recording leaves to others
-  std::vector<std::string> remote;  // roles that somebody else starts
+  std::string runs = "runs";           // folder of the recordings
+  double keep_free_mb = 256;           // room that a recording leaves to others
+  std::vector<std::string> remote;     // roles that somebody else starts
+  std::optional<double> join_timeout;  // s, longest wait for nodes and lockstep controllers; none: the nodes' own
   bool is_in_process = false;
   bool is_monolithic = false;
   std::string rtol;  // of a monolithic run; empty: the scene's

@@ -11,7 +11,7 @@ namespace slew::cli {
 // Runs the session, records it, and prints what came of it.
 [[nodiscard]] ExitCode run_session(RunOptions options, const io::SessionScene& session);
 
-// --out, --keep-free, --rt, --quiet.
+// --out, --keep-free, --join-timeout, --rt, --cpu, --quiet.
 void add_running_options(CLI::App& verb, RunOptions& options);
 
 }  // namespace slew::cli

@@ -18,7 +18,7 @@ namespace {
 
 // All physics as one system: one process, and no clock can be promised.
 void check_monolithic(const CLI::App& verb) {
-  for (const char* option : {"--remote", "--domain", "--interface", "--peer", "--rt", "--cpu"}) {
+  for (const char* option : {"--remote", "--domain", "--interface", "--peer", "--join-timeout", "--rt", "--cpu"}) {
     if (verb.count(option) == 0) continue;
     const std::string why =
         std::string_view(option) == "--rt" ? "its steps take as long as they take" : "it is one system in one process";
@@ -73,6 +73,11 @@ ExitCode run_session(RunOptions options, const io::SessionScene& session) {
     throw cli_support::Failure(ExitCode::bad_input,
                                "--cpu places processes, and --in-process has one; nothing was started; leave one out");
   }
+  if (options.is_in_process && options.join_timeout) {
+    throw cli_support::Failure(ExitCode::bad_input,
+                               "--join-timeout waits for other processes, and --in-process has none; nothing was "
+                               "started; leave one out");
+  }
   const RunOutcome outcome =
       options.is_in_process ? run_in_process(options, session) : run_distributed(options, session);
   if (!outcome.has_begun) {
@@ -98,6 +103,11 @@ void add_running_options(CLI::App& verb, RunOptions& options) {
       ->check(cli_support::number_range(0.0, 1e9))
       ->type_name("MB")
       ->capture_default_str();
+  verb.add_option("--join-timeout", options.join_timeout,
+                  "seconds to wait for all nodes of the session, and for lockstep controllers; without it 10")
+      ->check(cli_support::number_range(cli_support::kShortestJoin, cli_support::kLongestJoin))
+      ->type_name("S")
+      ->group("Session");
   verb.add_flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");
   verb.add_option("--cpu", options.cpus,
                   "processor of each node, such as mechanics=1,hydraulics=0; without it session.cpus, else any")

@@ -414,7 +414,7 @@ bool IoNode::has_its_controllers(std::int64_t now_ns) {
     begin_ending(ExitCode::failed,
                  "no controller took channel " + name + " within " + node::seconds_text(config_.join_timeout) +
                      ", and the scene has it as controller: lockstep; nothing was computed; start the controller with "
-                     "the session (--join-timeout of io_node waits longer), or run with --set " +
+                     "the session (--join-timeout waits longer), or run with --set " +
                      name + ".controller=sampled",
                  now_ns);
   }

@@ -90,8 +90,9 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
 }
 
 void add_join_timeout(CLI::App& app, NodeOptions& options) {
-  app.add_option("--join-timeout", options.join_timeout, "seconds to wait for the other nodes of the session")
-      ->check(number_range(0.1, 86400.0))
+  app.add_option("--join-timeout", options.join_timeout,
+                 "seconds to wait for the other nodes of the session; of io for lockstep controllers too")
+      ->check(number_range(kShortestJoin, kLongestJoin))
       ->type_name("S")
       ->capture_default_str()
       ->group("Session");

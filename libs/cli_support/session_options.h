@@ -45,6 +45,8 @@ void add_network_options(CLI::App& app, SessionOptions& options);
 void add_session_options(CLI::App& app, SessionOptions& options, bool is_required);
 // The above and --rt, --priority, --cpu: every node.
 void add_node_options(CLI::App& app, NodeOptions& options);
+// Range of --join-timeout.
+inline constexpr double kShortestJoin = 0.1, kLongestJoin = 86400;  // s
 // --join-timeout: a node that waits for others.
 void add_join_timeout(CLI::App& app, NodeOptions& options);
 // --session-timeout, --session-id: a node that looks for its session.

@@ -469,6 +469,36 @@ TEST_F(Distributed, ARemoteRoleIsLeftToOthers) {
   EXPECT_EQ(result.code, 0) << result.err;
 }
 
+TEST_F(Distributed, NodesAndControllersAreWaitedForAsLongAsIsAsked) {
+  const std::vector<std::string> short_wait = {"--pace", "free", "--quiet", "--join-timeout", "3"};
+  const auto with = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), short_wait.begin(), short_wait.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return slewring(arguments);
+  };
+  const std::vector<std::string> lockstep = {"--set", "Input_Lift.controller=lockstep"};
+  const std::vector<std::string> crane = {"run", scene_file("truck_crane.yaml"), "--duration", "1s"};
+  CommandResult result = with(crane, lockstep);
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.err.find("no controller took channel Input_Lift within 3 s"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("(--join-timeout waits longer)"), std::string::npos) << result.err;
+  result = with(crane, {"--remote", "hydraulics"});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.err.find("did not come about within 3 s"), std::string::npos) << result.err;
+  EXPECT_EQ(with(crane, {"--in-process"}).code, 2);
+  // behind a recording
+  const std::string runs = (work_.path() / "recorded").string();
+  ASSERT_EQ(offline({"run", scene_file("truck_crane.yaml"), "--duration", "0.05s", "--pace", "free", "--in-process",
+                     "--out", runs})
+                .code,
+            0);
+  std::string folder;
+  for (const auto& entry : std::filesystem::directory_iterator(runs)) folder = entry.path().string();
+  result = with({"replay", folder, "--until", "0.02s", "--then-live"}, lockstep);
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.err.find("no controller took channel Input_Lift within 3 s"), std::string::npos) << result.err;
+}
+
 TEST_F(Distributed, ASessionThatIsNotThereIsNamed) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"watch", "x", "--session", "nobody"}, {"control", "pause", "--session", "nobody"}}) {

@@ -43,11 +43,10 @@ TEST_F(LockstepController, ASessionWhoseControllerNeverComesEndsSayingSo) {
   live(1200);
   EXPECT_EQ(node->next_step(), 0);
   EXPECT_EQ(node->member().exit_code(), ExitCode::failed);
-  EXPECT_EQ(
-      node->member().reason(),
-      "no controller took channel Lever within 1 s, and the scene has it as controller: lockstep; nothing was "
-      "computed; start the controller with the session (--join-timeout of io_node waits longer), or run with --set "
-      "Lever.controller=sampled");
+  EXPECT_EQ(node->member().reason(),
+            "no controller took channel Lever within 1 s, and the scene has it as controller: lockstep; nothing was "
+            "computed; start the controller with the session (--join-timeout waits longer), or run with --set "
+            "Lever.controller=sampled");
 }
 
 TEST_F(LockstepController, APausedSessionWaitsForItWithoutEnd) {
