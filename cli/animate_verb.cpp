@@ -88,8 +88,8 @@ void add_animate(CLI::App& program, Action& action) {
       ->type_name("N")
       ->capture_default_str();
   verb->footer(
-      "Bodies are drawn as lines from joint to joint and by their contact shapes, at the poses that were recorded;\n"
-      "bending, ropes and planes are not drawn.\n\n"
+      "Bodies are drawn as lines between joints, forces and centre of mass and by their contact shapes, or as a small\n"
+      "cross, at the poses that were recorded; bending, ropes and planes are not drawn.\n\n"
       "Example:\n"
       "  slewring animate runs/truck_crane-20260501-102030 -o crane.html");
   verb->callback([&action, options] { action = [options] { return animate(*options); }; });

@@ -20,6 +20,8 @@ using multibody::ShapeDef;
 constexpr int kRim = 24;             // lines of a circle
 constexpr double kFlat = 0.97;       // cosine between faces whose common edge is not drawn
 constexpr double kSamePoint = 1e-9;  // m
+constexpr double kMark = 0.03;       // of the machine's size: half a cross in the place of a body that has no line
+constexpr double kLoneMark = 0.1;    // m, where nothing gives a size
 
 Vec3 to_vec(const Triple& t) {
   return {t[0], t[1], t[2]};
@@ -139,6 +141,35 @@ void add_star(const Triple& hub, const std::vector<Triple>& points, std::vector<
   }
 }
 
+// Largest distance of any point from the origin of its body, and of any body from the one that it is placed on.
+double size_of(const multibody::MechanicsDef& mechanics, const MachineDrawing& drawing) {
+  double size = 0;
+  for (const multibody::BodyDef& body : mechanics.bodies) size = std::max(size, math::norm(to_vec(body.position)));
+  for (const BodyDrawing& body : drawing.bodies) {
+    for (const Polyline& line : body.lines) {
+      for (const Triple& point : line) size = std::max(size, math::norm(to_vec(point)));
+    }
+  }
+  return size;
+}
+
+// A cross where a body is that would be seen by nothing else: no joint, force or shape away from its centre of mass.
+void mark_bare_bodies(const multibody::MechanicsDef& mechanics, MachineDrawing& drawing) {
+  const double size = size_of(mechanics, drawing);
+  const double mark = size > 0 ? kMark * size : kLoneMark;
+  for (std::size_t i = 1; i < drawing.bodies.size(); ++i) {
+    std::vector<Polyline>& lines = drawing.bodies[i].lines;
+    if (!lines.empty()) continue;
+    const Triple& middle = mechanics.bodies[i - 1].center_of_mass;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Triple from = middle, to = middle;
+      from[axis] -= mark;
+      to[axis] += mark;
+      lines.push_back({from, to});
+    }
+  }
+}
+
 std::array<Triple, 3> axes_of(const Triple& gravity) {
   const double g = math::norm(to_vec(gravity));
   const Vec3 up = g > 0 ? (-1 / g) * to_vec(gravity) : Vec3{0, 1, 0};
@@ -176,7 +207,10 @@ MachineDrawing draw_machine(const multibody::MechanicsDef& mechanics) {
     points[body2].push_back(force.point2);
     drawing.links.push_back({force.name, body1, body2, force.point1, force.point2});
   }
-  for (std::size_t i = 1; i < drawing.bodies.size(); ++i) add_star(hubs[i], points[i], drawing.bodies[i].lines);
+  for (std::size_t i = 1; i < drawing.bodies.size(); ++i) {
+    points[i].push_back(mechanics.bodies[i - 1].center_of_mass);
+    add_star(hubs[i], points[i], drawing.bodies[i].lines);
+  }
   for (const ShapeDef& shape : mechanics.shapes) {
     const Mat3 R = math::rotation_zxz(shape.orientation);
     for (Polyline line : outline(shape)) {
@@ -184,6 +218,7 @@ MachineDrawing draw_machine(const multibody::MechanicsDef& mechanics) {
       drawing.bodies[index.at(shape.body)].lines.push_back(std::move(line));
     }
   }
+  mark_bare_bodies(mechanics, drawing);
   return drawing;
 }
 

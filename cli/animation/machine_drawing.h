@@ -1,7 +1,8 @@
 // A machine as lines: what its bodies, joints, shapes and cylinders look like without a picture of them.
 //
-// A body is a star from the joint that carries it to the points at which joints and forces act, and its contact shapes:
-// edges of boxes and of meshes, rims of round shapes, rims of height fields. Planes, ropes and bending are not drawn.
+// A body is a star from the joint that carries it to its centre of mass and to the points at which joints and forces
+// act, and its contact shapes: edges of boxes and of meshes, rims of round shapes, rims of height fields. A body
+// without any line is a small cross at its centre of mass. Planes, ropes and bending are not drawn.
 #pragma once
 
 #include <array>

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "build_paths.h"
 #include "cli/animation/machine_drawing.h"
 #include "math/rotation.h"
+#include "scene/scene.h"
 #include "tests/support/played_page.h"
 
 namespace slew::cli {
@@ -16,7 +19,7 @@ namespace {
 multibody::MechanicsDef arm() {
   multibody::MechanicsDef mechanics;
   mechanics.gravity = {0, -9.81, 0};
-  mechanics.bodies = {{.name = "Arm", .mass = 1, .inertia = {1, 1, 1}}};
+  mechanics.bodies = {{.name = "Arm", .mass = 1, .center_of_mass = {-1, 0, 0}, .inertia = {1, 1, 1}}};
   multibody::JointDef hinge;
   hinge.name = "Hinge";
   hinge.body1 = "Ground";
@@ -69,6 +72,47 @@ TEST(MachineDrawing, ShowsTheEdgesOfShapesWhereTheyAre) {
   }
   EXPECT_NEAR(reach_x, 2, 1e-12);  // turned by a right angle
   EXPECT_NEAR(reach_y, 1, 1e-12);
+}
+
+TEST(MachineDrawing, ShowsTheCentreOfMassAndACrossWhereNothingElseIsSeen) {
+  multibody::MechanicsDef pendulum = arm();
+  pendulum.translational_forces.clear();
+  pendulum.bodies[0].center_of_mass = {0.5, 0, 0};
+  EXPECT_EQ(draw_machine(pendulum).bodies[1].lines, (std::vector<Polyline>{{{-1, 0, 0}, {0.5, 0, 0}}}));
+  // one that turns about its own centre of mass, and one that flies alone
+  pendulum.bodies[0].center_of_mass = {-1, 0, 0};
+  const std::vector<Polyline> cross = draw_machine(pendulum).bodies[1].lines;
+  ASSERT_EQ(cross.size(), 3u);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double middle = (cross[axis][0][i] + cross[axis][1][i]) / 2;
+      EXPECT_NEAR(middle, i == 0 ? -1 : 0, 1e-12);
+      EXPECT_EQ(cross[axis][0][i] < cross[axis][1][i], i == axis);
+    }
+  }
+  pendulum.joints.clear();
+  pendulum.bodies[0].center_of_mass = {};
+  EXPECT_EQ(draw_machine(pendulum).bodies[1].lines.size(), 3u);
+}
+
+TEST(MachineDrawing, OfEverySceneShowsEveryBody) {
+  int drawn = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(SLEWRING_SOURCE_DIR "/scenes")) {
+    // those of a flexible body alone are for 'slewring flex'
+    const bool is_scene = entry.path().extension() == ".yaml" && entry.path().parent_path().filename() != "beams";
+    if (!is_scene) continue;
+    const scene::Scene scene = scene::load_file(entry.path().string());
+    const MachineDrawing drawing = draw_machine(scene.mechanics);
+    ASSERT_EQ(drawing.bodies.size(), scene.mechanics.bodies.size() + 1);
+    for (std::size_t i = 1; i < drawing.bodies.size(); ++i) {
+      const std::vector<Polyline>& lines = drawing.bodies[i].lines;
+      const bool is_seen =
+          std::any_of(lines.begin(), lines.end(), [](const Polyline& line) { return line.front() != line.back(); });
+      EXPECT_TRUE(is_seen) << entry.path() << ": " << drawing.bodies[i].name;
+      ++drawn;
+    }
+  }
+  EXPECT_GT(drawn, 50);
 }
 
 Motion turning(std::size_t instants) {
