@@ -141,12 +141,13 @@ void add_star(const Triple& hub, const std::vector<Triple>& points, std::vector<
   }
 }
 
-// Largest distance of any point from the origin of its body, and of any body from the one that it is placed on.
+// Largest distance of any point from the origin of its body, and of any body from the one that it is placed on; the
+// ground may reach much further than the machine.
 double size_of(const multibody::MechanicsDef& mechanics, const MachineDrawing& drawing) {
   double size = 0;
   for (const multibody::BodyDef& body : mechanics.bodies) size = std::max(size, math::norm(to_vec(body.position)));
-  for (const BodyDrawing& body : drawing.bodies) {
-    for (const Polyline& line : body.lines) {
+  for (std::size_t i = 1; i < drawing.bodies.size(); ++i) {
+    for (const Polyline& line : drawing.bodies[i].lines) {
       for (const Triple& point : line) size = std::max(size, math::norm(to_vec(point)));
     }
   }

@@ -92,7 +92,15 @@ TEST(MachineDrawing, ShowsTheCentreOfMassAndACrossWhereNothingElseIsSeen) {
   }
   pendulum.joints.clear();
   pendulum.bodies[0].center_of_mass = {};
-  EXPECT_EQ(draw_machine(pendulum).bodies[1].lines.size(), 3u);
+  const std::vector<Polyline> alone = draw_machine(pendulum).bodies[1].lines;
+  EXPECT_EQ(alone.size(), 3u);
+  // the ground's size is not the machine's
+  multibody::ShapeDef ground;
+  ground.type = contact::ShapeType::box;
+  ground.body = "Ground";
+  ground.size = {500, 1, 500};
+  pendulum.shapes = {ground};
+  EXPECT_EQ(draw_machine(pendulum).bodies[1].lines, alone);
 }
 
 TEST(MachineDrawing, OfEverySceneShowsEveryBody) {
