@@ -69,6 +69,7 @@ bool IoNode::poll(std::int64_t now_ns) {
   bool any = false;
   transport::Received message;
   while (stage_ != Stage::finished && member_.transport().take(message)) {
+    health().turn();
     receive(message, now_ns);
     any = true;
   }

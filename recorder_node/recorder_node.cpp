@@ -34,6 +34,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
   bool any = false;
   transport::Received message;
   while (stage_ != Stage::finished && member_.transport().take(message)) {
+    health().turn();
     receive(message, now_ns);
     any = true;
   }
@@ -50,6 +51,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
     ask_for_states(now_ns);
     watch(now_ns);
     report_progress(now_ns);
+    const node::DiskWait disk(health());
     if (writer_ != nullptr && stopped_.is_ok()) {
       const Status status = writer_->flush_if_due(now_ns);
       if (!status.is_ok()) stop_recording(status);

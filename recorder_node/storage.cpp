@@ -98,6 +98,7 @@ Status RecorderNode::add_attachments(const wire::SessionDescription& session) {
 
 void RecorderNode::write(const transport::Received& message, std::uint32_t epoch, StepIndex step,
                          std::uint32_t sequence) {
+  const node::DiskWait disk(health());
   const auto topic = static_cast<std::size_t>(message.topic);
   if (!stopped_.is_ok()) {
     ++counts_[topic].lost;
@@ -204,11 +205,13 @@ void RecorderNode::stop_when_room_is_short(std::int64_t now_ns) {
 
 void RecorderNode::close(const SessionEnd& session) {
   if (writer_ == nullptr) return;
+  const node::DiskWait disk(health());
   if (stopped_.is_ok()) close_file(session);
   writer_.reset();
 }
 
 void RecorderNode::close_file(SessionEnd session) {
+  const node::DiskWait disk(health());
   end_gap();
   // what fails only now is told in the summary too
   const Status flushed = writer_->flush();

@@ -9,7 +9,9 @@
 #include <cstdio>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/arithmetic_self_test.h"
@@ -32,7 +34,8 @@ constexpr int kHealthsBetweenLooks = 10;  // of one second: who does not fit is 
 
 class HealthThread {
  public:
-  explicit HealthThread(Node& node) : node_(node), report_(node), thread_([this] { run(); }) {
+  explicit HealthThread(Node& node)
+      : node_(node), report_(node), loop_(node.health()), thread_([this] { run(); }) {
     // of a real-time process: below every loop, above everything else
     int policy = SCHED_OTHER;
     sched_param parameters{};
@@ -55,21 +58,43 @@ class HealthThread {
     std::unique_lock lock(mutex_);
     int sent = 0;
     while (!condition_.wait_for(lock, std::chrono::nanoseconds(kHealthInterval.ns), [this] { return is_stopping_; })) {
+      if (is_loop_standing()) continue;
       report_.send();
       if (++sent % kHealthsBetweenLooks == 0) name_misfits();
     }
   }
 
+  // To the others a node whose loop stands still is silent.
+  bool is_loop_standing() {
+    const SimDuration before = loop_.stood_for();
+    const bool stands = loop_.look();
+    if (stands == std::exchange(is_standing_, stands)) return stands;
+    std::string text = stands ? "the loop of this node has stood still for " + seconds_text(loop_.stood_for())
+                              : "the loop of this node goes on; it had stood still for " + seconds_text(before);
+    text += " at step " + std::to_string(node_.health().step.load());
+    if (stands) {
+      text += "; it is silent from now on, and given up after " + seconds_text(kLostAfter) +
+              "; look for a deadlock, a computation without an end, or a debugger";
+    }
+    say_warning(text);
+    return stands;
+  }
+
+  void say_warning(const std::string& text) {
+    std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node_.member().role())).c_str(), text.c_str());
+  }
+
   // each once
   void name_misfits() {
     for (const std::string& misfit : node_.member().transport().misfits()) {
-      if (!named_.insert(misfit).second) continue;
-      std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node_.member().role())).c_str(), misfit.c_str());
+      if (named_.insert(misfit).second) say_warning(misfit);
     }
   }
 
   Node& node_;
   HealthReport report_;
+  LoopWatch loop_;
+  bool is_standing_ = false;
   std::set<std::string> named_;
   std::mutex mutex_;
   std::condition_variable condition_;
@@ -131,6 +156,7 @@ ExitCode run_alone(Node& node, HeapMeter meter) {
       node.request_stop(static_cast<ExitCode>(stop));
     }
     std::int64_t now = monotonic_ns();
+    node.health().turn();
     const bool was_busy = node.poll(now);
     heap.after_poll();
     tell_warnings(node);

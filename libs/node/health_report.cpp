@@ -1,6 +1,27 @@
 #include "node/health_report.h"
 
+#include <algorithm>
+
 namespace slew::node {
+
+bool LoopWatch::is_busy() const noexcept {
+  const auto state = static_cast<wire::NodeState>(loop_.state.load());
+  return state < wire::NodeState::ready || state >= wire::NodeState::ended ||
+         loop_.waits_for_disk.load(std::memory_order_relaxed);
+}
+
+std::int64_t LoopWatch::longest_ns() const noexcept {
+  const auto steps = std::max<std::int64_t>(1, static_cast<std::int64_t>(loop_.steps_done.load()));
+  return std::max(kLoopStands.ns, kStepsOfALoop * (loop_.step_time_sum_ns.load() / steps));
+}
+
+bool LoopWatch::look() noexcept {
+  const std::uint64_t signs = loop_.turns.load(std::memory_order_relaxed) + loop_.steps_done.load();
+  const bool is_alive = signs != signs_ || is_busy();
+  signs_ = signs;
+  looks_ = is_alive ? 0 : looks_ + 1;
+  return stood_for().ns >= longest_ns();
+}
 
 void HealthReport::send() {
   HealthState& h = node_.health();

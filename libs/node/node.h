@@ -14,8 +14,10 @@
 namespace slew::node {
 
 // What the health message says, kept in atomics: a thread of its own sends it, so that a node that computes or waits
-// long is still seen to be alive.
+// long is still seen to be alive, for as long as its loop comes round (LoopWatch in health_report.h).
 struct HealthState {
+  std::atomic<std::uint64_t> turns{0};      // of the loop, and messages that it took: signs of life
+  std::atomic<bool> waits_for_disk{false};  // the loop may stand for as long as a disk takes
   std::atomic<std::uint8_t> state{0};
   std::atomic<bool> is_waiting{false};
   std::atomic<std::uint8_t> waiting_for{0};
@@ -30,6 +32,23 @@ struct HealthState {
   std::atomic<std::int64_t> slip_ns{0};
   std::atomic<bool> has_session{false};
   std::atomic<std::uint32_t> epoch{0};
+
+  // By the loop's thread alone. Real-time safe.
+  void turn() noexcept { turns.store(turns.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed); }
+};
+
+// While it lives the loop may wait for a disk.
+class DiskWait {
+ public:
+  explicit DiskWait(HealthState& health) noexcept
+      : health_(health), was_waiting_(health.waits_for_disk.exchange(true, std::memory_order_relaxed)) {}
+  ~DiskWait() { health_.waits_for_disk.store(was_waiting_, std::memory_order_relaxed); }
+  DiskWait(const DiskWait&) = delete;
+  DiskWait& operator=(const DiskWait&) = delete;
+
+ private:
+  HealthState& health_;
+  bool was_waiting_;
 };
 
 class Node {

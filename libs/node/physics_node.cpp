@@ -49,6 +49,7 @@ bool PhysicsNode::poll(std::int64_t now_ns) {
   transport::Received message;
   while (stage_ != Stage::finished && member_.transport().take(message)) {
     source_ns_ = message.source_ns;
+    health().turn();
     receive(message, now_ns);
     any = true;
   }
@@ -637,6 +638,7 @@ void PhysicsNode::restart(const wire::Header& init) {
   member_.set_state(NodeState::initialising);
   member_.mark_status_changed();
   stage_ = init.step >= 0 ? Stage::loading : Stage::initialising;
+  update_health();  // INIT may come in the same poll, and takes its time
 }
 
 void PhysicsNode::leave(ExitCode code, const std::string& reason, std::int64_t now_ns) {

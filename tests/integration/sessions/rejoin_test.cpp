@@ -7,6 +7,7 @@
 
 #include "build_paths.h"
 #include "direct_chain.h"
+#include "held_loop.h"
 #include "node/identity.h"
 #include "session.h"
 #include "tests/support/nightly.h"
@@ -195,10 +196,14 @@ TEST(ReplacedFlex, AloneOrWithAllOthersTheSessionGoesOnToTheSameBits) {
 class RunWithRejoin : public ::testing::Test {
  protected:
   // of a session in mid-motion
-  void send_to(Role role, int signal) {
+  void wait_for(Role role) {
     ASSERT_TRUE(observer_.wait_for_step(300)) << run_.out() << run_.err();
     ASSERT_TRUE(observer_.wait_until([&] { return observer_.status(role).has_value(); }));
-    kill(static_cast<pid_t>(observer_.status(role)->pid), signal);
+  }
+  pid_t pid_of(Role role) { return static_cast<pid_t>(observer_.status(role)->pid); }
+  void send_to(Role role, int signal) {
+    wait_for(role);
+    if (!HasFatalFailure()) kill(pid_of(role), signal);
   }
   // a node is started again, and what it goes on with is as if nothing had been
   void expect_one_restart_and_undisturbed_bits() {
@@ -228,6 +233,19 @@ TEST_F(RunWithRejoin, StartsAKilledNodeAgainAndEndsWellWithTheSameBits) {
 TEST_F(RunWithRejoin, ReplacesANodeThatHangs) {
   send_to(Role::hydraulics, SIGSTOP);
   expect_one_restart_and_undisturbed_bits();
+  EXPECT_NE(run_.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos)
+      << run_.err();
+}
+
+TEST_F(RunWithRejoin, ReplacesANodeWhoseLoopHangs) {
+  wait_for(Role::mechanics);
+  if (HasFatalFailure()) return;
+  HeldLoop held(pid_of(Role::mechanics));
+  if (!held.is_held()) GTEST_SKIP() << "no process may trace another one here";
+  expect_one_restart_and_undisturbed_bits();
+  EXPECT_NE(run_.err().find("mechanics: warning: the loop of this node has stood still for 1 s at step "),
+            std::string::npos)
+      << run_.err();
   EXPECT_NE(run_.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos)
       << run_.err();
 }

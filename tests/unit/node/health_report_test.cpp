@@ -78,6 +78,59 @@ TEST(HealthReport, GivesTheMeanAndTheLargestStepTimeSinceTheLastOne) {
   EXPECT_EQ(said[2].step_time_max, 0);
 }
 
+// looks at a loop until it stands still; as many as it took, or so many when it does not
+int looks_until_it_stands(LoopWatch& watch, int most = 100) {
+  int looks = 0;
+  while (looks < most && !watch.look()) ++looks;
+  return looks;
+}
+
+constexpr auto kLooks = static_cast<int>(kLoopStands.ns / kHealthInterval.ns);
+
+TEST(LoopWatch, SeesALoopThatDoesNotComeRound) {
+  HealthState loop;
+  loop.state = static_cast<std::uint8_t>(wire::NodeState::running);
+  LoopWatch watch(loop);
+  for (int i = 0; i < 50; ++i) {
+    loop.turn();
+    EXPECT_FALSE(watch.look());
+  }
+  EXPECT_EQ(looks_until_it_stands(watch), kLooks - 1);
+  EXPECT_EQ(watch.stood_for().ns, kLoopStands.ns);
+  EXPECT_TRUE(watch.look());
+  // each step is a sign of life too: who catches up does many of them in one turn
+  ++loop.steps_done;
+  EXPECT_FALSE(watch.look());
+  EXPECT_EQ(watch.stood_for().ns, 0);
+}
+
+TEST(LoopWatch, LetsALoopStandWhereItMay) {
+  HealthState loop;
+  LoopWatch watch(loop);
+  for (const wire::NodeState state : {wire::NodeState::checking, wire::NodeState::joining,
+                                      wire::NodeState::initialising, wire::NodeState::ended, wire::NodeState::fault}) {
+    loop.state = static_cast<std::uint8_t>(state);
+    EXPECT_EQ(looks_until_it_stands(watch), 100) << static_cast<int>(state);
+  }
+  loop.state = static_cast<std::uint8_t>(wire::NodeState::running);
+  {
+    const DiskWait outer(loop);
+    { const DiskWait inner(loop); }
+    EXPECT_EQ(looks_until_it_stands(watch), 100);
+  }
+  EXPECT_EQ(looks_until_it_stands(watch), kLooks - 1);
+}
+
+TEST(LoopWatch, GoesByTheStepsOfALargeModel) {
+  HealthState loop;
+  loop.state = static_cast<std::uint8_t>(wire::NodeState::running);
+  loop.steps_done = 10;
+  loop.step_time_sum_ns = 10 * 200'000'000ll;
+  LoopWatch watch(loop);
+  EXPECT_FALSE(watch.look());
+  EXPECT_EQ(looks_until_it_stands(watch), kStepsOfALoop * 2 - 1);
+}
+
 TEST(RunTogether, SendsTheHealthOfItsNodes) {
   PlayedSession played{0};
   IdleNode node(played);
