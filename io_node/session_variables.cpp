@@ -1,4 +1,6 @@
 // io_node's part that publishes variables: its own, and those of the nodes' health.
+#include "io_node/session_variables.h"
+
 #include <utility>
 
 #include "io_node/io_node.h"
@@ -17,10 +19,18 @@ struct SessionVariable {
   const char* unit;
 };
 // of the session as io sees it, and of each physics node as its last health message says
-constexpr SessionVariable kTimingVariables[] = {
-    {"session.release_jitter", "s"}, {"session.response", "s"},      {"session.lag", "s"},
-    {"session.overruns", "1"},       {"session.skipped_steps", "1"}, {"session.transitions", "1"},
-    {"session.input_latency", "s"}};
+constexpr SessionVariable kSessionVariables[] = {{"session.slip", "s"},
+                                                 {"session.rejected_inputs", "1"},
+                                                 {"session.clamped_inputs", "1"},
+                                                 {"session.silent_controllers", "1"},
+                                                 {"session.late_controllers", "1"},
+                                                 {"session.release_jitter", "s"},
+                                                 {"session.response", "s"},
+                                                 {"session.lag", "s"},
+                                                 {"session.overruns", "1"},
+                                                 {"session.skipped_steps", "1"},
+                                                 {"session.transitions", "1"},
+                                                 {"session.input_latency", "s"}};
 constexpr SessionVariable kNodeVariables[] = {{".step_time", "s"},      {".step_time_max", "s"}, {".cpu_time", "s"},
                                               {".release_jitter", "s"}, {".wait", "s"},          {".response", "s"},
                                               {".overruns", "1"},       {".allocations", "1"}};
@@ -41,26 +51,29 @@ void IoNode::keep_health(std::span<const std::byte> bytes) {
   if (health.header.incarnation == member_.peer(health.header.role).incarnation) healths_[role] = health;
 }
 
+std::vector<wire::VariableEntry> own_variables(std::span<const std::string> inputs, std::uint32_t roles) {
+  std::vector<wire::VariableEntry> entries;
+  for (const std::string& input : inputs) {
+    for (const ChannelVariable& variable : kChannelVariables) {
+      entries.push_back({input + variable.quantity, variable.unit});
+    }
+  }
+  for (const SessionVariable& variable : kSessionVariables) entries.push_back({variable.name, variable.unit});
+  for (const Role role : wire::kPhysicsRoles) {
+    if ((roles & bit(role)) == 0) continue;
+    for (const SessionVariable& variable : kNodeVariables) {
+      entries.push_back({std::string(to_text(role)) + variable.name, variable.unit});
+    }
+  }
+  return entries;
+}
+
 void IoNode::publish_directory() {
   wire::VariableDirectory directory;
   directory.header = member_.header(Phase::running, 0);
-  for (std::size_t i = 0; i < gate_.size(); ++i) {
-    for (const ChannelVariable& variable : kChannelVariables) {
-      directory.entries.push_back({gate_.config(i).name + variable.quantity, variable.unit});
-    }
-  }
-  directory.entries.push_back({"session.slip", "s"});
-  directory.entries.push_back({"session.rejected_inputs", "1"});
-  directory.entries.push_back({"session.clamped_inputs", "1"});
-  directory.entries.push_back({"session.silent_controllers", "1"});
-  directory.entries.push_back({"session.late_controllers", "1"});
-  for (const SessionVariable& variable : kTimingVariables) directory.entries.push_back({variable.name, variable.unit});
-  for (const Role role : wire::kPhysicsRoles) {
-    if (!member_.requires_role(role)) continue;
-    for (const SessionVariable& variable : kNodeVariables) {
-      directory.entries.push_back({std::string(to_text(role)) + variable.name, variable.unit});
-    }
-  }
+  std::vector<std::string> inputs;
+  for (std::size_t i = 0; i < gate_.size(); ++i) inputs.push_back(gate_.config(i).name);
+  directory.entries = own_variables(inputs, config_.required_roles);
   directory.total = static_cast<std::uint32_t>(directory.entries.size());
   member_.publish(Topic::variable_directory, directory);
 }
@@ -97,7 +110,7 @@ void IoNode::publish_variables(std::int64_t now_ns) {
   member_.publish(Topic::variables, block_);
 }
 
-// in the order of kTimingVariables, then of kNodeVariables by role
+// in the order of kSessionVariables from the release jitter on, then of kNodeVariables by role
 void IoNode::add_timing_values(std::int64_t now_ns) {
   const node::NodeTiming& own = timing();
   const bool is_paced = config_.pace == wire::Pace::real;
