@@ -7,10 +7,12 @@
 
 #include "cli/animation/animation.h"
 #include "cli/recorded.h"
-#include "cli/run_report.h"
+#include "cli/scene_plots.h"
 #include "cli/text_output.h"
+#include "cli/unrecorded.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
+#include "cli_support/name_pattern.h"
 
 namespace slew::cli {
 namespace {
@@ -25,13 +27,27 @@ struct Options {
   int instants = 7;
 };
 
-Motion read_motion(const recording::Reader& reader, const MachineDrawing& machine) {
-  constexpr const char* kParts[] = {"position.x",    "position.y",    "position.z",   "orientation.w",
-                                    "orientation.x", "orientation.y", "orientation.z"};
+// of a Pose, in the order of its members
+constexpr const char* kParts[] = {"position.x",    "position.y",    "position.z",   "orientation.w",
+                                  "orientation.x", "orientation.y", "orientation.z"};
+
+void check_poses(const recording::Reader& reader, const scene::Scene& scene, const std::vector<std::string>& names) {
+  const std::vector<std::string> missing = cli_support::unmatched(names, recorded_names(reader));
+  if (missing.empty()) return;
+  const std::string more = missing.size() > 1 ? fmt::format(" (and {} more)", missing.size() - 1) : "";
+  throw Failure(ExitCode::bad_input,
+                fmt::format("the poses were not recorded: {}{} is not in this recording, whose scene records {} "
+                            "(recording.variables); nothing was written; run it again with *.position.* and "
+                            "*.orientation.* among them",
+                            missing.front(), more, recorded_patterns_text(scene)));
+}
+
+Motion read_motion(const recording::Reader& reader, const scene::Scene& scene, const MachineDrawing& machine) {
   std::vector<std::string> names;
   for (std::size_t body = 1; body < machine.bodies.size(); ++body) {
     for (const char* part : kParts) names.push_back(machine.bodies[body].name + "." + part);
   }
+  check_poses(reader, scene, names);
   std::vector<plotting::Series> series = read_series(reader, names, Units::si);
   plotting::keep_common_instants(series);
   const plotting::PlotOptions heading = plot_heading(reader);
@@ -63,7 +79,7 @@ ExitCode animate(const Options& options) {
     throw Failure(ExitCode::bad_input, "the scene of this recording has no bodies; nothing was written");
   }
   const MachineDrawing machine = draw_machine(scene.mechanics);
-  const Motion motion = read_motion(*reader, machine);
+  const Motion motion = read_motion(*reader, scene, machine);
   if (motion.time.empty()) throw Failure(ExitCode::bad_input, "the recording holds no values; nothing was written");
   write_text(path, kind == ".html"
                        ? animation_html(machine, thinned(motion, kMostFrames))

@@ -8,10 +8,12 @@
 #include "cli/description/liftable_load.h"
 #include "cli/direct_session.h"
 #include "cli/display.h"
+#include "cli/unrecorded.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
-#include "io_node/input_gate.h"
+#include "io_node/scene_config.h"
+#include "io_node/session_variables.h"
 
 namespace slew::cli {
 namespace {
@@ -45,8 +47,10 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
     if (session.subsystem(role) == nullptr) continue;
     for (const ElementVariable& variable : session.subsystem(role)->variables()) names.push_back(variable.name);
   }
-  for (const scene::InputDef& input : scene.inputs) {
-    for (const io::ChannelVariable& variable : io::kChannelVariables) names.push_back(input.name + variable.quantity);
+  std::vector<std::string> inputs;
+  for (const scene::InputDef& input : scene.inputs) inputs.push_back(input.name);
+  for (wire::VariableEntry& own : io::own_variables(inputs, io::required_roles(scene, io::Recording::none))) {
+    names.push_back(std::move(own.name));
   }
   for (const scene::PlotDef& plot : scene.plots) {
     try {
@@ -74,6 +78,7 @@ ExitCode check(const Options& options) {
     check_variables(scene, session);
     check_payload(scene);
     std::vector<std::string> warnings = scene.warnings;
+    for (std::string& warning : unrecorded_plots(scene)) warnings.push_back(std::move(warning));
     for (std::string& warning : coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
     if (options.is_json) {
       fmt::print("{}\n", nlohmann::json({{"ok", true}, {"scene", scene.name}, {"warnings", warnings}}).dump(2));

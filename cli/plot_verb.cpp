@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -9,7 +10,7 @@
 #include "cli/plotting/html_plot.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
-#include "cli/run_report.h"
+#include "cli/scene_plots.h"
 #include "cli/text_output.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
@@ -104,8 +105,13 @@ ExitCode plot(const Options& options) {
     throw Failure(ExitCode::bad_input,
                   "the scene of this recording has no plots; nothing was written; name the variables to plot");
   }
-  if (!options.output.empty()) return draw(read_plots(scene, *reader), look, options.output);
-  fmt::print("{}\n", write_plots(scene, *reader));
+  const ScenePlots read = read_plots(scene, *reader);
+  if (read.plots.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("{}; nothing was written", fmt::join(read.left_out, "; ")));
+  }
+  for (const std::string& left_out : read.left_out) std::fprintf(stderr, "warning: %s\n", left_out.c_str());
+  if (!options.output.empty()) return draw(read.plots, look, options.output);
+  fmt::print("{}\n", write_plots(read.plots, *reader));
   return ExitCode::ok;
 }
 

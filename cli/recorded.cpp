@@ -13,6 +13,7 @@
 #include <numeric>
 
 #include "cli/display.h"
+#include "cli/unrecorded.h"
 #include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
 #include "node/identity.h"
@@ -169,25 +170,51 @@ SessionView view_recording(const Reader& reader, Values values) {
   return view;
 }
 
-std::vector<plotting::Series> read_series(const Reader& reader, std::span<const std::string> patterns, Units units,
-                                          const TimeRange& range) {
-  // names and places
-  std::map<std::string, std::pair<std::pair<wire::Role, std::uint32_t>, std::string>> known;
+namespace {
+
+struct RecordedVariable {
+  std::pair<wire::Role, std::uint32_t> place;  // writer and index
+  std::string unit;
+};
+using Known = std::map<std::string, RecordedVariable>;
+
+Known known_variables(const Reader& reader) {
+  Known known;
   read_all(reader, only({Topic::variable_directory}), [&](const recording::RecordedMessage& message) {
     wire::VariableDirectory directory;
     if (!transport::decode(message.payload, directory)) return Visit::go_on;
     for (std::size_t i = 0; i < directory.entries.size(); ++i) {
       const std::pair place(directory.header.role, directory.first + static_cast<std::uint32_t>(i));
       const wire::VariableEntry& entry = directory.entries[i];
-      known.emplace(entry.name, std::pair(place, entry.unit));
+      known.emplace(entry.name, RecordedVariable{place, entry.unit});
     }
     return Visit::go_on;
   });
-  // in the order of roles and places, whichever node was heard first
+  return known;
+}
+
+// in the order of roles and places, whichever node was heard first
+std::vector<std::string> names_of(const Known& known) {
   std::vector<std::string> names;
   for (const auto& entry : known) names.push_back(entry.first);
   std::sort(names.begin(), names.end(),
-            [&](const std::string& a, const std::string& b) { return known.at(a).first < known.at(b).first; });
+            [&](const std::string& a, const std::string& b) { return known.at(a).place < known.at(b).place; });
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> recorded_names(const Reader& reader) {
+  return names_of(known_variables(reader));
+}
+
+std::vector<plotting::Series> read_series(const Reader& reader, std::span<const std::string> patterns, Units units,
+                                          const TimeRange& range) {
+  const Known known = known_variables(reader);
+  const std::vector<std::string> names = names_of(known);
+  if (const std::vector<std::string> missing = cli_support::unmatched(patterns, names); !missing.empty()) {
+    throw Failure(ExitCode::bad_input, why_missing(reader, missing, names));
+  }
   Places places;
   std::vector<plotting::Series> curves;
   for (const std::string& name : cli_support::choose(patterns, names)) {
@@ -219,7 +246,7 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
   }
   if (units == Units::display) {
     for (plotting::Series& curve : curves) {
-      const double factor = display_unit(known.at(curve.name).second).factor;
+      const double factor = display_unit(known.at(curve.name).unit).factor;
       for (double& value : curve.values) value *= factor;
     }
   }

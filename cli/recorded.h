@@ -35,8 +35,11 @@ struct TimeRange {
 // A time of a recording, "2.5 s" or a bare number in s, as an option has it. Throws Failure.
 [[nodiscard]] std::uint64_t recorded_time_ns(const std::string& option, const std::string& text);
 
-// Curves of the named variables. Throws Failure when one is not in the recording, with the name that was probably
-// meant.
+// Names of all variables in the recording, in the order of roles and of their places.
+[[nodiscard]] std::vector<std::string> recorded_names(const recording::Reader& reader);
+
+// Curves of the named variables. Throws Failure when one is not in the recording: because its scene does not record it,
+// or with the name that was probably meant.
 [[nodiscard]] std::vector<plotting::Series> read_series(const recording::Reader& reader,
                                                         std::span<const std::string> patterns, Units units,
                                                         const TimeRange& range = {});

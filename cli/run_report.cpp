@@ -11,6 +11,7 @@
 #include "cli/flag_report.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
+#include "cli/scene_plots.h"
 #include "cli/stall_report.h"
 #include "cli/status_line.h"
 #include "cli/text_output.h"
@@ -121,11 +122,11 @@ std::string timing_text(const wire::Health& health) {
 // of io: for whom ticks waited that were due
 std::string waits_text(const wire::Health& io) {
   std::string text;
-  for (const Role role : wire::kPhysicsRoles) {
+  for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::io}) {
     const double waited = io.waited[static_cast<std::size_t>(role)];
     if (waited == 0) continue;
-    text +=
-        fmt::format("{}{} for {}", text.empty() ? "ticks waited " : ", ", duration_text(waited), node::to_text(role));
+    text += fmt::format("{}{} for {}", text.empty() ? "ticks waited " : ", ", duration_text(waited),
+                        role == Role::io ? "controllers" : node::to_text(role));
   }
   return text.empty() ? "" : text + "; ";
 }
@@ -162,7 +163,7 @@ nlohmann::json timing_json(const wire::Health& health) {
           {"cpu_time", times_json(health.cpu_time)},
           {"wait", times_json(health.wait)},
           {"waited",
-           {{"io", health.waited[0]},
+           {{health.header.role == Role::io ? "controllers" : "io", health.waited[0]},
             {"mechanics", health.waited[1]},
             {"hydraulics", health.waited[2]},
             {"flex", health.waited[3]}}},
@@ -189,42 +190,44 @@ nlohmann::json session_json(const RunReport& report) {
   return json;
 }
 
-}  // namespace
+// What the recording says beside numbers, and the scene's plots and files beside it.
+void explain(const recording::Reader& reader, const SessionView& recorded, const scene::Scene& scene,
+             const std::string& assets, RunReport& report) {
+  for (std::string& stalled : explain_stalls(reader, scene)) report.notes.push_back(std::move(stalled));
+  report_left_out(recorded, report);
+  for (std::string& flagged : explain_flags(reader)) report.notes.push_back(std::move(flagged));
+  keep_assets(scene, assets, report.recording);
+  ScenePlots read = read_plots(scene, reader);
+  for (std::string& left_out : read.left_out) report.notes.push_back(std::move(left_out));
+  report.plots = write_plots(read.plots, reader);
+}
 
-std::vector<plotting::Plot> read_plots(const scene::Scene& scene, const recording::Reader& reader) {
-  std::vector<plotting::Plot> plots;
-  for (const scene::PlotDef& plot : scene.plots) {
-    try {
-      plots.push_back(
-          {plot.title.empty() ? plot.name : plot.title, read_series(reader, plot.variables, Units::display)});
-      plotting::part_at_gaps(plots.back().series);
-    } catch (const cli_support::Failure& failure) {
-      throw cli_support::Failure(
-          failure.code(), "no plots were drawn; the recording is complete; plot " + plot.name + ": " + failure.what());
+// The recording has every message; an observer may have missed some.
+void report_recorded(const scene::Scene& scene, const std::string& assets, RunReport& report) {
+  const auto reader = open_recording(report.recording);
+  const SessionView recorded = view_recording(*reader, Values::all);
+  report_variables(recorded, scene, report);
+  report.lost = losses(*reader);
+  const TickSpan span = tick_span(*reader);
+  // a recording that could not go on knows less than what was seen of the session
+  const bool is_short = report.code == ExitCode::storage && span.steps < report.steps;
+  if (!is_short) {
+    report.steps = span.steps;
+    if (span.wall_time > 0) {
+      report.wall_time = span.wall_time;
+      report.paused_time = span.paused_time;
     }
   }
-  return plots;
-}
-
-plotting::PlotOptions plot_heading(const recording::Reader& reader) {
-  plotting::PlotOptions options;
-  options.title = reader.identity().scene;
-  options.subtitle = "session " + reader.identity().session_name + ", " + node::time_text(reader.identity().started_ns);
-  return options;
-}
-
-std::string write_plots(const scene::Scene& scene, const recording::Reader& reader) {
-  const std::vector<plotting::Plot> plots = read_plots(scene, reader);
-  if (plots.empty()) return "";
-  const std::filesystem::path path = reader.path().parent_path() / (recording::file_name(scene.name) + ".svg");
-  const std::string text = plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(reader));
-  if (!replace_file(path, [&text](const auto& part) { return put_text(part, text); }).is_ok()) {
-    throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
-                                                      "; the recording is complete; free some space and use 'slewring "
-                                                      "plot'");
+  if (span.steps == 0) return;
+  if (is_short) {
+    report.notes.push_back(
+        fmt::format("the recording ends after {}, and what is said of variables and losses is of it alone",
+                    duration_text(static_cast<double>(span.steps) * report.step)));
   }
-  return path.string();
+  explain(*reader, recorded, scene, assets, report);
 }
+
+}  // namespace
 
 RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, const std::string& assets) {
   RunReport report;
@@ -246,34 +249,8 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
     report_variables(outcome.view, scene, report);
     report_left_out(outcome.view, report);
   } else {
-    // the recording has every message; an observer may have missed some
     try {
-      const auto reader = open_recording(outcome.recording);
-      const SessionView recorded = view_recording(*reader, Values::all);
-      report_variables(recorded, scene, report);
-      report.lost = losses(*reader);
-      const TickSpan span = tick_span(*reader);
-      // a recording that could not go on knows less than what was seen of the session
-      const bool is_short = outcome.code == ExitCode::storage && span.steps < report.steps;
-      if (!is_short) {
-        report.steps = span.steps;
-        if (span.wall_time > 0) {
-          report.wall_time = span.wall_time;
-          report.paused_time = span.paused_time;
-        }
-      }
-      if (span.steps > 0) {
-        report.notes = explain_stalls(*reader, scene);
-        report_left_out(recorded, report);
-        if (is_short) {
-          report.notes.push_back(
-              fmt::format("the recording ends after {}, and what is said of variables and losses is of it alone",
-                          duration_text(static_cast<double>(span.steps) * report.step)));
-        }
-        for (std::string& flagged : explain_flags(*reader)) report.notes.push_back(std::move(flagged));
-        keep_assets(scene, assets, outcome.recording);
-        report.plots = write_plots(scene, *reader);
-      }
+      report_recorded(scene, assets, report);
     } catch (const cli_support::Failure& failure) {
       // of a session that failed before its first step there is nothing to read, and that is no further failure
       if (report.steps > 0 || report.code == ExitCode::ok) report.messages.emplace_back(failure.what());

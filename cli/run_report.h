@@ -4,9 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/plotting/svg_plot.h"
 #include "cli/run_outcome.h"
-#include "recording/reader.h"
 #include "scene/scene.h"
 
 namespace slew::cli {
@@ -61,12 +59,5 @@ struct RunReport {
 // nothing else.
 void print(const RunReport& report);
 [[nodiscard]] std::string to_json_text(const RunReport& report);
-
-// The scene's plots of a recording, and what stands above pictures of it.
-[[nodiscard]] std::vector<plotting::Plot> read_plots(const scene::Scene& scene, const recording::Reader& reader);
-[[nodiscard]] plotting::PlotOptions plot_heading(const recording::Reader& reader);
-
-// Writes these plots as one picture beside the recording. Returns its path; empty when the scene has none.
-[[nodiscard]] std::string write_plots(const scene::Scene& scene, const recording::Reader& reader);
 
 }  // namespace slew::cli

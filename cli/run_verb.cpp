@@ -8,6 +8,7 @@
 #include "cli/in_process_run.h"
 #include "cli/run_report.h"
 #include "cli/run_session.h"
+#include "cli/unrecorded.h"
 #include "cli/verbs.h"
 #include "cli_support/failure.h"
 #include "cli_support/number_range.h"
@@ -62,6 +63,7 @@ ExitCode run(RunOptions options, const CLI::App& verb) {
 ExitCode run_session(RunOptions options, const io::SessionScene& session) {
   const scene::Scene& scene = session.scene;
   for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : unrecorded_plots(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   for (const std::string& warning : coupling_warnings(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
   if (options.is_in_process && !options.remote.empty()) {

@@ -33,6 +33,21 @@ TEST(Matching, GivesIndicesAscending) {
   EXPECT_EQ(matching(patterns, kNames), (std::vector<std::uint32_t>{1, 2}));
 }
 
+TEST(Patterns, MeetWhereANameMayFitBoth) {
+  EXPECT_TRUE(can_meet("Cyl_*.force", "Cyl_Lift.*"));
+  EXPECT_TRUE(can_meet("*", ""));
+  EXPECT_TRUE(can_meet("*.y", "Bag.*"));
+  EXPECT_TRUE(can_meet("Bag.position.y", "Bag.*.?"));
+  EXPECT_TRUE(can_meet("a*c", "*b*"));
+  EXPECT_FALSE(can_meet("Bag.position.y", "Cyl_*"));
+  EXPECT_FALSE(can_meet("Vol_*.pressure", "Cyl_*"));
+  EXPECT_FALSE(can_meet("*.y", "*.x"));
+  EXPECT_FALSE(can_meet("a?", "a"));
+  EXPECT_FALSE(can_meet("", "?"));
+  const std::vector<std::string> patterns = {"Vol_*", "*.stroke", "Bag.position.x"};
+  EXPECT_EQ(unmatched(patterns, kNames), (std::vector<std::string>{"Vol_*", "Bag.position.x"}));
+}
+
 TEST(SessionName, IsMadeOfASceneNameByReplacingWhatIsNotAllowed) {
   EXPECT_EQ(session_name_of("truck crane/heavy"), "truck_crane_heavy");
   EXPECT_EQ(session_name_of(""), "session");

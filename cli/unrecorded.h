@@ -1,0 +1,29 @@
+// What a scene has and its recording.variables leave out: told before a run, and by who asks a recording for it.
+//
+// Which quantities an element has is known to its built model alone. Here a name is one of the scene when the part in
+// front of its first dot is an element, or a section, of the scene.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "recording/reader.h"
+#include "scene/scene.h"
+
+namespace slew::cli {
+
+// Those of the names and patterns that belong to the scene and that no pattern of recording.variables can meet.
+[[nodiscard]] std::vector<std::string> unrecorded(const scene::Scene& scene, std::span<const std::string> patterns);
+
+// A sentence for every plot of which something will not be drawn for that reason.
+[[nodiscard]] std::vector<std::string> unrecorded_plots(const scene::Scene& scene);
+
+// "[Cyl_*, Bag.position.y]"
+[[nodiscard]] std::string recorded_patterns_text(const scene::Scene& scene);
+
+// Why a recording has nothing that fits these patterns. names: what it has.
+[[nodiscard]] std::string why_missing(const recording::Reader& reader, std::span<const std::string> patterns,
+                                      std::span<const std::string> names);
+
+}  // namespace slew::cli
