@@ -1,6 +1,7 @@
 // `slewring animate REC`: the machine of a recording in side and top view, to look at without installing anything.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -19,11 +20,12 @@ namespace {
 
 using cli_support::Failure;
 
-constexpr std::size_t kMostFrames = 2000;  // of a page
+constexpr std::size_t kMostFrames = 2000;  // of a page; its help says so
 constexpr int kMostInstants = 50;
 
 struct Options {
   std::string recording, output;
+  std::string from, to;
   int instants = 7;
 };
 
@@ -42,13 +44,14 @@ void check_poses(const recording::Reader& reader, const scene::Scene& scene, con
                             missing.front(), more, recorded_patterns_text(scene)));
 }
 
-Motion read_motion(const recording::Reader& reader, const scene::Scene& scene, const MachineDrawing& machine) {
+Motion read_motion(const recording::Reader& reader, const scene::Scene& scene, const MachineDrawing& machine,
+                   const TimeRange& range) {
   std::vector<std::string> names;
   for (std::size_t body = 1; body < machine.bodies.size(); ++body) {
     for (const char* part : kParts) names.push_back(machine.bodies[body].name + "." + part);
   }
   check_poses(reader, scene, names);
-  std::vector<plotting::Series> series = read_series(reader, names, Units::si);
+  std::vector<plotting::Series> series = read_series(reader, names, Units::si, range);
   plotting::keep_common_instants(series);
   const plotting::PlotOptions heading = plot_heading(reader);
   Motion motion{heading.title, heading.subtitle, series.front().time, {}, {}};
@@ -67,22 +70,45 @@ Motion read_motion(const recording::Reader& reader, const scene::Scene& scene, c
   return motion;
 }
 
+// "2nd", "15th"
+std::string ordinal_text(std::size_t n) {
+  const std::size_t last = n % 100 >= 11 && n % 100 <= 13 ? 0 : n % 10;
+  return fmt::format("{}{}", n, last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th");
+}
+
+// A page does not bear every instant of a long recording, and says so.
+std::string page_text(const MachineDrawing& machine, const Motion& motion) {
+  const std::size_t n = stride_for(motion, kMostFrames);
+  if (n == 1) return animation_html(machine, motion);
+  Motion thin = every_nth(motion, n);
+  const std::string shown = fmt::format("every {} recorded instant", ordinal_text(n));
+  thin.subtitle += ", " + shown;
+  std::fprintf(stderr, "slewring: the page shows %s; --from and --to take a part of the recording\n", shown.c_str());
+  return animation_html(machine, thin);
+}
+
 ExitCode animate(const Options& options) {
   const std::string path = options.output.empty() ? "animation.html" : options.output;
   const std::string kind = std::filesystem::path(path).extension().string();
   if (kind != ".html" && kind != ".svg") {
     throw Failure(ExitCode::bad_input, path + " is neither .html nor .svg; nothing was written; name such a file");
   }
+  const TimeRange range = recorded_range(options.from, options.to);
   const auto reader = open_recording(options.recording);
   const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
   if (scene.mechanics.bodies.empty()) {
     throw Failure(ExitCode::bad_input, "the scene of this recording has no bodies; nothing was written");
   }
   const MachineDrawing machine = draw_machine(scene.mechanics);
-  const Motion motion = read_motion(*reader, scene, machine);
-  if (motion.time.empty()) throw Failure(ExitCode::bad_input, "the recording holds no values; nothing was written");
+  const Motion motion = read_motion(*reader, scene, machine, range);
+  if (motion.time.empty()) {
+    const double end = static_cast<double>(reader->statistics().end_time) * 1e-9;
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("the recording holds no poses in this time; it goes from 0 to {:.6g} s; nothing was written", end));
+  }
   write_text(path, kind == ".html"
-                       ? animation_html(machine, thinned(motion, kMostFrames))
+                       ? page_text(machine, motion)
                        : animation_svg(machine, thinned(motion, static_cast<std::size_t>(options.instants))));
   fmt::print("{}\n", path);
   return ExitCode::ok;
@@ -99,6 +125,8 @@ void add_animate(CLI::App& program, Action& action) {
           "file to write: .html, a page with a time slider, or .svg, some instants over each other; without it "
           "animation.html")
       ->type_name("FILE");
+  verb->add_option("--from", options->from, "first time that is shown, such as '2.5 s'")->type_name("TIME");
+  verb->add_option("--to", options->to, "last time that is shown")->type_name("TIME");
   verb->add_option("--instants", options->instants, "of a .svg")
       ->check(CLI::Range(1, kMostInstants))
       ->type_name("N")
@@ -106,8 +134,10 @@ void add_animate(CLI::App& program, Action& action) {
   verb->footer(
       "Bodies are drawn as lines between joints, forces and centre of mass and by their contact shapes, or as a small\n"
       "cross, at the poses that were recorded; bending, ropes and planes are not drawn.\n\n"
-      "Example:\n"
-      "  slewring animate runs/truck_crane-20260501-102030 -o crane.html");
+      "A page holds 2000 instants: of a longer recording every n-th, as it says.\n\n"
+      "Examples:\n"
+      "  slewring animate runs/truck_crane-20260501-102030 -o crane.html\n"
+      "  slewring animate runs/truck_crane-20260501-102030 --from 2s --to 5s -o crane.svg");
   verb->callback([&action, options] { action = [options] { return animate(*options); }; });
 }
 

@@ -30,17 +30,6 @@ struct Options {
   bool may_replace = false;
 };
 
-TimeRange range_of(const Options& options) {
-  TimeRange range;
-  if (!options.from.empty()) range.from_ns = recorded_time_ns("--from", options.from);
-  if (!options.to.empty()) range.to_ns = recorded_time_ns("--to", options.to);
-  if (range.to_ns < range.from_ns) {
-    throw Failure(ExitCode::bad_input, "--to " + options.to + " lies before --from " + options.from +
-                                           "; nothing was written; name the earlier time first");
-  }
-  return range;
-}
-
 void check_values(const recording::Reader& reader, const std::vector<plotting::Series>& curves) {
   for (const plotting::Series& curve : curves) {
     if (!curve.time.empty()) return;
@@ -105,7 +94,7 @@ ExitCode export_input(const Options& options, const std::vector<std::string>& wi
     throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
   }
   const auto reader = open_recording(options.recording);
-  const std::string text = input_text(*reader, range_of(options));
+  const std::string text = input_text(*reader, recorded_range(options.from, options.to));
   if (options.output.empty() || options.output == "-") {
     write_text("-", text);
     return ExitCode::ok;
@@ -121,7 +110,7 @@ ExitCode export_variables(Options options) {
   wishes.insert(wishes.end(), options.only.begin(), options.only.end());
   if (options.is_input) return export_input(options, wishes);
   if (wishes.empty()) wishes = {"*"};
-  const TimeRange range = range_of(options);
+  const TimeRange range = recorded_range(options.from, options.to);
   const auto reader = open_recording(options.recording);
   const std::vector<plotting::Series> curves = read_series(*reader, wishes, Units::si, range);
   check_values(*reader, curves);

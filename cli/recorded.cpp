@@ -132,6 +132,17 @@ std::uint64_t recorded_time_ns(const std::string& option, const std::string& tex
   return static_cast<std::uint64_t>(std::llround(seconds * 1e9));
 }
 
+TimeRange recorded_range(const std::string& from, const std::string& to) {
+  TimeRange range;
+  if (!from.empty()) range.from_ns = recorded_time_ns("--from", from);
+  if (!to.empty()) range.to_ns = recorded_time_ns("--to", to);
+  if (range.to_ns < range.from_ns) {
+    throw Failure(ExitCode::bad_input,
+                  "--to " + to + " lies before --from " + from + "; nothing was written; name the earlier time first");
+  }
+  return range;
+}
+
 std::string recorded_assets(const std::string& recording) {
   std::filesystem::path file = recording;
   std::error_code error;

@@ -35,6 +35,9 @@ struct TimeRange {
 // A time of a recording, "2.5 s" or a bare number in s, as an option has it. Throws Failure.
 [[nodiscard]] std::uint64_t recorded_time_ns(const std::string& option, const std::string& text);
 
+// The times of the options --from and --to, empty where one is not given. Throws Failure.
+[[nodiscard]] TimeRange recorded_range(const std::string& from, const std::string& to);
+
 // Names of all variables in the recording, in the order of roles and of their places.
 [[nodiscard]] std::vector<std::string> recorded_names(const recording::Reader& reader);
 

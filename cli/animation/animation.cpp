@@ -183,16 +183,38 @@ void add_instant(std::string& out, const View& view, const MachineDrawing& machi
 
 }  // namespace
 
-Motion thinned(const Motion& motion, std::size_t instants) {
-  const std::size_t count = motion.time.size();
-  if (count <= instants) return motion;
+namespace {
+
+Motion chosen(const Motion& motion, const std::vector<std::size_t>& instants) {
   Motion thin{motion.title, motion.subtitle, {}, std::vector<std::vector<Pose>>(motion.poses.size()), motion.gaps};
-  for (std::size_t i = 0; i < instants; ++i) {
-    const std::size_t k = instants == 1 ? 0 : i * (count - 1) / (instants - 1);
+  for (const std::size_t k : instants) {
     thin.time.push_back(motion.time[k]);
     for (std::size_t body = 0; body < motion.poses.size(); ++body) thin.poses[body].push_back(motion.poses[body][k]);
   }
   return thin;
+}
+
+}  // namespace
+
+Motion thinned(const Motion& motion, std::size_t instants) {
+  const std::size_t count = motion.time.size();
+  if (count <= instants) return motion;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < instants; ++i) kept.push_back(instants == 1 ? 0 : i * (count - 1) / (instants - 1));
+  return chosen(motion, kept);
+}
+
+std::size_t stride_for(const Motion& motion, std::size_t most) {
+  const std::size_t steps = motion.time.empty() ? 0 : motion.time.size() - 1;
+  return std::max<std::size_t>(1, (steps + most - 2) / (most - 1));
+}
+
+Motion every_nth(const Motion& motion, std::size_t n) {
+  if (n == 1) return motion;
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k + 1 < motion.time.size(); k += n) kept.push_back(k);
+  if (!motion.time.empty()) kept.push_back(motion.time.size() - 1);
+  return chosen(motion, kept);
 }
 
 std::string animation_html(const MachineDrawing& machine, const Motion& motion) {

@@ -32,6 +32,10 @@ struct Motion {
 // At most `instants` of them, evenly, the first and the last among them.
 [[nodiscard]] Motion thinned(const Motion& motion, std::size_t instants);
 
+// The smallest n for which every n-th instant and the last one are at most so many. Pre-condition: at least 2.
+[[nodiscard]] std::size_t stride_for(const Motion& motion, std::size_t most);
+[[nodiscard]] Motion every_nth(const Motion& motion, std::size_t n);
+
 // One file that asks for nothing else: play, slider, speed, direction of the side view.
 [[nodiscard]] std::string animation_html(const MachineDrawing& machine, const Motion& motion);
 

@@ -90,5 +90,33 @@ TEST_F(Animated, AMotionHasThePosesThatWereRecorded) {
   }
 }
 
+TEST_F(Animated, APartIsShownAndInstantsThatAreLeftOutAreTold) {
+  const std::string recording = recorded("4.5");
+  const CommandResult part = slewring({"animate", recording, "--from", "1s", "--to", "1.5", "-o", "part.html"});
+  ASSERT_EQ(part.code, 0) << part.err;
+  EXPECT_EQ(part.err, "");
+  const nlohmann::json shown = page("part.html");
+  EXPECT_EQ(shown["time"].size(), 501u);
+  EXPECT_EQ(shown["time"].front(), 1);
+  EXPECT_EQ(shown["time"].back(), 1.5);
+  const CommandResult all = slewring({"animate", recording, "-o", "all.html"});
+  ASSERT_EQ(all.code, 0) << all.err;
+  EXPECT_NE(all.err.find("the page shows every 3rd recorded instant"), std::string::npos) << all.err;
+  const nlohmann::json thin = page("all.html");
+  EXPECT_EQ(thin["time"].size(), 1501u);
+  EXPECT_EQ(thin["time"][1], 0.003);
+  std::ostringstream text;
+  text << std::ifstream(work_.path() / "all.html").rdbuf();
+  EXPECT_NE(text.str().find(", every 3rd recorded instant"), std::string::npos);
+  const CommandResult late = slewring({"animate", recording, "--from", "7s", "-o", "late.html"});
+  EXPECT_EQ(late.code, 2);
+  EXPECT_NE(late.err.find("no poses in this time; it goes from 0 to 4.5 s"), std::string::npos) << late.err;
+  EXPECT_EQ(slewring({"animate", recording, "--from", "2s", "--to", "1s"}).code, 2);
+  ASSERT_EQ(slewring({"animate", recording, "--from", "2s", "--to", "3s", "-o", "part.svg"}).code, 0);
+  std::ostringstream picture;
+  picture << std::ifstream(work_.path() / "part.svg").rdbuf();
+  EXPECT_NE(picture.str().find("from 2 s, faint, to 3 s"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace slew::testing

@@ -140,6 +140,21 @@ TEST(Animation, KeepsTheFirstAndTheLastInstant) {
   EXPECT_EQ(thinned(turning(3), 5).time.size(), 3u);
 }
 
+TEST(Animation, LeavesOutEvenlyWhatAPageDoesNotBear) {
+  EXPECT_EQ(stride_for(turning(1), 4), 1u);
+  EXPECT_EQ(stride_for(turning(4), 4), 1u);
+  EXPECT_EQ(stride_for(turning(5), 4), 2u);
+  EXPECT_EQ(stride_for(turning(8), 4), 3u);
+  EXPECT_EQ(every_nth(turning(5), 2).time, (std::vector<double>{0, 0.02, 0.04}));
+  const Motion thin = every_nth(turning(8), 3);
+  EXPECT_EQ(thin.time, (std::vector<double>{0, 0.03, 0.06, 0.07}));
+  EXPECT_EQ(thin.poses[0].size(), 4u);
+  for (std::size_t count = 2; count < 60; ++count) {
+    const Motion motion = turning(count);
+    EXPECT_LE(every_nth(motion, stride_for(motion, 7)).time.size(), 7u) << count;
+  }
+}
+
 TEST(Animation, IsAPageOfItsOwn) {
   const std::string page = animation_html(draw_machine(arm()), turning(3));
   const std::string begin = "id=\"data\">";
