@@ -43,7 +43,8 @@ void add_node(CLI::App& program, Action& action) {
   verb->footer(
       "Roles: io SCENE (owner of the session), mechanics, hydraulics, flex (flexible bodies), recorder.\n"
       "'slewring node ROLE --help' lists the options of a role.\n\n"
-      "Example:\n  slewring node hydraulics --session truck_crane --interface eth0 --peer 192.168.1.10");
+      "Example:\n  slewring node hydraulics --session truck_crane --interface eth0 --peer 192.168.1.10 "
+      "--keys for_crane2");
   verb->callback([&action] {
     action = []() -> ExitCode {
       std::fprintf(stderr, "slewring: a role is missing; nothing was started; see 'slewring node --help'\n");

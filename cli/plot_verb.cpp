@@ -124,8 +124,10 @@ void add_plot(CLI::App& program, Action& action) {
   verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
   verb->add_option("variables", options->variables, "names, or patterns with * and ?; without them the scene's plots")
       ->type_name("VAR");
-  verb->add_option("-o,--output", options->output,
-                   "file to write: .svg, .html, or - for standard output; without it plot.svg")
+  verb->add_option(
+          "-o,--output", options->output,
+          "file to write: .svg, .html, or - for standard output; without it plot.svg, or for the scene's plots "
+          "<scene>.svg beside the recording")
       ->type_name("FILE");
   verb->add_option("--title", options->title, "heading; without it the scene's name")->type_name("TEXT");
   verb->add_option("--with", options->others, "another recording whose variables are drawn beside; repeat for more")

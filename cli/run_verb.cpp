@@ -146,7 +146,8 @@ void add_run(CLI::App& program, Action& action) {
       "  slewring run scenes/truck_crane.yaml\n"
       "  slewring run scenes/truck_crane.yaml --set Bag.mass=1000kg --duration 10 --pace free --in-process\n"
       "  slewring run scenes/truck_crane.yaml --monolithic --rtol 1e-9 --pace free\n"
-      "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20\n"
+      "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20 "
+      "--keys plant\n"
       "  slewring run --from crane.saved --set Bag.mass=1000kg --duration 60s");
   verb->callback([&action, options, verb] { action = [options, verb] { return run(*options, *verb); }; });
 }

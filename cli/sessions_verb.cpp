@@ -99,7 +99,7 @@ void add_sessions(CLI::App& program, Action& action) {
       ->type_name("S")
       ->capture_default_str();
   verb->add_flag("--json", options->is_json, "for machines");
-  verb->footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20");
+  verb->footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20 --keys plant");
   verb->callback([&action, options] { action = [options] { return show(*options); }; });
 }
 

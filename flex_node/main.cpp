@@ -30,7 +30,8 @@ int main(int argc, char** argv) {
       "flex_node");
   app.footer(
       "Example, on the machine that computes the flexible bodies:\n"
-      "  flex_node --session truck_crane_flexible --assets scenes --interface eth0 --peer 192.168.1.20");
+      "  flex_node --session truck_crane_flexible --assets scenes --interface eth0 --peer 192.168.1.20 "
+      "--keys for_crane2");
   cli_support::NodeOptions options;
   cli_support::add_physics_node_options(app, options);
   cli_support::add_version(app);

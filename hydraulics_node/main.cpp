@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
                "hydraulics_node");
   app.footer(
       "Example, on the machine that computes the hydraulics:\n"
-      "  hydraulics_node --session truck_crane --interface eth0 --peer 192.168.1.20");
+      "  hydraulics_node --session truck_crane --interface eth0 --peer 192.168.1.20 "
+      "--keys for_crane2");
   cli_support::NodeOptions options;
   cli_support::add_physics_node_options(app, options);
   cli_support::add_version(app);

@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
                "io_node");
   app.footer(
       "Example; the other nodes of the session find it by its name:\n"
-      "  io_node scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10");
+      "  io_node scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10 "
+      "--keys plant");
   IoOptions options;
   options.node.priority = cli_support::kIoPriority;
   cli_support::add_scene_options(app, options.scene);

@@ -1,8 +1,10 @@
 // The command line of every program: help, versions, exit codes, texts of errors.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "build_paths.h"
 #include "command.h"
@@ -19,6 +21,15 @@ class Program : public ::testing::Test {
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+// An example that is refused as it is printed helps nobody: beyond this machine there are keys, or none by name.
+void expect_keys_beyond_this_machine(const std::string& help) {
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    if (!contains(line, "--interface eth") || contains(line, "slewring doctor")) continue;
+    EXPECT_TRUE(contains(line, "--keys") || contains(line, "--insecure-lan")) << line;
+  }
 }
 
 TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
@@ -63,6 +74,16 @@ TEST_F(Program, EveryVerbExplainsItselfWithAnExample) {
     EXPECT_TRUE(contains(result.out, "Example")) << verb;
     EXPECT_TRUE(contains(result.out, "slewring ")) << verb;
     EXPECT_TRUE(result.err.empty()) << verb << ": " << result.err;
+    expect_keys_beyond_this_machine(result.out);
+  }
+}
+
+TEST(Howto, HasNoExampleBeyondThisMachineThatIsRefused) {
+  for (const auto& entry : std::filesystem::directory_iterator(SLEWRING_SOURCE_DIR "/docs/howto")) {
+    std::ostringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    SCOPED_TRACE(entry.path().string());
+    expect_keys_beyond_this_machine(text.str());
   }
 }
 
@@ -72,6 +93,7 @@ TEST_F(Program, EveryNodeExplainsItselfWithAnExample) {
     EXPECT_EQ(through.code, 0) << role;
     EXPECT_TRUE(contains(through.out, std::string(role) + "_node")) << role;
     EXPECT_TRUE(contains(through.out, "Example")) << role;
+    expect_keys_beyond_this_machine(through.out);
     EXPECT_EQ(run(std::string(role) + "_node", {"--help"}, work_.path()).out, through.out) << role;
   }
 }
