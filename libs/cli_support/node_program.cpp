@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <new>
+#include <system_error>
 
 #include "cli_support/failure.h"
 #include "cli_support/metered_carrier.h"
@@ -43,6 +44,12 @@ std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
   return "there is no '" + rest.front() + "' here" + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
 }
 
+// files, memory and threads, of the process or of the machine
+bool is_of_resources(const std::error_code& code) {
+  return code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system ||
+         code == std::errc::not_enough_memory || code == std::errc::resource_unavailable_try_again;
+}
+
 }  // namespace
 
 int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept {
@@ -59,6 +66,14 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
   } catch (const std::bad_alloc&) {
     return report(program, "out of memory; the program ends; close other programs or use a smaller scene",
                   ExitCode::resources);
+  } catch (const std::system_error& error) {
+    if (!is_of_resources(error.code())) return report(program, error.what(), ExitCode::failed);
+    std::fflush(stdout);
+    std::fprintf(stderr,
+                 "%s: the system gives this process no more (%s); the program ends; raise the limit (ulimit -n for "
+                 "files, -d and -v for memory, -u for threads) or end other programs\n",
+                 program.c_str(), error.what());
+    return static_cast<int>(ExitCode::resources);
   } catch (const std::exception& error) {
     return report(program, error.what(), ExitCode::failed);
   }

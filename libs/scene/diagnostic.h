@@ -7,9 +7,11 @@
 
 #include <compare>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace slew::scene {
@@ -83,12 +85,17 @@ class Report {
   std::vector<Entry> entries_;
 };
 
-// Calls load(), which reads the file. What goes wrong outside it (no unit database, no memory) is told in the same way.
+// Calls load(), which reads the file. What goes wrong outside it (no unit database) is told in the same way; that the
+// system gives no more memory or files is no fault of the file.
 template <typename Load>
 auto guarded(const std::string& file, const Load& load) {
   try {
     return load();
   } catch (const LoadError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::system_error&) {
     throw;
   } catch (const std::exception& error) {
     throw LoadError({{.file = file, .path = "", .what = error.what(), .expected = "", .suggestion = ""}}, 0);

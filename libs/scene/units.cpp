@@ -1,13 +1,18 @@
 #include "scene/units.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <udunits2.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cmath>
 #include <mutex>
 #include <numbers>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -205,6 +210,17 @@ Complaint unknown_unit(std::string_view text, Dimension dimension, UnitSystem& u
   return {fmt::format("unknown unit '{}'", text), expected_quantity(dimension), std::move(suggestion)};
 }
 
+// Throws std::system_error when this process cannot open as many files as UDUNITS at a time, which does not tell why.
+void require_files() {
+  constexpr std::size_t kFiles = 4;
+  std::array<int, kFiles> files{};
+  std::size_t opened = 0;
+  while (opened < kFiles && (files[opened] = ::open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0) ++opened;
+  const int why = errno;
+  for (std::size_t i = 0; i < opened; ++i) ::close(files[i]);
+  if (opened < kFiles) throw std::system_error(why, std::generic_category(), "the unit database cannot be opened");
+}
+
 // UDUNITS' units and ours, read once in a process. Under udunits_mutex().
 class Database {
  public:
@@ -212,6 +228,7 @@ class Database {
     ut_set_error_message_handler(ut_ignore);
     system_.reset(ut_read_xml(nullptr));
     if (system_ == nullptr) {
+      require_files();
       throw std::runtime_error("the unit database of UDUNITS-2 cannot be read; install libudunits2-data");
     }
     for (const AddedUnit& added : kAddedUnits) add(added);

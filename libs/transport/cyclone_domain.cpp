@@ -17,6 +17,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <future>
+#include <new>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 namespace slew::transport {
@@ -25,6 +29,8 @@ namespace {
 constexpr std::uint32_t kFirstPort = 7400, kPortsOfDomain = 250;  // RTPS 2.5, 9.6.2
 constexpr std::size_t kFiles = 16;
 constexpr std::size_t kSpace = std::size_t{256} << 20;  // bytes of addresses
+constexpr std::size_t kData = std::size_t{128} << 20;   // bytes of those that can be written
+constexpr std::size_t kThreads = 8;
 
 struct Interface {
   std::string name;
@@ -118,30 +124,59 @@ std::string security_xml(const CycloneSecurity& security) {
       library("dds_security_crypto", "crypto"));
 }
 
-// What Cyclone does not survive to be without: files for its sockets, address space for its threads and caches.
-Status enough_resources() {
+Status lacks(const std::string& what, int why, const char* remedy) {
+  return Status::error(ExitCode::resources,
+                       fmt::format("this process {} ({}), a session needs that; nothing was started; raise the limit "
+                                   "({}) or end other programs",
+                                   what, std::strerror(why), remedy));
+}
+
+Status enough_files() {
   std::array<int, kFiles> files{};
   std::size_t opened = 0;
   while (opened < files.size() && (files[opened] = ::open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0) ++opened;
   const int why = errno;
   for (std::size_t i = 0; i < opened; ++i) ::close(files[i]);
-  if (opened < files.size()) {
-    return Status::error(
-        ExitCode::resources,
-        fmt::format("this process can open {} more files ({}), a session needs {}; nothing was started; "
-                    "raise the limit (ulimit -n) or end other programs",
-                    opened, std::strerror(why), files.size()));
-  }
-  void* const space = ::mmap(nullptr, kSpace, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (space == MAP_FAILED) {
-    return Status::error(
-        ExitCode::resources,
-        fmt::format("this process cannot have {} MB more memory ({}), a session needs that; nothing was "
-                    "started; raise the limit (ulimit -v) or end other programs",
-                    kSpace >> 20, std::strerror(errno)));
-  }
-  ::munmap(space, kSpace);
+  if (opened == files.size()) return Status::ok();
+  return Status::error(ExitCode::resources,
+                       fmt::format("this process can open {} more files ({}), a session needs {}; nothing was started; "
+                                   "raise the limit (ulimit -n) or end other programs",
+                                   opened, std::strerror(why), files.size()));
+}
+
+// Only what can be written counts as data (RLIMIT_DATA), the rest as address space alone (RLIMIT_AS).
+Status enough_memory(std::size_t bytes, int protection, const char* limit) {
+  void* const space = ::mmap(nullptr, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (space == MAP_FAILED) return lacks(fmt::format("cannot have {} MB more memory", bytes >> 20), errno, limit);
+  ::munmap(space, bytes);
   return Status::ok();
+}
+
+// As many at the same time as Cyclone starts.
+Status enough_threads() {
+  std::promise<void> all_are_there;
+  const std::shared_future<void> end = all_are_there.get_future().share();
+  std::vector<std::thread> threads;
+  int why = 0;
+  try {
+    while (threads.size() < kThreads) threads.emplace_back([end] { end.wait(); });
+  } catch (const std::system_error& error) {
+    why = error.code().value();
+  } catch (const std::bad_alloc&) {
+    why = ENOMEM;
+  }
+  all_are_there.set_value();
+  for (std::thread& thread : threads) thread.join();
+  if (why == 0) return Status::ok();
+  return lacks(fmt::format("can start {} more threads of {}", threads.size(), kThreads), why, "ulimit -u, -d, -v");
+}
+
+// What Cyclone does not survive to be without: files for its sockets, memory for its caches, threads.
+Status enough_resources() {
+  if (Status status = enough_files(); !status.is_ok()) return status;
+  if (Status status = enough_memory(kSpace, PROT_NONE, "ulimit -v"); !status.is_ok()) return status;
+  if (Status status = enough_memory(kData, PROT_READ | PROT_WRITE, "ulimit -d, -v"); !status.is_ok()) return status;
+  return enough_threads();
 }
 
 // A UDP socket of this process that hears all addresses. A number of a file is used again, an inode is not.
