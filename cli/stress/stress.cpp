@@ -299,6 +299,10 @@ double missed(const wire::Health& health) noexcept {
   return static_cast<double>(health.overruns) / static_cast<double>(health.response.count);
 }
 
+std::uint64_t given_up(const wire::Health& health) noexcept {
+  return io::judged_steps_given_up(health);
+}
+
 BrokenBounds broken_bounds(const wire::Health& health, const StressBounds& bounds) noexcept {
   if (health.response.count == 0) return {};
   return {.max_miss = bounds.max_miss >= 0 && missed(health) > bounds.max_miss,

@@ -36,7 +36,7 @@ struct StressWish {
 
 // Bounds of the verdict; negative: none is stated.
 struct StressBounds {
-  double max_miss = -1;  // share of the judged steps
+  double max_miss = -1;  // share of the judged steps, those that were given up among them
   double p99 = -1;       // s, of the response
 };
 
@@ -69,8 +69,10 @@ struct Stress {
 // It was run, and its session began: there is something to tell of it.
 [[nodiscard]] bool has_stepped(const StressCell& cell) noexcept;
 
-// Largest share of judged steps that overran; 0 when none was judged.
+// Share of the judged steps that overran or were given up; 0 when none was judged.
 [[nodiscard]] double missed(const wire::Health& health) noexcept;
+// How many of the judged steps were given up.
+[[nodiscard]] std::uint64_t given_up(const wire::Health& health) noexcept;
 
 // Which of the stated bounds were not kept; neither when nothing was measured.
 struct BrokenBounds {

@@ -58,9 +58,10 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
 std::vector<std::string> row_of(const std::string& what, const wire::Health& health) {
   const wire::Quantiles& response = health.response;
   // zeros would read as if they had been measured
-  if (response.count == 0) return {what, "-", "-", "-", "-", "-", "-", "-", "-", "-"};
+  if (response.count == 0) return {what, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-"};
   return {what,
           std::to_string(response.count),
+          std::to_string(given_up(health)),
           std::to_string(health.overruns),
           fmt::format("{:.3f}", 100 * missed(health)),
           std::to_string(health.longest_overrun),
@@ -72,8 +73,8 @@ std::vector<std::string> row_of(const std::string& what, const wire::Health& hea
 }
 
 std::string table_of(const Stress& stress) {
-  std::vector<std::vector<std::string>> rows = {{"scheduling", "load", "added us", "", "steps", "missed", "%",
-                                                 "in a row", "min us", "p50", "p99", "p99.9", "max", "load avg",
+  std::vector<std::vector<std::string>> rows = {{"scheduling", "load", "added us", "", "steps", "skipped", "missed",
+                                                 "%", "in a row", "min us", "p50", "p99", "p99.9", "max", "load avg",
                                                  "steal %", "verdict"}};
   for (const StressCell& cell : stress.cells) {
     const std::vector<std::string> cells = {std::string(to_text(cell.scheduling)), to_text(cell.load),
@@ -130,8 +131,15 @@ nlohmann::json node_of(const wire::Health& health) {
   return node;
 }
 
+// of a loop that keeps books
+nlohmann::json paced_of(const wire::Health& health) {
+  nlohmann::json paced = timing_of(health);
+  paced["skipped"] = given_up(health);
+  return paced;
+}
+
 nlohmann::json yardstick_of(const StressCell& cell) {
-  nlohmann::json yardstick = timing_of(cell.yardstick);
+  nlohmann::json yardstick = paced_of(cell.yardstick);
   yardstick["work"] = work_of(cell);
   for (const YardstickLoop& loop : cell.yardstick_loops) {
     const std::string role(node::to_text(loop.role));
@@ -152,7 +160,7 @@ nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
   json["messages"] = cell.messages;
   json["steps"] = cell.steps;
   if (!has_stepped(cell)) return json;
-  json["session"] = timing_of(io);
+  json["session"] = paced_of(io);
   if (cell.yardstick.response.count > 0) json["yardstick"] = yardstick_of(cell);
   json["load_average"] = cell.load_average;
   json["steal"] = cell.steal;
@@ -209,7 +217,10 @@ std::string report_html(const Stress& stress) {
   std::vector<plotting::Plot> plots;
   for (const StressCell& cell : stress.cells) {
     if (cell.response.time.empty()) continue;
-    plots.push_back({.title = cell.response.name, .series = {cell.response}});
+    const wire::Health& io = session_of(cell);
+    plots.push_back({.title = fmt::format("{}: {:.3f} % of {} steps missed, {} of them skipped", cell.response.name,
+                                          100 * missed(io), io.response.count, given_up(io)),
+                     .series = {cell.response}});
     plots.back().series.front().name = "largest response of 0.1 s";
   }
   plotting::PlotOptions options;

@@ -19,8 +19,9 @@ using nlohmann::json;
 class Stress : public ::testing::Test {
  protected:
   std::vector<std::string> arguments(std::vector<std::string> more) const {
-    more.insert(more.begin(), {"stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()),
-                               "--quiet", "--seconds", "2"});
+    more.insert(more.begin(),
+                {"stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()), "--quiet"});
+    if (std::find(more.begin(), more.end(), "--seconds") == more.end()) more.insert(more.end(), {"--seconds", "2"});
     return more;
   }
   CommandResult stress(std::vector<std::string> more) const {
@@ -40,6 +41,20 @@ class Stress : public ::testing::Test {
     EXPECT_LE(times.at("p50"), times.at("p99"));
     EXPECT_LE(times.at("p99"), times.at("p999"));
     EXPECT_LE(times.at("p999"), times.at("max"));
+  }
+
+  static long judged_and_done(const json& of) {
+    return of.at("response").at("count").get<long>() - of.at("skipped").get<long>();
+  }
+  // The session has done this step, by what `slewring sessions` says.
+  [[nodiscard]] bool wait_until_at(long step) const {
+    return wait_until([&] {
+      const CommandResult seen =
+          run("slewring", {"sessions", "--json", "--time", "0.1", "--domain", std::to_string(domain_.number())},
+              work_.path());
+      const json all = json::parse(seen.out, nullptr, false);
+      return all.is_array() && !all.empty() && all.at(0).at("step") >= step;
+    });
   }
 
   TestDomain domain_;
@@ -66,11 +81,14 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     for (const char* who : {"session", "yardstick"}) {
       expect_ordered(cell.at(who).at("response"));
       EXPECT_LE(cell.at(who).at("missed"), cell.at(who).at("response").at("count"));
+      EXPECT_LE(cell.at(who).at("skipped"), cell.at(who).at("missed"));
       EXPECT_LE(cell.at(who).at("longest_run_of_misses"), cell.at(who).at("missed"));
     }
-    // half a second of start-up grace is not judged
-    EXPECT_LE(cell.at("session").at("response").at("count"), 1500);
-    EXPECT_EQ(cell.at("yardstick").at("response").at("count"), 500);
+    // half a second of start-up grace is not judged, and the step that the end cuts off; of the yardstick a quarter is
+    // judged; what was given up was due too
+    EXPECT_EQ(judged_and_done(cell.at("session")), 1499);
+    EXPECT_EQ(judged_and_done(cell.at("yardstick")), 500);
+    EXPECT_LE(cell.at("session").at("skipped"), books.at("skipped"));
     // a loop for every process, which together do the session's work
     const json& loops = cell.at("yardstick").at("loops");
     double work = 0;
@@ -100,6 +118,33 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "asks for nothing from elsewhere";
   // what came is gone again
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
+}
+
+TEST_F(Stress, StepsThatAreGivenUpAreMissed) {
+  const auto options =
+      arguments({"--json", "--no-record", "--seconds", "4", "--set", "session.start_grace=0 s", "--max-miss", "10"});
+  Command session("slewring", options, work_.path());
+  ASSERT_TRUE(wait_until_at(1));
+  const pid_t mechanics = child_of(session.pid(), "mechanics_node");
+  ASSERT_GT(mechanics, 0);
+  // held up for less than the 2 s after which it is lost
+  kill(mechanics, SIGSTOP);
+  static_cast<void>(wait_until([] { return false; }, 0.8));
+  kill(mechanics, SIGCONT);
+  const CommandResult result = session.wait();
+  EXPECT_EQ(result.code, 3) << result.err;
+  const json cell = json::parse(result.out).at("cells").at(0);
+  EXPECT_TRUE(cell.at("verdict").get<std::string>().starts_with("over")) << cell;
+  const json& of_session = cell.at("session");
+  const long skipped = of_session.at("skipped");
+  EXPECT_GE(skipped, 700);
+  EXPECT_EQ(skipped, cell.at("books").at("skipped")) << "there is no grace";
+  EXPECT_EQ(judged_and_done(of_session), 3999);
+  EXPECT_GE(of_session.at("missed"), skipped);
+  EXPECT_GE(of_session.at("longest_run_of_misses"), 700);
+  EXPECT_GE(of_session.at("missed_share"), 0.14);
+  EXPECT_GE(of_session.at("response").at("p99"), 0.5);
+  EXPECT_TRUE(cell.at("books").at("balance"));
 }
 
 TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {

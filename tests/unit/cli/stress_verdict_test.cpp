@@ -8,10 +8,12 @@
 namespace slew::cli {
 namespace {
 
-wire::Health timing(double missed, double p99) {
+// of 10000 steps; misses come alone
+wire::Health timing(double missed, double p99, std::uint64_t longest_row = 1) {
   wire::Health health;
-  health.response.count = 1000;
-  health.overruns = static_cast<std::uint64_t>(1000 * missed);
+  health.response.count = health.release_jitter.count = 10000;
+  health.overruns = static_cast<std::uint64_t>(10000 * missed);
+  health.longest_overrun = longest_row;
   health.response.p99 = p99;
   return health;
 }
@@ -43,6 +45,28 @@ TEST(StressVerdict, SaysWhichBoundsTheBareLoopsBreakToo) {
   EXPECT_EQ(tell(late, slow).verdict, "over") << "each is over another bound";
   EXPECT_EQ(tell(bad, late).verdict, "over, as the yardstick in misses alone");
   EXPECT_EQ(tell(bad, slow).verdict, "over, as the yardstick at p99 alone");
+}
+
+TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
+  Stress stress;
+  stress.bounds = {0.1, -1};
+  StressCell& cell = stress.cells.emplace_back();
+  cell.steps = 6000;
+  cell.step = 1e-3;
+  cell.response.name = "a cell";
+  cell.response.time = cell.response.values = {1, 2};
+  wire::Health& io = cell.nodes[static_cast<std::size_t>(wire::Role::io)];
+  io.response.count = 8000;
+  io.release_jitter.count = 5600;  // those that were done
+  io.overruns = 2408;
+  const auto json = nlohmann::json::parse(report_json(stress)).at("cells").at(0);
+  EXPECT_EQ(json.at("verdict"), "over");
+  EXPECT_EQ(json.at("session").at("skipped"), 2400);
+  EXPECT_EQ(json.at("session").at("missed_share"), 0.301);
+  const std::string text = report_text(stress);
+  EXPECT_NE(text.find("skipped  missed"), std::string::npos) << text;
+  EXPECT_NE(text.find("8000   2400     2408    30.100"), std::string::npos) << text;
+  EXPECT_NE(report_html(stress).find("a cell: 30.100 % of 8000 steps missed, 2400 of them skipped"), std::string::npos);
 }
 
 TEST(StressVerdict, IsGivenOfWhatIsStatedAlone) {
