@@ -284,6 +284,21 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
   std::filesystem::remove_all(runs, ignored);
 }
 
+// the session's p99 is the yardstick's when it is no larger than this times that
+constexpr double kSameP99 = 1.1;
+// standard errors within which two shares are the same, and the largest part of the yardstick's share that these may be
+constexpr double kErrors = 2, kLargestMargin = 0.5;
+
+// No more than the yardstick, within what the two counts scatter if both come from the yardstick's misses. These come
+// in rows: the variance of a count is at most the count times the longest row, as if all rows were as long.
+bool misses_as_much(const wire::Health& session, const wire::Health& yardstick) noexcept {
+  const double share = missed(yardstick);
+  const double each =
+      1 / static_cast<double>(session.response.count) + 1 / static_cast<double>(yardstick.response.count);
+  const double error = std::sqrt(share * static_cast<double>(yardstick.longest_overrun) * each);
+  return missed(session) <= share + std::min(kErrors * error, kLargestMargin * share);
+}
+
 }  // namespace
 
 std::string_view to_text(Scheduling scheduling) {
@@ -307,6 +322,13 @@ BrokenBounds broken_bounds(const wire::Health& health, const StressBounds& bound
   if (health.response.count == 0) return {};
   return {.max_miss = bounds.max_miss >= 0 && missed(health) > bounds.max_miss,
           .p99 = bounds.p99 >= 0 && health.response.p99 > bounds.p99};
+}
+
+BrokenBounds shared_bounds(const wire::Health& session, const wire::Health& yardstick,
+                           const StressBounds& bounds) noexcept {
+  const BrokenBounds broken = broken_bounds(session, bounds), bare = broken_bounds(yardstick, bounds);
+  return {.max_miss = broken.max_miss && bare.max_miss && misses_as_much(session, yardstick),
+          .p99 = broken.p99 && bare.p99 && session.response.p99 <= kSameP99 * yardstick.response.p99};
 }
 
 Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept {

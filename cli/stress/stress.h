@@ -80,6 +80,13 @@ struct BrokenBounds {
 };
 [[nodiscard]] BrokenBounds broken_bounds(const wire::Health& health, const StressBounds& bounds) noexcept;
 
+// Which of the bounds that the session broke the machine breaks too, and by as much: the yardstick is over them, the
+// session's share of misses is no larger than its by more than both counts scatter (two standard errors, misses taken
+// to come in rows as long as the yardstick's longest) nor by more than half of it, and the session's p99 no larger than
+// its by more than 10 %.
+[[nodiscard]] BrokenBounds shared_bounds(const wire::Health& session, const wire::Health& yardstick,
+                                         const StressBounds& bounds) noexcept;
+
 enum class Judgement : std::uint8_t { none, within, over };
 // Of the session against the stated bounds; none when there are none, or it was not run. One that failed, or in which
 // nothing was measured, is over.

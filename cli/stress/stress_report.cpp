@@ -29,13 +29,17 @@ double work_of(const StressCell& cell) {
   return work;
 }
 
-// which of the bounds that the session broke the bare loops broke too
-std::string shared_with_yardstick(const StressCell& cell, const StressBounds& bounds) {
-  const BrokenBounds session = broken_bounds(session_of(cell), bounds), bare = broken_bounds(cell.yardstick, bounds);
-  const bool misses = session.max_miss && bare.max_miss, is_slow = session.p99 && bare.p99;
-  if (!misses && !is_slow) return "";
-  if (misses == session.max_miss && is_slow == session.p99) return ", as the yardstick";
-  return misses ? ", as the yardstick in misses alone" : ", as the yardstick at p99 alone";
+// what the bare loops say of the bounds that the session broke
+std::string beside_yardstick(const StressCell& cell, const StressBounds& bounds) {
+  const wire::Health& session = session_of(cell);
+  if (cell.yardstick.response.count == 0) return "";
+  const BrokenBounds broken = broken_bounds(session, bounds), shared = shared_bounds(session, cell.yardstick, bounds);
+  if (!shared.max_miss && !shared.p99) {
+    return fmt::format("; the yardstick misses {:.3f} %, p99 {} us", 100 * missed(cell.yardstick),
+                       microseconds_text(cell.yardstick.response.p99));
+  }
+  if (shared.max_miss == broken.max_miss && shared.p99 == broken.p99) return ", as the yardstick";
+  return shared.max_miss ? ", as the yardstick in misses alone" : ", as the yardstick at p99 alone";
 }
 
 std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
@@ -50,7 +54,7 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
     case Judgement::within:
       return "within";
     case Judgement::over:
-      return "over" + shared_with_yardstick(cell, bounds);
+      return "over" + beside_yardstick(cell, bounds);
   }
   return "";
 }

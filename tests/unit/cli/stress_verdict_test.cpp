@@ -41,10 +41,28 @@ TEST(StressVerdict, SaysWhichBoundsTheBareLoopsBreakToo) {
   EXPECT_EQ(tell(bad, bad).verdict, "over, as the yardstick");
   EXPECT_EQ(tell(bad, bad).code, 3);
   EXPECT_EQ(tell(late, bad).verdict, "over, as the yardstick");
-  EXPECT_EQ(tell(bad, good).verdict, "over");
-  EXPECT_EQ(tell(late, slow).verdict, "over") << "each is over another bound";
+  EXPECT_EQ(tell(bad, good).verdict, "over; the yardstick misses 0.500 %, p99 400 us");
+  EXPECT_EQ(tell(late, slow).verdict, "over; the yardstick misses 0.500 %, p99 600 us") << "each is over another bound";
+  EXPECT_EQ(tell(bad, {}).verdict, "over") << "nothing is told of a yardstick that did not run";
   EXPECT_EQ(tell(bad, late).verdict, "over, as the yardstick in misses alone");
   EXPECT_EQ(tell(bad, slow).verdict, "over, as the yardstick at p99 alone");
+}
+
+TEST(StressVerdict, AYardstickThatMissesLessIsNoExcuse) {
+  // 2 % of 10000 beside as many: two standard errors are 0.4 % when misses come alone
+  EXPECT_EQ(tell(timing(0.0239, 0), timing(0.02, 0)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0.0241, 0), timing(0.02, 0)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  EXPECT_EQ(tell(timing(0.0241, 0), timing(0.02, 0)).code, 3);
+  EXPECT_EQ(tell(timing(0.0239, 0), timing(0.02, 0)).code, 3);
+  // 0.8 % when they come four in a row, and never more than half of the yardstick's
+  EXPECT_EQ(tell(timing(0.0279, 0, 100), timing(0.02, 0, 4)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0.0281, 0, 100), timing(0.02, 0, 4)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  EXPECT_EQ(tell(timing(0.0299, 0), timing(0.02, 0, 200)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0.0301, 0), timing(0.02, 0, 200)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  // a tenth at p99
+  EXPECT_EQ(tell(timing(0, 659e-6), timing(0, 600e-6)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0, 661e-6), timing(0, 600e-6)).verdict, "over; the yardstick misses 0.000 %, p99 600 us");
+  EXPECT_EQ(tell(timing(0.5, 660e-6), timing(0.02, 600e-6)).verdict, "over, as the yardstick at p99 alone");
 }
 
 TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
