@@ -227,14 +227,31 @@ std::string in_words_of_stress(std::string message) {
   return message;
 }
 
-// What came of the session, and of the load beside it.
-void conclude(const RunOutcome& outcome, const Status& load, StressCell& cell) {
+bool is_ended_early(const StressCell& cell, StepIndex asked) noexcept {
+  return (cell.code == ExitCode::ok || cell.code == ExitCode::losses) && cell.steps < asked;
+}
+
+// nothing went wrong, but what is asked of a cell is all its steps
+void fail_early(StepIndex asked, StressCell& cell) {
+  cell.code = ExitCode::failed;
+  cell.messages.insert(cell.messages.begin(),
+                       fmt::format("{}: the session ended at step {} of {}, and a part of a cell is no result; "
+                                   "somebody ended it ('slewring control stop'), run it again",
+                                   name_of(cell), cell.steps, asked));
+}
+
+// What came of the session of so many steps, and of the load beside it.
+void conclude(const RunOutcome& outcome, StepIndex asked, const Status& load, StressCell& cell) {
   cell.code = outcome.code;
   for (const std::string& message : without_echoes(outcome.messages)) {
     cell.messages.push_back(in_words_of_stress(message));
   }
   cell.steps = outcome.steps;
-  if (load.is_ok() || interrupts() > 0) return;
+  if (interrupts() > 0) return;
+  if (load.is_ok()) {
+    if (is_ended_early(cell, asked)) fail_early(asked, cell);
+    return;
+  }
   // the session was asked to end: that it did is no message
   if (outcome.code == ExitCode::ok || outcome.code == ExitCode::terminated) cell.messages.clear();
   cell.messages.insert(cell.messages.begin(), load.text);
@@ -274,7 +291,7 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
   watch.finish();
   cell.steal = steal_between(before, after);
   cell.busy = busy_between(before, after);
-  conclude(outcome, of_load, cell);
+  conclude(outcome, scene.session.steps(), of_load, cell);
   cell.step = scene.session.step;
   if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;
   for (const Role role : wire::kNodeRoles) cell.nodes[static_cast<std::size_t>(role)] = outcome.view.node(role).health;

@@ -147,6 +147,25 @@ TEST_F(Stress, StepsThatAreGivenUpAreMissed) {
   EXPECT_TRUE(cell.at("books").at("balance"));
 }
 
+TEST_F(Stress, ACellThatSomebodyEndsFails) {
+  Command session("slewring", arguments({"--json", "--no-record", "--seconds", "20", "--max-miss", "100"}),
+                  work_.path());
+  ASSERT_TRUE(wait_until_at(600));
+  const std::string domain = std::to_string(domain_.number());
+  EXPECT_EQ(run("slewring", {"control", "stop", "--domain", domain}, work_.path()).code, 0);
+  const CommandResult result = session.wait();
+  EXPECT_EQ(result.code, 1) << result.err;
+  const json cell = json::parse(result.out).at("cells").at(0);
+  EXPECT_EQ(cell.at("verdict"), "failed with code 1");
+  EXPECT_LT(cell.at("steps"), 20000);
+  const std::string message = cell.at("messages").at(0);
+  EXPECT_NE(message.find("normal, load none, 0 us added: the session ended at step "), std::string::npos) << message;
+  EXPECT_NE(message.find(" of 20000, and a part of a cell is no result; somebody ended it ('slewring control stop'), "
+                         "run it again"),
+            std::string::npos)
+      << message;
+}
+
 TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
   const CommandResult result = stress({"--no-record", "--p99", "0.001"});
   EXPECT_EQ(result.code, 3) << result.err;
