@@ -2,7 +2,7 @@
 
 #include <sys/utsname.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -13,6 +13,16 @@ namespace {
 
 double share(std::uint64_t part, std::uint64_t all) noexcept {
   return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all);
+}
+
+constexpr std::int64_t kLookNs = 100'000'000;
+
+// "0.42 0.31 0.30 3/210 5328": 3 of 210 threads run or are ready to, the one that reads this among them
+std::int64_t runnable_threads() {
+  std::ifstream file("/proc/loadavg");
+  double of_1 = 0, of_5 = 0, of_15 = 0;
+  std::int64_t threads = 0;
+  return file >> of_1 >> of_5 >> of_15 >> threads ? threads : 0;
 }
 
 std::string processor_name() {
@@ -43,17 +53,34 @@ CpuTicks cpu_ticks() {
   return {user + nice + system + idle + waiting + irq + soft_irq + steal, idle + waiting, steal};
 }
 
-double steal_between(const CpuTicks& a, const CpuTicks& b) noexcept {
-  return share(b.stolen - a.stolen, b.all - a.all);
+void SurroundingsWatch::begin() {
+  is_under_way_ = true;
+  begin_ = cpu_ticks();
 }
 
-double busy_between(const CpuTicks& a, const CpuTicks& b) noexcept {
-  return b.all == a.all ? 0 : 1 - share(b.idle - a.idle, b.all - a.all);
+void SurroundingsWatch::look(std::int64_t now_ns) {
+  if (!is_under_way_) begin();
+  if (now_ns - looked_ns_ < kLookNs) return;
+  looked_ns_ = now_ns;
+  runnable_ += std::max<std::int64_t>(0, runnable_threads() - 1);
+  ++looks_;
 }
 
-double load_average() {
-  double load = 0;
-  return getloadavg(&load, 1) == 1 ? load : 0;
+void SurroundingsWatch::end() {
+  if (!is_under_way_) return;
+  is_under_way_ = false;
+  const CpuTicks end = cpu_ticks();
+  sum_.all += end.all - begin_.all;
+  sum_.idle += end.idle - begin_.idle;
+  sum_.stolen += end.stolen - begin_.stolen;
+}
+
+Surroundings SurroundingsWatch::result() const noexcept {
+  Surroundings around;
+  if (looks_ > 0) around.runnable = static_cast<double>(runnable_) / static_cast<double>(looks_);
+  around.steal = share(sum_.stolen, sum_.all);
+  if (sum_.all > 0) around.busy = 1 - share(sum_.idle, sum_.all);
+  return around;
 }
 
 }  // namespace slew::cli

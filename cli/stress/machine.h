@@ -21,11 +21,26 @@ struct CpuTicks {
 };
 [[nodiscard]] CpuTicks cpu_ticks();
 
-// Share of the time between two looks that was stolen, or not idle: 0 to 1.
-[[nodiscard]] double steal_between(const CpuTicks& a, const CpuTicks& b) noexcept;
-[[nodiscard]] double busy_between(const CpuTicks& a, const CpuTicks& b) noexcept;
+// What went on there while something was measured.
+struct Surroundings {
+  double runnable = 0;  // threads of the machine that ran or were ready to, mean of 10 looks a second
+  double steal = 0;     // share of the processors' time that the host took: 0 to 1
+  double busy = 0;      // share in which they were not idle: 0 to 1
+};
 
-// Load average of the last minute; 0 where there is none.
-[[nodiscard]] double load_average();
+// Follows it over as many spans of time as there are.
+class SurroundingsWatch {
+ public:
+  void begin();
+  // Begins a span where none is under way. Called more often than 10 times a second. Who looks is not counted.
+  void look(std::int64_t now_ns);
+  void end();
+  [[nodiscard]] Surroundings result() const noexcept;
+
+ private:
+  bool is_under_way_ = false;
+  CpuTicks begin_, sum_;
+  std::int64_t looked_ns_ = 0, runnable_ = 0, looks_ = 0;
+};
 
 }  // namespace slew::cli

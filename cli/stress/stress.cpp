@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +13,8 @@
 #include "cli/distributed_run.h"
 #include "cli/interrupts.h"
 #include "cli/observer.h"
+#include "cli/stress/cell_watch.h"
 #include "cli/stress/passing_folder.h"
-#include "cli/stress/yardstick.h"
 #include "cli_support/failure.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_scene.h"
@@ -28,10 +27,6 @@ namespace {
 using cli_support::Failure;
 using wire::Role;
 
-constexpr double kLongestSlice = 20;  // s of a session between two slices of the yardstick
-constexpr double kYardstickShare = 0.25;
-constexpr std::int64_t kAskAgainNs = 1'000'000'000;
-
 bool fifo_is_allowed() {
   bool is_allowed = false;
   std::thread([&is_allowed] {
@@ -41,43 +36,6 @@ bool fifo_is_allowed() {
   }).join();
   return is_allowed;
 }
-
-// CPU time of a process of this machine so far; 0: it is gone.
-std::int64_t process_cpu_ns(std::uint32_t pid) noexcept {
-  clockid_t clock{};
-  timespec time{};
-  if (clock_getcpuclockid(static_cast<pid_t>(pid), &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
-// CPU time that the session's processes take for a step.
-class SessionWork {
- public:
-  // io's health has just said that the session is at this step.
-  void look(const SessionView& view, StepIndex step) noexcept {
-    Looked& at = first_.step == kJoinStep ? first_ : last_;
-    at.step = step;
-    for (const Role role : wire::kNodeRoles) at.cpu_ns[static_cast<std::size_t>(role)] = cpu_ns(view, role);
-  }
-  // Of a role's process, between the first look and the last one; 0: there was one alone.
-  [[nodiscard]] SimDuration of_step(Role role) const noexcept {
-    const auto r = static_cast<std::size_t>(role);
-    if (last_.step <= first_.step || first_.cpu_ns[r] == 0 || last_.cpu_ns[r] == 0) return {};
-    return {(last_.cpu_ns[r] - first_.cpu_ns[r]) / (last_.step - first_.step)};
-  }
-
- private:
-  struct Looked {
-    StepIndex step = kJoinStep;
-    std::array<std::int64_t, wire::kRoles> cpu_ns{};
-  };
-  static std::int64_t cpu_ns(const SessionView& view, Role role) noexcept {
-    const NodeView& node = view.node(role);
-    return node.is_known ? process_cpu_ns(node.status.pid) : 0;
-  }
-
-  Looked first_, last_;
-};
 
 int priority_of(Role role) noexcept {
   if (role == Role::io) return cli_support::kIoPriority;
@@ -101,100 +59,14 @@ std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, 
   return loops;
 }
 
-// Goes on beside a session: pauses it for the slices of the yardstick, and follows its response.
-class CellWatch {
- public:
-  CellWatch(const YardstickRules& rules, StepIndex steps, StressCell& cell)
-      : rules_(rules), cell_(cell), slices_(slices_of(rules, steps)), steps_(steps) {}
-
-  // Called some 50 times a second.
-  void look(Observer& observer, std::int64_t now_ns) {
-    const SessionView& view = observer.view();
-    if (!view.has_session() || view.step() <= 0) return;
-    follow(view);
-    switch (stage_) {
-      case Stage::stepping:
-        if (done_ == slices_ || view.is_over() || view.step() < steps_ * (done_ + 1) / (slices_ + 1)) return;
-        ask(observer, wire::ControlAction::pause, now_ns);
-        stage_ = Stage::pausing;
-        return;
-      case Stage::pausing:
-        if (view.is_over()) stage_ = Stage::stepping;
-        if (!view.is_paused()) return ask_again(observer, wire::ControlAction::pause, now_ns);
-        measure(view);
-        stage_ = Stage::measuring;
-        return;
-      case Stage::measuring:
-        if (yardstick_.is_running()) return;
-        ++done_;
-        ask(observer, wire::ControlAction::resume, now_ns);
-        stage_ = Stage::resuming;
-        return;
-      case Stage::resuming:
-        if (view.is_paused()) return ask_again(observer, wire::ControlAction::resume, now_ns);
-        stage_ = Stage::stepping;
-        return;
-    }
-  }
-
-  void finish() {
-    yardstick_.stop();
-    yardstick_.wait();
-    cell_.yardstick = yardstick_.result();
-    cell_.yardstick_loops = rules_.loops;
-    if (!yardstick_.problem().empty()) cell_.books = "yardstick: " + yardstick_.problem();
-  }
-
- private:
-  enum class Stage : std::uint8_t { stepping, pausing, measuring, resuming };
-
-  static StepIndex slices_of(const YardstickRules& rules, StepIndex steps) {
-    const double seconds = rules.step.seconds() * static_cast<double>(steps);
-    return std::max<StepIndex>(1, std::llround(std::ceil(seconds / kLongestSlice)));
-  }
-
-  void measure(const SessionView& view) {
-    if (done_ == 0) {
-      for (YardstickLoop& loop : rules_.loops) {
-        loop.work = work_.of_step(loop.role);
-        if (loop.ends_step)
-          loop.computing = std::min(loop.work, duration_of_seconds(view.node(loop.role).health.execution.p50));
-      }
-    }
-    const double session = rules_.step.seconds() * static_cast<double>(steps_);
-    yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));
-  }
-
-  void follow(const SessionView& view) {
-    const wire::Health& io = view.node(Role::io).health;
-    if (io.header.step <= followed_) return;
-    followed_ = io.header.step;
-    if (done_ == 0) work_.look(view, followed_);
-    if (io.response.count == 0) return;
-    cell_.response.time.push_back(static_cast<double>(followed_) * rules_.step.seconds());
-    cell_.response.values.push_back(io.response_recent * 1e6);
-  }
-
-  void ask(Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
-    wire::ControlRequest request;
-    request.action = action;
-    observer.send(request);
-    asked_ns_ = now_ns;
-  }
-  void ask_again(Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
-    if (now_ns - asked_ns_ > kAskAgainNs) ask(observer, action, now_ns);
-  }
-
-  YardstickRules rules_;
-  SessionWork work_;
-  StressCell& cell_;
-  Yardstick yardstick_;
-  Stage stage_ = Stage::stepping;
-  StepIndex slices_, done_ = 0;
-  StepIndex steps_;
-  StepIndex followed_ = 0;
-  std::int64_t asked_ns_ = 0;
-};
+YardstickRules rules_of(const scene::Scene& scene, std::vector<YardstickLoop> loops) {
+  YardstickRules rules;
+  rules.step = scene.session.step_duration();
+  rules.loops = std::move(loops);
+  rules.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
+  rules.overrun.grace = kYardstickGrace;
+  return rules;
+}
 
 RunOptions options_of(const StressWish& wish, const StressCell& cell, const std::string& runs) {
   RunOptions options;
@@ -265,12 +137,9 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
   RunOptions options = options_of(wish, cell, runs);
   options.is_refusal_told = is_refusal_told;
   const std::string places = wish.cpus.empty() ? scene.session.cpus : wish.cpus;
-  YardstickRules rules;
-  rules.step = scene.session.step_duration();
-  rules.overrun.lag = duration_of_seconds(scene.session.overrun_lag);
   const auto recording = wish.scene.is_recording ? io::Recording::required : io::Recording::none;
-  rules.loops = loops_of(cell.scheduling, io::required_roles(scene, recording), places);
-  CellWatch watch(rules, scene.session.steps(), cell);
+  const YardstickRules rules = rules_of(scene, loops_of(cell.scheduling, io::required_roles(scene, recording), places));
+  CellWatch watch(rules, scene.session.steps(), duration_of_seconds(scene.session.start_grace), cell);
   Status of_load;
   std::optional<LoadProcesses> load;
   options.each_round = [&](Observer& observer, std::int64_t now_ns) {
@@ -280,17 +149,12 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
     const auto step = static_cast<double>(std::max<StepIndex>(0, observer.view().step()));
     return progress(step / static_cast<double>(scene.session.steps()));
   };
-  const CpuTicks before = cpu_ticks();
   load.emplace(cell.load, folder);
   const RunOutcome outcome = run_distributed(options, session);
-  cell.load_average = load_average();
   if (of_load.is_ok()) of_load = load->check();
   load.reset();
   is_refusal_told = outcome.is_refusal_told;
-  const CpuTicks after = cpu_ticks();
   watch.finish();
-  cell.steal = steal_between(before, after);
-  cell.busy = busy_between(before, after);
   conclude(outcome, scene.session.steps(), of_load, cell);
   cell.step = scene.session.step;
   if (outcome.view.has_session()) cell.roles = outcome.view.session().required_roles;

@@ -53,7 +53,7 @@ struct StressCell {
   std::uint32_t roles = 0;                         // that took part
   wire::Health yardstick;
   std::vector<YardstickLoop> yardstick_loops;
-  double load_average = 0, steal = 0, busy = 0;
+  Surroundings around_session, around_yardstick;
   std::string books;          // what does not balance; empty: all does
   plotting::Series response;  // largest of every 0.1 s over the session's time
 };

@@ -59,10 +59,10 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
   return "";
 }
 
-std::vector<std::string> row_of(const std::string& what, const wire::Health& health) {
+std::vector<std::string> row_of(const std::string& what, const wire::Health& health, const Surroundings& around) {
   const wire::Quantiles& response = health.response;
   // zeros would read as if they had been measured
-  if (response.count == 0) return {what, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-"};
+  if (response.count == 0) return {what, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-"};
   return {what,
           std::to_string(response.count),
           std::to_string(given_up(health)),
@@ -73,28 +73,28 @@ std::vector<std::string> row_of(const std::string& what, const wire::Health& hea
           microseconds_text(response.p50),
           microseconds_text(response.p99),
           microseconds_text(response.p999),
-          microseconds_text(response.largest)};
+          microseconds_text(response.largest),
+          fmt::format("{:.1f}", around.runnable),
+          fmt::format("{:.2f}", 100 * around.steal)};
 }
 
 std::string table_of(const Stress& stress) {
   std::vector<std::vector<std::string>> rows = {{"scheduling", "load", "added us", "", "steps", "skipped", "missed",
-                                                 "%", "in a row", "min us", "p50", "p99", "p99.9", "max", "load avg",
+                                                 "%", "in a row", "min us", "p50", "p99", "p99.9", "max", "runnable",
                                                  "steal %", "verdict"}};
   for (const StressCell& cell : stress.cells) {
     const std::vector<std::string> cells = {std::string(to_text(cell.scheduling)), to_text(cell.load),
                                             fmt::format("{:g}", cell.work_us)};
-    std::vector<std::string> around = {fmt::format("{:.1f}", cell.load_average),
-                                       fmt::format("{:.2f}", 100 * cell.steal)};
-    if (!has_stepped(cell)) around = {"-", "-"};
     std::vector<std::string> session = cells;
-    for (std::string& text : row_of("session", session_of(cell))) session.push_back(std::move(text));
-    session.insert(session.end(), around.begin(), around.end());
+    for (std::string& text : row_of("session", session_of(cell), cell.around_session)) {
+      session.push_back(std::move(text));
+    }
     session.push_back(verdict_text(cell, stress.bounds));
     rows.push_back(std::move(session));
     if (cell.yardstick.response.count == 0) continue;
     std::vector<std::string> yardstick = {"", "", ""};
     const std::string name = fmt::format("yardstick {} us", microseconds_text(work_of(cell)));
-    for (std::string& text : row_of(name, cell.yardstick)) yardstick.push_back(std::move(text));
+    for (std::string& text : row_of(name, cell.yardstick, cell.around_yardstick)) yardstick.push_back(std::move(text));
     rows.push_back(std::move(yardstick));
   }
   return table_text(rows, "");
@@ -136,14 +136,17 @@ nlohmann::json node_of(const wire::Health& health) {
 }
 
 // of a loop that keeps books
-nlohmann::json paced_of(const wire::Health& health) {
+nlohmann::json paced_of(const wire::Health& health, const Surroundings& around) {
   nlohmann::json paced = timing_of(health);
   paced["skipped"] = given_up(health);
+  paced["runnable"] = around.runnable;
+  paced["steal"] = around.steal;
+  paced["busy"] = around.busy;
   return paced;
 }
 
 nlohmann::json yardstick_of(const StressCell& cell) {
-  nlohmann::json yardstick = paced_of(cell.yardstick);
+  nlohmann::json yardstick = paced_of(cell.yardstick, cell.around_yardstick);
   yardstick["work"] = work_of(cell);
   for (const YardstickLoop& loop : cell.yardstick_loops) {
     const std::string role(node::to_text(loop.role));
@@ -164,11 +167,8 @@ nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
   json["messages"] = cell.messages;
   json["steps"] = cell.steps;
   if (!has_stepped(cell)) return json;
-  json["session"] = paced_of(io);
+  json["session"] = paced_of(io, cell.around_session);
   if (cell.yardstick.response.count > 0) json["yardstick"] = yardstick_of(cell);
-  json["load_average"] = cell.load_average;
-  json["steal"] = cell.steal;
-  json["busy"] = cell.busy;
   json["books"] = {{"due", io.steps_due},
                    {"run", io.header.step},
                    {"skipped", io.steps_skipped},

@@ -70,7 +70,8 @@ void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
   take_place(rules.loops.front());
   wait_for(placed_, static_cast<std::int32_t>(followers.size()));
   io::SessionClock clock(rules.step, rules.overrun, *timing_);
-  const StepIndex steps = slice.ns / rules.step.ns;
+  const StepIndex not_judged = (rules.overrun.grace.ns + rules.step.ns - 1) / rules.step.ns;
+  const StepIndex steps = not_judged + slice.ns / rules.step.ns;
   std::int64_t last_ns = monotonic_ns();
   clock.begin(0, last_ns + rules.step.ns);
   StepIndex n = 0;

@@ -2,7 +2,8 @@
 // CPU time as the processes of the session do in it, one loop for each, all released at once. A step has ended when the
 // loops have computed what the nodes compute in it; what the session's processes need beside that (the middleware, io,
 // the recorder) is burned behind its end, though some of it is in front of the session's. Nothing is sent. Lag,
-// catching up and missing follow io_node's rules (io_node/session_clock.h).
+// catching up and missing follow io_node's rules (io_node/session_clock.h). The first steps of a slice, in which
+// threads and caches are cold, are its grace, as the session has one.
 #pragma once
 
 #include <atomic>
@@ -27,6 +28,8 @@ struct YardstickLoop {
   bool ends_step = true;             // else a load: the step does not wait for it
 };
 
+inline constexpr SimDuration kYardstickGrace = milliseconds(100);  // of a slice
+
 struct YardstickRules {
   SimDuration step;
   std::vector<YardstickLoop> loops;  // the first leads: it keeps the time
@@ -41,7 +44,7 @@ class Yardstick {
   Yardstick(const Yardstick&) = delete;
   Yardstick& operator=(const Yardstick&) = delete;
 
-  // Runs a slice on threads of its own.
+  // Runs a slice on threads of its own: the rules' grace, and then steps of so much time that are judged.
   void start(const YardstickRules& rules, SimDuration slice);
   [[nodiscard]] bool is_running() const noexcept { return is_running_.load(); }
   void wait();

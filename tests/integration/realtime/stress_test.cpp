@@ -83,6 +83,9 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
       EXPECT_LE(cell.at(who).at("missed"), cell.at(who).at("response").at("count"));
       EXPECT_LE(cell.at(who).at("skipped"), cell.at(who).at("missed"));
       EXPECT_LE(cell.at(who).at("longest_run_of_misses"), cell.at(who).at("missed"));
+      EXPECT_GT(cell.at(who).at("runnable"), 0) << who;
+      EXPECT_GT(cell.at(who).at("busy"), 0) << who;
+      EXPECT_GE(cell.at(who).at("steal"), 0) << who;
     }
     // half a second of start-up grace is not judged, and the step that the end cuts off; of the yardstick a quarter is
     // judged; what was given up was due too
@@ -164,6 +167,16 @@ TEST_F(Stress, ACellThatSomebodyEndsFails) {
                          "run it again"),
             std::string::npos)
       << message;
+}
+
+TEST_F(Stress, TheYardstickBurnsWhatTheSessionComputesInShortCellsToo) {
+  const CommandResult result = stress({"--json", "--no-record", "--seconds", "1.1"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json cell = json::parse(result.out).at("cells").at(0);
+  ASSERT_TRUE(cell.contains("yardstick")) << cell;
+  const json& yardstick = cell.at("yardstick");
+  for (const char* role : {"mechanics", "hydraulics"}) EXPECT_GT(yardstick.at("computing").at(role), 0) << role;
+  EXPECT_EQ(judged_and_done(yardstick), 275);
 }
 
 TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {

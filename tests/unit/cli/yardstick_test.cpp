@@ -26,6 +26,14 @@ wire::Health run(const YardstickRules& rules, StepIndex steps) {
   return yardstick.result();
 }
 
+TEST(Yardstick, TheFirstStepsOfASliceAreNotJudged) {
+  YardstickRules with_grace = rules({1000});
+  with_grace.overrun.grace = {2 * kStep.ns + 1};
+  const wire::Health health = run(with_grace, 20);
+  EXPECT_EQ(health.steps_done, 23u) << "three more than were asked for";
+  EXPECT_EQ(health.response.count - given_up(health), 20u);
+}
+
 TEST(Yardstick, StepsThatItGivesUpAreMisses) {
   YardstickRules slow = rules({4 * kStep.ns});
   slow.overrun.lag = kStep;
