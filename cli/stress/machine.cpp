@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "cli/stress/preemption.h"
 #include "core/real_time_thread.h"
 
 namespace slew::cli {
@@ -40,6 +41,7 @@ Machine this_machine() {
   Machine machine;
   utsname name{};
   if (uname(&name) == 0) machine.kernel = std::string(name.sysname) + " " + name.release + " " + name.version;
+  machine.preemption = preemption_model(name.release, name.version);
   machine.processor = processor_name();
   machine.cpus = static_cast<int>(usable_cpus().size());
   return machine;

@@ -7,9 +7,10 @@
 namespace slew::cli {
 
 struct Machine {
-  std::string kernel;     // "Linux 6.1.0 #1 SMP PREEMPT_DYNAMIC"
-  std::string processor;  // its name
-  int cpus = 0;           // usable by this process
+  std::string kernel;      // "Linux 6.1.0 #1 SMP PREEMPT_DYNAMIC"
+  std::string preemption;  // preemption_model()
+  std::string processor;   // its name
+  int cpus = 0;            // usable by this process
 };
 [[nodiscard]] Machine this_machine();
 

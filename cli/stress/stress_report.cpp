@@ -186,8 +186,8 @@ nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
 }
 
 std::string heading(const Stress& stress) {
-  return fmt::format("{}, {} s a cell, {} processors {}, {}", stress.scene, stress.wish.seconds, stress.machine.cpus,
-                     stress.machine.processor, stress.machine.kernel);
+  return fmt::format("{}, {} s a cell, {} processors {}, {}, preemption {}", stress.scene, stress.wish.seconds,
+                     stress.machine.cpus, stress.machine.processor, stress.machine.kernel, stress.machine.preemption);
 }
 
 }  // namespace
@@ -207,6 +207,7 @@ std::string report_json(const Stress& stress) {
   nlohmann::json json = {{"scene", stress.scene},
                          {"seconds", stress.wish.seconds},
                          {"kernel", stress.machine.kernel},
+                         {"preemption", stress.machine.preemption},
                          {"processor", stress.machine.processor},
                          {"processors", stress.machine.cpus},
                          {"exit_code", static_cast<int>(exit_code_of(stress))},

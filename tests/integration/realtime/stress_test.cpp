@@ -66,6 +66,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   ASSERT_EQ(result.code, 0) << result.err;
   const json report = json::parse(result.out);
   EXPECT_FALSE(report.at("kernel").get<std::string>().empty());
+  EXPECT_FALSE(report.at("preemption").get<std::string>().empty());
   ASSERT_EQ(report.at("cells").size(), 2u);
   for (const json& cell : report.at("cells")) {
     EXPECT_EQ(cell.at("scheduling"), "normal");
@@ -182,6 +183,7 @@ TEST_F(Stress, TheYardstickBurnsWhatTheSessionComputesInShortCellsToo) {
 TEST_F(Stress, EndsWithCode3WhenABoundIsNotKept) {
   const CommandResult result = stress({"--no-record", "--p99", "0.001"});
   EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_NE(result.out.find(", preemption "), std::string::npos) << result.out;
   const std::size_t verdict = result.out.find("over, as the yardstick"), told = result.out.find("over; the yardstick");
   EXPECT_TRUE(verdict != std::string::npos || told != std::string::npos) << result.out;
   EXPECT_NE(result.out.find("steps due = "), std::string::npos) << result.out;
