@@ -124,6 +124,7 @@ nlohmann::json timing_of(const wire::Health& health) {
 
 nlohmann::json node_of(const wire::Health& health) {
   nlohmann::json node = timing_of(health);
+  node["steps_done"] = health.steps_done;
   node["execution"] = json_of(health.execution);
   node["wait"] = json_of(health.wait);
   node["waited"] = {{"io", health.waited[0]},
@@ -152,6 +153,7 @@ nlohmann::json yardstick_of(const StressCell& cell) {
     const std::string role(node::to_text(loop.role));
     yardstick["loops"][role] = loop.work.seconds();
     yardstick["computing"][role] = loop.computing.seconds();
+    yardstick["priorities"][role] = loop.priority;
   }
   return yardstick;
 }

@@ -1,5 +1,7 @@
 // `slewring stress`: what it tells and with which code. Bounds are such that they are always or never kept.
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +9,11 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "../../support/test_domain.h"
 #include "command.h"
+#include "tests/support/nightly.h"
 
 namespace slew::testing {
 namespace {
@@ -262,6 +266,97 @@ TEST_F(Stress, ALoadThatIsKilledFailsItsCell) {
             std::string::npos)
       << result.out;
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
+}
+
+// Priorities of the threads of a process that are scheduled FIFO.
+std::multiset<int> fifo_priorities(pid_t pid) {
+  std::multiset<int> priorities;
+  std::error_code gone;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/task", gone)) {
+    const pid_t thread = std::stoi(task.path().filename());
+    sched_param parameters{};
+    if (sched_getscheduler(thread) != SCHED_FIFO || sched_getparam(thread, &parameters) != 0) continue;
+    priorities.insert(parameters.sched_priority);
+  }
+  return priorities;
+}
+
+// What was seen of a cell from outside while it ran.
+struct SeenCell {
+  pid_t io = 0;
+  std::multiset<int> nodes;  // priorities of the nodes' loops that are FIFO
+  std::multiset<int> loops;  // of the yardstick's
+};
+
+void look_at_cell(pid_t stress, std::vector<SeenCell>& cells) {
+  const pid_t io = child_of(stress, "io_node");
+  if (io <= 0) return;
+  if (cells.empty() || cells.back().io != io) cells.push_back({io, {}, {}});
+  std::multiset<int> nodes;
+  for (const char* program : {"io_node", "mechanics_node", "hydraulics_node", "recorder_node"}) {
+    const pid_t pid = child_of(stress, program);
+    sched_param parameters{};
+    if (pid <= 0 || sched_getscheduler(pid) != SCHED_FIFO || sched_getparam(pid, &parameters) != 0) continue;
+    nodes.insert(parameters.sched_priority);
+  }
+  std::multiset<int> loops = fifo_priorities(stress);
+  SeenCell& cell = cells.back();
+  // they come and go one after the other
+  if (nodes.size() > cell.nodes.size()) cell.nodes = std::move(nodes);
+  if (loops.size() > cell.loops.size()) cell.loops = std::move(loops);
+}
+
+// By counts of the processes themselves beside io's.
+void expect_balanced(const json& cell) {
+  const json& books = cell.at("books");
+  EXPECT_TRUE(books.at("balance")) << books;
+  EXPECT_EQ(books.at("run"), 2000) << cell;
+  for (const char* role : {"mechanics", "hydraulics"}) {
+    EXPECT_EQ(cell.at("nodes").at(role).at("steps_done"), 2000) << role;
+  }
+  const double rest = books.at("rest");
+  const double behind = rest < 0 ? 0 : std::floor(rest / 1e-3) + 1;
+  EXPECT_EQ(books.at("due").get<double>(), 2000 + books.at("skipped").get<double>() + behind);
+  EXPECT_NEAR(books.at("lag").get<double>(), books.at("skipped").get<double>() * 1e-3 + rest, 1e-9);
+}
+
+TEST_F(Stress, TheWholeMatrixIsRunWithTheSchedulingOfItsCells) {
+  if (rounds(0, 1) == 0) GTEST_SKIP() << "nightly: it takes more than a minute";
+  if (geteuid() != 0) GTEST_SKIP() << "needs the right to SCHED_FIFO: run it as root";
+  Command session("slewring", arguments({"--json", "--matrix", "--max-miss", "100"}), work_.path());
+  std::vector<SeenCell> seen;
+  int round = 0;
+  ASSERT_TRUE(wait_until(
+      [&] {
+        // every 50 ms: a look reads all of /proc
+        if (round++ % 10 == 0) look_at_cell(session.pid(), seen);
+        return session.has_ended();
+      },
+      200));
+  const CommandResult result = session.wait();
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json cells = json::parse(result.out).at("cells");
+  ASSERT_EQ(cells.size(), 12u);
+  ASSERT_EQ(seen.size(), 12u);
+  std::size_t i = 0;
+  for (const char* scheduling : {"normal", "FIFO"}) {
+    for (const char* load : {"none", "cpu", "mixed"}) {
+      for (const double added : {0.0, 200e-6}) {
+        const json& cell = cells.at(i);
+        const SeenCell& from_outside = seen.at(i++);
+        SCOPED_TRACE(std::string(scheduling) + ", load " + load + ", " + std::to_string(added) + " s added");
+        EXPECT_EQ(cell.at("scheduling"), scheduling);
+        EXPECT_EQ(cell.at("load"), load);
+        EXPECT_DOUBLE_EQ(cell.at("added_work"), added);
+        EXPECT_EQ(cell.at("verdict"), "within");
+        expect_balanced(cell);
+        const bool is_fifo = std::string(scheduling) == "FIFO";
+        const std::multiset<int> priorities = is_fifo ? std::multiset<int>{30, 20, 20, 10} : std::multiset<int>{};
+        EXPECT_EQ(from_outside.nodes, priorities);
+        EXPECT_EQ(from_outside.loops, priorities) << "the bare loops have the session's";
+      }
+    }
+  }
 }
 
 }  // namespace
