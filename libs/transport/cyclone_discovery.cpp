@@ -161,6 +161,37 @@ std::vector<dds_data_representation_id_t> representations(const dds_qos_t* qos) 
   return found;
 }
 
+// Of the policies about times and orders, which our own endpoints have at their defaults: a writer of others can only
+// have too large a latency budget, the rest is asked for by readers.
+std::string timing_problem(const dds_qos_t* offered, const dds_qos_t* requested) {
+  dds_duration_t every = DDS_INFINITY, within = DDS_INFINITY;
+  dds_qget_deadline(offered, &every);
+  dds_qget_deadline(requested, &within);
+  if (every > within) return "a deadline shorter than the one that is offered (none is expected)";
+  dds_duration_t takes = 0, bears = 0;
+  dds_qget_latency_budget(offered, &takes);
+  dds_qget_latency_budget(requested, &bears);
+  if (takes > bears) return "a latency budget above the one that is asked for (0 is expected)";
+  dds_liveliness_kind_t shows{}, wants{};
+  dds_duration_t lease = DDS_INFINITY, wanted_lease = DDS_INFINITY;
+  dds_qget_liveliness(offered, &shows, &lease);
+  dds_qget_liveliness(requested, &wants, &wanted_lease);
+  if (shows < wants) return "another kind of liveliness (automatic is expected)";
+  if (lease > wanted_lease) return "a lease of its liveliness shorter than the one that is offered (none is expected)";
+  dds_destination_order_kind_t orders{}, wants_order{};
+  dds_qget_destination_order(offered, &orders);
+  dds_qget_destination_order(requested, &wants_order);
+  if (orders < wants_order) return "another destination order (by reception timestamp is expected)";
+  dds_presentation_access_scope_kind_t scope{}, wants_scope{};
+  bool is_coherent = false, wants_coherent = false, is_ordered = false, wants_ordered = false;
+  dds_qget_presentation(offered, &scope, &is_coherent, &is_ordered);
+  dds_qget_presentation(requested, &wants_scope, &wants_coherent, &wants_ordered);
+  if (scope < wants_scope || (wants_coherent && !is_coherent) || (wants_ordered && !is_ordered)) {
+    return "another presentation (access scope instance, neither coherent nor ordered, is expected)";
+  }
+  return "";
+}
+
 // Why a reader that asks for `requested` does not hear a writer that offers `offered`, of the other program's side;
 // empty: it does.
 std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested, bool is_of_writer) {
@@ -183,11 +214,7 @@ std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested, bo
   dds_qget_ownership(offered, &of_writer);
   dds_qget_ownership(requested, &of_reader);
   if (of_writer != of_reader) return "another kind of ownership (shared is expected)";
-  dds_duration_t every = DDS_INFINITY, within = DDS_INFINITY;
-  dds_qget_deadline(offered, &every);
-  dds_qget_deadline(requested, &within);
-  if (every > within) return "a deadline longer than the one that is asked for (none is expected)";
-  return "";
+  return timing_problem(offered, requested);
 }
 
 }  // namespace

@@ -26,12 +26,15 @@ constexpr const char* kSession = "interop";
 // A participant of generated types, as another program has it.
 class TypedProgram {
  public:
-  explicit TypedProgram(std::uint32_t domain) {
+  // `change` gets the QoS of publisher and subscriber
+  explicit TypedProgram(
+      std::uint32_t domain, void (*change)(dds_qos_t*) = [](dds_qos_t*) {}) {
     static_cast<void>(CycloneDomain::open({domain, "lo", {}}, domain_));
     participant_ = dds_create_participant(domain, nullptr, nullptr);
     dds_qos_t* partition = dds_create_qos();
     const char* names[] = {"slewring/interop"};
     dds_qset_partition(partition, 1, names);
+    change(partition);
     publisher_ = dds_create_publisher(participant_, partition, nullptr);
     subscriber_ = dds_create_subscriber(participant_, partition, nullptr);
     dds_delete_qos(partition);
@@ -248,6 +251,75 @@ TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
   ASSERT_TRUE(transport->publish(Topic::health, bytes).is_ok());
   EXPECT_EQ(program.wait(), 0);
 }
+
+// A reader that asks for more than our writers offer, or a writer that offers less than our readers ask for.
+struct QosMisfit {
+  const char* name;
+  bool is_writer;
+  void (*change)(dds_qos_t* qos);
+  const char* problem;
+};
+
+bool take_part_with(std::uint32_t domain, const QosMisfit& misfit) {
+  TypedProgram program(domain, misfit.change);
+  misfit.change(program.qos());
+  const dds_entity_t made = misfit.is_writer ? program.writer(slewring_Tick_desc, "slewring/tick")
+                                             : program.reader(slewring_ControlRequest_desc, "slewring/control_request");
+  if (made < 0) return false;
+  pause();  // until killed
+  return true;
+}
+
+class ForeignQos : public ::testing::TestWithParam<QosMisfit> {};
+
+TEST_P(ForeignQos, ThatDoesNotFitIsNamed) {
+  const testing::TestDomain domain;
+  ChildProcess program([&] { return take_part_with(domain.number(), GetParam()); });
+  std::unique_ptr<CycloneTransport> transport;
+  const Status status =
+      CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+                             {kSession, "observer", {Topic::control_request}, {Topic::tick}}, transport);
+  ASSERT_TRUE(status.is_ok()) << status.text;
+  std::vector<std::string> misfits;
+  EXPECT_TRUE(eventually([&] {
+    misfits = transport->misfits();
+    return !misfits.empty();
+  }));
+  const std::string does =
+      GetParam().is_writer ? "writes topic 'slewring/tick' with " : "reads topic 'slewring/control_request' with ";
+  const std::string so = GetParam().is_writer ? "; it is not heard" : "; it hears nothing";
+  EXPECT_EQ(misfits, std::vector<std::string>{"a program that is not of Slewring " + does + GetParam().problem + so +
+                                              "; see idl/README.md"});
+  EXPECT_EQ(transport->matched_readers(Topic::control_request), 0u);
+}
+
+std::string name_of(const ::testing::TestParamInfo<QosMisfit>& misfit) {
+  return misfit.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, ForeignQos,
+    ::testing::Values(
+        QosMisfit{"Deadline", false, [](dds_qos_t* qos) { dds_qset_deadline(qos, DDS_MSECS(100)); },
+                  "a deadline shorter than the one that is offered (none is expected)"},
+        QosMisfit{"LatencyBudget", true, [](dds_qos_t* qos) { dds_qset_latency_budget(qos, DDS_MSECS(1)); },
+                  "a latency budget above the one that is asked for (0 is expected)"},
+        QosMisfit{"LivelinessKind", false,
+                  [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_INFINITY); },
+                  "another kind of liveliness (automatic is expected)"},
+        QosMisfit{"LivelinessLease", false,
+                  [](dds_qos_t* qos) { dds_qset_liveliness(qos, DDS_LIVELINESS_AUTOMATIC, DDS_MSECS(500)); },
+                  "a lease of its liveliness shorter than the one that is offered (none is expected)"},
+        QosMisfit{"DestinationOrder", false,
+                  [](dds_qos_t* qos) { dds_qset_destination_order(qos, DDS_DESTINATIONORDER_BY_SOURCE_TIMESTAMP); },
+                  "another destination order (by reception timestamp is expected)"},
+        QosMisfit{"PresentationScope", false,
+                  [](dds_qos_t* qos) { dds_qset_presentation(qos, DDS_PRESENTATION_TOPIC, false, false); },
+                  "another presentation (access scope instance, neither coherent nor ordered, is expected)"},
+        QosMisfit{"PresentationOrder", false,
+                  [](dds_qos_t* qos) { dds_qset_presentation(qos, DDS_PRESENTATION_INSTANCE, false, true); },
+                  "another presentation (access scope instance, neither coherent nor ordered, is expected)"}),
+    name_of);
 
 }  // namespace
 }  // namespace slew::transport
