@@ -1,6 +1,6 @@
 // A controller that prints what the library tells it, a line each, for tests that stop it, kill it and start it twice.
 //
-//   client_probe SESSION DOMAIN NAME CHANNEL
+//   client_probe SESSION DOMAIN NAME CHANNEL STEP_TIME_OUT
 #include <cstdio>
 #include <cstdlib>
 
@@ -9,7 +9,6 @@
 namespace {
 
 constexpr double kSoon = 20;      // s
-constexpr double kStepTime = 1;   // s, for a block to come
 constexpr double kStick = 0.375;  // of every answer
 
 void say(const char* what, const char* text = "") {
@@ -28,10 +27,10 @@ int take(slewring_session* session, const char* channel) {
   return handle;
 }
 
-void follow(slewring_session* session, const char* name) {
+void follow(slewring_session* session, const char* name, double timeout) {
   int channel = take(session, name);
   while (channel >= 0) {
-    switch (slewring_step(session, kStepTime)) {
+    switch (slewring_step(session, timeout)) {
       case SLEWRING_OK:
         slewring_write(session, channel, kStick);
         break;
@@ -52,14 +51,14 @@ void follow(slewring_session* session, const char* name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) return 2;
+  if (argc != 6) return 2;
   slewring_session* session =
       slewring_join(argv[1], argv[3], static_cast<unsigned>(std::atoi(argv[2])), "lo", "", kSoon);
   if (session == nullptr) {
     say("not joined: ", slewring_error(nullptr));
     return 1;
   }
-  follow(session, argv[4]);
+  follow(session, argv[4], std::atof(argv[5]));
   slewring_leave(session);
   return 0;
 }

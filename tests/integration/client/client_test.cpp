@@ -58,8 +58,10 @@ class ClientLibrary : public ::testing::Test {
     return false;
   }
   // a controller in a process of its own, which prints what it is told
-  [[nodiscard]] std::unique_ptr<Program> start_probe(const std::string& name, const std::string& output) const {
-    const std::vector<std::string> arguments = {session->name(), std::to_string(session->domain()), name, "Input_Lift"};
+  [[nodiscard]] std::unique_ptr<Program> start_probe(const std::string& name, const std::string& output,
+                                                     const char* timeout = "20") const {
+    const std::vector<std::string> arguments = {session->name(), std::to_string(session->domain()), name, "Input_Lift",
+                                                timeout};
     return std::make_unique<Program>(program_path("client_probe"), arguments, session->folder() / output);
   }
   // reads blocks until the step, so that a test's patience is in steps of the session
@@ -372,14 +374,16 @@ TEST_F(ClientLibrary, WhoStoodStillOverAResetLearnsOfIt) {
 TEST_F(ClientLibrary, ItsOwnStandstillIsNoTimeOut) {
   start();
   const Client reader = join("reader");
-  const auto probe = start_probe("probe", "probe");
+  const auto probe = start_probe("probe", "probe", "3");
   ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
-  for (int i = 0; i < 3; ++i) {
-    read_to(reader.get(), slewring_present_step(reader.get()) + 200);
-    probe->send(SIGSTOP);
-    read_to(reader.get(), slewring_present_step(reader.get()) + 1500);  // its time-out is 1 s
-    probe->send(SIGCONT);
-  }
+  // no block comes, so that it finds none when it wakes up behind its time-out
+  control("pause");
+  probe->send(SIGSTOP);
+  int code = SLEWRING_OK;
+  while (code == SLEWRING_OK) code = slewring_step(reader.get(), 3.5);
+  EXPECT_EQ(code, SLEWRING_TIMEOUT);
+  probe->send(SIGCONT);
+  control("resume");
   read_to(reader.get(), slewring_present_step(reader.get()) + 200);
   EXPECT_EQ(probe->out(), "acquired\n") << session->said();
   stop();
