@@ -3,6 +3,7 @@
 #include <dds/ddsrt/log.h>
 
 #include <cstdio>
+#include <string_view>
 
 #include "core/time.h"
 
@@ -10,6 +11,12 @@ namespace slew::transport {
 namespace {
 
 constexpr std::int64_t kInterval = 1'000'000'000;  // ns between two lines
+
+// Cyclone says so of everybody that it hears while this process has no participant yet, or none any more, and asks
+// again 0.5 s later. Of somebody who is really refused it has told before what does not fit.
+bool is_false_alarm(std::string_view line) {
+  return line.starts_with("Remote secure participant ") && line.ends_with(" not allowed");
+}
 
 void sink(void* log, const dds_log_data_t* entry) {
   static_cast<CycloneLog*>(log)->write(entry->message, entry->size);
@@ -39,8 +46,10 @@ std::string CycloneLog::last_line() const {
 
 void CycloneLog::write(const char* message, std::size_t size) {
   const std::lock_guard lock(mutex_);
-  last_line_.assign(message, size);
-  while (!last_line_.empty() && last_line_.back() == '\n') last_line_.pop_back();
+  std::string_view line(message, size);
+  while (line.ends_with('\n')) line.remove_suffix(1);
+  if (is_false_alarm(line)) return;
+  last_line_ = line;
   if (echo_ == Echo::off) return;
   const std::int64_t now = monotonic_ns();
   if (last_printed_ns_ != 0 && now - last_printed_ns_ < kInterval) {

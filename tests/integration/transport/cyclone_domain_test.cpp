@@ -71,5 +71,17 @@ TEST(CycloneSockets, OfTheDomainHearLoopbackAloneAndThoseOfTheProgramAreLeftAlon
   }
 }
 
+TEST(CycloneMessages, OfWhoCannotBeMatchedYetNothingIsSaid) {
+  CycloneLog log;
+  const auto write = [&](const std::string& line) { log.write(line.data(), line.size()); };
+  ::testing::internal::CaptureStderr();
+  write("Remote secure participant 8457bbc2:e7e764c:2db260e0:1c1 not allowed\n");
+  EXPECT_EQ(log.last_line(), "");
+  const std::string mismatch = "match remote_participant a with participant b security_attributes mismatch: 1 - 2";
+  write(mismatch + "\n");
+  write("Remote secure participant 8457bbc2:e7e764c:2db260e0:1c1 not allowed\n");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "slewring: DDS: " + mismatch + "\n");
+}
+
 }  // namespace
 }  // namespace slew::transport
