@@ -247,8 +247,9 @@ void KeyStore::revoke(const std::string& name) {
   if (!error) fs::rename(folder_, old.path(), error);
   if (!error) {
     fs::rename(made.path(), folder_, error);
-    std::error_code ignored;
-    if (error) fs::rename(old.path(), folder_, ignored);
+    std::error_code stuck;
+    if (error) fs::rename(old.path(), folder_, stuck);
+    if (stuck) old.keep();  // all there is of the store
   }
   if (error) throw storage_failure(folder_, "the store could not be replaced (" + error.message() + ")");
   take_over_foreign(old);
