@@ -166,7 +166,7 @@ void FaultyCarrier::deliver(const transport::Received& message) {
       ++count_.late;
       last_ns += delay();
     }
-    put(message, last_ns);
+    put(message, due_ns(last_ns - now_ns));
     return;
   }
   if (is_over) {
@@ -179,16 +179,24 @@ void FaultyCarrier::deliver(const transport::Received& message) {
   }
   const int copies = happens(plan_.messages.duplicate) ? 2 : 1;
   count_.doubled += static_cast<std::uint64_t>(copies - 1);
+  std::int64_t& last_ns = last_due_[{header.role, message.topic}];
+  const std::int64_t before_ns = last_ns;
   for (int i = 0; i < copies; ++i) {
     const bool is_late = happens(plan_.messages.late);
     count_.late += is_late ? 1 : 0;
-    put(message, now_ns + (is_late ? delay() : 0));
+    const std::int64_t at_ns = due_ns(is_late ? delay() : 0);
+    count_.overtaken += at_ns < before_ns ? 1 : 0;
+    last_ns = std::max(last_ns, at_ns);
+    put(message, at_ns);
   }
 }
 
 // with the faults the delays end
+std::int64_t FaultyCarrier::due_ns(std::int64_t delay_ns) const noexcept {
+  return std::min(clock_.now_ns + delay_ns, std::max(clock_.now_ns, plan_.end_ns));
+}
+
 void FaultyCarrier::put(const transport::Received& message, std::int64_t due_ns) {
-  due_ns = std::min(due_ns, std::max(clock_.now_ns, plan_.end_ns));
   pending_.emplace(due_ns, Pending{message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
 }
 

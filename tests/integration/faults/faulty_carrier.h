@@ -72,6 +72,7 @@ struct FaultPlan {
 // What was done to messages.
 struct FaultCount {
   std::uint64_t lost = 0, doubled = 0, late = 0;
+  std::uint64_t overtaken = 0;  // by one of its own writer and topic that was sent behind it
 };
 
 // The receiving side of a node's place at the bus. Sending is left as it is.
@@ -100,6 +101,7 @@ class FaultyCarrier final : public transport::Transport {
 
   void fetch();
   void deliver(const transport::Received& message);
+  [[nodiscard]] std::int64_t due_ns(std::int64_t delay_ns) const noexcept;
   void put(const transport::Received& message, std::int64_t due_ns);
   [[nodiscard]] bool happens(double chance);
   [[nodiscard]] std::int64_t delay();
@@ -112,6 +114,7 @@ class FaultyCarrier final : public transport::Transport {
   std::mt19937_64 random_;
   std::multimap<std::int64_t, Pending> pending_;                          // by the time at which they are there
   std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_said_;  // due, of a dialogue
+  std::map<std::pair<wire::Role, wire::Topic>, std::int64_t> last_due_;   // of all that was sent so far
   Pending taken_;
 };
 
