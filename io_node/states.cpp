@@ -250,11 +250,14 @@ bool IoNode::advance_saving(std::int64_t now_ns) {
   }
   if (saving_->deadline_ns == 0 && n_ >= saving_->step) saving_->deadline_ns = now_ns + kSaveTimeout.ns;
   if (saving_->deadline_ns != 0 && now_ns > saving_->deadline_ns) {
-    answer_asked(saving_->request, false,
-                 member_.describe_peer(missing.value_or(Role::io)) + " has not given its state of step " +
-                     std::to_string(saving_->step) + " within " + node::seconds_text(kSaveTimeout) +
-                     "; nothing was saved, the session goes on",
-                 n_);
+    const std::string missed = member_.describe_peer(missing.value_or(Role::io)) + " has not given its state of step " +
+                               std::to_string(saving_->step) + " within " + node::seconds_text(kSaveTimeout);
+    if (saving_->is_given) {
+      answer_asked(saving_->request, false, missed + "; nothing was saved, the session goes on", n_);
+    } else {
+      member_.warn(missed + ", or one above " + std::to_string(node::kMaxStateBytes >> 20) +
+                   " MiB; the session goes on, but until a state of it has come no other process can take its place");
+    }
     saving_.reset();
     return true;
   }

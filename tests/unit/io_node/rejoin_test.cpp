@@ -29,8 +29,8 @@ class Rejoin : public ::testing::Test {
   }
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
 
-  void get_running(IoConfig with) {
-    const bool holds_places = with.rejoin.ns > 0;
+  // every node is ready and has its first sample
+  void get_ready(IoConfig with) {
     node = std::make_unique<IoNode>(played.carrier(), std::move(with));
     poll();
     const auto sessions = played.said<wire::SessionDescription>(Topic::session);
@@ -49,6 +49,11 @@ class Rejoin : public ::testing::Test {
     played.say_mechanism(0);
     played.say_actuators(0);
     poll(kMs);
+  }
+  void get_running(IoConfig with) {
+    const bool holds_places = with.rejoin.ns > 0;
+    get_ready(std::move(with));
+    if (HasFatalFailure()) return;
     if (holds_places) {
       EXPECT_EQ(node->next_step(), 0) << "a tick before everybody can be replaced";
       say_checkpoint(Role::mechanics, 0);
@@ -167,6 +172,25 @@ TEST_F(Rejoin, HoldsThePlaceGivesTheStateAndGoesOn) {
   EXPECT_NE(warnings.back().find("(process 4711 on elsewhere) goes on in the place of hydraulics (process "),
             std::string::npos)
       << warnings.back();
+}
+
+TEST_F(Rejoin, AFirstStateThatDoesNotComeIsTold) {
+  get_ready(config(milliseconds(30'000)));
+  say_checkpoint(Role::mechanics, 0);
+  static_cast<void>(node->member().take_warnings());  // of other builds
+  for (std::int64_t ms = 0; ms < 2 * kSaveTimeout.ns / kMs && node->next_step() == 0; ms += 100) {
+    EXPECT_TRUE(node->member().take_warnings().empty());
+    for (const Role role : {Role::mechanics, Role::hydraulics}) played.say_status(role, NodeState::ready, 0);
+    poll(100 * kMs);
+  }
+  EXPECT_EQ(node->next_step(), 1) << "the session goes on";
+  const std::vector<std::string> warnings = node->member().take_warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("hydraulics (process "), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("has not given its state of step 0 within 5 s, or one above 4 MiB; the session goes on, "
+                             "but until a state of it has come no other process can take its place"),
+            std::string::npos)
+      << warnings[0];
 }
 
 TEST_F(Rejoin, TheHoldAndWhatIsComputedAgainAreNoLagOfTheMachine) {
