@@ -214,6 +214,7 @@ TEST_F(LostMessages, CostAnExportedInputItsOwnRowsOnly) {
 
 TEST_F(LostMessages, OfATickAreAGapAndNoOtherBuildsFault) {
   ASSERT_NO_FATAL_FAILURE(record_pendulums());
+  lossy_ = (work_.path() / "gap.mcap").string();
   copy_changed(whole_, lossy_, [](Content& content) {
     content.identity.build = "another build";
     EXPECT_EQ(
