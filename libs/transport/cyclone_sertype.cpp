@@ -6,9 +6,10 @@
 #include <dds/ddsi/q_radmin.h>
 #include <dds/ddsrt/heap.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <new>
+
+#include "transport/sample_pool.h"
 
 namespace slew::transport {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 struct RawType {
   ddsi_sertype common;  // first: Cyclone sees only this
   const dds_topic_descriptor_t* descriptor;
+  SamplePool* samples;
 };
 
 struct RawSample {
@@ -38,18 +40,16 @@ const RawType& raw(const ddsi_sertype* type) {
 constexpr std::size_t kTail = 4;
 
 RawSample* new_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) {
-  void* memory = std::malloc(sizeof(RawSample) + size + kTail);
-  if (memory == nullptr) throw std::bad_alloc();
-  auto* sample = new (memory) RawSample{};
+  auto* sample = new (raw(type).samples->take(sizeof(RawSample) + size + kTail)) RawSample{};
   ddsi_serdata_init(&sample->common, type, kind);
-  sample->common.hash = type != nullptr ? type->serdata_basehash : 0;
+  sample->common.hash = type->serdata_basehash;
   sample->size = static_cast<std::uint32_t>(size);
   std::memset(sample->bytes() + size, 0, kTail);
   return sample;
 }
 
 void sample_free(ddsi_serdata* sample) {
-  std::free(sample);
+  SamplePool::give_back(sample);
 }
 
 std::uint32_t sample_size(const ddsi_serdata* sample) {
@@ -155,6 +155,7 @@ constexpr ddsi_serdata_ops kSampleOps = {.eqkey = sample_eqkey,
 
 void type_free(ddsi_sertype* type) {
   ddsi_sertype_fini(type);
+  raw(type).samples->close();
   delete reinterpret_cast<RawType*>(type);
 }
 
@@ -215,9 +216,10 @@ constexpr ddsi_sertype_ops kTypeOps = {.version = ddsi_sertype_v0,
 }  // namespace
 
 dds_entity_t create_raw_topic(dds_entity_t participant, const dds_topic_descriptor_t& descriptor, const char* name,
-                              const ddsi_sertype*& type) {
+                              std::size_t room, const ddsi_sertype*& type) {
   auto* own = new RawType{};
   own->descriptor = &descriptor;
+  own->samples = SamplePool::create(room);
   ddsi_sertype_init(&own->common, descriptor.m_typename, &kTypeOps, &kSampleOps, /*topickind_no_key=*/true);
   own->common.allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   ddsi_sertype* used = &own->common;

@@ -15,9 +15,9 @@
 namespace slew::transport {
 
 // Creates the topic with the type of `descriptor`; returns the topic or a negative error. `type` is then the type for
-// make_sample(), alive as long as the topic.
+// make_sample(), alive as long as the topic. room: samples that there is memory for from the first one on.
 [[nodiscard]] dds_entity_t create_raw_topic(dds_entity_t participant, const dds_topic_descriptor_t& descriptor,
-                                            const char* name, const ddsi_sertype*& type);
+                                            const char* name, std::size_t room, const ddsi_sertype*& type);
 
 // A sample with a copy of the bytes (encapsulation header first) for dds_writecdr, which takes over the reference.
 [[nodiscard]] ddsi_serdata* make_sample(const ddsi_sertype& type, std::span<const std::byte> bytes);

@@ -17,7 +17,8 @@ namespace {
 
 static_assert(wire::kTopics < 31);
 
-constexpr std::int32_t kWriters = 4;  // of variables: io, mechanics, hydraulics, flex; of inputs: as many controllers
+constexpr std::size_t kInFlight = 64;  // messages that have come and were not taken, or were written and go out
+constexpr std::int32_t kWriters = 4;   // of variables: io, mechanics, hydraulics, flex; of inputs: as many controllers
 
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
@@ -172,7 +173,9 @@ bool CycloneTransport::hears_kept(wire::Topic topic) const noexcept {
 
 Status CycloneTransport::create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber) {
   const auto i = static_cast<std::size_t>(topic);
-  const dds_entity_t handle = create_raw_topic(participant_, *kDescriptors[i], traits(topic).name, types_[i]);
+  const std::size_t room =
+      kInFlight + (options_.writes.contains(topic) ? static_cast<std::size_t>(traits(topic).depth) : 0);
+  const dds_entity_t handle = create_raw_topic(participant_, *kDescriptors[i], traits(topic).name, room, types_[i]);
   if (handle < 0) return creation_error(traits(topic).name, handle, *domain_);
   const Qos qos = endpoint_qos(traits(topic));
   if (options_.writes.contains(topic)) {
