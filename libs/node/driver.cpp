@@ -34,8 +34,7 @@ constexpr int kHealthsBetweenLooks = 10;  // of one second: who does not fit is 
 
 class HealthThread {
  public:
-  explicit HealthThread(Node& node)
-      : node_(node), report_(node), loop_(node.health()), thread_([this] { run(); }) {
+  explicit HealthThread(Node& node) : node_(node), report_(node), loop_(node.health()), thread_([this] { run(); }) {
     // of a real-time process: below every loop, above everything else
     int policy = SCHED_OTHER;
     sched_param parameters{};
@@ -108,17 +107,16 @@ void tell_warnings(Node& node) {
   }
 }
 
-// Heap calls of the loop's thread since the node was READY.
+// Heap calls of the loop's thread since all nodes were READY and this one has done its first step: memory of messages
+// is laid out with the first of each kind.
 class LoopHeap {
  public:
   LoopHeap(Node& node, HeapMeter meter) : node_(node), meter_(meter) {}
   void after_poll() noexcept {
     if (meter_ == nullptr) return;
     const HeapCalls now = meter_();
-    // the poll in which it gets READY does INIT; io is told the READY of all others before it ticks
-    if (!is_ready_) {
-      const bool is_io = node_.member().role() == wire::Role::io;
-      is_ready_ = node_.member().state() >= (is_io ? wire::NodeState::running : wire::NodeState::ready);
+    if (!is_running_) {
+      is_running_ = node_.member().state() >= wire::NodeState::running;
       before_ = now;
       return;
     }
@@ -131,7 +129,7 @@ class LoopHeap {
   Node& node_;
   HeapMeter meter_;
   HeapCalls before_;
-  bool is_ready_ = false;
+  bool is_running_ = false;
 };
 
 }  // namespace
