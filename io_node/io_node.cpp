@@ -117,6 +117,7 @@ void IoNode::update_health() noexcept {
 // ---- receiving ------------------------------------------------------------------------------------------------
 
 void IoNode::receive(const transport::Received& message, std::int64_t now_ns) {
+  source_ns_ = message.source_ns;
   writer_ = message.writer;
   switch (message.topic) {
     case Topic::session:
@@ -194,7 +195,10 @@ void IoNode::receive_sample(std::span<const std::byte> bytes, Topic topic, std::
   }
   StepIndex& at = newest_of(header.role);
   Replaced& replaced = replaced_[static_cast<std::size_t>(header.role)];
-  if (header.step >= replaced.until) replaced.until = kJoinStep;
+  if (replaced.until != kJoinStep && header.step >= replaced.until) {
+    replaced.until = kJoinStep;
+    if (!is_replacing()) clock_.begin_grace(n_);
+  }
   // samples come in order from one writer; one that was lost and asked for again may close a gap
   if (header.step == at + 1) {
     at = header.step;
@@ -430,7 +434,8 @@ bool IoNode::may_wait_for_controllers(std::int64_t now_ns) noexcept {
   return now_ns - controllers_wait_ns_ < longest.ns;
 }
 
-// A tick that is due waits for the role whose sample is missing.
+// A tick that is due waits for the role whose sample is missing; io's own place counts for the values of lockstep
+// controllers.
 void IoNode::measure_wait(std::int64_t now_ns) noexcept {
   const std::int64_t from_ns = std::max(waits_since_ns_, due_ns(n_));
   if (waits_for_ && clock_.is_judged(n_) && now_ns > from_ns) {
@@ -438,6 +443,7 @@ void IoNode::measure_wait(std::int64_t now_ns) noexcept {
     waited_ns.store(waited_ns.load(std::memory_order_relaxed) + now_ns - from_ns, std::memory_order_relaxed);
   }
   waits_for_ = holds_back(n_);
+  if (!waits_for_ && gate_.awaited(n_).ns > 0) waits_for_ = Role::io;
   waits_since_ns_ = now_ns;
 }
 

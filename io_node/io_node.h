@@ -82,6 +82,8 @@ struct IoConfig {
   std::string save_obstacle{};   // why the session's state cannot be saved; empty: it can
   StepIndex save_unit = 1;       // every how many steps it can, because all nodes have exchanged then
   std::optional<Beginning> beginning{};
+  // of those who send values: the same on loopback, where their time stamps tell when they did
+  node::WriterClock controllers_clock = node::WriterClock::other;
   OverrunRules overrun;    // of `real` pace
   Shed shed = Shed::none;  // the most that a session that overruns leaves out
 };
@@ -249,8 +251,10 @@ class IoNode final : public node::Node {
   SessionClock clock_;
   LoadShedding shedding_;
   std::int64_t last_tick_ns_ = 0;
-  std::vector<std::int64_t> input_ns_;  // by channel, when the newest value came that no tick has used; 0: none
-  std::uint64_t writer_ = 0;            // of the message that is being received
+  // by channel, when the newest value was sent, or came, that no tick has used; 0: none
+  std::vector<std::int64_t> input_ns_;
+  std::int64_t source_ns_ = 0;  // stamp of the message that is being received
+  std::uint64_t writer_ = 0;    // its writer
   std::array<wire::Health, wire::kRoles> healths_;
   bool has_told_slip_ = false;            // on standard error; what follows is in the recording
   std::uint32_t told_levels_ = 0;         // of shedding, a bit each, likewise

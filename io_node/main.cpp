@@ -24,6 +24,9 @@ ExitCode run(const IoOptions& options) {
   wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
   io::IoConfig config = io::make_config(session, wish);
   config.join_timeout = options.node.join().join_timeout;
+  // on loopback everybody has this host's clock
+  const bool is_on_loopback = options.node.session.interface == cli_support::SessionOptions{}.interface;
+  config.controllers_clock = is_on_loopback ? node::WriterClock::same : node::WriterClock::other;
   io::IoNode node(*carrier, std::move(config));
   return cli_support::run_node(node).value();  // its own session is nothing that it follows
 }

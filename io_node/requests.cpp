@@ -25,7 +25,9 @@ void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t n
   // in every step: no memory is taken for it
   if (is_known && input_.action == wire::ControllerAction::write) {
     if (gate_.write(channel, input_.controller, input_.value, n_, now_ns, input_.based_on_step, writer_)) {
-      input_ns_[channel] = now_ns;
+      input_ns_[channel] = config_.controllers_clock == node::WriterClock::same
+                               ? node::sent_ns(source_ns_, node::WriterClock::same)
+                               : now_ns;
     } else if (std::optional<LeaseAnswer> told = gate_.answer_to_write(channel, input_.controller, now_ns, writer_)) {
       tell_lease(std::move(*told));
     }

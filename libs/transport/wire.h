@@ -219,11 +219,11 @@ struct Health {
   Quantiles cpu_time;
   Quantiles wait;
   Quantiles response;
-  Quantiles input_latency;                // io_node
-  double response_recent = 0;             // s, largest since the last health message
-  std::array<double, 4> waited{};         // s, for io, mechanics, hydraulics, flex, all judged steps together
-  std::int64_t allocations = -1;          // of the loop since READY, without the middleware's; -1: not counted
-  std::int64_t carrier_allocations = -1;  // of the middleware in the loop's thread since READY; -1: not counted
+  Quantiles input_latency;         // io_node
+  double response_recent = 0;      // s, largest since the last health message
+  std::array<double, 4> waited{};  // s, for io (of io: controllers), mechanics, hydraulics, flex, all judged steps
+  std::int64_t allocations = -1;   // of the loop since READY, without the middleware's; -1: not counted
+  std::int64_t carrier_allocations = -1;  // of the middleware in the loop's thread; -1: not counted
   std::uint64_t steps_due = 0;            // io_node: that the wall clock has asked for in this epoch
   std::uint64_t steps_skipped = 0;        // io_node: of them given up with the slip
   std::int64_t lag_ns = 0;                // io_node: behind the wall clock of the epoch, pauses apart; negative: ahead

@@ -81,6 +81,22 @@ TEST_F(LockstepController, TheTickWaitsForTheValueOfItsStepAndTakesNoOther) {
   EXPECT_EQ(ticks[first + 3].age[0], 2u);
 }
 
+TEST_F(LockstepController, TheTimeForWhichTicksWaitForItIsCounted) {
+  start(1);
+  say(wire::ControllerAction::acquire);
+  for (StepIndex n = 0; n < 5; ++n) {
+    say(wire::ControllerAction::write, 0.5, n);
+    give_samples();
+  }
+  const std::int64_t before_ns = node->timing().waited_ns[0];
+  give_samples();
+  poll(30 * kMs);
+  say(wire::ControllerAction::write, 0.5, 5);
+  EXPECT_EQ(node->next_step(), 7);
+  EXPECT_NEAR(static_cast<double>(node->timing().waited_ns[0] - before_ns), 30.0 * kMs, 1.0 * kMs);
+  EXPECT_EQ(node->timing().waited_ns[1], 0) << "mechanics' sample was there";
+}
+
 TEST_F(LockstepController, OneThatDiesIsHeldThenPutToNeutralAndEachIsTold) {
   start(1);
   say(wire::ControllerAction::acquire);
