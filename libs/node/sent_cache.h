@@ -22,8 +22,8 @@ class SentCache {
     reserved_ = bytes;
     ring_.for_each([bytes](std::vector<std::byte>& slot) { slot.reserve(bytes); });
   }
-  // The first message makes room for all that follow. A larger one, as a tick with commands, has memory for itself alone:
-  // a step must not pay for all places.
+  // The first message makes room for all that follow. A larger one, as a tick with commands, has memory for itself
+  // alone: a step must not pay for all places.
   void keep(StepIndex step, std::span<const std::byte> bytes) {
     if (reserved_ == 0) reserve(bytes.size());
     std::vector<std::byte>& slot = ring_.put(step);
