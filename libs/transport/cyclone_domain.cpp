@@ -8,6 +8,7 @@
 #include <net/if.h>
 #include <netinet/in.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <future>
 #include <new>
 #include <system_error>
@@ -144,12 +146,27 @@ Status enough_files() {
                                    opened, std::strerror(why), files.size()));
 }
 
-// Only what can be written counts as data (RLIMIT_DATA), the rest as address space alone (RLIMIT_AS).
-Status enough_memory(std::size_t bytes, int protection, const char* limit) {
-  void* const space = ::mmap(nullptr, bytes, protection, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (space == MAP_FAILED) return lacks(fmt::format("cannot have {} MB more memory", bytes >> 20), errno, limit);
-  ::munmap(space, bytes);
+Status enough_space() {
+  void* const space = ::mmap(nullptr, kSpace, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (space == MAP_FAILED) {
+    return lacks(fmt::format("cannot have {} MB more memory", kSpace >> 20), errno, "ulimit -v");
+  }
+  ::munmap(space, kSpace);
   return Status::ok();
+}
+
+// What can be written counts as data (RLIMIT_DATA). It is reckoned and not tried: where memory is locked, all of it
+// would be filled.
+Status enough_data() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return Status::ok();
+  std::ifstream file("/proc/self/status");
+  std::size_t kilobytes = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("VmData:")) kilobytes = std::strtoull(line.c_str() + 7, nullptr, 10);
+  }
+  if ((kilobytes << 10) + kData <= limit.rlim_cur) return Status::ok();
+  return lacks(fmt::format("cannot have {} MB more memory", kData >> 20), ENOMEM, "ulimit -d");
 }
 
 // As many at the same time as Cyclone starts.
@@ -174,8 +191,8 @@ Status enough_threads() {
 // What Cyclone does not survive to be without: files for its sockets, memory for its caches, threads.
 Status enough_resources() {
   if (Status status = enough_files(); !status.is_ok()) return status;
-  if (Status status = enough_memory(kSpace, PROT_NONE, "ulimit -v"); !status.is_ok()) return status;
-  if (Status status = enough_memory(kData, PROT_READ | PROT_WRITE, "ulimit -d, -v"); !status.is_ok()) return status;
+  if (Status status = enough_space(); !status.is_ok()) return status;
+  if (Status status = enough_data(); !status.is_ok()) return status;
   return enough_threads();
 }
 

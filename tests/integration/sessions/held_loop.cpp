@@ -1,24 +1,47 @@
 #include "held_loop.h"
 
+#include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
 
 namespace slew::testing {
 namespace {
 
-// only calls that are safe behind a fork of a process with threads
-[[noreturn]] void hold(pid_t thread, int told) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const bool is_traced =
-      ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) == 0 && ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) == 0;
+constexpr int kTries = 100'000;
+
+// what follows makes only calls that are safe behind a fork of a process with threads
+
+bool stop(pid_t thread) {
   int status = 0;
-  const bool is_stopped = is_traced && waitpid(thread, &status, __WALL) == thread && WIFSTOPPED(status);
+  return ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr) == 0 && waitpid(thread, &status, __WALL) == thread &&
+         WIFSTOPPED(status);
+}
+
+// Where it waits for a message. Elsewhere it may have a lock of the middleware, for which the node's health waits too.
+bool is_in_its_wait(const char* call_file) {
+  std::array<char, 16> call{};
+  const int file = open(call_file, O_RDONLY | O_CLOEXEC);
+  if (file < 0 || read(file, call.data(), call.size() - 1) <= 0) call[0] = '\0';
+  if (file >= 0) close(file);
+  return std::strtol(call.data(), nullptr, 10) == SYS_futex;
+}
+
+[[noreturn]] void hold(pid_t thread, const char* call_file, int told) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  bool is_stopped = ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) == 0 && stop(thread);
+  for (int i = 0; i < kTries && is_stopped && !is_in_its_wait(call_file); ++i) {
+    is_stopped = ptrace(PTRACE_CONT, thread, nullptr, nullptr) == 0 && stop(thread);
+  }
+  int status = 0;
   const char word = is_stopped ? 'y' : 'n';
   if (write(told, &word, 1) != 1) _exit(1);
   // its end is told to the tracer first, and to its parent behind that
@@ -30,11 +53,12 @@ namespace {
 }  // namespace
 
 HeldLoop::HeldLoop(pid_t process) {
+  const std::string call_file = "/proc/" + std::to_string(process) + "/syscall";
   std::array<int, 2> told{};
   if (pipe(told.data()) != 0) throw std::runtime_error("no pipe for a tracer");
   tracer_ = fork();
   if (tracer_ < 0) throw std::runtime_error("no process for a tracer");
-  if (tracer_ == 0) hold(process, told[1]);
+  if (tracer_ == 0) hold(process, call_file.c_str(), told[1]);
   close(told[1]);
   char word = 'n';
   is_held_ = read(told[0], &word, 1) == 1 && word == 'y';
