@@ -1,6 +1,7 @@
 #include "held_loop.h"
 
 #include <fcntl.h>
+#include <linux/futex.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/syscall.h>
@@ -26,13 +27,18 @@ bool stop(pid_t thread) {
          WIFSTOPPED(status);
 }
 
-// Where it waits for a message. Elsewhere it may have a lock of the middleware, for which the node's health waits too.
+// Where it waits for a message, as Doorbell does. Elsewhere it may have a lock of the middleware or wait for one, and
+// the node's health waits behind it.
 bool is_in_its_wait(const char* call_file) {
-  std::array<char, 16> call{};
+  std::array<char, 128> text{};
   const int file = open(call_file, O_RDONLY | O_CLOEXEC);
-  if (file < 0 || read(file, call.data(), call.size() - 1) <= 0) call[0] = '\0';
+  if (file < 0 || read(file, text.data(), text.size() - 1) <= 0) text[0] = '\0';
   if (file >= 0) close(file);
-  return std::strtol(call.data(), nullptr, 10) == SYS_futex;
+  char* rest = nullptr;
+  const long call = std::strtol(text.data(), &rest, 10);
+  std::strtoul(rest, &rest, 16);  // where
+  const unsigned long how = std::strtoul(rest, nullptr, 16);
+  return call == SYS_futex && how == FUTEX_WAIT_BITSET_PRIVATE;
 }
 
 [[noreturn]] void hold(pid_t thread, const char* call_file, int told) {
