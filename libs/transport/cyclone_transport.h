@@ -66,7 +66,7 @@ class CycloneTransport final : public Transport {
   // "mechanics on host crane2, pid 812, type slewring::Tick"; of all vendors, in this session's partition
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
   // Of all vendors: types by name, and by layout where it is told; QoS by reliability, durability, representation,
-  // ownership and deadline.
+  // ownership, deadline, latency budget, liveliness, destination order and presentation.
   [[nodiscard]] std::vector<std::string> misfits() override;
 
   // This process as others see it in WriterSight.
