@@ -39,35 +39,31 @@ std::int64_t HdrHistogram::upper_bound(std::size_t bucket) noexcept {
 void HdrHistogram::record(std::int64_t ns) noexcept {
   const std::int64_t value = std::max<std::int64_t>(0, ns);
   add<std::uint64_t>(counts_[bucket_of(value)], 1);
-  add(sum_, value);
-  if (value < min_.load(kRelaxed)) min_.store(value, kRelaxed);
-  if (value > max_.load(kRelaxed)) max_.store(value, kRelaxed);
+  widen(value, value);
   add<std::uint64_t>(count_, 1);
 }
 
-void HdrHistogram::merge(const HdrHistogram& other) noexcept {
-  for (std::size_t i = 0; i < kBuckets; ++i) add(counts_[i], other.counts_[i].load(kRelaxed));
-  add(count_, other.count());
-  add(sum_, other.sum_.load(kRelaxed));
-  min_.store(std::min(min_.load(kRelaxed), other.min_.load(kRelaxed)), kRelaxed);
-  max_.store(std::max(max(), other.max()), kRelaxed);
+void HdrHistogram::record_falling(std::int64_t largest_ns, std::int64_t apart_ns, std::uint64_t count) noexcept {
+  std::int64_t value = largest_ns;
+  for (std::uint64_t left = count; left > 0;) {
+    const std::size_t bucket = bucket_of(value);
+    const std::int64_t least_here = bucket == 0 ? 0 : upper_bound(bucket - 1) + 1;
+    const std::uint64_t here = std::min(left, static_cast<std::uint64_t>((value - least_here) / apart_ns) + 1);
+    add(counts_[bucket], here);
+    left -= here;
+    value -= static_cast<std::int64_t>(here) * apart_ns;
+  }
+  widen(value + apart_ns, largest_ns);
+  add(count_, count);
 }
 
-void HdrHistogram::clear() noexcept {
-  for (auto& bucket : counts_) bucket.store(0, kRelaxed);
-  count_.store(0, kRelaxed);
-  sum_.store(0, kRelaxed);
-  min_.store(INT64_MAX, kRelaxed);
-  max_.store(0, kRelaxed);
+void HdrHistogram::widen(std::int64_t least_ns, std::int64_t largest_ns) noexcept {
+  if (least_ns < min_.load(kRelaxed)) min_.store(least_ns, kRelaxed);
+  if (largest_ns > max_.load(kRelaxed)) max_.store(largest_ns, kRelaxed);
 }
 
 std::int64_t HdrHistogram::min() const noexcept {
   return count() == 0 ? 0 : min_.load(kRelaxed);
-}
-
-double HdrHistogram::mean() const noexcept {
-  const std::uint64_t n = count();
-  return n == 0 ? 0 : static_cast<double>(sum_.load(kRelaxed)) / static_cast<double>(n);
 }
 
 std::int64_t HdrHistogram::percentile(double share) const noexcept {

@@ -25,16 +25,14 @@ class HdrHistogram {
 
   // Real-time safe.
   void record(std::int64_t ns) noexcept;
-  // Adds all values of another one.
-  void merge(const HdrHistogram& other) noexcept;
-  void clear() noexcept;
+  // `count` values, at least one: `largest_ns`, and each of the others `apart_ns` (above 0) less than the one before,
+  // none below 0. Real-time safe however many they are: it takes the time of the buckets that they fall into.
+  void record_falling(std::int64_t largest_ns, std::int64_t apart_ns, std::uint64_t count) noexcept;
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
   // 0 when nothing was recorded.
   [[nodiscard]] std::int64_t min() const noexcept;
   [[nodiscard]] std::int64_t max() const noexcept { return max_.load(std::memory_order_relaxed); }
-  // Mean of the values themselves, not of their buckets [ns].
-  [[nodiscard]] double mean() const noexcept;
   // Smallest value [ns] that at least this share (0 to 1) of all values does not exceed; 0 when nothing was recorded.
   [[nodiscard]] std::int64_t percentile(double share) const noexcept;
   // The same for several shares, ascending, in one pass; as many values.
@@ -45,9 +43,10 @@ class HdrHistogram {
   [[nodiscard]] static std::int64_t upper_bound(std::size_t bucket) noexcept;
 
  private:
+  void widen(std::int64_t least_ns, std::int64_t largest_ns) noexcept;
+
   std::array<std::atomic<std::uint64_t>, kBuckets> counts_{};
   std::atomic<std::uint64_t> count_{0};
-  std::atomic<std::int64_t> sum_{0};
   std::atomic<std::int64_t> min_{INT64_MAX};
   std::atomic<std::int64_t> max_{0};
 };

@@ -26,23 +26,28 @@ void add(std::atomic<T>& to, T what) noexcept {
 
 void NodeTiming::add_response(std::int64_t ns, bool is_late) noexcept {
   last_response_ns.store(ns, kRelaxed);
-  judge(ns, is_late);
-}
-
-void NodeTiming::add_given_up(std::int64_t ns) noexcept {
-  judge(ns, true);
-}
-
-void NodeTiming::judge(std::int64_t ns, bool is_late) noexcept {
   response.record(ns);
-  // the reader takes it away meanwhile: then this step's is the largest since
-  if (ns > response_recent_ns.load(kRelaxed)) response_recent_ns.store(ns, kRelaxed);
-  if (!is_late) {
+  note_recent(ns);
+  if (is_late)
+    add_overruns(1);
+  else
     overrun_run.store(0, kRelaxed);
-    return;
-  }
-  add<std::uint64_t>(overruns, 1);
-  add<std::uint64_t>(overrun_run, 1);
+}
+
+void NodeTiming::add_given_up(std::int64_t first_due_for_ns, SimDuration step, StepIndex steps) noexcept {
+  response.record_falling(first_due_for_ns, step.ns, static_cast<std::uint64_t>(steps));
+  note_recent(first_due_for_ns);
+  add_overruns(steps);
+}
+
+void NodeTiming::note_recent(std::int64_t response_ns) noexcept {
+  // the reader takes it away meanwhile: then this step's is the largest since
+  if (response_ns > response_recent_ns.load(kRelaxed)) response_recent_ns.store(response_ns, kRelaxed);
+}
+
+void NodeTiming::add_overruns(StepIndex steps) noexcept {
+  add<std::uint64_t>(overruns, static_cast<std::uint64_t>(steps));
+  add<std::uint64_t>(overrun_run, static_cast<std::uint64_t>(steps));
   longest_overrun.store(std::max(longest_overrun.load(kRelaxed), overrun_run.load(kRelaxed)), kRelaxed);
 }
 

@@ -67,11 +67,12 @@ struct NodeTiming {
 
   // A step's response, against the deadline where there is one.
   void add_response(std::int64_t ns, bool is_late) noexcept;
-  // A step that nobody does, although it was due so long ago: as one that overran.
-  void add_given_up(std::int64_t ns) noexcept;
+  // Steps in a row that nobody does, of which the first was due so long ago: as many that overran.
+  void add_given_up(std::int64_t first_due_for_ns, SimDuration step, StepIndex steps) noexcept;
 
  private:
-  void judge(std::int64_t ns, bool is_late) noexcept;
+  void note_recent(std::int64_t response_ns) noexcept;
+  void add_overruns(StepIndex steps) noexcept;
 };
 
 [[nodiscard]] wire::Quantiles quantiles_of(const HdrHistogram& histogram) noexcept;
