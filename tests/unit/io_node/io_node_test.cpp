@@ -1,4 +1,7 @@
 // The session as its owner runs it: its name, its time, its overruns and its end.
+#include <chrono>
+#include <thread>
+
 #include "tests/unit/io_node/played_io.h"
 
 namespace slew::io {
@@ -218,6 +221,45 @@ TEST_F(Io, MeasuresFromAControllersValueToTheSamplesThatUsedIt) {
   EXPECT_EQ(node->timing().input_latency.count(), 1u);
   EXPECT_GT(node->timing().input_latency.max(), 0);
   EXPECT_LE(node->timing().input_latency.max(), 3 * kMs);
+}
+
+// A value that io takes more than 29 ms after it was written, in `taken_ns`, and uses up to the samples of `used_ns`.
+class LateValue : public Io {
+ protected:
+  std::int64_t latency_of(node::WriterClock clock) {
+    now_ns = monotonic_ns();
+    IoConfig lever = config();
+    lever.channels.push_back({.name = "Lever"});
+    lever.controllers_clock = clock;
+    restart(std::move(lever));
+    get_running();
+    wire::ControllerInput input{"s", "pid", "Lever", wire::ControllerAction::acquire, 0.5, 1, kJoinStep};
+    played.say(Topic::controller_input, input);
+    poll();
+    input.action = wire::ControllerAction::write;
+    played.say(Topic::controller_input, input);
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    say_samples(node->next_step());
+    taken_ns = now_ns = monotonic_ns();
+    poll();
+    say_samples(node->next_step());
+    used_ns = now_ns = monotonic_ns();
+    poll();
+    EXPECT_EQ(node->timing().input_latency.count(), 1u);
+    return node->timing().input_latency.max();
+  }
+
+  std::int64_t taken_ns = 0, used_ns = 0;
+};
+
+TEST_F(LateValue, IsMeasuredFromItsTimeStampWhereItsControllerHasTheSameClock) {
+  const std::int64_t latency_ns = latency_of(node::WriterClock::same);
+  EXPECT_GE(latency_ns, used_ns - taken_ns + 29 * kMs);
+}
+
+TEST_F(LateValue, IsMeasuredFromItsArrivalWhereItsControllerHasAnotherClock) {
+  const std::int64_t latency_ns = latency_of(node::WriterClock::other);
+  EXPECT_EQ(latency_ns, used_ns - taken_ns);
 }
 
 TEST_F(Io, MeasuresFromTheOldestValueThatATickUses) {
