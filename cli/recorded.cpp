@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <utility>
 
 #include "cli/display.h"
 #include "cli/unrecorded.h"
@@ -266,20 +267,26 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
 
 TickSpan tick_span(const Reader& reader) {
   TickSpan span;
-  std::vector<std::uint64_t> ticks;            // ns, wall clock of their writer
-  std::map<std::uint64_t, bool> paused_since;  // ns, at each status of io_node
+  std::vector<std::uint64_t> ticks;                                 // ns, wall clock of their writer
+  std::map<std::uint64_t, bool> paused_since;                       // ns, at each status of io_node
+  std::map<std::uint32_t, std::pair<StepIndex, StepIndex>> epochs;  // first and last step
   wire::Tick tick;
   wire::NodeStatus status;
   read_all(reader, only({Topic::tick, Topic::node_status}), [&](const recording::RecordedMessage& message) {
     if (topic_of(*message.channel) == Topic::tick && transport::decode(message.payload, tick)) {
       const bool is_end = (tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0;
-      if (tick.header.phase == wire::Phase::running && !is_end) ++span.steps;
+      if (tick.header.phase == wire::Phase::running && !is_end) {
+        auto& [first, last] = epochs.try_emplace(tick.header.epoch, tick.header.step, tick.header.step).first->second;
+        first = std::min(first, tick.header.step);
+        last = std::max(last, tick.header.step);
+      }
       if (message.publish_time_ns != 0) ticks.push_back(message.publish_time_ns);
     } else if (transport::decode(message.payload, status) && status.header.role == wire::Role::io) {
       paused_since[message.publish_time_ns] = is_pause(status);
     }
     return Visit::go_on;
   });
+  for (const auto& [epoch, steps] : epochs) span.steps += steps.second - steps.first + 1;
   std::sort(ticks.begin(), ticks.end());
   const auto step_ns = static_cast<std::uint64_t>(reader.identity().communication_step.ns);
   for (std::size_t i = 1; i < ticks.size(); ++i) {

@@ -47,8 +47,9 @@ struct TimeRange {
                                                         std::span<const std::string> patterns, Units units,
                                                         const TimeRange& range = {});
 
-// Steps that were done, in all epochs, and the wall time from the first tick to the last as their writer stamped them.
-// Of the time between two ticks around which the session was paused one step counts as running, the rest as paused.
+// Steps that were done, in all epochs, those of lost ticks between others among them, and the wall time from the first
+// tick to the last as their writer stamped them. Of the time between two ticks around which the session was paused one
+// step counts as running, the rest as paused.
 struct TickSpan {
   double wall_time = 0;    // s, without pauses
   double paused_time = 0;  // s

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "cli/recorded.h"
 #include "node/identity.h"
 #include "recording/writer.h"
 #include "tests/support/temporary_folder.h"
@@ -60,12 +61,13 @@ class Extent : public ::testing::Test {
     }
   }
 
-  RecordedExtent extent() {
+  std::unique_ptr<recording::Reader> recorded() {
     EXPECT_EQ(writer_->close({}).text, "");
     std::unique_ptr<recording::Reader> reader;
     EXPECT_EQ(recording::Reader::open(path_, reader).text, "");
-    return recorded_extent(*reader);
+    return reader;
   }
+  RecordedExtent extent() { return recorded_extent(*recorded()); }
 
   std::uint32_t epoch_ = 0;
 
@@ -131,6 +133,14 @@ TEST_F(Extent, OfEpochsIsThatOfTheNewestAndTheLossesOfAll) {
   EXPECT_EQ(third.complete_to, 450);
   EXPECT_EQ(third.last_step, 450);
   EXPECT_EQ(third.lost, 3u);
+}
+
+TEST_F(Extent, CountsTheStepsOfAllEpochsAlsoWhereATickWasLost) {
+  run(0, 10);
+  run(12, 20);
+  epoch_ = 1;
+  run(400, 450);
+  EXPECT_EQ(tick_span(*recorded()).steps, 21 + 51);
 }
 
 TEST_F(Extent, WithoutWhatTellsItsBeginIsCountedFromStepZero) {
