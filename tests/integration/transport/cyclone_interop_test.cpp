@@ -163,6 +163,8 @@ TEST(CycloneInterop, WeReadWhatATypedWriterOfAnotherProgramSends) {
   }
   EXPECT_EQ(transport->discovered_writers(Topic::controller_input),
             std::vector<std::string>{"a program that is not of Slewring, type slewring::ControllerInput"});
+  // that the other program knows this writer does not say that this one knows its reader
+  ASSERT_TRUE(eventually([&] { return transport->matched_readers(Topic::tick) == 1; }));
   ByteBuffer bytes;
   ASSERT_TRUE(encode(wire::Tick{}, bytes));
   ASSERT_TRUE(transport->publish(Topic::tick, bytes).is_ok());
