@@ -171,6 +171,7 @@ TEST_F(ClientLibrary, TwoControllersMoveTwoChannelsOneOfThemDigital) {
 TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
   start({"--set", "Input_Lift.supervisor=instructor"});
   const Client trainee = join("trainee"), instructor = join("instructor");
+  ASSERT_EQ(slewring_step(trainee.get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
   const int of_trainee = slewring_acquire(trainee.get(), "Input_Lift", kSoon);
   ASSERT_GE(of_trainee, 0) << slewring_error(trainee.get());
   EXPECT_EQ(slewring_acquire(instructor.get(), "Input_Lift", kSoon), SLEWRING_REFUSED);

@@ -112,7 +112,10 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
     EXPECT_GT(computing.at("mechanics"), 0);
     EXPECT_EQ(computing.at("io"), 0);
     for (const auto& [role, part] : computing.items()) EXPECT_LE(part, loops.at(role)) << role;
-    EXPECT_GE(cell.at("yardstick").at("response").at("min"), computing.at("mechanics"));
+    // of a step behind those that were given up the loops may have begun before it was due
+    if (cell.at("yardstick").at("skipped") == 0) {
+      EXPECT_GE(cell.at("yardstick").at("response").at("min"), computing.at("mechanics"));
+    }
     for (const char* role : {"mechanics", "hydraulics"}) {
       const json& node = cell.at("nodes").at(role);
       for (const char* time : {"response", "execution", "cpu_time", "wait", "release_jitter"}) {
