@@ -1,7 +1,4 @@
 // The session as its owner runs it: its name, its time, its overruns and its end.
-#include <chrono>
-#include <thread>
-
 #include "tests/unit/io_node/played_io.h"
 
 namespace slew::io {
@@ -238,7 +235,7 @@ class LateValue : public Io {
     poll();
     input.action = wire::ControllerAction::write;
     played.say(Topic::controller_input, input);
-    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    sleep_until_monotonic(monotonic_ns() + 30 * kMs);
     say_samples(node->next_step());
     taken_ns = now_ns = monotonic_ns();
     poll();
