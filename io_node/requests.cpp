@@ -54,6 +54,7 @@ void IoNode::tell_lease(LeaseAnswer answer) {
   lease.is_granted = answer.is_granted;
   lease.holder = std::move(answer.holder);
   lease.reason = answer.reason.substr(0, wire::kMaxReasonLength);
+  lease.answers = input_.sequence;
   member_.publish(Topic::controller_lease, lease);
 }
 

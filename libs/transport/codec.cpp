@@ -102,6 +102,11 @@ class Encoder {
   }
 
   template <typename N>
+  void item(const detail::Appended<const N>& number) noexcept {
+    item(number.value);
+  }
+
+  template <typename N>
   void item(const detail::Bounded<const N>& number) noexcept {
     is_within_caps_ = is_within_caps_ && number.is_within();
     item(number.value);
@@ -208,6 +213,12 @@ class Decoder {
       return;
     }
     text.value.assign(reinterpret_cast<const char*>(at), n - 1);
+  }
+
+  template <typename N>
+  void item(detail::Appended<N>& number) {
+    number.value = {};
+    if (!has_finished()) item(number.value);
   }
 
   template <typename N>

@@ -2,7 +2,7 @@
 //
 // An archive A is called with the fields of a struct; A::Of<T> is `const T` when it reads the struct (encoder) and `T`
 // when it fills it (decoder). Texts and lists without a cap in their type are wrapped in Text and List, steps
-// and numbers of variables in Bounded.
+// and numbers of variables in Bounded, what was put behind a struct later in Appended.
 #pragma once
 
 #include <cstddef>
@@ -31,6 +31,15 @@ template <typename S>
 Text(S&, std::size_t) -> Text<S>;
 template <typename V>
 List(V&, std::size_t) -> List<V>;
+
+// The last field of a message that protocol versions before its own ended without: 0 in their recordings.
+template <typename N>
+struct Appended {
+  N& value;
+};
+
+template <typename N>
+Appended(N&) -> Appended<N>;
 
 // A number that indexes or counts something: outside [least, most] it is a fault of its writer.
 template <typename N>
@@ -225,6 +234,7 @@ void fields(A& a, typename A::template Of<wire::ControllerInput>& m) {
 template <typename A>
 void fields(A& a, typename A::template Of<wire::ControllerLease>& m) {
   a(m.header, name(m.controller), name(m.channel), m.is_granted, name(m.holder), sentence(m.reason));
+  a(Appended{m.answers});  // since version 4
 }
 
 template <typename A>

@@ -265,18 +265,19 @@ struct ControllerInput {
   std::string channel;     // input name, "Input_Lift"
   ControllerAction action = ControllerAction::write;
   double value = 0;                     // -1 .. 1 for analog, 0 or 1 for digital; `acquire`: 0 or kTakeOver
-  std::uint64_t sequence = 0;           // `sequence_number` in the IDL, where the short word is reserved
+  std::uint64_t sequence = 0;           // `sequence_number` in the IDL, where the short word is reserved; growing
   StepIndex based_on_step = kJoinStep;  // step of the variables it was computed from; -1: unknown
   bool operator==(const ControllerInput&) const = default;
 };
 
 struct ControllerLease {
   Header header;
-  std::string controller;  // whom this answers
+  std::string controller;  // whom this answers, or tells
   std::string channel;
   bool is_granted = false;
   std::string holder;  // who holds the channel now; empty: nobody
   std::string reason;
+  std::uint64_t answers = 0;  // `sequence` of the ControllerInput that this answers; 0: nobody asked
   bool operator==(const ControllerLease&) const = default;
 };
 

@@ -63,6 +63,11 @@ class RandomFields {
   }
 
   template <typename N>
+  void item(transport::detail::Appended<N> number) {
+    item(number.value);
+  }
+
+  template <typename N>
   void item(transport::detail::Bounded<N> number) {
     const auto span = static_cast<std::uint64_t>(number.most - number.least) + 1;
     number.value = static_cast<N>(number.least + static_cast<std::int64_t>(random_() % span));

@@ -175,7 +175,8 @@ json to_json(const wire::ControllerInput& m) {
 
 json to_json(const wire::ControllerLease& m) {
   return {{"header", header_of(m.header)}, {"controller", m.controller}, {"channel", m.channel},
-          {"is_granted", m.is_granted},    {"holder", m.holder},         {"reason", m.reason}};
+          {"is_granted", m.is_granted},    {"holder", m.holder},         {"reason", m.reason},
+          {"answers", value_of(m.answers)}};
 }
 
 json to_json(const wire::ControlRequest& m) {

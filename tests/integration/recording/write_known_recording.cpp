@@ -235,7 +235,7 @@ void write_occasional(KnownRecording& recording, StepIndex step) {
       wire::ControllerInput{"verification", "pid", "Input_Lift", wire::ControllerAction::write, -0.25, n, step - 2},
       step);
   recording.write(wire::ControllerLease{header_at(step, wire::Role::io), "pid", "Input_Slew", step % 2 == 0, "panel",
-                                        "held by panel"},
+                                        "held by panel", n},
                   step);
   recording.write(wire::ControlRequest{"verification", ~n, wire::ControlAction::set_parameter, "Bag.mass", 1'500, -1},
                   step);

@@ -164,7 +164,7 @@ inline bool same(const slewring_ControllerInput& a, const wire::ControllerInput&
 
 inline bool same(const slewring_ControllerLease& a, const wire::ControllerLease& b) {
   return same(a.header, b.header) && a.controller == b.controller && a.channel == b.channel &&
-         a.is_granted == b.is_granted && a.holder == b.holder && a.reason == b.reason;
+         a.is_granted == b.is_granted && a.holder == b.holder && a.reason == b.reason && a.answers == b.answers;
 }
 
 inline bool same(const slewring_ControlRequest& a, const wire::ControlRequest& b) {

@@ -43,10 +43,33 @@ TYPED_TEST(EveryMessage, CutAnywhereIsRefused) {
   ASSERT_TRUE(encode(random_message<TypeParam>(random, 7), buffer));
   const std::size_t padding = static_cast<std::size_t>(buffer[3]);
   TypeParam received;
-  for (std::size_t size = 0; size < buffer.size() - padding; ++size) {
+  // a number that versions before ended without, and the gap in front of it, have a test of their own
+  const std::size_t appended = std::is_same_v<TypeParam, wire::ControllerLease> ? 16 : 0;
+  for (std::size_t size = 0; size < buffer.size() - padding - appended; ++size) {
     // a copy of exactly this size, so that a sanitizer sees any read beyond it
     const ByteBuffer cut(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_FALSE(decode(cut, received)) << size;
+  }
+}
+
+TEST(ALease, OfARecordingOfVersion3SaysNotWhatItAnswers) {
+  // encapsulation, header, two empty texts, a flag, an empty text, "abc"; then the number
+  constexpr std::size_t kOfVersion3 = 4 + 40 + 2 * 8 + 8 + 8, kWhole = kOfVersion3 + 8;
+  std::mt19937_64 random(2);
+  wire::ControllerLease sent = random_message<wire::ControllerLease>(random, 0);
+  sent.reason = "abc";
+  sent.answers = 7;
+  ByteBuffer buffer;
+  ASSERT_TRUE(encode(sent, buffer));
+  ASSERT_EQ(buffer.size(), kWhole);
+  wire::ControllerLease received;
+  for (std::size_t size = 0; size < kWhole; ++size) {
+    received.answers = 7;
+    const bool is_whole_in_version_3 = size >= kOfVersion3 && size < kOfVersion3 + 4;  // padded to 4 bytes
+    ASSERT_EQ(decode(std::span(buffer).first(size), received), is_whole_in_version_3) << size;
+    if (!is_whole_in_version_3) continue;
+    EXPECT_EQ(received.answers, 0u);
+    EXPECT_EQ(received.reason, "abc");
   }
 }
 
