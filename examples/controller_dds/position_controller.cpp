@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <random>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -215,12 +216,14 @@ class Loop {
   void read_lease() {
     take_all<slewring_ControllerLease>(e_.lease, [&](const slewring_ControllerLease& lease) {
       if (options_.name != lease.controller || options_.channel != lease.channel) return;
-      // another process of this name was refused the channel that this one holds
-      if (has_lease_ && !lease.is_granted && options_.name == lease.holder) return;
+      // it may be another process of this name that asked, or that lost the channel
+      const bool is_told = lease.answers == 0;
+      if (is_told ? !has_lease_ : lease.answers < asked_from_ || lease.answers > sequence_) return;
       const bool is_taken_away = has_lease_ && !lease.is_granted && *lease.holder == '\0';
       has_lease_ = lease.is_granted && options_.name == lease.holder;
       if (is_taken_away) {
         std::fprintf(stderr, "position_controller: %s\n", lease.reason);
+        asked_from_ = sequence_ + 1;
       } else if (!lease.is_granted) {
         refusal_ = lease.reason;
       }
@@ -262,7 +265,8 @@ class Loop {
   std::vector<std::pair<std::int64_t, double>> waiting_;  // step and value
   double value_ = 0;
   std::int64_t step_ = -1;
-  std::uint64_t sequence_ = 0;
+  std::uint64_t sequence_ = std::random_device()() * (std::uint64_t{1} << 31);  // no other process's numbers
+  std::uint64_t asked_from_ = sequence_ + 1;  // first message that may ask for the channel
 };
 
 }  // namespace

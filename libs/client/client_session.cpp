@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 #include <mutex>
+#include <random>
 #include <utility>
 
 #include "transport/codec.h"
@@ -62,6 +63,9 @@ bool is_name(const std::string& text) {
 }  // namespace
 
 // ---- joining --------------------------------------------------------------------------------------------------
+
+ClientSession::ClientSession(JoinOptions options)
+    : options_(std::move(options)), sequence_(std::random_device()() * (std::uint64_t{1} << 31)) {}
 
 Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std::unique_ptr<ClientSession>& session) {
   if (!is_name(options.controller)) {
@@ -221,15 +225,6 @@ void ClientSession::begin_epoch(std::uint32_t epoch) {
   std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
-// A refusal that does not mean this process and what it asks for now.
-bool ClientSession::is_of_another(const wire::ControllerLease& message, const Channel& channel) const {
-  // another process of this name was told that this one holds the channel
-  const bool is_held_here = message.holder == options_.controller && message.reason.find(process_) != std::string::npos;
-  if (channel.lease == Lease::held) return is_held_here;
-  // a free channel that there is is given to who asks: this answers what was written before
-  return channel.lease == Lease::asked && channel.was_held && message.holder.empty();
-}
-
 void ClientSession::take_lease(std::span<const std::byte> bytes) {
   wire::ControllerLease message;
   if (!transport::decode(bytes, message) || !is_ours(message.header)) return;
@@ -238,20 +233,18 @@ void ClientSession::take_lease(std::span<const std::byte> bytes) {
       std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == message.channel; });
   if (channel == channels_.end()) return;
   if (message.header.epoch > epoch_) begin_epoch(message.header.epoch);
+  // to another process of this name, or to what this one asked or wrote before it asked for the channel
+  const bool is_answer = message.answers != 0;
+  if (is_answer && (message.answers < channel->asked_from || message.answers > sequence_)) return;
   const bool has_it = message.is_granted && message.holder == options_.controller;
-  if (has_it && channel->lease == Lease::asked) {
-    channel->lease = Lease::held;
-    channel->was_held = true;
+  if (channel->lease == Lease::asked && is_answer) {
+    channel->lease = has_it ? Lease::held : Lease::refused;
     channel->answered = kJoinStep;
-    if (message.header.step > 0) only_newest_ = true;
-  } else if (!message.is_granted && is_of_another(message, *channel)) {
-    return;
-  } else if (channel->lease == Lease::asked && !message.is_granted) {
-    channel->lease = Lease::refused;
-  } else if (channel->lease == Lease::held && !message.is_granted) {
+    if (has_it && message.header.step > 0) only_newest_ = true;
+  } else if (channel->lease != Lease::held) {
+    return;  // told to another process, or why it was lost was said before
+  } else if (!message.is_granted) {
     channel->lease = Lease::lost;
-  } else if (channel->lease == Lease::lost) {
-    return;  // why it was lost was said before
   }
   channel->reason = message.reason;
   if (has_it && !message.reason.empty()) notices_.push_back(message.reason);
@@ -439,7 +432,10 @@ Answer ClientSession::acquire(const std::string& name, double how, SimDuration t
   auto channel = std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == name; });
   if (channel == channels_.end()) channel = channels_.insert(channels_.end(), Channel{name});
   const auto index = static_cast<std::size_t>(channel - channels_.begin());
-  if (channels_[index].lease != Lease::held) channels_[index].lease = Lease::asked;
+  if (channels_[index].lease != Lease::held) {
+    channels_[index].lease = Lease::asked;
+    channels_[index].asked_from = sequence_ + 1;
+  }
   // asked again until it is answered: the first may go before the session is found
   std::int64_t ask_ns = 0;
   Answer sent;
@@ -459,6 +455,8 @@ Answer ClientSession::acquire(const std::string& name, double how, SimDuration t
   if (is_over_) return ended();
   channels_[index].lease = Lease::none;
   if (in_time) return {Code::refused, channels_[index].reason};
+  // what is granted after this is given back
+  static_cast<void>(send(name, wire::ControllerAction::release, 0, kJoinStep));
   return {Code::timeout, "session '" + options_.session + "' did not answer for channel " + name + " within " +
                              in_seconds(timeout) + "; nothing was moved"};
 }

@@ -78,7 +78,7 @@ class ClientSession {
     std::string name;
     Lease lease = Lease::none;
     std::string reason{};
-    bool was_held = false;
+    std::uint64_t asked_from = 0;    // number of the first message that asked for it
     StepIndex answered = kJoinStep;  // step of the last value that was written since it is held; -1: none
   };
   // A message that came before the session was known: its writer was found before io's.
@@ -95,7 +95,7 @@ class ClientSession {
     bool is_left_out = false;  // a node says that it leaves its values out
   };
 
-  explicit ClientSession(JoinOptions options) : options_(std::move(options)) {}
+  explicit ClientSession(JoinOptions options);
 
   template <typename Done>
   bool wait_for(Done done, SimDuration timeout);
@@ -112,13 +112,11 @@ class ClientSession {
   bool choose(Which which);
   [[nodiscard]] bool is_complete(const Block& block) const noexcept;
   [[nodiscard]] bool can_never_be_complete(std::map<StepIndex, Block>::const_iterator block) const noexcept;
-  [[nodiscard]] bool is_of_another(const wire::ControllerLease& message, const Channel& channel) const;
   Answer send(const std::string& channel, wire::ControllerAction action, double value, StepIndex based_on);
   [[nodiscard]] const Named* named(const std::string& name) const noexcept;
   [[nodiscard]] Answer ended() const;
 
   JoinOptions options_;
-  const std::string process_ = transport::CycloneTransport::own_process();  // as io names it in a refusal
   std::unique_ptr<transport::CycloneTransport> carrier_;
   bool has_session_ = false;
   std::vector<Early> before_session_;
@@ -140,7 +138,7 @@ class ClientSession {
   StepIndex blocks_come_ = 0;                                     // in them
   std::vector<Channel> channels_;
   std::deque<std::string> notices_;
-  std::uint64_t sequence_ = 0;
+  std::uint64_t sequence_;  // of the last message that was sent; drawn at random, as another process may have this name
   std::vector<std::byte> buffer_;
 };
 

@@ -6,11 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fnmatch.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <climits>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -74,10 +72,6 @@ std::optional<ToldProcess> told_process(const dds_qos_t* qos) {
   const std::size_t last = text.rfind(':');
   if (first == std::string::npos || first == last) return std::nullopt;
   return ToldProcess{text.substr(0, first), text.substr(first + 1, last - first - 1), text.substr(last + 1)};
-}
-
-std::string process_text(const std::string& host, const std::string& pid) {
-  return fmt::format("process {} on {}", pid, host);
 }
 
 std::string description(const dds_qos_t* qos) {
@@ -219,12 +213,6 @@ std::string qos_problem(const dds_qos_t* offered, const dds_qos_t* requested, bo
 
 }  // namespace
 
-std::string CycloneTransport::own_process() {
-  char host[HOST_NAME_MAX + 1] = "";
-  gethostname(host, sizeof host - 1);
-  return process_text(host, std::to_string(getpid()));
-}
-
 std::vector<std::string> CycloneTransport::discovered_writers(wire::Topic topic) {
   std::vector<std::string> writers;
   for_each_endpoint(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION,
@@ -261,7 +249,7 @@ WriterSight CycloneTransport::see_writer(wire::Topic topic, std::uint64_t writer
     const MatchedWriter found = matched(reader, handles[i]);
     if (found == nullptr || number_of(found->key) != writer) continue;
     const std::optional<ToldProcess> told = told_process(found->qos);
-    return {false, told ? process_text(told->host, told->pid) : std::string()};
+    return {false, told ? fmt::format("process {} on {}", told->pid, told->host) : std::string()};
   }
   return {true, {}};
 }

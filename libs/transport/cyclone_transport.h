@@ -69,8 +69,6 @@ class CycloneTransport final : public Transport {
   // ownership, deadline, latency budget, liveliness, destination order and presentation.
   [[nodiscard]] std::vector<std::string> misfits() override;
 
-  // This process as others see it in WriterSight.
-  [[nodiscard]] static std::string own_process();
   // Readers of other participants that match the writer of this topic now.
   [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const;
 

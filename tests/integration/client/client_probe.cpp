@@ -1,8 +1,12 @@
 // A controller that prints what the library tells it, a line each, for tests that stop it, kill it and start it twice.
 //
-//   client_probe SESSION DOMAIN NAME CHANNEL STEP_TIME_OUT
+//   client_probe SESSION DOMAIN NAME CHANNEL STEP_TIME_OUT acquire|take_over
+//
+// With take_over it stops itself (SIGSTOP) when it has been refused, and takes the channel over when it goes on.
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "client/slewring_client.h"
 
@@ -27,8 +31,20 @@ int take(slewring_session* session, const char* channel) {
   return handle;
 }
 
-void follow(slewring_session* session, const char* name, double timeout) {
+int take_over(slewring_session* session, const char* channel) {
+  std::raise(SIGSTOP);
+  const int handle = slewring_take_over(session, channel, kSoon);
+  if (handle < 0) {
+    say("not taken over: ", slewring_error(session));
+  } else {
+    say("taken over");
+  }
+  return handle;
+}
+
+void follow(slewring_session* session, const char* name, double timeout, bool may_take_over) {
   int channel = take(session, name);
+  if (channel < 0 && may_take_over) channel = take_over(session, name);
   while (channel >= 0) {
     switch (slewring_step(session, timeout)) {
       case SLEWRING_OK:
@@ -51,14 +67,14 @@ void follow(slewring_session* session, const char* name, double timeout) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 6) return 2;
+  if (argc != 7) return 2;
   slewring_session* session =
       slewring_join(argv[1], argv[3], static_cast<unsigned>(std::atoi(argv[2])), "lo", "", kSoon);
   if (session == nullptr) {
     say("not joined: ", slewring_error(nullptr));
     return 1;
   }
-  follow(session, argv[4], std::atof(argv[5]));
+  follow(session, argv[4], std::atof(argv[5]), std::strcmp(argv[6], "take_over") == 0);
   slewring_leave(session);
   return 0;
 }

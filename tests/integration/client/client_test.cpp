@@ -2,11 +2,14 @@
 // taking over, a reset, the end, every refusal, and controllers that stand still, die or are there twice.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -59,9 +62,9 @@ class ClientLibrary : public ::testing::Test {
   }
   // a controller in a process of its own, which prints what it is told
   [[nodiscard]] std::unique_ptr<Program> start_probe(const std::string& name, const std::string& output,
-                                                     const char* timeout = "20") const {
-    const std::vector<std::string> arguments = {session->name(), std::to_string(session->domain()), name, "Input_Lift",
-                                                timeout};
+                                                     const char* timeout = "20", const char* how = "acquire") const {
+    const std::vector<std::string> arguments = {
+        session->name(), std::to_string(session->domain()), name, "Input_Lift", timeout, how};
     return std::make_unique<Program>(program_path("client_probe"), arguments, session->folder() / output);
   }
   // reads blocks until the step, so that a test's patience is in steps of the session
@@ -187,6 +190,47 @@ TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
                "channel Input_Lift is held by 'instructor', and only 'instructor' may take it over "
                "(Input_Lift.supervisor)");
   EXPECT_EQ(slewring_write(instructor.get(), of_instructor, 0), SLEWRING_OK);
+  stop();
+}
+
+// acquire() asks again while it is not answered, so that a refusal may come more than once
+TEST_F(ClientLibrary, ALateAnswerToAcquireIsNoAnswerToTakeOver) {
+  start({"--set", "Input_Lift.supervisor=instructor"});
+  Observer& observer = session->observer();
+  ASSERT_TRUE(observer.wait_for_step(1)) << session->said();
+  ASSERT_TRUE(observer.acquire("trainee", "Input_Lift").is_granted);
+  const auto probe = start_probe("instructor", "instructor", "20", "take_over");
+  const auto refusal = [&] {
+    return std::find_if(observer.leases().begin(), observer.leases().end(),
+                        [](const wire::ControllerLease& lease) { return lease.controller == "instructor"; });
+  };
+  const auto has_said = [&](const char* words) { return probe->out().find(words) != std::string::npos; };
+  ASSERT_TRUE(observer.wait_until([&] { return refusal() != observer.leases().end() && has_said("refused: "); }));
+  const wire::ControllerLease late = *refusal();
+  session->node(Role::io).send(SIGSTOP);
+  for (int i = 0; i < 20; ++i) {
+    probe->send(SIGCONT);
+    observer.say(wire::Topic::controller_lease, late);
+    EXPECT_FALSE(observer.wait_until([&] { return has_said("not taken over: "); }, 20'000'000)) << probe->out();
+  }
+  session->node(Role::io).send(SIGCONT);
+  ASSERT_TRUE(observer.wait_until([&] { return has_said("taken over\n"); })) << probe->out();
+  // nor does it take the channel away again
+  observer.say(wire::Topic::controller_lease, late);
+  ASSERT_TRUE(observer.wait_for_step(observer.step() + 200)) << session->said();
+  EXPECT_EQ(observer.variable("Input_Lift.raw"), 0.375);
+  EXPECT_FALSE(has_said("lost")) << probe->out();
+  stop();
+}
+
+TEST_F(ClientLibrary, WhatIsGrantedAfterItGaveUpIsGivenBack) {
+  start();
+  const Client hasty = join("hasty"), other = join("other");
+  ASSERT_EQ(slewring_step(hasty.get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
+  // the session hears it
+  ASSERT_GE(slewring_acquire(hasty.get(), "Input_Slew", kSoon), 0) << slewring_error(hasty.get());
+  EXPECT_EQ(slewring_acquire(hasty.get(), "Input_Lift", 0), SLEWRING_TIMEOUT);
+  EXPECT_GE(slewring_acquire(other.get(), "Input_Lift", kSoon), 0) << slewring_error(other.get());
   stop();
 }
 
@@ -432,6 +476,30 @@ TEST_F(ClientLibrary, TwoSessionsOfOneProcessUnderOneNameAreTwoControllers) {
       << slewring_error(second.get());
   ASSERT_EQ(slewring_step(first.get(), kSoon), SLEWRING_OK) << slewring_error(first.get());
   EXPECT_EQ(slewring_write(first.get(), lift, 0.5), SLEWRING_OK) << slewring_error(first.get());
+  stop();
+}
+
+TEST_F(ClientLibrary, OfTwoOfOneNameThatAskTogetherOneHasTheChannel) {
+  start();
+  const std::array<Client, 2> both = {join("pid"), join("pid")};
+  const auto find = [&](std::size_t i) { return slewring_find(both[i].get(), "Input_Lift.loop_delay", kSoon); };
+  const std::array<int, 2> delay = {find(0), find(1)};
+  ASSERT_EQ(slewring_step(both[0].get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
+  for (int round = 0; round < 50; ++round) {
+    const auto ask = [&](std::size_t i) { return slewring_acquire(both[i].get(), "Input_Lift", kSoon); };
+    auto second = std::async(std::launch::async, ask, 1);
+    const int of_first = ask(0), of_second = second.get();
+    ASSERT_NE(of_first >= 0, of_second >= 0) << round;
+    const std::size_t winner = of_first >= 0 ? 0 : 1;
+    ASSERT_EQ(std::min(of_first, of_second), SLEWRING_REFUSED) << slewring_error(both[1 - winner].get());
+    const int lift = std::max(of_first, of_second);
+    do {
+      ASSERT_EQ(slewring_latest(both[winner].get(), kSoon), SLEWRING_OK) << slewring_error(both[winner].get());
+      ASSERT_EQ(slewring_write(both[winner].get(), lift, 0.5), SLEWRING_OK) << slewring_error(both[winner].get());
+    } while (slewring_value(both[winner].get(), delay[winner]) < 0);
+    ASSERT_EQ(slewring_release(both[winner].get(), lift), SLEWRING_OK) << slewring_error(both[winner].get());
+    ASSERT_TRUE(reaches(both[winner].get(), delay[winner], -1)) << "nobody has it when it is asked for again";
+  }
   stop();
 }
 

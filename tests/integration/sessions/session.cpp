@@ -23,8 +23,8 @@ constexpr std::int64_t kAskAgainNs = 500'000'000;
 
 Observer::Observer(std::uint32_t domain, const std::string& session) : session_(session) {
   const transport::CycloneNetwork network{domain, "lo", {}};
-  const transport::TopicSet writes = {Topic::controller_input, Topic::control_request, Topic::session,
-                                      Topic::node_status};
+  const transport::TopicSet writes = {Topic::controller_input, Topic::controller_lease, Topic::control_request,
+                                      Topic::session, Topic::node_status};
   const transport::CycloneOptions endpoint{session, "observer", writes, transport::TopicSet::all()};
   std::unique_ptr<transport::CycloneTransport> carrier;
   if (const Status status = transport::CycloneTransport::open(network, endpoint, carrier); !status.is_ok()) {

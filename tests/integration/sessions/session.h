@@ -45,7 +45,7 @@ class Observer {
   template <typename Message>
   void say(wire::Topic topic, const Message& message) {
     if (!transport::encode(message, buffer_)) throw std::runtime_error("a message cannot be encoded");
-    static_cast<void>(carrier_->publish(topic, buffer_));
+    if (const Status sent = carrier_->publish(topic, buffer_); !sent.is_ok()) throw std::runtime_error(sent.text);
   }
   // Asks for a channel until it is answered.
   // What io has said to controllers since the last acquire().
