@@ -12,38 +12,19 @@
 namespace slew::cli {
 namespace {
 
-using wire::ControlAction;
 using wire::Topic;
+using Requests = std::map<std::uint64_t, wire::ControlRequest>;
 using Visit = recording::Reader::Visit;
-
-std::string request_text(const wire::ControlRequest& request) {
-  switch (request.action) {
-    case ControlAction::set_parameter:
-      return fmt::format(
-          "set {} to {:g}{}", request.path, request.value,
-          request.over_ns > 0 ? fmt::format(" over {:g} s", static_cast<double>(request.over_ns) * 1e-9) : "");
-    case ControlAction::get_parameter:
-      return "get " + request.path;
-    case ControlAction::pause:
-      return "pause";
-    case ControlAction::resume:
-      return "resume";
-    case ControlAction::step:
-      return fmt::format("step {:g}", request.value);
-    case ControlAction::reset:
-      return "reset";
-    case ControlAction::stop:
-      return "stop";
-    case ControlAction::save:
-      return "save";
-    case ControlAction::load:
-      return "load";
-  }
-  return "request";
-}
 
 std::string with_reason(std::string text, const std::string& reason) {
   return reason.empty() ? text : text + ": " + reason;
+}
+
+// in recordings of protocol version 3 the request alone says it, where it was recorded
+std::string asked(const wire::ControlReply& reply, const Requests& requests) {
+  if (!reply.asked.empty()) return reply.asked;
+  const auto request = requests.find(reply.request);
+  return request == requests.end() ? "request" : node::to_text(request->second);
 }
 
 std::string lease_text(const wire::ControllerLease& lease) {
@@ -54,7 +35,7 @@ std::string lease_text(const wire::ControllerLease& lease) {
 }  // namespace
 
 std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
-  std::map<std::uint64_t, wire::ControlRequest> requests;
+  Requests requests;
   std::vector<RecordedEvent> events;
   const auto topic = [](Topic which) { return std::string(node::to_text(which)); };
   recording::MessageFilter filter;
@@ -74,13 +55,9 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
         events.push_back({lease.header.step, lease.header.epoch, lease_text(lease)});
       }
     } else if (transport::decode(message.payload, reply)) {
-      const auto asked = requests.find(reply.request);
-      const std::string answer = reply.is_accepted ? "accepted" : "refused";
+      const std::string answer = reply.is_accepted ? " accepted" : " refused";
       const std::string text =
-          reply.request == 0
-              ? reply.reason
-              : with_reason((asked == requests.end() ? "request" : request_text(asked->second)) + " " + answer,
-                            reply.reason);
+          reply.request == 0 ? reply.reason : with_reason(asked(reply, requests) + answer, reply.reason);
       events.push_back({reply.header.step, reply.header.epoch, text});
     }
     return Visit::go_on;

@@ -146,6 +146,8 @@ void IoNode::answer(const wire::ControlRequest& request, bool accepted, const st
   reply.is_accepted = accepted;
   reply.value = value;
   reply.reason = reason.substr(0, wire::kMaxReasonLength);
+  // the recorder may not know yet who asks
+  if (request.request != 0) reply.asked = node::to_text(request).substr(0, wire::kMaxReasonLength);
   member_.publish(Topic::control_reply, reply);
 }
 

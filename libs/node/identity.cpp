@@ -1,5 +1,6 @@
 #include "node/identity.h"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/random.h>
 #include <sys/stat.h>
@@ -117,6 +118,32 @@ std::string_view to_text(wire::Topic topic) noexcept {
   std::string_view name = transport::traits(topic).name;
   name.remove_prefix(name.find('/') + 1);
   return name;
+}
+
+std::string to_text(const wire::ControlRequest& request) {
+  switch (request.action) {
+    case wire::ControlAction::set_parameter:
+      return fmt::format(
+          "set {} to {:g}{}", request.path, request.value,
+          request.over_ns > 0 ? fmt::format(" over {:g} s", static_cast<double>(request.over_ns) * 1e-9) : "");
+    case wire::ControlAction::get_parameter:
+      return "get " + request.path;
+    case wire::ControlAction::pause:
+      return "pause";
+    case wire::ControlAction::resume:
+      return "resume";
+    case wire::ControlAction::step:
+      return fmt::format("step {:g}", request.value);
+    case wire::ControlAction::reset:
+      return "reset";
+    case wire::ControlAction::stop:
+      return "stop";
+    case wire::ControlAction::save:
+      return "save";
+    case wire::ControlAction::load:
+      return "load";
+  }
+  return "request";
 }
 
 std::string seconds_text(SimDuration duration) {

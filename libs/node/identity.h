@@ -33,6 +33,8 @@ struct Identity {
 [[nodiscard]] std::string_view to_text(wire::Role role) noexcept;
 [[nodiscard]] std::string_view to_text(wire::NodeState state) noexcept;
 [[nodiscard]] std::string_view to_text(wire::Topic topic) noexcept;
+// "set Bag.mass to 1500 over 1 s"
+[[nodiscard]] std::string to_text(const wire::ControlRequest& request);
 
 // "2026-05-01 10:20:30" in local time.
 [[nodiscard]] std::string time_text(std::int64_t wall_clock_ns);

@@ -101,9 +101,9 @@ class Encoder {
     sink_.put(value.c_str(), value.size() + 1);
   }
 
-  template <typename N>
-  void item(const detail::Appended<const N>& number) noexcept {
-    item(number.value);
+  template <typename F>
+  void item(const detail::Appended<F>& appended) noexcept {
+    item(appended.field);
   }
 
   template <typename N>
@@ -216,9 +216,14 @@ class Decoder {
   }
 
   template <typename N>
-  void item(detail::Appended<N>& number) {
-    number.value = {};
-    if (!has_finished()) item(number.value);
+  void item(detail::Appended<N&>& number) {
+    number.field = {};
+    if (!has_finished()) item(number.field);
+  }
+
+  void item(detail::Appended<detail::Text<std::string>>& text) {
+    text.field.value.clear();
+    if (!has_finished()) item(text.field);
   }
 
   template <typename N>

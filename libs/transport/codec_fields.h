@@ -32,14 +32,17 @@ Text(S&, std::size_t) -> Text<S>;
 template <typename V>
 List(V&, std::size_t) -> List<V>;
 
-// The last field of a message that protocol versions before its own ended without: 0 in their recordings.
-template <typename N>
+// The last field of a message, a number or a Text, that protocol versions before its own ended without: 0 or empty in
+// their recordings.
+template <typename F>
 struct Appended {
-  N& value;
+  F field;
 };
 
 template <typename N>
-Appended(N&) -> Appended<N>;
+Appended(N&) -> Appended<N&>;
+template <typename S>
+Appended(Text<S>) -> Appended<Text<S>>;
 
 // A number that indexes or counts something: outside [least, most] it is a fault of its writer.
 template <typename N>
@@ -245,6 +248,7 @@ void fields(A& a, typename A::template Of<wire::ControlRequest>& m) {
 template <typename A>
 void fields(A& a, typename A::template Of<wire::ControlReply>& m) {
   a(m.header, m.request, m.is_accepted, m.value, sentence(m.reason));
+  a(Appended{sentence(m.asked)});  // since version 4
 }
 
 template <typename A>

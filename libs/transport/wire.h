@@ -299,6 +299,7 @@ struct ControlReply {
   bool is_accepted = false;
   double value = 0;  // get_parameter: SI, at present
   std::string reason;
+  std::string asked;  // what was requested, in words, at most kMaxReasonLength characters; empty: nothing (request 0)
   bool operator==(const ControlReply&) const = default;
 };
 

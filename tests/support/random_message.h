@@ -62,9 +62,9 @@ class RandomFields {
     for (char& character : text.value) character = static_cast<char>(1 + below(255));
   }
 
-  template <typename N>
-  void item(transport::detail::Appended<N> number) {
-    item(number.value);
+  template <typename F>
+  void item(transport::detail::Appended<F> appended) {
+    item(appended.field);
   }
 
   template <typename N>

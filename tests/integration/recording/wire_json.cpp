@@ -189,7 +189,8 @@ json to_json(const wire::ControlReply& m) {
           {"request", value_of(m.request)},
           {"is_accepted", m.is_accepted},
           {"value", value_of(m.value)},
-          {"reason", m.reason}};
+          {"reason", m.reason},
+          {"asked", m.asked}};
 }
 
 json quantiles_of(const wire::Quantiles& m) {

@@ -239,7 +239,8 @@ void write_occasional(KnownRecording& recording, StepIndex step) {
                   step);
   recording.write(wire::ControlRequest{"verification", ~n, wire::ControlAction::set_parameter, "Bag.mass", 1'500, -1},
                   step);
-  recording.write(wire::ControlReply{header_at(step, wire::Role::io), ~n, true, 0.5 * static_cast<double>(step), ""},
+  recording.write(wire::ControlReply{header_at(step, wire::Role::io), ~n, true, 0.5 * static_cast<double>(step), "",
+                                     "set Bag.mass to 1500"},
                   step);
   wire::Health health;
   health.header = header_at(step, wire::Role::recorder);

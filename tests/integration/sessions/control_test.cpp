@@ -162,6 +162,8 @@ TEST_F(Control, AcceptedParameterEntersTheTickItWasPromisedFor) {
   start({"--pace", "real", "--duration", "1.6s"}, 200);
   const ControlReply reply = observer_->request(ControlAction::set_parameter, 1500, "Bag.mass");
   ASSERT_TRUE(reply.is_accepted) << reply.reason;
+  // also for who did not hear the request, as a recorder that did not know yet who asks
+  EXPECT_EQ(reply.asked, "set Bag.mass to 1500");
   expect_ends_well();
   const RecordedSession recorded = session_->recorded();
   const wire::Tick& tick = recorded.ticks.at(0).at(reply.header.step);

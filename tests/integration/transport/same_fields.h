@@ -174,7 +174,7 @@ inline bool same(const slewring_ControlRequest& a, const wire::ControlRequest& b
 
 inline bool same(const slewring_ControlReply& a, const wire::ControlReply& b) {
   return same(a.header, b.header) && a.request == b.request && a.is_accepted == b.is_accepted && a.value == b.value &&
-         a.reason == b.reason;
+         a.reason == b.reason && a.asked == b.asked;
 }
 
 inline bool same(const slewring_ResendRequest& a, const wire::ResendRequest& b) {
