@@ -19,6 +19,9 @@ namespace {
 
 // reactions to a signal are at most this late
 constexpr SimDuration kLongestWait = milliseconds(20);
+constexpr SimDuration kAskAgain = milliseconds(250);
+// what io_node answered before its end may come behind the word of its end
+constexpr SimDuration kLastWords = milliseconds(200);
 
 }  // namespace
 
@@ -93,16 +96,18 @@ std::uint64_t Observer::send(wire::ControlRequest request) {
   return request.request;
 }
 
-// A request is lost when io_node does not know this reader yet; its health shows that both have found each other.
+// This program hears io_node and knows its readers. Whether io_node knows this program's writers, nobody tells.
 bool Observer::wait_until_heard() {
-  return wait_for(
-      [this] {
-        const NodeView& io = view_.node(wire::Role::io);
-        return io.health.header.session == view_.session().header.session &&
-               cli_support::is_heard(*carrier_, Topic::control_request) &&
-               cli_support::is_heard(*carrier_, Topic::state);
-      },
-      kAnswerTimeout);
+  const auto is_heard = [this] {
+    const NodeView& io = view_.node(wire::Role::io);
+    return io.health.header.session == view_.session().header.session &&
+           cli_support::is_heard(*carrier_, Topic::control_request) && cli_support::is_heard(*carrier_, Topic::state);
+  };
+  return wait_for([&] { return is_gone() || is_heard(); }, kAnswerTimeout) && !is_gone();
+}
+
+bool Observer::is_gone() const noexcept {
+  return !view_.has_session() || view_.is_over();
 }
 
 wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_most) {
@@ -115,17 +120,33 @@ wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_mo
     is_answered = true;
   };
   if (wait_until_heard()) {
-    number = send(std::move(request));
-    wait_for([&] { return is_answered; }, at_most);
+    number = request.request = request.request != 0 ? request.request : draw_number();
+    // again until it is heard: io_node takes a copy for what it is
+    const std::int64_t end_ns = monotonic_ns() + at_most.ns;
+    while (!is_answered && !is_gone() && node::stop_requested.load() == 0 && monotonic_ns() < end_ns) {
+      send(request);
+      wait_for([&] { return is_answered || is_gone(); }, kAskAgain);
+    }
+    if (is_gone()) wait_for([&] { return is_answered; }, kLastWords);
   }
   on_reply_ = nullptr;
-  if (!is_answered) {
-    throw Failure(ExitCode::failed, "session '" + session_ + "' has not answered within " +
-                                        node::seconds_text(at_most) +
-                                        "; the request may have had an effect; look with "
-                                        "'slewring sessions' whether it still runs");
-  }
+  if (!is_answered) say_why_not_answered(at_most);
   return answer;
+}
+
+void Observer::say_why_not_answered(SimDuration waited) const {
+  if (is_gone()) {
+    const std::string& reason = view_.node(wire::Role::io).status.reason;
+    throw Failure(ExitCode::failed, "session '" + session_ + "' ended before it answered" +
+                                        (reason.empty() ? "" : ": " + reason) +
+                                        "; there is nothing left to be changed; start it again");
+  }
+  if (const int stop = node::stop_requested.load(); stop != 0) {
+    throw Failure(static_cast<ExitCode>(stop), "interrupted; the request may have had an effect");
+  }
+  throw Failure(ExitCode::failed, "session '" + session_ + "' has not answered within " + node::seconds_text(waited) +
+                                      "; the request may have had an effect; look with 'slewring sessions' whether it "
+                                      "still runs");
 }
 
 void Observer::send(const wire::ControllerInput& input) {

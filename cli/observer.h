@@ -33,7 +33,7 @@ class Observer {
   // Takes messages until `done` is true or the time is over; false then, and when a signal asks to stop.
   bool wait_for(const std::function<bool()>& done, SimDuration at_most);
 
-  // Sends a request and waits for io_node's answer. Throws Failure when none comes.
+  // Sends a request and waits for io_node's answer. Throws Failure when none comes in time, or the session ends first.
   [[nodiscard]] wire::ControlReply ask(wire::ControlRequest request, SimDuration at_most = kAnswerTimeout);
 
   // The same without waiting: whether it had an effect is seen in the view. Returns the request's number, which is
@@ -48,11 +48,13 @@ class Observer {
 
   void send(const wire::ControllerInput& input);
 
-  // io_node knows this reader and this writer. False: not within kAnswerTimeout.
+  // io_node is heard, and reads what this observer writes. False: not within kAnswerTimeout, or the session has ended.
   bool wait_until_heard();
 
  private:
   void take_state(const transport::Received& message);
+  [[nodiscard]] bool is_gone() const noexcept;
+  [[noreturn]] void say_why_not_answered(SimDuration waited) const;
 
   std::unique_ptr<transport::Transport> carrier_;
   std::string session_;

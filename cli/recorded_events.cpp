@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 
 #include "cli_support/failure.h"
 #include "node/identity.h"
@@ -47,6 +48,7 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
     return Visit::go_on;
   }));
   filter.topics = {topic(Topic::control_reply), topic(Topic::controller_lease)};
+  std::set<std::uint64_t> answered;  // who has not heard its answer is told it again
   static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     wire::ControlReply reply;
     wire::ControllerLease lease;
@@ -55,6 +57,7 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
         events.push_back({lease.header.step, lease.header.epoch, lease_text(lease)});
       }
     } else if (transport::decode(message.payload, reply)) {
+      if (reply.request != 0 && !answered.insert(reply.request).second) return Visit::go_on;
       const std::string answer = reply.is_accepted ? " accepted" : " refused";
       const std::string text =
           reply.request == 0 ? reply.reason : with_reason(asked(reply, requests) + answer, reply.reason);

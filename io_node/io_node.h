@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -224,6 +225,7 @@ class IoNode final : public node::Node {
   }
   void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step,
               double value = 0);
+  [[nodiscard]] bool is_asked_again(const wire::ControlRequest& request);
   [[nodiscard]] bool has_its_controllers(std::int64_t now_ns);
   [[nodiscard]] bool may_wait_for_controllers(std::int64_t now_ns) noexcept;
   void set_parameter(const wire::ControlRequest& request);
@@ -279,6 +281,11 @@ class IoNode final : public node::Node {
   StepIndex begin_step_ = 0;  // of the epoch
   std::optional<Saving> saving_;
   Upload upload_;
+  struct Answered {
+    wire::ControlRequest request;
+    wire::ControlReply reply;
+  };
+  std::deque<Answered> answered_;  // the newest ones
   wire::StatePart part_;
   wire::ControllerInput input_;
 };

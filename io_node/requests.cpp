@@ -5,6 +5,11 @@
 #include "io_node/io_node.h"
 
 namespace slew::io {
+namespace {
+
+constexpr std::size_t kKeptAnswers = 64;  // that a request which is sent again may need
+
+}  // namespace
 
 using wire::Phase;
 using wire::Role;
@@ -66,6 +71,7 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
   }
   if (request.session != config_.session_name) return;
   if (request.action == wire::ControlAction::get_parameter) return tell_parameter(request);
+  if (is_asked_again(request)) return;
   if (stage_ != Stage::ticking) return answer(request, false, "the session is not running yet", n_);
   switch (request.action) {
     case wire::ControlAction::get_parameter:
@@ -105,6 +111,19 @@ void IoNode::receive_control(std::span<const std::byte> bytes, std::int64_t now_
     case wire::ControlAction::load:
       return begin_loading(request, now_ns);
   }
+}
+
+// Who asks sends its request until it is answered: the first may go before this node hears its writer, and the answer
+// before it hears this one. A copy has the same answer and no further effect.
+bool IoNode::is_asked_again(const wire::ControlRequest& request) {
+  if (request.request == 0) return false;
+  if (saving_ && saving_->request == request) return true;
+  if (upload_.asked == request) return true;
+  const auto found = std::find_if(answered_.begin(), answered_.end(),
+                                  [&](const Answered& answered) { return answered.request == request; });
+  if (found == answered_.end()) return false;
+  member_.publish(Topic::control_reply, found->reply);
+  return true;
 }
 
 void IoNode::set_parameter(const wire::ControlRequest& request) {
@@ -149,6 +168,9 @@ void IoNode::answer(const wire::ControlRequest& request, bool accepted, const st
   // the recorder may not know yet who asks
   if (request.request != 0) reply.asked = node::to_text(request).substr(0, wire::kMaxReasonLength);
   member_.publish(Topic::control_reply, reply);
+  if (request.request == 0 || request.action == wire::ControlAction::get_parameter) return;
+  if (answered_.size() == kKeptAnswers) answered_.pop_front();
+  answered_.push_back({request, std::move(reply)});
 }
 
 void IoNode::receive_resend(std::span<const std::byte> bytes, std::int64_t now_ns) {

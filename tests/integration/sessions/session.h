@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -92,7 +93,7 @@ class Observer {
   std::vector<wire::ControllerLease> leases_;
   std::map<std::string, std::pair<wire::Role, std::size_t>> places_;
   std::map<std::pair<wire::Role, std::size_t>, double> values_;
-  std::uint64_t next_request_ = 1;
+  std::uint64_t next_request_ = std::random_device()() + std::uint64_t{1};  // no other process's numbers
   std::vector<std::byte> buffer_;
 };
 

@@ -77,6 +77,40 @@ TEST_F(Io, SaysThatItRunsWhileItDoesSingleSteps) {
   EXPECT_EQ(statuses.back().header.step, 13);
 }
 
+// Who does not hear an answer asks again: with the same number it is the same request.
+TEST_F(Io, AnswersARequestThatIsSentAgainAndDoesItOnce) {
+  get_running();
+  run_to(10);
+  ASSERT_TRUE(request(wire::ControlAction::pause).is_accepted);
+  wire::ControlRequest step;
+  step.session = "s";
+  step.request = 4711;
+  step.action = wire::ControlAction::step;
+  step.value = 3;
+  for (int i = 0; i < 3; ++i) {
+    played.say(Topic::control_request, step);
+    poll();
+    const auto replies = played.said<wire::ControlReply>(Topic::control_reply);
+    ASSERT_EQ(replies.size(), 1u) << "copy " << i;
+    EXPECT_EQ(replies[0].request, 4711u);
+    EXPECT_TRUE(replies[0].is_accepted);
+    EXPECT_EQ(replies[0].header.step, 10);
+  }
+  const auto go_on = [&] {
+    for (int i = 0; i < 10; ++i) {
+      say_samples(node->next_step());
+      poll(kMs);
+    }
+  };
+  go_on();
+  EXPECT_EQ(node->next_step(), 13);
+  // another request, though by chance of the same number
+  step.value = 2;
+  played.say(Topic::control_request, step);
+  go_on();
+  EXPECT_EQ(node->next_step(), 15);
+}
+
 TEST_F(Io, CountsNoPauseAsSlip) {
   get_running();
   run_to(10);

@@ -135,6 +135,28 @@ class World {
   std::int64_t now_ns = 1000 * kMs;
 };
 
+TEST(Saved, AsOneRequestHoweverOftenItIsSent) {
+  World world;
+  world.get_running(World::config());
+  world.run_to(110);
+  world.ask(ControlAction::save, 9);
+  world.say_samples(110);
+  world.poll(kMs);
+  world.ask(ControlAction::save, 9);
+  EXPECT_TRUE(world.replies().empty());
+  world.give_states();
+  for (int copy = 0; copy < 3; ++copy) {
+    const auto answers = world.replies();
+    ASSERT_EQ(answers.size(), 1u) << copy;
+    EXPECT_TRUE(answers[0].is_accepted) << answers[0].reason;
+    EXPECT_EQ(answers[0].header.step, 110);
+    world.ask(ControlAction::save, 9);
+  }
+  EXPECT_EQ(world.states_of(9).size(), 3u);
+  world.run_to(120);
+  EXPECT_EQ(world.node->next_step(), 120);
+}
+
 TEST(Saved, AtAStepBoundaryWithTheStatesOfAllAndGoesOnToTheSameTicks) {
   World world;
   world.get_running(World::config());
