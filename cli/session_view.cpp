@@ -97,6 +97,7 @@ void SessionView::look_at(std::optional<wire::SessionDescription> session) {
   nodes_ = {};
   variables_ = {};
   named_ = {};
+  has_told_ = {};
   index_.clear();
   leases_.clear();
   step_ = kJoinStep;
@@ -126,6 +127,7 @@ void SessionView::take_directory(std::span<const std::byte> bytes) {
   if (!transport::decode(bytes, directory) || node_of(directory.header) == nullptr) return;
   const auto role = static_cast<std::size_t>(directory.header.role);
   std::vector<VariableView>& variables = variables_[role];
+  has_told_[role] = true;
   if (variables.size() < directory.total) variables.resize(directory.total);
   for (std::size_t i = 0; i < directory.entries.size(); ++i) {
     const std::size_t at = directory.first + i;
@@ -203,7 +205,7 @@ bool SessionView::has_whole_directory() const noexcept {
   for (const Role role : wire::kNodeRoles) {
     const auto index = static_cast<std::size_t>(role);
     if (role == Role::recorder || (session_->required_roles & bit(role)) == 0) continue;
-    if (variables_[index].empty() || named_[index] < variables_[index].size()) return false;
+    if (!has_told_[index] || named_[index] < variables_[index].size()) return false;
   }
   return true;
 }

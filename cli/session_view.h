@@ -100,6 +100,7 @@ class SessionView {
   std::array<NodeView, wire::kRoles> nodes_;
   std::array<std::vector<VariableView>, wire::kRoles> variables_;
   std::array<std::uint32_t, wire::kRoles> named_{};  // variables whose name has come
+  std::array<bool, wire::kRoles> has_told_{};        // how many it has
   std::map<std::string, std::pair<std::size_t, std::size_t>, std::less<>> index_;
   std::map<std::pair<std::string, std::string>, wire::ControllerLease> leases_;
   StepIndex step_ = kJoinStep;

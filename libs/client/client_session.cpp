@@ -25,7 +25,6 @@ constexpr std::int64_t kAskAgainNs = 200'000'000;
 constexpr std::int64_t kLongestSleepNs = 50'000'000;
 // more than a wait is late under load: the process was stopped, or its machine slept
 constexpr std::int64_t kStandstillNs = 200'000'000;
-constexpr SimDuration kDirectoryGrace = milliseconds(300);  // of other nodes after io's, which is the last
 
 std::string in_seconds(SimDuration time) {
   std::string text = std::to_string(time.seconds());
@@ -198,13 +197,24 @@ const ClientSession::Named* ClientSession::named(const std::string& name) const 
 void ClientSession::take_directory(std::span<const std::byte> bytes) {
   wire::VariableDirectory message;
   if (!transport::decode(bytes, message) || !is_ours(message.header)) return;
-  has_own_directory_ = has_own_directory_ || message.header.role == Role::io;
+  const auto role = static_cast<std::size_t>(message.header.role);
+  if (role >= untold_.size()) return;
+  if (!untold_[role]) untold_[role] = message.total;
   // the same again after a reset
   if (message.entries.empty() || named(message.entries.front().name) != nullptr) return;
+  *untold_[role] -= std::min(*untold_[role], static_cast<std::uint32_t>(message.entries.size()));
   for (std::size_t i = 0; i < message.entries.size(); ++i) {
     directory_.push_back({message.entries[i].name, message.entries[i].unit, message.header.role,
                           message.first + static_cast<std::uint32_t>(i)});
   }
+}
+
+// Each node's names come by themselves, however long after another's.
+bool ClientSession::has_whole_directory() const noexcept {
+  return std::all_of(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles), [this](Role role) {
+    const bool has_variables = role != Role::recorder && (description_.required_roles & wire::bit(role)) != 0;
+    return !has_variables || untold_[static_cast<std::size_t>(role)] == 0u;
+  });
 }
 
 // of a reset: steps begin at 0 again, and what was computed before is of no use
@@ -268,19 +278,20 @@ Answer ClientSession::find(const std::string& variable, SimDuration timeout, int
     handle = static_cast<int>(wanted - wanted_.begin());
     return {};
   }
-  std::int64_t all_known_ns = 0;
-  const auto is_decided = [&] {
-    if (has_own_directory_ && all_known_ns == 0) all_known_ns = monotonic_ns() + kDirectoryGrace.ns;
-    return named(variable) != nullptr || is_over_ || (all_known_ns != 0 && monotonic_ns() > all_known_ns);
-  };
-  static_cast<void>(wait_for(is_decided, timeout));
+  static_cast<void>(wait_for([&] { return named(variable) != nullptr || is_over_ || has_whole_directory(); }, timeout));
   const Named* found = named(variable);
   if (found == nullptr) {
     if (is_over_) return ended();
-    return {has_own_directory_ ? Code::refused : Code::timeout,
-            "session '" + options_.session + "' has told no variable '" + variable + "' within " + in_seconds(timeout) +
-                ", " + std::to_string(directory_.size()) +
-                " others; `slewring variables SCENE` lists them, recording.variables of the scene chooses among them"};
+    const std::string others = std::to_string(directory_.size());
+    if (!has_whole_directory()) {
+      return {Code::timeout, "session '" + options_.session + "' has not told all its variables within " +
+                                 in_seconds(timeout) + ": '" + variable + "' is not among " + others +
+                                 " so far; it is still starting, or its nodes are not all heard here: wait longer, or "
+                                 "see `slewring sessions`"};
+    }
+    return {Code::refused, "session '" + options_.session + "' publishes no variable '" + variable + "', " + others +
+                               " others; `slewring variables SCENE` lists them, recording.variables of the scene "
+                               "chooses among them"};
   }
   handle = static_cast<int>(wanted_.size());
   wanted_.push_back(*found);

@@ -114,6 +114,7 @@ class ClientSession {
   [[nodiscard]] bool can_never_be_complete(std::map<StepIndex, Block>::const_iterator block) const noexcept;
   Answer send(const std::string& channel, wire::ControllerAction action, double value, StepIndex based_on);
   [[nodiscard]] const Named* named(const std::string& name) const noexcept;
+  [[nodiscard]] bool has_whole_directory() const noexcept;
   [[nodiscard]] Answer ended() const;
 
   JoinOptions options_;
@@ -125,12 +126,12 @@ class ClientSession {
   std::string end_reason_;
   std::uint32_t epoch_ = 0;
   std::vector<Named> directory_;
-  bool has_own_directory_ = false;              // io's, which comes after the others'
-  std::vector<Named> wanted_;                   // by handle
-  std::deque<wire::VariableBlock> new_blocks_;  // that came before step() was called
-  std::map<StepIndex, Block> blocks_;           // not handed out yet
-  bool only_newest_ = false;                    // of the next step: a channel was acquired in mid-run
-  std::vector<double> values_;                  // of step_, by handle
+  std::array<std::optional<std::uint32_t>, wire::kRoles> untold_;  // variables that each role has yet to name
+  std::vector<Named> wanted_;                                      // by handle
+  std::deque<wire::VariableBlock> new_blocks_;                     // that came before step() was called
+  std::map<StepIndex, Block> blocks_;                              // not handed out yet
+  bool only_newest_ = false;    // of the next step: a channel was acquired in mid-run
+  std::vector<double> values_;  // of step_, by handle
   StepIndex step_ = kJoinStep;
   std::array<std::optional<StepIndex>, wire::kRoles> newest_of_;  // step of each node's newest block
   StepIndex steps_per_block_ = 0;                                 // the smallest distance of two; 0: not known yet

@@ -695,7 +695,8 @@ bool PhysicsNode::is_shed() const noexcept {
 void PhysicsNode::publish_directory() {
   const std::span<const ElementVariable> variables = built_.subsystem->variables();
   const std::size_t total = built_.published_variables.size();
-  for (std::size_t first = 0; first < total; first += wire::kMaxVariablesPerBlock) {
+  // that it has none is told too: who looks for a variable need not wait for this node
+  for (std::size_t first = 0; first < total || first == 0; first += wire::kMaxVariablesPerBlock) {
     wire::VariableDirectory directory;
     directory.header = member_.header(Phase::running, 0);
     directory.total = static_cast<std::uint32_t>(total);

@@ -89,6 +89,19 @@ class ClientLibrary : public ::testing::Test {
   std::unique_ptr<Session> session;
 };
 
+TEST_F(ClientLibrary, LooksForNoVariableOfANodeThatSaysThatItHasNone) {
+  start({"--set", "recording.variables=[Vol_*]"});  // of hydraulics alone
+  const Client client = join("reader");
+  EXPECT_GE(slewring_find(client.get(), "Vol_LiftCyl_A.pressure", kSoon), 0) << slewring_error(client.get());
+  EXPECT_EQ(slewring_find(client.get(), "Bag.position.x", 3600), SLEWRING_REFUSED);
+  Program variables(program_path("slewring"),
+                    {"variables", "--session", session->name(), "--domain", std::to_string(session->domain())},
+                    session->folder() / "variables");
+  EXPECT_EQ(variables.wait(), 0) << variables.err();
+  EXPECT_NE(variables.out().find("Vol_LiftCyl_A.pressure"), std::string::npos) << variables.out();
+  stop();
+}
+
 TEST_F(ClientLibrary, ReadsEveryBlockInOrderWithNamesAndUnits) {
   start();
   const Client client = join("reader");
@@ -306,7 +319,7 @@ TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
   start();
   const Client client = join("pid");
   EXPECT_EQ(slewring_find(client.get(), "Cyl_Lift.strok", kSoon), SLEWRING_REFUSED);
-  EXPECT_NE(std::string(slewring_error(client.get())).find("has told no variable 'Cyl_Lift.strok'"), std::string::npos)
+  EXPECT_NE(std::string(slewring_error(client.get())).find("publishes no variable 'Cyl_Lift.strok'"), std::string::npos)
       << slewring_error(client.get());
   EXPECT_EQ(slewring_acquire(client.get(), "Input_Foo", kSoon), SLEWRING_REFUSED);
   EXPECT_STREQ(slewring_error(client.get()), "the scene has no input 'Input_Foo'");

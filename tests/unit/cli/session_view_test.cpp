@@ -125,6 +125,15 @@ TEST_F(SessionViewTest, TheDirectoryIsWholeOnlyWhenEveryMessageHasCome) {
   EXPECT_TRUE(view.has_whole_directory());
 }
 
+TEST_F(SessionViewTest, TheDirectoryIsWholeWithANodeThatHasNoVariables) {
+  SessionView view("crane");
+  tell(view, session_);
+  tell(view, directory(Role::io, 1, 0, {"Input.raw"}));
+  EXPECT_FALSE(view.has_whole_directory());
+  tell(view, directory(Role::mechanics, 0, 0, {}));
+  EXPECT_TRUE(view.has_whole_directory());
+}
+
 TEST_F(SessionViewTest, PassesOverOtherSessions) {
   SessionView view("crane");
   tell(view, session_);
