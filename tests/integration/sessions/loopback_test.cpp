@@ -29,7 +29,7 @@ class Loopback : public ::testing::Test {
     Session session({"--pace", "real", "--duration", "3s"});
     for (const Role role : kAllNodes) session.run_under(role, cable.left().command(), more);
     session.start_all();
-    ASSERT_FALSE(session.node(Role::io).wait(1'500'000'000).has_value()) << session.said();
+    ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
     open_ports = 0;
     const std::uint32_t first = 7400 + 250 * session.domain() + 10;
     for (std::uint32_t port = first; port < first + 2 * kAllNodes.size(); ++port) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <iterator>
 #include <thread>
 
@@ -24,23 +23,6 @@ class FaultyCable : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
-  }
-
-  // Nobody outside the namespaces hears the session: its recording grows when it runs.
-  static void wait_until_it_runs(Session& session) {
-    constexpr std::uintmax_t kSomeSteps = 300'000;  // bytes; the front of the file is a tenth of it
-    const auto size = [&] {
-      std::uintmax_t bytes = 0;
-      std::error_code ignored;
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(session.runs(), ignored)) {
-        if (entry.is_regular_file(ignored)) bytes += entry.file_size(ignored);
-      }
-      return bytes;
-    };
-    for (int i = 0; i < 600 && size() < kSomeSteps; ++i) {
-      ASSERT_FALSE(session.node(Role::io).wait(50'000'000).has_value()) << session.said();
-    }
-    ASSERT_GE(size(), kSomeSteps) << session.said();
   }
 
   static void expect_bits_of_one_process(const RecordedSession& recorded, const std::string& duration) {
@@ -90,7 +72,7 @@ TEST_F(FaultyCable, OutForHalfASecondIsNamedAndTheSessionGoesOnWithTheSameBits) 
   Session session({"--pace", "real", "--duration", "4s"});
   distribute(session, cable);
   session.start_all();
-  wait_until_it_runs(session);
+  ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
   if (HasFatalFailure()) return;
   cable.unplug();
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
@@ -109,7 +91,7 @@ TEST_F(FaultyCable, OutFor3SecondsEndsTheSessionWithCode4) {
   Session session({"--pace", "real", "--duration", "60s"});
   distribute(session, cable);
   session.start_all();
-  wait_until_it_runs(session);
+  ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
   if (HasFatalFailure()) return;
   cable.unplug();
   std::this_thread::sleep_for(std::chrono::seconds(3));
@@ -130,7 +112,7 @@ TEST_F(FaultyCable, OutFor3SecondsTheNodeBeyondItIsReplacedAndTheSessionGoesOnWi
   Session session({"--pace", "real", "--duration", "4s", "--set", "session.rejoin=60s"});
   distribute(session, cable, {Role::mechanics});
   session.start_all();
-  wait_until_it_runs(session);
+  ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
   if (HasFatalFailure()) return;
   cable.unplug();
   // it is alone: its session is gone, and for the others it is
@@ -195,7 +177,7 @@ TEST_P(OneWayCable, InMidRunEndsTheSessionWithCode4) {
   Session session({"--pace", "real", "--duration", "60s"});
   distribute(session, cable);
   session.start_all();
-  wait_until_it_runs(session);
+  ASSERT_TRUE(session.wait_for_recorded_step()) << session.said();
   if (HasFatalFailure()) return;
   const bool is_left_deaf = GetParam();
   if (!cable.deafen(is_left_deaf ? cable.left() : cable.right())) {

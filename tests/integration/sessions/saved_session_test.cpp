@@ -19,8 +19,9 @@ using wire::NodeState;
 using wire::Role;
 
 constexpr const char* kScene = SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml";
-constexpr const char* kDuration = "1.6s";
-constexpr StepIndex kSteps = 1600;
+// long enough for a program that is to ask in mid-run to begin under a sanitizer
+constexpr const char* kDuration = "4s";
+constexpr StepIndex kSteps = 4000;
 constexpr std::size_t kLift = 1;  // place of Input_Lift in a tick
 
 const HashChain& undisturbed() {

@@ -222,6 +222,22 @@ std::map<Role, int> Session::wait_all(std::int64_t longest_ns) {
   return codes;
 }
 
+bool Session::wait_for_recorded_step() {
+  const auto has_a_step = [this] {
+    try {
+      return recorded().last_complete_step() > 0;
+    } catch (const std::exception&) {
+      return false;  // there is no recording yet
+    }
+  };
+  const std::int64_t deadline_ns = monotonic_ns() + kSoonNs;
+  bool is_there = has_a_step();
+  while (!is_there && monotonic_ns() < deadline_ns && !node(Role::io).wait(50'000'000).has_value()) {
+    is_there = has_a_step();
+  }
+  return is_there;
+}
+
 std::string Session::said() const {
   std::string text;
   for (const auto& [role, program] : nodes_) text += std::string(node::to_text(role)) + ": " + program->err() + "\n";

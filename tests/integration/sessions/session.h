@@ -48,9 +48,9 @@ class Observer {
     if (!transport::encode(message, buffer_)) throw std::runtime_error("a message cannot be encoded");
     if (const Status sent = carrier_->publish(topic, buffer_); !sent.is_ok()) throw std::runtime_error(sent.text);
   }
-  // Asks for a channel until it is answered.
   // What io has said to controllers since the last acquire().
   [[nodiscard]] const std::vector<wire::ControllerLease>& leases() const noexcept { return leases_; }
+  // Asks for a channel until it is answered.
   [[nodiscard]] wire::ControllerLease acquire(const std::string& controller, const std::string& channel);
 
   [[nodiscard]] StepIndex step() const noexcept { return step_; }
@@ -116,6 +116,9 @@ class Session {
 
   // Waits for the end of every node; its exit codes. -1000: it still ran.
   [[nodiscard]] std::map<wire::Role, int> wait_all(std::int64_t longest_ns = kSoonNs);
+  // Waits for a step in the recording, which grows every second: for sessions in namespaces, which nobody outside
+  // hears. False when io ends before there is one.
+  [[nodiscard]] bool wait_for_recorded_step();
   // Everything the nodes wrote to standard error, for messages of failed expectations.
   [[nodiscard]] std::string said() const;
 
