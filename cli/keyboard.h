@@ -9,6 +9,7 @@
 #include <termios.h>
 
 #include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -64,7 +65,7 @@ class Keyboard {
   termios saved_{};
   std::int64_t next_write_ns_ = 0;
   std::int64_t next_acquire_ns_ = 0;
-  std::uint64_t sequence_ = 0;
+  std::uint64_t sequence_ = std::random_device()() * (std::uint64_t{1} << 31);  // no other process's numbers
 };
 
 }  // namespace slew::cli
