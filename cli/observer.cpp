@@ -111,16 +111,15 @@ bool Observer::is_gone() const noexcept {
 }
 
 wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_most) {
+  if (request.request == 0) request.request = draw_number();
   wire::ControlReply answer;
   bool is_answered = false;
-  std::uint64_t number = 0;
   on_reply_ = [&](const wire::ControlReply& reply) {
-    if (reply.request != number) return;
+    if (reply.request != request.request) return;
     answer = reply;
     is_answered = true;
   };
   if (wait_until_heard()) {
-    number = request.request = request.request != 0 ? request.request : draw_number();
     // again until it is heard: io_node takes a copy for what it is
     const std::int64_t end_ns = monotonic_ns() + at_most.ns;
     while (!is_answered && !is_gone() && node::stop_requested.load() == 0 && monotonic_ns() < end_ns) {

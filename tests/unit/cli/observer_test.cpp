@@ -101,11 +101,10 @@ class Asking : public ::testing::Test {
   }
 
   // "" when io has answered, else what the user is told
-  std::string ask() {
+  std::string ask(std::uint64_t number = kRequest) {
     Observer observer(std::move(io_), "crane");
-    observer.drain();
     wire::ControlRequest request;
-    request.request = kRequest;
+    request.request = number;
     try {
       return observer.ask(request).is_accepted ? "" : "refused";
     } catch (const cli_support::Failure& failure) {
@@ -124,6 +123,14 @@ constexpr const char* kEnded =
 TEST_F(Asking, IsAnswered) {
   io_->say_when_asked(accepted());
   EXPECT_EQ(ask(), "");
+}
+
+TEST_F(Asking, TakesNoEventForTheAnswerToARequestThatHasNoNumberYet) {
+  wire::ControlReply event = accepted();
+  event.request = 0;
+  io_->say_at_first(event);
+  io_->say_when_asked(end());
+  EXPECT_EQ(ask(0), kEnded);
 }
 
 TEST_F(Asking, ASessionThatEndsInsteadOfAnsweringIsToldAtOnce) {
