@@ -57,6 +57,7 @@ TEST(FreeRunning, BridgesAPartnerThatStandsStillForAWhile) {
 }
 
 TEST(FreeRunning, OverACableThatLosesOnePercentIsGreenOrAmber) {
+  const bool is_fast = std::string_view(SLEWRING_SANITIZER).empty();
   NamespacePair cable;
   if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
   Session session({"--pace", "real", "--duration", std::string(seconds()) + "s", "--set", "session.mode=free_running"});
@@ -66,7 +67,7 @@ TEST(FreeRunning, OverACableThatLosesOnePercentIsGreenOrAmber) {
     const NamespacePair::Side& there = is_left ? cable.right() : cable.left();
     std::vector<std::string> arguments = {"--interface", here.interface, "--peer", there.address, "--insecure-lan"};
     // beside other tests the processor would be what is lost; with a sanitizer nobody else would get any
-    if (std::string_view(SLEWRING_SANITIZER).empty()) arguments.emplace_back("--rt");
+    if (is_fast) arguments.emplace_back("--rt");
     session.run_under(role, here.command(), arguments);
   }
   if (!cable.lose(1)) GTEST_SKIP() << "packets cannot be lost here: " << cable.problem();
@@ -81,7 +82,10 @@ TEST(FreeRunning, OverACableThatLosesOnePercentIsGreenOrAmber) {
   RecordProperty("eta", std::to_string(largest_eta(recorded)));
   EXPECT_GT(late, 0) << "nothing was lost: the test shows nothing";
   EXPECT_GE(largest_eta(recorded), 0);
-  EXPECT_LT(largest_eta(recorded), coupling::kAmberBelow);
+  // with a sanitizer the nodes themselves are later than what the cable loses
+  if (is_fast) {
+    EXPECT_LT(largest_eta(recorded), coupling::kAmberBelow);
+  }
 }
 
 }  // namespace
