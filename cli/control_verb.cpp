@@ -195,13 +195,15 @@ ExitCode load(const Options& options) {
   wire::ControlRequest request;
   request.action = ControlAction::load;
   request.request = Observer::draw_number();
-  if (!observer->wait_until_heard()) refuse("the session does not hear this program within 3 s");
-  for (const wire::Role role : roles_with_state(session)) {
-    const node::Checkpoint* state = saved.find(role);
-    if (state == nullptr) refuse("the file has no state of " + std::string(node::to_text(role)));
-    observer->give_state(request.request, role, *state);
+  const std::vector<wire::Role> roles = roles_with_state(session);
+  for (const wire::Role role : roles) {
+    if (saved.find(role) == nullptr) refuse("the file has no state of " + std::string(node::to_text(role)));
   }
-  tell(options, "load", *observer, observer->ask(request, kSaveAnswer), fmt::format(", t = {:.6g} s", saved.time()));
+  const auto give_states = [&] {
+    for (const wire::Role role : roles) observer->give_state(request.request, role, *saved.find(role));
+  };
+  tell(options, "load", *observer, observer->ask(request, kSaveAnswer, give_states),
+       fmt::format(", t = {:.6g} s", saved.time()));
   return ExitCode::ok;
 }
 

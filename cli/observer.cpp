@@ -110,7 +110,8 @@ bool Observer::is_gone() const noexcept {
   return !view_.has_session() || view_.is_over();
 }
 
-wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_most) {
+wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_most,
+                                 const std::function<void()>& send_first) {
   if (request.request == 0) request.request = draw_number();
   wire::ControlReply answer;
   bool is_answered = false;
@@ -123,6 +124,7 @@ wire::ControlReply Observer::ask(wire::ControlRequest request, SimDuration at_mo
     // again until it is heard: io_node takes a copy for what it is
     const std::int64_t end_ns = monotonic_ns() + at_most.ns;
     while (!is_answered && !is_gone() && node::stop_requested.load() == 0 && monotonic_ns() < end_ns) {
+      if (send_first) send_first();
       send(request);
       wait_for([&] { return is_answered || is_gone(); }, kAskAgain);
     }

@@ -33,8 +33,10 @@ class Observer {
   // Takes messages until `done` is true or the time is over; false then, and when a signal asks to stop.
   bool wait_for(const std::function<bool()>& done, SimDuration at_most);
 
-  // Sends a request and waits for io_node's answer. Throws Failure when none comes in time, or the session ends first.
-  [[nodiscard]] wire::ControlReply ask(wire::ControlRequest request, SimDuration at_most = kAnswerTimeout);
+  // Sends a request, and each time before it what belongs to it, until io_node answers. Throws Failure when no answer
+  // comes in time, or the session ends first.
+  [[nodiscard]] wire::ControlReply ask(wire::ControlRequest request, SimDuration at_most = kAnswerTimeout,
+                                       const std::function<void()>& send_first = nullptr);
 
   // The same without waiting: whether it had an effect is seen in the view. Returns the request's number, which is
   // drawn unless it has one.
@@ -48,10 +50,9 @@ class Observer {
 
   void send(const wire::ControllerInput& input);
 
+ private:
   // io_node is heard, and reads what this observer writes. False: not within kAnswerTimeout, or the session has ended.
   bool wait_until_heard();
-
- private:
   void take_state(const transport::Received& message);
   [[nodiscard]] bool is_gone() const noexcept;
   [[noreturn]] void say_why_not_answered(SimDuration waited) const;

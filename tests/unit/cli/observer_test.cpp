@@ -1,4 +1,4 @@
-// What becomes of a request to a session that ends.
+// What becomes of a request that is lost on its way, or whose session ends.
 #include "cli/observer.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cli_support/failure.h"
+#include "node/driver.h"
 #include "transport/codec.h"
 #include "transport/topics.h"
 
@@ -48,8 +49,12 @@ class PlayedIo final : public transport::Transport {
     say(message, when_asked_);
   }
 
+  // It does not know this program's writer yet.
+  void lose_requests(int count) { lost_ = count; }
+
   Status publish(Topic topic, std::span<const std::byte>) noexcept override {
     EXPECT_EQ(topic, Topic::control_request);
+    if (lost_-- > 0) return Status::ok();
     said_.insert(said_.end(), when_asked_.begin(), when_asked_.end());
     when_asked_.clear();
     return Status::ok();
@@ -81,6 +86,7 @@ class PlayedIo final : public transport::Transport {
   std::deque<Said> said_;
   std::deque<Said> when_asked_;
   Said taken_;
+  int lost_ = 0;
 };
 
 class Asking : public ::testing::Test {
@@ -101,18 +107,25 @@ class Asking : public ::testing::Test {
   }
 
   // "" when io has answered, else what the user is told
-  std::string ask(std::uint64_t number = kRequest) {
+  std::string ask(std::uint64_t number = kRequest, SimDuration at_most = milliseconds(10'000)) {
     Observer observer(std::move(io_), "crane");
     wire::ControlRequest request;
     request.request = number;
     try {
-      return observer.ask(request).is_accepted ? "" : "refused";
+      const wire::ControlReply reply = observer.ask(request, at_most, [this] {
+        ++sent_first_;
+        node::stop_requested.store(signal_);
+      });
+      return reply.is_accepted ? "" : "refused";
     } catch (const cli_support::Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::failed);
+      code_ = failure.code();
       return failure.what();
     }
   }
 
+  int sent_first_ = 0;
+  int signal_ = 0;                // that comes when the request is sent
+  ExitCode code_ = ExitCode::ok;  // of the failure
   std::unique_ptr<PlayedIo> io_ = std::make_unique<PlayedIo>();
 };
 
@@ -123,6 +136,13 @@ constexpr const char* kEnded =
 TEST_F(Asking, IsAnswered) {
   io_->say_when_asked(accepted());
   EXPECT_EQ(ask(), "");
+}
+
+TEST_F(Asking, SendsALostRequestAgainWithWhatBelongsToIt) {
+  io_->lose_requests(1);
+  io_->say_when_asked(accepted());
+  EXPECT_EQ(ask(), "");
+  EXPECT_EQ(sent_first_, 2);
 }
 
 TEST_F(Asking, TakesNoEventForTheAnswerToARequestThatHasNoNumberYet) {
@@ -136,6 +156,22 @@ TEST_F(Asking, TakesNoEventForTheAnswerToARequestThatHasNoNumberYet) {
 TEST_F(Asking, ASessionThatEndsInsteadOfAnsweringIsToldAtOnce) {
   io_->say_when_asked(end());
   EXPECT_EQ(ask(), kEnded);
+  EXPECT_EQ(code_, ExitCode::failed);
+}
+
+TEST_F(Asking, ASessionThatDoesNotAnswerIsTold) {
+  io_->lose_requests(1000);
+  EXPECT_EQ(ask(kRequest, milliseconds(1000)),
+            "session 'crane' has not answered within 1 s; the request may have had an effect; look with 'slewring "
+            "sessions' whether it still runs");
+  EXPECT_EQ(code_, ExitCode::failed);
+}
+
+TEST_F(Asking, ASignalEndsIt) {
+  signal_ = static_cast<int>(ExitCode::interrupted);
+  EXPECT_EQ(ask(), "interrupted; the request may have had an effect");
+  node::stop_requested.store(0);
+  EXPECT_EQ(code_, ExitCode::interrupted);
 }
 
 TEST_F(Asking, ASessionThatHasEndedIsToldAtOnce) {
