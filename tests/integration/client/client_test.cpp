@@ -19,6 +19,7 @@
 #include "client/slewring_client.h"
 #include "client/slewring_client.hpp"
 #include "session.h"
+#include "tests/support/test_domain.h"
 
 namespace slew::testing {
 namespace {
@@ -100,6 +101,24 @@ TEST_F(ClientLibrary, LooksForNoVariableOfANodeThatSaysThatItHasNone) {
   EXPECT_EQ(variables.wait(), 0) << variables.err();
   EXPECT_NE(variables.out().find("Vol_LiftCyl_A.pressure"), std::string::npos) << variables.out();
   stop();
+}
+
+TEST_F(ClientLibrary, FindsAVariableOfANodeThatTellsItsNamesLongAfterTheOthers) {
+  const TestDomain domain;
+  const ScratchFolder folder;
+  Program played(program_path("played_session"), {"late", std::to_string(domain.number())}, folder.path() / "played");
+  const Client client(slewring_join("late", "reader", domain.number(), "lo", "", kSoon));
+  ASSERT_NE(client, nullptr) << slewring_error(nullptr);
+  EXPECT_GE(slewring_find(client.get(), "Input_Lift.value", kSoon), 0) << slewring_error(client.get());
+  EXPECT_EQ(slewring_find(client.get(), "Bag.position.x", 0.5), SLEWRING_TIMEOUT);
+  EXPECT_STREQ(slewring_error(client.get()),
+               "session 'late' has not told all its variables within 0.5 s: 'Bag.position.x' is not among 1 so far; it "
+               "is still starting, or its nodes are not all heard here: wait longer, or see `slewring sessions`");
+  played.send(SIGUSR1);
+  EXPECT_GE(slewring_find(client.get(), "Bag.position.x", kSoon), 0) << slewring_error(client.get());
+  EXPECT_EQ(slewring_find(client.get(), "Bag.position.y", 3600), SLEWRING_REFUSED);
+  played.send(SIGTERM);
+  EXPECT_EQ(played.wait(), 0);
 }
 
 TEST_F(ClientLibrary, ReadsEveryBlockInOrderWithNamesAndUnits) {
