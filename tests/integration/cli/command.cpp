@@ -153,4 +153,12 @@ pid_t child_of(pid_t parent, const std::string& program) {
   return 0;
 }
 
+std::string_view sanitizers() {
+  return SLEWRING_SANITIZER;
+}
+
+bool can_run_without_files() {
+  return sanitizers().find("undefined") == std::string_view::npos;
+}
+
 }  // namespace slew::testing

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace slew::testing {
@@ -68,5 +69,12 @@ class WorkFolder {
 
 // Process ids of the programs that a supervisor has started, by program name ("mechanics_node").
 [[nodiscard]] pid_t child_of(pid_t parent, const std::string& program);
+
+// The sanitizers of this build, as in -fsanitize=; empty for none.
+[[nodiscard]] std::string_view sanitizers();
+
+// False with the sanitizer of undefined behaviour: it checks the types of objects with a pipe, and says that they are
+// wrong when it cannot open one.
+[[nodiscard]] bool can_run_without_files();
 
 }  // namespace slew::testing
