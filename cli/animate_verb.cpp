@@ -12,13 +12,11 @@
 #include "cli/text_output.h"
 #include "cli/unrecorded.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr std::size_t kMostFrames = 2000;  // of a page; its help says so
 constexpr int kMostInstants = 50;

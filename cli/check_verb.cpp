@@ -10,8 +10,8 @@
 #include "cli/display.h"
 #include "cli/unrecorded.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
 
@@ -55,8 +55,8 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
   for (const scene::PlotDef& plot : scene.plots) {
     try {
       static_cast<void>(cli_support::choose(plot.variables, names));
-    } catch (const cli_support::Failure& failure) {
-      throw cli_support::Failure(failure.code(), "plot " + plot.name + ": " + failure.what());
+    } catch (const Failure& failure) {
+      throw Failure(failure.code(), "plot " + plot.name + ": " + failure.what());
     }
   }
 }
@@ -74,7 +74,7 @@ ExitCode check(const Options& options) {
   try {
     scene::Scene scene = scene::load_file(options.scene, options.overrides);
     DirectSession session(scene);
-    cli_support::require(session.start());
+    require(session.start());
     check_variables(scene, session);
     check_payload(scene);
     std::vector<std::string> warnings = scene.warnings;

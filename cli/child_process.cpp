@@ -12,12 +12,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr int kNotExecuted = static_cast<int>(ExitCode::resources);
 

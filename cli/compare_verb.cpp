@@ -8,12 +8,10 @@
 #include "cli/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr int kMostRepeats = 1000;
 

@@ -8,7 +8,7 @@
 
 #include "cli/observer.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "io_node/saved_session.h"
 #include "node/driver.h"
 #include "node/identity.h"
@@ -54,8 +54,8 @@ void tell(const Options& options, const std::string& command, const Observer& ob
                            .dump(2));
   }
   if (!reply.is_accepted) {
-    throw cli_support::Failure(ExitCode::bad_input, "refused, nothing was changed: " + command + " of session '" +
-                                                        observer.session_name() + "': " + reply.reason);
+    throw Failure(ExitCode::bad_input, "refused, nothing was changed: " + command + " of session '" +
+                                           observer.session_name() + "': " + reply.reason);
   }
   if (!options.is_json) {
     fmt::print("accepted({}): {} of session '{}'{}\n", reply.header.step, command, observer.session_name(), more);
@@ -90,10 +90,9 @@ ExitCode save(const Options& options) {
   node::install_signal_handlers();
   std::error_code ignored;
   if (!options.may_replace && std::filesystem::exists(options.file, ignored)) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               options.file +
-                                   ": the file exists already; it was left as it is; choose another name, or "
-                                   "replace it with --force");
+    throw Failure(ExitCode::bad_input, options.file +
+                                           ": the file exists already; it was left as it is; choose another name, or "
+                                           "replace it with --force");
   }
   const auto observer = find_session(options.session, Access::steer);
   const std::vector<wire::Role> roles = roles_with_state(observer->view().session());
@@ -113,10 +112,10 @@ ExitCode save(const Options& options) {
         kStatesArrive);
   }
   if (!is_whole) {
-    throw cli_support::Failure(ExitCode::failed, "the states of session '" + observer->session_name() +
-                                                     "' did not arrive; nothing was written, the session goes on; try "
-                                                     "again, and compare --interface and --peer with those of the "
-                                                     "session");
+    throw Failure(ExitCode::failed, "the states of session '" + observer->session_name() +
+                                        "' did not arrive; nothing was written, the session goes on; try "
+                                        "again, and compare --interface and --peer with those of the "
+                                        "session");
   }
   const wire::SessionDescription& session = observer->view().session();
   io::SavedSession saved;
@@ -128,8 +127,7 @@ ExitCode save(const Options& options) {
   saved.communication_step = {session.step_ns};
   saved.step = reply.header.step;
   for (const wire::Role role : roles) saved.states.push_back({role, *observer->state(reply.request, role)});
-  cli_support::require(
-      io::write_saved(options.file, saved, options.may_replace ? io::Replace::existing : io::Replace::never));
+  require(io::write_saved(options.file, saved, options.may_replace ? io::Replace::existing : io::Replace::never));
   tell(options, "save", *observer, reply, fmt::format(", t = {:.6g} s: {}", saved.time(), options.file));
   return ExitCode::ok;
 }
@@ -178,11 +176,11 @@ std::string difference_of(const io::SavedSession& saved, const wire::SessionDesc
 ExitCode load(const Options& options) {
   node::install_signal_handlers();
   io::SavedSession saved;
-  cli_support::require(io::read_saved(options.file, saved));
+  require(io::read_saved(options.file, saved));
   const auto observer = find_session(options.session, Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   const auto refuse = [&](const std::string& why) {
-    throw cli_support::Failure(ExitCode::bad_input, options.file + ": refused, nothing was changed: " + why);
+    throw Failure(ExitCode::bad_input, options.file + ": refused, nothing was changed: " + why);
   };
   if (const std::string differs = difference_of(saved, session); !differs.empty()) {
     refuse("it was saved of another scene than that of session '" + observer->session_name() + "': " + differs);

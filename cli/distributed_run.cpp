@@ -17,7 +17,7 @@
 #include "cli/observer.h"
 #include "cli/status_line.h"
 #include "cli_support/carrier.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
 #include "node/identity.h"
@@ -57,7 +57,7 @@ class Supervisor {
         rejoin_(duration_of_seconds(scene.session.rejoin)),
         is_refusal_told_(options.is_refusal_told) {
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
-    cli_support::require(scene::parse_cpu_places(places, cpus_));
+    require(scene::parse_cpu_places(places, cpus_));
     for (const scene::CpuPlace& place : cpus_) {
       const auto role = std::find_if(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
                                      [&](Role of_place) { return node::to_text(of_place) == place.role; });
@@ -126,10 +126,9 @@ class Supervisor {
   void check_place(Role role, const scene::CpuPlace& place) const {
     // the list of a scene may name more than this session has
     if ((roles_ & bit(role)) == 0 && !options_.cpus.empty()) {
-      throw cli_support::Failure(
-          ExitCode::bad_input,
-          fmt::format("--cpu {}={}: this session has no {} node; nothing was started; leave it out", place.role,
-                      place.cpu, place.role));
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("--cpu {}={}: this session has no {} node; nothing was started; leave it out",
+                                place.role, place.cpu, place.role));
     }
     if (is_ours(role)) check_cpu(place);
   }
@@ -137,7 +136,7 @@ class Supervisor {
   static void check_cpu(const scene::CpuPlace& place) {
     const std::vector<int> cpus = usable_cpus();
     if (std::binary_search(cpus.begin(), cpus.end(), place.cpu)) return;
-    throw cli_support::Failure(
+    throw Failure(
         ExitCode::bad_input,
         fmt::format("{}={}: there is no processor {} for this process; there are {}; nothing was started; name one of "
                     "them in --cpu or session.cpus",
@@ -281,7 +280,7 @@ class Supervisor {
   void start_in_its_place(Node& node) {
     try {
       node.process = make(node.role);
-    } catch (const cli_support::Failure& failure) {
+    } catch (const Failure& failure) {
       node.not_before_ns = monotonic_ns() + kStartAgainNs;
       if (std::exchange(node.is_failure_told, true)) return;
       return status_.say(std::string("slewring: ") + failure.what() +

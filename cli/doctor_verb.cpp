@@ -13,8 +13,8 @@
 #include "cli/display.h"
 #include "cli/verbs.h"
 #include "cli_support/carrier.h"
-#include "cli_support/failure.h"
 #include "core/arithmetic_self_test.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "transport/cyclone_domain.h"
 
@@ -83,7 +83,7 @@ Finding check_network(cli_support::SessionOptions options) {
     const std::string text = fmt::format("interface {}, domain {}", options.interface, options.domain);
     if (!lacks_keys) return {"network", Verdict::good, text};
     return {"network", Verdict::warning, text + "; sessions on it need --keys (slewring keys) or --insecure-lan"};
-  } catch (const cli_support::Failure& failure) {
+  } catch (const Failure& failure) {
     return {"network", Verdict::bad, failure.what()};
   }
 }

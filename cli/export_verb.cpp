@@ -11,12 +11,10 @@
 #include "cli/recorded.h"
 #include "cli/text_output.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 struct Options {
   std::string recording;
@@ -45,7 +43,7 @@ ExitCode write_file(const Options& options, const std::function<Status(const std
   std::error_code error;
   const std::filesystem::file_status there = std::filesystem::status(options.output, error);
   const bool is_device = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
-  cli_support::require(replace_file(options.output, write));
+  require(replace_file(options.output, write));
   if (!is_device) fmt::print("{}\n", options.output);
   return ExitCode::ok;
 }

@@ -9,12 +9,10 @@
 #include "cli/progress_line.h"
 #include "cli/sweep/sweep.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr int kMostWorkers = 64;
 

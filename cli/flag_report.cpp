@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cli/display.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "core/step_report.h"
 #include "node/identity.h"
 #include "transport/codec.h"
@@ -87,7 +87,7 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
     }
     return recording::Reader::Visit::go_on;
   });
-  if (status.code == ExitCode::storage) throw cli_support::Failure(status.code, status.text);
+  if (status.code == ExitCode::storage) throw Failure(status.code, status.text);
   std::vector<std::string> sentences;
   const double H = reader.identity().communication_step.seconds();
   for (const auto& [role, entry] : late) {

@@ -10,7 +10,7 @@
 #include "cli/display.h"
 #include "cli/flex_report_json.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "flex/flexible_files.h"
 #include "flex/input_error.h"
 #include "flex/mode_shape_plot.h"
@@ -22,7 +22,6 @@ namespace slew::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using cli_support::Failure;
 
 struct BuildOptions {
   std::string file;

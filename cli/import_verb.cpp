@@ -8,7 +8,7 @@
 
 #include "cli/display.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "urdf/import.h"
 
 namespace slew::cli {
@@ -25,13 +25,13 @@ struct Options {
 void write(const std::string& path, const std::string& text, bool is_overwriting) {
   std::error_code error;
   if (!is_overwriting && std::filesystem::exists(path, error)) {
-    throw cli_support::Failure(
-        ExitCode::bad_input, "'" + path + "' is there already; nothing was written; name another file or say --force");
+    throw Failure(ExitCode::bad_input,
+                  "'" + path + "' is there already; nothing was written; name another file or say --force");
   }
   std::ofstream out(path, std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw cli_support::Failure(ExitCode::storage, "'" + path + "' cannot be written; name another file");
+  if (!out) throw Failure(ExitCode::storage, "'" + path + "' cannot be written; name another file");
 }
 
 nlohmann::json to_json(const Options& options, const urdf::Import& made) {

@@ -8,7 +8,7 @@
 #include "cli/recorded.h"
 #include "cli/recorded_events.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "recording/recovery.h"
 
@@ -160,7 +160,7 @@ void print(const recording::Reader& reader, double simulated, bool has_all_event
 
 ExitCode show(const Options& options) {
   const auto reader = open_recording(options.recording);
-  if (options.is_verifying) cli_support::require(reader->verify());
+  if (options.is_verifying) require(reader->verify());
   const double simulated = static_cast<double>(reader->statistics().end_time) * 1e-9;
   if (options.is_json) {
     fmt::print("{}\n", to_json(*reader, simulated).dump(2));

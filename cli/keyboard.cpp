@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
@@ -70,14 +70,14 @@ std::string Levers::help() const {
 
 Keyboard::Keyboard(const scene::Scene& scene) : levers_(scene.inputs) {
   if (levers_.size() == 0) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "--input keyboard: the scene has no inputs; nothing was started; "
-                               "add a section 'inputs'");
+    throw Failure(ExitCode::bad_input,
+                  "--input keyboard: the scene has no inputs; nothing was started; "
+                  "add a section 'inputs'");
   }
   if (tcgetattr(STDIN_FILENO, &saved_) != 0) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "--input keyboard: standard input is not a terminal; nothing was "
-                               "started; run it in a terminal, or use --input FILE");
+    throw Failure(ExitCode::bad_input,
+                  "--input keyboard: standard input is not a terminal; nothing was "
+                  "started; run it in a terminal, or use --input FILE");
   }
   // keys at once and unseen; Ctrl-C stays a signal
   termios raw = saved_;

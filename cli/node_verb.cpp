@@ -10,7 +10,7 @@
 
 #include "cli/child_process.h"
 #include "cli/verbs.h"
-#include "scene/suggestion.h"
+#include "core/suggestion.h"
 
 namespace slew::cli {
 namespace {
@@ -22,7 +22,7 @@ constexpr const char* kRoles[] = {"io", "mechanics", "hydraulics", "flex", "reco
 int become_node(int argc, char** argv) {
   const std::string role = argv[2];
   if (std::find(std::begin(kRoles), std::end(kRoles), role) == std::end(kRoles)) {
-    const std::string meant = scene::closest(role, {std::begin(kRoles), std::end(kRoles)});
+    const std::string meant = closest(role, {std::begin(kRoles), std::end(kRoles)});
     std::fprintf(
         stderr, "slewring: there is no role '%s'; nothing was started; %s\n", role.c_str(),
         meant.empty() ? "roles: io, mechanics, hydraulics, flex, recorder" : ("did you mean '" + meant + "'?").c_str());

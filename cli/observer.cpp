@@ -6,13 +6,12 @@
 
 #include "cli/survey.h"
 #include "cli_support/carrier.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/driver.h"
 #include "transport/codec.h"
 
 namespace slew::cli {
 
-using cli_support::Failure;
 using wire::Topic;
 
 namespace {
@@ -62,7 +61,7 @@ void Observer::give_state(std::uint64_t request, wire::Role role, const node::Ch
     if (!transport::encode(part, bytes)) {
       throw Failure(ExitCode::bad_input, "the saved state is too large; nothing was sent");
     }
-    cli_support::require(carrier_->publish(Topic::state, bytes));
+    require(carrier_->publish(Topic::state, bytes));
   }
 }
 
@@ -92,7 +91,7 @@ std::uint64_t Observer::send(wire::ControlRequest request) {
   if (!transport::encode(request, bytes)) {
     throw Failure(ExitCode::bad_input, "the request is too long; nothing was sent; names have at most 63 characters");
   }
-  cli_support::require(carrier_->publish(Topic::control_request, bytes));
+  require(carrier_->publish(Topic::control_request, bytes));
   return request.request;
 }
 

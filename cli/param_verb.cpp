@@ -9,17 +9,15 @@
 #include "cli/display.h"
 #include "cli/observer.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
+#include "core/suggestion.h"
 #include "node/driver.h"
 #include "scene/field_reader.h"
 #include "scene/names.h"
 #include "scene/parameters.h"
-#include "scene/suggestion.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 struct Options {
   cli_support::SessionOptions session;
@@ -165,7 +163,7 @@ ExitCode get(const Options& options) {
   if (parameter == nullptr) {
     std::vector<std::string_view> paths;
     for (const scene::ParameterInfo& candidate : source.directory().all()) paths.push_back(candidate.path);
-    const std::string meant = scene::closest(path, paths);
+    const std::string meant = closest(path, paths);
     throw Failure(ExitCode::bad_input,
                   "there is no parameter '" + path + "'; " +
                       (meant.empty() ? "'slewring param list' lists all" : "did you mean '" + meant + "'?"));

@@ -13,12 +13,10 @@
 #include "cli/scene_plots.h"
 #include "cli/text_output.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 struct Options {
   std::string recording;

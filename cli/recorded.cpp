@@ -15,8 +15,8 @@
 
 #include "cli/display.h"
 #include "cli/unrecorded.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
 #include "scene/units.h"
@@ -25,8 +25,6 @@
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
-using cli_support::require;
 using recording::Reader;
 using wire::Topic;
 using Visit = recording::Reader::Visit;
@@ -81,7 +79,7 @@ std::vector<scene::Asset> recorded_manifest(const Reader& reader) {
   std::vector<scene::Asset> assets;
   const auto list = nlohmann::json::parse(attachment_text(reader, "manifest.json"), nullptr, false);
   if (!list.is_array()) {
-    throw cli_support::Failure(ExitCode::bad_input, "the recording's list of files cannot be read; it is damaged");
+    throw Failure(ExitCode::bad_input, "the recording's list of files cannot be read; it is damaged");
   }
   for (const nlohmann::json& entry : list) {
     scene::Asset& asset = assets.emplace_back();
@@ -112,9 +110,9 @@ scene::Scene recorded_scene(const Reader& reader, const std::string& assets) {
   if (!plain.has_flexible_bodies()) return plain;
   const Status status = scene::check_assets(recorded_manifest(reader), assets);
   if (!status.is_ok()) {
-    throw cli_support::Failure(ExitCode::bad_input, "the scene's files are not in '" + assets + "' as they were: " +
-                                                        status.text.substr(0, status.text.find("; this node")) +
-                                                        "; nothing was computed; name their folder with --assets");
+    throw Failure(ExitCode::bad_input, "the scene's files are not in '" + assets +
+                                           "' as they were: " + status.text.substr(0, status.text.find("; this node")) +
+                                           "; nothing was computed; name their folder with --assets");
   }
   return scene::load_text(text, name, {}, assets);
 }
@@ -163,9 +161,9 @@ void keep_assets(const scene::Scene& scene, const std::string& folder, const std
                                  std::filesystem::copy_options::overwrite_existing, error);
     }
     if (!error) continue;
-    throw cli_support::Failure(ExitCode::storage, "the scene's files were not all copied to " + kept.string() + ": " +
-                                                      asset.name + ": " + error.message() +
-                                                      "; the recording is complete; replay it with --assets " + folder);
+    throw Failure(ExitCode::storage, "the scene's files were not all copied to " + kept.string() + ": " + asset.name +
+                                         ": " + error.message() +
+                                         "; the recording is complete; replay it with --assets " + folder);
   }
 }
 

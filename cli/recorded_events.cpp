@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "transport/codec.h"
 #include "transport/wire.h"

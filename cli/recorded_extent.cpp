@@ -6,7 +6,7 @@
 #include <numeric>
 #include <string>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "transport/codec.h"
 
@@ -77,7 +77,7 @@ bool is_of_flexible_bodies(const std::string& topic) {
 StepIndex flexible_every(const recording::Reader& reader) {
   StepIndex every = 0;
   wire::Header header;
-  cli_support::require(reader.for_each(only({Topic::elastic, Topic::flexible}), [&](const RecordedMessage& message) {
+  require(reader.for_each(only({Topic::elastic, Topic::flexible}), [&](const RecordedMessage& message) {
     if (transport::decode_header(message.payload, header) && header.phase == Phase::running) {
       every = std::gcd(every, header.step);
     }
@@ -114,7 +114,7 @@ RecordedExtent recorded_extent(const recording::Reader& reader) {
   const auto filter =
       only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic, Topic::state});
   wire::Header header;
-  cli_support::require(reader.for_each(filter, [&](const RecordedMessage& message) {
+  require(reader.for_each(filter, [&](const RecordedMessage& message) {
     if (transport::decode_header(message.payload, header)) take(message, every, epochs[header.epoch], header);
     return Visit::go_on;
   }));

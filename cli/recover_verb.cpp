@@ -9,7 +9,7 @@
 #include "cli/recorded.h"
 #include "cli/recorded_extent.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "recording/recovery.h"
 #include "recording/run_directory.h"
 
@@ -94,7 +94,7 @@ ExitCode run(const Options& options) {
   if (std::filesystem::is_directory(damaged, error)) damaged /= recording::kRecordingFileName;
   const std::filesystem::path target = target_of(options, damaged);
   recording::Recovery recovery;
-  cli_support::require(recording::recover(damaged, target, recovery));
+  require(recording::recover(damaged, target, recovery));
   if (recovery.was_whole) {
     if (options.is_json) {
       fmt::print("{}\n", to_json(recovery, "", {}).dump(2));

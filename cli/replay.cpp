@@ -8,8 +8,8 @@
 
 #include "cli/direct_session.h"
 #include "cli/recorded.h"
-#include "cli_support/failure.h"
 #include "core/arithmetic_self_test.h"
+#include "core/failure.h"
 #include "io_node/scene_config.h"
 #include "io_node/tick_follower.h"
 #include "node/driver.h"
@@ -20,7 +20,6 @@
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
 using wire::Phase;
 using wire::Role;
 using wire::Topic;

@@ -11,14 +11,12 @@
 #include "cli/replay.h"
 #include "cli/run_session.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/driver.h"
 #include "node/identity.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 struct Options {
   std::string recording;
@@ -85,7 +83,7 @@ ExitCode run_until(const Options& options) {
     std::fflush(stdout);
   }
   if (!options.saved.empty()) {
-    cli_support::require(
+    require(
         io::write_saved(options.saved, end.saved, options.may_replace ? io::Replace::existing : io::Replace::never));
     if (!options.is_json) fmt::print("saved: {}\n", options.saved);
   }
@@ -95,7 +93,7 @@ ExitCode run_until(const Options& options) {
   run.scene.from = options.saved.empty() ? scratch.path() : options.saved;
   run.scene.assets = assets;
   run.is_json = options.is_json;
-  if (options.saved.empty()) cli_support::require(io::write_saved(run.scene.from, end.saved, io::Replace::existing));
+  if (options.saved.empty()) require(io::write_saved(run.scene.from, end.saved, io::Replace::existing));
   const io::SessionScene session = io::load_session_scene(run.scene);
   return run_session(std::move(run), session);
 }

@@ -15,7 +15,7 @@
 #include "cli/stall_report.h"
 #include "cli/status_line.h"
 #include "cli/text_output.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "coupling/indicator.h"
 #include "io_node/session_clock.h"
 #include "node/identity.h"
@@ -251,7 +251,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
   } else {
     try {
       report_recorded(scene, assets, report);
-    } catch (const cli_support::Failure& failure) {
+    } catch (const Failure& failure) {
       // of a session that failed before its first step there is nothing to read, and that is no further failure
       if (report.steps > 0 || report.code == ExitCode::ok) report.messages.emplace_back(failure.what());
       if (report.code == ExitCode::ok) report.code = failure.code();

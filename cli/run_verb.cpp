@@ -10,8 +10,8 @@
 #include "cli/run_session.h"
 #include "cli/unrecorded.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
 #include "cli_support/number_range.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 
@@ -23,10 +23,9 @@ void check_monolithic(const CLI::App& verb) {
     if (verb.count(option) == 0) continue;
     const std::string why =
         std::string_view(option) == "--rt" ? "its steps take as long as they take" : "it is one system in one process";
-    throw cli_support::Failure(ExitCode::bad_input,
-                               fmt::format("a monolithic run takes no {}: {}; nothing was started; "
-                                           "leave one out",
-                                           option, why));
+    throw Failure(ExitCode::bad_input, fmt::format("a monolithic run takes no {}: {}; nothing was started; "
+                                                   "leave one out",
+                                                   option, why));
   }
 }
 
@@ -34,11 +33,11 @@ void check_monolithic(const CLI::App& verb) {
 void check_controllers(const scene::Scene& scene) {
   for (const scene::InputDef& input : scene.inputs) {
     if (input.controller == scene::ControllerMode::sampled) continue;
-    throw cli_support::Failure(
-        ExitCode::bad_input, fmt::format("a run in one process has no place for a controller, and input {0} waits for "
-                                         "one in every step (controller: lockstep); nothing was started; run it as "
-                                         "processes, or without the controller: --set {0}.controller=sampled",
-                                         input.name));
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("a run in one process has no place for a controller, and input {0} waits for "
+                              "one in every step (controller: lockstep); nothing was started; run it as "
+                              "processes, or without the controller: --set {0}.controller=sampled",
+                              input.name));
   }
 }
 
@@ -46,9 +45,9 @@ ExitCode run(RunOptions options, const CLI::App& verb) {
   if (options.is_monolithic) options.scene.overrides.emplace_back("session.solution=monolithic");
   if (!options.rtol.empty()) options.scene.overrides.push_back("session.rtol=" + options.rtol);
   if (options.is_monolithic && !options.scene.from.empty()) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "--from and --monolithic exclude each other: CVODE's history is not saved; nothing was "
-                               "started; leave one out");
+    throw Failure(ExitCode::bad_input,
+                  "--from and --monolithic exclude each other: CVODE's history is not saved; nothing was "
+                  "started; leave one out");
   }
   const io::SessionScene session = io::load_session_scene(options.scene);
   if (session.scene.session.solution == scene::Solution::monolithic) {
@@ -67,18 +66,18 @@ ExitCode run_session(RunOptions options, const io::SessionScene& session) {
   for (const std::string& warning : coupling_warnings(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
   if (options.is_in_process && !options.remote.empty()) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "--in-process and --remote exclude each other; nothing was started; leave one out");
+    throw Failure(ExitCode::bad_input,
+                  "--in-process and --remote exclude each other; nothing was started; leave one out");
   }
   if (options.is_in_process) check_controllers(scene);
   if (options.is_in_process && !options.cpus.empty()) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "--cpu places processes, and --in-process has one; nothing was started; leave one out");
+    throw Failure(ExitCode::bad_input,
+                  "--cpu places processes, and --in-process has one; nothing was started; leave one out");
   }
   if (options.is_in_process && options.join_timeout) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "--join-timeout waits for other processes, and --in-process has none; nothing was "
-                               "started; leave one out");
+    throw Failure(ExitCode::bad_input,
+                  "--join-timeout waits for other processes, and --in-process has none; nothing was "
+                  "started; leave one out");
   }
   const RunOutcome outcome =
       options.is_in_process ? run_in_process(options, session) : run_distributed(options, session);

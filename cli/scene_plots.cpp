@@ -6,8 +6,8 @@
 #include "cli/recorded.h"
 #include "cli/text_output.h"
 #include "cli/unrecorded.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
 
@@ -45,9 +45,9 @@ std::string write_plots(const std::vector<plotting::Plot>& plots, const recordin
   const std::filesystem::path path = reader.path().parent_path() / (recording::file_name(scene) + ".svg");
   const std::string text = plotting::plot_svg(std::span<const plotting::Plot>(plots), plot_heading(reader));
   if (!replace_file(path, [&text](const auto& part) { return put_text(part, text); }).is_ok()) {
-    throw cli_support::Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
-                                                      "; the recording is complete; free some space and use 'slewring "
-                                                      "plot'");
+    throw Failure(ExitCode::storage, "the plots could not be written to " + path.string() +
+                                         "; the recording is complete; free some space and use 'slewring "
+                                         "plot'");
   }
   return path.string();
 }

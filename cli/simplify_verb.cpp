@@ -10,7 +10,7 @@
 #include "cli/simplify/simplify.h"
 #include "cli/tradeoff/overlay.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
@@ -33,9 +33,9 @@ std::string remark(const Simplification& result) {
 
 ExitCode run(const Options& options) {
   if (options.wish.scene.input == "keyboard") {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "--input keyboard: every run needs the same input; nothing was run; write it into a "
-                               ".csv file");
+    throw Failure(ExitCode::bad_input,
+                  "--input keyboard: every run needs the same input; nothing was run; write it into a "
+                  ".csv file");
   }
   const std::string target = overlay_target(options.wish.scene.file, options.overlay, "simplified");
   count_interrupts();

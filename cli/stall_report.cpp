@@ -9,7 +9,7 @@
 
 #include "cli/display.h"
 #include "cli/recorded.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/l90ls_valve.h"
 
@@ -165,7 +165,7 @@ std::vector<std::string> explain_stalls(const recording::Reader& reader, const s
     try {
       const std::optional<Stall> stall = find_stall(reader, drive);
       if (stall) sentences.push_back(sentence(reader, scene, drive, *stall));
-    } catch (const cli_support::Failure&) {
+    } catch (const Failure&) {
       // the scene does not record what this looks at
     }
   }

@@ -10,13 +10,11 @@
 #include "cli/stress/stress_report.h"
 #include "cli/text_output.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
 #include "cli_support/number_range.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 struct Options {
   StressWish wish;

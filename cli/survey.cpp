@@ -4,14 +4,12 @@
 #include <map>
 
 #include "cli_support/carrier.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/driver.h"
 #include "transport/codec.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr SimDuration kSurveyTime = milliseconds(700);
 constexpr SimDuration kLongestSurvey = milliseconds(3000);  // on a machine that is busy

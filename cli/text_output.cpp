@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
@@ -69,9 +69,9 @@ void require_writable(const std::string& path) {
     }
   }
   if (is_writable) return;
-  throw cli_support::Failure(
-      ExitCode::storage, fmt::format("{}: cannot be written ({}); nothing was done; choose another place with -o", path,
-                                     std::strerror(errno)));
+  throw Failure(ExitCode::storage,
+                fmt::format("{}: cannot be written ({}); nothing was done; choose another place with -o", path,
+                            std::strerror(errno)));
 }
 
 void write_text(const std::string& path, const std::string& text) {
@@ -79,7 +79,7 @@ void write_text(const std::string& path, const std::string& text) {
     std::cout << text << std::flush;
     return;
   }
-  cli_support::require(replace_file(path, [&text](const std::filesystem::path& part) { return put_text(part, text); }));
+  require(replace_file(path, [&text](const std::filesystem::path& part) { return put_text(part, text); }));
 }
 
 }  // namespace slew::cli

@@ -9,12 +9,10 @@
 #include "cli/tradeoff/overlay.h"
 #include "cli/tradeoff/tradeoff_report.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr int kMostWorkers = 64;
 constexpr int kMostRepeats = 1000;

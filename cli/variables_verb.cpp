@@ -8,7 +8,7 @@
 #include "cli/monolithic_session.h"
 #include "cli/observer.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "io_node/input_gate.h"
 #include "scene/names.h"
 
@@ -51,9 +51,9 @@ std::vector<Named> of_scene(const std::string& file) {
 std::vector<Named> of_session(const cli_support::SessionOptions& options) {
   const auto observer = find_session(options, Access::look);
   if (!observer->wait_for([&] { return observer->view().has_whole_directory(); }, milliseconds(5000))) {
-    throw cli_support::Failure(ExitCode::failed, "session '" + observer->session_name() +
-                                                     "' has not named its variables within 5 s; it may still be "
-                                                     "starting: try again");
+    throw Failure(ExitCode::failed, "session '" + observer->session_name() +
+                                        "' has not named its variables within 5 s; it may still be "
+                                        "starting: try again");
   }
   std::vector<Named> all;
   for (const VariableView* variable : observer->view().variables()) all.push_back({variable->name, variable->unit, ""});
@@ -74,7 +74,7 @@ ExitCode list(const Options& options) {
     return ExitCode::ok;
   }
   if (all.empty()) {
-    throw cli_support::Failure(ExitCode::bad_input, "no variable fits; 'slewring variables' without --only lists all");
+    throw Failure(ExitCode::bad_input, "no variable fits; 'slewring variables' without --only lists all");
   }
   std::vector<std::vector<std::string>> rows = {{"variable", "unit", options.scene.empty() ? "" : "node"}};
   for (const Named& variable : all) rows.push_back({variable.name, variable.unit, variable.owner});

@@ -7,9 +7,9 @@
 #include "cli/display.h"
 #include "cli/observer.h"
 #include "cli/verbs.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
 #include "cli_support/number_range.h"
+#include "core/failure.h"
 #include "node/driver.h"
 
 namespace slew::cli {
@@ -31,9 +31,9 @@ std::vector<std::string> chosen_names(Observer& observer, const std::vector<std:
   std::vector<std::string> names;
   for (const VariableView* variable : observer.view().variables()) names.push_back(variable->name);
   if (names.empty()) {
-    throw cli_support::Failure(ExitCode::failed, "session '" + observer.session_name() +
-                                                     "' has not named its variables within 5 s; it may still be "
-                                                     "starting: try again, or look with 'slewring sessions'");
+    throw Failure(ExitCode::failed, "session '" + observer.session_name() +
+                                        "' has not named its variables within 5 s; it may still be "
+                                        "starting: try again, or look with 'slewring sessions'");
   }
   return cli_support::choose(patterns, names);
 }

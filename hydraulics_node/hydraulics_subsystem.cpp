@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "coupling/saved_model.h"
 #include "coupling/static_forces.h"
 #include "scene/deep_starts.h"
@@ -447,7 +447,7 @@ std::string_view HydraulicsSubsystem::offender_name(std::int32_t index) const no
 }
 
 std::unique_ptr<coupling::Subsystem> make_hydraulics_subsystem(const scene::Scene& scene) {
-  cli_support::require(scene::check_is_split(scene));
+  require(scene::check_is_split(scene));
   return std::make_unique<HydraulicsSubsystem>(scene);
 }
 

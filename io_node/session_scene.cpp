@@ -2,13 +2,11 @@
 
 #include <cstdio>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/identity.h"
 
 namespace slew::io {
 namespace {
-
-using cli_support::Failure;
 
 // t in seconds, as people write it
 std::string time_text(double seconds) {
@@ -22,7 +20,7 @@ std::string time_text(double seconds) {
 SessionScene load_session_scene(const cli_support::SceneOptions& options) {
   if (options.from.empty()) return {cli_support::load_scene(options), std::nullopt, {}};
   SavedSession saved;
-  cli_support::require(read_saved(options.from, saved));
+  require(read_saved(options.from, saved));
   cli_support::ContinuedScene continued = cli_support::continue_scene(options, saved.scene_text, saved.scene_name);
   SessionScene session{std::move(continued.scene), Beginning{}, std::move(saved.assets)};
   scene::Scene& scene = session.scene;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "coupling/indicator.h"
 #include "coupling/saved_model.h"
 #include "coupling/static_forces.h"
@@ -714,7 +714,7 @@ void MechanicsSubsystem::read_variables(std::span<double> values) const noexcept
 }
 
 std::unique_ptr<coupling::Subsystem> make_mechanics_subsystem(const scene::Scene& scene) {
-  cli_support::require(scene::check_is_split(scene));
+  require(scene::check_is_split(scene));
   return std::make_unique<MechanicsSubsystem>(scene);
 }
 

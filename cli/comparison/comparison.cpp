@@ -7,13 +7,12 @@
 #include <limits>
 
 #include "cli/direct_session.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
 using wire::Role;
 
 // origins and centres of mass of all bodies: "Bag.position.y", not a joint's "Hinge.position"

@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "multibody/field_tables.h"
 #include "multibody/integrators.h"
 #include "scene/units.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr std::string_view kFormulation = "formulation", kIntegrator = "integrator", kSubstep = "max_substep",
                            kOwnIntegrator = "own";

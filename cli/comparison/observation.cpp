@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "multibody/observe.h"
 
@@ -36,7 +36,7 @@ class Reader {
       }
     }
     if (found != names.size()) {
-      throw cli_support::Failure(ExitCode::failed, "the runs of a comparison do not have the same variables");
+      throw Failure(ExitCode::failed, "the runs of a comparison do not have the same variables");
     }
   }
 

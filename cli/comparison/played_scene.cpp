@@ -1,7 +1,7 @@
 #include "cli/comparison/played_scene.h"
 
-#include "cli_support/failure.h"
 #include "core/arithmetic_self_test.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 
@@ -15,7 +15,7 @@ PlayedScene::PlayedScene(const scene::Scene& scene)
       raw_(gate_.size()),
       controls_(gate_.size()) {
   set_floating_point_mode();
-  cli_support::require(session_.start());
+  require(session_.start());
 }
 
 void PlayedScene::advance() {

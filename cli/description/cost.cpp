@@ -12,7 +12,7 @@
 #include "cli/description/mechanics_cost.h"
 #include "cli/description/timed_call.h"
 #include "cli/display.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "scene/ports.h"
 #include "transport/codec.h"
 
@@ -100,8 +100,8 @@ class Measurement {
         keep_fastest(times_.mechanics, i, played.session().step_time_ns(Role::mechanics));
         keep_fastest(times_.hydraulics, i, played.session().step_time_ns(Role::hydraulics));
         if (const std::string failure = played.session().failure(); !failure.empty()) {
-          throw cli_support::Failure(ExitCode::diverged, fmt::format("the run ended at {} s: {} is not finite",
-                                                                     played.time().seconds(), failure));
+          throw Failure(ExitCode::diverged,
+                        fmt::format("the run ended at {} s: {} is not finite", played.time().seconds(), failure));
         }
       }
     }

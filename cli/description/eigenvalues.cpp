@@ -9,7 +9,7 @@
 #include "cli/comparison/configuration.h"
 #include "cli/description/instant.h"
 #include "cli/display.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
@@ -142,8 +142,7 @@ Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction f
   const mechanics::MechanicsSubsystem* mechanics = mechanics_of(played);
   const hydraulic_node::HydraulicsSubsystem* hydraulics = hydraulics_of(played);
   if (mechanics == nullptr) {
-    throw cli_support::Failure(ExitCode::bad_input,
-                               "the scene has no bodies; eigenvalues are those of a machine with mechanics");
+    throw Failure(ExitCode::bad_input, "the scene has no bodies; eigenvalues are those of a machine with mechanics");
   }
   monolith::SceneEquations equations(scene);
   std::vector<double> y(equations.size());
@@ -155,9 +154,8 @@ Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction f
   const std::vector<double> slopes(scene.inputs.size());
   equations.set_controls(found.at, played.controls(), slopes);
   if (friction == DryFriction::neglected) equations.neglect_dry_friction();
-  cli_support::require(find_modes(equations, found.at, y, monolith::Part::all, found.machine));
-  cli_support::require(
-      find_modes(equations, found.at, y, monolith::Part::mechanics_with_held_rows, found.explicit_part));
+  require(find_modes(equations, found.at, y, monolith::Part::all, found.machine));
+  require(find_modes(equations, found.at, y, monolith::Part::mechanics_with_held_rows, found.explicit_part));
   found.touching = equations.touching_pair();
   found.formulation = choice_of(scene, "formulation");
   found.integrator = choice_of(scene, "integrator");

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "scene/units.h"
 
 namespace slew::cli {
@@ -13,17 +13,16 @@ double read_option(const std::string& option, const std::string& text, Dimension
   scene::UnitSystem units;
   const scene::QuantityResult read = scene::read_quantity(text, scene::Writing::plain, dimension, units);
   if (read.value) return *read.value;
-  throw cli_support::Failure(
-      ExitCode::bad_input,
-      fmt::format("{}: '{}' {}; expected {}", option, text, read.complaint.what, scene::expected_quantity(dimension)));
+  throw Failure(ExitCode::bad_input, fmt::format("{}: '{}' {}; expected {}", option, text, read.complaint.what,
+                                                 scene::expected_quantity(dimension)));
 }
 
 void play_to(PlayedScene& played, double at) {
   while (played.time().ns < duration_of_seconds(at).ns) {
     played.advance();
     if (const std::string failure = played.session().failure(); !failure.empty()) {
-      throw cli_support::Failure(ExitCode::diverged, fmt::format("the run ended at {} s, before {} s: {} is not finite",
-                                                                 played.time().seconds(), at, failure));
+      throw Failure(ExitCode::diverged, fmt::format("the run ended at {} s, before {} s: {} is not finite",
+                                                    played.time().seconds(), at, failure));
     }
   }
 }

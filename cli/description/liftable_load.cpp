@@ -8,7 +8,7 @@
 
 #include "cli/description/instant.h"
 #include "cli/display.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "coupling/line_force.h"
 #include "hydraulics/circuit.h"
 #include "hydraulics/stall.h"
@@ -16,8 +16,6 @@
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 // a cylinder whose force changes by less with 1 kg carries nothing of it: a hundred thousandth of its weight
 constexpr double kNoShare = 1e-4;  // m/s2

@@ -11,8 +11,8 @@
 
 #include "cli/coupling_check.h"
 #include "cli/direct_session.h"
-#include "cli_support/failure.h"
 #include "core/arithmetic_self_test.h"
+#include "core/failure.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
@@ -23,7 +23,6 @@
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
 using wire::Role;
 
 constexpr double kRunLimit = 60;  // s of processor time: a busy machine is no verdict
@@ -478,7 +477,7 @@ class Case {
 
   [[nodiscard]] static double depth_at_start(const scene::Scene& scene, const std::string& pair) {
     DirectSession session(scene);
-    cli_support::require(session.start());
+    require(session.start());
     const coupling::Subsystem& mechanics = *session.subsystem(Role::mechanics);
     std::vector<double> values(mechanics.variables().size());
     mechanics.read_variables(values);

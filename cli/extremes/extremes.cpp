@@ -8,14 +8,12 @@
 #include <set>
 
 #include "cli/sweep/sweep.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 #include "node/identity.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr const char* kSuite[] = {"single_cylinder.yaml", "truck_crane.yaml", "truck_crane_flexible.yaml",
                                   "truck_crane_contact.yaml"};

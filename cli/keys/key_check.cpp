@@ -10,14 +10,13 @@
 #include "cli/keys/openssl.h"
 #include "cli/keys/security_documents.h"
 #include "cli_support/carrier.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "transport/protection.h"
 
 namespace slew::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using cli_support::Failure;
 
 std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
@@ -66,7 +65,7 @@ std::string permissions_end(const std::string& document) {
 KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   KeyFinding finding{name, "", ""};
   transport::CycloneNetwork network;
-  cli_support::require(transport::protect(network, {folder.string(), name}));
+  require(transport::protect(network, {folder.string(), name}));
   const transport::CycloneSecurity& files = *network.security;
   std::string said;
   if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, said)) {

@@ -12,7 +12,6 @@
 namespace slew::cli {
 
 namespace fs = std::filesystem;
-using cli_support::Failure;
 
 Failure storage_failure(const fs::path& path, const std::string& why) {
   return Failure(ExitCode::storage, fmt::format("{}: {}; nothing else was changed", path.string(), why));

@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <string>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 
 // Of a file or folder, with code 6.
-[[nodiscard]] cli_support::Failure storage_failure(const std::filesystem::path& path, const std::string& why);
+[[nodiscard]] Failure storage_failure(const std::filesystem::path& path, const std::string& why);
 
 // Throws Failure when it cannot be written.
 void write_file(const std::filesystem::path& path, const std::string& text);

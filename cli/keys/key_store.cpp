@@ -11,8 +11,8 @@
 #include "cli/keys/key_files.h"
 #include "cli/keys/security_documents.h"
 #include "cli_support/carrier.h"
-#include "cli_support/failure.h"
 #include "cli_support/session_options.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "transport/protection.h"
 
@@ -20,7 +20,6 @@ namespace slew::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using cli_support::Failure;
 using wire::Role;
 
 constexpr const char* kList = "identities.json";

@@ -7,12 +7,10 @@
 #include <array>
 
 #include "cli/child_process.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr const char* kOpenssl = "/usr/bin/openssl";
 constexpr int kLookAgain = 20;  // ms

@@ -10,13 +10,12 @@
 #include "cli/comparison/comparison.h"
 #include "cli/comparison/observation.h"
 #include "cli/description/instant.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
 using wire::Role;
 
 // attempts that are expected before the candidates are known, for the progress

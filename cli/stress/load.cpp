@@ -13,13 +13,11 @@
 #include <cstring>
 #include <string_view>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "core/real_time_thread.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr std::size_t kCopied = 64u << 20;
 constexpr std::size_t kFile = 4u << 20;

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 
@@ -17,10 +17,10 @@ PassingFolder::PassingFolder(const std::string& parent)
   if (!error) return;
   const std::string reason = error.message();
   if (is_parent_new_) std::filesystem::remove(parent_, error);
-  throw cli_support::Failure(ExitCode::storage,
-                             fmt::format("{}: cannot be created ({}); nothing was run; choose another folder with "
-                                         "--folder DIR",
-                                         path_, reason));
+  throw Failure(ExitCode::storage,
+                fmt::format("{}: cannot be created ({}); nothing was run; choose another folder with "
+                            "--folder DIR",
+                            path_, reason));
 }
 
 PassingFolder::~PassingFolder() {

@@ -15,7 +15,7 @@
 #include "cli/observer.h"
 #include "cli/stress/cell_watch.h"
 #include "cli/stress/passing_folder.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_scene.h"
 #include "node/identity.h"
@@ -24,7 +24,6 @@
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
 using wire::Role;
 
 bool fifo_is_allowed() {
@@ -45,7 +44,7 @@ int priority_of(Role role) noexcept {
 // A loop for every node of the session, io's in front; what they burn is not known yet.
 std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, const std::string& places) {
   std::vector<scene::CpuPlace> all;
-  cli_support::require(scene::parse_cpu_places(places, all));
+  require(scene::parse_cpu_places(places, all));
   std::vector<YardstickLoop> loops;
   for (const Role role : wire::kNodeRoles) {
     if ((roles & bit(role)) == 0) continue;

@@ -11,13 +11,11 @@
 #include <optional>
 
 #include "cli/child_process.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "core/state_hash.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr int kPollMs = 20;  // between two looks at the processes
 

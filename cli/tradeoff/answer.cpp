@@ -6,14 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "scene/names.h"
 #include "scene/units.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 bool meets(const Tradeoff& tradeoff, const TradeoffRow& row, const ErrorBound& bound) {
   return std::all_of(bound.variables.begin(), bound.variables.end(), [&](std::size_t v) {

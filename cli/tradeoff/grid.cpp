@@ -6,13 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "scene/sections.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr std::string_view kStep = "session.step", kCoupling = "session.coupling",
                            kTolerance = "hydraulics.relative_tolerance", kSubstep = "mechanics.max_substep";

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "scene/canonical.h"
 #include "scene/sections.h"
 #include "scene/setting.h"
@@ -15,7 +15,6 @@
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
 using scene::Node;
 
 constexpr std::string_view kFirstLine = "# Overlay written by slewring";

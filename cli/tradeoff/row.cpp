@@ -9,12 +9,11 @@
 #include <limits>
 #include <numeric>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
 
-using cli_support::Failure;
 using wire::Role;
 
 constexpr std::int64_t kMostSamples = 20'000;

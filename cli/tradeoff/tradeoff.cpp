@@ -12,15 +12,13 @@
 
 #include "cli/direct_session.h"
 #include "cli/tradeoff/answer.h"
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 #include "coupling/indicator.h"
 #include "node/identity.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 constexpr double kReferenceTolerance = 1e-9, kLooserTolerance = 1e-8;
 constexpr double kReferenceLimit = 600;       // s of wall time

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "cli_support/failure.h"
 #include "cli_support/metered_carrier.h"
+#include "core/failure.h"
 #include "node/identity.h"
 #include "transport/cyclone_transport.h"
 #include "transport/protection.h"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
+#include "core/suggestion.h"
 #include "scene/names.h"
-#include "scene/suggestion.h"
 
 namespace slew::cli_support {
 
@@ -50,7 +50,7 @@ bool can_meet(std::string_view a, std::string_view b) {
 }
 
 std::string no_variable_text(const std::string& pattern, std::span<const std::string> names) {
-  const std::string meant = scene::closest(pattern, std::vector<std::string_view>(names.begin(), names.end()));
+  const std::string meant = closest(pattern, std::vector<std::string_view>(names.begin(), names.end()));
   return "there is no variable '" + pattern + "'; " +
          (meant.empty() ? "'slewring variables' lists all" : "did you mean '" + meant + "'?");
 }

@@ -4,15 +4,15 @@
 #include <new>
 #include <system_error>
 
-#include "cli_support/failure.h"
 #include "cli_support/metered_carrier.h"
 #include "core/arithmetic_self_test.h"
+#include "core/failure.h"
 #include "core/file_size_limit.h"
 #include "core/real_time_thread.h"
+#include "core/suggestion.h"
 #include "node/driver.h"
 #include "node/identity.h"
 #include "scene/diagnostic.h"
-#include "scene/suggestion.h"
 
 namespace slew::cli_support {
 namespace {
@@ -40,7 +40,7 @@ std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
   if (verbs.empty() || rest.empty()) return error.what();
   std::vector<std::string_view> names;
   for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
-  const std::string meant = scene::closest(rest.front(), names);
+  const std::string meant = closest(rest.front(), names);
   return "there is no '" + rest.front() + "' here" + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
 }
 

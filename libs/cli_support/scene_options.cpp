@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "scene/canonical.h"
 #include "scene/script_reader.h"
 

@@ -4,8 +4,8 @@
 #include <exception>
 #include <iterator>
 
-#include "cli_support/failure.h"
 #include "cli_support/name_pattern.h"
+#include "core/failure.h"
 
 namespace slew::cli_support {
 

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/suggestion.h"
 #include "scene/sections.h"
 #include "scene/setting.h"
 #include "scene/source.h"
-#include "scene/suggestion.h"
 
 namespace slew::scene {
 namespace {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/suggestion.h"
 #include "scene/expand.h"
 #include "scene/number.h"
 #include "scene/point_file.h"
-#include "scene/suggestion.h"
 
 namespace slew::scene {
 namespace {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/suggestion.h"
 #include "flex/field_tables.h"
 #include "flex/input_error.h"
 #include "scene/expand.h"
@@ -15,7 +16,6 @@
 #include "scene/place_map.h"
 #include "scene/setting.h"
 #include "scene/source.h"
-#include "scene/suggestion.h"
 #include "scene/units.h"
 #include "scene/yaml_tree.h"
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/suggestion.h"
 #include "multibody/element_speeds.h"
 #include "multibody/model.h"
 #include "multibody/validate.h"
@@ -23,7 +24,6 @@
 #include "scene/script_reader.h"
 #include "scene/sections.h"
 #include "scene/source.h"
-#include "scene/suggestion.h"
 #include "scene/units.h"
 #include "scene/yaml_tree.h"
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "core/suggestion.h"
 #include "multibody/defs.h"
 #include "scene/defs.h"
 #include "scene/sections.h"
-#include "scene/suggestion.h"
 
 namespace slew::scene {
 namespace {

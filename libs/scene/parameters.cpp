@@ -6,13 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "core/suggestion.h"
 #include "multibody/element_speeds.h"
 #include "multibody/joint_axes.h"
 #include "multibody/model.h"
 #include "multibody/parameters.h"
 #include "scene/field_reader.h"
 #include "scene/sections.h"
-#include "scene/suggestion.h"
 
 namespace slew::scene {
 namespace {

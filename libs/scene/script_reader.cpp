@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/suggestion.h"
 #include "scene/csv_table.h"
 #include "scene/parameters.h"
 #include "scene/source.h"
-#include "scene/suggestion.h"
 
 namespace slew::scene {
 namespace {

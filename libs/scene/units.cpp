@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/suggestion.h"
 #include "scene/number.h"
-#include "scene/suggestion.h"
 
 namespace slew::scene {
 namespace {

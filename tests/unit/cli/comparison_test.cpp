@@ -13,12 +13,10 @@
 
 #include "build_paths.h"
 #include "cli/comparison/comparison_report.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
-
-using cli_support::Failure;
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

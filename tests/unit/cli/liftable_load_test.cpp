@@ -7,7 +7,7 @@
 
 #include "build_paths.h"
 #include "cli/description/instant.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
@@ -97,10 +97,9 @@ TEST(LiftableLoad, APoseChangesItAndTheSceneStaysAsItWas) {
   const LiftableLoad raised = find_liftable(scene, {.at = 0, .joints = {"Pillar_LiftBoom=50 deg"}}, Settings::left_out);
   ASSERT_TRUE(raised.has_answer());
   EXPECT_NE(raised.limit().load, at_start);
-  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Nobody=1"}}, Settings::left_out)),
-               cli_support::Failure);
+  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Nobody=1"}}, Settings::left_out)), Failure);
   EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Hook_Bag=1"}}, Settings::left_out)),
-               cli_support::Failure);
+               Failure);
 }
 
 TEST(LiftableLoad, ASceneWithoutCylindersHasNone) {

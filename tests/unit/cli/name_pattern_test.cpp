@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "cli_support/failure.h"
 #include "cli_support/session_options.h"
+#include "core/failure.h"
 
 namespace slew::cli_support {
 namespace {

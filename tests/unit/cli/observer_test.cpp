@@ -6,7 +6,7 @@
 #include <deque>
 #include <memory>
 
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "node/driver.h"
 #include "transport/codec.h"
 #include "transport/topics.h"
@@ -117,7 +117,7 @@ class Asking : public ::testing::Test {
         node::stop_requested.store(signal_);
       });
       return reply.is_accepted ? "" : "refused";
-    } catch (const cli_support::Failure& failure) {
+    } catch (const Failure& failure) {
       code_ = failure.code();
       return failure.what();
     }

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "build_paths.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "io_node/scene_config.h"
 
 namespace slew::cli_support {

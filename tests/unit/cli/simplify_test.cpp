@@ -6,7 +6,7 @@
 #include <string>
 
 #include "build_paths.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 #include "multibody/model.h"
 #include "multibody/observe.h"
 
@@ -115,7 +115,7 @@ TEST(Simplify, RefusesWhatItCannotJudge) {
     try {
       static_cast<void>(simplify(wish("single_cylinder.yaml", {error}, "1 s"), kGoOn));
       ADD_FAILURE() << error;
-    } catch (const cli_support::Failure& failure) {
+    } catch (const Failure& failure) {
       EXPECT_EQ(failure.code(), ExitCode::bad_input);
       EXPECT_NE(std::string(failure.what()).find(part), std::string::npos) << failure.what();
     }

@@ -11,7 +11,7 @@
 #include "build_paths.h"
 #include "cli/tradeoff/overlay.h"
 #include "cli/tradeoff/tradeoff_report.h"
-#include "cli_support/failure.h"
+#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
@@ -33,7 +33,7 @@ TEST(Grid, ReadsAnAxisWithListsAndQuotes) {
   EXPECT_EQ(gravity.values, (std::vector<std::string>{"[0, -9.81, 0]", "[0, 0, 0]"}));
   EXPECT_EQ(parse_axis("Boom.flex_modes=\"1;2\",none").values, (std::vector<std::string>{"\"1;2\"", "none"}));
   for (const char* wrong : {"session.step", "session.step=", "step=1ms", "=1"}) {
-    EXPECT_THROW(static_cast<void>(parse_axis(wrong)), cli_support::Failure) << wrong;
+    EXPECT_THROW(static_cast<void>(parse_axis(wrong)), Failure) << wrong;
   }
 }
 
@@ -119,7 +119,7 @@ TEST(Answer, OfABudgetIsTheLeastErrorWithinIt) {
   EXPECT_EQ(parse_budget("20us/ms"), 20);
   EXPECT_EQ(parse_budget(" 7.5 "), 7.5);
   for (const char* wrong : {"", "us/ms", "20 s", "-1", "0", "nan", "20 us"}) {
-    EXPECT_THROW(static_cast<void>(parse_budget(wrong)), cli_support::Failure) << wrong;
+    EXPECT_THROW(static_cast<void>(parse_budget(wrong)), Failure) << wrong;
   }
 }
 
@@ -136,7 +136,7 @@ TEST(Answer, OfAnErrorIsTheLeastCostThatKeepsIt) {
   const Question both{.budget = 15, .errors = {parse_error("Cyl.force 60 N", tradeoff)}};
   EXPECT_EQ(best_row(tradeoff, both), std::nullopt);
   for (const char* wrong : {"Cyl.force", "Cyl.forc 1%", "Cyl.force x%", "Cyl.force 1 bar", "Cyl.force 0%"}) {
-    EXPECT_THROW(static_cast<void>(parse_error(wrong, tradeoff)), cli_support::Failure) << wrong;
+    EXPECT_THROW(static_cast<void>(parse_error(wrong, tradeoff)), Failure) << wrong;
   }
 }
 
@@ -243,15 +243,14 @@ TEST_F(Overlay, OfASceneThatIncludesHoldsItsKeysToo) {
 
 TEST_F(Overlay, NeverReplacesWhatIsNotItsOwn) {
   std::ofstream(path("mine.yaml")) << "bodies: {}\n";
-  EXPECT_THROW(static_cast<void>(overlay_target(path("single_cylinder.yaml"), path("mine.yaml"), "tradeoff")),
-               cli_support::Failure);
+  EXPECT_THROW(static_cast<void>(overlay_target(path("single_cylinder.yaml"), path("mine.yaml"), "tradeoff")), Failure);
 }
 
 TEST_F(Overlay, LiesBesideItsScene) {
   std::filesystem::create_directories(folder_ / "elsewhere");
   EXPECT_THROW(
       static_cast<void>(overlay_target(path("single_cylinder.yaml"), path("elsewhere/overlay.yaml"), "tradeoff")),
-      cli_support::Failure);
+      Failure);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-#include "scene/suggestion.h"
+#include "core/suggestion.h"
 
 #include <algorithm>
 #include <cctype>
 #include <numeric>
 
-namespace slew::scene {
+namespace slew {
 namespace {
 
 // longer words are not compared: a suggestion for them would not be read
@@ -51,4 +51,4 @@ std::string closest(std::string_view word, const std::vector<std::string_view>& 
   return best_distance <= near_enough ? std::string(best) : std::string();
 }
 
-}  // namespace slew::scene
+}  // namespace slew

@@ -1,8 +1,8 @@
-#include "scene/suggestion.h"
+#include "core/suggestion.h"
 
 #include <gtest/gtest.h>
 
-namespace slew::scene {
+namespace slew {
 namespace {
 
 TEST(Suggestion, EditDistanceCountsInsertionsDeletionsSubstitutionsAndSwaps) {
@@ -27,4 +27,4 @@ TEST(Suggestion, NothingIsOfferedForANameThatIsFarFromAll) {
 }
 
 }  // namespace
-}  // namespace slew::scene
+}  // namespace slew

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace slew::scene {
+namespace slew {
 
 // Insertions, deletions, substitutions and swaps of neighbours (optimal string alignment), letters compared without
 // case.
@@ -14,4 +14,4 @@ namespace slew::scene {
 // Nearest candidate when it is near enough (about one edit in three letters), else empty. Deterministic in any order.
 [[nodiscard]] std::string closest(std::string_view word, const std::vector<std::string_view>& candidates);
 
-}  // namespace slew::scene
+}  // namespace slew

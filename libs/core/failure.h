@@ -6,7 +6,7 @@
 
 #include "core/status.h"
 
-namespace slew::cli_support {
+namespace slew {
 
 class Failure : public std::runtime_error {
  public:
@@ -22,4 +22,4 @@ inline void require(const Status& status) {
   if (!status.is_ok()) throw Failure(status.code, status.text);
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew
