@@ -114,29 +114,25 @@ ExitCode animate(const Options& options) {
 
 }  // namespace
 
-void add_animate(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("animate", "show the machine of a recording as it moves");
+void add_animate(options::Command& program) {
+  options::Command verb = program.command("animate", "show the machine of a recording as it moves");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
-  verb->add_option(
-          "-o,--output", options->output,
-          "file to write: .html, a page with a time slider, or .svg, some instants over each other; without it "
-          "animation.html")
-      ->type_name("FILE");
-  verb->add_option("--from", options->from, "first time that is shown, such as '2.5 s'")->type_name("TIME");
-  verb->add_option("--to", options->to, "last time that is shown")->type_name("TIME");
-  verb->add_option("--instants", options->instants, "of a .svg")
-      ->check(CLI::Range(1, kMostInstants))
-      ->type_name("N")
-      ->capture_default_str();
-  verb->footer(
+  verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
+  verb.option("-o,--output", options->output,
+              "file to write: .html, a page with a time slider, or .svg, some instants over each other; without it "
+              "animation.html")
+      .value_name("FILE");
+  verb.option("--from", options->from, "first time that is shown, such as '2.5 s'").value_name("TIME");
+  verb.option("--to", options->to, "last time that is shown").value_name("TIME");
+  verb.option("--instants", options->instants, "of a .svg").between(1, kMostInstants).value_name("N").show_default();
+  verb.footer(
       "Bodies are drawn as lines between joints, forces and centre of mass and by their contact shapes, or as a small\n"
       "cross, at the poses that were recorded; bending, ropes and planes are not drawn.\n\n"
       "A page holds 2000 instants: of a longer recording every n-th, as it says.\n\n"
       "Examples:\n"
       "  slewring animate runs/truck_crane-20260501-102030 -o crane.html\n"
       "  slewring animate runs/truck_crane-20260501-102030 --from 2s --to 5s -o crane.svg");
-  verb->callback([&action, options] { action = [options] { return animate(*options); }; });
+  verb.action([options] { return animate(*options); });
 }
 
 }  // namespace slew::cli

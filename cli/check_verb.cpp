@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "cli/coupling_check.h"
 #include "cli/description/liftable_load.h"
@@ -12,6 +11,7 @@
 #include "cli/verbs.h"
 #include "cli_support/name_pattern.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
 
@@ -26,8 +26,8 @@ struct Options {
   bool is_json = false;
 };
 
-nlohmann::json to_json(const scene::LoadError& error) {
-  nlohmann::json problems = nlohmann::json::array();
+Json to_json(const scene::LoadError& error) {
+  Json problems = Json::array();
   for (const scene::Diagnostic& diagnostic : error.diagnostics()) {
     problems.push_back({{"file", diagnostic.file},
                         {"line", diagnostic.line},
@@ -81,7 +81,7 @@ ExitCode check(const Options& options) {
     for (std::string& warning : unrecorded_plots(scene)) warnings.push_back(std::move(warning));
     for (std::string& warning : coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
     if (options.is_json) {
-      fmt::print("{}\n", nlohmann::json({{"ok", true}, {"scene", scene.name}, {"warnings", warnings}}).dump(2));
+      fmt::print("{}\n", Json({{"ok", true}, {"scene", scene.name}, {"warnings", warnings}}).dump(2));
       return ExitCode::ok;
     }
     for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
@@ -99,16 +99,16 @@ ExitCode check(const Options& options) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("check", "check a scene: file, models, start state");
+void add_check(options::Command& program) {
+  options::Command verb = program.command("check", "check a scene: file, models, start state");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
-  verb->add_option("--set", options->overrides, "change a value of the scene; repeat for more")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  verb->add_flag("--json", options->is_json, "for machines: every problem with file, line and column");
-  verb->footer("Example:\n  slewring check scenes/truck_crane.yaml");
-  verb->callback([&action, options] { action = [options] { return check(*options); }; });
+  verb.option("scene", options->scene, "scene file").required().value_name("SCENE");
+  verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each();
+  verb.flag("--json", options->is_json, "for machines: every problem with file, line and column");
+  verb.footer("Example:\n  slewring check scenes/truck_crane.yaml");
+  verb.action([options] { return check(*options); });
 }
 
 }  // namespace slew::cli

@@ -72,11 +72,11 @@ ExitCode run(const Options& options) {
   return interrupts() > 0 ? static_cast<ExitCode>(interrupt_code()) : ExitCode::ok;
 }
 
-void add_what(CLI::App& verb, Options& options) {
+void add_what(options::Command& verb, Options& options) {
   ComparisonWish& wish = options.wish;
-  verb.add_option("scene", wish.scene.file, "scene file")->required()->type_name("SCENE");
+  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
   const auto list = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
-    verb.add_option(name, to, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
+    verb.option(name, to, text).comma_separated().one_value_each().value_name(type);
   };
   list("--formulations", wish.formulations, "names separated by commas, or all; all without it", "NAMES");
   list("--integrators", wish.integrators, "names separated by commas, or all; without it the scene's", "NAMES");
@@ -84,47 +84,46 @@ void add_what(CLI::App& verb, Options& options) {
        "sub-steps of the mechanics, such as 0.5ms,1ms, that divide the communication step; a multiple of that "
        "replaces it too. Without it the whole, a half and a quarter of the scene's",
        "TIMES");
-  verb.add_option("--until", wish.scene.duration,
-                  "how long to simulate, such as '5 s'; without it the scene's duration")
-      ->type_name("TIME");
-  verb.add_option("--variables", wish.variables,
-                  "whose difference to the reference is shown: names, or patterns with * and ?; repeat for more; "
-                  "without it origins and centres of mass of all bodies")
-      ->type_name("PATTERN")
-      ->allow_extra_args(false);
-  verb.add_option("--reference", wish.reference_step,
-                  "sub-step of the reference; without it an eighth of the smallest of the steps")
-      ->type_name("TIME");
-  verb.add_option("--repeats", wish.repeats, "timed runs of every row")
-      ->check(CLI::Range(1, kMostRepeats))
-      ->type_name("N")
-      ->capture_default_str();
+  verb.option("--until", wish.scene.duration, "how long to simulate, such as '5 s'; without it the scene's duration")
+      .value_name("TIME");
+  verb.option("--variables", wish.variables,
+              "whose difference to the reference is shown: names, or patterns with * and ?; repeat for more; "
+              "without it origins and centres of mass of all bodies")
+      .value_name("PATTERN")
+      .one_value_each();
+  verb.option("--reference", wish.reference_step,
+              "sub-step of the reference; without it an eighth of the smallest of the steps")
+      .value_name("TIME");
+  verb.option("--repeats", wish.repeats, "timed runs of every row")
+      .between(1, kMostRepeats)
+      .value_name("N")
+      .show_default();
 }
 
 }  // namespace
 
-void add_compare(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("compare", "accuracy against cost of formulations, integrators and steps");
+void add_compare(options::Command& program) {
+  options::Command verb = program.command("compare", "accuracy against cost of formulations, integrators and steps");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  add_what(*verb, *options);
-  verb->add_option("--set", options->wish.scene.overrides, "change a value of the scene; repeat for more")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  verb->add_option("--input", options->wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
-      ->type_name("SOURCE")
-      ->capture_default_str();
-  verb->add_option("-o,--output", options->picture, "picture, .svg or .html; without it SCENE_compare.svg")
-      ->type_name("FILE");
-  verb->add_option("--csv", options->csv, "write the table as comma-separated values too")->type_name("FILE");
-  verb->add_flag("--json", options->is_json, "print the table as JSON and nothing else");
-  verb->add_flag("--quiet", options->is_quiet, "no progress");
-  verb->footer(
+  add_what(verb, *options);
+  verb.option("--set", options->wish.scene.overrides, "change a value of the scene; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each();
+  verb.option("--input", options->wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+      .value_name("SOURCE")
+      .show_default();
+  verb.option("-o,--output", options->picture, "picture, .svg or .html; without it SCENE_compare.svg")
+      .value_name("FILE");
+  verb.option("--csv", options->csv, "write the table as comma-separated values too").value_name("FILE");
+  verb.flag("--json", options->is_json, "print the table as JSON and nothing else");
+  verb.flag("--quiet", options->is_quiet, "no progress");
+  verb.footer(
       "All runs are in this process, one after the other, with the same input. Ctrl-C prints the rows that are done.\n"
       "What the columns mean: docs/howto/compare.md.\n\n"
       "Examples:\n"
       "  slewring compare scenes/truck_crane.yaml --formulations all --until 5s\n"
       "  slewring compare scenes/four_bar.yaml --formulations recursive,lagrange --steps 0.5ms,1ms,2ms -o bars.html");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb.action([options] { return run(*options); });
 }
 
 }  // namespace slew::cli

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "io_node/saved_session.h"
 #include "node/driver.h"
 #include "node/identity.h"
@@ -46,11 +46,11 @@ constexpr Command kCommands[] = {
 void tell(const Options& options, const std::string& command, const Observer& observer, const wire::ControlReply& reply,
           const std::string& more = "") {
   if (options.is_json) {
-    fmt::print("{}\n", nlohmann::json({{"session", observer.session_name()},
-                                       {"action", command},
-                                       {"accepted", reply.is_accepted},
-                                       {"step", reply.header.step},
-                                       {"reason", reply.reason}})
+    fmt::print("{}\n", Json({{"session", observer.session_name()},
+                             {"action", command},
+                             {"accepted", reply.is_accepted},
+                             {"step", reply.header.step},
+                             {"reason", reply.reason}})
                            .dump(2));
   }
   if (!reply.is_accepted) {
@@ -205,50 +205,50 @@ ExitCode load(const Options& options) {
   return ExitCode::ok;
 }
 
-void add_save_and_load(CLI::App& verb, Action& action, const std::shared_ptr<Options>& options) {
-  CLI::App* saving = verb.add_subcommand("save", "write the session's whole state at the next step into a file");
-  saving->add_option("file", options->file, "file to write")->required()->type_name("FILE");
-  saving->add_flag("--force", options->may_replace, "replace a file that exists");
-  cli_support::add_session_options(*saving, options->session, false);
-  saving->add_flag("--json", options->is_json, "for machines");
-  saving->footer(
+void add_save_and_load(options::Command& verb, const std::shared_ptr<Options>& options) {
+  options::Command saving = verb.command("save", "write the session's whole state at the next step into a file");
+  saving.option("file", options->file, "file to write").required().value_name("FILE");
+  saving.flag("--force", options->may_replace, "replace a file that exists");
+  cli_support::add_session_options(saving, options->session, false);
+  saving.flag("--json", options->is_json, "for machines");
+  saving.footer(
       "The session stands for some milliseconds and goes on. 'slewring run --from FILE' goes on from there.\n\n"
       "Example:\n  slewring control save crane.saved --session truck_crane");
-  saving->callback([&action, options] { action = [options] { return save(*options); }; });
-  CLI::App* loading = verb.add_subcommand("load", "put the session into the state of a file, saved of the same scene");
-  loading->add_option("file", options->file, "file of 'control save'")->required()->type_name("FILE");
-  cli_support::add_session_options(*loading, options->session, false);
-  loading->add_flag("--json", options->is_json, "for machines");
-  loading->footer(
+  saving.action([options] { return save(*options); });
+  options::Command loading = verb.command("load", "put the session into the state of a file, saved of the same scene");
+  loading.option("file", options->file, "file of 'control save'").required().value_name("FILE");
+  cli_support::add_session_options(loading, options->session, false);
+  loading.flag("--json", options->is_json, "for machines");
+  loading.footer(
       "As after a reset all channels are free: controllers acquire them again. The script goes on at that time.\n\n"
       "Example:\n  slewring control load crane.saved --session truck_crane");
-  loading->callback([&action, options] { action = [options] { return load(*options); }; });
+  loading.action([options] { return load(*options); });
 }
 
 }  // namespace
 
-void add_control(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("control", "pause, resume, step, reset, stop, save or load a running session");
-  verb->require_subcommand(1);
-  verb->footer("Example:\n  slewring control pause --session truck_crane");
+void add_control(options::Command& program) {
+  options::Command verb =
+      program.command("control", "pause, resume, step, reset, stop, save or load a running session");
+  verb.require_command();
+  verb.footer("Example:\n  slewring control pause --session truck_crane");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  add_save_and_load(*verb, action, options);
+  add_save_and_load(verb, options);
   for (const Command& command : kCommands) {
-    CLI::App* part = verb->add_subcommand(command.name, command.doc);
+    options::Command part = verb.command(command.name, command.doc);
     if (command.action == ControlAction::step) {
-      part->add_option("steps", options->steps, "number of steps")
-          ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}))
-          ->type_name("N")
-          ->capture_default_str();
+      part.option("steps", options->steps, "number of steps")
+          .between(std::int64_t{1}, std::int64_t{1'000'000'000})
+          .value_name("N")
+          .show_default();
     }
-    cli_support::add_session_options(*part, options->session, false);
-    part->add_flag("--json", options->is_json, "for machines");
-    part->footer(
+    cli_support::add_session_options(part, options->session, false);
+    part.flag("--json", options->is_json, "for machines");
+    part.footer(
         fmt::format("Prints accepted(step), or refused with the reason and exit code 2.\n\n"
                     "Example:\n  slewring control {}{} --session truck_crane",
                     command.name, command.action == ControlAction::step ? " 10" : ""));
-    part->callback([&action, options, &command] { action = [options, &command] { return send(*options, command); }; });
+    part.action([options, &command] { return send(*options, command); });
   }
 }
 

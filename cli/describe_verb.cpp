@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/description/cost.h"
@@ -12,6 +11,7 @@
 #include "cli/description/liftable_load.h"
 #include "cli/display.h"
 #include "cli/verbs.h"
+#include "core/json.h"
 #include "hydraulics/circuit.h"
 #include "multibody/model.h"
 #include "multibody/observe.h"
@@ -178,14 +178,14 @@ Description describe(const scene::Scene& scene) {
   return d;
 }
 
-nlohmann::json to_json(const BodyNumbers& body) {
+Json to_json(const BodyNumbers& body) {
   const bool is_about_center = body.def.inertia_about == multibody::InertiaPoint::center_of_mass;
-  nlohmann::json json = {{"name", body.def.name},
-                         {"mass", body.def.mass},
-                         {"center_of_mass", body.def.center_of_mass},
-                         {"inertia", body.def.inertia},
-                         {"products", body.def.products},
-                         {"inertia_about", is_about_center ? "center_of_mass" : "body_origin"}};
+  Json json = {{"name", body.def.name},
+               {"mass", body.def.mass},
+               {"center_of_mass", body.def.center_of_mass},
+               {"inertia", body.def.inertia},
+               {"products", body.def.products},
+               {"inertia_about", is_about_center ? "center_of_mass" : "body_origin"}};
   if (body.mesh) {
     json["mesh"] = {{"file", body.mesh->mesh}, {"volume", body.mesh->volume}, {"density", body.mesh->density}};
   }
@@ -205,10 +205,10 @@ std::string mesh_text(const BodyNumbers& body) {
       triple_text(body.def.center_of_mass), triple_text(body.def.inertia), triple_text(body.def.products));
 }
 
-nlohmann::json to_json(const Description& d) {
-  nlohmann::json bodies = nlohmann::json::array();
+Json to_json(const Description& d) {
+  Json bodies = Json::array();
   for (const BodyNumbers& body : d.body_numbers) bodies.push_back(to_json(body));
-  nlohmann::json nodes = nlohmann::json::array();
+  Json nodes = Json::array();
   for (const NodeNeed& node : d.nodes) {
     nodes.push_back({{"role", node.role}, {"needed", node.is_needed}, {"reason", node.reason}});
   }
@@ -284,7 +284,7 @@ ExitCode show_parts(const Options& options) {
   overrides.emplace_back("session.solution=split");
   scene::Scene scene = scene::load_file(options.scene, overrides);
   const double at = read_option("--at", options.at, Dimension::time);
-  nlohmann::json json = {{"name", scene.name}};
+  Json json = {{"name", scene.name}};
   std::vector<std::string> texts;
   if (options.has_cost) {
     const double whole = scene.session.duration > 0 ? std::min(scene.session.duration, kCostTime) : kCostTime;
@@ -327,43 +327,38 @@ ExitCode show(const Options& options) {
 
 }  // namespace
 
-void add_describe(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("describe", "what a scene consists of and which nodes it needs, with reasons");
+void add_describe(options::Command& program) {
+  options::Command verb =
+      program.command("describe", "what a scene consists of and which nodes it needs, with reasons");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
-  verb->add_option("--set", options->overrides, "change a value of the scene; repeat for more")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  verb->add_flag("--json", options->is_json, "for machines");
-  CLI::Option* cost = verb->add_flag("--cost", options->has_cost, "what each part costs, measured on the scene's run");
-  verb->add_option("--until", options->until, "end of that run (default: the scene's, at most 8 s)")
-      ->type_name("TIME")
-      ->needs(cost);
-  CLI::Option* eigenvalues = verb->add_flag("--eigenvalues", options->has_eigenvalues,
-                                            "fastest and slowest motions of the whole machine, and whose they are");
-  CLI::Option* liftable = verb->add_flag("--liftable", options->has_liftable,
-                                         "largest payload that the cylinders lift, and what limits it");
-  verb->add_option("--at", options->at, "time of the scene's own run at which to look")
-      ->type_name("TIME")
-      ->capture_default_str();
-  verb->add_option("--count", options->count, "eigenvalues shown of either end")
-      ->needs(eigenvalues)
-      ->capture_default_str();
-  verb->add_flag("--frictionless", options->is_frictionless,
-                 "eigenvalues without the dry friction of cylinders and joints")
-      ->needs(eigenvalues);
-  verb->add_option("--pose", options->pose, "joints put elsewhere, with --liftable; repeat or separate by commas")
-      ->type_name("JOINT=VALUE")
-      ->delimiter(',')
-      ->needs(liftable);
-  verb->footer(
+  verb.option("scene", options->scene, "scene file").required().value_name("SCENE");
+  verb.option("--set", options->overrides, "change a value of the scene; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each();
+  verb.flag("--json", options->is_json, "for machines");
+  options::Option cost = verb.flag("--cost", options->has_cost, "what each part costs, measured on the scene's run");
+  verb.option("--until", options->until, "end of that run (default: the scene's, at most 8 s)")
+      .value_name("TIME")
+      .needs(cost);
+  options::Option eigenvalues = verb.flag("--eigenvalues", options->has_eigenvalues,
+                                          "fastest and slowest motions of the whole machine, and whose they are");
+  options::Option liftable =
+      verb.flag("--liftable", options->has_liftable, "largest payload that the cylinders lift, and what limits it");
+  verb.option("--at", options->at, "time of the scene's own run at which to look").value_name("TIME").show_default();
+  verb.option("--count", options->count, "eigenvalues shown of either end").needs(eigenvalues).show_default();
+  verb.flag("--frictionless", options->is_frictionless, "eigenvalues without the dry friction of cylinders and joints")
+      .needs(eigenvalues);
+  verb.option("--pose", options->pose, "joints put elsewhere, with --liftable; repeat or separate by commas")
+      .value_name("JOINT=VALUE")
+      .comma_separated()
+      .needs(liftable);
+  verb.footer(
       "Examples:\n"
       "  slewring describe scenes/truck_crane.yaml\n"
       "  slewring describe scenes/truck_crane.yaml --cost\n"
       "  slewring describe scenes/truck_crane.yaml --eigenvalues --at 5s\n"
       "  slewring describe scenes/truck_crane.yaml --liftable --pose 'Body_LiftBoom=20 deg'");
-  verb->callback([&action, options] { action = [options] { return show(*options); }; });
+  verb.action([options] { return show(*options); });
 }
 
 }  // namespace slew::cli

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "cli/child_process.h"
@@ -15,6 +14,7 @@
 #include "cli_support/carrier.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "node/identity.h"
 #include "transport/cyclone_domain.h"
 
@@ -130,7 +130,7 @@ ExitCode examine(const Options& options) {
       check_processor(),      check_programs(),  check_pidfd(),    check_network(options.network),
       check_receive_buffer(), check_real_time(), check_governor(), check_disk()};
   bool is_fit = true;
-  nlohmann::json json = nlohmann::json::array();
+  Json json = Json::array();
   std::vector<std::vector<std::string>> rows;
   for (const Finding& finding : findings) {
     const char* verdict = finding.verdict == Verdict::good      ? "ok"
@@ -141,7 +141,7 @@ ExitCode examine(const Options& options) {
     rows.push_back({verdict, finding.what, finding.text});
   }
   if (options.is_json) {
-    fmt::print("{}\n", nlohmann::json({{"fit", is_fit}, {"build", node::build_id()}, {"findings", json}}).dump(2));
+    fmt::print("{}\n", Json({{"fit", is_fit}, {"build", node::build_id()}, {"findings", json}}).dump(2));
   } else {
     fmt::print("{}", table_text(rows, ""));
   }
@@ -150,13 +150,13 @@ ExitCode examine(const Options& options) {
 
 }  // namespace
 
-void add_doctor(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("doctor", "is this machine fit for a session?");
+void add_doctor(options::Command& program) {
+  options::Command verb = program.command("doctor", "is this machine fit for a session?");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  cli_support::add_network_options(*verb, options->network);
-  verb->add_flag("--json", options->is_json, "for machines");
-  verb->footer("Exit code 7 when a session cannot run here.\n\nExample:\n  slewring doctor --interface eth0");
-  verb->callback([&action, options] { action = [options] { return examine(*options); }; });
+  cli_support::add_network_options(verb, options->network);
+  verb.flag("--json", options->is_json, "for machines");
+  verb.footer("Exit code 7 when a session cannot run here.\n\nExample:\n  slewring doctor --interface eth0");
+  verb.action([options] { return examine(*options); });
 }
 
 }  // namespace slew::cli

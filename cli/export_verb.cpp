@@ -129,37 +129,33 @@ ExitCode export_variables(Options options) {
 
 }  // namespace
 
-void add_export(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("export", "write variables of a recording as a table or for MATLAB");
+void add_export(options::Command& program) {
+  options::Command verb = program.command("export", "write variables of a recording as a table or for MATLAB");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
-  verb->add_option("variables", options->variables, "names, or patterns with * and ?; without them all")
-      ->type_name("VAR");
-  verb->add_option("--only", options->only, "the same, one at a time; repeat for more")
-      ->type_name("VAR")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  CLI::Option* csv =
-      verb->add_flag("--csv", options->is_csv, "comma-separated values in SI units; the default but for a FILE.mat");
-  CLI::Option* mat = verb->add_flag("--mat", options->is_mat,
-                                    "MAT-file for MATLAB, Octave and scipy.io: a struct with name, unit, time and "
-                                    "value for each variable, SI units");
-  CLI::Option* input =
-      verb->add_flag("--input", options->is_input,
-                     "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, "
-                     "straight lines between");
-  csv->excludes(mat);
-  input->excludes(mat);
-  verb->add_option("--from", options->from, "leave out what lies before, such as '2.5 s'")->type_name("TIME");
-  verb->add_option("--to", options->to, "leave out what lies behind")->type_name("TIME");
-  verb->add_option("-o,--output", options->output, "file to write; without it standard output")->type_name("FILE");
-  verb->add_flag("--force", options->may_replace, "replace a file that exists");
-  verb->footer(
+  verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
+  verb.option("variables", options->variables, "names, or patterns with * and ?; without them all").value_name("VAR");
+  verb.option("--only", options->only, "the same, one at a time; repeat for more").value_name("VAR").repeatable();
+  options::Option csv =
+      verb.flag("--csv", options->is_csv, "comma-separated values in SI units; the default but for a FILE.mat");
+  options::Option mat = verb.flag("--mat", options->is_mat,
+                                  "MAT-file for MATLAB, Octave and scipy.io: a struct with name, unit, time and "
+                                  "value for each variable, SI units");
+  options::Option input =
+      verb.flag("--input", options->is_input,
+                "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, "
+                "straight lines between");
+  csv.excludes(mat);
+  input.excludes(mat);
+  verb.option("--from", options->from, "leave out what lies before, such as '2.5 s'").value_name("TIME");
+  verb.option("--to", options->to, "leave out what lies behind").value_name("TIME");
+  verb.option("-o,--output", options->output, "file to write; without it standard output").value_name("FILE");
+  verb.flag("--force", options->may_replace, "replace a file that exists");
+  verb.footer(
       "Examples:\n"
       "  slewring export runs/truck_crane-20260501-102030 --csv -o crane.csv\n"
       "  slewring export runs/truck_crane-20260501-102030 --mat --only 'Cyl_*' --from 2s --to 5s -o lift.mat\n"
       "  slewring export runs/truck_crane-20260501-102030 --input -o levers.csv");
-  verb->callback([&action, options] { action = [options] { return export_variables(*options); }; });
+  verb.action([options] { return export_variables(*options); });
 }
 
 }  // namespace slew::cli

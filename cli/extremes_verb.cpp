@@ -49,30 +49,25 @@ ExitCode run(Options options) {
 
 }  // namespace
 
-void add_extremes(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("extremes", "hard cases of a scene: within their bounds, and how near the edge");
+void add_extremes(options::Command& program) {
+  options::Command verb =
+      program.command("extremes", "hard cases of a scene: within their bounds, and how near the edge");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   ExtremesWish& wish = options->wish;
-  verb->add_option("scene", options->scene, "scene file")->type_name("SCENE");
-  verb->add_flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
-  verb->add_option("--scenes", options->scenes, "folder of the suite's scenes")
-      ->type_name("DIR")
-      ->capture_default_str();
-  const auto repeated = [verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
-    verb->add_option(name, to, text)->allow_extra_args(false)->type_name(type);
+  verb.option("scene", options->scene, "scene file").value_name("SCENE");
+  verb.flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
+  verb.option("--scenes", options->scenes, "folder of the suite's scenes").value_name("DIR").show_default();
+  const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
+    verb.option(name, to, text).one_value_each().value_name(type);
   };
   repeated("--set", wish.overrides, "change a value of the scene for all cases; repeat for more", "PATH=VALUE");
   repeated("--only", wish.only, "run these cases: names, or patterns with * and ?; repeat for more", "NAME");
-  verb->add_option("--folder", wish.folder, "where results are kept")->type_name("DIR")->capture_default_str();
-  verb->add_flag("--anew", wish.is_anew, "compute also what the folder has already");
-  verb->add_option("--workers", wish.workers, "processes at once")
-      ->check(CLI::Range(1, kMostWorkers))
-      ->type_name("N")
-      ->capture_default_str();
-  verb->add_flag("--json", options->is_json, "print the table as JSON and nothing else");
-  verb->add_flag("--quiet", options->is_quiet, "no progress");
-  verb->footer(
+  verb.option("--folder", wish.folder, "where results are kept").value_name("DIR").show_default();
+  verb.flag("--anew", wish.is_anew, "compute also what the folder has already");
+  verb.option("--workers", wish.workers, "processes at once").between(1, kMostWorkers).value_name("N").show_default();
+  verb.flag("--json", options->is_json, "print the table as JSON and nothing else");
+  verb.flag("--quiet", options->is_quiet, "no progress");
+  verb.footer(
       "Each case is a process of its own, two at once. Ctrl-C keeps what is done; the same command goes on from "
       "there.\n"
       "Exit code 0: every case ended within its bounds or was refused by name, before it ran or by the session's own "
@@ -81,22 +76,21 @@ void add_extremes(CLI::App& program, Action& action) {
       "Examples:\n"
       "  slewring extremes scenes/truck_crane.yaml\n"
       "  slewring extremes --suite --only 'lost_*' --only end_stops");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb.action([options] { return run(*options); });
 }
 
 // the process of one case: no verb for people
-void add_extremes_case(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("extremes-case", "one hard case")->group("");
+void add_extremes_case(options::Command& program) {
+  options::Command verb = program.command("extremes-case", "one hard case");
+  verb.hide();
   const auto options = std::make_shared<CaseOptions>();
-  verb->add_option("scene", options->scene.file, "scene file")->required();
-  verb->add_option("name", options->name, "case")->required();
-  verb->add_option("--set", options->scene.overrides, "change")->allow_extra_args(false);
-  verb->add_option("--result", options->result, "file to write")->required();
-  verb->callback([&action, options] {
-    action = [options] {
-      write_result(options->result, to_json(run_case(options->scene, options->name)));
-      return ExitCode::ok;
-    };
+  verb.option("scene", options->scene.file, "scene file").required();
+  verb.option("name", options->name, "case").required();
+  verb.option("--set", options->scene.overrides, "change").one_value_each();
+  verb.option("--result", options->result, "file to write").required();
+  verb.action([options] {
+    write_result(options->result, to_json(run_case(options->scene, options->name)));
+    return ExitCode::ok;
   });
 }
 

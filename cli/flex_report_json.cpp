@@ -1,26 +1,25 @@
 #include "cli/flex_report_json.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
 
-using nlohmann::json;
-
-json list(math::Vec3 v) {
-  return {v.x(), v.y(), v.z()};
+Json list(math::Vec3 v) {
+  return Json::array({v.x(), v.y(), v.z()});
 }
 
-json to_json(const flex::RigidMass& mass) {
+Json to_json(const flex::RigidMass& mass) {
   const math::Mat3 inertia = flex::central_inertia(mass);
   return {{"mass", mass.mass},
           {"centre", list(flex::centre_of(mass))},
-          {"inertia", {inertia(0, 0), inertia(1, 1), inertia(2, 2)}},
-          {"products", {inertia(0, 1), inertia(0, 2), inertia(1, 2)}}};
+          {"inertia", Json::array({inertia(0, 0), inertia(1, 1), inertia(2, 2)})},
+          {"products", Json::array({inertia(0, 1), inertia(0, 2), inertia(1, 2)})}};
 }
 
-json to_json(const flex::Source& source) {
+Json to_json(const flex::Source& source) {
   return {{"model", source.model},
           {"made_of", source.made_of},
           {"attachment", source.attachment == flex::Attachment::clamped ? "clamped" : "free"},
@@ -34,10 +33,10 @@ json to_json(const flex::Source& source) {
           {"stiffening", source.stiffening == flex::GeometricStiffening::straight_beam ? "straight_beam" : "none"}};
 }
 
-json to_json(const flex::ModeFigures& mode, bool has_model) {
-  json out = {{"mode", mode.ordinal},      {"kept", mode.is_kept},
-              {"full_hz", nullptr},        {"reduced_hz", mode.reduced / (2 * M_PI)},
-              {"relative_error", nullptr}, {"effective_mass", mode.effective_mass}};
+Json to_json(const flex::ModeFigures& mode, bool has_model) {
+  Json out = {{"mode", mode.ordinal},     {"kept", mode.is_kept},
+              {"full_hz", Json()},        {"reduced_hz", mode.reduced / (2 * M_PI)},
+              {"relative_error", Json()}, {"effective_mass", mode.effective_mass}};
   if (!has_model) return out;
   out["full_hz"] = mode.full / (2 * M_PI);
   out["relative_error"] = mode.relative_error;
@@ -46,8 +45,8 @@ json to_json(const flex::ModeFigures& mode, bool has_model) {
 
 }  // namespace
 
-json to_json(const flex::ReductionReport& report) {
-  json modes = json::array(), directions = json::array();
+Json to_json(const flex::ReductionReport& report) {
+  Json modes = Json::array(), directions = Json::array();
   for (const flex::ModeFigures& mode : report.modes) modes.push_back(to_json(mode, report.has_model));
   for (const flex::ComplianceFigures& c : report.compliance) {
     directions.push_back({{"direction", std::string(1, c.direction)},
@@ -55,12 +54,12 @@ json to_json(const flex::ReductionReport& report) {
                           {"kept", c.kept},
                           {"share", c.share()}});
   }
-  json out = {
+  Json out = {
       {"has_model", report.has_model},
       {"source", to_json(report.source)},
-      {"freedoms", nullptr},
-      {"held_freedoms", nullptr},
-      {"full_mass", nullptr},
+      {"freedoms", Json()},
+      {"held_freedoms", Json()},
+      {"full_mass", Json()},
       {"reduced_mass", to_json(report.reduced_mass)},
       {"modes", modes},
       {"kept_effective_mass", report.kept_effective_mass},
@@ -72,10 +71,10 @@ json to_json(const flex::ReductionReport& report) {
   return out;
 }
 
-json to_json(const flex::AttachmentComparison& comparison) {
-  json rows = json::array();
+Json to_json(const flex::AttachmentComparison& comparison) {
+  Json rows = Json::array();
   for (const flex::AttachmentShares& row : comparison.rows) {
-    json one = {{"modes", row.modes}, {"clamped", nullptr}, {"free", nullptr}};
+    Json one = {{"modes", row.modes}, {"clamped", Json()}, {"free", Json()}};
     if (row.clamped) one["clamped"] = *row.clamped;
     if (row.free) one["free"] = *row.free;
     rows.push_back(one);

@@ -3,13 +3,14 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "core/json.h"
 #include "flex/attachment_comparison.h"
 #include "flex/reduction_report.h"
 
 namespace slew::cli {
 
 // SI; frequencies in Hz. What only the whole model knows is null in a report on flexible files.
-[[nodiscard]] nlohmann::json to_json(const flex::ReductionReport& report);
-[[nodiscard]] nlohmann::json to_json(const flex::AttachmentComparison& comparison);
+[[nodiscard]] Json to_json(const flex::ReductionReport& report);
+[[nodiscard]] Json to_json(const flex::AttachmentComparison& comparison);
 
 }  // namespace slew::cli

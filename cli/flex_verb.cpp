@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "cli/display.h"
 #include "cli/flex_report_json.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "flex/flexible_files.h"
 #include "flex/input_error.h"
 #include "flex/mode_shape_plot.h"
@@ -78,9 +78,9 @@ flex::FlexibleFileSet files_of(const BuildOptions& options, const flex::Flexible
   return {folder, def.model, def.prefix};
 }
 
-nlohmann::json built_json(const flex::FlexibleFileSet& set, std::uint64_t replaced, const flex::Reduction& all,
-                          const flex::TipCompliance& tip) {
-  nlohmann::json files = nlohmann::json::array(), hertz = nlohmann::json::array();
+Json built_json(const flex::FlexibleFileSet& set, std::uint64_t replaced, const flex::Reduction& all,
+                const flex::TipCompliance& tip) {
+  Json files = Json::array(), hertz = Json::array();
   for (const std::string& matrix : flex::flexible_matrices())
     files.push_back(flex::flexible_file(set, matrix).string());
   for (const double omega : all.body.omega) hertz.push_back(omega / (2 * M_PI));
@@ -158,7 +158,7 @@ ExitCode report_description(const ReportOptions& options) {
   const flex::AttachmentComparison attachments = flex::compare_attachments(from.model, from.reduction, all, kept);
   write_shapes(options, all, kept);
   if (options.is_json) {
-    nlohmann::json json = to_json(report);
+    Json json = to_json(report);
     json["attachments"] = to_json(attachments);
     fmt::print("{}\n", json.dump(2));
     return ExitCode::ok;
@@ -203,53 +203,53 @@ ExitCode report(const ReportOptions& options) {
   return is_description ? report_description(options) : report_set(options);
 }
 
-void add_build(CLI::App& verb, Action& action) {
-  CLI::App* part = verb.add_subcommand("build", "write the flexible files of a described body");
+void add_build(options::Command& verb) {
+  options::Command part = verb.command("build", "write the flexible files of a described body");
   const auto options = std::make_shared<BuildOptions>();  // lives as long as the command line's callbacks
-  part->add_option("file", options->file, "description of the body")->required()->type_name("FILE");
-  part->add_option("-o,--output", options->output, "folder of the files; without it that of the description")
-      ->type_name("FOLDER");
-  part->add_option("--model", options->model, "first part of the files' names, instead of the description's")
-      ->type_name("NAME");
-  part->add_option("--prefix", options->prefix, "second part, instead of the description's")->type_name("NAME");
-  part->add_option("--set", options->overrides, "change a value of the description; repeat for more")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  part->add_flag("--json", options->is_json, "for machines");
-  part->footer(
+  part.option("file", options->file, "description of the body").required().value_name("FILE");
+  part.option("-o,--output", options->output, "folder of the files; without it that of the description")
+      .value_name("FOLDER");
+  part.option("--model", options->model, "first part of the files' names, instead of the description's")
+      .value_name("NAME");
+  part.option("--prefix", options->prefix, "second part, instead of the description's").value_name("NAME");
+  part.option("--set", options->overrides, "change a value of the description; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each();
+  part.flag("--json", options->is_json, "for machines");
+  part.footer(
       "A set of the same name is replaced when the new one is whole.\n\n"
       "Example:\n  slewring flex build scenes/beams/jib_boom.yaml --output scenes");
-  part->callback([&action, options] { action = [options] { return build(*options); }; });
+  part.action([options] { return build(*options); });
 }
 
-void add_report(CLI::App& verb, Action& action) {
-  CLI::App* part = verb.add_subcommand("report", "what a reduction keeps of the body, and how well");
+void add_report(options::Command& verb) {
+  options::Command part = verb.command("report", "what a reduction keeps of the body, and how well");
   const auto options = std::make_shared<ReportOptions>();  // lives as long as the command line's callbacks
-  part->add_option("file", options->file, "description of the body, or a set of flexible files as FOLDER/Model_Prefix")
-      ->required()
-      ->type_name("FILE");
-  CLI::Option* modes =
-      part->add_option("--modes", options->modes, "modes that are kept, \"1;2\"; without it all")->type_name("LIST");
-  part->add_option("--frequency-up-to", options->highest, "keep the modes up to this frequency, \"50 Hz\"")
-      ->type_name("FREQUENCY")
-      ->excludes(modes);
-  part->add_option("--set", options->overrides, "change a value of the description; repeat for more")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  part->add_option("--svg", options->svg, "draw the shapes of the kept modes into this file")->type_name("FILE");
-  part->add_flag("--json", options->is_json, "for machines");
-  part->footer("Example:\n  slewring flex report scenes/beams/jib_boom.yaml --modes \"1;2\" --svg jib_boom.svg");
-  part->callback([&action, options] { action = [options] { return report(*options); }; });
+  part.option("file", options->file, "description of the body, or a set of flexible files as FOLDER/Model_Prefix")
+      .required()
+      .value_name("FILE");
+  options::Option modes =
+      part.option("--modes", options->modes, "modes that are kept, \"1;2\"; without it all").value_name("LIST");
+  part.option("--frequency-up-to", options->highest, "keep the modes up to this frequency, \"50 Hz\"")
+      .value_name("FREQUENCY")
+      .excludes(modes);
+  part.option("--set", options->overrides, "change a value of the description; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each();
+  part.option("--svg", options->svg, "draw the shapes of the kept modes into this file").value_name("FILE");
+  part.flag("--json", options->is_json, "for machines");
+  part.footer("Example:\n  slewring flex report scenes/beams/jib_boom.yaml --modes \"1;2\" --svg jib_boom.svg");
+  part.action([options] { return report(*options); });
 }
 
 }  // namespace
 
-void add_flex(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("flex", "flexible bodies: from a description to flexible files");
-  verb->require_subcommand(1);
-  verb->footer("Example:\n  slewring flex build scenes/beams/jib_boom.yaml --output scenes");
-  add_build(*verb, action);
-  add_report(*verb, action);
+void add_flex(options::Command& program) {
+  options::Command verb = program.command("flex", "flexible bodies: from a description to flexible files");
+  verb.require_command();
+  verb.footer("Example:\n  slewring flex build scenes/beams/jib_boom.yaml --output scenes");
+  add_build(verb);
+  add_report(verb);
 }
 
 }  // namespace slew::cli

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "urdf/import.h"
 
 namespace slew::cli {
@@ -34,10 +34,10 @@ void write(const std::string& path, const std::string& text, bool is_overwriting
   if (!out) throw Failure(ExitCode::storage, "'" + path + "' cannot be written; name another file");
 }
 
-nlohmann::json to_json(const Options& options, const urdf::Import& made) {
-  nlohmann::json notes = nlohmann::json::array();
+Json to_json(const Options& options, const urdf::Import& made) {
+  Json notes = Json::array();
   for (const urdf::Note& note : made.notes) notes.push_back({{"line", note.line}, {"text", note.text}});
-  nlohmann::json json = {{"bodies", made.bodies}, {"joints", made.joints}, {"shapes", made.shapes}, {"notes", notes}};
+  Json json = {{"bodies", made.bodies}, {"joints", made.joints}, {"shapes", made.shapes}, {"notes", notes}};
   if (options.output.empty()) {
     json["scene"] = made.text;
   } else {
@@ -64,20 +64,19 @@ ExitCode import_urdf(const Options& options) {
 
 }  // namespace
 
-void add_import(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("import", "make a scene from a file of another program");
-  verb->require_subcommand(1);
-  verb->footer("Example:\n  slewring import urdf robot.urdf -o robot.yaml");
-  CLI::App* part = verb->add_subcommand("urdf", "a robot's tree of links and joints");
+void add_import(options::Command& program) {
+  options::Command verb = program.command("import", "make a scene from a file of another program");
+  verb.require_command();
+  verb.footer("Example:\n  slewring import urdf robot.urdf -o robot.yaml");
+  options::Command part = verb.command("urdf", "a robot's tree of links and joints");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  part->add_option("file", options->file, "URDF file, macros expanded")->required()->type_name("FILE");
-  part->add_option("-o,--output", options->output, "the scene's file; without it the scene is printed")
-      ->type_name("SCENE");
-  part->add_flag("--floating", options->is_floating, "the root link is free, not fixed to Ground");
-  part->add_flag("--force", options->is_overwriting, "overwrite the scene's file");
-  part->add_flag("--json", options->is_json, "for machines: counts and notes, and the scene when no file is named");
-  part->footer("Example:\n  slewring import urdf robot.urdf -o robot.yaml && slewring check robot.yaml");
-  part->callback([&action, options] { action = [options] { return import_urdf(*options); }; });
+  part.option("file", options->file, "URDF file, macros expanded").required().value_name("FILE");
+  part.option("-o,--output", options->output, "the scene's file; without it the scene is printed").value_name("SCENE");
+  part.flag("--floating", options->is_floating, "the root link is free, not fixed to Ground");
+  part.flag("--force", options->is_overwriting, "overwrite the scene's file");
+  part.flag("--json", options->is_json, "for machines: counts and notes, and the scene when no file is named");
+  part.footer("Example:\n  slewring import urdf robot.urdf -o robot.yaml && slewring check robot.yaml");
+  part.action([options] { return import_urdf(*options); });
 }
 
 }  // namespace slew::cli

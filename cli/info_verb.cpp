@@ -1,14 +1,13 @@
 // `slewring info REC`: what a recording holds.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/display.h"
 #include "cli/flag_report.h"
 #include "cli/recorded.h"
 #include "cli/recorded_events.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "node/identity.h"
 #include "recording/recovery.h"
 
@@ -85,8 +84,8 @@ std::vector<std::string> gaps_of(const recording::Reader& reader) {
   return gaps;
 }
 
-nlohmann::json events_json(const recording::Reader& reader) {
-  nlohmann::json events = nlohmann::json::array();
+Json events_json(const recording::Reader& reader) {
+  Json events = Json::array();
   for (const RecordedEvent& event : recorded_events(reader)) {
     events.push_back({{"step", event.step}, {"epoch", event.epoch}, {"text", event.text}});
   }
@@ -107,9 +106,9 @@ void add_events(const recording::Reader& reader, bool has_all, std::vector<std::
   if (shown < events.size()) rows.push_back({"event", fmt::format("{} more: --events", events.size() - shown)});
 }
 
-nlohmann::json to_json(const recording::Reader& reader, double simulated) {
+Json to_json(const recording::Reader& reader, double simulated) {
   const recording::SessionIdentity& identity = reader.identity();
-  nlohmann::json topics = nlohmann::json::object();
+  Json topics = Json::object();
   for (const auto& [topic, count] : counts_of(reader)) {
     topics[topic] = {{"recorded", count.recorded}, {"lost", count.lost}};
   }
@@ -173,16 +172,16 @@ ExitCode show(const Options& options) {
 
 }  // namespace
 
-void add_info(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("info", "what a recording holds");
+void add_info(options::Command& program) {
+  options::Command verb = program.command("info", "what a recording holds");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
-  verb->add_flag("--verify", options->is_verifying, "read every byte and compare every checksum");
-  verb->add_flag("--events", options->has_all_events,
-                 "all requests, overruns, changes of shedding and of controllers, not the first ten alone");
-  verb->add_flag("--json", options->is_json, "for machines");
-  verb->footer("Example:\n  slewring info runs/truck_crane-20260501-102030");
-  verb->callback([&action, options] { action = [options] { return show(*options); }; });
+  verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
+  verb.flag("--verify", options->is_verifying, "read every byte and compare every checksum");
+  verb.flag("--events", options->has_all_events,
+            "all requests, overruns, changes of shedding and of controllers, not the first ten alone");
+  verb.flag("--json", options->is_json, "for machines");
+  verb.footer("Example:\n  slewring info runs/truck_crane-20260501-102030");
+  verb.action([options] { return show(*options); });
 }
 
 }  // namespace slew::cli

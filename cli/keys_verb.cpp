@@ -1,12 +1,11 @@
 // `slewring keys create|add|revoke|check|export`: who may take part in sessions that leave this machine.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/display.h"
 #include "cli/keys/key_store.h"
 #include "cli/verbs.h"
 #include "cli_support/session_options.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -51,7 +50,7 @@ ExitCode revoke(const Options& options) {
 ExitCode check(const Options& options) {
   const std::vector<KeyFinding> findings = check_keys(options.store);
   std::vector<std::vector<std::string>> rows;
-  nlohmann::json json = nlohmann::json::array();
+  Json json = Json::array();
   bool is_good = true;
   for (const KeyFinding& finding : findings) {
     const std::string what = finding.identity.empty() ? "authorities" : finding.identity;
@@ -73,47 +72,44 @@ ExitCode export_keys(const Options& options) {
 
 }  // namespace
 
-void add_keys(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("keys", "keys for sessions over a network: who may take part");
-  verb->require_subcommand(1);
+void add_keys(options::Command& program) {
+  options::Command verb = program.command("keys", "keys for sessions over a network: who may take part");
+  verb.require_command();
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   const auto sub = [&](const char* name, const char* text, ExitCode (*act)(const Options&), const char* example) {
-    CLI::App* one = verb->add_subcommand(name, text);
-    one->footer(fmt::format("Example:\n  slewring keys {} {}", name, example));
-    one->add_option("store", options->store, "folder of the key store")->required()->type_name("STORE");
-    one->callback([&action, options, act] { action = [options, act] { return act(*options); }; });
+    options::Command one = verb.command(name, text);
+    one.footer(fmt::format("Example:\n  slewring keys {} {}", name, example));
+    one.option("store", options->store, "folder of the key store").required().value_name("STORE");
+    one.action([options, act] { return act(*options); });
     return one;
   };
-  const auto add_validity = [&](CLI::App* one) {
-    one->add_option("--days", options->days, "validity")
-        ->check(CLI::Range(1, kMostDays))
-        ->type_name("N")
-        ->capture_default_str();
-    one->add_option("--session", options->session, "sessions that the keys are for, with * and ?")
-        ->type_name("PATTERN")
-        ->capture_default_str();
+  const auto add_validity = [&](options::Command one) {
+    one.option("--days", options->days, "validity").between(1, kMostDays).value_name("N").show_default();
+    one.option("--session", options->session, "sessions that the keys are for, with * and ?")
+        .value_name("PATTERN")
+        .show_default();
   };
   add_validity(sub("create", "a new store with keys for every role", create, "plant_keys --days 365"));
-  CLI::App* adding =
+  options::Command adding =
       sub("add", "keys for one more: a second controller, somebody who only looks on, a guest for one session", add,
           "plant_keys --role controller --name joystick --session 'truck_*'");
-  adding->add_option("--role", options->role, "what it may say and hear")
-      ->check(CLI::IsMember(key_roles()))
-      ->type_name("ROLE")
-      ->capture_default_str();
-  adding->add_option("--name", options->name, "its name; without it the role's")->type_name("NAME");
+  adding.option("--role", options->role, "what it may say and hear")
+      .one_of(key_roles())
+      .value_name("ROLE")
+      .show_default();
+  adding.option("--name", options->name, "its name; without it the role's").value_name("NAME");
   add_validity(adding);
-  CLI::App* revoking =
+  options::Command revoking =
       sub("revoke", "lets one take part no longer, and makes all other keys anew", revoke, "plant_keys joystick");
-  revoking->add_option("name", options->name, "whose keys")->required()->type_name("NAME");
-  CLI::App* checking =
+  revoking.option("name", options->name, "whose keys").required().value_name("NAME");
+  options::Command checking =
       sub("check", "signatures, validity and permissions of a store or of what was exported", check, "plant_keys");
-  checking->add_flag("--json", options->is_json, "print JSON and nothing else");
-  CLI::App* exporting = sub("export", "copies what the holders of these keys need", export_keys,
-                            "plant_keys hydraulics recorder --to for_crane2");
-  exporting->add_option("names", options->names, "whose keys")->required()->type_name("NAME");
-  exporting->add_option("--to", options->to, "folder to copy into")->required()->type_name("DIR");
-  verb->footer(
+  checking.flag("--json", options->is_json, "print JSON and nothing else");
+  options::Command exporting = sub("export", "copies what the holders of these keys need", export_keys,
+                                   "plant_keys hydraulics recorder --to for_crane2");
+  exporting.option("names", options->names, "whose keys").required().value_name("NAME");
+  exporting.option("--to", options->to, "folder to copy into").required().value_name("DIR");
+  verb.footer(
       "What is protected and what is not: docs/security.md.\n\n"
       "Examples:\n"
       "  slewring keys create plant_keys\n"

@@ -38,18 +38,16 @@ int become_node(int argc, char** argv) {
   return static_cast<int>(ExitCode::resources);
 }
 
-void add_node(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("node", "run one node of a session, here or on this machine's part of it");
-  verb->footer(
+void add_node(options::Command& program) {
+  options::Command verb = program.command("node", "run one node of a session, here or on this machine's part of it");
+  verb.footer(
       "Roles: io SCENE (owner of the session), mechanics, hydraulics, flex (flexible bodies), recorder.\n"
       "'slewring node ROLE --help' lists the options of a role.\n\n"
       "Example:\n  slewring node hydraulics --session truck_crane --interface eth0 --peer 192.168.1.10 "
       "--keys for_crane2");
-  verb->callback([&action] {
-    action = []() -> ExitCode {
-      std::fprintf(stderr, "slewring: a role is missing; nothing was started; see 'slewring node --help'\n");
-      return ExitCode::bad_input;
-    };
+  verb.action([]() -> ExitCode {
+    std::fprintf(stderr, "slewring: a role is missing; nothing was started; see 'slewring node --help'\n");
+    return ExitCode::bad_input;
   });
 }
 

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/display.h"
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "core/suggestion.h"
 #include "node/driver.h"
 #include "scene/field_reader.h"
@@ -80,14 +80,14 @@ std::string range_text(const scene::ParameterInfo& parameter) {
   return scene::range_text(parameter.range, parameter.dimension);
 }
 
-nlohmann::json to_json(const Present& present, bool is_of_session) {
+Json to_json(const Present& present, bool is_of_session) {
   const scene::ParameterInfo& parameter = *present.about;
-  nlohmann::json json = {{"path", parameter.path},
-                         {"value", present.value},
-                         {"unit", info(parameter.dimension).si_unit},
-                         {"live", parameter.change == Change::live},
-                         {"range", range_text(parameter)},
-                         {"doc", parameter.doc}};
+  Json json = {{"path", parameter.path},
+               {"value", present.value},
+               {"unit", info(parameter.dimension).si_unit},
+               {"live", parameter.change == Change::live},
+               {"range", range_text(parameter)},
+               {"doc", parameter.doc}};
   if (parameter.is_choice()) {
     json["choice"] = parameter.choice_of(present.value);
     json["choices"] = std::vector<std::string>(parameter.choices.begin(), parameter.choices.end());
@@ -131,7 +131,7 @@ ExitCode list(const Options& options) {
     if (is_wanted(parameter, options)) all.push_back(source.present(parameter));
   }
   if (options.is_json) {
-    nlohmann::json json = nlohmann::json::array();
+    Json json = Json::array();
     for (const Present& present : all) json.push_back(to_json(present, source.is_session()));
     fmt::print("{}\n", json.dump(2));
     return ExitCode::ok;
@@ -209,11 +209,11 @@ ExitCode set(const Options& options) {
   const wire::ControlReply reply = observer->ask(request);
   const std::string value = value_text(assignment.value, parameter);
   if (options.is_json) {
-    fmt::print("{}\n", nlohmann::json({{"path", assignment.path},
-                                       {"value", assignment.value},
-                                       {"accepted", reply.is_accepted},
-                                       {"step", reply.header.step},
-                                       {"reason", reply.reason}})
+    fmt::print("{}\n", Json({{"path", assignment.path},
+                             {"value", assignment.value},
+                             {"accepted", reply.is_accepted},
+                             {"step", reply.header.step},
+                             {"reason", reply.reason}})
                            .dump(2));
   }
   if (!reply.is_accepted) {
@@ -230,45 +230,45 @@ ExitCode set(const Options& options) {
 
 using Do = ExitCode (*)(const Options&);
 
-CLI::App* add_part(CLI::App& verb, const char* name, const char* doc, Do what, Action& action,
-                   const std::shared_ptr<Options>& options) {
-  CLI::App* part = verb.add_subcommand(name, doc);
-  cli_support::add_session_options(*part, options->session, false);
-  part->add_flag("--json", options->is_json, "for machines, values in SI");
-  part->callback([&action, options, what] { action = [options, what] { return what(*options); }; });
+options::Command add_part(options::Command& verb, const char* name, const char* doc, Do what,
+                          const std::shared_ptr<Options>& options) {
+  options::Command part = verb.command(name, doc);
+  cli_support::add_session_options(part, options->session, false);
+  part.flag("--json", options->is_json, "for machines, values in SI");
+  part.action([options, what] { return what(*options); });
   return part;
 }
 
 }  // namespace
 
-void add_param(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("param", "list, read and change parameters");
-  verb->require_subcommand(1);
-  verb->footer("Example:\n  slewring param set Bag.mass=1500kg --session truck_crane");
+void add_param(options::Command& program) {
+  options::Command verb = program.command("param", "list, read and change parameters");
+  verb.require_command();
+  verb.footer("Example:\n  slewring param set Bag.mass=1500kg --session truck_crane");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
 
-  CLI::App* list_part = add_part(*verb, "list", "all parameters with value, range and meaning", list, action, options);
-  list_part->add_option("patterns", options->words, "only these paths, with * and ?")->type_name("PATH");
-  list_part->add_option("--scene", options->scene, "of a scene file, without a session")->type_name("SCENE");
-  list_part->add_flag("--live", options->only_live, "only those that can be changed while the session runs");
-  list_part->footer(
+  options::Command list_part = add_part(verb, "list", "all parameters with value, range and meaning", list, options);
+  list_part.option("patterns", options->words, "only these paths, with * and ?").value_name("PATH");
+  list_part.option("--scene", options->scene, "of a scene file, without a session").value_name("SCENE");
+  list_part.flag("--live", options->only_live, "only those that can be changed while the session runs");
+  list_part.footer(
       "Of a running session: the present values.\n\nExample:\n  slewring param list 'Bag.*' --scene "
       "scenes/truck_crane.yaml");
 
-  CLI::App* get_part = add_part(*verb, "get", "one parameter: its present value", get, action, options);
-  get_part->add_option("path", options->words, "Element.key")->required()->expected(1)->type_name("PATH");
-  get_part->add_option("--scene", options->scene, "of a scene file, without a session")->type_name("SCENE");
-  get_part->footer(
+  options::Command get_part = add_part(verb, "get", "one parameter: its present value", get, options);
+  get_part.option("path", options->words, "Element.key").required().values(1, 1).value_name("PATH");
+  get_part.option("--scene", options->scene, "of a scene file, without a session").value_name("SCENE");
+  get_part.footer(
       "Of a running session: the present value.\n\nExample:\n  slewring param get Bag.mass --session truck_crane");
 
-  CLI::App* set_part = add_part(*verb, "set", "change a live parameter of a running session", set, action, options);
-  set_part->add_option("assignment", options->words, "PATH=VALUE, or PATH VALUE")
-      ->required()
-      ->expected(1, 2)
-      ->type_name("PATH=VALUE");
-  set_part->add_option("--over", options->over, "spread the change over this time; without it the parameter's own")
-      ->type_name("TIME");
-  set_part->footer(
+  options::Command set_part = add_part(verb, "set", "change a live parameter of a running session", set, options);
+  set_part.option("assignment", options->words, "PATH=VALUE, or PATH VALUE")
+      .required()
+      .values(1, 2)
+      .value_name("PATH=VALUE");
+  set_part.option("--over", options->over, "spread the change over this time; without it the parameter's own")
+      .value_name("TIME");
+  set_part.footer(
       "Prints accepted(step), or refused with the reason and exit code 2.\n\n"
       "Example:\n  slewring param set Bag.mass=1500kg --over '2 s'");
 }

@@ -115,30 +115,28 @@ ExitCode plot(const Options& options) {
 
 }  // namespace
 
-void add_plot(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("plot", "draw variables of a recording: a picture, or a page to look around in");
+void add_plot(options::Command& program) {
+  options::Command verb =
+      program.command("plot", "draw variables of a recording: a picture, or a page to look around in");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
-  verb->add_option("variables", options->variables, "names, or patterns with * and ?; without them the scene's plots")
-      ->type_name("VAR");
-  verb->add_option(
-          "-o,--output", options->output,
-          "file to write: .svg, .html, or - for standard output; without it plot.svg, or for the scene's plots "
-          "<scene>.svg beside the recording")
-      ->type_name("FILE");
-  verb->add_option("--title", options->title, "heading; without it the scene's name")->type_name("TEXT");
-  verb->add_option("--with", options->others, "another recording whose variables are drawn beside; repeat for more")
-      ->type_name("REC")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->footer(
+  verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
+  verb.option("variables", options->variables, "names, or patterns with * and ?; without them the scene's plots")
+      .value_name("VAR");
+  verb.option("-o,--output", options->output,
+              "file to write: .svg, .html, or - for standard output; without it plot.svg, or for the scene's plots "
+              "<scene>.svg beside the recording")
+      .value_name("FILE");
+  verb.option("--title", options->title, "heading; without it the scene's name").value_name("TEXT");
+  verb.option("--with", options->others, "another recording whose variables are drawn beside; repeat for more")
+      .value_name("REC")
+      .repeatable();
+  verb.footer(
       "Examples:\n"
       "  slewring plot runs/truck_crane-20260501-102030 'Cyl_*.force' Bag.position.y -o lift.svg\n"
       "  slewring plot runs/truck_crane-20260501-102030 -o run.html\n"
       "  slewring plot runs/truck_crane-20260501-102030 Bag.position.y --with "
       "runs/truck_crane_flexible-20260501-103000");
-  verb->callback([&action, options] { action = [options] { return plot(*options); }; });
+  verb.action([options] { return plot(*options); });
 }
 
 }  // namespace slew::cli

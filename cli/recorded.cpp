@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "cli/unrecorded.h"
 #include "cli_support/name_pattern.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
 #include "scene/units.h"
@@ -77,15 +77,15 @@ bool was_paused(const std::map<std::uint64_t, bool>& paused_since, std::uint64_t
 
 std::vector<scene::Asset> recorded_manifest(const Reader& reader) {
   std::vector<scene::Asset> assets;
-  const auto list = nlohmann::json::parse(attachment_text(reader, "manifest.json"), nullptr, false);
+  const Json list = Json::parse(attachment_text(reader, "manifest.json")).value_or(Json());
   if (!list.is_array()) {
     throw Failure(ExitCode::bad_input, "the recording's list of files cannot be read; it is damaged");
   }
-  for (const nlohmann::json& entry : list) {
+  for (const Json& entry : list.items()) {
     scene::Asset& asset = assets.emplace_back();
-    asset.name = entry.value("name", "");
-    asset.size = entry.value("size", std::uint64_t{0});
-    const std::string sum = entry.value("sha256", "");
+    asset.name = entry.text_or("name", "");
+    if (const Json* size = entry.find("size")) asset.size = static_cast<std::uint64_t>(size->integer());
+    const std::string sum = entry.text_or("sha256", "");
     for (std::size_t i = 0; i < asset.sha256.size() && 2 * i + 1 < sum.size(); ++i) {
       std::from_chars(sum.data() + 2 * i, sum.data() + 2 * i + 2, asset.sha256[i], 16);
     }

@@ -3,13 +3,13 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/recorded.h"
 #include "cli/recorded_extent.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "recording/recovery.h"
 #include "recording/run_directory.h"
 
@@ -32,9 +32,8 @@ std::string lost_text(const recording::LostBytes& lost) {
   return fmt::format("{} from byte {} on: {}", counted(lost.size, "byte", "bytes"), lost.offset, lost.text);
 }
 
-nlohmann::json to_json(const recording::Recovery& recovery, const std::filesystem::path& target,
-                       const RecordedExtent& extent) {
-  nlohmann::json lost = nlohmann::json::array();
+Json to_json(const recording::Recovery& recovery, const std::filesystem::path& target, const RecordedExtent& extent) {
+  Json lost = Json::array();
   for (const recording::LostBytes& bytes : recovery.lost) {
     lost.push_back({{"byte", bytes.offset}, {"size", bytes.size}, {"problem", bytes.text}});
   }
@@ -44,7 +43,7 @@ nlohmann::json to_json(const recording::Recovery& recovery, const std::filesyste
           {"chunks", recovery.chunks},
           {"messages", recovery.messages},
           {"epoch", extent.epoch},
-          {"first_step", extent.first_step ? nlohmann::json(*extent.first_step) : nlohmann::json()},
+          {"first_step", extent.first_step ? Json(*extent.first_step) : Json()},
           {"last_step", extent.last_step},
           {"complete_to", extent.complete_to},
           {"lost_steps", extent.lost},
@@ -115,19 +114,19 @@ ExitCode run(const Options& options) {
 
 }  // namespace
 
-void add_recover(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("recover", "make a whole recording of what is sound in a damaged one");
+void add_recover(options::Command& program) {
+  options::Command verb = program.command("recover", "make a whole recording of what is sound in a damaged one");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
-  verb->add_option("-o,--output", options->output,
-                   "file to write, a new one; without it <name>.recovered.mcap beside the recording")
-      ->type_name("FILE");
-  verb->add_flag("--json", options->is_json, "for machines");
-  verb->footer(
+  verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
+  verb.option("-o,--output", options->output,
+              "file to write, a new one; without it <name>.recovered.mcap beside the recording")
+      .value_name("FILE");
+  verb.flag("--json", options->is_json, "for machines");
+  verb.footer(
       "The damaged file is only read. Index and summary are built from the messages. Exit code 3 when bytes are "
       "lost.\n\n"
       "Example:\n  slewring recover runs/truck_crane-20260501-102030");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb.action([options] { return run(*options); });
 }
 
 }  // namespace slew::cli

@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/recorded.h"
@@ -12,6 +11,7 @@
 #include "cli/run_session.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "node/driver.h"
 #include "node/identity.h"
 
@@ -30,7 +30,7 @@ struct Options {
   RunOptions run;
 };
 
-nlohmann::json to_json(const ReplayResult& result) {
+Json to_json(const ReplayResult& result) {
   return {{"steps", result.steps},         {"epochs", result.epochs},         {"compared", result.compared},
           {"different", result.different}, {"unrecorded", result.unrecorded}, {"compute_time", result.compute_time},
           {"equal", result.is_equal()},    {"problem", result.problem}};
@@ -143,56 +143,55 @@ ExitCode run(const Options& options) {
 
 }  // namespace
 
-void add_replay(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("replay", "compute a recorded session again from its ticks");
+void add_replay(options::Command& program) {
+  options::Command verb = program.command("replay", "compute a recorded session again from its ticks");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("recording", options->recording, "recording, or the folder of a run")->required()->type_name("REC");
-  verb->add_flag("--verify", options->is_verifying,
-                 "stop at the first step whose state differs, or at a gap, with exit code 1");
-  verb->add_option("--assets", options->assets,
-                   "folder with the scene's files; without it the copies that lie beside the recording")
-      ->type_name("FOLDER");
-  verb->add_flag("--json", options->is_json, "for machines");
-  verb->add_option("--until", options->until, "compute up to this time of the last epoch, such as '2.5 s', comparing")
-      ->type_name("TIME")
-      ->group("Going on");
-  verb->add_flag("--then-live", options->goes_on, "run a session from there, as 'slewring run --from' does")
-      ->group("Going on");
-  verb->add_option("--save", options->saved, "keep the state there in a file for 'slewring run --from'")
-      ->type_name("FILE")
-      ->group("Going on");
-  verb->add_flag("--force", options->may_replace, "replace that file if it exists")->group("Going on");
-  verb->add_option("--input", options->run.scene.input,
-                   "with --then-live: script (the recorded scene's own, which goes on), none, keyboard, or a file")
-      ->type_name("SOURCE")
-      ->capture_default_str()
-      ->group("Going on");
-  verb->add_option("--duration", options->run.scene.duration, "with --then-live: end of the session's time; 0: none")
-      ->type_name("TIME")
-      ->group("Going on");
-  verb->add_option("--pace", options->run.scene.pace, "with --then-live: real or free")
-      ->check(CLI::IsMember({"real", "free"}))
-      ->type_name("PACE")
-      ->group("Going on");
-  verb->add_option(
-          "--set", options->run.scene.overrides,
-          "with --then-live: change a live parameter at that time, or who moves an input from there on, such as "
-          "Input_Lift.controller=sampled")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false)
-      ->group("Going on");
-  verb->add_flag("--record,!--no-record", options->run.scene.is_recording, "with --then-live: record it (default)")
-      ->group("Going on");
-  verb->add_flag("--in-process", options->run.is_in_process, "with --then-live: all nodes in this process")
-      ->group("Going on");
-  cli_support::add_session_options(*verb, options->run.session, false);
-  add_running_options(*verb, options->run);
-  verb->footer(
+  verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
+  verb.flag("--verify", options->is_verifying,
+            "stop at the first step whose state differs, or at a gap, with exit code 1");
+  verb.option("--assets", options->assets,
+              "folder with the scene's files; without it the copies that lie beside the recording")
+      .value_name("FOLDER");
+  verb.flag("--json", options->is_json, "for machines");
+  verb.option("--until", options->until, "compute up to this time of the last epoch, such as '2.5 s', comparing")
+      .value_name("TIME")
+      .group("Going on");
+  verb.flag("--then-live", options->goes_on, "run a session from there, as 'slewring run --from' does")
+      .group("Going on");
+  verb.option("--save", options->saved, "keep the state there in a file for 'slewring run --from'")
+      .value_name("FILE")
+      .group("Going on");
+  verb.flag("--force", options->may_replace, "replace that file if it exists").group("Going on");
+  verb.option("--input", options->run.scene.input,
+              "with --then-live: script (the recorded scene's own, which goes on), none, keyboard, or a file")
+      .value_name("SOURCE")
+      .show_default()
+      .group("Going on");
+  verb.option("--duration", options->run.scene.duration, "with --then-live: end of the session's time; 0: none")
+      .value_name("TIME")
+      .group("Going on");
+  verb.option("--pace", options->run.scene.pace, "with --then-live: real or free")
+      .one_of({"real", "free"})
+      .value_name("PACE")
+      .group("Going on");
+  verb.option("--set", options->run.scene.overrides,
+              "with --then-live: change a live parameter at that time, or who moves an input from there on, such as "
+              "Input_Lift.controller=sampled")
+      .value_name("PATH=VALUE")
+      .one_value_each()
+      .group("Going on");
+  verb.flag("--record,!--no-record", options->run.scene.is_recording, "with --then-live: record it (default)")
+      .group("Going on");
+  verb.flag("--in-process", options->run.is_in_process, "with --then-live: all nodes in this process")
+      .group("Going on");
+  cli_support::add_session_options(verb, options->run.session, false);
+  add_running_options(verb, options->run);
+  verb.footer(
       "Without --verify differences are counted and told, and the exit code is 0.\n\n"
       "Examples:\n"
       "  slewring replay runs/truck_crane-20260501-102030 --verify\n"
       "  slewring replay runs/truck_crane-20260501-102030 --until 8s --then-live --input keyboard");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb.action([options] { return run(*options); });
 }
 
 }  // namespace slew::cli

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/flag_report.h"
@@ -16,6 +15,7 @@
 #include "cli/status_line.h"
 #include "cli/text_output.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "coupling/indicator.h"
 #include "io_node/session_clock.h"
 #include "node/identity.h"
@@ -97,8 +97,8 @@ std::string percent(double share) {
   return fmt::format("{:.2g}", share);
 }
 
-nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
 }
 
 // p99 and the largest; empty before anything was judged
@@ -152,12 +152,12 @@ void add_deadlines(const RunReport& report, std::vector<std::vector<std::string>
   if (!report.books.empty()) rows.push_back({"books", "do not balance: " + report.books});
 }
 
-nlohmann::json times_json(const wire::Quantiles& times) {
+Json times_json(const wire::Quantiles& times) {
   return {{"count", times.count}, {"min", times.least}, {"p50", times.p50},
           {"p99", times.p99},     {"p999", times.p999}, {"max", times.largest}};
 }
 
-nlohmann::json timing_json(const wire::Health& health) {
+Json timing_json(const wire::Health& health) {
   return {{"release_jitter", times_json(health.release_jitter)},
           {"execution", times_json(health.execution)},
           {"cpu_time", times_json(health.cpu_time)},
@@ -175,10 +175,10 @@ nlohmann::json timing_json(const wire::Health& health) {
 }
 
 // Of io: the session's own.
-nlohmann::json session_json(const RunReport& report) {
+Json session_json(const RunReport& report) {
   if (report.nodes.empty() || report.pace != "real") return {};
   const wire::Health& io = report.nodes.front().health;
-  nlohmann::json json = timing_json(io);
+  Json json = timing_json(io);
   json["input_latency"] = times_json(io.input_latency);
   json["transitions"] = io.transitions;
   json["steps_due"] = io.steps_due;
@@ -311,7 +311,7 @@ void print(const RunReport& report) {
 }
 
 std::string to_json_text(const RunReport& report) {
-  nlohmann::json nodes = nlohmann::json::object();
+  Json nodes = Json::object();
   for (const NodeReport& node : report.nodes) {
     nodes[node.role] = {{"step_time_mean", node.times.mean()},
                         {"step_time_max", node.times.max},
@@ -321,11 +321,11 @@ std::string to_json_text(const RunReport& report) {
                         {"refused_messages", node.refused_messages},
                         {"timing", timing_json(node.health)}};
   }
-  nlohmann::json ports = nlohmann::json::object();
+  Json ports = Json::object();
   for (const PortReport& port : report.ports) {
     ports[port.name] = {{"eta_max", number(port.eta)}, {"net_min", number(port.net)}, {"lamp", port.lamp}};
   }
-  nlohmann::json variables = nlohmann::json::object();
+  Json variables = Json::object();
   for (const VariableReport& variable : report.variables) {
     variables[variable.name] = {{"unit", variable.unit},
                                 {"min", number(variable.min)},
@@ -333,28 +333,28 @@ std::string to_json_text(const RunReport& report) {
                                 {"last", number(variable.last)}};
   }
   const bool is_timed = report.wall_time > 0;
-  return nlohmann::json({{"exit_code", static_cast<int>(report.code)},
-                         {"scene", report.scene},
-                         {"session", report.session},
-                         {"pace", report.pace},
-                         {"step", report.step},
-                         {"steps", report.steps},
-                         {"simulated_time", report.simulated_time},
-                         {"wall_time", report.wall_time},
-                         {"paused_time", report.paused_time},
-                         {"real_time_factor", is_timed ? report.simulated_time / report.wall_time : 0},
-                         {"steps_per_second", is_timed ? static_cast<double>(report.steps) / report.wall_time : 0},
-                         {"slip", report.slip},
-                         {"deadline", session_json(report)},
-                         {"nodes", nodes},
-                         {"lost", report.lost},
-                         {"ports", ports},
-                         {"omega_H_max", report.omega_H},
-                         {"variables", variables},
-                         {"notes", report.notes},
-                         {"messages", report.messages},
-                         {"plots", report.plots},
-                         {"recording", report.recording}})
+  return Json({{"exit_code", static_cast<int>(report.code)},
+               {"scene", report.scene},
+               {"session", report.session},
+               {"pace", report.pace},
+               {"step", report.step},
+               {"steps", report.steps},
+               {"simulated_time", report.simulated_time},
+               {"wall_time", report.wall_time},
+               {"paused_time", report.paused_time},
+               {"real_time_factor", is_timed ? report.simulated_time / report.wall_time : 0},
+               {"steps_per_second", is_timed ? static_cast<double>(report.steps) / report.wall_time : 0},
+               {"slip", report.slip},
+               {"deadline", session_json(report)},
+               {"nodes", nodes},
+               {"lost", report.lost},
+               {"ports", ports},
+               {"omega_H_max", report.omega_H},
+               {"variables", variables},
+               {"notes", report.notes},
+               {"messages", report.messages},
+               {"plots", report.plots},
+               {"recording", report.recording}})
       .dump(2);
 }
 

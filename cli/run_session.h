@@ -1,10 +1,9 @@
 // A session from its scene, or from saved states, to its summary: `slewring run`, and what goes on behind a replay.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "cli/run_outcome.h"
 #include "io_node/session_scene.h"
+#include "options/options.h"
 
 namespace slew::cli {
 
@@ -12,6 +11,6 @@ namespace slew::cli {
 [[nodiscard]] ExitCode run_session(RunOptions options, const io::SessionScene& session);
 
 // --out, --keep-free, --join-timeout, --rt, --cpu, --quiet.
-void add_running_options(CLI::App& verb, RunOptions& options);
+void add_running_options(options::Command& verb, RunOptions& options);
 
 }  // namespace slew::cli

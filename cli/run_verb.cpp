@@ -10,7 +10,6 @@
 #include "cli/run_session.h"
 #include "cli/unrecorded.h"
 #include "cli/verbs.h"
-#include "cli_support/number_range.h"
 #include "core/failure.h"
 
 namespace slew::cli {
@@ -18,9 +17,9 @@ namespace slew::cli {
 namespace {
 
 // All physics as one system: one process, and no clock can be promised.
-void check_monolithic(const CLI::App& verb) {
+void check_monolithic(const options::Command& verb) {
   for (const char* option : {"--remote", "--domain", "--interface", "--peer", "--join-timeout", "--rt", "--cpu"}) {
-    if (verb.count(option) == 0) continue;
+    if (!verb.has(option)) continue;
     const std::string why =
         std::string_view(option) == "--rt" ? "its steps take as long as they take" : "it is one system in one process";
     throw Failure(ExitCode::bad_input, fmt::format("a monolithic run takes no {}: {}; nothing was started; "
@@ -41,7 +40,7 @@ void check_controllers(const scene::Scene& scene) {
   }
 }
 
-ExitCode run(RunOptions options, const CLI::App& verb) {
+ExitCode run(RunOptions options, const options::Command& verb) {
   if (options.is_monolithic) options.scene.overrides.emplace_back("session.solution=monolithic");
   if (!options.rtol.empty()) options.scene.overrides.push_back("session.rtol=" + options.rtol);
   if (options.is_monolithic && !options.scene.from.empty()) {
@@ -95,51 +94,51 @@ ExitCode run_session(RunOptions options, const io::SessionScene& session) {
   return report.code;
 }
 
-void add_running_options(CLI::App& verb, RunOptions& options) {
-  verb.add_option("--out", options.runs, "folder in which the recording gets a folder of its own")
-      ->type_name("DIR")
-      ->capture_default_str();
-  verb.add_option("--keep-free", options.keep_free_mb,
-                  "room on its file system that the recording leaves to others; 0: none")
-      ->check(cli_support::number_range(0.0, 1e9))
-      ->type_name("MB")
-      ->capture_default_str();
-  verb.add_option("--join-timeout", options.join_timeout,
-                  "seconds to wait for all nodes of the session, and for lockstep controllers; without it 10")
-      ->check(cli_support::number_range(cli_support::kShortestJoin, cli_support::kLongestJoin))
-      ->type_name("S")
-      ->group("Session");
-  verb.add_flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");
-  verb.add_option("--cpu", options.cpus,
-                  "processor of each node, such as mechanics=1,hydraulics=0; without it session.cpus, else any")
-      ->type_name("ROLE=N");
-  verb.add_flag("--quiet", options.is_quiet, "no status line");
+void add_running_options(options::Command& verb, RunOptions& options) {
+  verb.option("--out", options.runs, "folder in which the recording gets a folder of its own")
+      .value_name("DIR")
+      .show_default();
+  verb.option("--keep-free", options.keep_free_mb,
+              "room on its file system that the recording leaves to others; 0: none")
+      .between(0.0, 1e9)
+      .value_name("MB")
+      .show_default();
+  verb.option("--join-timeout", options.join_timeout,
+              "seconds to wait for all nodes of the session, and for lockstep controllers; without it 10")
+      .between(cli_support::kShortestJoin, cli_support::kLongestJoin)
+      .value_name("S")
+      .group("Session");
+  verb.flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");
+  verb.option("--cpu", options.cpus,
+              "processor of each node, such as mechanics=1,hydraulics=0; without it session.cpus, else any")
+      .value_name("ROLE=N");
+  verb.flag("--quiet", options.is_quiet, "no status line");
 }
 
-void add_run(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("run", "run a scene: start its nodes, drive, record, plot");
+void add_run(options::Command& program) {
+  options::Command verb = program.command("run", "run a scene: start its nodes, drive, record, plot");
   const auto options = std::make_shared<RunOptions>();  // lives as long as the command line's callbacks
-  cli_support::add_scene_options(*verb, options->scene);
-  cli_support::add_session_options(*verb, options->session, false);
-  verb->get_option("--session")->description("name of the session; without it the scene's");
-  verb->add_option("--remote", options->remote, "roles that are started elsewhere, separated by commas")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"io", "mechanics", "hydraulics", "flex", "recorder"}))
-      ->type_name("ROLE")
-      ->group("Session");
-  verb->add_flag("--in-process", options->is_in_process, "all nodes in this process, on one thread")->group("Session");
-  CLI::Option* monolithic =
-      verb->add_flag("--monolithic", options->is_monolithic,
-                     "all physics as one system in this process (CVODE): the reference for accuracy")
-          ->group("Accuracy");
-  verb->add_option("--rtol", options->rtol, "its relative tolerance, 1e-10 to 1e-3; without it the scene's")
-      ->needs(monolithic)
-      ->type_name("NUMBER")
-      ->group("Accuracy");
-  add_running_options(*verb, *options);
-  verb->add_flag("--json", options->is_json, "print the summary as JSON and nothing else");
-  verb->footer(
+  cli_support::add_scene_options(verb, options->scene);
+  cli_support::add_session_options(verb, options->session, false);
+  verb.find("--session").description("name of the session; without it the scene's");
+  verb.option("--remote", options->remote, "roles that are started elsewhere, separated by commas")
+      .comma_separated()
+      .one_value_each()
+      .one_of({"io", "mechanics", "hydraulics", "flex", "recorder"})
+      .value_name("ROLE")
+      .group("Session");
+  verb.flag("--in-process", options->is_in_process, "all nodes in this process, on one thread").group("Session");
+  options::Option monolithic =
+      verb.flag("--monolithic", options->is_monolithic,
+                "all physics as one system in this process (CVODE): the reference for accuracy")
+          .group("Accuracy");
+  verb.option("--rtol", options->rtol, "its relative tolerance, 1e-10 to 1e-3; without it the scene's")
+      .needs(monolithic)
+      .value_name("NUMBER")
+      .group("Accuracy");
+  add_running_options(verb, *options);
+  verb.flag("--json", options->is_json, "print the summary as JSON and nothing else");
+  verb.footer(
       "The first Ctrl-C ends the session in order, the second one at once.\n\n"
       "Examples:\n"
       "  slewring run scenes/truck_crane.yaml\n"
@@ -148,7 +147,7 @@ void add_run(CLI::App& program, Action& action) {
       "  slewring run scenes/truck_crane.yaml --remote hydraulics --interface eth0 --peer 192.168.1.20 "
       "--keys plant\n"
       "  slewring run --from crane.saved --set Bag.mass=1000kg --duration 60s");
-  verb->callback([&action, options, verb] { action = [options, verb] { return run(*options, *verb); }; });
+  verb.action([options, verb] { return run(*options, verb); });
 }
 
 }  // namespace slew::cli

@@ -1,13 +1,11 @@
 // `slewring sessions`: what runs on this domain.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/display.h"
 #include "cli/session_view.h"
 #include "cli/survey.h"
 #include "cli/verbs.h"
-#include "cli_support/number_range.h"
+#include "core/json.h"
 #include "node/identity.h"
 
 namespace slew::cli {
@@ -39,8 +37,8 @@ std::string nodes_text(const FoundSession& session) {
   return text;
 }
 
-nlohmann::json to_json(const FoundSession& session) {
-  nlohmann::json nodes = nlohmann::json::array();
+Json to_json(const FoundSession& session) {
+  Json nodes = Json::array();
   for (std::size_t role = 0; role < wire::kRoles; ++role) {
     if ((session.description.required_roles & (1u << role)) == 0) continue;
     const wire::NodeStatus& status = session.nodes[role];
@@ -66,7 +64,7 @@ ExitCode show(const Options& options) {
   const SimDuration listening{static_cast<std::int64_t>(options.seconds * 1e9)};
   const std::vector<FoundSession> sessions = find_sessions(options.network, listening, listening);
   if (options.is_json) {
-    nlohmann::json all = nlohmann::json::array();
+    Json all = Json::array();
     for (const FoundSession& session : sessions) all.push_back(to_json(session));
     fmt::print("{}\n", all.dump(2));
     return ExitCode::ok;
@@ -90,17 +88,14 @@ ExitCode show(const Options& options) {
 
 }  // namespace
 
-void add_sessions(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("sessions", "list the sessions that run on a domain");
+void add_sessions(options::Command& program) {
+  options::Command verb = program.command("sessions", "list the sessions that run on a domain");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  cli_support::add_network_options(*verb, options->network);
-  verb->add_option("--time", options->seconds, "seconds to listen")
-      ->check(cli_support::number_range(0.1, 60.0))
-      ->type_name("S")
-      ->capture_default_str();
-  verb->add_flag("--json", options->is_json, "for machines");
-  verb->footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20 --keys plant");
-  verb->callback([&action, options] { action = [options] { return show(*options); }; });
+  cli_support::add_network_options(verb, options->network);
+  verb.option("--time", options->seconds, "seconds to listen").between(0.1, 60.0).value_name("S").show_default();
+  verb.flag("--json", options->is_json, "for machines");
+  verb.footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20 --keys plant");
+  verb.action([options] { return show(*options); });
 }
 
 }  // namespace slew::cli

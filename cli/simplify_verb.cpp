@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "cli/interrupts.h"
 #include "cli/progress_line.h"
@@ -11,6 +10,7 @@
 #include "cli/tradeoff/overlay.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -53,7 +53,7 @@ ExitCode run(const Options& options) {
     write_overlay(options.wish.scene.file, settings, remark(result), target);
   }
   if (options.is_json) {
-    nlohmann::json json = report_json(result);
+    Json json = report_json(result);
     if (result.helps()) json["overlay"] = target;
     fmt::print("{}\n", json.dump(2));
   } else {
@@ -65,41 +65,40 @@ ExitCode run(const Options& options) {
 
 }  // namespace
 
-void add_simplify(CLI::App& program, Action& action) {
-  CLI::App* verb =
-      program.add_subcommand("simplify", "what of a scene may be left out while chosen variables stay as they are");
+void add_simplify(options::Command& program) {
+  options::Command verb =
+      program.command("simplify", "what of a scene may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   SimplifyWish& wish = options->wish;
-  verb->add_option("scene", wish.scene.file, "scene file")->required()->type_name("SCENE");
-  verb->add_option("--error", wish.errors,
-                   "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
-      ->required()
-      ->type_name("'VARIABLE TOLERANCE'")
-      ->allow_extra_args(false);
-  verb->add_option("--until", wish.scene.duration, "how long each run is; without it the scene's duration")
-      ->type_name("TIME");
-  verb->add_option("--set", wish.scene.overrides, "change a value of the scene first; repeat for more")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  verb->add_option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
-      ->type_name("SOURCE")
-      ->capture_default_str();
-  verb->add_option("-o,--overlay", options->overlay,
-                   "file to write, beside the scene; without it SCENE_simplified.yaml")
-      ->type_name("FILE");
-  verb->add_option("--repeats", wish.repeats, "timed runs of everything tried")
-      ->check(CLI::Range(1, kMostRepeats))
-      ->type_name("N")
-      ->capture_default_str();
-  verb->add_flag("--json", options->is_json, "print the result as JSON and nothing else");
-  verb->add_flag("--quiet", options->is_quiet, "no progress");
-  verb->footer(
+  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
+  verb.option("--error", wish.errors,
+              "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
+      .required()
+      .value_name("'VARIABLE TOLERANCE'")
+      .one_value_each();
+  verb.option("--until", wish.scene.duration, "how long each run is; without it the scene's duration")
+      .value_name("TIME");
+  verb.option("--set", wish.scene.overrides, "change a value of the scene first; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each();
+  verb.option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+      .value_name("SOURCE")
+      .show_default();
+  verb.option("-o,--overlay", options->overlay, "file to write, beside the scene; without it SCENE_simplified.yaml")
+      .value_name("FILE");
+  verb.option("--repeats", wish.repeats, "timed runs of everything tried")
+      .between(1, kMostRepeats)
+      .value_name("N")
+      .show_default();
+  verb.flag("--json", options->is_json, "print the result as JSON and nothing else");
+  verb.flag("--quiet", options->is_quiet, "no progress");
+  verb.footer(
       "Every part is tried alone, then those that hold and save time together; all runs are in this process, with the\n"
       "same input. The overlay includes the scene. What is judged and what not: "
       "docs/howto/describe-and-simplify.md.\n\n"
       "Example:\n"
       "  slewring simplify scenes/truck_crane.yaml --error 'Bag.position 1mm' --error 'Cyl_Lift.force 1%'");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb.action([options] { return run(*options); });
 }
 
 }  // namespace slew::cli

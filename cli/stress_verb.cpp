@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "cli/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/stress/stress_report.h"
 #include "cli/text_output.h"
 #include "cli/verbs.h"
-#include "cli_support/number_range.h"
 #include "core/failure.h"
 
 namespace slew::cli {
@@ -19,6 +19,7 @@ namespace {
 struct Options {
   StressWish wish;
   StressBounds bounds;
+  std::optional<double> max_miss_percent, p99_us;
   std::vector<std::string> schedulings, loads;
   std::string page;
   bool is_matrix = false, is_real_time = false, is_json = false, is_quiet = false;
@@ -49,6 +50,8 @@ void complete(Options& options) {
     options.loads = all ? std::vector<std::string>{"none", "cpu", "mixed"} : std::vector<std::string>{"none"};
   }
   if (wish.works_us.empty()) wish.works_us = all ? std::vector<double>{0, 200} : std::vector<double>{0};
+  if (options.max_miss_percent) options.bounds.max_miss = *options.max_miss_percent / 100;
+  if (options.p99_us) options.bounds.p99 = *options.p99_us * 1e-6;
   leave_out_repeats(options.schedulings);
   leave_out_repeats(options.loads);
   leave_out_repeats(wish.works_us);
@@ -93,105 +96,101 @@ ExitCode run(Options options) {
   return exit_code_of(stress);
 }
 
-void add_what(CLI::App& verb, Options& options) {
+void add_what(options::Command& verb, Options& options) {
   StressWish& wish = options.wish;
-  verb.add_option("scene", wish.scene.file, "scene file")->required()->type_name("SCENE");
-  verb.add_option("--set", wish.scene.overrides, "change a value of the scene; repeat for more")
-      ->allow_extra_args(false)
-      ->type_name("PATH=VALUE");
-  verb.add_option("--step", wish.scene.step, "communication step, such as '1 ms'; without it the scene's")
-      ->type_name("TIME");
-  verb.add_option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
-      ->type_name("SOURCE")
-      ->capture_default_str();
-  verb.add_flag("!--no-record", wish.scene.is_recording, "without a recorder");
-  verb.add_option("--seconds", wish.seconds, "session time of every cell; a quarter of it more for the yardstick")
-      ->check(cli_support::number_range(0.5, 86400.0))
-      ->type_name("S")
-      ->capture_default_str();
+  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
+  verb.option("--set", wish.scene.overrides, "change a value of the scene; repeat for more")
+      .one_value_each()
+      .value_name("PATH=VALUE");
+  verb.option("--step", wish.scene.step, "communication step, such as '1 ms'; without it the scene's")
+      .value_name("TIME");
+  verb.option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+      .value_name("SOURCE")
+      .show_default();
+  verb.flag("!--no-record", wish.scene.is_recording, "without a recorder");
+  verb.option("--seconds", wish.seconds, "session time of every cell; a quarter of it more for the yardstick")
+      .between(0.5, 86400.0)
+      .value_name("S")
+      .show_default();
 }
 
-void add_cells(CLI::App& verb, Options& options) {
-  CLI::Option* matrix =
-      verb.add_flag("--matrix", options.is_matrix,
-                    "all cells: normal and fifo, no, cpu and mixed load, 0 and 200 us added; without it one of them")
-          ->group("Cells");
-  CLI::Option* real_time =
-      verb.add_flag("--rt", options.is_real_time, "the one cell with SCHED_FIFO")->excludes(matrix)->group("Cells");
-  verb.add_option("--scheduling", options.schedulings, "normal, fifo")
-      ->excludes(real_time)
-      ->check(CLI::IsMember({"normal", "fifo"}))
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("LIST")
-      ->group("Cells");
-  verb.add_option("--load", options.loads,
-                  "none; cpu: a busy process for every processor; mixed: and memory, disk and network")
-      ->check(CLI::IsMember({"none", "cpu", "mixed"}))
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("LIST")
-      ->group("Cells");
-  verb.add_option("--add-work", options.wish.works_us, "CPU time added to every step of each physics node")
-      ->check(cli_support::number_range(0.0, 1e6))
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("US")
-      ->group("Cells");
-  verb.add_option("--cpu", options.wish.cpus, "where the nodes run, such as mechanics=1,hydraulics=0; else the scene's")
-      ->type_name("ROLE=N")
-      ->group("Cells");
+void add_cells(options::Command& verb, Options& options) {
+  options::Option matrix =
+      verb.flag("--matrix", options.is_matrix,
+                "all cells: normal and fifo, no, cpu and mixed load, 0 and 200 us added; without it one of them")
+          .group("Cells");
+  options::Option real_time =
+      verb.flag("--rt", options.is_real_time, "the one cell with SCHED_FIFO").excludes(matrix).group("Cells");
+  verb.option("--scheduling", options.schedulings, "normal, fifo")
+      .excludes(real_time)
+      .one_of({"normal", "fifo"})
+      .comma_separated()
+      .one_value_each()
+      .value_name("LIST")
+      .group("Cells");
+  verb.option("--load", options.loads,
+              "none; cpu: a busy process for every processor; mixed: and memory, disk and network")
+      .one_of({"none", "cpu", "mixed"})
+      .comma_separated()
+      .one_value_each()
+      .value_name("LIST")
+      .group("Cells");
+  verb.option("--add-work", options.wish.works_us, "CPU time added to every step of each physics node")
+      .between(0.0, 1e6)
+      .comma_separated()
+      .one_value_each()
+      .value_name("US")
+      .group("Cells");
+  verb.option("--cpu", options.wish.cpus, "where the nodes run, such as mechanics=1,hydraulics=0; else the scene's")
+      .value_name("ROLE=N")
+      .group("Cells");
 }
 
-void add_verdict(CLI::App& verb, Options& options) {
-  verb.add_option_function<double>(
-          "--max-miss", [&options](double percent) { options.bounds.max_miss = percent / 100; },
-          "most steps that may be longer than the communication step")
-      ->check(cli_support::number_range(0.0, 100.0))
-      ->type_name("PERCENT")
-      ->group("Verdict");
-  verb.add_option_function<double>(
-          "--p99", [&options](double us) { options.bounds.p99 = us * 1e-6; }, "longest response of 99 % of the steps")
-      ->check(cli_support::number_range(0.0, 1e9))
-      ->type_name("US")
-      ->group("Verdict");
+void add_verdict(options::Command& verb, Options& options) {
+  verb.option("--max-miss", options.max_miss_percent, "most steps that may be longer than the communication step")
+      .between(0.0, 100.0)
+      .value_name("PERCENT")
+      .group("Verdict");
+  verb.option("--p99", options.p99_us, "longest response of 99 % of the steps")
+      .between(0.0, 1e9)
+      .value_name("US")
+      .group("Verdict");
 }
 
 }  // namespace
 
-void add_stress(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("stress", "how well this machine keeps a scene's deadlines, and a bare loop");
+void add_stress(options::Command& program) {
+  options::Command verb = program.command("stress", "how well this machine keeps a scene's deadlines, and a bare loop");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  add_what(*verb, *options);
-  add_cells(*verb, *options);
-  add_verdict(*verb, *options);
-  cli_support::add_network_options(*verb, options->wish.session);
-  verb->add_option("--folder", options->wish.folder, "for recordings and files that come and go")
-      ->type_name("DIR")
-      ->capture_default_str();
-  verb->add_option("-o,--output", options->page, "page with the largest responses over time")->type_name("FILE");
-  verb->add_flag("--json", options->is_json, "print the result as JSON and nothing else");
-  verb->add_flag("--quiet", options->is_quiet, "no progress");
-  verb->footer(
+  add_what(verb, *options);
+  add_cells(verb, *options);
+  add_verdict(verb, *options);
+  cli_support::add_network_options(verb, options->wish.session);
+  verb.option("--folder", options->wish.folder, "for recordings and files that come and go")
+      .value_name("DIR")
+      .show_default();
+  verb.option("-o,--output", options->page, "page with the largest responses over time").value_name("FILE");
+  verb.flag("--json", options->is_json, "print the result as JSON and nothing else");
+  verb.flag("--quiet", options->is_quiet, "no progress");
+  verb.footer(
       "Exit code 3 when a cell is over --max-miss or --p99, 7 when one could not be run. What is measured and how: "
       "docs/realtime.md.\n\n"
       "Examples:\n"
       "  slewring stress scenes/truck_crane.yaml --rt --seconds 60 --max-miss 0.5 --p99 500\n"
       "  slewring stress scenes/truck_crane.yaml --matrix --seconds 30 -o stress.html");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb.action([options] { return run(*options); });
 }
 
 // a process of other load: no verb for people
-void add_stress_load(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("stress-load", "one process of other load")->group("");
+void add_stress_load(options::Command& program) {
+  options::Command verb = program.command("stress-load", "one process of other load");
+  verb.hide();
   const auto options = std::make_shared<LoadOptions>();
-  verb->add_option("kind", options->kind, "cpu, memory, disk or network")->required();
-  verb->add_option("folder", options->folder, "where files come and go")->required();
-  verb->callback([&action, options] {
-    action = [options] {
-      work_as(options->kind, options->folder);
-      return ExitCode::ok;
-    };
+  verb.option("kind", options->kind, "cpu, memory, disk or network").required();
+  verb.option("folder", options->folder, "where files come and go").required();
+  verb.action([options] {
+    work_as(options->kind, options->folder);
+    return ExitCode::ok;
   });
 }
 

@@ -10,6 +10,7 @@
 #include "cli/tradeoff/tradeoff_report.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -96,17 +97,17 @@ ExitCode run(Options options) {
 
 ExitCode run_row(const RowOptions& options) {
   std::ifstream in(options.job, std::ios::binary);
-  const nlohmann::json job = nlohmann::json::parse(in, nullptr, false);
-  if (!in || job.is_discarded()) throw Failure(ExitCode::bad_input, options.job + " is no row of a tradeoff");
-  write_result(options.result, to_json(compute(job_from(job))));
+  const std::optional<Json> job = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+  if (!job) throw Failure(ExitCode::bad_input, options.job + " is no row of a tradeoff");
+  write_result(options.result, to_json(compute(job_from(*job))));
   return ExitCode::ok;
 }
 
-void add_what(CLI::App& verb, Options& options) {
+void add_what(options::Command& verb, Options& options) {
   TradeoffWish& wish = options.wish;
-  verb.add_option("scene", wish.scene.file, "scene file")->required()->type_name("SCENE");
+  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
-    verb.add_option(name, to, text)->allow_extra_args(false)->type_name(type);
+    verb.option(name, to, text).one_value_each().value_name(type);
   };
   repeated("--set", wish.scene.overrides, "change a value of the scene for all rows; repeat for more", "PATH=VALUE");
   repeated("--axis", wish.axes,
@@ -117,74 +118,71 @@ void add_what(CLI::App& verb, Options& options) {
            "whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
            "actuators and the place of the last body",
            "PATTERN");
-  verb.add_flag("--full", options.is_full, "the whole product of the scene's own axes: may take hours");
-  verb.add_option("--until", wish.scene.duration,
-                  "how long to simulate, such as '5 s'; without it the scene's duration")
-      ->type_name("TIME");
-  verb.add_option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
-      ->type_name("SOURCE")
-      ->capture_default_str();
+  verb.flag("--full", options.is_full, "the whole product of the scene's own axes: may take hours");
+  verb.option("--until", wish.scene.duration, "how long to simulate, such as '5 s'; without it the scene's duration")
+      .value_name("TIME");
+  verb.option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+      .value_name("SOURCE")
+      .show_default();
 }
 
-void add_answers(CLI::App& verb, Options& options) {
-  verb.add_option("--budget", options.budget, "answer: least error at no more than this cost, such as '20 us/ms'")
-      ->type_name("COST")
-      ->group("Answer");
-  verb.add_option("--error", options.errors,
-                  "answer: least cost with no more than this error, such as 'Cyl_Lift.force 1%' (of its range) or "
-                  "'Bag.position 1mm'; repeat for more")
-      ->allow_extra_args(false)
-      ->type_name("BOUND")
-      ->group("Answer");
-  verb.add_option("--overlay", options.overlay,
-                  "where the answer is written as a scene; without it SCENE_tradeoff.yaml beside the scene")
-      ->type_name("FILE")
-      ->group("Answer");
+void add_answers(options::Command& verb, Options& options) {
+  verb.option("--budget", options.budget, "answer: least error at no more than this cost, such as '20 us/ms'")
+      .value_name("COST")
+      .group("Answer");
+  verb.option("--error", options.errors,
+              "answer: least cost with no more than this error, such as 'Cyl_Lift.force 1%' (of its range) or "
+              "'Bag.position 1mm'; repeat for more")
+      .one_value_each()
+      .value_name("BOUND")
+      .group("Answer");
+  verb.option("--overlay", options.overlay,
+              "where the answer is written as a scene; without it SCENE_tradeoff.yaml beside the scene")
+      .value_name("FILE")
+      .group("Answer");
 }
 
-void add_how(CLI::App& verb, Options& options) {
+void add_how(options::Command& verb, Options& options) {
   TradeoffWish& wish = options.wish;
-  verb.add_option("--folder", wish.folder, "where results are kept; without it runs/tradeoff-SCENE")->type_name("DIR");
-  verb.add_flag("--anew", wish.is_anew, "compute also what the folder has already");
-  verb.add_option("--workers", wish.workers, "processes at once")
-      ->check(CLI::Range(1, kMostWorkers))
-      ->type_name("N")
-      ->capture_default_str();
-  verb.add_option("--repeats", wish.repeats, "timed runs of every row")
-      ->check(CLI::Range(1, kMostRepeats))
-      ->type_name("N")
-      ->capture_default_str();
-  verb.add_option("-o,--output", options.page, "the page; without it tradeoff.html in the folder")->type_name("FILE");
-  verb.add_option("--csv", options.csv, "write the table as comma-separated values too")->type_name("FILE");
-  verb.add_flag("--json", options.is_json, "print the table as JSON and nothing else");
-  verb.add_flag("--quiet", options.is_quiet, "no progress");
+  verb.option("--folder", wish.folder, "where results are kept; without it runs/tradeoff-SCENE").value_name("DIR");
+  verb.flag("--anew", wish.is_anew, "compute also what the folder has already");
+  verb.option("--workers", wish.workers, "processes at once").between(1, kMostWorkers).value_name("N").show_default();
+  verb.option("--repeats", wish.repeats, "timed runs of every row")
+      .between(1, kMostRepeats)
+      .value_name("N")
+      .show_default();
+  verb.option("-o,--output", options.page, "the page; without it tradeoff.html in the folder").value_name("FILE");
+  verb.option("--csv", options.csv, "write the table as comma-separated values too").value_name("FILE");
+  verb.flag("--json", options.is_json, "print the table as JSON and nothing else");
+  verb.flag("--quiet", options.is_quiet, "no progress");
 }
 
 }  // namespace
 
-void add_tradeoff(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("tradeoff", "error against cost of a scene's settings, and which to take");
+void add_tradeoff(options::Command& program) {
+  options::Command verb = program.command("tradeoff", "error against cost of a scene's settings, and which to take");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  add_what(*verb, *options);
-  add_answers(*verb, *options);
-  add_how(*verb, *options);
-  verb->footer(
+  add_what(verb, *options);
+  add_answers(verb, *options);
+  add_how(verb, *options);
+  verb.footer(
       "Each row is a process of its own, two at once. Ctrl-C keeps what is done; the same command goes on from there.\n"
       "What the columns mean: docs/howto/tradeoff.md.\n\n"
       "Examples:\n"
       "  slewring tradeoff scenes/truck_crane.yaml --budget '20 us/ms'\n"
       "  slewring tradeoff scenes/truck_crane.yaml --until 5s --axis session.step=1ms,2ms,5ms "
       "--axis session.coupling=hold,two --error 'Cyl_Lift.force 1%'");
-  verb->callback([&action, options] { action = [options] { return run(*options); }; });
+  verb.action([options] { return run(*options); });
 }
 
 // the process of one row: no verb for people
-void add_tradeoff_row(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("tradeoff-row", "one row of a tradeoff")->group("");
+void add_tradeoff_row(options::Command& program) {
+  options::Command verb = program.command("tradeoff-row", "one row of a tradeoff");
+  verb.hide();
   const auto options = std::make_shared<RowOptions>();
-  verb->add_option("job", options->job, "file of the row")->required();
-  verb->add_option("--result", options->result, "file to write")->required();
-  verb->callback([&action, options] { action = [options] { return run_row(*options); }; });
+  verb.option("job", options->job, "file of the row").required();
+  verb.option("--result", options->result, "file to write").required();
+  verb.action([options] { return run_row(*options); });
 }
 
 }  // namespace slew::cli

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/monolithic_session.h"
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "io_node/input_gate.h"
 #include "scene/names.h"
 
@@ -68,7 +68,7 @@ ExitCode list(const Options& options) {
                         [&](const std::string& pattern) { return scene::fits_pattern(variable.name, pattern); });
   });
   if (options.is_json) {
-    nlohmann::json json = nlohmann::json::array();
+    Json json = Json::array();
     for (const Named& variable : all) json.push_back({{"name", variable.name}, {"unit", variable.unit}});
     fmt::print("{}\n", json.dump(2));
     return ExitCode::ok;
@@ -84,17 +84,17 @@ ExitCode list(const Options& options) {
 
 }  // namespace
 
-void add_variables(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("variables", "list the variables of a scene or of a running session");
+void add_variables(options::Command& program) {
+  options::Command verb = program.command("variables", "list the variables of a scene or of a running session");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("scene", options->scene, "scene file; without it a running session")->type_name("SCENE");
-  verb->add_option("--only", options->patterns, "only these names, with * and ?; repeat for more")
-      ->type_name("PATTERN")
-      ->allow_extra_args(false);
-  cli_support::add_session_options(*verb, options->session, false);
-  verb->add_flag("--json", options->is_json, "for machines");
-  verb->footer("Example:\n  slewring variables scenes/truck_crane.yaml --only 'Cyl_*'");
-  verb->callback([&action, options] { action = [options] { return list(*options); }; });
+  verb.option("scene", options->scene, "scene file; without it a running session").value_name("SCENE");
+  verb.option("--only", options->patterns, "only these names, with * and ?; repeat for more")
+      .value_name("PATTERN")
+      .one_value_each();
+  cli_support::add_session_options(verb, options->session, false);
+  verb.flag("--json", options->is_json, "for machines");
+  verb.footer("Example:\n  slewring variables scenes/truck_crane.yaml --only 'Cyl_*'");
+  verb.action([options] { return list(*options); });
 }
 
 }  // namespace slew::cli

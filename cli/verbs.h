@@ -1,43 +1,38 @@
-// The verbs of the program `slewring`: each adds its command line and, when it is the chosen one, its action.
+// The verbs of the program `slewring`: each adds its command line and its action.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
-
-#include "core/status.h"
+#include "options/options.h"
 
 namespace slew::cli {
 
-using Action = std::function<ExitCode()>;
-
-void add_run(CLI::App& program, Action& action);
-void add_node(CLI::App& program, Action& action);
-void add_sessions(CLI::App& program, Action& action);
-void add_watch(CLI::App& program, Action& action);
-void add_param(CLI::App& program, Action& action);
-void add_control(CLI::App& program, Action& action);
-void add_check(CLI::App& program, Action& action);
-void add_describe(CLI::App& program, Action& action);
-void add_import(CLI::App& program, Action& action);
-void add_flex(CLI::App& program, Action& action);
-void add_variables(CLI::App& program, Action& action);
-void add_schema(CLI::App& program, Action& action);
-void add_info(CLI::App& program, Action& action);
-void add_plot(CLI::App& program, Action& action);
-void add_animate(CLI::App& program, Action& action);
-void add_export(CLI::App& program, Action& action);
-void add_recover(CLI::App& program, Action& action);
-void add_replay(CLI::App& program, Action& action);
-void add_compare(CLI::App& program, Action& action);
-void add_simplify(CLI::App& program, Action& action);
-void add_tradeoff(CLI::App& program, Action& action);
-void add_tradeoff_row(CLI::App& program, Action& action);
-void add_extremes(CLI::App& program, Action& action);
-void add_extremes_case(CLI::App& program, Action& action);
-void add_stress(CLI::App& program, Action& action);
-void add_stress_load(CLI::App& program, Action& action);
-void add_keys(CLI::App& program, Action& action);
-void add_doctor(CLI::App& program, Action& action);
+void add_run(options::Command& program);
+void add_node(options::Command& program);
+void add_sessions(options::Command& program);
+void add_watch(options::Command& program);
+void add_param(options::Command& program);
+void add_control(options::Command& program);
+void add_check(options::Command& program);
+void add_describe(options::Command& program);
+void add_import(options::Command& program);
+void add_flex(options::Command& program);
+void add_variables(options::Command& program);
+void add_schema(options::Command& program);
+void add_info(options::Command& program);
+void add_plot(options::Command& program);
+void add_animate(options::Command& program);
+void add_export(options::Command& program);
+void add_recover(options::Command& program);
+void add_replay(options::Command& program);
+void add_compare(options::Command& program);
+void add_simplify(options::Command& program);
+void add_tradeoff(options::Command& program);
+void add_tradeoff_row(options::Command& program);
+void add_extremes(options::Command& program);
+void add_extremes_case(options::Command& program);
+void add_stress(options::Command& program);
+void add_stress_load(options::Command& program);
+void add_keys(options::Command& program);
+void add_doctor(options::Command& program);
 
 // `slewring node ROLE ...` in the place of this program; gives a code only when that fails.
 [[nodiscard]] int become_node(int argc, char** argv);

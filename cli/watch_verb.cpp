@@ -2,14 +2,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "cli_support/name_pattern.h"
-#include "cli_support/number_range.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "node/driver.h"
 
 namespace slew::cli {
@@ -44,7 +43,7 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
   if (step < 0) step = view.step();
   const double time = static_cast<double>(std::max<StepIndex>(0, step) * view.session().step_ns) * 1e-9;
   if (is_json) {
-    nlohmann::json line = {{"step", step}, {"time", time}};
+    Json line = {{"step", step}, {"time", time}};
     for (const std::string& name : names) {
       const VariableView& variable = *view.find(name);
       if (view.is_left_out(name)) {
@@ -84,24 +83,24 @@ ExitCode watch(const Options& options) {
 
 }  // namespace
 
-void add_watch(CLI::App& program, Action& action) {
-  CLI::App* verb = program.add_subcommand("watch", "print variables of a running session as they change");
+void add_watch(options::Command& program) {
+  options::Command verb = program.command("watch", "print variables of a running session as they change");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  verb->add_option("variables", options->variables, "names, or patterns with * and ?")->required()->type_name("VAR");
-  cli_support::add_session_options(*verb, options->session, false);
-  verb->add_option("--every", options->interval, "seconds between two lines")
-      ->check(cli_support::number_range(0.01, 3600.0))
-      ->type_name("S")
-      ->capture_default_str();
-  verb->add_option("--count", options->count, "end after so many lines; 0: with the session")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N")
-      ->capture_default_str();
-  verb->add_flag("--json", options->is_json, "one JSON object a line, values in SI");
-  verb->footer(
+  verb.option("variables", options->variables, "names, or patterns with * and ?").required().value_name("VAR");
+  cli_support::add_session_options(verb, options->session, false);
+  verb.option("--every", options->interval, "seconds between two lines")
+      .between(0.01, 3600.0)
+      .value_name("S")
+      .show_default();
+  verb.option("--count", options->count, "end after so many lines; 0: with the session")
+      .not_negative()
+      .value_name("N")
+      .show_default();
+  verb.flag("--json", options->is_json, "one JSON object a line, values in SI");
+  verb.footer(
       "Without --session: the one that runs on the domain.\n\n"
       "Example:\n  slewring watch Cyl_Lift.force 'Bag.position.*' --session truck_crane");
-  verb->callback([&action, options] { action = [options] { return watch(*options); }; });
+  verb.action([options] { return watch(*options); });
 }
 
 }  // namespace slew::cli

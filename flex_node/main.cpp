@@ -24,19 +24,16 @@ std::optional<ExitCode> run(const cli_support::NodeOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  options::Program program(
+      "flex_node",
       "Flexible bodies of a Slewring session: elastic forces, deflection of every node, stress, strain energy. Takes "
-      "the scene from the session, the flexible files from --assets.",
-      "flex_node");
-  app.footer(
+      "the scene from the session, the flexible files from --assets.");
+  program.footer(
       "Example, on the machine that computes the flexible bodies:\n"
       "  flex_node --session truck_crane_flexible --assets scenes --interface eth0 --peer 192.168.1.20 "
       "--keys for_crane2");
   cli_support::NodeOptions options;
-  cli_support::add_physics_node_options(app, options);
-  cli_support::add_version(app);
-  int exit_code = 0;
-  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("flex_node",
-                              [&] { return cli_support::run_until_in_session([&] { return run(options); }); });
+  cli_support::add_physics_node_options(program, options);
+  program.action([&] { return cli_support::run_until_in_session([&] { return run(options); }); });
+  return cli_support::run_program(program, argc, argv);
 }

@@ -34,19 +34,18 @@ ExitCode run(const IoOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Owner of a Slewring session: publishes the scene, gives the clock, takes operator input and commands.",
-               "io_node");
-  app.footer(
+  options::Program program(
+      "io_node",
+      "Owner of a Slewring session: publishes the scene, gives the clock, takes operator input and commands.");
+  program.footer(
       "Example; the other nodes of the session find it by its name:\n"
       "  io_node scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10 "
       "--keys plant");
   IoOptions options;
   options.node.priority = cli_support::kIoPriority;
-  cli_support::add_scene_options(app, options.scene);
-  cli_support::add_node_options(app, options.node);
-  cli_support::add_join_timeout(app, options.node);
-  cli_support::add_version(app);
-  int exit_code = 0;
-  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("io_node", [&] { return run(options); });
+  cli_support::add_scene_options(program, options.scene);
+  cli_support::add_node_options(program, options.node);
+  cli_support::add_join_timeout(program, options.node);
+  program.action([&] { return run(options); });
+  return cli_support::run_program(program, argc, argv);
 }

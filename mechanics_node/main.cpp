@@ -25,17 +25,14 @@ std::optional<ExitCode> run(const cli_support::NodeOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Mechanics of a Slewring session: bodies, joints, forces. Takes the scene from the session.",
-               "mechanics_node");
-  app.footer(
+  options::Program program(
+      "mechanics_node", "Mechanics of a Slewring session: bodies, joints, forces. Takes the scene from the session.");
+  program.footer(
       "Example, on the machine that computes the mechanics:\n"
       "  mechanics_node --session truck_crane --interface eth0 --peer 192.168.1.20 "
       "--keys for_crane2");
   cli_support::NodeOptions options;
-  cli_support::add_physics_node_options(app, options);
-  cli_support::add_version(app);
-  int exit_code = 0;
-  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("mechanics_node",
-                              [&] { return cli_support::run_until_in_session([&] { return run(options); }); });
+  cli_support::add_physics_node_options(program, options);
+  program.action([&] { return cli_support::run_until_in_session([&] { return run(options); }); });
+  return cli_support::run_program(program, argc, argv);
 }

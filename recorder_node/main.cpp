@@ -3,7 +3,6 @@
 
 #include "cli_support/carrier.h"
 #include "cli_support/node_program.h"
-#include "cli_support/number_range.h"
 #include "cli_support/subsystem_factory.h"
 #include "recorder_node/recorder_node.h"
 
@@ -32,25 +31,21 @@ std::optional<ExitCode> run(const cli_support::NodeOptions& options, const std::
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Recorder of a Slewring session: one .mcap file in a new folder of --out.", "recorder_node");
-  app.footer("Example:\n  recorder_node --session truck_crane --out /data/runs");
+  options::Program program("recorder_node", "Recorder of a Slewring session: one .mcap file in a new folder of --out.");
+  program.footer("Example:\n  recorder_node --session truck_crane --out /data/runs");
   cli_support::NodeOptions options;
   options.priority = cli_support::kRecorderPriority;
   std::string runs = "runs";
-  cli_support::add_node_options(app, options);
-  cli_support::add_finding_options(app, options);
-  app.add_option("--out", runs, "folder in which the session gets a folder of its own")
-      ->type_name("DIR")
-      ->capture_default_str();
+  cli_support::add_node_options(program, options);
+  cli_support::add_finding_options(program, options);
+  program.option("--out", runs, "folder in which the session gets a folder of its own")
+      .value_name("DIR")
+      .show_default();
   double keep_free_mb = static_cast<double>(recorder::kKeepFreeBytes) * 1e-6;
-  app.add_option("--keep-free", keep_free_mb, "room on the file system that is left to others; 0: none")
-      ->check(cli_support::number_range(0.0, 1e9))
-      ->type_name("MB")
-      ->capture_default_str();
-  cli_support::add_version(app);
-  int exit_code = 0;
-  if (!cli_support::parse(app, argc, argv, exit_code)) return exit_code;
-  return cli_support::guarded("recorder_node", [&] {
-    return cli_support::run_until_in_session([&] { return run(options, runs, keep_free_mb); });
-  });
+  program.option("--keep-free", keep_free_mb, "room on the file system that is left to others; 0: none")
+      .between(0.0, 1e9)
+      .value_name("MB")
+      .show_default();
+  program.action([&] { return cli_support::run_until_in_session([&] { return run(options, runs, keep_free_mb); }); });
+  return cli_support::run_program(program, argc, argv);
 }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/plotting/scatter_svg.h"
 #include "cli/plotting/svg_text.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -132,16 +132,16 @@ std::vector<std::string> remarks(const Comparison& comparison) {
   return lines;
 }
 
-nlohmann::json json_of(const Comparison& comparison, const ComparedRow& row) {
-  nlohmann::json json = {{"formulation", row.configuration.formulation},
-                         {"integrator", row.configuration.integrator},
-                         {"has_run", row.has_run()},
-                         {"is_stable", row.is_stable()},
-                         {"verdict", verdict(row)}};
+Json json_of(const Comparison& comparison, const ComparedRow& row) {
+  Json json = {{"formulation", row.configuration.formulation},
+               {"integrator", row.configuration.integrator},
+               {"has_run", row.has_run()},
+               {"is_stable", row.is_stable()},
+               {"verdict", verdict(row)}};
   if (row.configuration.step > 0) json["step"] = row.configuration.step;
   if (!row.has_run()) return json;
   json["joint_gap"] = {{"position", row.gap.position}, {"rate", row.gap.rate}, {"joint", row.open_joint}};
-  json["energy_drift"] = row.energy_drift ? nlohmann::json(*row.energy_drift) : nlohmann::json();
+  json["energy_drift"] = row.energy_drift ? Json(*row.energy_drift) : Json();
   for (std::size_t i = 0; i < row.differences.size(); ++i) {
     json["differences"].push_back({{"unit", comparison.classes[i].unit},
                                    {"largest", row.differences[i].largest},
@@ -205,14 +205,14 @@ std::string report_text(const Comparison& comparison) {
 }
 
 std::string report_json(const Comparison& comparison) {
-  nlohmann::json json = {{"scene", comparison.scene},
-                         {"until", comparison.until},
-                         {"communication_step", comparison.communication_step},
-                         {"repeats", comparison.repeats},
-                         {"is_complete", comparison.rows.size() == comparison.wanted_rows},
-                         {"variables", comparison.variables},
-                         {"rows", nlohmann::json::array()}};
-  nlohmann::json& reference = json["reference"];
+  Json json = {{"scene", comparison.scene},
+               {"until", comparison.until},
+               {"communication_step", comparison.communication_step},
+               {"repeats", comparison.repeats},
+               {"is_complete", comparison.rows.size() == comparison.wanted_rows},
+               {"variables", comparison.variables},
+               {"rows", Json::array()}};
+  Json& reference = json["reference"];
   reference = {{"formulation", comparison.reference.formulation},
                {"integrator", comparison.reference.integrator},
                {"step", comparison.reference.step},

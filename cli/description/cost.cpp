@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "cli/comparison/configuration.h"
 #include "cli/description/hydraulics_cost.h"
@@ -13,6 +12,7 @@
 #include "cli/description/timed_call.h"
 #include "cli/display.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "scene/ports.h"
 #include "transport/codec.h"
 
@@ -271,8 +271,8 @@ std::string report_text(const CostByPart& cost, std::span<const std::string> not
   return text;
 }
 
-nlohmann::json report_json(const CostByPart& cost, std::span<const std::string> not_paid) {
-  nlohmann::json lines = nlohmann::json::array();
+Json report_json(const CostByPart& cost, std::span<const std::string> not_paid) {
+  Json lines = Json::array();
   for (const CostLine& line : cost.lines) {
     lines.push_back({{"level", line.level},
                      {"part", line.part},

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "scene/scene.h"
 
 namespace slew::cli {
@@ -45,6 +46,6 @@ struct CostByPart {
 
 // not_paid: what the scene does without, for a line each.
 [[nodiscard]] std::string report_text(const CostByPart& cost, std::span<const std::string> not_paid);
-[[nodiscard]] nlohmann::json report_json(const CostByPart& cost, std::span<const std::string> not_paid);
+[[nodiscard]] Json report_json(const CostByPart& cost, std::span<const std::string> not_paid);
 
 }  // namespace slew::cli

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "cli/comparison/configuration.h"
 #include "cli/description/instant.h"
 #include "cli/display.h"
 #include "core/failure.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -113,18 +113,18 @@ std::string solvers_text(const Eigenvalues& found) {
   return text;
 }
 
-nlohmann::json to_json(const SceneMode& mode) {
-  nlohmann::json owners = nlohmann::json::array();
+Json to_json(const SceneMode& mode) {
+  Json owners = Json::array();
   for (const monolith::OwnerShare& one : mode.owners) {
     owners.push_back({{"owner", owner_text(one.owner)}, {"share", one.share}});
   }
-  nlohmann::json json = {{"real", mode.value.real()},
-                         {"imaginary", mode.value.imag()},
-                         {"count", mode.count},
-                         {"frequency", frequency(mode)},
-                         {"damping_ratio", damping_ratio(mode)},
-                         {"step_to_follow", step_to_follow(mode)},
-                         {"owners", owners}};
+  Json json = {{"real", mode.value.real()},
+               {"imaginary", mode.value.imag()},
+               {"count", mode.count},
+               {"frequency", frequency(mode)},
+               {"damping_ratio", damping_ratio(mode)},
+               {"step_to_follow", step_to_follow(mode)},
+               {"owners", owners}};
   const double limit = monolith::longest_runge_kutta_step(mode.value);
   if (std::isfinite(limit)) json["largest_rk4_step"] = limit;
   return json;
@@ -182,8 +182,8 @@ std::string report_text(const Eigenvalues& found, std::size_t count) {
   return text + "\n" + solvers_text(found);
 }
 
-nlohmann::json report_json(const Eigenvalues& found) {
-  nlohmann::json machine = nlohmann::json::array(), explicit_part = nlohmann::json::array();
+Json report_json(const Eigenvalues& found) {
+  Json machine = Json::array(), explicit_part = Json::array();
   for (const SceneMode& mode : found.machine.modes) machine.push_back(to_json(mode));
   for (const SceneMode& mode : found.explicit_part.modes) explicit_part.push_back(to_json(mode));
   return {{"at", found.at},

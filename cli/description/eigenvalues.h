@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core/json.h"
 #include "monolith/linearisation.h"
 #include "scene/scene.h"
 
@@ -27,6 +28,6 @@ struct Eigenvalues {
 
 // count: rows of the fastest, and of the slowest.
 [[nodiscard]] std::string report_text(const Eigenvalues& eigenvalues, std::size_t count);
-[[nodiscard]] nlohmann::json report_json(const Eigenvalues& eigenvalues);
+[[nodiscard]] Json report_json(const Eigenvalues& eigenvalues);
 
 }  // namespace slew::cli

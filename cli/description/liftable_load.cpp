@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli/description/instant.h"
 #include "cli/display.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "coupling/line_force.h"
 #include "hydraulics/circuit.h"
 #include "hydraulics/stall.h"
@@ -259,32 +259,32 @@ std::string report_text(const LiftableLoad& load) {
   return text + table_text(rows);
 }
 
-nlohmann::json report_json(const LiftableLoad& load) {
-  nlohmann::json ports = nlohmann::json::array();
+Json report_json(const LiftableLoad& load) {
+  Json ports = Json::array();
   for (const LiftingPort& port : load.ports) {
-    nlohmann::json json = {{"cylinder", port.name},
-                           {"stroke", port.stroke},
-                           {"static_force", port.static_force},
-                           {"static_force_per_kg", port.force_per_kg},
-                           {"carries", port.carries()}};
+    Json json = {{"cylinder", port.name},
+                 {"stroke", port.stroke},
+                 {"static_force", port.static_force},
+                 {"static_force_per_kg", port.force_per_kg},
+                 {"carries", port.carries()}};
     if (port.carries()) {
-      nlohmann::json settings = nlohmann::json::array();
+      Json settings = Json::array();
       for (const LimitingSetting& one : port.settings) {
         settings.push_back({{"setting", one.path}, {"value", one.value}, {"effect", one.effect}});
       }
-      json.update({{"largest_force", port.largest_force},
-                   {"pressure", port.pressure},
-                   {"chamber", port.chamber},
-                   {"input", port.input},
-                   {"stick", port.stick},
-                   {"load", port.load},
-                   {"at_end", port.is_at_end},
-                   {"steady", port.is_steady},
-                   {"settings", settings}});
+      json.put_all({{"largest_force", port.largest_force},
+                    {"pressure", port.pressure},
+                    {"chamber", port.chamber},
+                    {"input", port.input},
+                    {"stick", port.stick},
+                    {"load", port.load},
+                    {"at_end", port.is_at_end},
+                    {"steady", port.is_steady},
+                    {"settings", settings}});
     }
     ports.push_back(json);
   }
-  nlohmann::json json = {
+  Json json = {
       {"at", load.at}, {"pose", load.pose}, {"payload", load.payload}, {"mass", load.mass}, {"cylinders", ports}};
   if (load.has_answer()) {
     json["load"] = load.limit().load;

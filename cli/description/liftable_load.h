@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "multibody/state.h"
 #include "scene/scene.h"
 
@@ -72,6 +73,6 @@ enum class Settings { named, left_out };
 // "Cyl_Lift lifts 2.96 t of Bag at most (...)": one line; the table for people adds the other cylinders.
 [[nodiscard]] std::string limit_text(const LiftableLoad& load);
 [[nodiscard]] std::string report_text(const LiftableLoad& load);
-[[nodiscard]] nlohmann::json report_json(const LiftableLoad& load);
+[[nodiscard]] Json report_json(const LiftableLoad& load);
 
 }  // namespace slew::cli

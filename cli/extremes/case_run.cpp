@@ -13,6 +13,7 @@
 #include "cli/direct_session.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
@@ -577,9 +578,9 @@ CaseOutcome run_case(const cli_support::SceneOptions& scene, const std::string& 
   return Case(scene, name).run();
 }
 
-nlohmann::json to_json(const CaseOutcome& outcome) {
-  nlohmann::json json = to_json(outcome.measures, outcome.judgement);
-  json["largest_step"] = outcome.edge.step ? nlohmann::json(*outcome.edge.step) : nlohmann::json();
+Json to_json(const CaseOutcome& outcome) {
+  Json json = to_json(outcome.measures, outcome.judgement);
+  json["largest_step"] = outcome.edge.step ? Json(*outcome.edge.step) : Json();
   json["has_edge"] = outcome.edge.is_sought;
   json["advice"] = advice(outcome.measures, outcome.judgement, outcome.edge);
   return json;

@@ -1,11 +1,11 @@
 // One hard case of a scene, run in this process and judged; then the largest communication step that keeps its bounds.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/extremes/cases.h"
 #include "cli_support/scene_options.h"
+#include "core/json.h"
 
 namespace slew::cli {
 
@@ -21,6 +21,6 @@ inline constexpr double kEdgeSteps[] = {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 5e-3
 // Throws Failure when the scene has no such case; what the scene refuses of a case is an outcome.
 [[nodiscard]] CaseOutcome run_case(const cli_support::SceneOptions& scene, const std::string& name);
 
-[[nodiscard]] nlohmann::json to_json(const CaseOutcome& outcome);
+[[nodiscard]] Json to_json(const CaseOutcome& outcome);
 
 }  // namespace slew::cli

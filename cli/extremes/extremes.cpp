@@ -115,7 +115,7 @@ class Examiner {
 bool ExtremesRow::is_good() const {
   if (!obstacle.empty()) return true;
   if (!result.is_object()) return false;
-  const std::string verdict = result.at("verdict");
+  const std::string& verdict = result.at("verdict").text();
   return verdict == to_text(Verdict::within) || verdict == to_text(Verdict::refused);
 }
 

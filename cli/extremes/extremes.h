@@ -2,13 +2,13 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/extremes/cases.h"
 #include "cli_support/scene_options.h"
+#include "core/json.h"
 
 namespace slew::cli {
 
@@ -26,8 +26,8 @@ struct ExtremesRow {
   CaseGroup group = CaseGroup::machine;
   std::string obstacle;  // why it does not apply
   bool is_done = false;
-  std::string failure;    // of its process
-  nlohmann::json result;  // of case_run.h; null: none
+  std::string failure;  // of its process
+  Json result;          // of case_run.h; null: none
 
   // within its bounds, refused by name, or not for this scene
   [[nodiscard]] bool is_good() const;

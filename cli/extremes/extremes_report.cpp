@@ -5,13 +5,14 @@
 
 #include "cli/display.h"
 #include "cli/extremes/extremes.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
 
 // a number that JSON may have lost because it was not finite
-double number(const nlohmann::json& json) {
-  return json.is_number() ? json.get<double>() : std::nan("");
+double number(const Json& json) {
+  return json.is_number() ? json.number() : std::nan("");
 }
 
 std::string value_text(double value, const std::string& unit) {
@@ -19,32 +20,32 @@ std::string value_text(double value, const std::string& unit) {
 }
 
 // "highest pressure 212 bar of 381 bar, 56 %": the value nearest to its bound
-std::string nearest_text(const nlohmann::json& result) {
-  if (!result.at("refusal").get<std::string>().empty()) return result.at("refusal");
+std::string nearest_text(const Json& result) {
+  if (const std::string& refusal = result.at("refusal").text(); !refusal.empty()) return refusal;
   std::string text;
   for (const char* end : {"failure", "alarm"}) {
-    const std::string why = result.at(end);
+    const std::string& why = result.at(end).text();
     if (!why.empty()) text += fmt::format("at {:.4g} s: {}; ", number(result.at("ended_at")), why);
   }
-  const nlohmann::json& checks = result.at("checks");
+  const std::vector<Json>& checks = result.at("checks").items();
   if (checks.empty()) return text + "finite";
-  const nlohmann::json& first = checks.front();
+  const Json& first = checks.front();
   const double value = number(first.at("value")), bound = number(first.at("bound"));
-  const std::string unit = first.at("unit");
-  text += fmt::format("{} {}", first.at("what").get<std::string>(), value_text(value, unit));
+  const std::string& unit = first.at("unit").text();
+  text += fmt::format("{} {}", first.at("what").text(), value_text(value, unit));
   if (bound > 0) text += fmt::format(" of {}, {:.0f} %", value_text(bound, unit), 100 * value / bound);
   return text;
 }
 
-std::string edge_text(const nlohmann::json& result) {
-  if (!result.at("has_edge").get<bool>()) return "-";
-  const nlohmann::json& step = result.at("largest_step");
-  return step.is_number() ? fmt::format("{:.4g} ms", step.get<double>() * 1e3) : "none";
+std::string edge_text(const Json& result) {
+  if (!result.at("has_edge").boolean()) return "-";
+  const Json& step = result.at("largest_step");
+  return step.is_number() ? fmt::format("{:.4g} ms", step.number() * 1e3) : "none";
 }
 
-std::string notes_text(const nlohmann::json& result) {
+std::string notes_text(const Json& result) {
   std::string text;
-  for (const nlohmann::json& note : result.at("notes")) text += (text.empty() ? "" : "; ") + note.get<std::string>();
+  for (const Json& note : result.at("notes").items()) text += (text.empty() ? "" : "; ") + note.text();
   return text;
 }
 
@@ -53,10 +54,10 @@ std::vector<std::string> cells_of(const ExtremesRow& row) {
   if (!row.is_done) return {row.name, "not run", "", "", "", ""};
   if (!row.result.is_object()) return {row.name, "FAILED", row.failure, "", "", "run it alone with --only"};
   return {row.name,
-          row.result.at("verdict"),
+          row.result.at("verdict").text(),
           nearest_text(row.result),
           edge_text(row.result),
-          row.result.at("advice"),
+          row.result.at("advice").text(),
           notes_text(row.result)};
 }
 
@@ -72,7 +73,7 @@ std::string report_text(const Extremes& extremes) {
     for (; i < extremes.rows.size() && extremes.rows[i].scene == scene; ++i) {
       const ExtremesRow& row = extremes.rows[i];
       table.push_back(cells_of(row));
-      const bool is_refused = row.result.is_object() && row.result.at("verdict") == to_text(Verdict::refused);
+      const bool is_refused = row.result.is_object() && row.result.at("verdict").text() == to_text(Verdict::refused);
       ++(!row.obstacle.empty() ? not_for : !row.is_done ? left : is_refused ? refused : row.is_good() ? within : bad);
     }
     text += scene + "\n" + table_text(table) + "\n";
@@ -89,24 +90,24 @@ std::string report_text(const Extremes& extremes) {
 }
 
 std::string report_json(const Extremes& extremes) {
-  nlohmann::json rows = nlohmann::json::array();
+  Json rows = Json::array();
   for (const ExtremesRow& row : extremes.rows) {
-    nlohmann::json one = {{"scene", row.scene},
-                          {"name", row.name},
-                          {"group", to_text(row.group)},
-                          {"what", row.what},
-                          {"obstacle", row.obstacle},
-                          {"is_done", row.is_done},
-                          {"is_good", row.is_done && row.is_good()},
-                          {"failure", row.failure},
-                          {"result", row.result}};
+    Json one = {{"scene", row.scene},
+                {"name", row.name},
+                {"group", to_text(row.group)},
+                {"what", row.what},
+                {"obstacle", row.obstacle},
+                {"is_done", row.is_done},
+                {"is_good", row.is_done && row.is_good()},
+                {"failure", row.failure},
+                {"result", row.result}};
     rows.push_back(std::move(one));
   }
-  return nlohmann::json{{"rows", rows},
-                        {"is_complete", extremes.is_complete()},
-                        {"is_good", extremes.is_good()},
-                        {"kept", extremes.kept},
-                        {"folder", extremes.folder}}
+  return Json{{"rows", rows},
+              {"is_complete", extremes.is_complete()},
+              {"is_good", extremes.is_good()},
+              {"kept", extremes.kept},
+              {"folder", extremes.folder}}
       .dump(2);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/json.h"
+
 namespace slew::cli {
 namespace {
 
@@ -12,8 +14,8 @@ constexpr double kBeyond = 1e9;       // share of a bound of 0 that is not kept
 constexpr double kLeastError = 0.02;  // of the force range, that is promised for late samples
 constexpr double kNear = 0.5;         // share of a bound from which on it is worth a word
 
-nlohmann::json number(const std::optional<double>& value) {
-  return value ? nlohmann::json(*value) : nlohmann::json();
+Json number(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
 }
 
 }  // namespace
@@ -94,8 +96,8 @@ std::string advice(const Measures& measures, const Judgement& judgement, const E
   return step;
 }
 
-nlohmann::json to_json(const Measures& m, const Judgement& judgement) {
-  nlohmann::json checks = nlohmann::json::array();
+Json to_json(const Measures& m, const Judgement& judgement) {
+  Json checks = Json::array();
   for (const Check& check : judgement.checks) {
     checks.push_back({{"what", check.what}, {"unit", check.unit}, {"value", check.value}, {"bound", check.bound}});
   }

@@ -18,11 +18,12 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/json.h"
 
 namespace slew::cli {
 
@@ -99,6 +100,6 @@ struct Edge {
 // What to do about it, in one sentence.
 [[nodiscard]] std::string advice(const Measures& measures, const Judgement& judgement, const Edge& edge);
 
-[[nodiscard]] nlohmann::json to_json(const Measures& measures, const Judgement& judgement);
+[[nodiscard]] Json to_json(const Measures& measures, const Judgement& judgement);
 
 }  // namespace slew::cli

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -13,6 +12,7 @@
 #include "cli_support/carrier.h"
 #include "cli_support/session_options.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "node/identity.h"
 #include "transport/protection.h"
 
@@ -114,7 +114,7 @@ KeyStore KeyStore::create(const fs::path& folder, const std::string& session, in
 }
 
 KeyStore KeyStore::open(const fs::path& folder) {
-  const nlohmann::json list = nlohmann::json::parse(read_file(folder / kList), nullptr, false);
+  const Json list = Json::parse(read_file(folder / kList)).value_or(Json());
   if (!list.is_array() || !fs::exists(folder / transport::kIdentityAuthorityKey)) {
     throw Failure(
         ExitCode::bad_input,
@@ -123,10 +123,12 @@ KeyStore KeyStore::open(const fs::path& folder) {
                     folder.string(), kList, transport::kIdentityAuthorityKey));
   }
   KeyStore store(folder);
-  for (const nlohmann::json& one : list) {
-    const std::string role = one.value("role", "");
+  for (const Json& one : list.items()) {
+    const std::string role = one.text_or("role", "");
     if (!allowed_to(role)) throw storage_failure(folder / kList, "has an identity without a role");
-    store.identities_.push_back({one.value("name", ""), role, one.value("session", "*"), one.value("days", 0)});
+    const Json* days = one.find("days");
+    store.identities_.push_back({one.text_or("name", ""), role, one.text_or("session", "*"),
+                                 days == nullptr ? 0 : static_cast<int>(days->integer())});
   }
   return store;
 }
@@ -182,7 +184,7 @@ void KeyStore::make_identity(const KeyIdentity& identity) const {
 }
 
 void KeyStore::write_list() const {
-  nlohmann::json list = nlohmann::json::array();
+  Json list = Json::array();
   for (const KeyIdentity& one : identities_) {
     list.push_back({{"name", one.name}, {"role", one.role}, {"session", one.session}, {"days", one.days}});
   }

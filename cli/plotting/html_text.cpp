@@ -1,6 +1,6 @@
 #include "cli/plotting/html_text.h"
 
-#include <nlohmann/json.hpp>
+#include "core/json.h"
 
 namespace slew::plotting {
 
@@ -10,7 +10,7 @@ std::string in_script(std::string text) {
 }
 
 std::string json_string(std::string_view text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return Json(text).dump();
 }
 
 }  // namespace slew::plotting

@@ -15,6 +15,7 @@
 
 #include "cli/simplify/candidates.h"
 #include "cli_support/scene_options.h"
+#include "core/json.h"
 
 namespace slew::cli {
 
@@ -68,6 +69,6 @@ using SimplifyProgress = std::function<bool(std::string_view doing, double share
 [[nodiscard]] Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress);
 
 [[nodiscard]] std::string report_text(const Simplification& result);
-[[nodiscard]] nlohmann::json report_json(const Simplification& result);
+[[nodiscard]] Json report_json(const Simplification& result);
 
 }  // namespace slew::cli

@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/display.h"
 #include "cli/simplify/simplify.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -34,16 +33,16 @@ std::vector<std::string> row(const Simplification& result, const Trial& trial) {
   return {trial.candidate.title, worst_text(result, trial), cost, verdict_text(result, trial)};
 }
 
-nlohmann::json to_json(const Simplification& result, const Trial& trial) {
-  nlohmann::json changes = nlohmann::json::object();
+Json to_json(const Simplification& result, const Trial& trial) {
+  Json changes = Json::object();
   for (std::size_t i = 0; i < trial.changes.size(); ++i) changes[result.watched[i].name] = trial.changes[i];
-  nlohmann::json json = {{"title", trial.candidate.title},
-                         {"settings", trial.candidate.settings},
-                         {"has_run", trial.has_run()},
-                         {"holds", holds(result.watched, trial)},
-                         {"is_taken", trial.is_taken},
-                         {"refusal", trial.refusal},
-                         {"changes", changes}};
+  Json json = {{"title", trial.candidate.title},
+               {"settings", trial.candidate.settings},
+               {"has_run", trial.has_run()},
+               {"holds", holds(result.watched, trial)},
+               {"is_taken", trial.is_taken},
+               {"refusal", trial.refusal},
+               {"changes", changes}};
   if (trial.cost > 0) json["us_per_ms"] = trial.cost;
   return json;
 }
@@ -77,16 +76,15 @@ std::string report_text(const Simplification& result) {
   return text + table_text(rows);
 }
 
-nlohmann::json report_json(const Simplification& result) {
-  nlohmann::json watched = nlohmann::json::array(), trials = nlohmann::json::array();
+Json report_json(const Simplification& result) {
+  Json watched = Json::array(), trials = Json::array();
   for (const Watched& one : result.watched) {
     watched.push_back({{"name", one.name}, {"unit", one.unit}, {"tolerance", one.tolerance}, {"range", one.range}});
   }
   for (const Trial& trial : result.trials) trials.push_back(to_json(result, trial));
-  nlohmann::json json = {
-      {"scene", result.scene},         {"until", result.until},   {"repeats", result.repeats},
-      {"us_per_ms", result.base_cost}, {"watched", watched},      {"trials", trials},
-      {"settings", result.settings},   {"helps", result.helps()}, {"is_interrupted", result.is_interrupted}};
+  Json json = {{"scene", result.scene},         {"until", result.until},   {"repeats", result.repeats},
+               {"us_per_ms", result.base_cost}, {"watched", watched},      {"trials", trials},
+               {"settings", result.settings},   {"helps", result.helps()}, {"is_interrupted", result.is_interrupted}};
   if (result.helps()) json["combined"] = to_json(result, result.combined);
   return json;
 }

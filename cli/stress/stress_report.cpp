@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/plotting/html_plot.h"
+#include "core/json.h"
 #include "node/identity.h"
 
 namespace slew::cli {
@@ -112,18 +112,18 @@ std::string books_of(const StressCell& cell) {
       cell.books.empty() ? "" : "  DO NOT BALANCE: " + cell.books);
 }
 
-nlohmann::json json_of(const wire::Quantiles& q) {
+Json json_of(const wire::Quantiles& q) {
   return {{"count", q.count}, {"min", q.least}, {"p50", q.p50}, {"p99", q.p99}, {"p999", q.p999}, {"max", q.largest}};
 }
 
-nlohmann::json timing_of(const wire::Health& health) {
+Json timing_of(const wire::Health& health) {
   return {{"response", json_of(health.response)}, {"release_jitter", json_of(health.release_jitter)},
           {"cpu_time", json_of(health.cpu_time)}, {"missed", health.overruns},
           {"missed_share", missed(health)},       {"longest_run_of_misses", health.longest_overrun}};
 }
 
-nlohmann::json node_of(const wire::Health& health) {
-  nlohmann::json node = timing_of(health);
+Json node_of(const wire::Health& health) {
+  Json node = timing_of(health);
   node["steps_done"] = health.steps_done;
   node["execution"] = json_of(health.execution);
   node["wait"] = json_of(health.wait);
@@ -137,8 +137,8 @@ nlohmann::json node_of(const wire::Health& health) {
 }
 
 // of a loop that keeps books
-nlohmann::json paced_of(const wire::Health& health, const Surroundings& around) {
-  nlohmann::json paced = timing_of(health);
+Json paced_of(const wire::Health& health, const Surroundings& around) {
+  Json paced = timing_of(health);
   paced["skipped"] = given_up(health);
   paced["runnable"] = around.runnable;
   paced["steal"] = around.steal;
@@ -146,8 +146,8 @@ nlohmann::json paced_of(const wire::Health& health, const Surroundings& around) 
   return paced;
 }
 
-nlohmann::json yardstick_of(const StressCell& cell) {
-  nlohmann::json yardstick = paced_of(cell.yardstick, cell.around_yardstick);
+Json yardstick_of(const StressCell& cell) {
+  Json yardstick = paced_of(cell.yardstick, cell.around_yardstick);
   yardstick["work"] = work_of(cell);
   for (const YardstickLoop& loop : cell.yardstick_loops) {
     const std::string role(node::to_text(loop.role));
@@ -158,12 +158,12 @@ nlohmann::json yardstick_of(const StressCell& cell) {
   return yardstick;
 }
 
-nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
+Json json_of(const StressCell& cell, const StressBounds& bounds) {
   const wire::Health& io = session_of(cell);
-  nlohmann::json json = {{"scheduling", to_text(cell.scheduling)},
-                         {"load", to_text(cell.load)},
-                         {"added_work", cell.work_us * 1e-6},
-                         {"verdict", verdict_text(cell, bounds)}};
+  Json json = {{"scheduling", to_text(cell.scheduling)},
+               {"load", to_text(cell.load)},
+               {"added_work", cell.work_us * 1e-6},
+               {"verdict", verdict_text(cell, bounds)}};
   if (!cell.skipped.empty()) return json;
   json["exit_code"] = static_cast<int>(cell.code);
   json["messages"] = cell.messages;
@@ -179,7 +179,7 @@ nlohmann::json json_of(const StressCell& cell, const StressBounds& bounds) {
                    {"rest", static_cast<double>(io.rest_ns) * 1e-9},
                    {"balance", cell.books.empty()},
                    {"problem", cell.books}};
-  json["nodes"] = nlohmann::json::object();
+  json["nodes"] = Json::object();
   for (const Role role : wire::kNodeRoles) {
     if (role == Role::io || (cell.roles & bit(role)) == 0) continue;
     json["nodes"][std::string(node::to_text(role))] = node_of(cell.nodes[static_cast<std::size_t>(role)]);
@@ -206,14 +206,14 @@ std::string report_text(const Stress& stress) {
 }
 
 std::string report_json(const Stress& stress) {
-  nlohmann::json json = {{"scene", stress.scene},
-                         {"seconds", stress.wish.seconds},
-                         {"kernel", stress.machine.kernel},
-                         {"preemption", stress.machine.preemption},
-                         {"processor", stress.machine.processor},
-                         {"processors", stress.machine.cpus},
-                         {"exit_code", static_cast<int>(exit_code_of(stress))},
-                         {"cells", nlohmann::json::array()}};
+  Json json = {{"scene", stress.scene},
+               {"seconds", stress.wish.seconds},
+               {"kernel", stress.machine.kernel},
+               {"preemption", stress.machine.preemption},
+               {"processor", stress.machine.processor},
+               {"processors", stress.machine.cpus},
+               {"exit_code", static_cast<int>(exit_code_of(stress))},
+               {"cells", Json::array()}};
   if (stress.bounds.max_miss >= 0) json["max_miss"] = stress.bounds.max_miss;
   if (stress.bounds.p99 >= 0) json["p99"] = stress.bounds.p99;
   for (const StressCell& cell : stress.cells) json["cells"].push_back(json_of(cell, stress.bounds));

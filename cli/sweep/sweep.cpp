@@ -12,6 +12,7 @@
 
 #include "cli/child_process.h"
 #include "core/failure.h"
+#include "core/json.h"
 #include "core/state_hash.h"
 
 namespace slew::cli {
@@ -19,12 +20,10 @@ namespace {
 
 constexpr int kPollMs = 20;  // between two looks at the processes
 
-std::optional<nlohmann::json> read_result(const std::string& file) {
+std::optional<Json> read_result(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
-  nlohmann::json value = nlohmann::json::parse(in, nullptr, false);
-  if (value.is_discarded()) return std::nullopt;
-  return value;
+  return Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
 class Sweep {
@@ -63,7 +62,7 @@ class Sweep {
 
   void take_kept(std::size_t task) {
     if (options_.is_anew) return;
-    std::optional<nlohmann::json> value = read_result(file_of(task));
+    std::optional<Json> value = read_result(file_of(task));
     if (!value) return;
     results_[task] = {.is_done = true, .was_kept = true, .value = std::move(*value), .failure = {}};
   }
@@ -95,7 +94,7 @@ class Sweep {
       if (!end) return false;
       SweepResult& result = results_[one.task];
       result.is_done = true;
-      std::optional<nlohmann::json> value = read_result(file_of(one.task));
+      std::optional<Json> value = read_result(file_of(one.task));
       if (value) {
         result.value = std::move(*value);
       } else {
@@ -142,7 +141,7 @@ std::string result_file(const std::string& folder, const std::string& key) {
   return (std::filesystem::path(folder) / (key + ".json")).string();
 }
 
-void write_result(const std::string& file, const nlohmann::json& value) {
+void write_result(const std::string& file, const Json& value) {
   const std::string unfinished = file + "." + std::to_string(getpid());
   std::ofstream out(unfinished, std::ios::binary);
   out << value.dump();

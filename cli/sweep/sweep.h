@@ -9,10 +9,11 @@
 
 #include <cstddef>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "core/json.h"
 
 namespace slew::cli {
 
@@ -33,7 +34,7 @@ struct SweepOptions {
 struct SweepResult {
   bool is_done = false;   // there is a value or a failure; false: the sweep ended before
   bool was_kept = false;  // from an earlier sweep
-  nlohmann::json value;   // null after a failure
+  Json value;             // null after a failure
   std::string failure;    // why there is no value; empty: there is one
 };
 
@@ -53,7 +54,7 @@ using SweepProgress = std::function<bool(const SweepState&)>;
 [[nodiscard]] std::string result_file(const std::string& folder, const std::string& key);
 
 // For the process of a task. Throws Failure (storage).
-void write_result(const std::string& file, const nlohmann::json& value);
+void write_result(const std::string& file, const Json& value);
 
 // A key from all texts that a result follows from: 16 hexadecimal digits.
 [[nodiscard]] std::string key_of(std::span<const std::string> texts);

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "core/failure.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -195,12 +196,12 @@ class RowRun {
   std::size_t first_port_ = 0;
 };
 
-nlohmann::json number(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json();
+Json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json();
 }
 
-std::optional<double> optional_number(const nlohmann::json& json) {
-  return json.is_number() ? std::optional(json.get<double>()) : std::nullopt;
+std::optional<double> optional_number(const Json& json) {
+  return json.is_number() ? std::optional(json.number()) : std::nullopt;
 }
 
 }  // namespace
@@ -232,7 +233,7 @@ RowResult compute(const RowJob& job) {
   }
 }
 
-nlohmann::json to_json(const RowJob& job) {
+Json to_json(const RowJob& job) {
   return {{"scene", job.scene.file},        {"overrides", job.scene.overrides},
           {"duration", job.scene.duration}, {"input", job.scene.input},
           {"variables", job.variables},     {"is_reference", job.kind == RunKind::reference},
@@ -240,26 +241,25 @@ nlohmann::json to_json(const RowJob& job) {
           {"repeats", job.repeats},         {"time_limit", job.time_limit}};
 }
 
-RowJob job_from(const nlohmann::json& json) {
+RowJob job_from(const Json& json) {
   RowJob job;
-  job.scene.file = json.at("scene");
-  job.scene.overrides = json.at("overrides").get<std::vector<std::string>>();
-  job.scene.duration = json.at("duration");
-  job.scene.input = json.at("input");
-  job.variables = json.at("variables").get<std::vector<std::string>>();
-  job.kind = json.at("is_reference").get<bool>() ? RunKind::reference : RunKind::row;
-  job.row_step = json.at("row_step");
-  job.samples = json.at("samples");
-  job.repeats = json.at("repeats");
-  job.time_limit = json.at("time_limit");
+  job.scene.file = json.at("scene").text();
+  job.scene.overrides = json.at("overrides").texts();
+  job.scene.duration = json.at("duration").text();
+  job.scene.input = json.at("input").text();
+  job.variables = json.at("variables").texts();
+  job.kind = json.at("is_reference").boolean() ? RunKind::reference : RunKind::row;
+  job.row_step = json.at("row_step").number();
+  job.samples = json.at("samples").text();
+  job.repeats = static_cast<int>(json.at("repeats").integer());
+  job.time_limit = json.at("time_limit").number();
   return job;
 }
 
-nlohmann::json to_json(const RowResult& result) {
-  nlohmann::json errors = nlohmann::json::array();
+Json to_json(const RowResult& result) {
+  Json errors = Json::array();
   for (const std::optional<VariableError>& error : result.errors) {
-    errors.push_back(error ? nlohmann::json{{"largest", number(error->largest)}, {"rms", number(error->rms)}}
-                           : nlohmann::json());
+    errors.push_back(error ? Json{{"largest", number(error->largest)}, {"rms", number(error->rms)}} : Json());
   }
   return {{"refusal", result.refusal},
           {"failure", result.failure},
@@ -275,12 +275,12 @@ nlohmann::json to_json(const RowResult& result) {
           {"high", result.high}};
 }
 
-RowResult result_from(const nlohmann::json& json) {
+RowResult result_from(const Json& json) {
   RowResult result;
-  result.refusal = json.at("refusal");
-  result.failure = json.at("failure");
-  result.failed_at = json.at("failed_at");
-  for (const nlohmann::json& error : json.at("errors")) {
+  result.refusal = json.at("refusal").text();
+  result.failure = json.at("failure").text();
+  result.failed_at = json.at("failed_at").number();
+  for (const Json& error : json.at("errors").items()) {
     if (error.is_null()) {
       result.errors.emplace_back();
       continue;
@@ -291,15 +291,15 @@ RowResult result_from(const nlohmann::json& json) {
   }
   result.eta = optional_number(json.at("eta"));
   result.net = optional_number(json.at("net"));
-  result.gap = json.at("gap");
-  result.open_joint = json.at("open_joint");
-  result.not_converged = json.at("not_converged");
-  const nlohmann::json& cost = json.at("cost");
-  result.cost = {cost.at("median"), cost.at("mean"), cost.at("worst")};
-  const auto numbers = [](const nlohmann::json& list) {
+  result.gap = json.at("gap").number();
+  result.open_joint = json.at("open_joint").text();
+  result.not_converged = json.at("not_converged").integer();
+  const Json& cost = json.at("cost");
+  result.cost = {cost.at("median").number(), cost.at("mean").number(), cost.at("worst").number()};
+  const auto numbers = [](const Json& list) {
     std::vector<double> values;
-    for (const nlohmann::json& one : list) {
-      values.push_back(one.is_number() ? one.get<double>() : std::numeric_limits<double>::quiet_NaN());
+    for (const Json& one : list.items()) {
+      values.push_back(one.is_number() ? one.number() : std::numeric_limits<double>::quiet_NaN());
     }
     return values;
   };

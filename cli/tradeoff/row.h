@@ -8,13 +8,13 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/comparison/observation.h"
 #include "cli_support/scene_options.h"
+#include "core/json.h"
 
 namespace slew::cli {
 
@@ -63,10 +63,10 @@ struct RowResult {
 // Runs it; wrong input and failures become refusal and failure. Throws Failure for files alone.
 [[nodiscard]] RowResult compute(const RowJob& job);
 
-[[nodiscard]] nlohmann::json to_json(const RowJob& job);
-[[nodiscard]] RowJob job_from(const nlohmann::json& json);
-[[nodiscard]] nlohmann::json to_json(const RowResult& result);
-[[nodiscard]] RowResult result_from(const nlohmann::json& json);
+[[nodiscard]] Json to_json(const RowJob& job);
+[[nodiscard]] RowJob job_from(const Json& json);
+[[nodiscard]] Json to_json(const RowResult& result);
+[[nodiscard]] RowResult result_from(const Json& json);
 
 // Median, mean and largest of the steps' times [ns], as a cost for steps of H.
 [[nodiscard]] StepCost cost_of(std::vector<std::int64_t> step_ns, SimDuration H);

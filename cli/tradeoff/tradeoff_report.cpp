@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli/display.h"
 #include "cli/plotting/html_text.h"
 #include "cli/plotting/svg_text.h"
+#include "core/json.h"
 
 namespace slew::cli {
 namespace {
@@ -60,19 +60,19 @@ Cells cells_of(const Tradeoff& tradeoff, std::size_t index) {
   return cells;
 }
 
-nlohmann::json json_number(std::optional<double> value) {
-  return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json();
+Json json_number(std::optional<double> value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json();
 }
 
-nlohmann::json json_of(const Tradeoff& tradeoff, const TradeoffRow& row) {
-  nlohmann::json settings = nlohmann::json::object();
+Json json_of(const Tradeoff& tradeoff, const TradeoffRow& row) {
+  Json settings = Json::object();
   for (const auto& [path, value] : row.settings) settings[path] = value;
-  nlohmann::json json = {{"settings", settings},          {"label", text_of(row.settings)}, {"is_done", row.is_done},
-                         {"is_stable", row.is_stable()},  {"is_pareto", row.is_pareto},     {"verdict", verdict(row)},
-                         {"refusal", row.result.refusal}, {"failure", row.result.failure}};
+  Json json = {{"settings", settings},          {"label", text_of(row.settings)}, {"is_done", row.is_done},
+               {"is_stable", row.is_stable()},  {"is_pareto", row.is_pareto},     {"verdict", verdict(row)},
+               {"refusal", row.result.refusal}, {"failure", row.result.failure}};
   if (!row.has_run() || !row.result.failure.empty()) return json;
   const RowResult& result = row.result;
-  json["errors"] = nlohmann::json::object();
+  json["errors"] = Json::object();
   for (std::size_t v = 0; v < tradeoff.variables.size(); ++v) {
     if (v >= result.errors.size() || !result.errors[v]) continue;
     json["errors"][tradeoff.variables[v].name] = {
@@ -91,12 +91,12 @@ nlohmann::json json_of(const Tradeoff& tradeoff, const TradeoffRow& row) {
   return json;
 }
 
-nlohmann::json to_json(const Tradeoff& tradeoff, const std::optional<Answer>& answer) {
-  nlohmann::json json = {
-      {"scene", tradeoff.scene},         {"file", tradeoff.file},           {"until", tradeoff.until},
-      {"reference", tradeoff.reference}, {"folder", tradeoff.folder},       {"is_complete", tradeoff.is_complete()},
-      {"kept", tradeoff.kept},           {"axes", nlohmann::json::array()}, {"variables", nlohmann::json::array()},
-      {"rows", nlohmann::json::array()}};
+Json to_json(const Tradeoff& tradeoff, const std::optional<Answer>& answer) {
+  Json json = {{"scene", tradeoff.scene},    {"file", tradeoff.file},
+               {"until", tradeoff.until},    {"reference", tradeoff.reference},
+               {"folder", tradeoff.folder},  {"is_complete", tradeoff.is_complete()},
+               {"kept", tradeoff.kept},      {"axes", Json::array()},
+               {"variables", Json::array()}, {"rows", Json::array()}};
   for (const Axis& axis : tradeoff.axes) json["axes"].push_back({{"path", axis.path}, {"values", axis.values}});
   for (const TradeoffVariable& variable : tradeoff.variables) {
     json["variables"].push_back({{"name", variable.name},
@@ -107,7 +107,7 @@ nlohmann::json to_json(const Tradeoff& tradeoff, const std::optional<Answer>& an
   for (const TradeoffRow& row : tradeoff.rows) json["rows"].push_back(json_of(tradeoff, row));
   if (answer) {
     json["answer"] = {{"text", answer_text(tradeoff, *answer)},
-                      {"row", answer->row ? nlohmann::json(*answer->row) : nlohmann::json()},
+                      {"row", answer->row ? Json(*answer->row) : Json()},
                       {"overlay", answer->overlay}};
   }
   return json;

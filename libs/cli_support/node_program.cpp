@@ -9,7 +9,6 @@
 #include "core/failure.h"
 #include "core/file_size_limit.h"
 #include "core/real_time_thread.h"
-#include "core/suggestion.h"
 #include "node/driver.h"
 #include "node/identity.h"
 #include "scene/diagnostic.h"
@@ -33,24 +32,11 @@ bool check_processor(const std::string& program) noexcept {
   return false;
 }
 
-// A word where a verb should stand is the likelier mistake than a verb that is missing.
-std::string what_is_wrong(const CLI::App& used, const CLI::ParseError& error) {
-  const std::vector<const CLI::App*> verbs = used.get_subcommands([](const CLI::App*) { return true; });
-  const std::vector<std::string> rest = used.remaining();
-  if (verbs.empty() || rest.empty()) return error.what();
-  std::vector<std::string_view> names;
-  for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
-  const std::string meant = closest(rest.front(), names);
-  return "there is no '" + rest.front() + "' here" + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
-}
-
 // files, memory and threads, of the process or of the machine
 bool is_of_resources(const std::error_code& code) {
   return code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system ||
          code == std::errc::not_enough_memory || code == std::errc::resource_unavailable_try_again;
 }
-
-}  // namespace
 
 int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept {
   let_writes_fail_at_the_size_limit();
@@ -79,35 +65,15 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
   }
 }
 
-bool parse(CLI::App& app, int argc, char** argv, int& exit_code) {
-  if (!check_processor(app.get_name())) {
-    exit_code = static_cast<int>(ExitCode::resources);
-    return false;
-  }
-  try {
-    app.parse(argc, argv);
-    return true;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
-      exit_code = app.exit(error);
-      return false;
-    }
-    // the verb that was being parsed knows its own help
-    std::string verb = app.get_name();
-    const CLI::App* used = &app;
-    while (!used->get_subcommands().empty()) {
-      used = used->get_subcommands().front();
-      verb += ' ' + used->get_name();
-    }
-    std::fprintf(stderr, "%s: %s; nothing was done; see '%s --help'\n", app.get_name().c_str(),
-                 what_is_wrong(*used, error).c_str(), verb.c_str());
-    exit_code = static_cast<int>(ExitCode::bad_input);
-    return false;
-  }
-}
+}  // namespace
 
-void add_version(CLI::App& app) {
-  app.set_version_flag("--version", app.get_name() + " " + node::build_id(), "print version and build");
+int run_program(options::Program& program, int argc, const char* const* argv) noexcept {
+  const std::string& name = program.name();
+  if (!check_processor(name)) return static_cast<int>(ExitCode::resources);
+  program.version(name + " " + node::build_id());
+  int exit_code = 0;
+  if (!program.parse(argc, argv, exit_code)) return exit_code;
+  return guarded(name, [&program] { return program.run(); });
 }
 
 void apply_real_time(const NodeOptions& options, const std::string& program) {

@@ -1,7 +1,6 @@
 // The frame of every main: processor check, command line, signals, and where exceptions end.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,20 +8,15 @@
 #include "cli_support/session_options.h"
 #include "core/status.h"
 #include "node/node.h"
+#include "options/options.h"
 
 namespace slew::cli_support {
 
-// Runs `body` and turns what it throws into one line on standard error and an exit code.
-// Failure: its own code; a scene's LoadError: bad_input; no memory: resources; anything else: failed.
-// A file at its size limit is a failed write to the body and no signal (core/file_size_limit.h).
-[[nodiscard]] int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept;
-
-// Parses; true when the program goes on. Otherwise `exit_code` is 0 (help, version) or bad_input, or resources on a
-// processor that this build is not for.
-[[nodiscard]] bool parse(CLI::App& app, int argc, char** argv, int& exit_code);
-
-// --version of every program: name and build id.
-void add_version(CLI::App& app);
+// Checks the processor, adds --version, parses, and runs the program's action: all that a main does. What the action
+// throws becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError: bad_input; no
+// memory, or a processor that this build is not for: resources; anything else: failed. A file at its size limit is a
+// failed write to the action and no signal (core/file_size_limit.h).
+[[nodiscard]] int run_program(options::Program& program, int argc, const char* const* argv) noexcept;
 
 // Processor and real-time scheduling as asked for; refused permission is a warning with the remedy on standard error, a
 // processor that is not there a Failure.

@@ -49,37 +49,35 @@ void replace_script(scene::Scene& scene, const std::string& file) {
 
 }  // namespace
 
-void add_scene_options(CLI::App& app, SceneOptions& options) {
-  app.add_option("scene", options.file, "scene file")->type_name("SCENE");
-  app.add_option("--from", options.from,
+void add_scene_options(options::Command& app, SceneOptions& options) {
+  const options::Option file = app.option("scene", options.file, "scene file").value_name("SCENE");
+  const options::Option from =
+      app.option("--from", options.from,
                  "go on with a saved session ('slewring control save') in the place of a scene; --set then changes "
                  "live parameters and who moves an input (controller, supervisor)")
-      ->type_name("FILE")
-      ->group("Scene");
-  app.add_option("--assets", options.assets, "with --from: folder with the scene's files; without it this one")
-      ->type_name("DIR")
-      ->group("Scene");
-  app.parse_complete_callback([&options] {
-    if (options.file.empty() && options.from.empty()) throw CLI::RequiredError("scene");
-    if (!options.file.empty() && !options.from.empty()) throw CLI::ExcludesError("--from", "scene");
-  });
-  app.add_option("--set", options.overrides, "change a value of the scene; repeat for more")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false)
-      ->group("Scene");
-  app.add_option("--step", options.step, "communication step H, such as '1 ms'")->type_name("TIME")->group("Scene");
-  app.add_option("--duration", options.duration, "length of the run, such as '20 s'; 0: until it is stopped")
-      ->type_name("TIME")
-      ->group("Scene");
-  app.add_option("--pace", options.pace, "real: by the wall clock; free: as fast as possible")
-      ->check(CLI::IsMember({"real", "free"}))
-      ->type_name("PACE")
-      ->group("Scene");
-  app.add_option("--input", options.input, "script (the scene's own), none, keyboard, or a .csv or .yaml file")
-      ->type_name("SOURCE")
-      ->capture_default_str()
-      ->group("Scene");
-  app.add_flag("--record,!--no-record", options.is_recording, "write a recording (default)")->group("Scene");
+          .value_name("FILE")
+          .group("Scene");
+  app.option("--assets", options.assets, "with --from: folder with the scene's files; without it this one")
+      .value_name("DIR")
+      .group("Scene");
+  app.require_one_of(file, from);
+  app.option("--set", options.overrides, "change a value of the scene; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each()
+      .group("Scene");
+  app.option("--step", options.step, "communication step H, such as '1 ms'").value_name("TIME").group("Scene");
+  app.option("--duration", options.duration, "length of the run, such as '20 s'; 0: until it is stopped")
+      .value_name("TIME")
+      .group("Scene");
+  app.option("--pace", options.pace, "real: by the wall clock; free: as fast as possible")
+      .one_of({"real", "free"})
+      .value_name("PACE")
+      .group("Scene");
+  app.option("--input", options.input, "script (the scene's own), none, keyboard, or a .csv or .yaml file")
+      .value_name("SOURCE")
+      .show_default()
+      .group("Scene");
+  app.flag("--record,!--no-record", options.is_recording, "write a recording (default)").group("Scene");
 }
 
 namespace {

@@ -1,10 +1,10 @@
 // Which scene a session runs and with what changes: the options that `slewring run` and io_node share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "options/options.h"
 #include "scene/parameters.h"
 #include "scene/scene.h"
 
@@ -25,7 +25,7 @@ struct SceneOptions {
 };
 
 // SCENE or --from FILE and --assets, --set, --step, --duration, --pace, --input, --record, --no-record.
-void add_scene_options(CLI::App& app, SceneOptions& options);
+void add_scene_options(options::Command& app, SceneOptions& options);
 
 // The scene with every option applied: step, pace, duration and the input file become part of its text. Throws
 // scene::LoadError.

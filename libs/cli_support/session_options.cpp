@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "cli_support/number_range.h"
 #include "transport/cyclone_domain.h"
 #include "transport/wire.h"
 
@@ -34,94 +33,93 @@ std::string session_name_of(const std::string& scene) {
   return name.empty() ? "session" : name;
 }
 
-void add_network_options(CLI::App& app, SessionOptions& options) {
-  app.add_option("--domain", options.domain, "DDS domain; sessions of different domains do not see each other")
-      ->check(CLI::Range(0u, transport::kMaxDomain))
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Network");
-  app.add_option("--interface", options.interface,
-                 "network interface to send on; 'lo' keeps everything on this machine")
-      ->type_name("IF")
-      ->capture_default_str()
-      ->group("Network");
-  app.add_option("--peer", options.peers, "address of another machine of the session; repeat or separate by commas")
-      ->type_name("ADDR")
-      ->allow_extra_args(false)
-      ->delimiter(',')
-      ->group("Network");
-  CLI::Option* keys =
-      app.add_option("--keys", options.keys,
-                     "key store (slewring keys): only who holds its keys takes part, and nobody else can "
-                     "read what is said")
-          ->type_name("DIR")
-          ->group("Network");
-  app.add_option("--identity", options.identity, "which of its keys to use; without it those of the role")
-      ->type_name("NAME")
-      ->needs(keys)
-      ->group("Network");
-  app.add_flag("--insecure-lan", options.is_insecure_lan,
-               "send beyond this machine without keys: whoever is on that network can read and steer the session")
-      ->excludes(keys)
-      ->group("Network");
+void add_network_options(options::Command& app, SessionOptions& options) {
+  app.option("--domain", options.domain, "DDS domain; sessions of different domains do not see each other")
+      .between(0u, transport::kMaxDomain)
+      .value_name("N")
+      .show_default()
+      .group("Network");
+  app.option("--interface", options.interface, "network interface to send on; 'lo' keeps everything on this machine")
+      .value_name("IF")
+      .show_default()
+      .group("Network");
+  app.option("--peer", options.peers, "address of another machine of the session; repeat or separate by commas")
+      .value_name("ADDR")
+      .one_value_each()
+      .comma_separated()
+      .group("Network");
+  options::Option keys =
+      app.option("--keys", options.keys,
+                 "key store (slewring keys): only who holds its keys takes part, and nobody else can "
+                 "read what is said")
+          .value_name("DIR")
+          .group("Network");
+  app.option("--identity", options.identity, "which of its keys to use; without it those of the role")
+      .value_name("NAME")
+      .needs(keys)
+      .group("Network");
+  app.flag("--insecure-lan", options.is_insecure_lan,
+           "send beyond this machine without keys: whoever is on that network can read and steer the session")
+      .excludes(keys)
+      .group("Network");
 }
 
-void add_session_options(CLI::App& app, SessionOptions& options, bool is_required) {
-  CLI::Option* session = app.add_option("--session", options.session, "name of the session")
-                             ->type_name("NAME")
-                             ->check(CLI::Validator(problem_of_session_name, "", "session name"))
-                             ->group("Session");
-  if (is_required) session->required();
+void add_session_options(options::Command& app, SessionOptions& options, bool is_required) {
+  options::Option session = app.option("--session", options.session, "name of the session")
+                                .value_name("NAME")
+                                .check(problem_of_session_name, "session name")
+                                .group("Session");
+  if (is_required) session.required();
   add_network_options(app, options);
 }
 
-void add_node_options(CLI::App& app, NodeOptions& options) {
+void add_node_options(options::Command& app, NodeOptions& options) {
   add_session_options(app, options.session, true);
-  app.add_flag("--rt", options.is_real_time, "real-time scheduling (SCHED_FIFO) and locked memory")->group("Real time");
-  app.add_option("--priority", options.priority, "its priority")
-      ->check(CLI::Range(1, 99))
-      ->type_name("N")
-      ->capture_default_str()
-      ->group("Real time");
-  app.add_option("--cpu", options.cpu, "processor to run on, from 0; without it any")
-      ->check(CLI::Range(0, 1023))
-      ->type_name("N")
-      ->group("Real time");
+  app.flag("--rt", options.is_real_time, "real-time scheduling (SCHED_FIFO) and locked memory").group("Real time");
+  app.option("--priority", options.priority, "its priority")
+      .between(1, 99)
+      .value_name("N")
+      .show_default()
+      .group("Real time");
+  app.option("--cpu", options.cpu, "processor to run on, from 0; without it any")
+      .between(0, 1023)
+      .value_name("N")
+      .group("Real time");
 }
 
-void add_join_timeout(CLI::App& app, NodeOptions& options) {
-  app.add_option("--join-timeout", options.join_timeout,
-                 "seconds to wait for the other nodes of the session; of io for lockstep controllers too")
-      ->check(number_range(kShortestJoin, kLongestJoin))
-      ->type_name("S")
-      ->capture_default_str()
-      ->group("Session");
+void add_join_timeout(options::Command& app, NodeOptions& options) {
+  app.option("--join-timeout", options.join_timeout,
+             "seconds to wait for the other nodes of the session; of io for lockstep controllers too")
+      .between(kShortestJoin, kLongestJoin)
+      .value_name("S")
+      .show_default()
+      .group("Session");
 }
 
-void add_finding_options(CLI::App& app, NodeOptions& options) {
-  app.add_option("--session-timeout", options.session_timeout, "seconds to wait for the session")
-      ->check(number_range(0.1, 86400.0))
-      ->type_name("S")
-      ->capture_default_str()
-      ->group("Session");
-  app.add_option("--session-id", options.session_id, "take part in the session of this id only, whatever has its name")
-      ->check(CLI::Validator(problem_of_session_id, "", "session id"))
-      ->type_name("HEX")
-      ->group("Session");
+void add_finding_options(options::Command& app, NodeOptions& options) {
+  app.option("--session-timeout", options.session_timeout, "seconds to wait for the session")
+      .between(0.1, 86400.0)
+      .value_name("S")
+      .show_default()
+      .group("Session");
+  app.option("--session-id", options.session_id, "take part in the session of this id only, whatever has its name")
+      .check(problem_of_session_id, "session id")
+      .value_name("HEX")
+      .group("Session");
 }
 
-void add_physics_node_options(CLI::App& app, NodeOptions& options) {
+void add_physics_node_options(options::Command& app, NodeOptions& options) {
   add_node_options(app, options);
   add_finding_options(app, options);
   add_join_timeout(app, options);
-  app.add_option("--assets", options.assets, "folder with the scene's files (meshes, tables)")
-      ->type_name("DIR")
-      ->capture_default_str();
-  app.add_option("--add-work", options.added_work_us,
-                 "CPU time that every step burns beside its own, to see what the machine bears")
-      ->check(number_range(0.0, 1e6))
-      ->type_name("US")
-      ->group("Real time");
+  app.option("--assets", options.assets, "folder with the scene's files (meshes, tables)")
+      .value_name("DIR")
+      .show_default();
+  app.option("--add-work", options.added_work_us,
+             "CPU time that every step burns beside its own, to see what the machine bears")
+      .between(0.0, 1e6)
+      .value_name("US")
+      .group("Real time");
 }
 
 node::JoinOptions NodeOptions::join() const {

@@ -1,12 +1,12 @@
 // How a program finds its session: what every node and every verb that talks to one takes on its command line.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "node/session_member.h"
+#include "options/options.h"
 
 namespace slew::cli_support {
 
@@ -40,19 +40,19 @@ struct NodeOptions {
 };
 
 // --domain, --interface, --peer, --keys, --identity, --insecure-lan.
-void add_network_options(CLI::App& app, SessionOptions& options);
+void add_network_options(options::Command& app, SessionOptions& options);
 // --session and the network; a session is named or the verb takes its scene's name.
-void add_session_options(CLI::App& app, SessionOptions& options, bool is_required);
+void add_session_options(options::Command& app, SessionOptions& options, bool is_required);
 // The above and --rt, --priority, --cpu: every node.
-void add_node_options(CLI::App& app, NodeOptions& options);
+void add_node_options(options::Command& app, NodeOptions& options);
 // Range of --join-timeout.
 inline constexpr double kShortestJoin = 0.1, kLongestJoin = 86400;  // s
 // --join-timeout: a node that waits for others.
-void add_join_timeout(CLI::App& app, NodeOptions& options);
+void add_join_timeout(options::Command& app, NodeOptions& options);
 // --session-timeout, --session-id: a node that looks for its session.
-void add_finding_options(CLI::App& app, NodeOptions& options);
+void add_finding_options(options::Command& app, NodeOptions& options);
 // All of these, --assets and --add-work.
-void add_physics_node_options(CLI::App& app, NodeOptions& options);
+void add_physics_node_options(options::Command& app, NodeOptions& options);
 
 // The same as command-line arguments, for a child process.
 [[nodiscard]] std::vector<std::string> network_arguments(const SessionOptions& options);

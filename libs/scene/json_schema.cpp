@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/json.h"
 #include "flex/field_tables.h"
 #include "scene/defs.h"
 #include "scene/field_reader.h"
@@ -15,8 +15,6 @@
 
 namespace slew::scene {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // a number, then a unit
 constexpr const char* kQuantityPattern =
@@ -30,18 +28,22 @@ Json bounded(Json schema, const Range& range) {
 }
 
 Json quantity(const Range& range) {
-  return {{"anyOf", {bounded({{"type", "number"}}, range), {{"type", "string"}, {"pattern", kQuantityPattern}}}}};
+  const Json text = {{"type", "string"}, {"pattern", kQuantityPattern}};
+  return {{"anyOf", Json::array({bounded({{"type", "number"}}, range), text})}};
 }
 
 Json list_of(Json items, int length) {
   Json list = {{"type", "array"}, {"items", std::move(items)}};
-  if (length > 0) list["minItems"] = list["maxItems"] = length;
+  if (length > 0) {
+    list["maxItems"] = length;
+    list["minItems"] = length;
+  }
   return list;
 }
 
 Json point(const Field& field) {
   Json pair = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}};
-  pair["prefixItems"] = {quantity(Range{}), quantity(field.range)};
+  pair["prefixItems"] = Json::array({quantity(Range{}), quantity(field.range)});
   return pair;
 }
 
@@ -62,14 +64,15 @@ Json type_of(const Field& field) {
     case FieldType::table: {
       Json table = list_of(point(field), 0);
       table["minItems"] = 1;
-      return {{"anyOf", {std::move(table), {{"type", "string"}, {"pattern", "\\.csv$"}}}}};
+      const Json file = {{"type", "string"}, {"pattern", "\\.csv$"}};
+      return {{"anyOf", Json::array({std::move(table), file})}};
     }
     case FieldType::numbers:
       return list_of(quantity(field.range), 0);
     case FieldType::texts:
       return list_of({{"type", "string"}}, 0);
     case FieldType::choice:
-      return {{"enum", std::vector<std::string>(field.choices.begin(), field.choices.end())}};
+      return {{"enum", field.choices}};
   }
   return {};
 }
@@ -98,7 +101,7 @@ Json object_of(std::span<const Field> fields, std::string_view doc, std::string_
     properties[std::string(field.key)] = property(field);
     if (field.presence == Presence::required) required.push_back(std::string(field.key));
   }
-  if (!required.empty()) schema["required"] = std::move(required);
+  if (!required.items().empty()) schema["required"] = std::move(required);
   return schema;
 }
 
@@ -109,7 +112,8 @@ Json mesh_body(const ElementTable& table) {
   Json schema = object_of(fields, "rigid body, inertia from a closed mesh", table.type, table.is_default);
   schema["properties"]["inertia"] = {{"const", std::string(kFromMesh)}};
   schema["required"].push_back("inertia");
-  schema["oneOf"] = {{{"required", {"density"}}}, {{"required", {"mass"}}}};
+  const Json density = {{"required", Json::array({"density"})}}, mass = {{"required", Json::array({"mass"})}};
+  schema["oneOf"] = Json::array({density, mass});
   return schema;
 }
 
@@ -138,7 +142,7 @@ Json elements_of(std::string_view section) {
                                 : object_of(table.fields, table.doc, table.type, table.is_default));
     if (section == "bodies" && table.is_default) types.push_back(mesh_body(table));
   }
-  Json element = types.size() == 1 ? types[0] : Json{{"oneOf", types}};
+  Json element = types.items().size() == 1 ? types.items().front() : Json{{"oneOf", types}};
   return {{"type", "object"},
           {"propertyNames", {{"pattern", kNamePattern}, {"maxLength", kMaxNameLength}}},
           {"additionalProperties", std::move(element)}};
@@ -183,7 +187,8 @@ std::string flexible_json_schema() {
   schema["title"] = "Slewring flexible body";
   const Json text = {{"type", "string"}};
   Json& properties = schema["properties"];
-  properties["include"] = {{"anyOf", {text, list_of(text, 0)}}, {"description", "files that this one is laid over"}};
+  properties["include"] = {{"anyOf", Json::array({text, list_of(text, 0)})},
+                           {"description", "files that this one is laid over"}};
   properties["materials"] = named(object_of(flex::material_fields(), "material", ""));
   properties["sections"] = named(flexible_section());
   properties["line"] = object_of(flex::line_fields(), "nodes 1, 2, ... at equal distances", "");
@@ -195,7 +200,7 @@ std::string flexible_json_schema() {
   properties["reduction"] = object_of(flex::reduction_fields(), "how the body is reduced", "");
   // with an include the names may stand there
   schema.erase("required");
-  return schema.dump(2) + "\n";
+  return schema.dump(2, Json::Order::as_put) + "\n";
 }
 
 std::string json_schema() {
@@ -209,7 +214,7 @@ std::string json_schema() {
   for (const std::string_view key : top_level_keys()) properties[std::string(key)] = Json::object();
   properties["scene"] = {{"type", "string"}, {"description", "name of the scene"}};
   properties["description"] = {{"type", "string"}, {"description", "what the scene shows"}};
-  properties["include"] = {{"anyOf", {text, texts}}, {"description", "files that this one is laid over"}};
+  properties["include"] = {{"anyOf", Json::array({text, texts})}, {"description", "files that this one is laid over"}};
   properties["assets"] = list_of(text, 0);
   properties["assets"]["description"] = "files that every machine of a session must have alike";
   properties["script"] = script();
@@ -217,7 +222,7 @@ std::string json_schema() {
     properties[std::string(table.section)] = object_of(table.fields, table.doc, "");
   }
   for (const std::string_view section : element_sections()) properties[std::string(section)] = elements_of(section);
-  return schema.dump(2) + "\n";
+  return schema.dump(2, Json::Order::as_put) + "\n";
 }
 
 }  // namespace slew::scene

@@ -5,7 +5,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -117,12 +116,10 @@ TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
   options_.overrides = {"Bag.mass=750 kg"};
   options_.duration = "5 s";
   options_.is_recording = false;
-  CLI::App app;
+  options::Program program("child", "");
   SceneOptions parsed;
-  add_scene_options(app, parsed);
-  std::vector<std::string> arguments = scene_arguments(options_);
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants a vector
-  app.parse(arguments);
+  add_scene_options(program, parsed);
+  program.parse(scene_arguments(options_));
   EXPECT_FALSE(parsed.is_recording);
   EXPECT_EQ(load_scene(parsed).expanded_text, load_scene(options_).expanded_text);
 }

@@ -163,7 +163,7 @@ TEST(RowResult, AndJobComeBackFromJson) {
   result.cost = {1, 2, 3};
   result.low = {-1, 0};
   result.high = {1, 2};
-  EXPECT_EQ(result_from(nlohmann::json::parse(to_json(result).dump())), result);
+  EXPECT_EQ(result_from(Json::parse(to_json(result).dump()).value()), result);
   RowJob job;
   job.scene.file = "a.yaml";
   job.scene.overrides = {"session.step=2ms"};
