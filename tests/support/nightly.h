@@ -49,4 +49,13 @@ struct SeedRange {
          " --gtest_filter=" + test->test_suite_name() + "." + test->name();
 }
 
+// A claim of each seed. An assertion that ends it for one seed leaves the others.
+template <typename Claim>
+void for_each_seed(const std::vector<std::uint32_t>& seeds, Claim claim) {
+  for (const std::uint32_t seed : seeds) {
+    SCOPED_TRACE(seed_text(seed));
+    claim(seed);
+  }
+}
+
 }  // namespace slew::testing

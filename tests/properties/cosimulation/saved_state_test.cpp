@@ -117,8 +117,10 @@ TEST_P(EveryWay, GoesOn) {
   expect_goes_on(scene, drive, length.at, length.at + rounds<StepIndex>(length.steps, 1000));
 }
 
-TEST_P(EveryWay, GoesOnWithAllItsLiveParametersUnderWay) {
-  if (rounds(0, 1) == 0) GTEST_SKIP() << "with SLEWRING_NIGHTLY";
+// every scene under its own way does so in the gate
+class EveryWayWithChanges : public ::testing::TestWithParam<Way> {};
+
+TEST_P(EveryWayWithChanges, GoesOnWithAllItsLiveParametersUnderWay) {
   const scene::Scene scene = load(GetParam().file, GetParam().overrides);
   Drive drive = drive_of(GetParam());
   drive.changes = small_changes(scene);
@@ -130,57 +132,70 @@ constexpr const char* kCrane = "truck_crane.yaml";
 const std::string kFloor = "Ground_Mesh.position=[0, 0.936 m, 0]";
 const std::string kTable13 = "hydraulics.start=table13";
 
-INSTANTIATE_TEST_SUITE_P(
-    Crane, EveryWay,
-    ::testing::Values(
-        Way{"lagrange", kCrane, {"mechanics.formulation=lagrange"}},
-        Way{"augmented", kCrane, {"mechanics.formulation=augmented"}},
-        Way{"penalty", kCrane, {"mechanics.formulation=penalty"}},
-        Way{"euler", kCrane, {"mechanics.integrator=semi_implicit_euler"}},
-        Way{"trapezoidal", kCrane, {"mechanics.integrator=trapezoidal"}},
-        Way{"generalised_alpha", kCrane, {"mechanics.integrator=generalised_alpha"}},
-        Way{"sdirk2", kCrane, {"mechanics.integrator=sdirk2"}},
-        Way{"lagrange_euler", kCrane, {"mechanics.formulation=lagrange", "mechanics.integrator=semi_implicit_euler"}},
-        Way{"lagrange_alpha", kCrane, {"mechanics.formulation=lagrange", "mechanics.integrator=generalised_alpha"}},
-        Way{"lagrange_sdirk2", kCrane, {"mechanics.formulation=lagrange", "mechanics.integrator=sdirk2"}},
-        Way{"hold", kCrane, {"session.coupling=hold"}}, Way{"linear", kCrane, {"session.coupling=linear"}},
-        Way{"tlm", kCrane, {"session.coupling=tlm"}},
-        Way{"mixed_levels", kCrane, {"Cyl_Lift.coupling=tlm", "Cyl_Jib.coupling=linear"}},
-        Way{"every_fourth", kCrane, {"session.exchange_every=4"}, {101, 100}},
-        Way{"every_fourth_of_lines", kCrane, {"session.exchange_every=4", "session.coupling=linear"}, {102, 100}},
-        Way{"rk4", kCrane, {"hydraulics.solver=rk4", "hydraulics.max_substep=2 us"}, {40, 20}},
-        Way{"implicit_euler", kCrane, {"hydraulics.solver=implicit_euler"}},
-        Way{"quasi_static", kCrane, {"hydraulics.quasi_static_above=2000"}},
-        Way{"from_one_bar", kCrane, {kTable13}, {20, 100}}, Way{"touching", kCrane, {kFloor}, {300, 60}, true},
-        Way{"touching_lagrange", kCrane, {kFloor, "mechanics.formulation=lagrange"}, {300, 60}, true},
-        Way{"touching_augmented", kCrane, {kFloor, "mechanics.formulation=augmented"}, {300, 30}, true},
-        Way{"touching_trapezoidal", kCrane, {kFloor, "mechanics.integrator=trapezoidal"}, {300, 30}, true}),
-    [](const auto& test) { return std::string(test.param.name); });
-
 constexpr const char* kFlexible = "truck_crane_flexible.yaml";
 
-INSTANTIATE_TEST_SUITE_P(
-    Flexible, EveryWay,
-    ::testing::Values(Way{"every_step", kFlexible, {"session.flexible=every_step"}, {60, 40}},
-                      Way{"condensed",
-                          kFlexible,
-                          {"session.flexible=condensed", "mechanics.integrator=trapezoidal",
-                           "mechanics.max_substep=1 ms"},
-                          {60, 40}},
-                      Way{"lagrange", kFlexible, {"mechanics.formulation=lagrange"}, {40, 20}},
-                      Way{"augmented", kFlexible, {"mechanics.formulation=augmented"}, {40, 20}},
-                      Way{"alpha", kFlexible, {"mechanics.integrator=generalised_alpha"}, {60, 40}}),
-    [](const auto& test) { return std::string(test.param.name); });
+// in the gate one way for each part of the state: each formulation, integrator with memory, coupling and solver
+const std::vector<Way> kCraneWays = {
+    {"lagrange", kCrane, {"mechanics.formulation=lagrange"}},
+    {"augmented", kCrane, {"mechanics.formulation=augmented"}},
+    {"penalty", kCrane, {"mechanics.formulation=penalty"}},
+    {"generalised_alpha", kCrane, {"mechanics.integrator=generalised_alpha"}},
+    {"hold", kCrane, {"session.coupling=hold"}},
+    {"mixed_levels", kCrane, {"Cyl_Lift.coupling=tlm", "Cyl_Jib.coupling=linear"}},
+    {"every_fourth", kCrane, {"session.exchange_every=4"}, {101, 100}},
+    {"rk4", kCrane, {"hydraulics.solver=rk4", "hydraulics.max_substep=2 us"}, {40, 20}},
+    {"implicit_euler", kCrane, {"hydraulics.solver=implicit_euler"}},
+    {"quasi_static", kCrane, {"hydraulics.quasi_static_above=2000"}},
+    {"from_one_bar", kCrane, {kTable13}, {20, 100}},
+    {"touching", kCrane, {kFloor}, {300, 60}, true},
+    {"touching_augmented", kCrane, {kFloor, "mechanics.formulation=augmented"}, {300, 30}, true}};
+const std::vector<Way> kMoreCraneWays = {
+    {"euler", kCrane, {"mechanics.integrator=semi_implicit_euler"}},
+    {"trapezoidal", kCrane, {"mechanics.integrator=trapezoidal"}},
+    {"sdirk2", kCrane, {"mechanics.integrator=sdirk2"}},
+    {"lagrange_euler", kCrane, {"mechanics.formulation=lagrange", "mechanics.integrator=semi_implicit_euler"}},
+    {"lagrange_alpha", kCrane, {"mechanics.formulation=lagrange", "mechanics.integrator=generalised_alpha"}},
+    {"lagrange_sdirk2", kCrane, {"mechanics.formulation=lagrange", "mechanics.integrator=sdirk2"}},
+    {"linear", kCrane, {"session.coupling=linear"}},
+    {"tlm", kCrane, {"session.coupling=tlm"}},
+    {"every_fourth_of_lines", kCrane, {"session.exchange_every=4", "session.coupling=linear"}, {102, 100}},
+    {"touching_lagrange", kCrane, {kFloor, "mechanics.formulation=lagrange"}, {300, 60}, true},
+    {"touching_trapezoidal", kCrane, {kFloor, "mechanics.integrator=trapezoidal"}, {300, 30}, true}};
 
-INSTANTIATE_TEST_SUITE_P(
-    Loops, EveryWay,
-    ::testing::Values(Way{"four_bar_lagrange", "four_bar.yaml", {"mechanics.formulation=lagrange"}},
-                      Way{"slider_augmented", "slider_crank.yaml", {"mechanics.formulation=augmented"}},
-                      Way{"slider_penalty", "slider_crank.yaml", {"mechanics.formulation=penalty"}},
-                      Way{"slider_alpha", "slider_crank.yaml", {"mechanics.integrator=generalised_alpha"}},
-                      Way{"slider_sdirk2", "slider_crank.yaml", {"mechanics.integrator=sdirk2"}, {900, 300}},
-                      Way{"tipper_trapezoidal", "tipper.yaml", {"mechanics.integrator=trapezoidal"}}),
-    [](const auto& test) { return std::string(test.param.name); });
+const std::vector<Way> kFlexibleWays = {
+    {"every_step", kFlexible, {"session.flexible=every_step"}, {60, 40}},
+    {"condensed",
+     kFlexible,
+     {"session.flexible=condensed", "mechanics.integrator=trapezoidal", "mechanics.max_substep=1 ms"},
+     {60, 40}},
+    {"augmented", kFlexible, {"mechanics.formulation=augmented"}, {40, 20}}};
+const std::vector<Way> kMoreFlexibleWays = {{"lagrange", kFlexible, {"mechanics.formulation=lagrange"}, {40, 20}},
+                                            {"alpha", kFlexible, {"mechanics.integrator=generalised_alpha"}, {60, 40}}};
+
+const std::vector<Way> kLoopsWays = {{"four_bar_lagrange", "four_bar.yaml", {"mechanics.formulation=lagrange"}},
+                                     {"slider_penalty", "slider_crank.yaml", {"mechanics.formulation=penalty"}},
+                                     {"slider_alpha", "slider_crank.yaml", {"mechanics.integrator=generalised_alpha"}},
+                                     {"tipper_trapezoidal", "tipper.yaml", {"mechanics.integrator=trapezoidal"}}};
+const std::vector<Way> kMoreLoopsWays = {
+    {"slider_augmented", "slider_crank.yaml", {"mechanics.formulation=augmented"}},
+    {"slider_sdirk2", "slider_crank.yaml", {"mechanics.integrator=sdirk2"}, {900, 300}}};
+
+std::string name_of_way(const ::testing::TestParamInfo<Way>& test) {
+  return test.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Crane, EveryWay, ::testing::ValuesIn(kCraneWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(CraneNightly, EveryWay, ::testing::ValuesIn(kMoreCraneWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(CraneNightly, EveryWayWithChanges, ::testing::ValuesIn(kCraneWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(CraneMoreNightly, EveryWayWithChanges, ::testing::ValuesIn(kMoreCraneWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(Flexible, EveryWay, ::testing::ValuesIn(kFlexibleWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(FlexibleNightly, EveryWay, ::testing::ValuesIn(kMoreFlexibleWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(FlexibleNightly, EveryWayWithChanges, ::testing::ValuesIn(kFlexibleWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(FlexibleMoreNightly, EveryWayWithChanges, ::testing::ValuesIn(kMoreFlexibleWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(Loops, EveryWay, ::testing::ValuesIn(kLoopsWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(LoopsNightly, EveryWay, ::testing::ValuesIn(kMoreLoopsWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(LoopsNightly, EveryWayWithChanges, ::testing::ValuesIn(kLoopsWays), name_of_way);
+INSTANTIATE_TEST_SUITE_P(LoopsMoreNightly, EveryWayWithChanges, ::testing::ValuesIn(kMoreLoopsWays), name_of_way);
 
 // ---- samples that are late --------------------------------------------------------------------------------------
 

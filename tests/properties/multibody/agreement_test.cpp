@@ -4,12 +4,14 @@
 #include "multibody/dynamics.h"
 #include "tests/properties/multibody/assembled.h"
 #include "tests/properties/multibody/random_tree.h"
+#include "tests/support/nightly.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
 namespace {
 
 using namespace testing;
+using namespace slew::testing;
 
 // relative to the largest entry
 constexpr double kTolerance = 1e-9;
@@ -24,96 +26,105 @@ Real difference(const Vector& a, const Vector& b) {
   return (a - b).cwiseAbs().maxCoeff() / (1 + b.cwiseAbs().maxCoeff());
 }
 
-class RandomTrees : public ::testing::TestWithParam<unsigned> {
- protected:
-  RandomTree tree(const TreeOptions& options) const { return random_tree(GetParam(), options); }
-  TreeOptions options() const {
-    return with_modes_of(GetParam(), {.bodies = 1 + static_cast<int>(GetParam()) % 9, .two_coordinates = true});
-  }
-};
+const std::initializer_list<SeedRange> kRanges = {{1, 24}, {kFirstWithModes, 40}, {kFirstWithNodeDummies, 60}};
+const std::vector<std::uint32_t> kSeeds = seeds(kRanges);
+// half a second a seed for the rows: every row's derivatives by differences in long double
+constexpr std::uint32_t kGateSeedsOfRows = 3;
 
-TEST_P(RandomTrees, AccelerateAsTheAssembledEquationsSay) {
-  const RandomTree random = tree(options());
-  Mechanism mechanism(random.def, random.rows);
-  if (mechanism.model.degrees_of_freedom() == 0) GTEST_SKIP() << "all joints are fixed";
-  const Assembled reference(random.def, mechanism.model, random.points);
-  const State state = random_state(GetParam(), mechanism.model);
-  evaluate(mechanism.model, state, mechanism.ws);
-  const Vector q = to_vector(state.q), u = to_vector(state.u);
-  EXPECT_LT(difference(to_vector(mechanism.ws.udot_free), reference.accelerations(q, u)), kTolerance);
+TreeOptions options_of(std::uint32_t seed) {
+  return with_modes_of(seed, {.bodies = 1 + static_cast<int>(seed) % 9, .two_coordinates = true});
 }
 
-TEST_P(RandomTrees, RowsAgreeWithTheAssembledEquations) {
-  const RandomTree random = tree(options());
-  Mechanism mechanism(random.def, random.rows);
-  const auto rows = static_cast<Eigen::Index>(random.rows.size());
-  if (rows == 0) GTEST_SKIP() << "nothing to act on";
-  const Assembled reference(random.def, mechanism.model, random.points);
-  const State state = random_state(GetParam(), mechanism.model);
-  evaluate(mechanism.model, state, mechanism.ws);
-  const Vector q = to_vector(state.q), u = to_vector(state.u);
-  const Vector udot = reference.accelerations(q, u);
-  Matrix J(rows, u.size());
-  Vector a_free(rows), x(rows), v(rows);
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    const std::string& name = random.rows[static_cast<std::size_t>(k)];
-    const Vector row = reference.row_jacobian(name, q);
-    J.row(k) = row;
-    x[k] = reference.row_value(name, q);
-    v[k] = row.dot(u);
-    a_free[k] = row.dot(udot) + reference.row_bias(name, q, u);
-  }
-  const Matrix W = J * reference.mass_matrix(q).ldlt().solve(J.transpose());
-  EXPECT_LT(difference(to_vector(row_positions(mechanism.ws)), x), kTolerance);
-  EXPECT_LT(difference(to_vector(row_speeds(mechanism.ws)), v), kTolerance);
-  EXPECT_LT(difference(to_vector(row_free_accelerations(mechanism.ws)), a_free), kTolerance);
-  const Vector flat = Eigen::Map<const Vector>(W.data(), W.size());
-  EXPECT_LT(difference(to_vector(row_mobility(mechanism.ws)), flat), kTolerance);
+TEST(RandomTrees, AccelerateAsTheAssembledEquationsSay) {
+  for_each_seed(kSeeds, [](std::uint32_t seed) {
+    const RandomTree random = random_tree(seed, options_of(seed));
+    Mechanism mechanism(random.def, random.rows);
+    if (mechanism.model.degrees_of_freedom() == 0) return;  // all joints are fixed
+    const Assembled reference(random.def, mechanism.model, random.points);
+    const State state = random_state(seed, mechanism.model);
+    evaluate(mechanism.model, state, mechanism.ws);
+    const Vector q = to_vector(state.q), u = to_vector(state.u);
+    EXPECT_LT(difference(to_vector(mechanism.ws.udot_free), reference.accelerations(q, u)), kTolerance);
+  });
 }
 
-TEST_P(RandomTrees, RowForcesActAsTheirColumnsSay) {
-  const RandomTree random = tree(options());
-  Mechanism mechanism(random.def, random.rows);
-  const std::size_t rows = random.rows.size(), dof = mechanism.state.u.size();
-  if (rows == 0) GTEST_SKIP() << "nothing to act on";
-  const State state = random_state(GetParam(), mechanism.model);
-  std::vector<double> forces(rows);
-  for (std::size_t k = 0; k < rows; ++k) forces[k] = 3 - 2.0 * static_cast<double>(k);
-  evaluate(mechanism.model, state, mechanism.ws);
-  // by the sum of columns, by one combined solution, and with the forces inside the recursion
-  std::vector<double> by_columns = mechanism.ws.udot_free, combined(dof), column(dof);
-  for (std::size_t k = 0; k < rows; ++k) {
-    response_column(mechanism.model, mechanism.ws, static_cast<int>(k), column);
-    for (std::size_t j = 0; j < dof; ++j) by_columns[j] += column[j] * forces[k];
-  }
-  accelerations(mechanism.model, mechanism.ws, forces, combined);
-  forward_dynamics(mechanism.model, state.q, state.u, forces, mechanism.ws);
-  EXPECT_LT(difference(to_vector(by_columns), to_vector(mechanism.ws.udot)), kTolerance);
-  EXPECT_LT(difference(to_vector(combined), to_vector(mechanism.ws.udot)), kTolerance);
+TEST(RandomTrees, RowsAgreeWithTheAssembledEquations) {
+  for_each_seed(seeds(kRanges, kGateSeedsOfRows), [](std::uint32_t seed) {
+    const RandomTree random = random_tree(seed, options_of(seed));
+    Mechanism mechanism(random.def, random.rows);
+    const auto rows = static_cast<Eigen::Index>(random.rows.size());
+    if (rows == 0) return;  // nothing to act on
+    const Assembled reference(random.def, mechanism.model, random.points);
+    const State state = random_state(seed, mechanism.model);
+    evaluate(mechanism.model, state, mechanism.ws);
+    const Vector q = to_vector(state.q), u = to_vector(state.u);
+    const Vector udot = reference.accelerations(q, u);
+    Matrix J(rows, u.size());
+    Vector a_free(rows), x(rows), v(rows);
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      const std::string& name = random.rows[static_cast<std::size_t>(k)];
+      const Vector row = reference.row_jacobian(name, q);
+      J.row(k) = row;
+      x[k] = reference.row_value(name, q);
+      v[k] = row.dot(u);
+      a_free[k] = row.dot(udot) + reference.row_bias(name, q, u);
+    }
+    const Matrix W = J * reference.mass_matrix(q).ldlt().solve(J.transpose());
+    EXPECT_LT(difference(to_vector(row_positions(mechanism.ws)), x), kTolerance);
+    EXPECT_LT(difference(to_vector(row_speeds(mechanism.ws)), v), kTolerance);
+    EXPECT_LT(difference(to_vector(row_free_accelerations(mechanism.ws)), a_free), kTolerance);
+    const Vector flat = Eigen::Map<const Vector>(W.data(), W.size());
+    EXPECT_LT(difference(to_vector(row_mobility(mechanism.ws)), flat), kTolerance);
+  });
+}
+
+TEST(RandomTrees, RowForcesActAsTheirColumnsSay) {
+  for_each_seed(kSeeds, [](std::uint32_t seed) {
+    const RandomTree random = random_tree(seed, options_of(seed));
+    Mechanism mechanism(random.def, random.rows);
+    const std::size_t rows = random.rows.size(), dof = mechanism.state.u.size();
+    if (rows == 0) return;  // nothing to act on
+    const State state = random_state(seed, mechanism.model);
+    std::vector<double> forces(rows);
+    for (std::size_t k = 0; k < rows; ++k) forces[k] = 3 - 2.0 * static_cast<double>(k);
+    evaluate(mechanism.model, state, mechanism.ws);
+    // by the sum of columns, by one combined solution, and with the forces inside the recursion
+    std::vector<double> by_columns = mechanism.ws.udot_free, combined(dof), column(dof);
+    for (std::size_t k = 0; k < rows; ++k) {
+      response_column(mechanism.model, mechanism.ws, static_cast<int>(k), column);
+      for (std::size_t j = 0; j < dof; ++j) by_columns[j] += column[j] * forces[k];
+    }
+    accelerations(mechanism.model, mechanism.ws, forces, combined);
+    forward_dynamics(mechanism.model, state.q, state.u, forces, mechanism.ws);
+    EXPECT_LT(difference(to_vector(by_columns), to_vector(mechanism.ws.udot)), kTolerance);
+    EXPECT_LT(difference(to_vector(combined), to_vector(mechanism.ws.udot)), kTolerance);
+  });
 }
 
 // Lagrange's equations themselves, from the kinetic energy T = u^T M(q) u / 2 and the potential:
 //   M u' + M' u - dT/dq + dV/dq = 0, all derivatives by differences; u = q' holds for joints with one coordinate
-TEST_P(RandomTrees, ObeyLagrangesEquations) {
-  TreeOptions o = options();
-  o.only_one_coordinate = true;
-  o.with_forces = false;
-  const RandomTree random = tree(o);
-  Mechanism mechanism(random.def, {});
-  const Assembled reference(random.def, mechanism.model, random.points);
-  const State state = random_state(GetParam(), mechanism.model);
-  const Vector q = to_vector(state.q), u = to_vector(state.u);
-  Vector rest = derivative_at_zero([&](Real t) { return Vector(reference.mass_matrix(q + t * u) * u); });
-  for (Eigen::Index k = 0; k < q.size(); ++k) {
-    const Vector e = Vector::Unit(q.size(), k);
-    rest[k] -= derivative_at_zero([&](Real t) {
-      const Vector there = q + t * e;
-      return Real(0.5L * u.dot(reference.mass_matrix(there) * u) - reference.potential(there));
-    });
-  }
-  const Vector expected = reference.mass_matrix(q).ldlt().solve(-rest);
-  forward_dynamics(mechanism.model, state.q, state.u, {}, mechanism.ws);
-  EXPECT_LT(difference(to_vector(mechanism.ws.udot), expected), kTolerance);
+TEST(RandomTrees, ObeyLagrangesEquations) {
+  for_each_seed(kSeeds, [](std::uint32_t seed) {
+    TreeOptions o = options_of(seed);
+    o.only_one_coordinate = true;
+    o.with_forces = false;
+    const RandomTree random = random_tree(seed, o);
+    Mechanism mechanism(random.def, {});
+    const Assembled reference(random.def, mechanism.model, random.points);
+    const State state = random_state(seed, mechanism.model);
+    const Vector q = to_vector(state.q), u = to_vector(state.u);
+    Vector rest = derivative_at_zero([&](Real t) { return Vector(reference.mass_matrix(q + t * u) * u); });
+    for (Eigen::Index k = 0; k < q.size(); ++k) {
+      const Vector e = Vector::Unit(q.size(), k);
+      rest[k] -= derivative_at_zero([&](Real t) {
+        const Vector there = q + t * e;
+        return Real(0.5L * u.dot(reference.mass_matrix(there) * u) - reference.potential(there));
+      });
+    }
+    const Vector expected = reference.mass_matrix(q).ldlt().solve(-rest);
+    forward_dynamics(mechanism.model, state.q, state.u, {}, mechanism.ws);
+    EXPECT_LT(difference(to_vector(mechanism.ws.udot), expected), kTolerance);
+  });
 }
 
 // what the seeds with dummies at nodes are there for
@@ -146,11 +157,6 @@ TEST(NodeDummies, AreOfEveryKindInTheRandomTrees) {
     RecordProperty(name, count);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomTrees, ::testing::Range(1u, 25u));
-INSTANTIATE_TEST_SUITE_P(WithModes, RandomTrees, ::testing::Range(kFirstWithModes, kFirstWithModes + 40));
-INSTANTIATE_TEST_SUITE_P(WithNodeDummies, RandomTrees,
-                         ::testing::Range(kFirstWithNodeDummies, kFirstWithNodeDummies + 60));
 
 }  // namespace
 }  // namespace slew::multibody

@@ -2,6 +2,7 @@
 // 1e-3 m at 10 s, in sub-steps of 1 ms and of 2 ms; in 5 and 10 ms, where the explicit rules leave the page, the slow
 // motion's own error of the order h^2 shows.
 #include "tests/support/nightly.h"
+#include "tests/validation/multibody/choices.h"
 #include "tests/validation/multibody/csv_table.h"
 #include "tests/validation/multibody/every_formulation.h"
 #include "tests/validation/multibody/governor_def.h"
@@ -9,11 +10,10 @@
 namespace slew::multibody {
 namespace {
 
+using testing::Choice;
 using testing::Formulated;
 
 constexpr double kSliderAt1s = 0.5014209224, kSliderAt10s = 0.6196229171, kSpinAt10s = 5.5482036227;
-
-using Choice = std::tuple<Formulation, Integrator>;
 
 class Governor : public ::testing::TestWithParam<Choice> {
  protected:
@@ -84,19 +84,22 @@ TEST_P(HeldGovernor, FollowsTheReference) {
   testing::expect_figure("A05", setting(step), {"constraint [m]", testing::opening(governor).position, 1e-8});
 }
 
-const auto kFormulations = ::testing::Values(Formulation::recursive, Formulation::lagrange);
-const auto kName = [](const ::testing::TestParamInfo<Choice>& tested) {
-  return testing::name_of(std::get<0>(tested.param)) + "_" + testing::name_of(std::get<1>(tested.param));
-};
+const testing::Rules kImplicit = {Integrator::trapezoidal, Integrator::generalised_alpha, Integrator::sdirk2};
+const testing::Rules kExplicit = {Integrator::rk4, Integrator::semi_implicit_euler};
+const testing::Rules kImplicitInBodyCoordinates = {Integrator::trapezoidal};
+const testing::Rules kExplicitInBodyCoordinates = {Integrator::rk4};
 INSTANTIATE_TEST_SUITE_P(In, Governor,
-                         ::testing::Combine(kFormulations,
-                                            ::testing::Values(Integrator::trapezoidal, Integrator::generalised_alpha,
-                                                              Integrator::sdirk2)),
-                         kName);
+                         ::testing::ValuesIn(testing::gate_choices(kImplicit, kImplicitInBodyCoordinates)),
+                         testing::kChoiceName);
+INSTANTIATE_TEST_SUITE_P(Nightly, Governor,
+                         ::testing::ValuesIn(testing::nightly_choices(kImplicit, kImplicitInBodyCoordinates)),
+                         testing::kChoiceName);
 INSTANTIATE_TEST_SUITE_P(In, ExplicitGovernor,
-                         ::testing::Combine(kFormulations,
-                                            ::testing::Values(Integrator::rk4, Integrator::semi_implicit_euler)),
-                         kName);
+                         ::testing::ValuesIn(testing::gate_choices(kExplicit, kExplicitInBodyCoordinates)),
+                         testing::kChoiceName);
+INSTANTIATE_TEST_SUITE_P(Nightly, ExplicitGovernor,
+                         ::testing::ValuesIn(testing::nightly_choices(kExplicit, kExplicitInBodyCoordinates)),
+                         testing::kChoiceName);
 INSTANTIATE_TEST_SUITE_P(In, HeldGovernor, ::testing::Values(Formulation::augmented, Formulation::penalty),
                          testing::kFormulationName);
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "multibody/joint_gauge.h"
+#include "tests/validation/multibody/choices.h"
 #include "tests/validation/multibody/loop_defs.h"
 #include "tests/validation/multibody/mechanism.h"
 
@@ -219,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Formulations, Driven, ::testing::ValuesIn(kFormulations
 
 // ---- integrators ----------------------------------------------------------------------------------------------
 
-class DrivenBy : public ::testing::TestWithParam<std::tuple<Formulation, Integrator>> {};
+class DrivenBy : public ::testing::TestWithParam<testing::Choice> {};
 
 TEST_P(DrivenBy, ArmFollowsItsClosedFormWithTheRulesOrder) {
   constexpr double w = 4;
@@ -240,13 +241,13 @@ TEST_P(DrivenBy, ArmFollowsItsClosedFormWithTheRulesOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), is_shake ? 2 : order, 0.25);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, DrivenBy,
-                         ::testing::Combine(::testing::Values(Formulation::recursive, Formulation::lagrange),
-                                            ::testing::Values(Integrator::semi_implicit_euler, Integrator::trapezoidal,
-                                                              Integrator::generalised_alpha, Integrator::sdirk2)),
-                         [](const auto& test) {
-                           return name_of(std::get<0>(test.param)) + "_" + name_of(std::get<1>(test.param));
-                         });
+const testing::Rules kRules = {Integrator::semi_implicit_euler, Integrator::trapezoidal, Integrator::generalised_alpha,
+                               Integrator::sdirk2};
+const testing::Rules kInBodyCoordinates = {Integrator::semi_implicit_euler};
+INSTANTIATE_TEST_SUITE_P(In, DrivenBy, ::testing::ValuesIn(testing::gate_choices(kRules, kInBodyCoordinates)),
+                         testing::kChoiceName);
+INSTANTIATE_TEST_SUITE_P(Nightly, DrivenBy, ::testing::ValuesIn(testing::nightly_choices(kRules, kInBodyCoordinates)),
+                         testing::kChoiceName);
 
 TEST(DrivenArm, ConvergesWithFourthOrderInRungeKutta) {
   const auto error_at = [](double h) {

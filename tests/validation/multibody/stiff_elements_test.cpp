@@ -2,14 +2,14 @@
 // energy from what pushes on one side only, and an iteration that ends soon because its matrix holds their slopes.
 #include <functional>
 
+#include "tests/validation/multibody/choices.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
 namespace {
 
+using testing::Choice;
 using testing::Formulated;
-
-using Choice = std::tuple<Formulation, Integrator>;
 
 constexpr double kStep = 1e-3;
 constexpr double kGravity = 9.81;
@@ -296,14 +296,13 @@ TEST(AugmentedLagrangian, SettlesOnStiffBushings) {
   }
 }
 
-const auto kName = [](const ::testing::TestParamInfo<Choice>& tested) {
-  return testing::name_of(std::get<0>(tested.param)) + "_" + testing::name_of(std::get<1>(tested.param));
-};
-INSTANTIATE_TEST_SUITE_P(In, StiffElement,
-                         ::testing::Combine(::testing::Values(Formulation::recursive, Formulation::lagrange),
-                                            ::testing::Values(Integrator::trapezoidal, Integrator::generalised_alpha,
-                                                              Integrator::sdirk2)),
-                         kName);
+const testing::Rules kRules = {Integrator::trapezoidal, Integrator::generalised_alpha, Integrator::sdirk2};
+const testing::Rules kInBodyCoordinates = {Integrator::sdirk2};
+INSTANTIATE_TEST_SUITE_P(In, StiffElement, ::testing::ValuesIn(testing::gate_choices(kRules, kInBodyCoordinates)),
+                         testing::kChoiceName);
+INSTANTIATE_TEST_SUITE_P(Nightly, StiffElement,
+                         ::testing::ValuesIn(testing::nightly_choices(kRules, kInBodyCoordinates)),
+                         testing::kChoiceName);
 
 }  // namespace
 }  // namespace slew::multibody

@@ -1,12 +1,12 @@
 // Springs and stops far stiffer than the sub-step resolves, against their closed forms.
+#include "tests/validation/multibody/choices.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
 namespace {
 
+using testing::Choice;
 using testing::Formulated;
-
-using Choice = std::tuple<Formulation, Integrator>;
 
 // 1 kg on a slide along x, `offset` from where its spring is at rest
 MechanicsDef slide(double offset) {
@@ -128,14 +128,12 @@ TEST_P(Stiff, ChainOfStiffHingesStaysARod) {
   }
 }
 
-const auto kName = [](const ::testing::TestParamInfo<Choice>& tested) {
-  return testing::name_of(std::get<0>(tested.param)) + "_" + testing::name_of(std::get<1>(tested.param));
-};
-INSTANTIATE_TEST_SUITE_P(In, Stiff,
-                         ::testing::Combine(::testing::Values(Formulation::recursive, Formulation::lagrange),
-                                            ::testing::Values(Integrator::trapezoidal, Integrator::generalised_alpha,
-                                                              Integrator::sdirk2)),
-                         kName);
+const testing::Rules kRules = {Integrator::trapezoidal, Integrator::generalised_alpha, Integrator::sdirk2};
+const testing::Rules kInBodyCoordinates = {Integrator::sdirk2};
+INSTANTIATE_TEST_SUITE_P(In, Stiff, ::testing::ValuesIn(testing::gate_choices(kRules, kInBodyCoordinates)),
+                         testing::kChoiceName);
+INSTANTIATE_TEST_SUITE_P(Nightly, Stiff, ::testing::ValuesIn(testing::nightly_choices(kRules, kInBodyCoordinates)),
+                         testing::kChoiceName);
 
 }  // namespace
 }  // namespace slew::multibody

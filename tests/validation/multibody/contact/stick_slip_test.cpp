@@ -21,7 +21,8 @@ double end_of_run(const Way& way) {
 }
 
 class StickSlip : public EveryWay {};
-INSTANTIATE_TEST_SUITE_P(D01, StickSlip, ::testing::ValuesIn(every_way()), name_of_way);
+INSTANTIATE_TEST_SUITE_P(D01, StickSlip, ::testing::ValuesIn(gate_ways()), name_of_way);
+INSTANTIATE_TEST_SUITE_P(D01Nightly, StickSlip, ::testing::ValuesIn(nightly_ways()), name_of_way);
 
 TEST_P(StickSlip, FollowsTheTable) {
   Motion motion(contact_scene("stick_slip"), GetParam());

@@ -2,6 +2,7 @@
 // of the parallelogram's one coordinate, in every formulation. Bounds and figures: docs/extremes.md.
 #include "tests/support/nightly.h"
 #include "tests/validation/multibody/chain_def.h"
+#include "tests/validation/multibody/choices.h"
 #include "tests/validation/multibody/every_formulation.h"
 #include "tests/validation/multibody/extremes/outcome.h"
 #include "tests/validation/multibody/extremes/planar_chain.h"
@@ -130,7 +131,7 @@ TEST_P(LongChain, OfTenAHundredAndThreeHundredLinksFallsRight) {
 }
 
 // the other rules, at the step of 1 ms: what an iteration cannot settle is flagged
-class MassRatioUnder : public ::testing::TestWithParam<std::tuple<Formulation, Integrator>> {};
+class MassRatioUnder : public ::testing::TestWithParam<Choice> {};
 
 TEST_P(MassRatioUnder, OfAMillionIsRightOrFlagged) {
   for (const Weights& weights : {kHeavyTip, kLightOnHeavy}) {
@@ -150,13 +151,13 @@ TEST_P(MassRatioUnder, OfAMillionIsRightOrFlagged) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(In, MassRatioUnder,
-                         ::testing::Combine(::testing::Values(Formulation::recursive, Formulation::lagrange),
-                                            ::testing::Values(Integrator::semi_implicit_euler, Integrator::trapezoidal,
-                                                              Integrator::generalised_alpha, Integrator::sdirk2)),
-                         [](const ::testing::TestParamInfo<std::tuple<Formulation, Integrator>>& tested) {
-                           return name_of(std::get<0>(tested.param)) + "_" + name_of(std::get<1>(tested.param));
-                         });
+const Rules kRules = {Integrator::semi_implicit_euler, Integrator::trapezoidal, Integrator::generalised_alpha,
+                      Integrator::sdirk2};
+const Rules kInBodyCoordinates = {Integrator::trapezoidal};
+INSTANTIATE_TEST_SUITE_P(In, MassRatioUnder, ::testing::ValuesIn(gate_choices(kRules, kInBodyCoordinates)),
+                         kChoiceName);
+INSTANTIATE_TEST_SUITE_P(Nightly, MassRatioUnder, ::testing::ValuesIn(nightly_choices(kRules, kInBodyCoordinates)),
+                         kChoiceName);
 INSTANTIATE_TEST_SUITE_P(In, MassRatio, kEveryFormulation, kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, LongChain, kEveryFormulation, kFormulationName);
 
