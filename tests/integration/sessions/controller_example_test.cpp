@@ -16,7 +16,7 @@ using wire::Role;
 // The example alone, without a session.
 class ControllerExampleOptions : public ::testing::TestWithParam<ExampleFolder> {
  protected:
-  void SetUp() override { path = build_example(GetParam()); }
+  void SetUp() override { path = example_program(GetParam()); }
   std::unique_ptr<Program> controller(const std::vector<std::string>& arguments) {
     return std::make_unique<Program>(path, arguments, output.path() / "controller");
   }
@@ -61,7 +61,7 @@ TEST_P(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
 class ControllerExample : public ::testing::TestWithParam<ExampleFolder> {
  protected:
   void SetUp() override {
-    path = build_example(GetParam());
+    path = example_program(GetParam());
     session.start_all();
     ASSERT_TRUE(session.observer().wait_for_step(50)) << session.said();
   }
@@ -163,7 +163,7 @@ class ClientExamples : public ::testing::Test {
 };
 
 TEST_F(ClientExamples, ThePidControllerStaysAtItsTarget) {
-  const std::string path = build_example(kControllerExamples[0], "pid_controller");
+  const std::string path = example_program(kControllerExamples[0], "pid_controller");
   start();
   Program pid(path, {"--session", session->name(), "--domain", domain(), "--target", "0.84", "--seconds", "8"},
               session->folder() / "pid");
@@ -173,7 +173,7 @@ TEST_F(ClientExamples, ThePidControllerStaysAtItsTarget) {
 }
 
 TEST_F(ClientExamples, TheShortestOneMovesTheCylinderAndGivesTheChannelBack) {
-  const std::string path = build_example(kControllerExamples[0], "first_controller");
+  const std::string path = example_program(kControllerExamples[0], "first_controller");
   start();
   Program first(path, {session->name(), domain()}, session->folder() / "first");
   EXPECT_EQ(first.wait(), 0) << first.out() << first.err();
@@ -183,7 +183,7 @@ TEST_F(ClientExamples, TheShortestOneMovesTheCylinderAndGivesTheChannelBack) {
 }
 
 TEST_F(ClientExamples, TheShortestOneWaitsThroughAPauseAndCtrlCGivesTheChannelBack) {
-  const std::string path = build_example(kControllerExamples[0], "first_controller");
+  const std::string path = example_program(kControllerExamples[0], "first_controller");
   start();
   Program first(path, {session->name(), domain()}, session->folder() / "first");
   const auto is_held = [&] { return session->observer().variable("Input_Lift.raw").value_or(0) == 0.5; };
