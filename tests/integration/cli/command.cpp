@@ -48,6 +48,8 @@ Command::Command(const std::string& program, const std::vector<std::string>& arg
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // a shell's background job ignores them, and so would what it starts
+    for (const int asked : {SIGINT, SIGHUP, SIGTERM}) signal(asked, SIG_DFL);
     const int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);

@@ -12,6 +12,7 @@
 #include "../../support/test_domain.h"
 #include "command.h"
 #include "sample_hashes.h"
+#include "tests/support/nightly.h"
 
 namespace slew::testing {
 namespace {
@@ -46,26 +47,29 @@ class Distributed : public ::testing::Test {
 
 TEST_F(Distributed, CranesHaveTheSameHashesAsInOneProcess) {
   struct Case {
-    std::string name, duration;  // of 2000 steps
+    std::string name;
     std::vector<std::string> settings;
     std::size_t nodes, hashes;  // mechanics and hydraulics at every step, INIT; flex at every tenth or every step, INIT
   };
-  const Case cases[] = {
-      {"truck_crane", "2", {}, 4, 2 * 2001 + 1},
-      {"truck_crane", "2", {"session.exchange_every=5"}, 4, 2 * 2001 + 1},
-      {"truck_crane_flexible", "2", {"session.flexible=once"}, 5, 2 * 2001 + 1 + 201 + 1},
-      {"truck_crane_flexible", "2", {"session.flexible=every_step"}, 5, 3 * 2001 + 2},
-      {"truck_crane_flexible",
-       "2",
-       {"session.flexible=condensed", "mechanics.integrator=trapezoidal", "mechanics.max_substep=1 ms"},
-       5,
-       3 * 2001 + 2},
-      {"truck_crane_segmented", "2", {}, 4, 2 * 2001 + 1}};
+  // so that the scripts have moved the valves
+  const std::size_t steps = rounds<std::size_t>(1000, 2000), samples = steps + 1;
+  std::vector<Case> cases = {{"truck_crane", {"session.exchange_every=5"}, 4, 2 * samples + 1},
+                             {"truck_crane_flexible", {"session.flexible=every_step"}, 5, 3 * samples + 2},
+                             {"truck_crane_segmented", {}, 4, 2 * samples + 1}};
+  if (is_nightly()) {
+    cases.insert(cases.end(),
+                 {{"truck_crane", {}, 4, 2 * samples + 1},
+                  {"truck_crane_flexible", {"session.flexible=once"}, 5, 2 * samples + 1 + steps / 10 + 2},
+                  {"truck_crane_flexible",
+                   {"session.flexible=condensed", "mechanics.integrator=trapezoidal", "mechanics.max_substep=1 ms"},
+                   5,
+                   3 * samples + 2}});
+  }
   int number = 0;
   for (const Case& one : cases) {
     const std::string folder = std::to_string(++number);
-    std::vector<std::string> how = {
-        "run", scene_file(one.name + ".yaml"), "--pace", "free", "--duration", one.duration, "--json"};
+    std::vector<std::string> how = {"run",        scene_file(one.name + ".yaml"), "--pace", "free",
+                                    "--duration", std::to_string(steps) + " ms",  "--json"};
     for (const std::string& setting : one.settings) how.insert(how.end(), {"--set", setting});
     how.insert(how.end(), {"--out", folder + "_apart"});
     const CommandResult apart = slewring(how);
@@ -204,11 +208,11 @@ TEST_F(Distributed, WithoutFilesOrMemoryNothingIsStarted) {
 }
 
 TEST_F(Distributed, AFailedStartPrintsItsReasonAndNothingElse) {
-  const CommandResult result =
-      slewring({"run", scene_file("first_steps.yaml"), "--remote", "recorder", "--quiet", "--out", "runs"});
+  const CommandResult result = slewring({"run", scene_file("first_steps.yaml"), "--remote", "recorder", "--quiet",
+                                         "--out", "runs", "--join-timeout", "4"});
   EXPECT_EQ(result.code, 1);
   EXPECT_EQ(result.out, "");
-  EXPECT_TRUE(result.err.starts_with("io_node: JOIN did not come about within 10 s: no recorder node")) << result.err;
+  EXPECT_TRUE(result.err.starts_with("io_node: JOIN did not come about within 4 s: no recorder node")) << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }
 
@@ -248,8 +252,8 @@ TEST_F(Distributed, CtrlCEndsInOrderWithAValidRecording) {
 
 // a terminal that is closed, timeout(1), a key that repeats
 TEST_F(Distributed, SignalsThatComeTwiceEndInOrderToo) {
-  const std::vector<std::vector<int>> all = {
-      {SIGHUP, SIGHUP}, {SIGHUP, SIGTERM}, {SIGTERM, SIGTERM, SIGHUP}, {SIGINT, SIGINT}};
+  std::vector<std::vector<int>> all = {{SIGTERM, SIGTERM, SIGHUP}, {SIGINT, SIGINT}};
+  if (is_nightly()) all.insert(all.end(), {{SIGHUP, SIGHUP}, {SIGHUP, SIGTERM}});
   for (const std::vector<int>& signals : all) {
     const std::string which = std::to_string(&signals - all.data());
     SCOPED_TRACE("case " + which);
@@ -273,34 +277,61 @@ class SlowDisk : public Distributed {
   void SetUp() override {
     if (!sanitizers().empty()) GTEST_SKIP() << "the sanitizer wants to be loaded first";
   }
-  std::unique_ptr<Command> start_with(int seconds, const std::string& duration = "0.2") const {
+  std::unique_ptr<Command> start_with(const std::string& name, int seconds, const std::string& duration = "0.2") const {
     return std::make_unique<Command>(
         "/usr/bin/env",
         with_domain({"LD_PRELOAD=" SLEWRING_SLOW_DISK, "SLEWRING_SLOW_DISK=" + std::to_string(seconds),
                      program_file("slewring").string(), "run", scene_file("first_steps.yaml"), "--pace", "free",
-                     "--duration", duration}),
+                     "--duration", duration, "--session", name, "--out", name}),
         work_.path());
+  }
+  [[nodiscard]] static bool comes_to_say(const Command& session, const std::string& words) {
+    return wait_until([&] { return session.err().find(words) != std::string::npos; });
+  }
+  void expect_whole_recording(const std::string& name) const {
+    const CommandResult told = offline({"info", only_recording_below(work_.path() / name).string()});
+    EXPECT_NE(told.out.find("closed in order"), std::string::npos) << told.out;
   }
 };
 
-TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOver) {
-  const CommandResult result = start_with(8)->wait();
+// four sessions at once, since each of them waits for its disk
+TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
+  const auto left_alone = start_with("left_alone", 8);
+  const auto ended = start_with("ended", 8);
+  const auto interrupted = start_with("interrupted", 600);
+  const auto interrupted_twice = start_with("interrupted_twice", 600, "0");
+  ASSERT_TRUE(wait_until_running(*interrupted_twice)) << interrupted_twice->err();
+  interrupted_twice->send(SIGINT);
+
+  // a TERM and a hangup change nothing
+  ASSERT_TRUE(comes_to_say(*ended, "still writes")) << ended->err();
+  for (const int signal : {SIGTERM, SIGHUP, SIGTERM}) ended->send(signal);
+  CommandResult result = ended->wait();
+  EXPECT_EQ(result.code, 143) << result.err;
+  EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
+  expect_whole_recording("ended");
+
+  result = left_alone->wait();
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_NE(result.err.find("still writes to a slow disk; Ctrl-C ends it"), std::string::npos) << result.err;
   EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
-  const CommandResult told = offline({"info", work_.recording().string()});
-  EXPECT_NE(told.out.find("end       closed in order\n"), std::string::npos) << told.out;
-}
+  expect_whole_recording("left_alone");
 
-TEST_F(SlowDisk, IsNotWaitedForAfterCtrlC) {
-  const auto session = start_with(600);
-  ASSERT_TRUE(wait_until([&] { return session->err().find("still writes") != std::string::npos; })) << session->err();
-  session->send(SIGINT);
-  const CommandResult result = session->wait();
+  ASSERT_TRUE(comes_to_say(*interrupted, "still writes")) << interrupted->err();
+  interrupted->send(SIGINT);
+  result = interrupted->wait();
   EXPECT_EQ(result.code, 130) << result.err;
   EXPECT_NE(result.err.find("was killed while it wrote; 'slewring recover' makes the recording whole"),
             std::string::npos)
       << result.err;
+
+  // of two Ctrl-C the first one ends the session
+  ASSERT_TRUE(comes_to_say(*interrupted_twice, "still writes")) << interrupted_twice->err();
+  EXPECT_EQ(interrupted_twice->err().find("killed"), std::string::npos) << interrupted_twice->err();
+  interrupted_twice->send(SIGINT);
+  result = interrupted_twice->wait();
+  EXPECT_EQ(result.code, 130) << result.err;
+  EXPECT_NE(result.err.find("was killed while it wrote"), std::string::npos) << result.err;
 }
 
 // the loop of a recorder that closes its file stands still, and others would give it up after 3 s
@@ -316,28 +347,6 @@ TEST_F(SlowDisk, ThatTakesLongToCloseAFileInMidSessionEndsNothing) {
       << result.err;
   EXPECT_EQ(result.err.find("stood still"), std::string::npos) << result.err;
   EXPECT_NE(result.out.find("4 s simulated in "), std::string::npos) << result.out;
-}
-
-TEST_F(SlowDisk, IsWaitedForAfterATermAndAHangup) {
-  const auto session = start_with(8);
-  ASSERT_TRUE(wait_until([&] { return session->err().find("still writes") != std::string::npos; })) << session->err();
-  for (const int signal : {SIGTERM, SIGHUP, SIGTERM}) session->send(signal);
-  const CommandResult result = session->wait();
-  EXPECT_EQ(result.code, 143) << result.err;
-  EXPECT_EQ(result.err.find("killed"), std::string::npos) << result.err;
-  EXPECT_NE(offline({"info", work_.recording().string()}).out.find("closed in order"), std::string::npos);
-}
-
-TEST_F(SlowDisk, IsNotWaitedForAfterASecondCtrlC) {
-  const auto session = start_with(600, "0");
-  ASSERT_TRUE(wait_until_running(*session)) << session->err();
-  session->send(SIGINT);
-  ASSERT_TRUE(wait_until([&] { return session->err().find("still writes") != std::string::npos; })) << session->err();
-  EXPECT_EQ(session->err().find("killed"), std::string::npos) << session->err();
-  session->send(SIGINT);
-  const CommandResult result = session->wait();
-  EXPECT_EQ(result.code, 130) << result.err;
-  EXPECT_NE(result.err.find("was killed while it wrote"), std::string::npos) << result.err;
 }
 
 TEST_F(Distributed, CtrlCBeforeTheFirstStepIsOrderlyToo) {
@@ -356,7 +365,9 @@ TEST_F(Distributed, CtrlCBeforeTheFirstStepIsOrderlyToo) {
 }
 
 TEST_F(Distributed, AKilledNodeIsNamedAndTheRecordingStaysValid) {
-  for (const char* node : {"mechanics_node", "io_node"}) {
+  std::vector<const char*> nodes = {"io_node"};
+  if (is_nightly()) nodes.push_back("mechanics_node");
+  for (const char* node : nodes) {
     const std::string folder = std::string("runs_") + node;
     const auto session = start("truck_crane.yaml", {"--duration", "0", "--out", folder});
     ASSERT_TRUE(wait_until_running(*session)) << session->err();
@@ -439,7 +450,7 @@ TEST_F(Distributed, ANodeWhoseProgramIsGoneEndsTheSessionAtTheEndOfTheHold) {
   }
   Command session((work_.path() / "slewring").string(),
                   with_domain({"run", scene_file("truck_crane.yaml"), "--duration", "0", "--step", "10 ms", "--set",
-                               "session.rejoin=6s", "--session", "r"}),
+                               "session.rejoin=4s", "--session", "r"}),
                   work_.path());
   ASSERT_TRUE(wait_until_running(session)) << session.err();
   ASSERT_EQ(slewring({"watch", "Bag.position.y", "--count", "5"}).code, 0);  // a checkpoint has come
@@ -451,9 +462,9 @@ TEST_F(Distributed, ANodeWhoseProgramIsGoneEndsTheSessionAtTheEndOfTheHold) {
   EXPECT_EQ(result.code, 4) << result.err;
   for (const char* said :
        {") exited with code 7; the others hold, and it is started again with the state of its last checkpoint (3 of 3)",
-        ") exited with code 7; it was started again 3 times and is not any more; the others hold for 6 s in case that "
+        ") exited with code 7; it was started again 3 times and is not any more; the others hold for 4 s in case that "
         "somebody else starts one ('slewring node mechanics --session r')",
-        "is gone, and no other process took its place within 6 s",
+        "is gone, and no other process took its place within 4 s",
         "/mechanics_node: No such file or directory; build"}) {
     EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
   }
@@ -486,22 +497,22 @@ TEST_F(Distributed, ARemoteRoleIsLeftToOthers) {
 }
 
 TEST_F(Distributed, NodesAndControllersAreWaitedForAsLongAsIsAsked) {
-  const std::vector<std::string> short_wait = {"--pace", "free", "--quiet", "--join-timeout", "3"};
-  const auto with = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
-    arguments.insert(arguments.end(), short_wait.begin(), short_wait.end());
+  const auto with = [&](std::vector<std::string> arguments, const char* seconds, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), {"--pace", "free", "--quiet", "--join-timeout", seconds});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return slewring(arguments);
   };
   const std::vector<std::string> lockstep = {"--set", "Input_Lift.controller=lockstep"};
   const std::vector<std::string> crane = {"run", scene_file("truck_crane.yaml"), "--duration", "1s"};
-  CommandResult result = with(crane, lockstep);
+  // long enough for the nodes, which come
+  CommandResult result = with(crane, "3", lockstep);
   EXPECT_EQ(result.code, 1);
   EXPECT_NE(result.err.find("no controller took channel Input_Lift within 3 s"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("(--join-timeout waits longer)"), std::string::npos) << result.err;
-  result = with(crane, {"--remote", "hydraulics"});
+  result = with(crane, "1", {"--remote", "hydraulics"});
   EXPECT_EQ(result.code, 1);
-  EXPECT_NE(result.err.find("did not come about within 3 s"), std::string::npos) << result.err;
-  EXPECT_EQ(with(crane, {"--in-process"}).code, 2);
+  EXPECT_NE(result.err.find("did not come about within 1 s"), std::string::npos) << result.err;
+  EXPECT_EQ(with(crane, "1", {"--in-process"}).code, 2);
   // behind a recording
   const std::string runs = (work_.path() / "recorded").string();
   ASSERT_EQ(offline({"run", scene_file("truck_crane.yaml"), "--duration", "0.05s", "--pace", "free", "--in-process",
@@ -510,20 +521,26 @@ TEST_F(Distributed, NodesAndControllersAreWaitedForAsLongAsIsAsked) {
             0);
   std::string folder;
   for (const auto& entry : std::filesystem::directory_iterator(runs)) folder = entry.path().string();
-  result = with({"replay", folder, "--until", "0.02s", "--then-live"}, lockstep);
+  result = with({"replay", folder, "--until", "0.02s", "--then-live"}, "3", lockstep);
   EXPECT_EQ(result.code, 1);
   EXPECT_NE(result.err.find("no controller took channel Input_Lift within 3 s"), std::string::npos) << result.err;
 }
 
 TEST_F(Distributed, ASessionThatIsNotThereIsNamed) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"watch", "x", "--session", "nobody"}, {"control", "pause", "--session", "nobody"}}) {
-    const CommandResult result = slewring(arguments);
+  // all at once: each of them looks for as long as it takes
+  const auto begin = [&](const std::vector<std::string>& arguments) {
+    return std::make_unique<Command>("slewring", with_domain(arguments), work_.path());
+  };
+  const std::unique_ptr<Command> of_nobody[] = {begin({"watch", "x", "--session", "nobody"}),
+                                                begin({"control", "pause", "--session", "nobody"})};
+  const auto of_any = begin({"control", "pause"}), list = begin({"sessions"});
+  for (const auto& command : of_nobody) {
+    const CommandResult result = command->wait();
     EXPECT_EQ(result.code, 1);
     EXPECT_NE(result.err.find("no session 'nobody' was found on domain"), std::string::npos) << result.err;
   }
-  EXPECT_EQ(slewring({"control", "pause"}).code, 1);
-  EXPECT_EQ(slewring({"sessions"}).code, 0);
+  EXPECT_EQ(of_any->wait().code, 1);
+  EXPECT_EQ(list->wait().code, 0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "tests/support/nightly.h"
 #include "tests/support/test_domain.h"
 
 namespace slew::testing {
@@ -110,7 +111,9 @@ TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
 TEST_F(Keys, AreRevokedHoweverTheStoreIsNamed) {
   ASSERT_EQ(keys({"create", "plant/"}).code, 0);
   fs::create_directory_symlink(folder() / "plant", folder() / "linked");
-  for (const std::string store : {"plant/", "./plant//", "linked", "linked/"}) {
+  std::vector<std::string> names = {"./plant//", "linked/"};
+  if (is_nightly()) names.insert(names.end(), {"plant/", "linked"});
+  for (const std::string& store : names) {
     ASSERT_EQ(keys({"add", store, "--name", "joystick"}).code, 0) << store;
     const std::string authority = text_of(folder() / "plant/identity_ca.pem");
     const CommandResult revoked = keys({"revoke", store, "joystick"});
@@ -338,23 +341,27 @@ TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
   ASSERT_EQ(keys({"add", "plant", "--role", "hydraulics", "--name", "guest", "--session", "foo_*"}).code, 0);
   Command session("slewring",
                   {"run", scene_file("truck_crane.yaml"), "--keys", "plant", "--domain", domain(), "--session", "t",
-                   "--remote", "hydraulics", "--duration", "1", "--pace", "free", "--json"},
+                   "--remote", "hydraulics", "--duration", "1", "--pace", "free", "--json", "--join-timeout", "6"},
                   folder());
+  // all at once, while the session waits for its hydraulics
   const auto hydraulics = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"node", "hydraulics", "--session", "t", "--domain", domain(), "--session-timeout", "2"});
-    return run("slewring", more, folder());
+    return std::make_unique<Command>("slewring", more, folder());
   };
-  const CommandResult none = hydraulics({});
+  const auto with_none = hydraulics({}), with_others = hydraulics({"--keys", "other"}),
+             as_guest = hydraulics({"--keys", "plant", "--identity", "guest"}),
+             as_nobody = hydraulics({"--keys", "plant", "--identity", "nobody"});
+  const CommandResult none = with_none->wait();
   EXPECT_EQ(none.code, 1);
   EXPECT_NE(none.err.find("no session was found within 2 s"), std::string::npos) << none.err;
   EXPECT_NE(none.err.find("--keys"), std::string::npos) << none.err;
-  const CommandResult wrong = hydraulics({"--keys", "other"});
+  const CommandResult wrong = with_others->wait();
   EXPECT_EQ(wrong.code, 1);
   EXPECT_NE(wrong.err.find("Certificate not valid"), std::string::npos) << wrong.err;
-  const CommandResult guest = hydraulics({"--keys", "plant", "--identity", "guest"});
+  const CommandResult guest = as_guest->wait();
   EXPECT_EQ(guest.code, 2);
   EXPECT_NE(guest.err.find("the keys of this process do not allow it"), std::string::npos) << guest.err;
-  const CommandResult unknown = hydraulics({"--keys", "plant", "--identity", "nobody"});
+  const CommandResult unknown = as_nobody->wait();
   EXPECT_EQ(unknown.code, 2);
   EXPECT_NE(unknown.err.find("has no keys of 'nobody'"), std::string::npos) << unknown.err;
   const CommandResult ended = session.wait();

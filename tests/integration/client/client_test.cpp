@@ -18,6 +18,7 @@
 #include "build_paths.h"
 #include "client/slewring_client.h"
 #include "client/slewring_client.hpp"
+#include "node/identity.h"
 #include "session.h"
 #include "tests/support/test_domain.h"
 
@@ -83,8 +84,10 @@ class ClientLibrary : public ::testing::Test {
     return has_said();
   }
   void stop() {
-    control("stop");
-    EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
+    session->node(Role::io).send(SIGINT);
+    for (const auto& [role, code] : session->wait_all()) {
+      EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << node::to_text(role) << session->said();
+    }
   }
 
   std::unique_ptr<Session> session;
@@ -307,19 +310,21 @@ TEST_F(ClientLibrary, AfterAResetALockstepControllerAcquiresAgainAndBeginsAtStep
 }
 
 TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
+  const TestDomain empty;
+  const unsigned domain = empty.number();
   EXPECT_EQ(slewring_join_code(), SLEWRING_OK);
-  EXPECT_EQ(slewring_join("nobody", "pid", 3, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("nobody", "pid", domain, "lo", "", 0.2), nullptr);
   EXPECT_EQ(slewring_join_code(), SLEWRING_TIMEOUT);
-  EXPECT_STREQ(slewring_error(nullptr),
-               "no session 'nobody' was heard in domain 3 on lo within 0.2 s; start it first, and compare its name, "
-               "domain, interface, peers and keys");
+  EXPECT_EQ(slewring_error(nullptr),
+            "no session 'nobody' was heard in domain " + std::to_string(domain) +
+                " on lo within 0.2 s; start it first, and compare its name, domain, interface, peers and keys");
   // who goes on without looking reads that, and no other sentence
   EXPECT_EQ(slewring_find(nullptr, "Cyl_Lift.stroke", 0), SLEWRING_BAD_ARGUMENT);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'nobody' was heard"), std::string::npos);
-  EXPECT_EQ(slewring_join("nobody", "", 3, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("nobody", "", domain, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no name of a controller"), std::string::npos);
   EXPECT_EQ(slewring_join_code(), SLEWRING_BAD_ARGUMENT);
-  EXPECT_EQ(slewring_join("no*body", "pid", 3, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("no*body", "pid", domain, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no session name"), std::string::npos);
   EXPECT_EQ(slewring_join("nobody", "pid", 231, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("DDS domain 231 is out of range"), std::string::npos);
@@ -328,7 +333,7 @@ TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
     slewring::Options absent;
     absent.session = "nobody";
     absent.controller = "pid";
-    absent.domain = 3;
+    absent.domain = domain;
     absent.timeout = 0.2;
     const slewring::Session joined(absent);
     ADD_FAILURE() << "there is no such session";
@@ -423,7 +428,8 @@ TEST_F(ClientLibrary, WhoLeavesALockstepChannelAfterReadingABlockIsNotWaitedFor)
   stop();
 }
 
-TEST_F(ClientLibrary, WhoStoodStillLongerThanTheMiddlewareKnowsItLearnsThatItsChannelIsGone) {
+// the gate has a standstill over a reset, and one below this time
+TEST_F(ClientLibrary, NightlyWhoStoodStillLongerThanTheMiddlewareKnowsItLearnsThatItsChannelIsGone) {
   start();
   const Client reader = join("reader");
   const auto probe = start_probe("probe", "probe");
@@ -553,9 +559,9 @@ TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
   const long long first = slewring_present_step(slow.get());
   EXPECT_EQ(slewring_blocks_missed(slow.get()), 0);
   // it computes for longer than what is kept for it
-  read_to(reader.get(), first + 8000);
+  read_to(reader.get(), first + 3000);
   int blocks = 0;
-  while (slewring_present_step(slow.get()) < first + 8000) {
+  while (slewring_present_step(slow.get()) < first + 3000) {
     read(1);
     ++blocks;
   }
@@ -565,7 +571,7 @@ TEST_F(ClientLibrary, CountsTheBlocksThatItWasTooSlowFor) {
   EXPECT_EQ(slewring_steps_per_block(slow.get()), 1);
   // passing over what has come is no loss
   const long long before = slewring_blocks_missed(slow.get());
-  read_to(reader.get(), slewring_present_step(slow.get()) + 300);
+  read_to(reader.get(), slewring_present_step(slow.get()) + 100);
   ASSERT_EQ(slewring_latest(slow.get(), kSoon), SLEWRING_OK);
   EXPECT_EQ(slewring_blocks_missed(slow.get()), before);
   stop();

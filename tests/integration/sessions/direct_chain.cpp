@@ -12,6 +12,7 @@
 #include "mechanics_node/mechanics_subsystem.h"
 #include "node/driver.h"
 #include "node/physics_node.h"
+#include "program.h"
 #include "recorder_node/recorder_node.h"
 #include "transport/in_process_bus.h"
 
@@ -116,6 +117,11 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
   if (code != ExitCode::ok)
     throw std::runtime_error("the run in one process ended with an error: " + io.member().reason());
   return read_session(runs);
+}
+
+HashChain undisturbed_chain(const std::string& scene_file, StepIndex steps) {
+  const ScratchFolder folder;
+  return run_in_one_process(load_scene(scene_file, std::to_string(steps) + " ms"), folder.path() / "runs").chain();
 }
 
 HashChain physics_only(HashChain chain) {

@@ -1,4 +1,4 @@
-// The example controllers, built as a user builds them: projects of their own.
+// The example controllers, built beside the tests as a user builds them: projects of their own.
 #pragma once
 
 #include <ostream>
@@ -7,20 +7,19 @@
 namespace slew::testing {
 
 struct ExampleFolder {
-  const char* name;    // of the folder under examples/
-  bool needs_install;  // finds Slewring's client library as a package
+  const char* name;  // of the folder under examples/
 };
 // in the names of tests
 inline void PrintTo(const ExampleFolder& folder, std::ostream* out) {
   *out << folder.name;
 }
 
-inline constexpr ExampleFolder kControllerExamples[] = {{"controller", true}, {"controller_dds", false}};
+// with the client library, and with the middleware alone
+inline constexpr ExampleFolder kControllerExamples[] = {{"controller"}, {"controller_dds"}};
 
-// Configures and builds the example once a process; kept between runs, so that a second one has nothing to compile.
-// The path of its program. Throws with the output of what failed.
-[[nodiscard]] std::string build_example(const ExampleFolder& folder,
-                                        const std::string& program = "position_controller");
+// The path of a program of the example.
+[[nodiscard]] std::string example_program(const ExampleFolder& folder,
+                                          const std::string& program = "position_controller");
 
 // The library has a sanitizer in it: a program that cannot have it too does not load it.
 [[nodiscard]] bool is_sanitized();

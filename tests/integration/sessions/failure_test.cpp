@@ -27,14 +27,16 @@ namespace {
 using wire::NodeState;
 using wire::Role;
 
-// The design promises 0.5 s from a node's death to its name, by the time stamps of the messages themselves.
-constexpr std::int64_t kNamedWithinNs = 500'000'000;
 // The design promises an end within 1 s, ten health messages. An io that waits in vain for somebody sends twenty.
 constexpr std::uint64_t kHealthsOfAnEnd = 15;
 
 std::string role_name(const ::testing::TestParamInfo<Role>& role) {
   return std::string(node::to_text(role.param));
 }
+
+// One physics node stands for all in the gate; of the others every kind of fault is run by `--nightly`.
+constexpr Role kGateRoles[] = {Role::hydraulics};
+constexpr Role kNightlyRoles[] = {Role::io, Role::mechanics, Role::recorder};
 
 std::string pid_text(const Program& program) {
   return "process " + std::to_string(program.pid());
@@ -90,19 +92,16 @@ void expect_named_and_ended(Session& session, Role victim, StepIndex killed_at, 
     EXPECT_NE(hashes.mechanics, 0u) << step;
     EXPECT_NE(hashes.hydraulics, 0u) << step;
   }
-  // somebody said so within the promised time after the victim's last word, and the recording knows it
-  std::int64_t named_ns = INT64_MAX;
-  for (const SaidStatus& said : recorded.statuses) {
-    if (said.status.reason.find("is gone") != std::string::npos) named_ns = std::min(named_ns, said.sent_ns);
-  }
-  ASSERT_NE(named_ns, INT64_MAX);
-  EXPECT_LT(named_ns - recorded.last_word_before(victim, named_ns), kNamedWithinNs);
+  // the recording has it too; how soon it was is in wall_time_test.cpp
+  EXPECT_TRUE(std::any_of(recorded.statuses.begin(), recorded.statuses.end(), [](const SaidStatus& said) {
+    return said.status.reason.find("is gone") != std::string::npos;
+  }));
 }
 
 TEST_P(KilledNode, IsNamedAndEndsTheSessionWithCode4) {
   std::mt19937_64 random(20'260'500 + static_cast<std::uint64_t>(GetParam()));
   const int nightly = GetParam() == Role::recorder ? 100 : 20;
-  for (int round = 0; round < testing::rounds(3, nightly); ++round) {
+  for (int round = 0; round < testing::rounds(1, nightly); ++round) {
     Session session({"--pace", "real", "--duration", "20s"});
     Observer& observer = session.observer();
     session.start_all();
@@ -122,7 +121,8 @@ TEST_P(KilledNode, InFreePaceIsNamedAsWell) {
   expect_named_and_ended(session, GetParam(), 1000, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Roles, KilledNode, ::testing::ValuesIn(kAllNodes), role_name);
+INSTANTIATE_TEST_SUITE_P(Roles, KilledNode, ::testing::Values(Role::hydraulics, Role::recorder), role_name);
+INSTANTIATE_TEST_SUITE_P(NightlyRoles, KilledNode, ::testing::Values(Role::io, Role::mechanics), role_name);
 
 TEST(StoppedForGood, NodeIsNamedAfter300MillisecondsAndGivenUpAfter2Seconds) {
   Session session({"--pace", "real", "--duration", "20s"});
@@ -203,7 +203,7 @@ TEST(Interrupted, InMidRunEndsInOrderWithinASecond) {
 
 TEST(Interrupted, AtAnyMomentOfTheStartEndsInOrder) {
   std::mt19937_64 random(11);
-  for (int round = 0; round < testing::rounds(8, 40); ++round) {
+  for (int round = 0; round < testing::rounds(3, 40); ++round) {
     Session session({"--pace", "free", "--duration", "100s"});
     session.start_all();
     // after so many messages of anybody: name check, JOIN, INIT, first steps
@@ -275,7 +275,8 @@ TEST_P(SecondNode, IsRefusedNamingTheFirstWhichGoesOn) {
   EXPECT_GE(recorded.last_complete_step(), step);
 }
 
-INSTANTIATE_TEST_SUITE_P(Roles, SecondNode, ::testing::ValuesIn(kAllNodes), role_name);
+INSTANTIATE_TEST_SUITE_P(Roles, SecondNode, ::testing::ValuesIn(kGateRoles), role_name);
+INSTANTIATE_TEST_SUITE_P(NightlyRoles, SecondNode, ::testing::ValuesIn(kNightlyRoles), role_name);
 
 class StartedTogether : public ::testing::TestWithParam<Role> {};
 
@@ -301,7 +302,8 @@ TEST_P(StartedTogether, ExactlyOneOfTwoStays) {
   EXPECT_EQ(session.recorded().last_complete_step(), 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Roles, StartedTogether, ::testing::ValuesIn(kAllNodes), role_name);
+INSTANTIATE_TEST_SUITE_P(Roles, StartedTogether, ::testing::ValuesIn(kGateRoles), role_name);
+INSTANTIATE_TEST_SUITE_P(NightlyRoles, StartedTogether, ::testing::ValuesIn(kNightlyRoles), role_name);
 
 // An io that holds the same name and goes first, for its id is the lowest there is; the observer speaks for it.
 class Rival {
@@ -472,7 +474,7 @@ const std::vector<std::string> kUnstable = {"--pace",     "free",
                                             "--set",      "mechanics.max_substep=20ms",
                                             "--set",      "session.coupling=hold"};
 
-TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5) {
+TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5AndTheLastGoodStateIsRecorded) {
   Session session(kUnstable);
   session.start_all();
   for (const auto& [role, code] : session.wait_all())
@@ -481,14 +483,9 @@ TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5) {
   EXPECT_NE(said.find("mechanics"), std::string::npos) << said;
   EXPECT_NE(said.find("diverged in step"), std::string::npos) << said;
   EXPECT_NE(said.find("Body_Pillar is not finite"), std::string::npos) << said;
-  EXPECT_EQ(session.recorded().problem, "");
-}
-
-TEST(Divergence, KeepsTheLastGoodStateInTheRecording) {
-  Session session(kUnstable);
-  session.start_all();
-  static_cast<void>(session.wait_all());
-  const std::vector<wire::MechanismMessage> samples = session.recorded().mechanisms;
+  const RecordedSession recorded = session.recorded();
+  EXPECT_EQ(recorded.problem, "");
+  const std::vector<wire::MechanismMessage>& samples = recorded.mechanisms;
   ASSERT_GE(samples.size(), 2u);
   const wire::MechanismMessage& last = samples.back();
   const wire::MechanismMessage& before = samples[samples.size() - 2];

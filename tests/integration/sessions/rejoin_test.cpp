@@ -28,11 +28,8 @@ std::vector<std::string> places_held(const std::string& pace) {
 }
 
 const HashChain& undisturbed() {
-  static const RecordedSession session = [] {
-    const ScratchFolder folder;
-    return run_in_one_process(load_scene(kScene, kDuration), folder.path() / "runs");
-  }();
-  return session.chain();
+  static const HashChain chain = undisturbed_chain(kScene, kSteps);
+  return chain;
 }
 
 bool holds_a_place(Observer& observer, Role role, std::size_t times = 1) {
@@ -103,7 +100,8 @@ TEST_P(KilledAndReplaced, TwiceInFreePace) {
   expect_undisturbed_bits(session);
 }
 
-INSTANTIATE_TEST_SUITE_P(Roles, KilledAndReplaced, ::testing::Values(Role::mechanics, Role::hydraulics), role_name);
+INSTANTIATE_TEST_SUITE_P(Roles, KilledAndReplaced, ::testing::Values(Role::mechanics), role_name);
+INSTANTIATE_TEST_SUITE_P(NightlyRoles, KilledAndReplaced, ::testing::Values(Role::hydraulics), role_name);
 
 TEST(Replaced, AStoppedProcessThatWakesUpIsToldThatItsRoleWasGivenAway) {
   Session session(places_held("real"));
@@ -154,42 +152,60 @@ TEST(Replaced, AKilledIoOrRecorderEndsTheSessionAsWithout) {
 
 // ---- with a flex node -----------------------------------------------------------------------------------------
 
-TEST(ReplacedFlex, AloneOrWithAllOthersTheSessionGoesOnToTheSameBits) {
-  const std::string scene = SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml";
-  const std::vector<std::string> files = {"--assets", SLEWRING_SOURCE_DIR "/scenes"};
-  const std::vector<std::vector<Role>> losses = {{}, {Role::flex}, {Role::mechanics, Role::hydraulics, Role::flex}};
-  for (const std::string exchange : {"once", "every_step"}) {
-    HashChain undisturbed;
-    for (const std::vector<Role>& lost : losses) {
-      SCOPED_TRACE(exchange + ", lost: " + std::to_string(lost.size()));
-      Session session({"--pace", "real", "--duration", "0.8s", "--set", "session.rejoin=20s", "--set",
-                       "session.flexible=" + exchange},
-                      scene);
-      Observer& observer = session.observer();
-      session.start(Role::io);
-      session.start(Role::recorder);
-      for (const Role role : wire::kPhysicsRoles) session.start(role, files);
-      ASSERT_TRUE(observer.wait_for_step(300)) << session.said();
-      for (const Role role : lost) session.node(role).send(SIGKILL);
-      for (const Role role : lost) {
-        ASSERT_TRUE(holds_a_place(observer, role)) << session.said();
-        session.start(role, files);
-      }
-      for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.said();
-      const RecordedSession recorded = session.recorded();
-      EXPECT_EQ(recorded.problem, "");
-      if (lost.empty()) {
-        undisturbed = recorded.chain();
-        continue;
-      }
-      EXPECT_EQ(first_difference(undisturbed, recorded.chain()), "");
-      Program verify(program_path("slewring"),
-                     {"replay", only_recording(session.runs()).string(), "--verify", files[0], files[1]},
-                     session.folder() / "replay");
-      EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
-    }
-  }
+struct FlexLoss {
+  const char* name;
+  const char* exchange;  // session.flexible
+  std::vector<Role> lost;
+};
+void PrintTo(const FlexLoss& loss, std::ostream* out) {
+  *out << loss.name;
 }
+
+class ReplacedFlex : public ::testing::TestWithParam<FlexLoss> {
+ protected:
+  RecordedSession run_losing(const std::vector<Role>& lost) {
+    Session session({"--pace", "real", "--duration", "0.8s", "--set", "session.rejoin=20s", "--set",
+                     std::string("session.flexible=") + GetParam().exchange},
+                    SLEWRING_SOURCE_DIR "/scenes/truck_crane_flexible.yaml");
+    Observer& observer = session.observer();
+    session.start(Role::io);
+    session.start(Role::recorder);
+    for (const Role role : wire::kPhysicsRoles) session.start(role, files_);
+    EXPECT_TRUE(observer.wait_for_step(300)) << session.said();
+    for (const Role role : lost) session.node(role).send(SIGKILL);
+    for (const Role role : lost) {
+      EXPECT_TRUE(holds_a_place(observer, role)) << session.said();
+      session.start(role, files_);
+    }
+    for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << node::to_text(role) << session.said();
+    RecordedSession recorded = session.recorded();
+    EXPECT_EQ(recorded.problem, "");
+    if (lost.empty()) return recorded;
+    Program verify(program_path("slewring"),
+                   {"replay", only_recording(session.runs()).string(), "--verify", files_[0], files_[1]},
+                   session.folder() / "replay");
+    EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
+    return recorded;
+  }
+  const std::vector<std::string> files_ = {"--assets", SLEWRING_SOURCE_DIR "/scenes"};
+};
+
+TEST_P(ReplacedFlex, TheSessionGoesOnToTheSameBits) {
+  const HashChain undisturbed = run_losing({}).chain();
+  EXPECT_EQ(first_difference(undisturbed, run_losing(GetParam().lost).chain()), "");
+}
+
+const auto name_of_loss = [](const ::testing::TestParamInfo<FlexLoss>& loss) { return std::string(loss.param.name); };
+INSTANTIATE_TEST_SUITE_P(Losses, ReplacedFlex,
+                         ::testing::Values(FlexLoss{
+                             "all_every_step", "every_step", {Role::mechanics, Role::hydraulics, Role::flex}}),
+                         name_of_loss);
+INSTANTIATE_TEST_SUITE_P(NightlyLosses, ReplacedFlex,
+                         ::testing::Values(FlexLoss{"flex_every_step", "every_step", {Role::flex}},
+                                           FlexLoss{"flex_once", "once", {Role::flex}},
+                                           FlexLoss{
+                                               "all_once", "once", {Role::mechanics, Role::hydraulics, Role::flex}}),
+                         name_of_loss);
 
 // ---- `slewring run` -------------------------------------------------------------------------------------------
 
@@ -237,7 +253,8 @@ TEST_F(RunWithRejoin, ReplacesANodeThatHangs) {
       << run_.err();
 }
 
-TEST_F(RunWithRejoin, ReplacesANodeWhoseLoopHangs) {
+// the gate has HungLoop
+TEST_F(RunWithRejoin, NightlyReplacesANodeWhoseLoopHangs) {
   wait_for(Role::mechanics);
   if (HasFatalFailure()) return;
   HeldLoop held(pid_of(Role::mechanics));
