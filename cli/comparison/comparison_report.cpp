@@ -6,7 +6,7 @@
 
 #include "cli/display.h"
 #include "cli/plotting/scatter_svg.h"
-#include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 #include "core/json.h"
 
 namespace slew::cli {
@@ -262,12 +262,12 @@ std::string report_svg(const Comparison& comparison) {
 }
 
 std::string report_html(const Comparison& comparison) {
-  const std::string title = plotting::escaped(comparison.scene);
+  const std::string title = escaped(comparison.scene);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}: accuracy against cost</title>\n"
       "<style>body{{font-family:sans-serif;margin:2em}}pre{{overflow-x:auto}}svg{{max-width:100%;height:auto}}</style>"
       "</head>\n<body>\n{1}<pre>{2}</pre>\n</body>\n</html>\n",
-      title, report_svg(comparison), plotting::escaped(report_text(comparison)));
+      title, report_svg(comparison), escaped(report_text(comparison)));
 }
 
 }  // namespace slew::cli

@@ -7,7 +7,7 @@
 
 #include "cli/display.h"
 #include "cli/plotting/html_text.h"
-#include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 #include "core/json.h"
 
 namespace slew::cli {
@@ -296,8 +296,8 @@ std::string report_html(const Tradeoff& tradeoff, const std::optional<Answer>& a
       "</label></p>\n<svg id=\"plot\" viewBox=\"0 0 1000 560\"></svg>\n<div id=\"tip\"></div>\n"
       "<table id=\"rows\"></table>\n<script id=\"data\" type=\"application/json\">{3}</script>\n"
       "<script>{4}</script>\n</body>\n</html>\n",
-      plotting::escaped(tradeoff.scene), kPageStyle, plotting::escaped(note),
-      plotting::in_script(to_json(tradeoff, answer).dump()), kPageScript);
+      escaped(tradeoff.scene), kPageStyle, escaped(note), plotting::in_script(to_json(tradeoff, answer).dump()),
+      kPageScript);
 }
 
 }  // namespace slew::cli
