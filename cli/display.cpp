@@ -1,12 +1,16 @@
 #include "cli/display.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <utility>
+
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
@@ -94,6 +98,16 @@ std::string duration_text(double seconds) {
   if (std::fabs(seconds) < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
   if (std::fabs(seconds) < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
   return fmt::format("{:.4g} s", seconds);
+}
+
+std::size_t output_width() {
+  winsize size{};
+  const bool is_terminal = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  return is_terminal ? size.ws_col : 0;
+}
+
+void print_table(const ReportTable& table) {
+  fmt::print("{}", table.text("", output_width()));
 }
 
 std::string table_text(const std::vector<std::vector<std::string>>& rows, std::string_view indent) {

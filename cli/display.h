@@ -1,10 +1,16 @@
-// How quantities are shown to people: the units of the workshop, and as many digits as can be read.
+// How quantities and tables are shown to people: the units of the workshop, as many digits as can be read, lines that
+// fit the terminal.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace slew {
+class ReportTable;
+}
 
 namespace slew::cli {
 
@@ -29,6 +35,12 @@ struct DisplayUnit {
 
 // "1.9 us", "12 ms", "3.2 s".
 [[nodiscard]] std::string duration_text(double seconds);
+
+// Characters of a line where standard output is a terminal; 0 elsewhere: a line may have any length.
+[[nodiscard]] std::size_t output_width();
+
+// To standard output, in lines that fit the terminal.
+void print_table(const ReportTable& table);
 
 // Columns aligned by spaces, two between them; the last column is not padded. Lengths are counted in characters of
 // UTF-8.
