@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace slew {
 class ReportTable;
@@ -41,12 +40,5 @@ struct DisplayUnit {
 
 // To standard output, in lines that fit the terminal.
 void print_table(const ReportTable& table);
-
-// Columns aligned by spaces, two between them; the last column is not padded. Lengths are counted in characters of
-// UTF-8.
-[[nodiscard]] std::string table_text(const std::vector<std::vector<std::string>>& rows, std::string_view indent = "  ");
-
-// A line of comma-separated values with its CR LF (RFC 4180).
-[[nodiscard]] std::string csv_line(const std::vector<std::string>& cells);
 
 }  // namespace slew::cli

@@ -6,8 +6,8 @@
 
 namespace slew {
 
-// The text with & < > " as entities, fit for an element or a quoted attribute; control characters become
-// spaces.
+// The text with & < > " as entities, fit for an element or a quoted attribute; control characters but the line feed
+// become spaces.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 }  // namespace slew
