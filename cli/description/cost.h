@@ -9,7 +9,6 @@
 // Nothing is timed inside the physics. Calls find warm caches: their sum is a lower bound, and the rest an upper one.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>

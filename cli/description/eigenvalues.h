@@ -2,7 +2,6 @@
 // whose they are, and with which steps they can be followed.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/json.h"

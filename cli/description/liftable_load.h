@@ -11,7 +11,6 @@
 // Not covered: friction of joints, speeds (the load hangs at rest), tipping of the carrier, strength, buckling.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
