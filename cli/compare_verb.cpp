@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "cli/comparison/comparison_report.h"
+#include "cli/display.h"
 #include "cli/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/verbs.h"
@@ -58,7 +59,7 @@ ExitCode run(const Options& options) {
       return interrupts() == 0;
     });
   }
-  fmt::print("{}", options.is_json ? report_json(comparison) + '\n' : report_text(comparison));
+  fmt::print("{}", options.is_json ? report_json(comparison) + '\n' : report_text(comparison, output_width()));
   std::fflush(stdout);
   if (!comparison.rows.empty()) {
     if (!options.csv.empty()) write_file(options.csv, report_csv(comparison));

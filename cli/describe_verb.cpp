@@ -12,6 +12,7 @@
 #include "cli/display.h"
 #include "cli/verbs.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "hydraulics/circuit.h"
 #include "multibody/model.h"
 #include "multibody/observe.h"
@@ -247,34 +248,35 @@ std::string joined(const std::vector<std::string>& parts) {
 
 void print(const Description& d) {
   if (!d.text.empty()) fmt::print("{}\n\n", d.text);
-  std::vector<std::vector<std::string>> rows = {
-      {"scene", d.name},
-      {"session", fmt::format("step {}, duration {}, pace {}", duration_text(d.step),
-                              d.duration > 0 ? duration_text(d.duration) : "until stopped", d.pace)},
-      {"mechanics",
-       joined({counted(d.bodies, "body", "bodies"), counted(d.joints, "joint", "joints"),
-               counted(d.links, "moving link", "moving links"),
-               counted(static_cast<std::uint64_t>(d.degrees_of_freedom), "degree of freedom", "degrees of freedom")})},
-      {"motions", joined(d.motions)},
-      {"merged", joined(d.merged)},
-      {"contacts", joined(d.contacts)},
+  ReportTable rows({"", ""});
+  rows.add({"scene", d.name});
+  rows.add({"session", fmt::format("step {}, duration {}, pace {}", duration_text(d.step),
+                                   d.duration > 0 ? duration_text(d.duration) : "until stopped", d.pace)});
+  rows.add({"mechanics", joined({counted(d.bodies, "body", "bodies"), counted(d.joints, "joint", "joints"),
+                                 counted(d.links, "moving link", "moving links"),
+                                 counted(static_cast<std::uint64_t>(d.degrees_of_freedom), "degree of freedom",
+                                         "degrees of freedom")})});
+  rows.add({"motions", joined(d.motions)});
+  rows.add({"merged", joined(d.merged)});
+  rows.add({"contacts", joined(d.contacts)});
+  rows.add(
       {"hydraulics", joined({counted(d.components, "component", "components"),
                              counted(d.free_volumes, "pressure state", "pressure states"),
                              counted(d.fixed_volumes, "fixed pressure", "fixed pressures"),
-                             counted(static_cast<std::uint64_t>(d.hydraulic_states), "state", "states") + " in all"})},
-      {"ports", joined(d.ports)},
-      {"inputs", joined(d.inputs)}};
-  for (const std::string& body : d.flexible) rows.push_back({"flexible", body});
-  if (!d.driven.empty()) rows.push_back({"driven", joined(d.driven)});
-  if (!d.closed.empty()) rows.push_back({"closed by rows", joined(d.closed)});
+                             counted(static_cast<std::uint64_t>(d.hydraulic_states), "state", "states") + " in all"})});
+  rows.add({"ports", joined(d.ports)});
+  rows.add({"inputs", joined(d.inputs)});
+  for (const std::string& body : d.flexible) rows.add({"flexible", body});
+  if (!d.driven.empty()) rows.add({"driven", joined(d.driven)});
+  if (!d.closed.empty()) rows.add({"closed by rows", joined(d.closed)});
   for (const BodyNumbers& body : d.body_numbers) {
-    if (body.mesh) rows.push_back({"inertia", mesh_text(body)});
+    if (body.mesh) rows.add({"inertia", mesh_text(body)});
   }
   for (const NodeNeed& node : d.nodes) {
-    rows.push_back({node.role + " node", (node.is_needed ? "needed: " : "not needed: ") + node.reason});
+    rows.add({node.role + " node", (node.is_needed ? "needed: " : "not needed: ") + node.reason});
   }
-  for (const std::string& part : d.left_out) rows.push_back({"left out", part});
-  fmt::print("{}", table_text(rows, ""));
+  for (const std::string& part : d.left_out) rows.add({"left out", part});
+  print_table(rows);
 }
 
 // Only the parts that were asked for, in the order of the options.
@@ -292,18 +294,18 @@ ExitCode show_parts(const Options& options) {
     const std::vector<std::string> not_paid = describe(scene).left_out;
     const CostByPart cost = measure_cost(scene, options.scene, overrides, until);
     json["cost"] = report_json(cost, not_paid);
-    texts.push_back(report_text(cost, not_paid));
+    texts.push_back(report_text(cost, not_paid, output_width()));
   }
   if (options.has_eigenvalues) {
     const Eigenvalues eigenvalues =
         find_eigenvalues(scene, at, options.is_frictionless ? DryFriction::neglected : DryFriction::kept);
     json["eigenvalues"] = report_json(eigenvalues);
-    texts.push_back(report_text(eigenvalues, options.count));
+    texts.push_back(report_text(eigenvalues, options.count, output_width()));
   }
   if (options.has_liftable) {
     const LiftableLoad load = find_liftable(scene, {at, options.pose}, Settings::named);
     json["liftable"] = report_json(load);
-    texts.push_back(report_text(load));
+    texts.push_back(report_text(load, output_width()));
   }
   if (options.is_json) {
     fmt::print("{}\n", json.dump(2));

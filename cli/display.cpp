@@ -1,12 +1,15 @@
 #include "cli/display.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <utility>
+
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
@@ -47,11 +50,6 @@ std::string few_digits(double value) {
 
 std::string with_unit(std::string text, std::string_view unit) {
   return unit.empty() ? text : text + ' ' + std::string(unit);
-}
-
-std::size_t characters(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace
@@ -96,38 +94,14 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.4g} s", seconds);
 }
 
-std::string table_text(const std::vector<std::vector<std::string>>& rows, std::string_view indent) {
-  std::vector<std::size_t> widths;
-  for (const std::vector<std::string>& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
-  }
-  std::string text;
-  for (const std::vector<std::string>& row : rows) {
-    text += indent;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += row[i];
-      if (i + 1 < row.size()) text.append(widths[i] - characters(row[i]) + 2, ' ');
-    }
-    text += '\n';
-  }
-  return text;
+std::size_t output_width() {
+  winsize size{};
+  const bool is_terminal = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  return is_terminal ? size.ws_col : 0;
 }
 
-std::string csv_line(const std::vector<std::string>& cells) {
-  std::string line;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (i > 0) line += ',';
-    const bool is_quoted = cells[i].find_first_of(",\"\r\n") != std::string::npos;
-    if (!is_quoted) {
-      line += cells[i];
-      continue;
-    }
-    line += '"';
-    for (const char c : cells[i]) line += c == '"' ? std::string("\"\"") : std::string(1, c);
-    line += '"';
-  }
-  return line + "\r\n";
+void print_table(const ReportTable& table) {
+  fmt::print("{}", table.text("", output_width()));
 }
 
 }  // namespace slew::cli

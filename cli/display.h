@@ -1,10 +1,15 @@
-// How quantities are shown to people: the units of the workshop, and as many digits as can be read.
+// How quantities and tables are shown to people: the units of the workshop, as many digits as can be read, lines that
+// fit the terminal.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
+
+namespace slew {
+class ReportTable;
+}
 
 namespace slew::cli {
 
@@ -30,11 +35,10 @@ struct DisplayUnit {
 // "1.9 us", "12 ms", "3.2 s".
 [[nodiscard]] std::string duration_text(double seconds);
 
-// Columns aligned by spaces, two between them; the last column is not padded. Lengths are counted in characters of
-// UTF-8.
-[[nodiscard]] std::string table_text(const std::vector<std::vector<std::string>>& rows, std::string_view indent = "  ");
+// Characters of a line where standard output is a terminal; 0 elsewhere: a line may have any length.
+[[nodiscard]] std::size_t output_width();
 
-// A line of comma-separated values with its CR LF (RFC 4180).
-[[nodiscard]] std::string csv_line(const std::vector<std::string>& cells);
+// To standard output, in lines that fit the terminal.
+void print_table(const ReportTable& table);
 
 }  // namespace slew::cli

@@ -15,6 +15,7 @@
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "node/identity.h"
 #include "transport/cyclone_domain.h"
 
@@ -130,20 +131,20 @@ ExitCode examine(const Options& options) {
       check_processor(),      check_programs(),  check_pidfd(),    check_network(options.network),
       check_receive_buffer(), check_real_time(), check_governor(), check_disk()};
   bool is_fit = true;
-  Json json = Json::array();
-  std::vector<std::vector<std::string>> rows;
+  constexpr std::size_t kNaming = 2;  // verdict, what
+  ReportTable table({{.text = "", .json = "verdict"}, {.text = "", .json = "what"}, {.text = "", .json = "text"}},
+                    kNaming);
   for (const Finding& finding : findings) {
     const char* verdict = finding.verdict == Verdict::good      ? "ok"
                           : finding.verdict == Verdict::warning ? "warning"
                                                                 : "BAD";
     is_fit = is_fit && finding.verdict != Verdict::bad;
-    json.push_back({{"what", finding.what}, {"verdict", verdict}, {"text", finding.text}});
-    rows.push_back({verdict, finding.what, finding.text});
+    table.add({verdict, finding.what, finding.text});
   }
   if (options.is_json) {
-    fmt::print("{}\n", Json({{"fit", is_fit}, {"build", node::build_id()}, {"findings", json}}).dump(2));
+    fmt::print("{}\n", Json({{"fit", is_fit}, {"build", node::build_id()}, {"findings", table.json()}}).dump(2));
   } else {
-    fmt::print("{}", table_text(rows, ""));
+    print_table(table);
   }
   return is_fit ? ExitCode::ok : ExitCode::resources;
 }

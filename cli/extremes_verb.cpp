@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "cli/display.h"
 #include "cli/extremes/case_run.h"
 #include "cli/extremes/extremes.h"
 #include "cli/interrupts.h"
@@ -41,7 +42,7 @@ ExitCode run(Options options) {
       return interrupts() == 0;
     });
   }
-  fmt::print("{}", options.is_json ? report_json(extremes) + '\n' : report_text(extremes));
+  fmt::print("{}", options.is_json ? report_json(extremes) + '\n' : report_text(extremes, output_width()));
   std::fflush(stdout);
   if (interrupts() > 0) return static_cast<ExitCode>(interrupt_code());
   return extremes.is_good() ? ExitCode::ok : ExitCode::failed;

@@ -1,8 +1,6 @@
 // The report on a reduced flexible body for machines.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "core/json.h"
 #include "flex/attachment_comparison.h"
 #include "flex/reduction_report.h"

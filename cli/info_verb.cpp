@@ -8,6 +8,7 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "node/identity.h"
 #include "recording/recovery.h"
 
@@ -93,17 +94,16 @@ Json events_json(const recording::Reader& reader) {
 }
 
 // The first ones, unless all are asked for.
-void add_events(const recording::Reader& reader, bool has_all, std::vector<std::vector<std::string>>& rows) {
+void add_events(const recording::Reader& reader, bool has_all, ReportTable& rows) {
   constexpr std::size_t kShown = 10;
   const std::vector<RecordedEvent> events = recorded_events(reader);
   const std::size_t shown = has_all ? events.size() : std::min(kShown, events.size());
   for (std::size_t i = 0; i < shown; ++i) {
     const RecordedEvent& event = events[i];
-    rows.push_back(
-        {"event", fmt::format("step {}{}: {}", event.step,
-                              event.epoch == 0 ? "" : fmt::format(" of epoch {}", event.epoch), event.text)});
+    rows.add({"event", fmt::format("step {}{}: {}", event.step,
+                                   event.epoch == 0 ? "" : fmt::format(" of epoch {}", event.epoch), event.text)});
   }
-  if (shown < events.size()) rows.push_back({"event", fmt::format("{} more: --events", events.size() - shown)});
+  if (shown < events.size()) rows.add({"event", fmt::format("{} more: --events", events.size() - shown)});
 }
 
 Json to_json(const recording::Reader& reader, double simulated) {
@@ -133,28 +133,29 @@ Json to_json(const recording::Reader& reader, double simulated) {
 void print(const recording::Reader& reader, double simulated, bool has_all_events) {
   const recording::SessionIdentity& identity = reader.identity();
   const TickSpan span = tick_span(reader);
-  std::vector<std::vector<std::string>> rows = {
-      {"file", fmt::format("{} ({:.2f} MB)", reader.path().string(), static_cast<double>(reader.file_bytes()) * 1e-6)},
-      {"scene", identity.scene},
-      {"session", identity.session_name + ", " + identity.session_id},
-      {"started", node::time_text(identity.started_ns)},
-      {"build", identity.build},
-      {"step", duration_text(identity.communication_step.seconds())},
-      {"length",
-       fmt::format("{}, {} in {} of wall time", duration_text(simulated),
-                   counted(static_cast<std::uint64_t>(span.steps), "step", "steps"), duration_text(span.wall_time))},
-      {"end", end_of(reader)}};
+  ReportTable rows({"", ""});
+  rows.add(
+      {"file", fmt::format("{} ({:.2f} MB)", reader.path().string(), static_cast<double>(reader.file_bytes()) * 1e-6)});
+  rows.add({"scene", identity.scene});
+  rows.add({"session", identity.session_name + ", " + identity.session_id});
+  rows.add({"started", node::time_text(identity.started_ns)});
+  rows.add({"build", identity.build});
+  rows.add({"step", duration_text(identity.communication_step.seconds())});
+  rows.add({"length", fmt::format("{}, {} in {} of wall time", duration_text(simulated),
+                                  counted(static_cast<std::uint64_t>(span.steps), "step", "steps"),
+                                  duration_text(span.wall_time))});
+  rows.add({"end", end_of(reader)});
   for (const auto& [topic, count] : counts_of(reader)) {
-    rows.push_back(
+    rows.add(
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
   }
-  for (std::string& gap : gaps_of(reader)) rows.push_back({"gap", std::move(gap)});
-  for (std::string& flagged : explain_flags(reader)) rows.push_back({"note", std::move(flagged)});
+  for (std::string& gap : gaps_of(reader)) rows.add({"gap", std::move(gap)});
+  for (std::string& flagged : explain_flags(reader)) rows.add({"note", std::move(flagged)});
   add_events(reader, has_all_events, rows);
   for (const recording::AttachmentIndexRecord& attachment : reader.attachments()) {
-    rows.push_back({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});
+    rows.add({"attached", fmt::format("{} ({})", attachment.name, counted(attachment.size, "byte", "bytes"))});
   }
-  fmt::print("{}", table_text(rows, ""));
+  print_table(rows);
 }
 
 ExitCode show(const Options& options) {

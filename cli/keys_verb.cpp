@@ -5,7 +5,7 @@
 #include "cli/keys/key_store.h"
 #include "cli/verbs.h"
 #include "cli_support/session_options.h"
-#include "core/json.h"
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
@@ -49,17 +49,21 @@ ExitCode revoke(const Options& options) {
 
 ExitCode check(const Options& options) {
   const std::vector<KeyFinding> findings = check_keys(options.store);
-  std::vector<std::vector<std::string>> rows;
-  Json json = Json::array();
+  constexpr std::size_t kNaming = 2;  // verdict, whose
+  ReportTable table(
+      {{.text = ""}, {.text = "", .json = "what"}, {.text = ""}, {.json = "problem"}, {.json = "expires"}}, kNaming);
   bool is_good = true;
   for (const KeyFinding& finding : findings) {
     const std::string what = finding.identity.empty() ? "authorities" : finding.identity;
     is_good = is_good && finding.problem.empty();
-    json.push_back({{"what", what}, {"problem", finding.problem}, {"expires", finding.expires}});
     const std::string text = finding.problem.empty() ? "until " + finding.expires : finding.problem;
-    rows.push_back({finding.problem.empty() ? "ok" : "BAD", what, text});
+    table.add({finding.problem.empty() ? "ok" : "BAD", what, text, finding.problem, finding.expires});
   }
-  fmt::print("{}", options.is_json ? json.dump(2) + '\n' : table_text(rows, ""));
+  if (options.is_json) {
+    fmt::print("{}\n", table.json().dump(2));
+  } else {
+    print_table(table);
+  }
   return is_good ? ExitCode::ok : ExitCode::failed;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "core/suggestion.h"
 #include "node/driver.h"
 #include "scene/field_reader.h"
@@ -107,20 +108,20 @@ bool is_wanted(const scene::ParameterInfo& parameter, const Options& options) {
                      [&](const std::string& pattern) { return scene::fits_pattern(parameter.path, pattern); });
 }
 
-std::string table_of(const std::vector<Present>& all) {
+ReportTable table_of(const std::vector<Present>& all) {
   const auto is_changed = [](const Present& present) { return present.value != present.about->value; };
   const bool has_changed = std::any_of(all.begin(), all.end(), is_changed);
-  std::vector<std::vector<std::string>> rows = {{"parameter", "value", "change", "range", "meaning"}};
-  if (has_changed) rows.front().insert(rows.front().begin() + 2, "in the scene");
+  ReportColumn in_scene;
+  if (has_changed) in_scene.text = "in the scene";
+  ReportTable table({{"parameter"}, {"value"}, in_scene, {"change"}, {"range"}, {"meaning"}});
   for (const Present& present : all) {
     const scene::ParameterInfo& parameter = *present.about;
-    rows.push_back({parameter.path, value_text(present.value, parameter),
-                    parameter.change == Change::live ? "live" : "restart", range_text(parameter),
-                    std::string(parameter.doc)});
-    if (!has_changed) continue;
-    rows.back().insert(rows.back().begin() + 2, is_changed(present) ? value_text(parameter.value, parameter) : "");
+    table.add({parameter.path, value_text(present.value, parameter),
+               is_changed(present) ? value_text(parameter.value, parameter) : "",
+               parameter.change == Change::live ? "live" : "restart", range_text(parameter),
+               std::string(parameter.doc)});
   }
-  return table_text(rows, "");
+  return table;
 }
 
 ExitCode list(const Options& options) {
@@ -139,7 +140,7 @@ ExitCode list(const Options& options) {
   if (all.empty()) {
     throw Failure(ExitCode::bad_input, "no parameter fits; 'slewring param list' without names lists all");
   }
-  fmt::print("{}", table_of(all));
+  print_table(table_of(all));
   return ExitCode::ok;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "recording/recovery.h"
 #include "recording/run_directory.h"
 
@@ -61,30 +62,27 @@ std::string steps_text(const RecordedExtent& extent) {
 }
 
 void print(const recording::Recovery& recovery, const std::filesystem::path& target, const RecordedExtent& extent) {
-  std::vector<std::vector<std::string>> rows = {
-      {"recovered", target.string()},
-      {"saved",
-       fmt::format("{} in {}, until {:.6g} s", counted(recovery.messages, "message", "messages"),
-                   counted(recovery.chunks, "chunk", "chunks"), static_cast<double>(recovery.end_time) * 1e-9)},
-      {"steps", steps_text(extent)}};
-  for (const recording::LostBytes& lost : recovery.lost) rows.push_back({"lost", lost_text(lost)});
+  ReportTable rows({"", ""});
+  rows.add({"recovered", target.string()});
+  rows.add({"saved",
+            fmt::format("{} in {}, until {:.6g} s", counted(recovery.messages, "message", "messages"),
+                        counted(recovery.chunks, "chunk", "chunks"), static_cast<double>(recovery.end_time) * 1e-9)});
+  rows.add({"steps", steps_text(extent)});
+  for (const recording::LostBytes& lost : recovery.lost) rows.add({"lost", lost_text(lost)});
   if (extent.lost > 0) {
-    rows.push_back({"lost", fmt::format("{} in front of the last step",
-                                        counted(extent.lost, "tick or sample", "ticks and samples"))});
+    rows.add({"lost", fmt::format("{} in front of the last step",
+                                  counted(extent.lost, "tick or sample", "ticks and samples"))});
   }
   if (!extent.first_step) {
-    rows.push_back({"lost", "with which step it begins; what is missing is counted from step 0 on"});
+    rows.add({"lost", "with which step it begins; what is missing is counted from step 0 on"});
   }
-  if (recovery.was_cut)
-    rows.push_back({"lost", "what was recorded behind the last step, if anything: the end is missing"});
+  if (recovery.was_cut) rows.add({"lost", "what was recorded behind the last step, if anything: the end is missing"});
   if (recovery.lost_channels > 0) {
-    rows.push_back(
-        {"lost", fmt::format("the names of {}: its messages are there under '{}<number>'",
-                             counted(recovery.lost_channels, "topic", "topics"), recording::kLostChannelTopic)});
+    rows.add({"lost", fmt::format("the names of {}: its messages are there under '{}<number>'",
+                                  counted(recovery.lost_channels, "topic", "topics"), recording::kLostChannelTopic)});
   }
-  if (recovery.lost.empty() && !recovery.was_cut)
-    rows.push_back({"lost", "nothing: only index and checks were damaged"});
-  fmt::print("{}", table_text(rows, ""));
+  if (recovery.lost.empty() && !recovery.was_cut) rows.add({"lost", "nothing: only index and checks were damaged"});
+  print_table(rows);
 }
 
 ExitCode run(const Options& options) {

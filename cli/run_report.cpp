@@ -16,6 +16,7 @@
 #include "cli/text_output.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "coupling/indicator.h"
 #include "io_node/session_clock.h"
 #include "node/identity.h"
@@ -132,24 +133,23 @@ std::string waits_text(const wire::Health& io) {
 }
 
 // How the session kept its deadlines, as io saw it.
-void add_deadlines(const RunReport& report, std::vector<std::vector<std::string>>& rows) {
+void add_deadlines(const RunReport& report, ReportTable& rows) {
   const wire::Health& io = report.nodes.front().health;
   if (io.response.count > 0) {
-    rows.push_back(
-        {"deadline",
-         fmt::format("{} of {} later than {} ({:.3g} %), {} in a row at most; response {} median, {} p99, {} "
-                     "max; release {} late p99",
-                     io.overruns, counted(io.response.count, "step", "steps"), duration_text(report.step),
-                     100.0 * static_cast<double>(io.overruns) / static_cast<double>(io.response.count),
-                     io.longest_overrun, duration_text(io.response.p50), duration_text(io.response.p99),
-                     duration_text(io.response.largest), duration_text(io.release_jitter.p99))});
+    rows.add({"deadline",
+              fmt::format("{} of {} later than {} ({:.3g} %), {} in a row at most; response {} median, {} p99, {} "
+                          "max; release {} late p99",
+                          io.overruns, counted(io.response.count, "step", "steps"), duration_text(report.step),
+                          100.0 * static_cast<double>(io.overruns) / static_cast<double>(io.response.count),
+                          io.longest_overrun, duration_text(io.response.p50), duration_text(io.response.p99),
+                          duration_text(io.response.largest), duration_text(io.release_jitter.p99))});
   }
   if (io.input_latency.count > 0) {
-    rows.push_back({"controller", fmt::format("{} from a value to the first samples that used it, {} p99, {} max",
-                                              duration_text(io.input_latency.p50), duration_text(io.input_latency.p99),
-                                              duration_text(io.input_latency.largest))});
+    rows.add({"controller", fmt::format("{} from a value to the first samples that used it, {} p99, {} max",
+                                        duration_text(io.input_latency.p50), duration_text(io.input_latency.p99),
+                                        duration_text(io.input_latency.largest))});
   }
-  if (!report.books.empty()) rows.push_back({"books", "do not balance: " + report.books});
+  if (!report.books.empty()) rows.add({"books", "do not balance: " + report.books});
 }
 
 Json times_json(const wire::Quantiles& times) {
@@ -266,18 +266,18 @@ void print(const RunReport& report) {
     for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
     return;
   }
-  std::vector<std::vector<std::string>> rows;
-  rows.push_back({"session", fmt::format("{} of scene {}, step {}, pace {}", report.session, report.scene,
-                                         duration_text(report.step), report.pace)});
+  ReportTable rows({"", ""});
+  rows.add({"session", fmt::format("{} of scene {}, step {}, pace {}", report.session, report.scene,
+                                   duration_text(report.step), report.pace)});
   if (report.wall_time > 0) {
-    rows.push_back({"time", fmt::format("{} simulated in {}: {:.2f} times real time, {:.0f} steps/s",
-                                        duration_text(report.simulated_time), duration_text(report.wall_time),
-                                        report.simulated_time / report.wall_time,
-                                        static_cast<double>(report.steps) / report.wall_time)});
+    rows.add({"time", fmt::format("{} simulated in {}: {:.2f} times real time, {:.0f} steps/s",
+                                  duration_text(report.simulated_time), duration_text(report.wall_time),
+                                  report.simulated_time / report.wall_time,
+                                  static_cast<double>(report.steps) / report.wall_time)});
   }
-  if (report.paused_time > kShortestPause) rows.push_back({"paused", duration_text(report.paused_time)});
+  if (report.paused_time > kShortestPause) rows.add({"paused", duration_text(report.paused_time)});
   if (report.pace == "real") {
-    rows.push_back({"slip", duration_text(report.slip)});
+    rows.add({"slip", duration_text(report.slip)});
     if (!report.nodes.empty()) add_deadlines(report, rows);
   }
   for (const NodeReport& node : report.nodes) {
@@ -289,21 +289,20 @@ void print(const RunReport& report) {
     }
     text += fmt::format("resends {} asked, {} answered", node.resends_asked, node.resends_answered);
     if (node.refused_messages > 0) text += "; " + counted(node.refused_messages, "message", "messages") + " refused";
-    rows.push_back({node.role, text});
+    rows.add({node.role, text});
   }
-  if (!report.lost.empty()) rows.push_back({"lost", report.lost});
+  if (!report.lost.empty()) rows.add({"lost", report.lost});
   for (const PortReport& port : report.ports) {
-    rows.push_back({"coupling", fmt::format("{} {}: residual {} at most, net {} at least", port.name, port.lamp,
-                                            percent(port.eta), percent(port.net))});
+    rows.add({"coupling", fmt::format("{} {}: residual {} at most, net {} at least", port.name, port.lamp,
+                                      percent(port.eta), percent(port.net))});
   }
   for (const VariableReport& variable : report.variables) {
-    rows.push_back(
-        {"range",
-         fmt::format("{} {} to {}, {} at the end", variable.name, quantity_text(variable.min, variable.unit),
-                     quantity_text(variable.max, variable.unit), quantity_text(variable.last, variable.unit))});
+    rows.add({"range",
+              fmt::format("{} {} to {}, {} at the end", variable.name, quantity_text(variable.min, variable.unit),
+                          quantity_text(variable.max, variable.unit), quantity_text(variable.last, variable.unit))});
   }
-  for (const std::string& note : report.notes) rows.push_back({"note", note});
-  fmt::print("{}", table_text(rows, ""));
+  for (const std::string& note : report.notes) rows.add({"note", note});
+  print_table(rows);
   std::fflush(stdout);
   for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
   if (!report.plots.empty()) fmt::print("{}\n", report.plots);

@@ -6,6 +6,7 @@
 #include "cli/survey.h"
 #include "cli/verbs.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "node/identity.h"
 
 namespace slew::cli {
@@ -73,16 +74,16 @@ ExitCode show(const Options& options) {
     fmt::print("no session runs on domain {} (interface {})\n", options.network.domain, options.network.interface);
     return ExitCode::ok;
   }
-  std::vector<std::vector<std::string>> rows = {{"session", "scene", "time", "pace", "owner", "started", "nodes"}};
+  ReportTable table({"session", "scene", "time", "pace", "owner", "started", "nodes"});
   for (const FoundSession& session : sessions) {
     const wire::SessionDescription& description = session.description;
     const double time = static_cast<double>(std::max<StepIndex>(0, session.step) * description.step_ns) * 1e-9;
-    rows.push_back({description.name, description.scene_name, fmt::format("{:.2f} s", time),
-                    description.pace == wire::Pace::free ? "free" : "real",
-                    fmt::format("process {} on {}", description.pid, host_of(description.host)),
-                    node::time_text(description.started_ns), nodes_text(session)});
+    table.add({description.name, description.scene_name, fmt::format("{:.2f} s", time),
+               description.pace == wire::Pace::free ? "free" : "real",
+               fmt::format("process {} on {}", description.pid, host_of(description.host)),
+               node::time_text(description.started_ns), nodes_text(session)});
   }
-  fmt::print("{}", table_text(rows, ""));
+  print_table(table);
   return ExitCode::ok;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "cli/display.h"
 #include "cli/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/simplify/simplify.h"
@@ -57,7 +58,7 @@ ExitCode run(const Options& options) {
     if (result.helps()) json["overlay"] = target;
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}", report_text(result));
+    fmt::print("{}", report_text(result, output_width()));
     if (result.helps()) fmt::print("{}\n", target);
   }
   return interrupts() > 0 ? static_cast<ExitCode>(interrupt_code()) : ExitCode::ok;

@@ -1,7 +1,6 @@
 #include "cli/status_line.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,10 +21,10 @@ constexpr std::int64_t kLinesPeriodNs = 2'000'000'000;
 constexpr std::int64_t kFactorPeriodNs = 500'000'000;
 constexpr std::size_t kMostVariables = 6;
 
+// of a line on a terminal that is shown, with room for a text
 std::size_t terminal_width() {
-  winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20) return size.ws_col;
-  return 100;
+  const std::size_t width = output_width();
+  return width > 20 ? width : 100;
 }
 
 // "mechanics running", or what a node waits for

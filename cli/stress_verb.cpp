@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/display.h"
 #include "cli/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/stress/stress_report.h"
@@ -79,7 +80,7 @@ ExitCode run(Options options) {
       return interrupts() == 0;
     });
   }
-  fmt::print("{}", options.is_json ? report_json(stress) + '\n' : report_text(stress));
+  fmt::print("{}", options.is_json ? report_json(stress) + '\n' : report_text(stress, output_width()));
   std::fflush(stdout);
   for (const StressCell& cell : stress.cells) {
     if (cell.skipped.empty()) continue;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "cli/display.h"
 #include "cli/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/tradeoff/overlay.h"
@@ -81,7 +82,8 @@ ExitCode run(Options options) {
     });
   }
   const std::optional<Answer> found = tradeoff.done() > 0 ? answer(options, tradeoff) : std::nullopt;
-  fmt::print("{}", options.is_json ? report_json(tradeoff, found) + '\n' : report_text(tradeoff, found));
+  fmt::print("{}",
+             options.is_json ? report_json(tradeoff, found) + '\n' : report_text(tradeoff, found, output_width()));
   std::fflush(stdout);
   const std::string page = options.page.empty() ? tradeoff.folder + "/tradeoff.html" : options.page;
   write_file(page, report_html(tradeoff, found));

@@ -8,7 +8,7 @@
 #include "cli/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
-#include "core/json.h"
+#include "core/report_table.h"
 #include "io_node/input_gate.h"
 #include "scene/names.h"
 
@@ -67,18 +67,18 @@ ExitCode list(const Options& options) {
            std::none_of(options.patterns.begin(), options.patterns.end(),
                         [&](const std::string& pattern) { return scene::fits_pattern(variable.name, pattern); });
   });
+  ReportTable table({{.text = "variable", .json = "name"},
+                     {.text = "unit", .json = "unit"},
+                     {.text = options.scene.empty() ? "" : "node"}});
+  for (const Named& variable : all) table.add({variable.name, variable.unit, variable.owner});
   if (options.is_json) {
-    Json json = Json::array();
-    for (const Named& variable : all) json.push_back({{"name", variable.name}, {"unit", variable.unit}});
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", table.json().dump(2));
     return ExitCode::ok;
   }
   if (all.empty()) {
     throw Failure(ExitCode::bad_input, "no variable fits; 'slewring variables' without --only lists all");
   }
-  std::vector<std::vector<std::string>> rows = {{"variable", "unit", options.scene.empty() ? "" : "node"}};
-  for (const Named& variable : all) rows.push_back({variable.name, variable.unit, variable.owner});
-  fmt::print("{}", table_text(rows, ""));
+  print_table(table);
   return ExitCode::ok;
 }
 

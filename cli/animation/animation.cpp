@@ -11,12 +11,12 @@
 
 #include "cli/plotting/html_text.h"
 #include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 
 namespace slew::cli {
 namespace {
 
 using plotting::colour_of;
-using plotting::escaped;
 
 constexpr double kMargin = 0.08;                   // of a view's width
 constexpr double kPictureWidth = 1000, kGap = 30;  // px

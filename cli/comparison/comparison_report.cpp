@@ -6,13 +6,12 @@
 
 #include "cli/display.h"
 #include "cli/plotting/scatter_svg.h"
-#include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 #include "core/json.h"
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
-
-using Cells = std::vector<std::string>;
 
 std::string number(double value) {
   return value == 0 ? "0" : fmt::format("{:.1e}", value);
@@ -39,40 +38,53 @@ std::string difference_text(double value, double reference_error) {
   return value < reference_error ? '<' + number(reference_error) : number(value);
 }
 
-Cells heading(const Comparison& comparison) {
-  Cells cells = {"formulation", "integrator", "step", "open", "opening", "energy"};
-  for (const VariableClass& one : comparison.classes) {
-    cells.push_back(fmt::format("difference [{}]", one.unit));
-    cells.push_back(fmt::format("RMS [{}]", one.unit));
+std::vector<ReportCell> cells_of(const Comparison& comparison, const ComparedRow& row) {
+  const Configuration& c = row.configuration;
+  std::vector<ReportCell> cells = {c.formulation, c.integrator,
+                                   c.step > 0 ? ReportCell(step_text(c.step), c.step) : ReportCell("any", {})};
+  const auto add = [&](std::string text, Json exact) {
+    cells.push_back(row.has_run() ? ReportCell(std::move(text), std::move(exact)) : ReportCell("-", {}));
+  };
+  add(number(row.gap.position), row.gap.position);
+  add(number(row.gap.rate), row.gap.rate);
+  add(row.energy_drift ? number(*row.energy_drift) : "-", row.energy_drift ? Json(*row.energy_drift) : Json());
+  for (std::size_t i = 0; i < comparison.classes.size(); ++i) {
+    const VariableClass& one = comparison.classes[i];
+    const Difference difference = row.has_run() ? row.differences[i] : Difference{};
+    add(difference_text(difference.largest, one.reference_error), difference.largest);
+    add(difference_text(difference.rms, one.reference_rms), difference.rms);
   }
-  cells.insert(cells.end(), {"us/ms", "slowest"});
-  if (comparison.has_hydraulics) cells.emplace_back("with hydraulics");
-  cells.insert(cells.end(), {"iterations", "not converged", "stable"});
+  for (const double microseconds : {row.cost.mechanics, row.cost.mechanics_slowest, row.cost.whole}) {
+    add(cost(microseconds), microseconds);
+  }
+  add(fmt::format("{:.2g}", row.iterations), row.iterations);
+  add(std::to_string(row.not_converged), row.not_converged);
+  cells.emplace_back(verdict(row));
   return cells;
 }
 
-Cells cells_of(const Comparison& comparison, const ComparedRow& row) {
-  const Configuration& c = row.configuration;
-  Cells cells = {c.formulation, c.integrator, c.step > 0 ? step_text(c.step) : "any"};
-  if (!row.has_run()) {
-    cells.resize(heading(comparison).size() - 1, "-");
-    cells.push_back(verdict(row));
-    return cells;
+ReportTable table_of(const Comparison& comparison) {
+  constexpr std::size_t kNaming = 3;  // formulation, integrator, step
+  std::vector<ReportColumn> columns = {{"formulation", "formulation"},
+                                       {"integrator", "integrator"},
+                                       {"step", "step [s]"},
+                                       {"open", "joints open [m or rad]"},
+                                       {"opening", "joints opening [m/s or rad/s]"},
+                                       {"energy", "energy drift [1]"}};
+  for (const VariableClass& one : comparison.classes) {
+    columns.push_back({fmt::format("difference [{}]", one.unit), fmt::format("largest difference [{}]", one.unit)});
+    columns.push_back({fmt::format("RMS [{}]", one.unit), fmt::format("RMS difference [{}]", one.unit)});
   }
-  cells.push_back(number(row.gap.position));
-  cells.push_back(number(row.gap.rate));
-  cells.push_back(row.energy_drift ? number(*row.energy_drift) : "-");
-  for (std::size_t i = 0; i < row.differences.size(); ++i) {
-    cells.push_back(difference_text(row.differences[i].largest, comparison.classes[i].reference_error));
-    cells.push_back(difference_text(row.differences[i].rms, comparison.classes[i].reference_rms));
-  }
-  cells.push_back(cost(row.cost.mechanics));
-  cells.push_back(cost(row.cost.mechanics_slowest));
-  if (comparison.has_hydraulics) cells.push_back(cost(row.cost.whole));
-  cells.push_back(fmt::format("{:.2g}", row.iterations));
-  cells.push_back(std::to_string(row.not_converged));
-  cells.push_back(verdict(row));
-  return cells;
+  columns.push_back({"us/ms", "mechanics [us/ms]"});
+  columns.push_back({"slowest", "slowest step [us/ms]"});
+  columns.push_back({.csv = "all physics [us/ms]"});
+  if (comparison.has_hydraulics) columns.back().text = "with hydraulics";
+  columns.push_back({"iterations", "iterations per step"});
+  columns.push_back({"not converged", "steps not converged"});
+  columns.push_back({"stable", "stable"});
+  ReportTable table(std::move(columns), kNaming);
+  for (const ComparedRow& row : comparison.rows) table.add(cells_of(comparison, row));
+  return table;
 }
 
 std::string energy_text(const Comparison& comparison) {
@@ -113,23 +125,24 @@ bool is_reference_in_doubt(const Comparison& comparison) {
          });
 }
 
-std::vector<std::string> remarks(const Comparison& comparison) {
-  std::vector<std::string> lines;
+std::string remarks(const Comparison& comparison) {
+  std::string text;
   if (is_reference_in_doubt(comparison)) {
-    lines.emplace_back(
-        "the reference keeps its energy worse than some rows: the differences may be its own; try another --reference");
+    text +=
+        "the reference keeps its energy worse than some rows: the differences may be its own; try another "
+        "--reference\n";
   }
   for (const ComparedRow& row : comparison.rows) {
     const Configuration& c = row.configuration;
     if (row.has_run() && !row.cost.is_repeatable) {
-      lines.push_back(fmt::format("{} with {} did not end in the same state twice: please report this scene",
-                                  formulation_and_integrator(c), step_text(c.step)));
+      text += fmt::format("{} with {} did not end in the same state twice: please report this scene\n",
+                          formulation_and_integrator(c), step_text(c.step));
     }
   }
   if (comparison.rows.size() < comparison.wanted_rows) {
-    lines.push_back(fmt::format("interrupted: {} of {} rows", comparison.rows.size(), comparison.wanted_rows));
+    text += fmt::format("interrupted: {} of {} rows\n", comparison.rows.size(), comparison.wanted_rows);
   }
-  return lines;
+  return text;
 }
 
 Json json_of(const Comparison& comparison, const ComparedRow& row) {
@@ -160,48 +173,34 @@ Json json_of(const Comparison& comparison, const ComparedRow& row) {
   return json;
 }
 
-Cells csv_cells(const Comparison& comparison, const ComparedRow& row) {
-  const Configuration& c = row.configuration;
-  const auto exact = [&](double value) { return row.has_run() ? fmt::format("{}", value) : std::string(); };
-  Cells cells = {c.formulation, c.integrator, c.step > 0 ? fmt::format("{}", c.step) : ""};
-  cells.push_back(exact(row.gap.position));
-  cells.push_back(exact(row.gap.rate));
-  cells.push_back(row.energy_drift ? exact(*row.energy_drift) : "");
-  for (std::size_t i = 0; i < comparison.classes.size(); ++i) {
-    const bool is_known = i < row.differences.size();
-    cells.push_back(is_known ? exact(row.differences[i].largest) : "");
-    cells.push_back(is_known ? exact(row.differences[i].rms) : "");
-  }
-  for (const double value : {row.cost.mechanics, row.cost.mechanics_slowest, row.cost.whole, row.iterations}) {
-    cells.push_back(exact(value));
-  }
-  cells.push_back(row.has_run() ? std::to_string(row.not_converged) : "");
-  cells.push_back(verdict(row));
-  return cells;
-}
-
-}  // namespace
-
-std::string report_text(const Comparison& comparison) {
+// what was run against what, and what the columns mean
+std::string preamble(const Comparison& comparison) {
   std::string text;
   const auto line = [&text](const char* name, const std::string& value) {
     text += fmt::format("{:<12}{}\n", name, value);
   };
   line("scene", fmt::format("{}, {:.6g} s in communication steps of {}", comparison.scene, comparison.until,
                             step_text(comparison.communication_step)));
-  if (comparison.rows.empty()) return text + "interrupted before the first row\n";
+  if (comparison.rows.empty()) return text;
   line("reference", reference_text(comparison));
   line("open", "largest opening of any joint [m, rad]; opening: how fast it opens [m/s, rad/s]");
   line("energy", energy_text(comparison));
   line("difference", fmt::format("largest and root mean square of {}", fitting(comparison.variables)));
   line("us/ms", fmt::format("microseconds of the mechanics for a simulated millisecond, each step at the fastest of {}",
                             counted(static_cast<std::uint64_t>(comparison.repeats), "run", "runs")));
-  text += '\n';
-  std::vector<Cells> rows = {heading(comparison)};
-  for (const ComparedRow& row : comparison.rows) rows.push_back(cells_of(comparison, row));
-  text += table_text(rows, "");
-  for (const std::string& remark : remarks(comparison)) text += remark + '\n';
   return text;
+}
+
+constexpr std::string_view kPageStyle =
+    "body{font-family:sans-serif;margin:2em}svg{max-width:100%;height:auto}pre{white-space:pre-wrap}"
+    "table{border-collapse:collapse;font-size:13px}"
+    "td,th{padding:.2em .6em;text-align:left;border-bottom:1px solid #ddd;white-space:nowrap}";
+
+}  // namespace
+
+std::string report_text(const Comparison& comparison, std::size_t width) {
+  if (comparison.rows.empty()) return preamble(comparison) + "interrupted before the first row\n";
+  return preamble(comparison) + '\n' + table_of(comparison).text("", width) + remarks(comparison);
 }
 
 std::string report_json(const Comparison& comparison) {
@@ -227,17 +226,7 @@ std::string report_json(const Comparison& comparison) {
 }
 
 std::string report_csv(const Comparison& comparison) {
-  Cells cells = {"formulation",     "integrator", "step [s]", "joints open [m or rad]", "joints opening [m/s or rad/s]",
-                 "energy drift [1]"};
-  for (const VariableClass& one : comparison.classes) {
-    cells.push_back(fmt::format("largest difference [{}]", one.unit));
-    cells.push_back(fmt::format("RMS difference [{}]", one.unit));
-  }
-  cells.insert(cells.end(), {"mechanics [us/ms]", "slowest step [us/ms]", "all physics [us/ms]", "iterations per step",
-                             "steps not converged", "stable"});
-  std::string text = csv_line(cells);
-  for (const ComparedRow& row : comparison.rows) text += csv_line(csv_cells(comparison, row));
-  return text;
+  return table_of(comparison).csv();
 }
 
 std::string report_svg(const Comparison& comparison) {
@@ -262,12 +251,11 @@ std::string report_svg(const Comparison& comparison) {
 }
 
 std::string report_html(const Comparison& comparison) {
-  const std::string title = plotting::escaped(comparison.scene);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}: accuracy against cost</title>\n"
-      "<style>body{{font-family:sans-serif;margin:2em}}pre{{overflow-x:auto}}svg{{max-width:100%;height:auto}}</style>"
-      "</head>\n<body>\n{1}<pre>{2}</pre>\n</body>\n</html>\n",
-      title, report_svg(comparison), plotting::escaped(report_text(comparison)));
+      "<style>{1}</style></head>\n<body>\n{2}<pre>{3}</pre>\n{4}<pre>{5}</pre>\n</body>\n</html>\n",
+      escaped(comparison.scene), kPageStyle, report_svg(comparison), escaped(preamble(comparison)),
+      table_of(comparison).html(), escaped(remarks(comparison)));
 }
 
 }  // namespace slew::cli

@@ -13,6 +13,7 @@
 #include "cli/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "scene/ports.h"
 #include "transport/codec.h"
 
@@ -253,19 +254,18 @@ CostByPart measure_cost(const scene::Scene& scene, const std::string& file, cons
   return Measurement(scene, file, overrides, until).measure();
 }
 
-std::string report_text(const CostByPart& cost, std::span<const std::string> not_paid) {
+std::string report_text(const CostByPart& cost, std::span<const std::string> not_paid, std::size_t width) {
   std::string text = fmt::format(
       "cost by part, {} of the scene's run: {:.3g} us per simulated ms, beside it hashes, bytes and variables\n"
       "steps: the fastest of {} runs; calls: alone, on {} states of the run; removal: the same calls without the "
       "part\n\n",
       duration_text(cost.until), cost.whole, cost.runs, cost.states);
-  std::vector<std::vector<std::string>> rows = {{"part", "us/ms", "share", "measured by"}};
+  ReportTable table({"part", "us/ms", "share", "measured by"});
   for (const CostLine& line : cost.lines) {
-    rows.push_back({std::string(static_cast<std::size_t>(2 * line.level), ' ') + line.part,
-                    fmt::format("{:.3f}", line.cost), fmt::format("{:.1f} %", 100 * line.cost / cost.whole),
-                    std::string(measured_text(line.measured))});
+    table.add({std::string(static_cast<std::size_t>(2 * line.level), ' ') + line.part, fmt::format("{:.3f}", line.cost),
+               fmt::format("{:.1f} %", 100 * line.cost / cost.whole), std::string(measured_text(line.measured))});
   }
-  text += table_text(rows, "");
+  text += table.text("", width);
   for (const std::string& note : cost.notes) text += note + "\n";
   for (const std::string& part : not_paid) text += "not paid for: " + part + "\n";
   return text;

@@ -9,7 +9,6 @@
 // Nothing is timed inside the physics. Calls find warm caches: their sum is a lower bound, and the rest an upper one.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,8 +43,9 @@ struct CostByPart {
 [[nodiscard]] CostByPart measure_cost(const scene::Scene& scene, const std::string& file,
                                       const scene::Overrides& overrides, double until);
 
-// not_paid: what the scene does without, for a line each.
-[[nodiscard]] std::string report_text(const CostByPart& cost, std::span<const std::string> not_paid);
+// not_paid: what the scene does without, for a line each. width [characters]: of the lines of a table; 0: no limit.
+[[nodiscard]] std::string report_text(const CostByPart& cost, std::span<const std::string> not_paid,
+                                      std::size_t width = 0);
 [[nodiscard]] Json report_json(const CostByPart& cost, std::span<const std::string> not_paid);
 
 }  // namespace slew::cli

@@ -10,6 +10,7 @@
 #include "cli/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
@@ -64,7 +65,7 @@ std::string time_text(double seconds) {
   return std::isinf(seconds) ? "none" : duration_text(seconds);
 }
 
-std::vector<std::string> row(const SceneMode& mode) {
+std::vector<ReportCell> row(const SceneMode& mode) {
   const double decay = -1 / mode.value.real();
   const bool grows = mode.value.real() > 0;
   return {fmt::format("{:.4g}", std::abs(mode.value)),
@@ -76,11 +77,10 @@ std::vector<std::string> row(const SceneMode& mode) {
           owners_text(mode)};
 }
 
-std::string table(std::span<const SceneMode> modes) {
-  std::vector<std::vector<std::string>> rows = {
-      {"|lambda| [1/s]", "frequency", "damping", "time constant", "RK4 up to", "followed by", "owner"}};
-  for (const SceneMode& mode : modes) rows.push_back(row(mode));
-  return table_text(rows);
+std::string table_text(std::span<const SceneMode> modes, std::size_t width) {
+  ReportTable table({"|lambda| [1/s]", "frequency", "damping", "time constant", "RK4 up to", "followed by", "owner"});
+  for (const SceneMode& mode : modes) table.add(row(mode));
+  return table.text("  ", width);
 }
 
 // what of it each solver of the scene has to mind
@@ -165,7 +165,7 @@ Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction f
   return found;
 }
 
-std::string report_text(const Eigenvalues& found, std::size_t count) {
+std::string report_text(const Eigenvalues& found, std::size_t count, std::size_t width) {
   const std::vector<SceneMode>& modes = found.machine.modes;
   std::string text = fmt::format("eigenvalues at {} of {} free states{}; {} of them at rest (slower than {:g} 1/s)\n",
                                  duration_text(found.at), found.machine.states,
@@ -174,10 +174,10 @@ std::string report_text(const Eigenvalues& found, std::size_t count) {
   if (!found.touching.empty())
     text += fmt::format("{} touches: the bristles of its friction are held\n", found.touching);
   if (modes.size() <= 2 * count) {
-    text += "\n" + table(modes);
+    text += "\n" + table_text(modes, width);
   } else {
-    text += fmt::format("\nfastest {} of {}\n", count, modes.size()) + table(std::span(modes).first(count));
-    text += fmt::format("\nslowest {}\n", count) + table(std::span(modes).last(count));
+    text += fmt::format("\nfastest {} of {}\n", count, modes.size()) + table_text(std::span(modes).first(count), width);
+    text += fmt::format("\nslowest {}\n", count) + table_text(std::span(modes).last(count), width);
   }
   return text + "\n" + solvers_text(found);
 }

@@ -2,7 +2,6 @@
 // whose they are, and with which steps they can be followed.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/json.h"
@@ -26,8 +25,8 @@ struct Eigenvalues {
 // Of the scene's run at a time [s]. Throws Failure.
 [[nodiscard]] Eigenvalues find_eigenvalues(const scene::Scene& scene, double at, DryFriction friction);
 
-// count: rows of the fastest, and of the slowest.
-[[nodiscard]] std::string report_text(const Eigenvalues& eigenvalues, std::size_t count);
+// count: rows of the fastest, and of the slowest. width [characters]: of the lines of a table; 0: no limit.
+[[nodiscard]] std::string report_text(const Eigenvalues& eigenvalues, std::size_t count, std::size_t width = 0);
 [[nodiscard]] Json report_json(const Eigenvalues& eigenvalues);
 
 }  // namespace slew::cli

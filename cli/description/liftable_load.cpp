@@ -9,6 +9,7 @@
 #include "cli/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "coupling/line_force.h"
 #include "hydraulics/circuit.h"
 #include "hydraulics/stall.h"
@@ -233,30 +234,30 @@ std::string limit_text(const LiftableLoad& load) {
                      quantity_text(port.pressure, "Pa"), port.chamber);
 }
 
-std::string report_text(const LiftableLoad& load) {
+std::string report_text(const LiftableLoad& load, std::size_t width) {
   const std::string when = load.pose.empty() ? "at " + duration_text(load.at) : "with " + load.pose;
   if (!load.refusal.empty()) return fmt::format("liftable load {}: {}\n", when, load.refusal);
   if (load.payload.empty()) return "liftable load: no cylinder, or no rigid body that moves\n";
   if (!load.has_answer()) return fmt::format("liftable load {}: no cylinder carries {}\n", when, load.payload);
   std::string text = fmt::format("largest liftable load {}: {}\n{}; the scene has {}\n\n", when, limit_text(load),
                                  settings_text(load.limit()), quantity_text(load.mass, "kg"));
-  std::vector<std::vector<std::string>> rows = {
-      {"cylinder", "stroke", "static force", "a kg more", "largest force", "pressure", "loaded by", "load"}};
+  ReportTable table(
+      {"cylinder", "stroke", "static force", "a kg more", "largest force", "pressure", "loaded by", "load"});
   for (const LiftingPort& port : load.ports) {
     if (!port.carries()) {
-      rows.push_back({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"), "none", "-",
-                      "-", "-", "carries nothing of it"});
+      table.add({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"), "none", "-", "-",
+                 "-", "carries nothing of it"});
       continue;
     }
     std::string limit = fmt::format("{:.0f} kg", port.load);
     if (port.is_at_end) limit += ", but the piston stands at its end";
     if (!port.is_steady) limit += ", pressure still rising after 30 s";
-    rows.push_back({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"),
-                    quantity_text(port.force_per_kg, "N"), quantity_text(port.largest_force, "N"),
-                    quantity_text(port.pressure, "Pa"),
-                    port.input.empty() ? "always" : fmt::format("{} at {:+g}", port.input, port.stick), limit});
+    table.add({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"),
+               quantity_text(port.force_per_kg, "N"), quantity_text(port.largest_force, "N"),
+               quantity_text(port.pressure, "Pa"),
+               port.input.empty() ? "always" : fmt::format("{} at {:+g}", port.input, port.stick), limit});
   }
-  return text + table_text(rows);
+  return text + table.text("  ", width);
 }
 
 Json report_json(const LiftableLoad& load) {

@@ -11,7 +11,6 @@
 // Not covered: friction of joints, speeds (the load hangs at rest), tipping of the carrier, strength, buckling.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -72,7 +71,8 @@ enum class Settings { named, left_out };
 
 // "Cyl_Lift lifts 2.96 t of Bag at most (...)": one line; the table for people adds the other cylinders.
 [[nodiscard]] std::string limit_text(const LiftableLoad& load);
-[[nodiscard]] std::string report_text(const LiftableLoad& load);
+// width [characters]: of the lines of a table; 0: no limit.
+[[nodiscard]] std::string report_text(const LiftableLoad& load, std::size_t width = 0);
 [[nodiscard]] Json report_json(const LiftableLoad& load);
 
 }  // namespace slew::cli

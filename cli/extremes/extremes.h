@@ -51,7 +51,8 @@ using ExtremesProgress = std::function<bool(std::string_view doing, double share
 // Throws LoadError for a scene that is wrong, Failure for a pattern that nothing fits.
 [[nodiscard]] Extremes run_extremes(const ExtremesWish& wish, const ExtremesProgress& progress);
 
-[[nodiscard]] std::string report_text(const Extremes& extremes);
+// width [characters]: of the lines of a table; 0: no limit.
+[[nodiscard]] std::string report_text(const Extremes& extremes, std::size_t width = 0);
 [[nodiscard]] std::string report_json(const Extremes& extremes);
 
 }  // namespace slew::cli

@@ -6,6 +6,7 @@
 #include "cli/display.h"
 #include "cli/extremes/extremes.h"
 #include "core/json.h"
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
@@ -49,7 +50,7 @@ std::string notes_text(const Json& result) {
   return text;
 }
 
-std::vector<std::string> cells_of(const ExtremesRow& row) {
+std::vector<ReportCell> cells_of(const ExtremesRow& row) {
   if (!row.obstacle.empty()) return {row.name, "n/a", row.obstacle, "", "", ""};
   if (!row.is_done) return {row.name, "not run", "", "", "", ""};
   if (!row.result.is_object()) return {row.name, "FAILED", row.failure, "", "", "run it alone with --only"};
@@ -63,20 +64,19 @@ std::vector<std::string> cells_of(const ExtremesRow& row) {
 
 }  // namespace
 
-std::string report_text(const Extremes& extremes) {
+std::string report_text(const Extremes& extremes, std::size_t width) {
   std::string text;
   std::size_t within = 0, refused = 0, bad = 0, not_for = 0, left = 0;
   for (std::size_t i = 0; i < extremes.rows.size();) {
     const std::string& scene = extremes.rows[i].scene;
-    std::vector<std::vector<std::string>> table = {
-        {"case", "verdict", "nearest to its bound", "largest stable step", "what to do", "notes"}};
+    ReportTable table({"case", "verdict", "nearest to its bound", "largest stable step", "what to do", "notes"});
     for (; i < extremes.rows.size() && extremes.rows[i].scene == scene; ++i) {
       const ExtremesRow& row = extremes.rows[i];
-      table.push_back(cells_of(row));
+      table.add(cells_of(row));
       const bool is_refused = row.result.is_object() && row.result.at("verdict").text() == to_text(Verdict::refused);
       ++(!row.obstacle.empty() ? not_for : !row.is_done ? left : is_refused ? refused : row.is_good() ? within : bad);
     }
-    text += scene + "\n" + table_text(table) + "\n";
+    text += scene + "\n" + table.text("  ", width) + "\n";
   }
   text +=
       "within: finite and inside all bounds to the end. refused: by name, before it ran, or by the session's own alarm "

@@ -10,6 +10,7 @@
 
 #include "cli/plotting/html_text.h"
 #include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 
 namespace slew::plotting {
 namespace {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 
 namespace slew::plotting {
 namespace {

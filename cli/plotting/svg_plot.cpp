@@ -11,6 +11,7 @@
 #include "cli/plotting/axis.h"
 #include "cli/plotting/decimation.h"
 #include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 
 namespace slew::plotting {
 namespace {

@@ -1,8 +1,7 @@
-// The look that all pictures share: fonts, colours, and text that is safe in SVG.
+// The look that all pictures share: fonts and colours.
 #pragma once
 
 #include <array>
-#include <string>
 #include <string_view>
 
 namespace slew::plotting {
@@ -22,8 +21,6 @@ inline constexpr std::string_view kStyle =
     ".unit{font-weight:600;fill:#1d2227}.tick{fill:#5d656e}.end{text-anchor:end}.mid{text-anchor:middle}"
     ".grid{stroke:#e7eaed;stroke-width:1}.zero{stroke:#b3bac1;stroke-width:1}.axis{stroke:#8a929a;stroke-width:1}"
     ".curve{fill:none;stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}.dash{stroke-dasharray:6 4}";
-
-[[nodiscard]] std::string escaped(std::string_view text);
 
 // Width at 12 px [px], of the widest of the fonts.
 [[nodiscard]] double text_width(std::string_view text);

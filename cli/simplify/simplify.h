@@ -8,7 +8,6 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,7 +67,8 @@ using SimplifyProgress = std::function<bool(std::string_view doing, double share
 // Throws LoadError for a scene that is wrong, Failure for a wish that cannot be met or a base that fails.
 [[nodiscard]] Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress);
 
-[[nodiscard]] std::string report_text(const Simplification& result);
+// width [characters]: of the lines of a table; 0: no limit.
+[[nodiscard]] std::string report_text(const Simplification& result, std::size_t width = 0);
 [[nodiscard]] Json report_json(const Simplification& result);
 
 }  // namespace slew::cli

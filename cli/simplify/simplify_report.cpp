@@ -3,6 +3,7 @@
 #include "cli/display.h"
 #include "cli/simplify/simplify.h"
 #include "core/json.h"
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
@@ -28,7 +29,7 @@ std::string verdict_text(const Simplification& result, const Trial& trial) {
   return result.helps() ? "not beside those taken" : "its saving did not repeat";
 }
 
-std::vector<std::string> row(const Simplification& result, const Trial& trial) {
+std::vector<ReportCell> row(const Simplification& result, const Trial& trial) {
   const std::string cost = trial.cost > 0 ? fmt::format("{:.3g}", trial.cost) : "-";
   return {trial.candidate.title, worst_text(result, trial), cost, verdict_text(result, trial)};
 }
@@ -49,31 +50,31 @@ Json to_json(const Simplification& result, const Trial& trial) {
 
 }  // namespace
 
-std::string report_text(const Simplification& result) {
+std::string report_text(const Simplification& result, std::size_t width) {
   std::string text = fmt::format("{}, {} of its run; as it is {:.3g} us per simulated ms (fastest of {} runs)\n",
                                  result.scene, duration_text(result.until), result.base_cost, result.repeats);
-  std::vector<std::vector<std::string>> limits = {{"variable", "may change by", "range in the run"}};
+  ReportTable limits({"variable", "may change by", "range in the run"});
   for (const Watched& watched : result.watched) {
-    limits.push_back(
+    limits.add(
         {watched.name, quantity_text(watched.tolerance, watched.unit), quantity_text(watched.range, watched.unit)});
   }
-  text += table_text(limits) + "\n";
+  text += limits.text("  ", width) + "\n";
   if (result.trials.empty() && !result.is_interrupted) text += "nothing in this scene could be left out\n";
   if (!result.trials.empty()) {
-    std::vector<std::vector<std::string>> rows = {{"alone", "largest change", "us/ms", ""}};
-    for (const Trial& trial : result.trials) rows.push_back(row(result, trial));
-    text += table_text(rows) + "\n";
+    ReportTable trials({"alone", "largest change", "us/ms", ""});
+    for (const Trial& trial : result.trials) trials.add(row(result, trial));
+    text += trials.text("  ", width) + "\n";
   }
   if (result.is_interrupted) return text + "interrupted: nothing was taken, nothing is written\n";
   if (!result.helps()) return text + "nothing helps: the scene stays as it is, nothing is written\n";
   text += fmt::format("together: {}\n", settings_text(result.settings));
   text += fmt::format("measured: {:.3g} us per simulated ms, {:.0f} % less; largest changes:\n", result.combined.cost,
                       100 * (1 - result.combined.cost / result.base_cost));
-  std::vector<std::vector<std::string>> rows;
+  ReportTable changes({"", ""});
   for (std::size_t i = 0; i < result.watched.size(); ++i) {
-    rows.push_back({result.watched[i].name, quantity_text(result.combined.changes[i], result.watched[i].unit)});
+    changes.add({result.watched[i].name, quantity_text(result.combined.changes[i], result.watched[i].unit)});
   }
-  return text + table_text(rows);
+  return text + changes.text("  ", width);
 }
 
 Json report_json(const Simplification& result) {

@@ -7,6 +7,7 @@
 #include "cli/display.h"
 #include "cli/plotting/html_plot.h"
 #include "core/json.h"
+#include "core/report_table.h"
 #include "node/identity.h"
 
 namespace slew::cli {
@@ -59,7 +60,7 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
   return "";
 }
 
-std::vector<std::string> row_of(const std::string& what, const wire::Health& health, const Surroundings& around) {
+std::vector<ReportCell> row_of(const std::string& what, const wire::Health& health, const Surroundings& around) {
   const wire::Quantiles& response = health.response;
   // zeros would read as if they had been measured
   if (response.count == 0) return {what, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-"};
@@ -78,26 +79,24 @@ std::vector<std::string> row_of(const std::string& what, const wire::Health& hea
           fmt::format("{:.2f}", 100 * around.steal)};
 }
 
-std::string table_of(const Stress& stress) {
-  std::vector<std::vector<std::string>> rows = {{"scheduling", "load", "added us", "", "steps", "skipped", "missed",
-                                                 "%", "in a row", "min us", "p50", "p99", "p99.9", "max", "runnable",
-                                                 "steal %", "verdict"}};
+ReportTable table_of(const Stress& stress) {
+  constexpr std::size_t kNaming = 4;  // scheduling, load, added work, loop
+  ReportTable table({"scheduling", "load", "added us", "", "steps", "skipped", "missed", "%", "in a row", "min us",
+                     "p50", "p99", "p99.9", "max", "runnable", "steal %", "verdict"},
+                    kNaming);
+  const auto add = [&table](std::vector<ReportCell> cells, std::vector<ReportCell> more) {
+    cells.insert(cells.end(), more.begin(), more.end());
+    table.add(std::move(cells));
+  };
   for (const StressCell& cell : stress.cells) {
-    const std::vector<std::string> cells = {std::string(to_text(cell.scheduling)), to_text(cell.load),
-                                            fmt::format("{:g}", cell.work_us)};
-    std::vector<std::string> session = cells;
-    for (std::string& text : row_of("session", session_of(cell), cell.around_session)) {
-      session.push_back(std::move(text));
-    }
-    session.push_back(verdict_text(cell, stress.bounds));
-    rows.push_back(std::move(session));
+    std::vector<ReportCell> session = row_of("session", session_of(cell), cell.around_session);
+    session.emplace_back(verdict_text(cell, stress.bounds));
+    add({std::string(to_text(cell.scheduling)), to_text(cell.load), fmt::format("{:g}", cell.work_us)}, session);
     if (cell.yardstick.response.count == 0) continue;
-    std::vector<std::string> yardstick = {"", "", ""};
     const std::string name = fmt::format("yardstick {} us", microseconds_text(work_of(cell)));
-    for (std::string& text : row_of(name, cell.yardstick, cell.around_yardstick)) yardstick.push_back(std::move(text));
-    rows.push_back(std::move(yardstick));
+    add({"", "", ""}, row_of(name, cell.yardstick, cell.around_yardstick));
   }
-  return table_text(rows, "");
+  return table;
 }
 
 std::string books_of(const StressCell& cell) {
@@ -194,8 +193,8 @@ std::string heading(const Stress& stress) {
 
 }  // namespace
 
-std::string report_text(const Stress& stress) {
-  std::string text = heading(stress) + "\n" + table_of(stress);
+std::string report_text(const Stress& stress, std::size_t width) {
+  std::string text = heading(stress) + "\n" + table_of(stress).text("", width);
   for (const StressCell& cell : stress.cells) {
     if (has_stepped(cell)) text += books_of(cell) + "\n";
   }

@@ -7,8 +7,9 @@
 
 namespace slew::cli {
 
-// The machine, the table with two rows a cell, the books, the verdict.
-[[nodiscard]] std::string report_text(const Stress& stress);
+// The machine, the table with two rows a cell, the books, the verdict. width [characters]: of the lines of a table; 0:
+// no limit.
+[[nodiscard]] std::string report_text(const Stress& stress, std::size_t width = 0);
 
 [[nodiscard]] std::string report_json(const Stress& stress);
 

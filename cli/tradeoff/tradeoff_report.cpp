@@ -7,13 +7,12 @@
 
 #include "cli/display.h"
 #include "cli/plotting/html_text.h"
-#include "cli/plotting/svg_text.h"
+#include "core/escaped.h"
 #include "core/json.h"
+#include "core/report_table.h"
 
 namespace slew::cli {
 namespace {
-
-using Cells = std::vector<std::string>;
 
 std::string share(std::optional<double> value) {
   return value && std::isfinite(*value) ? fmt::format("{:.2g} %", 100 * *value) : "-";
@@ -24,44 +23,78 @@ std::string number(std::optional<double> value) {
   return *value == 0 ? "0" : fmt::format("{:.1e}", *value);
 }
 
-// variables that have a range are columns; of the others there is nothing to be relative to
-std::vector<std::size_t> columns(const Tradeoff& tradeoff) {
-  std::vector<std::size_t> shown;
-  for (std::size_t v = 0; v < tradeoff.variables.size(); ++v) {
-    if (tradeoff.variables[v].range > 0) shown.push_back(v);
-  }
-  return shown;
-}
-
 std::string mark_of(const Tradeoff& tradeoff, std::size_t row) {
   std::string mark = row == 0 ? "now" : "";
   if (tradeoff.rows[row].is_pareto) mark += mark.empty() ? "best" : ", best";
   return mark;
 }
 
-Cells cells_of(const Tradeoff& tradeoff, std::size_t index) {
+Json json_number(std::optional<double> value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json();
+}
+
+std::vector<ReportCell> cells_of(const Tradeoff& tradeoff, std::size_t index) {
   const TradeoffRow& row = tradeoff.rows[index];
   const RowResult& result = row.result;
-  Cells cells = {mark_of(tradeoff, index), text_of(row.settings)};
-  const bool has_figures = row.has_run() && result.failure.empty();
-  for (const std::size_t v : columns(tradeoff)) {
-    const auto error = [&](ErrorKind kind) {
-      return has_figures ? share(relative_error(tradeoff, row, v, kind)) : std::string("-");
-    };
-    cells.push_back(error(ErrorKind::largest));
-    cells.push_back(error(ErrorKind::rms));
+  std::vector<ReportCell> cells = {mark_of(tradeoff, index), text_of(row.settings)};
+  for (const Axis& axis : tradeoff.axes) {
+    const auto at = std::find_if(row.settings.begin(), row.settings.end(),
+                                 [&](const auto& setting) { return setting.first == axis.path; });
+    cells.emplace_back(at == row.settings.end() ? "" : at->second);
   }
-  cells.push_back(has_figures ? number(result.eta) : "-");
-  cells.push_back(has_figures ? number(result.net) : "-");
-  cells.push_back(has_figures ? number(result.gap) : "-");
-  cells.push_back(has_figures ? fmt::format("{:.3g}", result.cost.median) : "-");
-  cells.push_back(has_figures ? fmt::format("{:.3g}", result.cost.worst) : "-");
-  cells.push_back(verdict(row));
+  const bool has_figures = row.has_run() && result.failure.empty();
+  const auto add = [&](std::string text, std::optional<double> exact) {
+    cells.push_back(has_figures ? ReportCell(std::move(text), json_number(exact)) : ReportCell("-", {}));
+  };
+  for (std::size_t v = 0; v < tradeoff.variables.size(); ++v) {
+    const std::optional<VariableError> error = v < result.errors.size() ? result.errors[v] : std::nullopt;
+    add(share(relative_error(tradeoff, row, v, ErrorKind::largest)),
+        error ? std::optional(error->largest) : std::nullopt);
+    add(share(relative_error(tradeoff, row, v, ErrorKind::rms)), error ? std::optional(error->rms) : std::nullopt);
+  }
+  const std::optional<double> worst = worst_error(tradeoff, row);
+  add(share(worst), worst);
+  for (const std::optional<double>& defect : {result.eta, result.net, std::optional(result.gap)}) {
+    add(number(defect), defect);
+  }
+  for (const double microseconds : {result.cost.median, result.cost.mean, result.cost.worst}) {
+    add(fmt::format("{:.3g}", microseconds), microseconds);
+  }
+  cells.emplace_back("", row.is_pareto ? 1 : 0);
+  cells.emplace_back(verdict(row));
   return cells;
 }
 
-Json json_number(std::optional<double> value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json();
+// the text has the settings in one column, and only the variables with a range: of the others there is nothing to be
+// relative to
+ReportTable table_of(const Tradeoff& tradeoff) {
+  constexpr std::size_t kNaming = 2;  // mark, settings
+  std::vector<ReportColumn> columns = {{.text = ""}, {.text = "settings"}};
+  for (const Axis& axis : tradeoff.axes) columns.push_back({.csv = axis.path});
+  for (const TradeoffVariable& variable : tradeoff.variables) {
+    ReportColumn largest{.csv = fmt::format("{} largest error [{}]", variable.name, variable.unit)};
+    ReportColumn rms{.csv = fmt::format("{} RMS error [{}]", variable.name, variable.unit)};
+    if (variable.range > 0) {
+      largest.text = variable.name;
+      rms.text = "RMS";
+    }
+    columns.push_back(std::move(largest));
+    columns.push_back(std::move(rms));
+  }
+  columns.push_back({.csv = "worst error [1]"});
+  columns.push_back({"eta", "eta [1]"});
+  columns.push_back({"net", "net [1]"});
+  columns.push_back({"joints", "joints open [m or rad]"});
+  columns.push_back({"us/ms", "median [us/ms]"});
+  columns.push_back({.csv = "mean [us/ms]"});
+  columns.push_back({"worst", "worst step [us/ms]"});
+  columns.push_back({.csv = "Pareto"});
+  columns.push_back({"stable", "stable"});
+  ReportTable table(std::move(columns), kNaming);
+  for (std::size_t i = 0; i < tradeoff.rows.size(); ++i) {
+    if (tradeoff.rows[i].is_done) table.add(cells_of(tradeoff, i));
+  }
+  return table;
 }
 
 Json json_of(const Tradeoff& tradeoff, const TradeoffRow& row) {
@@ -211,7 +244,7 @@ std::string answer_text(const Tradeoff& tradeoff, const Answer& answer) {
                      share(worst_error(tradeoff, row)));
 }
 
-std::string report_text(const Tradeoff& tradeoff, const std::optional<Answer>& answer) {
+std::string report_text(const Tradeoff& tradeoff, const std::optional<Answer>& answer, std::size_t width) {
   std::string text;
   const auto line = [&text](const char* name, const std::string& value) {
     text += fmt::format("{:<12}{}\n", name, value);
@@ -222,17 +255,7 @@ std::string report_text(const Tradeoff& tradeoff, const std::optional<Answer>& a
   line("error", "largest and root mean square, share of the range");
   line("us/ms", "microseconds of all physics in one process for a simulated millisecond: median step, worst step");
   text += '\n';
-  Cells heading = {"", "settings"};
-  for (const std::size_t v : columns(tradeoff)) {
-    heading.push_back(tradeoff.variables[v].name);
-    heading.emplace_back("RMS");
-  }
-  heading.insert(heading.end(), {"eta", "net", "joints", "us/ms", "worst", "stable"});
-  std::vector<Cells> rows = {heading};
-  for (std::size_t i = 0; i < tradeoff.rows.size(); ++i) {
-    if (tradeoff.rows[i].is_done) rows.push_back(cells_of(tradeoff, i));
-  }
-  text += table_text(rows, "");
+  text += table_of(tradeoff).text("", width);
   if (!tradeoff.is_complete()) {
     text += fmt::format("interrupted: {} of {} rows; the same command goes on from {}\n", tradeoff.done(),
                         tradeoff.rows.size(), tradeoff.folder);
@@ -246,43 +269,7 @@ std::string report_json(const Tradeoff& tradeoff, const std::optional<Answer>& a
 }
 
 std::string report_csv(const Tradeoff& tradeoff) {
-  Cells heading;
-  for (const Axis& axis : tradeoff.axes) heading.push_back(axis.path);
-  for (const TradeoffVariable& variable : tradeoff.variables) {
-    heading.push_back(fmt::format("{} largest error [{}]", variable.name, variable.unit));
-    heading.push_back(fmt::format("{} RMS error [{}]", variable.name, variable.unit));
-  }
-  heading.insert(heading.end(), {"worst error [1]", "eta [1]", "net [1]", "joints open [m or rad]", "median [us/ms]",
-                                 "mean [us/ms]", "worst step [us/ms]", "Pareto", "stable"});
-  std::string text = csv_line(heading);
-  for (const TradeoffRow& row : tradeoff.rows) {
-    if (!row.is_done) continue;
-    const RowResult& result = row.result;
-    const bool has_figures = row.has_run() && result.failure.empty();
-    const auto figure = [&](std::optional<double> value) {
-      return has_figures && value && std::isfinite(*value) ? fmt::format("{}", *value) : std::string();
-    };
-    Cells cells;
-    for (const Axis& axis : tradeoff.axes) {
-      const auto at = std::find_if(row.settings.begin(), row.settings.end(),
-                                   [&](const auto& setting) { return setting.first == axis.path; });
-      cells.push_back(at == row.settings.end() ? "" : at->second);
-    }
-    for (std::size_t v = 0; v < tradeoff.variables.size(); ++v) {
-      const bool is_known = v < result.errors.size() && result.errors[v].has_value();
-      cells.push_back(is_known ? figure(result.errors[v]->largest) : "");
-      cells.push_back(is_known ? figure(result.errors[v]->rms) : "");
-    }
-    for (const std::optional<double>& value :
-         {std::optional(worst_error(tradeoff, row)), result.eta, result.net, std::optional(result.gap),
-          std::optional(result.cost.median), std::optional(result.cost.mean), std::optional(result.cost.worst)}) {
-      cells.push_back(figure(value));
-    }
-    cells.emplace_back(row.is_pareto ? "1" : "0");
-    cells.push_back(verdict(row));
-    text += csv_line(cells);
-  }
-  return text;
+  return table_of(tradeoff).csv();
 }
 
 std::string report_html(const Tradeoff& tradeoff, const std::optional<Answer>& answer) {
@@ -296,8 +283,8 @@ std::string report_html(const Tradeoff& tradeoff, const std::optional<Answer>& a
       "</label></p>\n<svg id=\"plot\" viewBox=\"0 0 1000 560\"></svg>\n<div id=\"tip\"></div>\n"
       "<table id=\"rows\"></table>\n<script id=\"data\" type=\"application/json\">{3}</script>\n"
       "<script>{4}</script>\n</body>\n</html>\n",
-      plotting::escaped(tradeoff.scene), kPageStyle, plotting::escaped(note),
-      plotting::in_script(to_json(tradeoff, answer).dump()), kPageScript);
+      escaped(tradeoff.scene), kPageStyle, escaped(note), plotting::in_script(to_json(tradeoff, answer).dump()),
+      kPageScript);
 }
 
 }  // namespace slew::cli

@@ -15,8 +15,10 @@ struct Answer {
   std::string overlay;             // file; empty: the scene meets it best as it is, or nothing does
 };
 
-// What was run, against what, then the table; the answer last.
-[[nodiscard]] std::string report_text(const Tradeoff& tradeoff, const std::optional<Answer>& answer);
+// What was run, against what, then the table; the answer last. width [characters]: of the lines of a
+// table; 0: no limit.
+[[nodiscard]] std::string report_text(const Tradeoff& tradeoff, const std::optional<Answer>& answer,
+                                      std::size_t width = 0);
 [[nodiscard]] std::string report_json(const Tradeoff& tradeoff, const std::optional<Answer>& answer);
 // Comma-separated values (RFC 4180), SI units in the heading; what cannot be said is empty.
 [[nodiscard]] std::string report_csv(const Tradeoff& tradeoff);

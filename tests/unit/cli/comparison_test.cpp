@@ -354,7 +354,8 @@ TEST(ComparisonReport, PictureHasAMarkForEveryStableRow) {
   EXPECT_FALSE(contains(svg, "lagrange"));
   const std::string html = report_html(by_hand());
   EXPECT_TRUE(contains(html, "<svg "));
-  EXPECT_TRUE(contains(html, "a &lt;reason&gt;"));
+  EXPECT_TRUE(contains(html, "<td>cannot run: a &lt;reason&gt;, with a comma</td>")) << html;
+  EXPECT_TRUE(contains(html, "1 s in communication steps of 1 ms\n")) << "lines stay lines";
 }
 
 TEST(ComparisonReport, TableOfValuesHasOneLineForEveryRowAndAllDigits) {

@@ -1,4 +1,4 @@
-// Quantities, times and tables as people read them.
+// Quantities and times as people read them.
 #include "cli/display.h"
 
 #include <gtest/gtest.h>
@@ -46,10 +46,6 @@ TEST(Display, ShowsTimesInAUnitThatFits) {
   EXPECT_EQ(duration_text(9.53e-6), "9.53 us");
   EXPECT_EQ(duration_text(0.0125), "12.5 ms");
   EXPECT_EQ(duration_text(20), "20 s");
-}
-
-TEST(Display, AlignsColumnsByCharactersNotBytes) {
-  EXPECT_EQ(table_text({{"a", "b"}, {"\u00e4\u00e4", "c"}}, ""), "a   b\n\u00e4\u00e4  c\n");
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST_F(SweepTest, GivesTheResultsInTheOrderOfTheTasks) {
   for (std::size_t i = 0; i < 3; ++i) {
     ASSERT_TRUE(results[i].is_done);
     EXPECT_FALSE(results[i].was_kept);
-    EXPECT_EQ(results[i].value.at("v"), i + 1);
+    EXPECT_EQ(results[i].value.at("v").number(), i + 1);
   }
   EXPECT_TRUE(std::is_sorted(shares_.begin(), shares_.end()));
   EXPECT_EQ(shares_.back(), 1);
@@ -65,7 +65,7 @@ TEST_F(SweepTest, GoesOnWhereItWasEnded) {
   const auto second = sweep(tasks);
   EXPECT_TRUE(second[0].was_kept && second[1].was_kept);
   EXPECT_TRUE(second[2].is_done);
-  EXPECT_EQ(second[2].value, 3);
+  EXPECT_EQ(second[2].value.number(), 3);
   EXPECT_EQ(runs("a"), 1u);
   EXPECT_EQ(runs("b"), 1u);
   options_.is_anew = true;

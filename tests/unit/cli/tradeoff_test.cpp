@@ -170,7 +170,7 @@ TEST(RowResult, AndJobComeBackFromJson) {
   job.variables = {"Cyl.force"};
   job.kind = RunKind::reference;
   job.row_step = 0.002;
-  EXPECT_EQ(to_json(job_from(to_json(job))), to_json(job));
+  EXPECT_EQ(to_json(job_from(to_json(job))).dump(), to_json(job).dump());
 }
 
 TEST(StepCost, IsPerSimulatedMillisecond) {
