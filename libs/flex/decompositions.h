@@ -34,6 +34,8 @@ struct Modes {
 // when the iteration does not find the modes.
 [[nodiscard]] Modes lowest_modes(const Eigen::SparseMatrix<double>& K, const Eigen::SparseMatrix<double>& M, int count,
                                  double shift, EigenMethod method = EigenMethod::automatic);
+// The same, dense: the `count` lowest modes, and all.
+[[nodiscard]] Modes dense_modes(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, double shift, int count);
 [[nodiscard]] Modes all_modes(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, double shift);
 
 // A^-1 B. Throws InputError: "what" says which matrix is not positive definite and why that may be.
