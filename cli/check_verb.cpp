@@ -63,7 +63,7 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
 
 // A payload that the scene's valves do not lift: a physical result, and rarely what was wanted.
 void check_payload(scene::Scene& scene) {
-  const LiftableLoad load = find_liftable(scene, {}, Settings::left_out);
+  const LiftableLoad load = find_liftable(scene, {}, ListedSettings::left_out);
   if (!load.has_answer() || load.mass <= load.limit().load) return;
   scene.warnings.push_back(fmt::format(
       "{}: {} kg cannot be lifted from where the scene begins, but {}; see 'slewring describe {} --liftable'",

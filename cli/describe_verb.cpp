@@ -303,7 +303,7 @@ ExitCode show_parts(const Options& options) {
     texts.push_back(report_text(eigenvalues, options.count, output_width()));
   }
   if (options.has_liftable) {
-    const LiftableLoad load = find_liftable(scene, {at, options.pose}, Settings::named);
+    const LiftableLoad load = find_liftable(scene, {at, options.pose}, ListedSettings::named);
     json["liftable"] = report_json(load);
     texts.push_back(report_text(load, output_width()));
   }

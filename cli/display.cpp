@@ -61,18 +61,18 @@ DisplayUnit display_unit(std::string_view si_unit) {
   return {1, si_unit};
 }
 
-std::string quantity_text(double si_value, std::string_view si_unit) {
+std::string quantity_text(double value, std::string_view si_unit) {
   const DisplayUnit shown = display_unit(si_unit);
-  std::string text = fmt::format("{:.4g}", si_value * shown.factor);
+  std::string text = fmt::format("{:.4g}", value * shown.factor);
   if (text == "-0") text = "0";
   return with_unit(std::move(text), shown.unit);
 }
 
-std::string chosen_text(double si_value, std::string_view si_unit) {
-  if (std::isinf(si_value)) return "none";
-  const auto in = [&](const DisplayUnit& unit) { return with_unit(few_digits(si_value * unit.factor), unit.unit); };
+std::string chosen_text(double value, std::string_view si_unit) {
+  if (std::isinf(value)) return "none";
+  const auto in = [&](const DisplayUnit& unit) { return with_unit(few_digits(value * unit.factor), unit.unit); };
   std::string shortest = in(display_unit(si_unit));
-  const bool is_zero = !(std::fabs(si_value) > 0);  // short in every unit
+  const bool is_zero = !(std::fabs(value) > 0);  // short in every unit
   const auto offer = [&](std::string text) {
     if (!is_zero && text.size() < shortest.size()) shortest = std::move(text);
   };

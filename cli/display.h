@@ -22,12 +22,12 @@ struct DisplayUnit {
 [[nodiscard]] DisplayUnit display_unit(std::string_view si_unit);
 
 // "47.2 kN" style: value in the display unit with four significant digits.
-[[nodiscard]] std::string quantity_text(double si_value, std::string_view si_unit);
+[[nodiscard]] std::string quantity_text(double value, std::string_view si_unit);
 
 // A value that somebody has chosen, as a person would write it: at most six digits, in the unit of those usual that
 // makes it shortest: "30 deg", "1500 rpm", "0.1 l/min", "500 kg". Reading it back gives the value to 1e-9 where six
 // digits can; what is not given, and a bound that is not there, is "none".
-[[nodiscard]] std::string chosen_text(double si_value, std::string_view si_unit);
+[[nodiscard]] std::string chosen_text(double value, std::string_view si_unit);
 
 // "1 body", "2 bodies".
 [[nodiscard]] std::string counted(std::uint64_t count, std::string_view one, std::string_view many);

@@ -61,7 +61,7 @@ class Finder {
  public:
   Finder(scene::Scene& scene, const LiftingPose& pose) : scene_(scene), pose_(pose) {}
 
-  LiftableLoad find(Settings settings) {
+  LiftableLoad find(ListedSettings settings) {
     LiftableLoad result;
     result.at = pose_.at;
     for (const std::string& joint : pose_.joints) result.pose += (result.pose.empty() ? "" : ", ") + joint;
@@ -70,7 +70,7 @@ class Finder {
     if (result.payload.empty() || !result.refusal.empty()) return result;
     find_largest_forces(result);
     choose(result);
-    if (settings == Settings::named && result.has_answer()) {
+    if (settings == ListedSettings::named && result.has_answer()) {
       name_settings(result.ports[static_cast<std::size_t>(result.limiting)]);
     }
     return result;
@@ -223,7 +223,7 @@ std::string settings_text(const LiftingPort& port) {
 
 }  // namespace
 
-LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, Settings settings) {
+LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, ListedSettings settings) {
   return Finder(scene, pose).find(settings);
 }
 

@@ -63,11 +63,11 @@ struct LiftingPose {
   std::vector<std::string> joints;  // "Joint=20 deg": put there afterwards; revolute and prismatic joints of the tree
 };
 
-enum class Settings { named, left_out };
+enum class ListedSettings { named, left_out };
 
 // scene is left as it was; its pressures are changed meanwhile. Throws Failure. A scene without payload, ports or
 // hydraulics has no answer.
-[[nodiscard]] LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, Settings settings);
+[[nodiscard]] LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, ListedSettings settings);
 
 // "Cyl_Lift lifts 2.96 t of Bag at most (...)": one line; the table for people adds the other cylinders.
 [[nodiscard]] std::string limit_text(const LiftableLoad& load);

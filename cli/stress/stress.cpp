@@ -211,14 +211,14 @@ BrokenBounds shared_bounds(const wire::Health& session, const wire::Health& yard
           .p99 = broken.p99 && bare.p99 && session.response.p99 <= kSameP99 * yardstick.response.p99};
 }
 
-Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept {
+BoundsVerdict judge(const StressCell& cell, const StressBounds& bounds) noexcept {
   // what the recorder lost is no deadline
   const bool has_run = cell.code == ExitCode::ok || cell.code == ExitCode::losses;
   const wire::Health& session = cell.nodes[static_cast<std::size_t>(Role::io)];
-  if (!is_stated(bounds) || !cell.skipped.empty()) return Judgement::none;
-  if (!has_run || session.response.count == 0) return Judgement::over;
+  if (!is_stated(bounds) || !cell.skipped.empty()) return BoundsVerdict::none;
+  if (!has_run || session.response.count == 0) return BoundsVerdict::over;
   const BrokenBounds broken = broken_bounds(session, bounds);
-  return broken.max_miss || broken.p99 ? Judgement::over : Judgement::within;
+  return broken.max_miss || broken.p99 ? BoundsVerdict::over : BoundsVerdict::within;
 }
 
 Stress run_stress(const StressWish& wish, const StressBounds& bounds, const StressProgress& progress) {
@@ -284,7 +284,7 @@ ExitCode exit_code_of(const Stress& stress) noexcept {
     }
     if (cell.code != ExitCode::ok && cell.code != ExitCode::losses) return cell.code;
     if (!cell.books.empty()) return ExitCode::failed;
-    if (judge(cell, stress.bounds) == Judgement::over) code = ExitCode::losses;
+    if (judge(cell, stress.bounds) == BoundsVerdict::over) code = ExitCode::losses;
   }
   return code;
 }

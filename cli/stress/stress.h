@@ -87,10 +87,10 @@ struct BrokenBounds {
 [[nodiscard]] BrokenBounds shared_bounds(const wire::Health& session, const wire::Health& yardstick,
                                          const StressBounds& bounds) noexcept;
 
-enum class Judgement : std::uint8_t { none, within, over };
+enum class BoundsVerdict : std::uint8_t { none, within, over };
 // Of the session against the stated bounds; none when there are none, or it was not run. One that failed, or in which
 // nothing was measured, is over.
-[[nodiscard]] Judgement judge(const StressCell& cell, const StressBounds& bounds) noexcept;
+[[nodiscard]] BoundsVerdict judge(const StressCell& cell, const StressBounds& bounds) noexcept;
 
 // doing, share of the whole; false ends it, with the cells that are done.
 using StressProgress = std::function<bool(std::string_view doing, double share)>;

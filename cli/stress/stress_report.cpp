@@ -50,11 +50,11 @@ std::string verdict_text(const StressCell& cell, const StressBounds& bounds) {
     return fmt::format("failed with code {}", static_cast<int>(cell.code));
   }
   switch (judge(cell, bounds)) {
-    case Judgement::none:
+    case BoundsVerdict::none:
       return "";
-    case Judgement::within:
+    case BoundsVerdict::within:
       return "within";
-    case Judgement::over:
+    case BoundsVerdict::over:
       return "over" + beside_yardstick(cell, bounds);
   }
   return "";
