@@ -67,10 +67,13 @@ set(SLEWRING_QUICK_TO_COMPILE $<$<CONFIG:Release>:-O1>)
 
 # Standard headers, parsed once for each set of compiler options: a third to a half of the time of most units. Every
 # source still includes what it uses. KIND: usual, computes or texts (see slewring_library), or tests.
+set(SLEWRING_STANDARD_HEADERS
+    <algorithm> <array> <cmath> <cstdint> <cstdio> <filesystem> <functional> <limits> <map> <memory> <numbers> <numeric>
+    <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector> <fmt/format.h>)
 function(slewring_precompile target kind)
   set(owner slewring_precompiled_${kind})
   if(NOT TARGET ${owner})
-    file(WRITE ${PROJECT_BINARY_DIR}/generated/${owner}.cpp "")
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/${owner}.cpp CONTENT "int main() {}\n")
     if(kind STREQUAL tests)
       add_executable(${owner} EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/generated/${owner}.cpp)
       target_link_libraries(${owner} PRIVATE GTest::gtest)
@@ -83,21 +86,30 @@ function(slewring_precompile target kind)
       target_compile_options(${owner} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
     endif()
     set_target_properties(${owner} PROPERTIES SLEWRING_COMPUTES $<STREQUAL:${kind},computes>)
-    target_precompile_headers(${owner} PRIVATE
-      <algorithm> <array> <cmath> <cstdint> <cstdio> <filesystem> <functional> <limits> <map> <memory> <numbers>
-      <numeric> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector> <fmt/format.h>)
+    target_precompile_headers(${owner} PRIVATE ${SLEWRING_STANDARD_HEADERS})
   endif()
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
-# slewring_library(NAME [COMPUTES | TEXTS] SOURCES ... DEPENDS lib ... LINK target ...)
+# Sources that are compiled otherwise than their target; g++ crashes on a precompiled header of other options.
+function(slewring_compile_apart options)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON
+                                                 SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# slewring_library(NAME [COMPUTES | TEXTS] SOURCES ... DEPENDS lib ... LINK target ... PRECOMPILE <header> ...)
 # DEPENDS names libraries of ours; tests/architecture/edges.txt must allow each of them. COMPUTES: with numbers alone, in
-# every step. TEXTS: options, reports and what is done once.
+# every step. TEXTS: options, reports and what is done once. PRECOMPILE: heavy headers of most of its units, beside the
+# standard ones.
 function(slewring_library name)
-  cmake_parse_arguments(ARG "COMPUTES;TEXTS" "" "SOURCES;DEPENDS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "COMPUTES;TEXTS" "" "SOURCES;DEPENDS;LINK;PRECOMPILE" ${ARGN})
   add_library(slewring_${name} STATIC ${ARG_SOURCES})
   if(ARG_TEXTS)
     target_compile_options(slewring_${name} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
+  endif()
+  if(ARG_PRECOMPILE)
+    target_precompile_headers(slewring_${name} PRIVATE ${SLEWRING_STANDARD_HEADERS} ${ARG_PRECOMPILE})
+  elseif(ARG_TEXTS)
     slewring_precompile(slewring_${name} texts)
   elseif(ARG_COMPUTES)
     slewring_precompile(slewring_${name} computes)
@@ -130,6 +142,10 @@ function(slewring_test name)
   slewring_program(${name} SOURCES ${ARG_SOURCES} DEPENDS ${ARG_DEPENDS}
                    LINK ${ARG_LINK} slewring_build_paths GTest::gtest_main)
   target_compile_options(${name} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
+  # headers and instances of templates are compiled once for several files, each of which has a namespace of its own
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  endif()
   if(NOT "${ARG_SOURCES}" MATCHES "\\.c(;|$)")  # the headers are those of C++
     slewring_precompile(${name} tests)
   endif()

@@ -14,7 +14,7 @@
 
 #include "build_paths.h"
 
-namespace {
+namespace edges_test {
 
 namespace fs = std::filesystem;
 
@@ -130,4 +130,4 @@ TEST(Architecture, ScannerFindsAForbiddenInclude) {
   fs::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace edges_test

@@ -18,7 +18,7 @@
 #include "transport/in_process_bus.h"
 
 namespace slew::testing {
-namespace {
+namespace node_allocation_test {
 
 using wire::Role;
 
@@ -128,5 +128,5 @@ TEST(NodeLoop, DoesNotAllocateWithAFlexNode) {
   }
 }
 
-}  // namespace
+}  // namespace node_allocation_test
 }  // namespace slew::testing

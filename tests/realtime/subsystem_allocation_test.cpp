@@ -8,7 +8,7 @@
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
-namespace {
+namespace subsystem_allocation_test {
 
 constexpr StepIndex kWarmUp = 50;
 constexpr StepIndex kSteps = 1000;
@@ -164,5 +164,5 @@ TEST_F(SubsystemStep, DoesNotAllocateAfterItsStateHasFailed) {
   EXPECT_EQ(use.frees, 0u);
 }
 
-}  // namespace
+}  // namespace subsystem_allocation_test
 }  // namespace slew::testing

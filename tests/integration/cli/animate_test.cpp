@@ -10,7 +10,7 @@
 #include "command.h"
 
 namespace slew::testing {
-namespace {
+namespace animate_test {
 
 // A number of the page is rounded to six digits.
 void expect_rounded(double shown, double recorded, const std::string& what) {
@@ -118,5 +118,5 @@ TEST_F(Animated, APartIsShownAndInstantsThatAreLeftOutAreTold) {
   EXPECT_NE(picture.str().find("from 2 s, faint, to 3 s"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace animate_test
 }  // namespace slew::testing

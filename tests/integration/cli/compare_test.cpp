@@ -11,7 +11,7 @@
 #include "sample_hashes.h"
 
 namespace slew::testing {
-namespace {
+namespace compare_test {
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -131,5 +131,5 @@ TEST_F(CompareVerb, WhatCannotBeIsRefusedWithCode2) {
   refused({"--repeats", "0"}, "--repeats");
 }
 
-}  // namespace
+}  // namespace compare_test
 }  // namespace slew::testing

@@ -8,7 +8,7 @@
 #include "command.h"
 
 namespace slew::testing {
-namespace {
+namespace describe_test {
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -94,5 +94,5 @@ TEST_F(SimplifyVerb, WritesNothingWhenNothingHelps) {
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "single_cylinder_simplified.yaml"));
 }
 
-}  // namespace
+}  // namespace describe_test
 }  // namespace slew::testing

@@ -15,7 +15,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace distributed_test {
 
 class Distributed : public ::testing::Test {
  protected:
@@ -543,5 +543,5 @@ TEST_F(Distributed, ASessionThatIsNotThereIsNamed) {
   EXPECT_EQ(list->wait().code, 0);
 }
 
-}  // namespace
+}  // namespace distributed_test
 }  // namespace slew::testing

@@ -7,7 +7,7 @@
 #include "command.h"
 
 namespace slew::testing {
-namespace {
+namespace extremes_test {
 
 class Extremes : public ::testing::Test {
  protected:
@@ -101,5 +101,5 @@ TEST_F(Extremes, WrongWishesAreRefused) {
   EXPECT_NE(nowhere.err.find("--scenes"), std::string::npos) << nowhere.err;
 }
 
-}  // namespace
+}  // namespace extremes_test
 }  // namespace slew::testing

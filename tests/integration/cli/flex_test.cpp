@@ -11,7 +11,7 @@
 #include "scene/flexible_model.h"
 
 namespace slew::testing {
-namespace {
+namespace flex_test {
 
 namespace fs = std::filesystem;
 
@@ -223,5 +223,5 @@ TEST_F(Flex, ErrorsNameTheirPlaceAndHaveTheirCodes) {
   }
 }
 
-}  // namespace
+}  // namespace flex_test
 }  // namespace slew::testing

@@ -10,7 +10,7 @@
 #include "sample_hashes.h"
 
 namespace slew::testing {
-namespace {
+namespace in_process_test {
 
 class InProcess : public ::testing::Test {
  protected:
@@ -463,5 +463,5 @@ TEST_F(InProcess, CtrlCEndsTheSessionInOrder) {
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
 }
 
-}  // namespace
+}  // namespace in_process_test
 }  // namespace slew::testing

@@ -12,7 +12,7 @@
 #include "tests/support/test_domain.h"
 
 namespace slew::testing {
-namespace {
+namespace keys_test {
 
 namespace fs = std::filesystem;
 
@@ -371,5 +371,5 @@ TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
   EXPECT_NE(ended.err.find("/O=Slewring/CN=hydraulics"), std::string::npos) << ended.err;
 }
 
-}  // namespace
+}  // namespace keys_test
 }  // namespace slew::testing

@@ -9,7 +9,7 @@
 #include "tests/support/test_domain.h"
 
 namespace slew::testing {
-namespace {
+namespace limits_test {
 
 // Runs a verb under one limit after the other and expects that some are too low and the last one is enough.
 class Limits : public ::testing::TestWithParam<std::string> {
@@ -60,5 +60,5 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& verb) {
 
 INSTANTIATE_TEST_SUITE_P(Of, Limits, ::testing::ValuesIn(verbs()), name_of);
 
-}  // namespace
+}  // namespace limits_test
 }  // namespace slew::testing

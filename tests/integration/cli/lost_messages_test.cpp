@@ -18,7 +18,7 @@
 #include "transport/wire.h"
 
 namespace slew::testing {
-namespace {
+namespace lost_messages_test {
 
 using nlohmann::json;
 using recording::Reader;
@@ -241,5 +241,5 @@ TEST_F(LostMessages, AndTheirOrderDoNotMoveColumns) {
   EXPECT_EQ(of_turned.out, whole.out);
 }
 
-}  // namespace
+}  // namespace lost_messages_test
 }  // namespace slew::testing

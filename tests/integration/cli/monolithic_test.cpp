@@ -9,7 +9,7 @@
 #include "command.h"
 
 namespace slew::testing {
-namespace {
+namespace monolithic_test {
 
 class MonolithicRun : public ::testing::Test {
  protected:
@@ -140,5 +140,5 @@ TEST_F(MonolithicRun, TighterToleranceChangesLess) {
   EXPECT_GT(std::fabs(force("1e-3") - tightest), 10 * std::fabs(force("1e-8") - tightest));
 }
 
-}  // namespace
+}  // namespace monolithic_test
 }  // namespace slew::testing

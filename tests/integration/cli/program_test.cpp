@@ -11,7 +11,7 @@
 #include "recording/writer.h"
 
 namespace slew::testing {
-namespace {
+namespace program_test {
 
 class Program : public ::testing::Test {
  protected:
@@ -346,5 +346,5 @@ TEST_F(Program, KeyboardNeedsATerminal) {
   EXPECT_TRUE(contains(result.err, "standard input is not a terminal")) << result.err;
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace slew::testing

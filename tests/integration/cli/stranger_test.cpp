@@ -15,7 +15,7 @@
 #include "transport/protection.h"
 
 namespace slew::testing {
-namespace {
+namespace stranger_test {
 
 namespace fs = std::filesystem;
 using transport::CycloneTransport;
@@ -140,5 +140,5 @@ INSTANTIATE_TEST_SUITE_P(Forged, UnsignedStrangerWith, ::testing::Values(Forgery
 INSTANTIATE_TEST_SUITE_P(NightlyForged, UnsignedStrangerWith,
                          ::testing::Values(Forgery::newer_unsigned, Forgery::gap, Forgery::heartbeat), name_of);
 
-}  // namespace
+}  // namespace stranger_test
 }  // namespace slew::testing

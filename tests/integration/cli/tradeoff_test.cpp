@@ -9,7 +9,7 @@
 #include "command.h"
 
 namespace slew::testing {
-namespace {
+namespace tradeoff_test {
 
 class Tradeoff : public ::testing::Test {
  protected:
@@ -140,5 +140,5 @@ TEST_F(Tradeoff, TakesAFinelySplitReferenceWhereShapesTouch) {
   EXPECT_GT(report.at("rows").at(1).value("worst_error", 10.0), report.at("rows").at(0).value("worst_error", 0.0));
 }
 
-}  // namespace
+}  // namespace tradeoff_test
 }  // namespace slew::testing

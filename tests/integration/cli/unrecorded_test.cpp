@@ -7,7 +7,7 @@
 #include "command.h"
 
 namespace slew::testing {
-namespace {
+namespace unrecorded_test {
 
 TEST(Unrecorded, WhatIsNotRecordedIsToldBeforeAndWhoeverAsksForIt) {
   const WorkFolder work;
@@ -70,5 +70,5 @@ TEST(Unrecorded, WhatIsIosOwnIsNeverMissing) {
                             "only (recording.variables)"}));
 }
 
-}  // namespace
+}  // namespace unrecorded_test
 }  // namespace slew::testing

@@ -23,7 +23,7 @@
 #include "tests/support/test_domain.h"
 
 namespace slew::testing {
-namespace {
+namespace client_test {
 
 using wire::Role;
 
@@ -659,5 +659,5 @@ TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemHearsNothin
   EXPECT_EQ(session->wait_all(), all_ok()) << session->said();
 }
 
-}  // namespace
+}  // namespace client_test
 }  // namespace slew::testing

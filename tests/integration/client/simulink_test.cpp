@@ -19,7 +19,7 @@ double mxGetScalar(const mxArray* value) {
 }
 
 namespace slew::testing {
-namespace {
+namespace simulink_test {
 
 constexpr int kInterface = 6;
 
@@ -110,5 +110,5 @@ TEST_F(SimulinkBlock, EndsTheModelWithTheReasonOfTheLibrary) {
   stub_block.terminate(&block_);
 }
 
-}  // namespace
+}  // namespace simulink_test
 }  // namespace slew::testing

@@ -13,7 +13,7 @@
 #include "virtual_session.h"
 
 namespace slew::testing {
-namespace {
+namespace fault_seeds_test {
 
 constexpr std::int64_t kProgressWithin = 100 * kMs;    // of ticks at 1 ms
 constexpr std::int64_t kReplacedWithin = 6'000 * kMs;  // two nodes, one after the other
@@ -141,5 +141,5 @@ TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
       count, lost_, doubled_, late_, overtaken_, stalls_, cuts_, restarts_, still_ran_);
 }
 
-}  // namespace
+}  // namespace fault_seeds_test
 }  // namespace slew::testing

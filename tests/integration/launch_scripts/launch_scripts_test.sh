@@ -195,11 +195,9 @@ failed_test() {
   stand_in cmake
   # a test of the Debug build that fails the first time only
   stand_in ctest 'case $* in */dev/*) ;; *) exit 0 ;; esac' "[ -e '$scratch/has_failed' ] && exit 0" \
-    "touch '$scratch/has_failed'" \
-    'while [ $# -gt 0 ]; do [ "$1" != --output-log ] || echo "Sum.IsOrdered failed: 3 is not 4" > "$2"; shift; done' \
-    'exit 8'
+    "touch '$scratch/has_failed'" 'echo "Sum.IsOrdered failed: 3 is not 4"' 'exit 8'
   call 1 "$tree/launch_scripts/test"
-  has_text err "Sum.IsOrdered failed: 3 is not 4"
+  has_text out "Sum.IsOrdered failed: 3 is not 4"
   ! grep -q "all tests passed" "$scratch/out" || fail "it says that all tests passed"
   # without a failure it does
   call 0 "$tree/launch_scripts/test"

@@ -15,7 +15,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace realtime_test {
 
 using nlohmann::json;
 
@@ -264,5 +264,5 @@ TEST_F(RealTime, ASessionThatSlipsTellsItOnceAndItsBooksBalance) {
   EXPECT_EQ(deadline.at("steps_run"), 5'000);
 }
 
-}  // namespace
+}  // namespace realtime_test
 }  // namespace slew::testing

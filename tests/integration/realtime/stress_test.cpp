@@ -16,7 +16,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace stress_test {
 
 using nlohmann::json;
 
@@ -364,5 +364,5 @@ TEST_F(Stress, NightlyTheWholeMatrixIsRunWithTheSchedulingOfItsCells) {
   }
 }
 
-}  // namespace
+}  // namespace stress_test
 }  // namespace slew::testing

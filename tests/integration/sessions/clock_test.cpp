@@ -16,7 +16,7 @@
 #include "shifted_clock.h"
 
 namespace slew::testing {
-namespace {
+namespace clock_test {
 
 using wire::NodeState;
 using wire::Role;
@@ -147,5 +147,5 @@ INSTANTIATE_TEST_SUITE_P(NightlyHours, JumpingClock,
                          ::testing::Values(Jump{"all_back", -3 * kHour, true}, Jump{"one_ahead", 3 * kHour, false}),
                          name_of);
 
-}  // namespace
+}  // namespace clock_test
 }  // namespace slew::testing

@@ -11,7 +11,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace control_test {
 
 using wire::ControlAction;
 using wire::ControllerAction;
@@ -395,5 +395,5 @@ TEST_F(Controller, MayNotMoveTheScriptsChannelBeforeItHasTheLease) {
   EXPECT_EQ(first_difference(physics_only(session_->recorded().chain()), physics_only(undisturbed())), "");
 }
 
-}  // namespace
+}  // namespace control_test
 }  // namespace slew::testing

@@ -9,7 +9,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace controller_example_test {
 
 using wire::Role;
 
@@ -233,5 +233,5 @@ INSTANTIATE_TEST_SUITE_P(Examples, ControllerExampleOptions, ::testing::ValuesIn
 INSTANTIATE_TEST_SUITE_P(Examples, ControllerExample, ::testing::Values(kControllerExamples[0]), name_of);
 INSTANTIATE_TEST_SUITE_P(NightlyExamples, ControllerExample, ::testing::Values(kControllerExamples[1]), name_of);
 
-}  // namespace
+}  // namespace controller_example_test
 }  // namespace slew::testing

@@ -12,7 +12,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace determinism_test {
 
 using wire::Role;
 
@@ -149,5 +149,5 @@ INSTANTIATE_TEST_SUITE_P(NightlyPermutations, StartOrder,
                                            Order{Role::hydraulics, Role::io, Role::recorder, Role::mechanics},
                                            Order{Role::mechanics, Role::recorder, Role::io, Role::hydraulics}));
 
-}  // namespace
+}  // namespace determinism_test
 }  // namespace slew::testing

@@ -22,7 +22,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace failure_test {
 
 using wire::NodeState;
 using wire::Role;
@@ -499,5 +499,5 @@ TEST(Divergence, IsLatchedWithTheOffendersNameAndCode5AndTheLastGoodStateIsRecor
   }
 }
 
-}  // namespace
+}  // namespace failure_test
 }  // namespace slew::testing

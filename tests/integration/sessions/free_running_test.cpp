@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::testing {
-namespace {
+namespace free_running_test {
 
 using coupling::Quality;
 
@@ -32,5 +32,5 @@ TEST(FreeRunning, OverACableThatLosesOnePercentGoesOnToItsEnd) {
   EXPECT_EQ(run.recorded.last_complete_step(), 3000);
 }
 
-}  // namespace
+}  // namespace free_running_test
 }  // namespace slew::testing

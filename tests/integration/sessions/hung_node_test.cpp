@@ -19,7 +19,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace hung_node_test {
 
 using wire::Role;
 
@@ -264,5 +264,5 @@ TEST(FrozenSession, GoesOnWithTheSameBits) {
   EXPECT_EQ(first_difference(recorded.chain(), undisturbed_with(Role::io)), "");
 }
 
-}  // namespace
+}  // namespace hung_node_test
 }  // namespace slew::testing

@@ -15,7 +15,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace lockstep_controller_test {
 
 using wire::Role;
 
@@ -244,5 +244,5 @@ TEST_F(LockstepFault, AControllerThatStoodStillIsInStepAgain) {
   EXPECT_NE(reasons.back().find("'lift_loop' is in step from tick"), std::string::npos) << reasons.back();
 }
 
-}  // namespace
+}  // namespace lockstep_controller_test
 }  // namespace slew::testing

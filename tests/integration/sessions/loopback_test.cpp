@@ -9,7 +9,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace loopback_test {
 
 using wire::Role;
 
@@ -78,5 +78,5 @@ TEST_F(Loopback, IsNotLeftWithoutKeysByMistake) {
   EXPECT_EQ(cable.sent(), 0u);
 }
 
-}  // namespace
+}  // namespace loopback_test
 }  // namespace slew::testing

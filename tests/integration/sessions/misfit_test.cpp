@@ -9,7 +9,7 @@
 #include "slewring.h"
 
 namespace slew::testing {
-namespace {
+namespace misfit_test {
 
 // every node looks for misfits behind each tenth of its health messages; one may come just behind such a look
 constexpr std::uint64_t kHealthsUntilNamed = 20;
@@ -98,5 +98,5 @@ TEST(Misfits, AreNamedByIoAtItsSecondLookAtTheLatest) {
   for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 0) << session.said();
 }
 
-}  // namespace
+}  // namespace misfit_test
 }  // namespace slew::testing

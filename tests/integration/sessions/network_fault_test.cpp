@@ -13,7 +13,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace network_fault_test {
 
 using wire::Role;
 
@@ -211,5 +211,5 @@ const auto name_of_side = [](const auto& is_left) { return is_left.param ? "left
 INSTANTIATE_TEST_SUITE_P(DeafSide, OneWayCable, ::testing::Values(false), name_of_side);
 INSTANTIATE_TEST_SUITE_P(NightlyDeafSide, OneWayCable, ::testing::Values(true), name_of_side);
 
-}  // namespace
+}  // namespace network_fault_test
 }  // namespace slew::testing

@@ -13,7 +13,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace rejoin_test {
 
 using wire::NodeState;
 using wire::Role;
@@ -285,5 +285,5 @@ TEST(Replaced, BothPartnersOfAnExchangeAtEveryThirdStep) {
   EXPECT_EQ(verify.wait(), 0) << verify.out() << verify.err();
 }
 
-}  // namespace
+}  // namespace rejoin_test
 }  // namespace slew::testing

@@ -13,7 +13,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace saved_session_test {
 
 using wire::NodeState;
 using wire::Role;
@@ -381,5 +381,5 @@ TEST_F(SavedSession, IsNeverHalfAFileAndNeverReplacesOneUnasked) {
   EXPECT_NE(said.find("is no saved session"), std::string::npos) << said;
 }
 
-}  // namespace
+}  // namespace saved_session_test
 }  // namespace slew::testing

@@ -9,7 +9,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace start_test {
 
 using wire::Role;
 
@@ -119,5 +119,5 @@ TEST(Start, ARecorderThatCannotWriteEndsTheSessionBeforeItBegins) {
   for (const auto& [role, code] : session.wait_all()) EXPECT_EQ(code, 6) << session.said();
 }
 
-}  // namespace
+}  // namespace start_test
 }  // namespace slew::testing

@@ -10,7 +10,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace two_machines_test {
 
 using wire::Role;
 
@@ -52,5 +52,5 @@ TEST_F(TwoMachines, WhoseCableBreaksNameEachOtherAndEndWithCode4) {
   EXPECT_GT(recorded.last_complete_step(), 0);
 }
 
-}  // namespace
+}  // namespace two_machines_test
 }  // namespace slew::testing

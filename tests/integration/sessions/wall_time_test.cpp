@@ -9,7 +9,7 @@
 #include "session.h"
 
 namespace slew::testing {
-namespace {
+namespace wall_time_test {
 
 using coupling::Quality;
 using wire::Role;
@@ -50,5 +50,5 @@ TEST(NightlyFreeRunning, OverACableThatLosesOnePercentIsGreenOrAmber) {
   EXPECT_LT(largest_eta(run.recorded), coupling::kAmberBelow);
 }
 
-}  // namespace
+}  // namespace wall_time_test
 }  // namespace slew::testing

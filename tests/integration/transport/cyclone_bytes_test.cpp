@@ -15,7 +15,7 @@
 #include "transport/topics.h"
 
 namespace slew::transport {
-namespace {
+namespace cyclone_bytes_test {
 
 // Cyclone's serialiser for one generated type: that of a typed reader's samples.
 template <typename P>
@@ -140,5 +140,5 @@ TYPED_TEST(BytesOf, TheTopicHasTheTypeOfTheIdl) {
   EXPECT_STREQ(traits(kTopicOf<typename TypeParam::Message>).type_name, TypeParam::kDescriptor->m_typename);
 }
 
-}  // namespace
+}  // namespace cyclone_bytes_test
 }  // namespace slew::transport

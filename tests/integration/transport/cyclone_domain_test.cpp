@@ -13,7 +13,7 @@
 #include "tests/support/test_domain.h"
 
 namespace slew::transport {
-namespace {
+namespace cyclone_domain_test {
 
 // A UDP socket on all addresses; port 0: any.
 class OwnSocket {
@@ -83,5 +83,5 @@ TEST(CycloneMessages, OfWhoCannotBeMatchedYetNothingIsSaid) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "slewring: DDS: " + mismatch + "\n");
 }
 
-}  // namespace
+}  // namespace cyclone_domain_test
 }  // namespace slew::transport

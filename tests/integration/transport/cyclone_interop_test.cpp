@@ -14,7 +14,7 @@
 #include "transport/cyclone_transport.h"
 
 namespace slew::transport {
-namespace {
+namespace cyclone_interop_test {
 
 using testing::ChildProcess;
 using testing::eventually;
@@ -323,5 +323,5 @@ INSTANTIATE_TEST_SUITE_P(
                   "another presentation (access scope instance, neither coherent nor ordered, is expected)"}),
     name_of);
 
-}  // namespace
+}  // namespace cyclone_interop_test
 }  // namespace slew::transport

@@ -10,7 +10,7 @@
 #include "transport/cyclone_transport.h"
 
 namespace slew::transport {
-namespace {
+namespace cyclone_loss_test {
 
 using testing::ChildProcess;
 using testing::eventually;
@@ -172,5 +172,5 @@ TEST(CycloneLoss, TheLargestSceneReachesALateNode) {
   EXPECT_EQ(node.wait(), 0);
 }
 
-}  // namespace
+}  // namespace cyclone_loss_test
 }  // namespace slew::transport

@@ -11,7 +11,7 @@
 #include "transport/codec.h"
 
 namespace slew::transport {
-namespace {
+namespace cyclone_transport_test {
 
 using testing::eventually;
 using testing::next;
@@ -240,5 +240,5 @@ TEST(CycloneConfiguration, SendsOnlyToOwnHostUnlessPeersAreNamed) {
   EXPECT_NE(two.find(R"(<Peers><Peer Address="10.0.0.1"/><Peer Address="10.0.0.2"/></Peers>)"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace cyclone_transport_test
 }  // namespace slew::transport

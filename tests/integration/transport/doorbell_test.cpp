@@ -10,7 +10,7 @@
 #include "core/time.h"
 
 namespace slew::transport {
-namespace {
+namespace doorbell_test {
 
 constexpr std::size_t kRingers = 4;
 constexpr int kRounds = 2000;
@@ -52,5 +52,5 @@ TEST(DoorbellThreads, WhatIsWrittenBeforeARingIsReadAfterItAndNoRingIsLost) {
   EXPECT_TRUE(all_read());
 }
 
-}  // namespace
+}  // namespace doorbell_test
 }  // namespace slew::transport

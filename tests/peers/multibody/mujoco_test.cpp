@@ -6,7 +6,7 @@
 #include "tests/peers/multibody/mujoco_peer.h"
 
 namespace slew::multibody::testing {
-namespace {
+namespace mujoco_test {
 
 constexpr double kTolerance = 1e-12;
 
@@ -35,5 +35,5 @@ TEST(ComparisonWithMujoco, SeesAMassThatIsAMillionthOff) {
   EXPECT_GT(accelerations_differ_by<MujocoPeer>(sample, other), 1e4 * kTolerance);
 }
 
-}  // namespace
+}  // namespace mujoco_test
 }  // namespace slew::multibody::testing

@@ -26,7 +26,7 @@
 #include "tests/peers/multibody/simbody_peer.h"
 
 namespace slew::multibody::testing {
-namespace {
+namespace simbody_test {
 
 constexpr double kTolerance = 1e-12, kLoopTolerance = 1e-9;
 
@@ -180,5 +180,5 @@ TEST_F(TruckCrane, FallsAsInSimbodyAtTheSubStepOfTheScene) {
   expect_small(motions_differ_by(undamped(def), start, 2, def.max_substep), kCoarse);
 }
 
-}  // namespace
+}  // namespace simbody_test
 }  // namespace slew::multibody::testing

@@ -15,7 +15,7 @@
 #include "tests/validation/urdf/imported.h"
 
 namespace slew::urdf {
-namespace {
+namespace mujoco_urdf_test {
 
 using testing::Imported;
 
@@ -157,5 +157,5 @@ TEST(UrdfInMujoco, SeesAProductOfTheOtherSign) {
   EXPECT_GT(off, 1e-3);
 }
 
-}  // namespace
+}  // namespace mujoco_urdf_test
 }  // namespace slew::urdf

@@ -4,7 +4,7 @@
 #include "support/random_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace clearance_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -55,5 +55,5 @@ TEST_F(Clearance, LeavesNothingOut) {
   EXPECT_GT(touching_, looks_ / 10);
 }
 
-}  // namespace
+}  // namespace clearance_test
 }  // namespace slew::contact

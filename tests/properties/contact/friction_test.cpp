@@ -10,7 +10,7 @@
 #include "math/rotation.h"
 
 namespace slew::contact {
-namespace {
+namespace friction_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -196,7 +196,7 @@ TEST_F(FrictionProperty, IsFiniteWhereQuotientsMeetTheirLimits) {
     for (const double speed : {0.0, 1e-310, 1e-150, 1e-12, 1.0, 1e6}) {
       for (const double h : {0.0, 1e-9, 1e-3, 1e6}) {
         const SlidingContact contact{{0, 0, 1}, {speed, 0, 0}, N, 1};
-        const FrictionForce force = evaluate(build({}), contact, h, {Vec3(0, 1e-3, 0)});
+        const FrictionForce force = evaluate(build(FrictionLawDef{}), contact, h, {Vec3(0, 1e-3, 0)});
         for (int k = 0; k < 3; ++k) {
           ASSERT_TRUE(std::isfinite(force.f_W[k]) && std::isfinite(force.z_W[k]) && std::isfinite(force.d_normal[k]))
               << N << " " << speed << " " << h;
@@ -228,5 +228,5 @@ TEST_F(FrictionProperty, BristlesAreCarriedWithTheirNormal) {
   EXPECT_EQ(norm(tilted.z_W), 0);
 }
 
-}  // namespace
+}  // namespace friction_test
 }  // namespace slew::contact

@@ -12,7 +12,7 @@
 #include "support/contact_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace ground_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -184,5 +184,5 @@ TEST_F(Ground, ContactsMoveWithTheGroundAndDoNotAllocate) {
   }
 }
 
-}  // namespace
+}  // namespace ground_test
 }  // namespace slew::contact

@@ -14,7 +14,7 @@
 #include "support/random_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace narrow_phase_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -345,5 +345,5 @@ TEST_F(NarrowPhase, DoesNotAllocate) {
   EXPECT_GT(found, 100u);
 }
 
-}  // namespace
+}  // namespace narrow_phase_test
 }  // namespace slew::contact

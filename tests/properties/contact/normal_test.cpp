@@ -8,7 +8,7 @@
 #include "contact/normal_law.h"
 
 namespace slew::contact {
-namespace {
+namespace normal_test {
 
 struct Draw {
   NormalLaw law;
@@ -122,5 +122,5 @@ TEST(NormalForcePulledAway, GivesBackLessThanItTook) {
   }
 }
 
-}  // namespace
+}  // namespace normal_test
 }  // namespace slew::contact

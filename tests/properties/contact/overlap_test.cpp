@@ -13,7 +13,7 @@
 #include "support/random_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace overlap_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -164,5 +164,5 @@ TEST_F(FindOverlap, IsTheSameFarFromTheOrigin) {
   EXPECT_LT(norm(far + here.p_W - there.p_W), 1e-4);
 }
 
-}  // namespace
+}  // namespace overlap_test
 }  // namespace slew::contact

@@ -11,7 +11,7 @@
 #include "support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace damaged_state_test {
 
 constexpr std::size_t kHeader = 32, kLength = 16, kCheck = 24;  // of the layout in core/state_bytes.h
 
@@ -164,5 +164,5 @@ TEST(StateOfAnotherScene, IsRefusedByEveryPart) {
   EXPECT_FALSE(chain.part(kMechanics)->load(saved[kHydraulics], chain.sample(kMechanics)).is_ok());
 }
 
-}  // namespace
+}  // namespace damaged_state_test
 }  // namespace slew::testing

@@ -15,7 +15,7 @@
 #include "support/nightly.h"
 
 namespace slew::testing {
-namespace {
+namespace saved_state_test {
 
 scene::Scene load(const std::string& file, const std::vector<std::string>& overrides = {}) {
   return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + file, overrides);
@@ -293,5 +293,5 @@ TEST(SavedState, IsWrittenWithoutAllocation) {
   }
 }
 
-}  // namespace
+}  // namespace saved_state_test
 }  // namespace slew::testing

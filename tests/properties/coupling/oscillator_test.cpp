@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace slew::coupling::test {
-namespace {
+namespace oscillator_test {
 
 // from far below to far above what a machine would be run at (warned about above 1)
 constexpr double kOmegas[] = {0.02, 0.05, 0.2, 0.5, 1, 1.5, 2, 3, 5, 10, 20, 50};
@@ -123,5 +123,5 @@ TEST(LevelHold, BlowsUpWhereLevelTwoIsUsable) {
   EXPECT_LT(growth_rate({.Omega = 1, .zeta = 0.05}, 200), -0.04);
 }
 
-}  // namespace
+}  // namespace oscillator_test
 }  // namespace slew::coupling::test

@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.h"
 
 namespace slew::flex {
-namespace {
+namespace broken_files_test {
 
 using namespace testing;
 using slew::testing::TemporaryFolder;
@@ -82,5 +82,5 @@ TEST(BrokenFiles, MatricesAndTablesAreReadOrRefused) {
   EXPECT_EQ(error_of([&] { (void)import_model(files); }), "");
 }
 
-}  // namespace
+}  // namespace broken_files_test
 }  // namespace slew::flex

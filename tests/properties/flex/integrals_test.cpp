@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.h"
 
 namespace slew::flex {
-namespace {
+namespace integrals_test {
 
 using namespace testing;
 using math::Mat3;
@@ -302,5 +302,5 @@ TEST(Integrals, BentBeamWithGeometricStiffeningIsRefused) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace integrals_test
 }  // namespace slew::flex

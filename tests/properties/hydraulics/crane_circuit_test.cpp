@@ -12,7 +12,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace crane_circuit_test {
 
 constexpr double kStep = 1e-3;
 
@@ -352,5 +352,5 @@ TEST(CraneCircuit, one_thousand_steps_do_not_allocate) {
   EXPECT_EQ(guard.frees(), 0u);
 }
 
-}  // namespace
+}  // namespace crane_circuit_test
 }  // namespace slew::hydraulics::test

@@ -12,7 +12,7 @@
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace cvode_test {
 
 // Circuit and pistons as one right-hand side.
 struct Coupled {
@@ -115,5 +115,5 @@ TEST(CircuitIntegrator, agrees_with_cvode_over_lift_and_stop) {
   EXPECT_LT(worst_position, 1e-6);
 }
 
-}  // namespace
+}  // namespace cvode_test
 }  // namespace slew::hydraulics::test

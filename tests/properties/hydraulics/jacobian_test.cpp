@@ -10,7 +10,7 @@
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace jacobian_test {
 
 constexpr int kStates = 4000;
 
@@ -167,5 +167,5 @@ TEST(HydraulicJacobian, test_circuits_hold_every_component_type) {
   }
 }
 
-}  // namespace
+}  // namespace jacobian_test
 }  // namespace slew::hydraulics::test

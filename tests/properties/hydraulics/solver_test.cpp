@@ -10,7 +10,7 @@
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace solver_test {
 
 constexpr double kStep = 1e-3;
 constexpr Solver kSolvers[] = {Solver::rodas3, Solver::rk4, Solver::implicit_euler, Solver::cvode};
@@ -248,5 +248,5 @@ TEST(QuasiStaticVolume, is_chosen_by_its_rate) {
   EXPECT_EQ(integrator.quasi_static()[0], circuit.find_volume("Vol_MainPump"));
 }
 
-}  // namespace
+}  // namespace solver_test
 }  // namespace slew::hydraulics::test

@@ -17,7 +17,7 @@
 #include "scene/scene.h"
 
 namespace slew::mechanics {
-namespace {
+namespace step_mobility_test {
 
 constexpr double kOmega = 100, kMass = 2, kOil = kMass * kOmega * kOmega;  // rad/s, kg, N/m
 constexpr double kZeta = 0.01;
@@ -166,7 +166,7 @@ double growth(const Case& of, double Omega, Mobility mobility, int exchanges = 1
 constexpr Case kCases[] = {{10, 10, 0.1}, {10, 100, 0.1}, {100, 1000, 0.1}, {10, 10, 1},
                            {10, 100, 1},  {100, 1000, 1}, {10, 10, 10},     {10, 100, 10}};
 
-class StepMobilityOf : public testing::TestWithParam<Case> {};
+class StepMobilityOf : public ::testing::TestWithParam<Case> {};
 
 TEST_P(StepMobilityOf, HasNoLimitWithAMassOnASpringBehindThePort) {
   for (const double Omega : {1.5, 3.3, 8.0, 20.0, 50.0}) {
@@ -182,7 +182,7 @@ TEST_P(StepMobilityOf, IsNeededThere) {
   EXPECT_GT(worst, 1.1);
 }
 
-INSTANTIATE_TEST_SUITE_P(, StepMobilityOf, testing::ValuesIn(kCases), [](const auto& tested) {
+INSTANTIATE_TEST_SUITE_P(, StepMobilityOf, ::testing::ValuesIn(kCases), [](const auto& tested) {
   std::ostringstream name;
   name << "m2_" << tested.param.m2 << "_spring_" << tested.param.spring << "_lambda_"
        << (tested.param.lambda < 1   ? "below_1"
@@ -205,5 +205,5 @@ TEST(StepMobility, IsThatOfBothMassesWhereTheSpringIsFast) {
   EXPECT_NEAR(pair.sample().W[0], 1 / (11 * kMass), 1e-3 / kMass);
 }
 
-}  // namespace
+}  // namespace step_mobility_test
 }  // namespace slew::mechanics

@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace agreement_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -158,5 +158,5 @@ TEST(NodeDummies, AreOfEveryKindInTheRandomTrees) {
   }
 }
 
-}  // namespace
+}  // namespace agreement_test
 }  // namespace slew::multibody

@@ -12,7 +12,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace body_coordinates_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -153,5 +153,5 @@ TEST(BodyCoordinates, ComeBackToTheirJointsFromFarOff) {
   });
 }
 
-}  // namespace
+}  // namespace body_coordinates_test
 }  // namespace slew::multibody

@@ -12,7 +12,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace elements_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -321,5 +321,5 @@ TEST(FramePair, MeasuresTheRotationVectorAtAnyAngle) {
   }
 }
 
-}  // namespace
+}  // namespace elements_test
 }  // namespace slew::multibody

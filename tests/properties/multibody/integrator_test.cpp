@@ -14,7 +14,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace integrator_test {
 
 using namespace testing;
 
@@ -384,5 +384,5 @@ TEST(GeneralisedAlpha, CarriesItsAccelerationInTheHash) {
   EXPECT_NE(digest(one), digest(other));
 }
 
-}  // namespace
+}  // namespace integrator_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace invariance_test {
 
 using namespace testing;
 using math::Mat3;
@@ -99,5 +99,5 @@ TEST_P(Invariance, OtherUnitsGiveTheSameMotion) {
 
 INSTANTIATE_TEST_SUITE_P(In, Invariance, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace invariance_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace invariants_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -277,5 +277,5 @@ TEST(Integrator, KeepsQuaternionsUnit) {
   EXPECT_NEAR(square, 1, 1e-15);
 }
 
-}  // namespace
+}  // namespace invariants_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace joint_rows_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -84,5 +84,5 @@ TEST(CoordinateRows, SeeTheInverseOfTheMassMatrix) {
   });
 }
 
-}  // namespace
+}  // namespace joint_rows_test
 }  // namespace slew::multibody

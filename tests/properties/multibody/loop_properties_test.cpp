@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace loop_properties_test {
 
 using namespace testing;
 using math::Vec3;
@@ -242,5 +242,5 @@ TEST_P(LoopProperties, MovesAsTheRecursionDoes) {
 
 INSTANTIATE_TEST_SUITE_P(In, LoopProperties, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace loop_properties_test
 }  // namespace slew::multibody

@@ -17,7 +17,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace loops_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -207,5 +207,5 @@ TEST(RandomLoops, StayClosedAndKeepTheirEnergy) {
   });
 }
 
-}  // namespace
+}  // namespace loops_test
 }  // namespace slew::multibody

@@ -11,7 +11,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace motion_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -183,5 +183,5 @@ TEST(DrivenTrees, MoveAlikeInEveryFormulation) {
   });
 }
 
-}  // namespace
+}  // namespace motion_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/loop_defs.h"
 
 namespace slew::multibody {
-namespace {
+namespace own_rules_test {
 
 using namespace testing;
 
@@ -53,5 +53,5 @@ TEST_P(OwnRules, HaveTheirOrderOnASpatialSliderCrank) {
 INSTANTIATE_TEST_SUITE_P(In, OwnRules, ::testing::Values(Formulation::augmented, Formulation::penalty),
                          kFormulationName);
 
-}  // namespace
+}  // namespace own_rules_test
 }  // namespace slew::multibody

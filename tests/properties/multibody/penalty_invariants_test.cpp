@@ -12,7 +12,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace penalty_invariants_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -250,5 +250,5 @@ INSTANTIATE_TEST_SUITE_P(Bars, FourBar,
                          ::testing::Values(FlatPasses{1, 0.4783850577587, 0.8781501787924},
                                            FlatPasses{2, 0.328458111539, 0.944518538179}));
 
-}  // namespace
+}  // namespace penalty_invariants_test
 }  // namespace slew::multibody

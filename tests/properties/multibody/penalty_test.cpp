@@ -11,7 +11,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace penalty_test {
 
 using namespace testing;
 using namespace slew::testing;
@@ -229,5 +229,5 @@ TEST(SmoothPenalties, PlainOpensItsJointsByAShareOfItsFactor) {
   });
 }
 
-}  // namespace
+}  // namespace penalty_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace reactions_test {
 
 using namespace testing;
 using math::Vec3;
@@ -239,5 +239,5 @@ TEST_P(RedundantJoints, DoNotChangeTheMotion) {
 
 INSTANTIATE_TEST_SUITE_P(In, RedundantJoints, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace reactions_test
 }  // namespace slew::multibody

@@ -5,7 +5,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace segments_test {
 
 using namespace testing;
 using math::Mat3;
@@ -222,5 +222,5 @@ TEST(SegmentsStart, TooFastOnesAreRefusedByName) {
   }
 }
 
-}  // namespace
+}  // namespace segments_test
 }  // namespace slew::multibody

@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace stage_jacobian_test {
 
 using namespace testing;
 
@@ -90,5 +90,5 @@ INSTANTIATE_TEST_SUITE_P(In, StageJacobian,
                            return name_of(std::get<0>(tested.param)) + "_" + name_of(std::get<1>(tested.param));
                          });
 
-}  // namespace
+}  // namespace stage_jacobian_test
 }  // namespace slew::multibody

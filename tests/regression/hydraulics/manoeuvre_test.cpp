@@ -10,7 +10,7 @@
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace manoeuvre_test {
 
 // Two strongly coupled booms and a slewing inertia, as seen at the pistons, with friction and end stops.
 class ReducedCrane final : public PistonMotion {
@@ -113,5 +113,5 @@ TEST(CircuitManoeuvre, gives_the_same_bits_twice) {
   for (int j = 0; j < 3; ++j) EXPECT_EQ(first.x[j], second.x[j]);
 }
 
-}  // namespace
+}  // namespace manoeuvre_test
 }  // namespace slew::hydraulics::test

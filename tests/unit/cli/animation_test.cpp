@@ -14,7 +14,7 @@
 #include "tests/support/played_page.h"
 
 namespace slew::cli {
-namespace {
+namespace animation_test {
 
 multibody::MechanicsDef arm() {
   multibody::MechanicsDef mechanics;
@@ -272,5 +272,5 @@ TEST_F(AnimationPage, PlaysInTimeAndSaysWhereNothingWasRecorded) {
   EXPECT_EQ(said[4], 0);       // it stands
 }
 
-}  // namespace
+}  // namespace animation_test
 }  // namespace slew::cli

@@ -14,7 +14,7 @@
 #include "core/time.h"
 
 namespace slew::cli {
-namespace {
+namespace child_process_test {
 
 constexpr std::int64_t kDeadlineNs = 20'000'000'000;
 
@@ -67,5 +67,5 @@ TEST(ChildProcess, SaysWhyAProgramCannotBeStarted) {
             "cannot start /nowhere/at_all: No such file or directory; build it, or install all programs together");
 }
 
-}  // namespace
+}  // namespace child_process_test
 }  // namespace slew::cli

@@ -16,7 +16,7 @@
 #include "core/failure.h"
 
 namespace slew::cli {
-namespace {
+namespace comparison_test {
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -373,5 +373,5 @@ TEST(ComparisonReport, JsonHoldsEveryRowAndTheReference) {
   EXPECT_FALSE(json.at("rows").at(3).at("has_run").get<bool>());
 }
 
-}  // namespace
+}  // namespace comparison_test
 }  // namespace slew::cli

@@ -8,7 +8,7 @@
 #include "build_paths.h"
 
 namespace slew::cli {
-namespace {
+namespace cost_test {
 
 const std::string kScenes = SLEWRING_SOURCE_DIR "/scenes/";
 
@@ -50,5 +50,5 @@ TEST(CostByPart, HasNoLineForWhatItDoesNot) {
   EXPECT_NE(report_text(cost, not_paid).find("not paid for: hydraulics"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace cost_test
 }  // namespace slew::cli

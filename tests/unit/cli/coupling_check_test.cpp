@@ -9,7 +9,7 @@
 #include "coupling/indicator.h"
 
 namespace slew::cli {
-namespace {
+namespace coupling_check_test {
 
 std::vector<std::string> warnings(const std::string& file, const scene::Overrides& overrides) {
   return coupling_warnings(scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides));
@@ -100,5 +100,5 @@ TEST(OmegaLimit, GrowsFromHoldToTlm) {
   EXPECT_GT(coupling::omega_limit(Level::tlm, 0.02), 1e9);
 }
 
-}  // namespace
+}  // namespace coupling_check_test
 }  // namespace slew::cli

@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace slew::cli {
-namespace {
+namespace display_test {
 
 TEST(Display, ShowsQuantitiesInTheUnitsOfTheWorkshop) {
   EXPECT_EQ(quantity_text(250e5, "Pa"), "250 bar");
@@ -48,5 +48,5 @@ TEST(Display, ShowsTimesInAUnitThatFits) {
   EXPECT_EQ(duration_text(20), "20 s");
 }
 
-}  // namespace
+}  // namespace display_test
 }  // namespace slew::cli

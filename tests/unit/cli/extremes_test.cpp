@@ -10,7 +10,7 @@
 #include "cli/extremes/judge.h"
 
 namespace slew::cli {
-namespace {
+namespace extremes_test {
 
 Measures good_run() {
   Measures measures;
@@ -180,5 +180,5 @@ TEST(Extremes, UnfinishedAndDivergedRowsAreNotGood) {
   EXPECT_FALSE(extremes.is_complete());
 }
 
-}  // namespace
+}  // namespace extremes_test
 }  // namespace slew::cli

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::cli {
-namespace {
+namespace keyboard_test {
 
 Levers two_levers_and_a_button() {
   std::vector<scene::InputDef> inputs(3);
@@ -68,5 +68,5 @@ TEST(Levers, LeaveLockstepInputsToTheirControllers) {
   EXPECT_EQ(Levers(inputs).help(), "keyboard: q/a Lift  space neutral  Ctrl-C end");
 }
 
-}  // namespace
+}  // namespace keyboard_test
 }  // namespace slew::cli

@@ -10,7 +10,7 @@
 #include "core/failure.h"
 
 namespace slew::cli {
-namespace {
+namespace liftable_load_test {
 
 scene::Scene load(const std::string& name, const scene::Overrides& overrides = {}) {
   return scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + name, overrides);
@@ -46,7 +46,7 @@ constexpr double kLifted = 0.01, kNotLifted = 0.004;  // m
 
 TEST(LiftableLoad, OfTheCraneIsLiftedAndMoreIsNot) {
   scene::Scene scene = load("truck_crane.yaml");
-  const LiftableLoad found = find_liftable(scene, {}, Settings::named);
+  const LiftableLoad found = find_liftable(scene, {}, ListedSettings::named);
   ASSERT_TRUE(found.has_answer());
   EXPECT_EQ(found.payload, "Bag");
   EXPECT_GT(way("truck_crane.yaml", found, 0.97 * found.limit().load), kLifted);
@@ -55,7 +55,7 @@ TEST(LiftableLoad, OfTheCraneIsLiftedAndMoreIsNot) {
 
 TEST(LiftableLoad, OfASingleCylinderIsLiftedAndMoreIsNot) {
   scene::Scene scene = load("single_cylinder.yaml");
-  const LiftableLoad found = find_liftable(scene, {}, Settings::named);
+  const LiftableLoad found = find_liftable(scene, {}, ListedSettings::named);
   ASSERT_TRUE(found.has_answer());
   EXPECT_EQ(found.limit().name, "Cyl_Lift");
   EXPECT_GT(way("single_cylinder.yaml", found, 0.97 * found.limit().load), kLifted);
@@ -65,7 +65,7 @@ TEST(LiftableLoad, OfASingleCylinderIsLiftedAndMoreIsNot) {
 // the valve takes no more oil at its load-sensing limit and the compensator's 8 bar; the pump could do 205 bar
 TEST(LiftableLoad, NamesTheSettingsThatLimitIt) {
   scene::Scene scene = load("single_cylinder.yaml");
-  const LiftingPort port = find_liftable(scene, {}, Settings::named).limit();
+  const LiftingPort port = find_liftable(scene, {}, ListedSettings::named).limit();
   ASSERT_EQ(port.settings.size(), 2u);
   EXPECT_EQ(port.settings[0].path, "L90Lift.maximum_ls_pressure_a");
   EXPECT_EQ(port.settings[1].path, "L90Lift.compensator_pressure");
@@ -74,7 +74,7 @@ TEST(LiftableLoad, NamesTheSettingsThatLimitIt) {
   EXPECT_EQ(port.chamber, "Vol_LiftCyl_A");
   // with a pump relief below it that one limits
   scene::Scene relieved = load("single_cylinder.yaml", {"PRV_MainPump.setting_pressure=120 bar"});
-  const LiftingPort lower = find_liftable(relieved, {}, Settings::named).limit();
+  const LiftingPort lower = find_liftable(relieved, {}, ListedSettings::named).limit();
   ASSERT_FALSE(lower.settings.empty());
   EXPECT_EQ(lower.settings[0].path, "PRV_MainPump.setting_pressure");
   EXPECT_NEAR(lower.pressure, 124e5, 4e5) << "its setting, and what of its opening the pump's flow needs";
@@ -84,7 +84,7 @@ TEST(LiftableLoad, NamesTheSettingsThatLimitIt) {
 // Lever arms of the scene's header: 0.713 m of the cylinder, 3.5 m of the load, 1.75 m of the boom's 400 kg.
 TEST(LiftableLoad, OfASingleCylinderIsTheBalanceOfMoments) {
   scene::Scene scene = load("single_cylinder.yaml");
-  const LiftingPort port = find_liftable(scene, {}, Settings::left_out).limit();
+  const LiftingPort port = find_liftable(scene, {}, ListedSettings::left_out).limit();
   const double F = 0.25 * 3.14159265 * (0.2 * 0.2 * port.pressure - (0.2 * 0.2 - 0.105 * 0.105) * 1e5);
   const double lever = 0.713;
   EXPECT_NEAR(port.load, (F * lever / 9.81 - 400 * 1.75) / 3.5, 0.01 * port.load);
@@ -92,20 +92,22 @@ TEST(LiftableLoad, OfASingleCylinderIsTheBalanceOfMoments) {
 
 TEST(LiftableLoad, APoseChangesItAndTheSceneStaysAsItWas) {
   scene::Scene scene = load("truck_crane.yaml");
-  const double at_start = find_liftable(scene, {}, Settings::named).limit().load;
-  EXPECT_EQ(find_liftable(scene, {}, Settings::named).limit().load, at_start);
-  const LiftableLoad raised = find_liftable(scene, {.at = 0, .joints = {"Pillar_LiftBoom=50 deg"}}, Settings::left_out);
+  const double at_start = find_liftable(scene, {}, ListedSettings::named).limit().load;
+  EXPECT_EQ(find_liftable(scene, {}, ListedSettings::named).limit().load, at_start);
+  const LiftableLoad raised =
+      find_liftable(scene, {.at = 0, .joints = {"Pillar_LiftBoom=50 deg"}}, ListedSettings::left_out);
   ASSERT_TRUE(raised.has_answer());
   EXPECT_NE(raised.limit().load, at_start);
-  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Nobody=1"}}, Settings::left_out)), Failure);
-  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Hook_Bag=1"}}, Settings::left_out)),
+  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Nobody=1"}}, ListedSettings::left_out)),
+               Failure);
+  EXPECT_THROW(static_cast<void>(find_liftable(scene, {.at = 0, .joints = {"Hook_Bag=1"}}, ListedSettings::left_out)),
                Failure);
 }
 
 TEST(LiftableLoad, ASceneWithoutCylindersHasNone) {
   scene::Scene scene = load("four_bar.yaml");
-  EXPECT_FALSE(find_liftable(scene, {}, Settings::named).has_answer());
+  EXPECT_FALSE(find_liftable(scene, {}, ListedSettings::named).has_answer());
 }
 
-}  // namespace
+}  // namespace liftable_load_test
 }  // namespace slew::cli

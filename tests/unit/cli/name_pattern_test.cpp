@@ -7,7 +7,7 @@
 #include "core/failure.h"
 
 namespace slew::cli_support {
-namespace {
+namespace name_pattern_test {
 
 const std::vector<std::string> kNames = {"Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke", "Bag.position.y"};
 
@@ -62,5 +62,5 @@ TEST(SessionName, RefusesPartitionWildcards) {
   EXPECT_FALSE(problem_of_session_name(std::string(64, 'x')).empty());
 }
 
-}  // namespace
+}  // namespace name_pattern_test
 }  // namespace slew::cli_support

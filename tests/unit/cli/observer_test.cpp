@@ -12,7 +12,7 @@
 #include "transport/topics.h"
 
 namespace slew::cli {
-namespace {
+namespace observer_test {
 
 using wire::Role;
 using wire::Topic;
@@ -194,5 +194,5 @@ TEST_F(Asking, ASessionThatIsWithdrawnIsToldAtOnce) {
   EXPECT_EQ(ask(), "session 'crane' ended before it answered; there is nothing left to be changed; start it again");
 }
 
-}  // namespace
+}  // namespace observer_test
 }  // namespace slew::cli

@@ -9,7 +9,7 @@
 #include "build_paths.h"
 
 namespace slew::cli {
-namespace {
+namespace played_scene_test {
 
 using wire::Role;
 
@@ -84,5 +84,5 @@ TEST(PlayedScene, ParameterChangesOfTheScriptAreCarriedOut) {
   EXPECT_DOUBLE_EQ(value(played, "Rod.mass"), 3);
 }
 
-}  // namespace
+}  // namespace played_scene_test
 }  // namespace slew::cli

@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.h"
 
 namespace slew::cli {
-namespace {
+namespace preemption_test {
 
 class Preemption : public ::testing::Test {
  protected:
@@ -50,5 +50,5 @@ TEST_F(Preemption, IsReadFromTheKernelThenItsCommandLineThenItsConfiguration) {
   EXPECT_EQ(model("#1 SMP PREEMPT_RT Debian"), "rt");
 }
 
-}  // namespace
+}  // namespace preemption_test
 }  // namespace slew::cli

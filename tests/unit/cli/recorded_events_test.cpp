@@ -14,7 +14,7 @@
 #include "transport/topics.h"
 
 namespace slew::cli {
-namespace {
+namespace recorded_events_test {
 
 using wire::Topic;
 
@@ -111,5 +111,5 @@ TEST_F(Events, NobodyAskedForAreToldInTheirOwnWords) {
                                               "controller pid does not have channel Input_Lift: no value came"}));
 }
 
-}  // namespace
+}  // namespace recorded_events_test
 }  // namespace slew::cli

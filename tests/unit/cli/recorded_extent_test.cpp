@@ -15,7 +15,7 @@
 #include "transport/topics.h"
 
 namespace slew::cli {
-namespace {
+namespace recorded_extent_test {
 
 using wire::Phase;
 using wire::Role;
@@ -180,5 +180,5 @@ TEST_F(Extent, HoldsTheSamplesOfFlexibleBodiesOfEveryStep) {
   EXPECT_EQ(fast.complete_to, 6);
 }
 
-}  // namespace
+}  // namespace recorded_extent_test
 }  // namespace slew::cli

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::cli {
-namespace {
+namespace run_outcome_test {
 
 using Messages = std::vector<std::string>;
 
@@ -46,5 +46,5 @@ TEST(RunOptions, AssetsAreBesideTheScene) {
   EXPECT_EQ(options.assets(), ".");
 }
 
-}  // namespace
+}  // namespace run_outcome_test
 }  // namespace slew::cli

@@ -13,13 +13,14 @@
 #include "io_node/scene_config.h"
 
 namespace slew::cli_support {
-namespace {
+namespace scene_options_test {
 
-class SceneOptionsTest : public testing::Test {
+class SceneOptionsTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("slewring_scene_options_" + std::to_string(getpid()) + "_" +
-                                                        testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ =
+        std::filesystem::temp_directory_path() / ("slewring_scene_options_" + std::to_string(getpid()) + "_" +
+                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_);
     options_.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/truck_crane.yaml";
   }
@@ -143,5 +144,5 @@ TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
   EXPECT_FALSE(config.judge_parameter("Bag.mas", 1, -1).is_accepted);
 }
 
-}  // namespace
+}  // namespace scene_options_test
 }  // namespace slew::cli_support

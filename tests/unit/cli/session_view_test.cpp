@@ -7,11 +7,11 @@
 #include "transport/topics.h"
 
 namespace slew::cli {
-namespace {
+namespace session_view_test {
 
 using wire::Role;
 
-class SessionViewTest : public testing::Test {
+class SessionViewTest : public ::testing::Test {
  protected:
   SessionViewTest() {
     session_.header = header(Role::io);
@@ -227,5 +227,5 @@ TEST_F(SessionViewTest, RubbishIsPassedOver) {
   EXPECT_TRUE(view.variables().empty());
 }
 
-}  // namespace
+}  // namespace session_view_test
 }  // namespace slew::cli

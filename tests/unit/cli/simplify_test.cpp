@@ -11,7 +11,7 @@
 #include "multibody/observe.h"
 
 namespace slew::cli {
-namespace {
+namespace simplify_test {
 
 const std::string kScenes = SLEWRING_SOURCE_DIR "/scenes/";
 
@@ -134,5 +134,5 @@ TEST(Simplify, EndsWhenItIsTold) {
   EXPECT_FALSE(result.helps());
 }
 
-}  // namespace
+}  // namespace simplify_test
 }  // namespace slew::cli

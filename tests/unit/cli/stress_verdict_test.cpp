@@ -6,7 +6,7 @@
 #include "cli/stress/stress_report.h"
 
 namespace slew::cli {
-namespace {
+namespace stress_verdict_test {
 
 // of 10000 steps; misses come alone
 wire::Health timing(double missed, double p99, std::uint64_t longest_row = 1) {
@@ -134,5 +134,5 @@ TEST(StressVerdict, WhatSomebodyEndedIsInterrupted) {
   }
 }
 
-}  // namespace
+}  // namespace stress_verdict_test
 }  // namespace slew::cli

@@ -9,7 +9,7 @@
 #include <set>
 
 namespace slew::cli {
-namespace {
+namespace sweep_test {
 
 // A shell stands for the program: its script gets "--result FILE" as $1 and $2.
 class SweepTest : public ::testing::Test {
@@ -110,5 +110,5 @@ TEST_F(SweepTest, KeysDifferWithEveryTextAndItsEnds) {
   EXPECT_EQ(keys.begin()->size(), 16u);
 }
 
-}  // namespace
+}  // namespace sweep_test
 }  // namespace slew::cli

@@ -14,7 +14,7 @@
 #include "core/failure.h"
 
 namespace slew::cli {
-namespace {
+namespace tradeoff_test {
 
 const std::string kScenes = std::string(SLEWRING_SOURCE_DIR) + "/scenes/";
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -253,5 +253,5 @@ TEST_F(Overlay, LiesBesideItsScene) {
       Failure);
 }
 
-}  // namespace
+}  // namespace tradeoff_test
 }  // namespace slew::cli

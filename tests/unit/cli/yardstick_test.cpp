@@ -6,7 +6,7 @@
 #include "cli/stress/stress.h"
 
 namespace slew::cli {
-namespace {
+namespace yardstick_test {
 
 constexpr SimDuration kStep{100'000};
 
@@ -45,5 +45,5 @@ TEST(Yardstick, StepsThatItGivesUpAreMisses) {
   EXPECT_EQ(health.longest_overrun, health.response.count);
 }
 
-}  // namespace
+}  // namespace yardstick_test
 }  // namespace slew::cli

@@ -9,7 +9,7 @@
 #include "support/contact_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace kernel_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -345,5 +345,5 @@ TEST(BoxOnTriangles, AcrossTheirCommonEdgePressesInItsMiddle) {
   EXPECT_NEAR(centre.y(), 1.2, 1e-9);
 }
 
-}  // namespace
+}  // namespace kernel_test
 }  // namespace slew::contact

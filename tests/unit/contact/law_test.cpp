@@ -10,7 +10,7 @@
 #include "contact/normal_law.h"
 
 namespace slew::contact {
-namespace {
+namespace law_test {
 
 TEST(DampingNumber, IsTheTabledRoot) {
   EXPECT_NEAR(damping_number(0.1), 9.998159397, 1e-8);
@@ -135,5 +135,5 @@ TEST(FrictionLawDef, OutOfRangeIsNamed) {
   EXPECT_EQ(problems[0].what, "0.1 is below the dynamic coefficient 0.3");
 }
 
-}  // namespace
+}  // namespace law_test
 }  // namespace slew::contact

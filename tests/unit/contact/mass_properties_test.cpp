@@ -10,7 +10,7 @@
 #include "support/contact_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace mass_properties_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -140,5 +140,5 @@ TEST(MassProperties, OfARefinedOctahedronBecomeThoseOfABall) {
   EXPECT_LT(before, 0.01);
 }
 
-}  // namespace
+}  // namespace mass_properties_test
 }  // namespace slew::contact

@@ -10,7 +10,7 @@
 #include "support/contact_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace memory_test {
 
 using math::Vec3;
 using namespace testing;
@@ -75,5 +75,5 @@ TEST_F(Remembered, FollowingDoesNotAllocate) {
   EXPECT_EQ(set.points().size(), 4u);
 }
 
-}  // namespace
+}  // namespace memory_test
 }  // namespace slew::contact

@@ -14,7 +14,7 @@
 #include "support/contact_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace mesh_file_test {
 
 namespace fs = std::filesystem;
 
@@ -171,5 +171,5 @@ TEST_F(MeshFile, ThatIsOpenOrInsideOutIsNamedByTheChecks) {
   EXPECT_EQ(inside_out->what, "it is inside out");
 }
 
-}  // namespace
+}  // namespace mesh_file_test
 }  // namespace slew::contact

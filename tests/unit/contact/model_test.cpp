@@ -6,7 +6,7 @@
 #include "support/contact_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace model_test {
 
 using namespace testing;
 
@@ -172,5 +172,5 @@ TEST(FindContacts, ComeInTheOrderOfThePairsWithTheShapesInTheirPlaces) {
   EXPECT_TRUE(set.points().empty());
 }
 
-}  // namespace
+}  // namespace model_test
 }  // namespace slew::contact

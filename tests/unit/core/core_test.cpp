@@ -14,7 +14,7 @@
 #include "core/time.h"
 
 namespace slew {
-namespace {
+namespace core_test {
 
 // values whose sum depends on the order of addition
 std::vector<double> awkward_values(std::size_t n) {
@@ -102,5 +102,5 @@ TEST(StaticVector, ComparesByContent) {
   EXPECT_TRUE(a == b);
 }
 
-}  // namespace
+}  // namespace core_test
 }  // namespace slew

@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace slew {
-namespace {
+namespace hdr_histogram_test {
 
 constexpr double kShares[] = {0, 0.01, 0.25, 0.5, 0.9, 0.99, 0.999, 1};
 
@@ -108,5 +108,5 @@ TEST(HdrHistogram, WhatIsOutOfRangeIsCountedAtItsEnds) {
   EXPECT_LE(histogram->percentile(0.5), 64);
 }
 
-}  // namespace
+}  // namespace hdr_histogram_test
 }  // namespace slew

@@ -10,7 +10,7 @@
 #include "core/failure.h"
 
 namespace slew {
-namespace {
+namespace json_test {
 
 TEST(Json, IsWrittenByNameOrAsItWasPut) {
   Json json = {{"b", 1}, {"a", Json::array({1.5, "x", true, Json()})}};
@@ -76,5 +76,5 @@ TEST(Json, ReadingSaysWhatIsWrong) {
   EXPECT_FALSE(Json::parse("{\"a\": }"));
 }
 
-}  // namespace
+}  // namespace json_test
 }  // namespace slew

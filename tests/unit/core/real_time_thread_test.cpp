@@ -10,7 +10,7 @@
 #include "core/allocation_guard.h"
 
 namespace slew {
-namespace {
+namespace real_time_thread_test {
 
 constexpr std::size_t kPage = 4096;
 
@@ -52,5 +52,5 @@ TEST(RealTimeThread, HasItsStackAndHeapInMemoryBeforeItUsesThem) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "pages came while they were used";
 }
 
-}  // namespace
+}  // namespace real_time_thread_test
 }  // namespace slew

@@ -9,7 +9,7 @@
 #include <sstream>
 
 namespace slew {
-namespace {
+namespace report_table_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -183,5 +183,5 @@ TEST(ReportTable, HtmlShowsTheTextAndNothingInItIsMarkup) {
             "<tr><td>&lt;b&gt;&quot;x&quot; &amp; y&lt;/b&gt;</td></tr>\n</table>\n");
 }
 
-}  // namespace
+}  // namespace report_table_test
 }  // namespace slew

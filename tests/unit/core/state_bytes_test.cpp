@@ -8,7 +8,7 @@
 #include "core/static_vector.h"
 
 namespace slew {
-namespace {
+namespace state_bytes_test {
 
 enum class Colour : std::uint8_t { red, green, blue };
 
@@ -131,5 +131,5 @@ TEST(StateBytes, ThatTheModelCannotHaveAreRefused) {
   EXPECT_EQ(x, 1);
 }
 
-}  // namespace
+}  // namespace state_bytes_test
 }  // namespace slew

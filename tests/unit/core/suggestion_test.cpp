@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew {
-namespace {
+namespace suggestion_test {
 
 TEST(Suggestion, EditDistanceCountsInsertionsDeletionsSubstitutionsAndSwaps) {
   EXPECT_EQ(edit_distance("mass", "mass"), 0u);
@@ -26,5 +26,5 @@ TEST(Suggestion, NothingIsOfferedForANameThatIsFarFromAll) {
   EXPECT_EQ(closest(std::string(10000, 'x'), {"mass"}), "");
 }
 
-}  // namespace
+}  // namespace suggestion_test
 }  // namespace slew

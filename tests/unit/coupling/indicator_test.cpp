@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace slew::coupling {
-namespace {
+namespace indicator_test {
 
 struct Pair {
   MechanismSample mechanism;
@@ -127,5 +127,5 @@ TEST(Indicator, ForgetsAnErrorAfterItsWindow) {
   }
 }
 
-}  // namespace
+}  // namespace indicator_test
 }  // namespace slew::coupling

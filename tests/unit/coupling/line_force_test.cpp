@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace slew::coupling {
-namespace {
+namespace line_force_test {
 
 LineForceDef crane_lift() {
   LineForceDef def;
@@ -121,5 +121,5 @@ TEST(LineForce, TimeToRestIsInfiniteWhereRestIsNotReached) {
   EXPECT_TRUE(std::isinf(LineForceLaw(smooth).time_to_rest(1e-3, -2, 0)));
 }
 
-}  // namespace
+}  // namespace line_force_test
 }  // namespace slew::coupling

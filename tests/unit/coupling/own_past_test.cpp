@@ -5,7 +5,7 @@
 #include <array>
 
 namespace slew::coupling {
-namespace {
+namespace own_past_test {
 
 OwnPast with_steps(StepIndex count) {
   OwnPast past(2);
@@ -53,5 +53,5 @@ TEST(OwnPast, ForgetsEverything) {
   EXPECT_FALSE(past.has(9));
 }
 
-}  // namespace
+}  // namespace own_past_test
 }  // namespace slew::coupling

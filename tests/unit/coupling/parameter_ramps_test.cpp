@@ -7,11 +7,11 @@
 #include <vector>
 
 namespace slew::coupling {
-namespace {
+namespace parameter_ramps_test {
 
 constexpr SimDuration kStep = milliseconds(1);
 
-class Ramps : public testing::Test {
+class Ramps : public ::testing::Test {
  protected:
   void apply(StepIndex n) {
     ramps.apply(n, [this](int handle, double value) { values[handle] = value; });
@@ -65,5 +65,5 @@ TEST_F(Ramps, UnderWayArePartOfTheHash) {
   EXPECT_EQ(digest(), idle);
 }
 
-}  // namespace
+}  // namespace parameter_ramps_test
 }  // namespace slew::coupling

@@ -10,7 +10,7 @@
 #include "coupling/line_force.h"
 
 namespace slew::coupling {
-namespace {
+namespace port_dynamics_test {
 
 // f = z on every row
 class PassThrough final : public RowLaws {
@@ -236,5 +236,5 @@ TEST(PortDynamics, DoesNotAllocate) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-}  // namespace
+}  // namespace port_dynamics_test
 }  // namespace slew::coupling

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::coupling {
-namespace {
+namespace port_levels_test {
 
 std::uint64_t hash_of(const PortLevels& levels) {
   StateHash hash;
@@ -12,7 +12,7 @@ std::uint64_t hash_of(const PortLevels& levels) {
   return hash.digest();
 }
 
-class Levels : public testing::Test {
+class Levels : public ::testing::Test {
  protected:
   PortLevels levels{Level::two, {{"Lift", PortLevel::session}, {"Jib", PortLevel::hold}, {"Slew", PortLevel::tlm}}};
 };
@@ -64,5 +64,5 @@ TEST_F(Levels, AreInTheHashOnceTheyDifferFromTheScene) {
   EXPECT_NE(hash_of(levels), own);
 }
 
-}  // namespace
+}  // namespace port_levels_test
 }  // namespace slew::coupling

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::coupling {
-namespace {
+namespace static_forces_test {
 
 TEST(StaticForces, CancelTheFreeAccelerations) {
   const double W[] = {3e-5, -2e-5, -2e-5, 4e-5}, a_free[] = {-5, 3};
@@ -39,5 +39,5 @@ TEST(StaticForces, AreNotThereWhenOnePortWouldMoveOtherwise) {
   EXPECT_FALSE(static_forces(W, a_free, F));
 }
 
-}  // namespace
+}  // namespace static_forces_test
 }  // namespace slew::coupling

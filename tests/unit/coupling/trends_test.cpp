@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::coupling {
-namespace {
+namespace trends_test {
 
 TEST(Trends, ContinueWhatChangesSmoothly) {
   Trends trends(1);
@@ -39,5 +39,5 @@ TEST(Trends, AreOfOneQuantityEachAndForget) {
   EXPECT_EQ(trends.next(0, 12.0), 0.0);
 }
 
-}  // namespace
+}  // namespace trends_test
 }  // namespace slew::coupling

@@ -6,7 +6,7 @@
 #include "tests/support/flex_beams.h"
 
 namespace slew::flex {
-namespace {
+namespace beam_test {
 
 using namespace testing;
 using math::Mat3;
@@ -200,5 +200,5 @@ TEST(Beam, WrongConnectionsAreNamed) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace beam_test
 }  // namespace slew::flex

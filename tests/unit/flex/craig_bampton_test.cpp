@@ -6,7 +6,7 @@
 #include "tests/support/flex_beams.h"
 
 namespace slew::flex {
-namespace {
+namespace craig_bampton_test {
 
 using namespace testing;
 using Eigen::MatrixXd;
@@ -160,5 +160,5 @@ TEST(CraigBampton, WrongDefinitionsAreNamed) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace craig_bampton_test
 }  // namespace slew::flex

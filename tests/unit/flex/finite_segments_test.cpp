@@ -9,7 +9,7 @@
 #include "tests/support/flex_beams.h"
 
 namespace slew::flex {
-namespace {
+namespace finite_segments_test {
 
 using namespace testing;
 using math::Mat3;
@@ -131,5 +131,5 @@ TEST(FiniteSegments, RefuseWhatTheyAreNotMadeFor) {
   EXPECT_NE(error_of([&] { (void)finite_segments(imported, 3); }).find("not of imported matrices"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace finite_segments_test
 }  // namespace slew::flex

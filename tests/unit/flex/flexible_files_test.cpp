@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.h"
 
 namespace slew::flex {
-namespace {
+namespace flexible_files_test {
 
 using namespace testing;
 using slew::testing::TemporaryFolder;
@@ -246,5 +246,5 @@ TEST_F(FaultyFiles, NamesThatNoFileCanHaveAreRefused) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace flexible_files_test
 }  // namespace slew::flex

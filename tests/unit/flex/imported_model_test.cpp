@@ -8,7 +8,7 @@
 #include "tests/support/temporary_folder.h"
 
 namespace slew::flex {
-namespace {
+namespace imported_model_test {
 
 using namespace testing;
 using slew::testing::TemporaryFolder;
@@ -204,5 +204,5 @@ TEST_F(Import, TwoLoosePiecesAreRefused) {
   EXPECT_NE(error(M, K, nodes).find("expected six near zero and all others above"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace imported_model_test
 }  // namespace slew::flex

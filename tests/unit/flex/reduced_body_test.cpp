@@ -7,7 +7,7 @@
 #include "tests/support/flex_beams.h"
 
 namespace slew::flex {
-namespace {
+namespace reduced_body_test {
 
 using namespace testing;
 using math::Vec3;
@@ -111,5 +111,5 @@ TEST(Recovery, EvaluationAllocatesNothing) {
   EXPECT_NE(sum, 0);
 }
 
-}  // namespace
+}  // namespace reduced_body_test
 }  // namespace slew::flex

@@ -7,7 +7,7 @@
 #include "tests/support/flex_beams.h"
 
 namespace slew::flex {
-namespace {
+namespace report_test {
 
 using namespace testing;
 
@@ -148,5 +148,5 @@ TEST(ModeShapePlot, HasAPanelForEveryModeAndNoLooseEnds) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace slew::flex

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace slew::flex {
-namespace {
+namespace section_test {
 
 constexpr double kNu = 0.3;
 
@@ -161,5 +161,5 @@ TEST(Section, WrongDimensionsAreNamed) {
   EXPECT_NE(problems_of(def).find("shear_factor_z"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace section_test
 }  // namespace slew::flex

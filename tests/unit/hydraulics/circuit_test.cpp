@@ -17,7 +17,7 @@
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace circuit_test {
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -519,5 +519,5 @@ TEST(Circuit, equilibrium_beyond_its_shock_valves_names_volume_and_valve) {
   EXPECT_NEAR(demand->pressure, 1.001 * limit, 1e-3 * limit);
 }
 
-}  // namespace
+}  // namespace circuit_test
 }  // namespace slew::hydraulics::test

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace slew::hydraulics {
-namespace {
+namespace l90ls_laws_test {
 
 constexpr double kBar = 1e5;
 
@@ -68,5 +68,5 @@ TEST(L90Supply, HasTheSlopesOfItsValueAroundTheCorner) {
   }
 }
 
-}  // namespace
+}  // namespace l90ls_laws_test
 }  // namespace slew::hydraulics

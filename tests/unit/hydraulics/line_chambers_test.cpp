@@ -10,7 +10,7 @@
 #include "tests/properties/hydraulics/crane_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace line_chambers_test {
 
 constexpr double kStep = 1e-3;  // s
 constexpr int kLift = 0;
@@ -19,7 +19,7 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-class LiftLines : public testing::Test {
+class LiftLines : public ::testing::Test {
  protected:
   LiftLines() { integrator.start(kCraneStrokes, kAtRest, kCraneForces); }
   double pressure(int volume) const { return integrator.state()[at(volume)]; }
@@ -123,5 +123,5 @@ TEST_F(LiftLines, JacobianIsTheDerivativeOfTheRates) {
   }
 }
 
-}  // namespace
+}  // namespace line_chambers_test
 }  // namespace slew::hydraulics::test

@@ -8,7 +8,7 @@
 #include "tests/properties/hydraulics/bench_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace validate_test {
 
 struct Findings {
   Problems errors, warnings;
@@ -271,5 +271,5 @@ TEST(HydraulicsValidation, hose_walls_without_effect_and_valves_that_never_open_
   EXPECT_NE(what_at(findings(def).errors, "Hose_Lift_A.minimum_bulk_modulus"), "");
 }
 
-}  // namespace
+}  // namespace validate_test
 }  // namespace slew::hydraulics::test

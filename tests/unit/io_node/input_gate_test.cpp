@@ -9,7 +9,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::io {
-namespace {
+namespace input_gate_test {
 
 using testing::rounds;
 
@@ -518,5 +518,5 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
   }
 }
 
-}  // namespace
+}  // namespace input_gate_test
 }  // namespace slew::io

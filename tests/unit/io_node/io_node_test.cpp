@@ -2,7 +2,7 @@
 #include "tests/unit/io_node/played_io.h"
 
 namespace slew::io {
-namespace {
+namespace io_node_test {
 
 // ---- two sessions of one name ---------------------------------------------------------------------------------
 
@@ -601,5 +601,5 @@ TEST_F(Io, DoesNotTakeTheSamplesOfAnotherRole) {
   EXPECT_EQ(node->member().refusals().unexpected_writer, 2u);
 }
 
-}  // namespace
+}  // namespace io_node_test
 }  // namespace slew::io

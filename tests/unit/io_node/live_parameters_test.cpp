@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 namespace slew::io {
-namespace {
+namespace live_parameters_test {
 
-class Parameters : public testing::Test {
+class Parameters : public ::testing::Test {
  protected:
   double at(const char* path, StepIndex n) {
     parameters.advance(n);
@@ -45,5 +45,5 @@ TEST_F(Parameters, AreTheScenesAgainAfterAReset) {
   EXPECT_EQ(at("MainPump.set_pressure", 1), 25e5);
 }
 
-}  // namespace
+}  // namespace live_parameters_test
 }  // namespace slew::io

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::io {
-namespace {
+namespace load_shedding_test {
 
 class Shedding : public ::testing::Test {
  protected:
@@ -80,5 +80,5 @@ TEST_F(Shedding, GoesNoFurtherThanItMay) {
   EXPECT_EQ(shedding.level(), Shed::view);
 }
 
-}  // namespace
+}  // namespace load_shedding_test
 }  // namespace slew::io

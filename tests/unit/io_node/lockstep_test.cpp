@@ -2,7 +2,7 @@
 #include "tests/unit/io_node/played_io.h"
 
 namespace slew::io {
-namespace {
+namespace lockstep_test {
 
 class LockstepController : public Io {
  protected:
@@ -273,5 +273,5 @@ TEST_F(LockstepController, LoopDelayIsAVariableInStepsAndInMilliseconds) {
   EXPECT_EQ(values.at("session.late_controllers"), 0);
 }
 
-}  // namespace
+}  // namespace lockstep_test
 }  // namespace slew::io

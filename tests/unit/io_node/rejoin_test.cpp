@@ -5,7 +5,7 @@
 #include "tests/support/played_session.h"
 
 namespace slew::io {
-namespace {
+namespace rejoin_test {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -356,5 +356,5 @@ TEST_F(Rejoin, AResetWaitsUntilTheRoleIsTaken) {
   EXPECT_NE(replies[0].reason.find("its place is held"), std::string::npos) << replies[0].reason;
 }
 
-}  // namespace
+}  // namespace rejoin_test
 }  // namespace slew::io

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.h"
 
 namespace slew::io {
-namespace {
+namespace saved_test {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -458,5 +458,5 @@ TEST_F(SavedFile, ReplacesAnotherOnlyWhenAskedAndLeavesNothingBeside) {
   EXPECT_EQ(std::distance(begin(all), end(all)), 1);
 }
 
-}  // namespace
+}  // namespace saved_test
 }  // namespace slew::io

@@ -8,7 +8,7 @@
 #include <random>
 
 namespace slew::io {
-namespace {
+namespace session_clock_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr SimDuration kStep = milliseconds(1);
@@ -322,5 +322,5 @@ TEST_F(Clock, AControllersValueIsMeasuredToTheFirstSamplesThatUsedIt) {
   EXPECT_EQ(timing->input_latency.max(), 3 * kMs / 4);
 }
 
-}  // namespace
+}  // namespace session_clock_test
 }  // namespace slew::io

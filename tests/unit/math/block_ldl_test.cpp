@@ -7,7 +7,7 @@
 #include <random>
 
 namespace slew::math {
-namespace {
+namespace block_ldl_test {
 
 // The same system twice: as blocks, and dense.
 class System {
@@ -248,5 +248,5 @@ TEST(BlockLdl, GivesTheSameBitsWhenItIsFilledAgain) {
   EXPECT_EQ(first, system.solve(b));
 }
 
-}  // namespace
+}  // namespace block_ldl_test
 }  // namespace slew::math

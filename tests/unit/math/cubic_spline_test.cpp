@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace slew::math {
-namespace {
+namespace cubic_spline_test {
 
 const Table kPoints = {{-1, 2}, {0.5, -1}, {1, 0.3}, {3, 0.1}, {3.5, 2}};
 
@@ -66,5 +66,5 @@ TEST(CubicSpline, OfTwoPointsIsALine) {
   EXPECT_DOUBLE_EQ(value_at(line, 4).slope, 2);
 }
 
-}  // namespace
+}  // namespace cubic_spline_test
 }  // namespace slew::math

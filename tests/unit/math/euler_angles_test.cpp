@@ -7,7 +7,7 @@
 #include "math/rotation.h"
 
 namespace slew::math {
-namespace {
+namespace euler_angles_test {
 
 constexpr double kRounding = 4e-15;
 
@@ -47,5 +47,5 @@ TEST(EulerAngles, AreTheGivenOnesWhereTheyAreUnique) {
   for (const double angle : none) EXPECT_EQ(angle, 0);
 }
 
-}  // namespace
+}  // namespace euler_angles_test
 }  // namespace slew::math

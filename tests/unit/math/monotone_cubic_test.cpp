@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace slew::math {
-namespace {
+namespace monotone_cubic_test {
 
 const Table kRising = {{-0.5, -3}, {-0.1, -0.2}, {0, 0}, {0.3, 0.4}, {0.4, 5}, {1, 5.5}};
 const Table kHill = {{0, 1}, {1, 4}, {2, 3}, {4, -1}};
@@ -77,5 +77,5 @@ TEST(MonotoneCubic, OfNoPointsIsEmpty) {
   EXPECT_TRUE(monotone_cubic({}, Ends::hold).empty());
 }
 
-}  // namespace
+}  // namespace monotone_cubic_test
 }  // namespace slew::math

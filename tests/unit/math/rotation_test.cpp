@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace slew::math {
-namespace {
+namespace rotation_test {
 
 constexpr double kRounding = 1e-14;
 
@@ -104,5 +104,5 @@ TEST(Rotation, AngleIsThatOfTheTurn) {
   EXPECT_NEAR(rotation_angle(rotation_x(M_PI)), M_PI, 1e-7);
 }
 
-}  // namespace
+}  // namespace rotation_test
 }  // namespace slew::math

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace slew::math {
-namespace {
+namespace semidefinite_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -84,5 +84,5 @@ TEST(Semidefinite, RedundancyOfOneMatrixIsForgottenWithTheNext) {
   EXPECT_EQ(factor.rank(), 2);
 }
 
-}  // namespace
+}  // namespace semidefinite_test
 }  // namespace slew::math

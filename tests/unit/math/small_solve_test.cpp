@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace slew::math {
-namespace {
+namespace small_solve_test {
 
 TEST(SolveInPlace, SolvesSystemsThatNeedRowExchanges) {
   double A[] = {0, 2, 1, 1, 0, 0, 3, 1, 4};
@@ -54,5 +54,5 @@ TEST(SolveInPlace, RefusesSingularAndLostMatrices) {
   EXPECT_FALSE(solve_in_place(lost, B, 2, 1));
 }
 
-}  // namespace
+}  // namespace small_solve_test
 }  // namespace slew::math

@@ -10,7 +10,7 @@
 #include "math/runge_kutta4.h"
 
 namespace slew::math {
-namespace {
+namespace solvers_test {
 
 // x'' = -w^2 x
 class Oscillator final : public StiffSystem {
@@ -178,5 +178,5 @@ TEST(AlgebraicRows, are_not_for_explicit_methods_and_cvode) {
   EXPECT_FALSE(CvodeStepper(2, options(1, 1)).takes_algebraic_rows());
 }
 
-}  // namespace
+}  // namespace solvers_test
 }  // namespace slew::math

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace slew::math {
-namespace {
+namespace spectral_radius_test {
 
 TEST(SpectralRadius, finds_a_real_eigenvalue_and_its_owner) {
   const double scale[] = {1, 1, 1};
@@ -40,5 +40,5 @@ TEST(SpectralRadius, of_nothing_is_zero) {
   EXPECT_EQ(radius.update(A, 4), 0);
 }
 
-}  // namespace
+}  // namespace spectral_radius_test
 }  // namespace slew::math

@@ -11,7 +11,7 @@
 #include "math/rodas3.h"
 
 namespace slew::math {
-namespace {
+namespace stiff_test {
 
 TEST(DenseLu, solves_a_system_that_needs_row_exchanges) {
   DenseLu lu(3);
@@ -222,5 +222,5 @@ TEST(Rodas3, survives_a_vanishing_diagonal) {
   EXPECT_NEAR(y[0], std::exp(2.0), 1e-3);
 }
 
-}  // namespace
+}  // namespace stiff_test
 }  // namespace slew::math

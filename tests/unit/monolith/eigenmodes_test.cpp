@@ -6,7 +6,7 @@
 #include <numeric>
 
 namespace slew::monolith {
-namespace {
+namespace eigenmodes_test {
 
 // x'' = -w2 x - 2 z w x'
 std::vector<double> oscillator(double w, double z) {
@@ -89,5 +89,5 @@ TEST(Eigenmodes, RungeKuttaEndsWhereItsStabilityRegionDoes) {
   EXPECT_TRUE(std::isinf(longest_runge_kutta_step({3, 10})));
 }
 
-}  // namespace
+}  // namespace eigenmodes_test
 }  // namespace slew::monolith

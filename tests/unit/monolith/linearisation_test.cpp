@@ -10,7 +10,7 @@
 #include "mechanics_node/mechanics_subsystem.h"
 
 namespace slew::monolith {
-namespace {
+namespace linearisation_test {
 
 const std::string kScenes = std::string(SLEWRING_SOURCE_DIR) + "/scenes/";
 
@@ -101,5 +101,5 @@ TEST(Linearisation, DryFrictionAtRestIsTheStiffestOfTheCrane) {
   EXPECT_GT(share_of(*spools, "L90Jib"), 0.1);
 }
 
-}  // namespace
+}  // namespace linearisation_test
 }  // namespace slew::monolith

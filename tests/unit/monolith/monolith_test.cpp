@@ -15,7 +15,7 @@
 #include "scene/ports.h"
 
 namespace slew::monolith {
-namespace {
+namespace monolith_test {
 
 const std::string kScenes = std::string(SLEWRING_SOURCE_DIR) + "/scenes/";
 
@@ -270,5 +270,5 @@ TEST(Monolith, GivesVariablesByName) {
   EXPECT_TRUE(std::isnan(monolith.variable("Vol_LiftCyl_C.pressure")));
 }
 
-}  // namespace
+}  // namespace monolith_test
 }  // namespace slew::monolith

@@ -7,7 +7,7 @@
 #include <limits>
 
 namespace slew::monolith {
-namespace {
+namespace stiff_solver_test {
 
 // Robertson (1966), the usual test of stiff solvers
 class Robertson final : public DifferentialEquation {
@@ -79,5 +79,5 @@ TEST(StiffSolver, SaysThatASolutionEscapes) {
   EXPECT_NEAR(solver.time(), 1, 1e-3);
 }
 
-}  // namespace
+}  // namespace stiff_solver_test
 }  // namespace slew::monolith

@@ -9,7 +9,7 @@
 #include <random>
 
 namespace slew::multibody {
-namespace {
+namespace constraint_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -36,7 +36,7 @@ constexpr Kind kKinds[] = {
     {JointType::revolute_revolute, "revolute_revolute", 4},
 };
 
-class Joints : public testing::TestWithParam<Kind> {
+class Joints : public ::testing::TestWithParam<Kind> {
  protected:
   double uniform(double largest = 1) { return std::uniform_real_distribution<double>(-largest, largest)(random_); }
   Vec3 vector(double largest = 1) { return {uniform(largest), uniform(largest), uniform(largest)}; }
@@ -212,11 +212,11 @@ TEST_P(Joints, HaveRatesThatAreTheDerivativeOfTheirValues) {
   }
 }
 
-std::string kind_name(const testing::TestParamInfo<Kind>& kind) {
+std::string kind_name(const ::testing::TestParamInfo<Kind>& kind) {
   return kind.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Thirteen, Joints, testing::ValuesIn(kKinds), kind_name);
+INSTANTIATE_TEST_SUITE_P(Thirteen, Joints, ::testing::ValuesIn(kKinds), kind_name);
 
 // the angle of parallel hinges has no gradient: another pair of rows holds them
 TEST(MasslessLink, OfParallelHingesHasFourIndependentRows) {
@@ -226,5 +226,5 @@ TEST(MasslessLink, OfParallelHingesHasFourIndependentRows) {
   EXPECT_EQ(rows[3].form, RowForm::perpendicular);
 }
 
-}  // namespace
+}  // namespace constraint_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace element_rules_test {
 
 // one of each kind: sound
 MechanicsDef sound() {
@@ -187,5 +187,5 @@ TEST(ElementTime, IsPartOfTheStateWhereALoadFollowsTheClock) {
   }
 }
 
-}  // namespace
+}  // namespace element_rules_test
 }  // namespace slew::multibody

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace slew::multibody {
-namespace {
+namespace element_speeds_test {
 
 constexpr double kInertia = 2;        // kg m2, about the hinge
 constexpr double kRk4OnReal = 2.785;  // h |lambda|
@@ -87,5 +87,5 @@ TEST(ElementSpeeds, LeavesImplicitRulesAndSaturatingTablesAlone) {
   EXPECT_FALSE(found(def, 1e-3));
 }
 
-}  // namespace
+}  // namespace element_speeds_test
 }  // namespace slew::multibody

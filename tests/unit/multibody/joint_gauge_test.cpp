@@ -11,7 +11,7 @@
 #include "multibody/validate.h"
 
 namespace slew::multibody {
-namespace {
+namespace joint_gauge_test {
 
 // three rods hang in a chain; the last one is held by a rod without mass when it is looped
 MechanicsDef chain() {
@@ -183,5 +183,5 @@ TEST_P(BodyCoordinates, AreWhatIsMeasured) {
 INSTANTIATE_TEST_SUITE_P(Of, BodyCoordinates,
                          ::testing::Values(Formulation::lagrange, Formulation::augmented, Formulation::penalty));
 
-}  // namespace
+}  // namespace joint_gauge_test
 }  // namespace slew::multibody

@@ -11,7 +11,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace model_test {
 
 using testing::crane_def;
 using testing::Mechanism;
@@ -300,5 +300,5 @@ TEST(RotationalForce, CountsTurnsOfACoaxialHinge) {
   EXPECT_NEAR(backwards.value("Drive.angle"), -20, 1e-9);
 }
 
-}  // namespace
+}  // namespace model_test
 }  // namespace slew::multibody

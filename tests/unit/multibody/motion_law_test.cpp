@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace slew::multibody {
-namespace {
+namespace motion_law_test {
 
 MotionDef def_of(MotionShape shape) {
   MotionDef def;
@@ -84,5 +84,5 @@ TEST(MotionLaw, EndsItsTableAsAsked) {
   EXPECT_TRUE(holds_at(motion_law(def, 0.5), 1.5));
 }
 
-}  // namespace
+}  // namespace motion_law_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace step_rows_test {
 
 using namespace testing;
 using Eigen::MatrixXd;
@@ -252,5 +252,5 @@ TEST(StepRows, ATurnOfAllPartsTogetherIsNoStrain) {
   }
 }
 
-}  // namespace
+}  // namespace step_rows_test
 }  // namespace slew::multibody

@@ -15,7 +15,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace validate_test {
 
 // a hinge, a ball and a strut with a cylinder: sound
 MechanicsDef sound() {
@@ -409,5 +409,5 @@ TEST(FieldTables, KeysAreUniqueAndDocumented) {
   }
 }
 
-}  // namespace
+}  // namespace validate_test
 }  // namespace slew::multibody

@@ -9,7 +9,7 @@
 #include "tests/support/played_session.h"
 
 namespace slew::node {
-namespace {
+namespace checkpoint_test {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -549,5 +549,5 @@ TEST_F(Rejoining, AStopOfItsOwnIsNobodysSilence) {
   EXPECT_NE(node.member().reason().find("io"), std::string::npos) << node.member().reason();
 }
 
-}  // namespace
+}  // namespace checkpoint_test
 }  // namespace slew::node

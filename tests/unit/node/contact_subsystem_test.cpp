@@ -11,7 +11,7 @@
 #include "support/crane_pair.h"
 
 namespace slew::testing {
-namespace {
+namespace contact_subsystem_test {
 
 // the floor just below the bag: it touches within the first steps
 const std::string kHighFloor = "Ground_Mesh.position=[0, 0.936 m, 0]";
@@ -104,5 +104,5 @@ TEST_P(Touching, PairsThatDoNotLeaveTheHashChainAlone) {
 INSTANTIATE_TEST_SUITE_P(All, Touching, ::testing::Values("recursive", "lagrange"),
                          [](const auto& test) { return std::string(test.param); });
 
-}  // namespace
+}  // namespace contact_subsystem_test
 }  // namespace slew::testing

@@ -13,7 +13,7 @@
 #include "flex/recovery.h"
 
 namespace slew::flexible {
-namespace {
+namespace flex_subsystem_test {
 
 class Flex : public ::testing::Test {
  protected:
@@ -209,5 +209,5 @@ TEST_F(Flex, KnowsNoBodyWhoseModesAreFrozen) {
   EXPECT_TRUE(scene.flexible_bodies.empty());
 }
 
-}  // namespace
+}  // namespace flex_subsystem_test
 }  // namespace slew::flexible

@@ -5,7 +5,7 @@
 #include "tests/support/played_session.h"
 
 namespace slew::node {
-namespace {
+namespace flexible_nodes_test {
 
 using coupling::ElasticExchange;
 using testing::kMs;
@@ -253,5 +253,5 @@ TEST(NodesWithoutFlexibleBodies, ProveNoTopicOfTheirs) {
   EXPECT_TRUE(played.said<wire::FlexibleMessage>(Topic::flexible).empty());
 }
 
-}  // namespace
+}  // namespace flexible_nodes_test
 }  // namespace slew::node

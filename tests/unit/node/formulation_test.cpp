@@ -7,7 +7,7 @@
 #include "support/crane_pair.h"
 
 namespace slew::testing {
-namespace {
+namespace formulation_test {
 
 constexpr StepIndex kSteps = 1000;
 
@@ -119,5 +119,5 @@ INSTANTIATE_TEST_SUITE_P(Formulations, CraneUnder,
                                            Case{"augmented", 5e-6, 300}),
                          [](const auto& test) { return std::string(test.param.formulation); });
 
-}  // namespace
+}  // namespace formulation_test
 }  // namespace slew::testing

@@ -8,7 +8,7 @@
 #include "tests/support/played_session.h"
 
 namespace slew::node {
-namespace {
+namespace free_running_test {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -208,5 +208,5 @@ TEST_F(FreeRunning, CatchesUpWithoutWaitingWhenItIsBehindTheTicks) {
   EXPECT_EQ(done[4].age, 1);
 }
 
-}  // namespace
+}  // namespace free_running_test
 }  // namespace slew::node

@@ -8,7 +8,7 @@
 #include "tests/support/played_session.h"
 
 namespace slew::node {
-namespace {
+namespace health_report_test {
 
 using testing::PlayedSession;
 using wire::Role;
@@ -140,5 +140,5 @@ TEST(RunTogether, SendsTheHealthOfItsNodes) {
   EXPECT_FALSE(node.is_late()) << "nobody heard a health message";
 }
 
-}  // namespace
+}  // namespace health_report_test
 }  // namespace slew::node

@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 
 namespace slew::testing {
-namespace {
+namespace live_parameters_test {
 
 void expect_all_taken(const scene::Scene& scene, const std::string& of) {
   std::vector<std::unique_ptr<coupling::Subsystem>> subsystems;
@@ -55,5 +55,5 @@ TEST(LiveParameters, OfJointsWithAndWithoutFrictionAndLimitsAreTakenOrRefused) {
                    "joints");
 }
 
-}  // namespace
+}  // namespace live_parameters_test
 }  // namespace slew::testing

@@ -6,7 +6,7 @@
 #include "tests/support/played_session.h"
 
 namespace slew::node {
-namespace {
+namespace physics_node_test {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -296,5 +296,5 @@ TEST_F(Physics, RefusesToPublishMoreVariablesThanTheWireNumbers) {
   EXPECT_NE(many.member().reason().find("65537 variables"), std::string::npos) << many.member().reason();
 }
 
-}  // namespace
+}  // namespace physics_node_test
 }  // namespace slew::node

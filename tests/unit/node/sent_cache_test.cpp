@@ -5,7 +5,7 @@
 #include "core/allocation_guard.h"
 
 namespace slew::node {
-namespace {
+namespace sent_cache_test {
 
 TEST(SentCache, ALargeMessageTakesMemoryForItselfAlone) {
   SentCache sent(64);
@@ -32,5 +32,5 @@ TEST(SentCache, FindsWhatItKeptAtItsFullLength) {
   for (StepIndex step = 2; step < 6; ++step) EXPECT_EQ(sent.find(step).size(), static_cast<std::size_t>(10 + step));
 }
 
-}  // namespace
+}  // namespace sent_cache_test
 }  // namespace slew::node

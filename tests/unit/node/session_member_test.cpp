@@ -9,7 +9,7 @@
 #include "transport/in_process_bus.h"
 
 namespace slew::node {
-namespace {
+namespace session_member_test {
 
 using transport::InProcessBus;
 using transport::InProcessEndpoint;
@@ -473,5 +473,5 @@ TEST_F(Member, KeepsALongReasonWholeForItsOwnMessage) {
   EXPECT_EQ(member.reason().size(), 1000u);
 }
 
-}  // namespace
+}  // namespace session_member_test
 }  // namespace slew::node

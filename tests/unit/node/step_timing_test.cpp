@@ -5,7 +5,7 @@
 #include <memory>
 
 namespace slew::node {
-namespace {
+namespace step_timing_test {
 
 using wire::Role;
 
@@ -107,5 +107,5 @@ TEST(SentTime, IsThatOfTheStampUnlessItCannotBeTrue) {
   EXPECT_GE(sent_ns(wall_clock_ns() - kHour, WriterClock::same), before_ns);
 }
 
-}  // namespace
+}  // namespace step_timing_test
 }  // namespace slew::node

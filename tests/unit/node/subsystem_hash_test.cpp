@@ -8,7 +8,7 @@
 #include "support/crane_pair.h"
 
 namespace slew::testing {
-namespace {
+namespace subsystem_hash_test {
 
 double next(double value) {
   return std::nextafter(value, 1e300);
@@ -175,5 +175,5 @@ TEST_F(SubsystemHash, AfterAResetIsThatOfAFreshOneAtEveryStep) {
   }
 }
 
-}  // namespace
+}  // namespace subsystem_hash_test
 }  // namespace slew::testing

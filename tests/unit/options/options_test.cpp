@@ -8,7 +8,7 @@
 #include "core/failure.h"
 
 namespace slew::options {
-namespace {
+namespace options_test {
 
 std::string problem_of(Program& program, const std::vector<std::string>& arguments) {
   try {
@@ -19,7 +19,7 @@ std::string problem_of(Program& program, const std::vector<std::string>& argumen
   return "";
 }
 
-class Numbers : public testing::Test {
+class Numbers : public ::testing::Test {
  protected:
   Numbers() {
     program_.option("--share", share_, "a share").between(0.5, 100.0);
@@ -61,7 +61,7 @@ TEST_F(Numbers, AListTakesCommasAndRepeats) {
   EXPECT_NE(problem_of(program_, {"--all", "a", "b"}), "");
 }
 
-class Verbs : public testing::Test {
+class Verbs : public ::testing::Test {
  protected:
   Verbs() {
     program_.require_command();
@@ -98,5 +98,5 @@ TEST_F(Verbs, OneOfTwoMustBeGiven) {
             "--from excludes scene; nothing was done; see 'test run --help'");
 }
 
-}  // namespace
+}  // namespace options_test
 }  // namespace slew::options

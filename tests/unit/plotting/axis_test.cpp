@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace slew::plotting {
-namespace {
+namespace axis_test {
 
 std::vector<std::string> labels(const Axis& axis) {
   std::vector<std::string> texts;
@@ -64,5 +64,5 @@ TEST(Axis, TimeEndsAtTheLastSampleOrTheTickCloseBehindIt) {
   EXPECT_GT(tight_axis(3, 3, 9).high, 3);
 }
 
-}  // namespace
+}  // namespace axis_test
 }  // namespace slew::plotting

@@ -10,7 +10,7 @@
 #include <string>
 
 namespace slew::plotting {
-namespace {
+namespace csv_export_test {
 
 std::string csv_of(const std::vector<Series>& series) {
   std::ostringstream out;
@@ -63,5 +63,5 @@ TEST(CsvExport, AFullDiskIsTold) {
   EXPECT_EQ(export_csv(series, "/nowhere/a.csv").code, ExitCode::storage);
 }
 
-}  // namespace
+}  // namespace csv_export_test
 }  // namespace slew::plotting

@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace slew::plotting {
-namespace {
+namespace decimation_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -58,5 +58,5 @@ TEST(Decimation, LeavesOutWhatIsOutside) {
   EXPECT_TRUE(decimate({"s", "m", {3}, {kNan}}, 2, 4, 100).empty());
 }
 
-}  // namespace
+}  // namespace decimation_test
 }  // namespace slew::plotting

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace slew::plotting {
-namespace {
+namespace html_plot_test {
 
 // what the page's script reads
 nlohmann::json data_of(const std::string& page) {
@@ -57,5 +57,5 @@ TEST(HtmlPlot, StandsAlone) {
   EXPECT_EQ(data_of(page)["plots"][0]["title"], "</script><b>");
 }
 
-}  // namespace
+}  // namespace html_plot_test
 }  // namespace slew::plotting

@@ -11,7 +11,7 @@
 #include <memory>
 
 namespace slew::plotting {
-namespace {
+namespace mat_export_test {
 
 const MatOrigin kOrigin = {"crane", "bench", "00ff", "0.1.0-test", 0.001};
 
@@ -121,5 +121,5 @@ TEST_F(MatExport, WhatCannotBeWrittenIsTold) {
   EXPECT_EQ(export_mat(series, kOrigin, "/dev/full").code, ExitCode::storage);
 }
 
-}  // namespace
+}  // namespace mat_export_test
 }  // namespace slew::plotting

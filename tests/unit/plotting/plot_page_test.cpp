@@ -10,7 +10,7 @@
 #include "tests/support/played_page.h"
 
 namespace slew::plotting {
-namespace {
+namespace plot_page_test {
 
 using nlohmann::json;
 
@@ -97,5 +97,5 @@ TEST_F(PlotPage, BreaksTheLineWhereAValueIsMissingAndHidesACurve) {
   EXPECT_EQ(said[2].size(), 2u);
 }
 
-}  // namespace
+}  // namespace plot_page_test
 }  // namespace slew::plotting

@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace slew::plotting {
-namespace {
+namespace scatter_svg_test {
 
 struct Place {
   double x = 0, y = 0;
@@ -78,5 +78,5 @@ TEST(ScatterSvg, TextsAreSafe) {
   EXPECT_EQ(svg.find("c&d"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace scatter_svg_test
 }  // namespace slew::plotting

@@ -8,7 +8,7 @@
 #include "cli/plotting/decimation.h"
 
 namespace slew::plotting {
-namespace {
+namespace series_test {
 
 TEST(Series, OfSeveralMessagesKeepTheInstantsThatAllHave) {
   std::vector<Series> curves = {{"a", "m", {0, 0.1, 0.2, 0.4}, {10, 11, 12, 14}, 0.1},
@@ -54,5 +54,5 @@ TEST(Series, PartNowhereWhenNothingIsMissing) {
   EXPECT_EQ(whole.time.size(), 100'000u);
 }
 
-}  // namespace
+}  // namespace series_test
 }  // namespace slew::plotting

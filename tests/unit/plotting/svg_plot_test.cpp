@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace slew::plotting {
-namespace {
+namespace svg_plot_test {
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;
@@ -123,5 +123,5 @@ TEST(SvgPlot, ManyCurvesStayDifferent) {
   EXPECT_EQ(count(svg, "curve dash"), 8u);  // four curves and their entries in the legend
 }
 
-}  // namespace
+}  // namespace svg_plot_test
 }  // namespace slew::plotting

@@ -18,7 +18,7 @@
 #include "tests/support/played_session.h"
 
 namespace slew::recorder {
-namespace {
+namespace recorder_node_test {
 
 using testing::kMs;
 using testing::PlayedSession;
@@ -762,5 +762,5 @@ TEST_F(Recorder, ThatComesLateAndHearsOfNoFirstOneSaysSo) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
-}  // namespace
+}  // namespace recorder_node_test
 }  // namespace slew::recorder

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::recorder {
-namespace {
+namespace stream_gaps_test {
 
 using Arrival = StreamGaps::Arrival;
 
@@ -84,5 +84,5 @@ TEST(StreamGaps, ClosingFarAheadCountsWithoutCountingOneByOne) {
   EXPECT_EQ(stream.lost(), (std::uint64_t{1} << 53) - 1);
 }
 
-}  // namespace
+}  // namespace stream_gaps_test
 }  // namespace slew::recorder

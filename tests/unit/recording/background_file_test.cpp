@@ -9,7 +9,7 @@
 #include "sample_session.h"
 
 namespace slew::recording {
-namespace {
+namespace background_file_test {
 
 // A disk that waits to be told how many writes it may do, and fails one of them.
 class SteppedDisk final : public FileCalls {
@@ -118,5 +118,5 @@ TEST(BackgroundFile, AWriterWhoseChunksWaitedTellsTheTruthAfterAFailure) {
   }
 }
 
-}  // namespace
+}  // namespace background_file_test
 }  // namespace slew::recording

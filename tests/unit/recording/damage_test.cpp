@@ -14,7 +14,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::recording {
-namespace {
+namespace damage_test {
 
 constexpr StepIndex kSteps = 12;
 
@@ -283,5 +283,5 @@ TEST(DamagedRecording, WhatIsNoRecordingIsRefused) {
   EXPECT_NE(refusal(scratch / "other.mcap").find("it does not say which session it holds"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace damage_test
 }  // namespace slew::recording

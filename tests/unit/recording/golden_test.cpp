@@ -7,7 +7,7 @@
 #include "sample_session.h"
 
 namespace slew::recording {
-namespace {
+namespace golden_test {
 
 const std::filesystem::path kGolden = SLEWRING_SOURCE_DIR "/tests/unit/recording/golden";
 
@@ -118,5 +118,5 @@ TEST(NewerRecording, OfTheSameVersionMayHoldRecordsThatAreNotKnown) {
   }
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace slew::recording

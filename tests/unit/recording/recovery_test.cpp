@@ -10,7 +10,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::recording {
-namespace {
+namespace recovery_test {
 
 constexpr StepIndex kSteps = 12;
 
@@ -207,5 +207,5 @@ TEST_F(RecoveredRecording, NeverTouchesAFileThatExists) {
   EXPECT_EQ(file_content(recovered()), "precious");
 }
 
-}  // namespace
+}  // namespace recovery_test
 }  // namespace slew::recording

@@ -4,7 +4,7 @@
 #include "sample_session.h"
 
 namespace slew::recording {
-namespace {
+namespace round_trip_test {
 
 std::unique_ptr<Reader> open(const std::filesystem::path& path) {
   std::unique_ptr<Reader> reader;
@@ -270,5 +270,5 @@ TEST(Recording, RefusesANewerFormatVersionByName) {
             "slewring that wrote it, or a newer one");
 }
 
-}  // namespace
+}  // namespace round_trip_test
 }  // namespace slew::recording

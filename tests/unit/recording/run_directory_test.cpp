@@ -3,7 +3,7 @@
 #include "sample_session.h"
 
 namespace slew::recording {
-namespace {
+namespace run_directory_test {
 
 constexpr std::int64_t kNoon = 1'700'000'000'000'000'000;
 
@@ -38,5 +38,5 @@ TEST(RunDirectory, RefusalNamesPlaceAndRemedy) {
   EXPECT_NE(status.text.find("--out DIR"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace run_directory_test
 }  // namespace slew::recording

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace slew::recording {
-namespace {
+namespace sort_window_test {
 
 using Key = std::tuple<std::uint32_t, StepIndex, std::uint16_t, std::uint32_t>;
 
@@ -75,5 +75,5 @@ TEST(SortWindow, RefusesWhatItCanNeverHold) {
   EXPECT_EQ(window.push({}, 0, Bytes(1)), SortWindow::PushResult::taken);
 }
 
-}  // namespace
+}  // namespace sort_window_test
 }  // namespace slew::recording

@@ -18,7 +18,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::recording {
-namespace {
+namespace storage_test {
 
 // No file of this process grows beyond the size while this lives.
 class FileSizeLimit {
@@ -251,5 +251,5 @@ TEST(RecordingStorage, AWriterKilledInMidWriteLosesOneChunkAtMost) {
   munmap(progress, sizeof(Progress));
 }
 
-}  // namespace
+}  // namespace storage_test
 }  // namespace slew::recording

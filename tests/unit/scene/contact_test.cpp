@@ -8,7 +8,7 @@
 #include "temporary_folder.h"
 
 namespace slew::scene {
-namespace {
+namespace contact_test {
 
 const char* const kBlock = R"(
 bodies:
@@ -82,5 +82,5 @@ contacts:
       << scene.warnings[0];
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace slew::scene

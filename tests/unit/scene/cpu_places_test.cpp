@@ -5,7 +5,7 @@
 #include "scene/scene.h"
 
 namespace slew::scene {
-namespace {
+namespace cpu_places_test {
 
 TEST(CpuPlaces, AreReadInTheirOrder) {
   std::vector<CpuPlace> places;
@@ -30,5 +30,5 @@ TEST(CpuPlaces, WhatIsNoneIsNamed) {
   EXPECT_EQ(text("mechanics=1, mechanics=0"), "'mechanics' stands there twice");
 }
 
-}  // namespace
+}  // namespace cpu_places_test
 }  // namespace slew::scene

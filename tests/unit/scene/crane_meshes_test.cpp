@@ -17,7 +17,7 @@
 #include "temporary_folder.h"
 
 namespace slew::scene {
-namespace {
+namespace crane_meshes_test {
 
 namespace fs = std::filesystem;
 using contact::MeshDef;
@@ -162,5 +162,5 @@ TEST(CraneMeshes, OfTheJibBoomIsTheBeamItself) {
   EXPECT_LT(norm(Vec3(boom.center_of_mass) - Vec3(-3.25, 0.02904, 0.1507)), 1e-5);
 }
 
-}  // namespace
+}  // namespace crane_meshes_test
 }  // namespace slew::scene

@@ -17,7 +17,7 @@
 #include "scene/units.h"
 
 namespace slew::scene {
-namespace {
+namespace field_ranges_test {
 
 // A table, and how a scene begins that holds one field of it.
 struct Case {
@@ -133,5 +133,5 @@ TEST(FieldRanges, OfEveryFieldAreCheckedWithPathAndMessage) {
   }
 }
 
-}  // namespace
+}  // namespace field_ranges_test
 }  // namespace slew::scene

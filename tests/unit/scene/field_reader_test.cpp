@@ -10,7 +10,7 @@
 #include "scene/yaml_tree.h"
 
 namespace slew::scene {
-namespace {
+namespace field_reader_test {
 
 enum class Colour : int { red, green };
 constexpr std::string_view kColours[] = {"red", "green"};
@@ -131,5 +131,5 @@ TEST(FieldReader, RefusesWithPlaceReasonAndExpectation) {
   for (const auto& [text, problem] : kRefused) EXPECT_EQ(read(text).problems, problem);
 }
 
-}  // namespace
+}  // namespace field_reader_test
 }  // namespace slew::scene

@@ -14,7 +14,7 @@
 #include "temporary_folder.h"
 
 namespace slew::scene {
-namespace {
+namespace flexible_bodies_test {
 
 constexpr const char* kBoom = R"(scene: crane
 bodies:
@@ -229,5 +229,5 @@ TEST_F(FlexibleScene, AManifestTellsThatAFileIsAnother) {
   expect_part(status.text, "crane_beam_hard_Frequencies.dat");
 }
 
-}  // namespace
+}  // namespace flexible_bodies_test
 }  // namespace slew::scene

@@ -16,7 +16,7 @@
 #include "tests/support/flex_beams.h"
 
 namespace slew::scene {
-namespace {
+namespace flexible_model_test {
 
 const std::string kNames = "model: crane\nprefix: boom_1\n";
 const std::string kSteel = "materials: {Steel: {youngs_modulus: 200 GPa, density: 7700 kg/m3}}\n";
@@ -389,5 +389,5 @@ TEST(FlexibleModel, EveryFieldRefusesWhatItDoesNotTake) {
   }
 }
 
-}  // namespace
+}  // namespace flexible_model_test
 }  // namespace slew::scene

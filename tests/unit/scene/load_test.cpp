@@ -10,7 +10,7 @@
 #include "temporary_folder.h"
 
 namespace slew::scene {
-namespace {
+namespace load_test {
 
 TEST(Load, TheCanonicalTextOfASceneReadsBackToTheSameText) {
   for (const char* file : {"first_steps", "truck_crane"}) {
@@ -237,5 +237,5 @@ TEST(Assets, OutsideTheScenesFolderAreRefused) {
             "test:1:23: assets: an entry is '/etc/passwd'; expected a file in the scene's folder");
 }
 
-}  // namespace
+}  // namespace load_test
 }  // namespace slew::scene

@@ -16,7 +16,7 @@
 #include "temporary_folder.h"
 
 namespace slew::scene {
-namespace {
+namespace mesh_inertia_test {
 
 using contact::MeshDef;
 using contact::testing::append;
@@ -86,7 +86,7 @@ Solid box_solid(double m, double x, double y, double z) {
   return {m, {}, Mat3::diagonal(m / 12 * (y * y + z * z), m / 12 * (x * x + z * z), m / 12 * (x * x + y * y))};
 }
 
-class FromMesh : public testing::Test {
+class FromMesh : public ::testing::Test {
  protected:
   std::string write(const MeshDef& mesh, const std::string& name = "part.stl") const {
     return folder_.write(name, stl_text(mesh));
@@ -308,5 +308,5 @@ TEST_F(FromMesh, AMeshBesideGivenInertiaIsAnUnknownKey) {
       "inertia, products or inertia_about");
 }
 
-}  // namespace
+}  // namespace mesh_inertia_test
 }  // namespace slew::scene

@@ -13,7 +13,7 @@
 #include "tests/support/nightly.h"
 
 namespace slew::scene {
-namespace {
+namespace mutation_test {
 
 const int kScenes = testing::rounds(150, 5000);
 
@@ -92,5 +92,5 @@ TEST(DamagedDescription, IsRefusedOrReadAndNothingElse) {
 INSTANTIATE_TEST_SUITE_P(All, DamagedScene, ::testing::Values("truck_crane", "first_steps"),
                          [](const auto& test) { return test.param; });
 
-}  // namespace
+}  // namespace mutation_test
 }  // namespace slew::scene

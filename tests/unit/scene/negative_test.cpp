@@ -14,7 +14,7 @@
 #include "temporary_folder.h"
 
 namespace slew::scene {
-namespace {
+namespace negative_test {
 
 namespace fs = std::filesystem;
 
@@ -104,5 +104,5 @@ TEST(NegativeFile, AnOverrideIsToldByItsText) {
             "--set Bag.inertia=[1, 1: this '[' is not closed; expected ']' or ','");
 }
 
-}  // namespace
+}  // namespace negative_test
 }  // namespace slew::scene

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::scene {
-namespace {
+namespace number_test {
 
 double value_of(std::string_view text) {
   const NumberText number = split_number(text);
@@ -69,5 +69,5 @@ TEST(Number, IsRefusedWithAReasonAndAWayOut) {
   }
 }
 
-}  // namespace
+}  // namespace number_test
 }  // namespace slew::scene

@@ -8,9 +8,9 @@
 #include "scene_text.h"
 
 namespace slew::scene {
-namespace {
+namespace parameters_test {
 
-class Parameters : public testing::Test {
+class Parameters : public ::testing::Test {
  protected:
   Scene scene = load_text(kPendulum, "test");
   ParameterDirectory directory{scene};
@@ -167,5 +167,5 @@ TEST_F(Parameters, AValueFromTheWireIsCheckedInTheSameWay) {
   EXPECT_EQ(directory.check("Rod.mass", 0).status.code, ExitCode::bad_input);
 }
 
-}  // namespace
+}  // namespace parameters_test
 }  // namespace slew::scene

@@ -16,7 +16,7 @@
 #include "scene/sections.h"
 
 namespace slew::scene {
-namespace {
+namespace schema_test {
 
 std::string read_file(const std::string& path) {
   std::ifstream in(path);
@@ -98,5 +98,5 @@ TEST(Schema, OfFlexibleBodiesHasTheirFieldsAndShapes) {
   EXPECT_EQ(properties.at("elements").at("items").at("required").at(0), "through");
 }
 
-}  // namespace
+}  // namespace schema_test
 }  // namespace slew::scene

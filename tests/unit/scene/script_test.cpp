@@ -10,7 +10,7 @@
 #include "temporary_folder.h"
 
 namespace slew::scene {
-namespace {
+namespace script_test {
 
 const std::string kValve =
     "volumes:\n"
@@ -121,5 +121,5 @@ TEST(Script, ASceneWithoutFolderCannotNameAFile) {
             "inputs");
 }
 
-}  // namespace
+}  // namespace script_test
 }  // namespace slew::scene

@@ -15,11 +15,11 @@
 #include "scene/scene.h"
 
 namespace slew::scene {
-namespace {
+namespace truck_crane_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-class TruckCrane : public testing::Test {
+class TruckCrane : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { scene_ = new Scene(load_file(SLEWRING_SOURCE_DIR "/scenes/truck_crane.yaml")); }
   static void TearDownTestSuite() { delete scene_; }
@@ -159,5 +159,5 @@ TEST_F(TruckCrane, TakesALiveChangeOfTheBagsMass) {
   EXPECT_EQ(assignment.over, milliseconds(1000));
 }
 
-}  // namespace
+}  // namespace truck_crane_test
 }  // namespace slew::scene

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace slew::scene {
-namespace {
+namespace units_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -152,5 +152,5 @@ TEST(Units, AQuotedQuantityWithUnitIsTheSameAsAPlainOne) {
   EXPECT_EQ(read_quantity("250 bar", Writing::quoted, Dimension::pressure, units()).value, 250e5);
 }
 
-}  // namespace
+}  // namespace units_test
 }  // namespace slew::scene

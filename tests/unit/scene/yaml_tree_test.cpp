@@ -6,7 +6,7 @@
 #include <string>
 
 namespace slew::scene {
-namespace {
+namespace yaml_tree_test {
 
 struct Parsed {
   std::optional<Node> root;
@@ -111,5 +111,5 @@ TEST(YamlTree, ManyKeysAreReadInLinearTime) {
   EXPECT_EQ(parsed.root->entries.size(), 20000u);
 }
 
-}  // namespace
+}  // namespace yaml_tree_test
 }  // namespace slew::scene

@@ -10,7 +10,7 @@
 #include "tests/support/random_message.h"
 
 namespace slew::transport {
-namespace {
+namespace codec_test {
 
 using testing::random_message;
 
@@ -297,5 +297,5 @@ TEST(Codec, AllocatesNothingForStepMessagesAfterWarmUp) {
   expect_no_allocation_after_warm_up(tick);
 }
 
-}  // namespace
+}  // namespace codec_test
 }  // namespace slew::transport

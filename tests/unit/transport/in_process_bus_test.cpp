@@ -10,7 +10,7 @@
 #include "core/time.h"
 
 namespace slew::transport {
-namespace {
+namespace in_process_bus_test {
 
 using wire::Topic;
 
@@ -194,5 +194,5 @@ TEST(InProcessBus, ThreadsExchangeWithoutLossOrDisorder) {
   observer.join();
 }
 
-}  // namespace
+}  // namespace in_process_bus_test
 }  // namespace slew::transport

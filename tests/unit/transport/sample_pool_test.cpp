@@ -10,7 +10,7 @@
 #include "core/allocation_guard.h"
 
 namespace slew::transport {
-namespace {
+namespace sample_pool_test {
 
 class Pool : public ::testing::Test {
  protected:
@@ -114,5 +114,5 @@ TEST(SharedPool, GoesFromThreadToThread) {
   pool->close();
 }
 
-}  // namespace
+}  // namespace sample_pool_test
 }  // namespace slew::transport

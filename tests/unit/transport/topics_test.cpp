@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::transport {
-namespace {
+namespace topics_test {
 
 TEST(Topics, StepTopicsKeepMoreThanFourOfTheWidestWindow) {
   for (const wire::Topic topic : {wire::Topic::tick, wire::Topic::mechanism, wire::Topic::actuators}) {
@@ -30,5 +30,5 @@ TEST(Topics, ASetHoldsWhatWasPutIn) {
   for (std::size_t i = 0; i < wire::kTopics; ++i) EXPECT_TRUE(TopicSet::all().contains(static_cast<wire::Topic>(i)));
 }
 
-}  // namespace
+}  // namespace topics_test
 }  // namespace slew::transport

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace slew::urdf {
-namespace {
+namespace names_test {
 
 TEST(SceneNames, KeepWhatASceneTakes) {
   SceneNames names;
@@ -38,5 +38,5 @@ TEST(SceneNames, CutWhatIsTooLongAndStayDifferent) {
   EXPECT_EQ(third, std::string(25, 'a') + "_link_2");
 }
 
-}  // namespace
+}  // namespace names_test
 }  // namespace slew::urdf

@@ -14,7 +14,7 @@
 #include "urdf/import.h"
 
 namespace slew::urdf {
-namespace {
+namespace reader_test {
 
 const std::string kLink =
     "<link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial></link>\n";
@@ -239,5 +239,5 @@ TEST(UrdfImport, RefusesAFileThatIsNotThere) {
   EXPECT_THROW((void)import_file("/dev/zero"), scene::LoadError);
 }
 
-}  // namespace
+}  // namespace reader_test
 }  // namespace slew::urdf

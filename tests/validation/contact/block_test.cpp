@@ -8,7 +8,7 @@
 #include "contact/normal_law.h"
 
 namespace slew::contact {
-namespace {
+namespace block_test {
 
 using math::Vec3;
 
@@ -165,5 +165,5 @@ TEST(RestingBlock, GoesAsDeepAsItsWeightAsks) {
   EXPECT_NEAR(hertz.d, 3.376494153e-5, 1e-6 * 3.3765e-5);
 }
 
-}  // namespace
+}  // namespace block_test
 }  // namespace slew::contact

@@ -9,7 +9,7 @@
 #include "contact/normal_law.h"
 
 namespace slew::contact {
-namespace {
+namespace rebound_test {
 
 struct Bounce {
   double rebound;   // speed after over speed before
@@ -114,5 +114,5 @@ TEST(ElasticBall, GoesAsDeepAndStaysAsLongAsASpringSays) {
   EXPECT_NEAR(ball.rebound, 1, 1e-5);  // the last step ends outside, where gravity has slowed the ball
 }
 
-}  // namespace
+}  // namespace rebound_test
 }  // namespace slew::contact

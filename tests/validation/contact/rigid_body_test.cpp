@@ -11,7 +11,7 @@
 #include "support/contact_shapes.h"
 
 namespace slew::contact {
-namespace {
+namespace rigid_body_test {
 
 using math::Mat3;
 using math::Quaternion;
@@ -209,5 +209,5 @@ TEST(RigidBox, TumblesToRestWithoutGainingEnergy) {
   EXPECT_NEAR(body.normal_force, kGravity, 1e-3 * kGravity);
 }
 
-}  // namespace
+}  // namespace rigid_body_test
 }  // namespace slew::contact

@@ -12,7 +12,7 @@
 #include "tests/validation/multibody/csv_table.h"
 
 namespace slew::contact {
-namespace {
+namespace stick_slip_test {
 
 using math::Vec3;
 using multibody::testing::read_table;
@@ -143,5 +143,5 @@ TEST(SteadySliding, FollowsTheStribeckCurve) {
   }
 }
 
-}  // namespace
+}  // namespace stick_slip_test
 }  // namespace slew::contact

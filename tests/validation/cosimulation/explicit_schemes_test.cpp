@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/csv_table.h"
 
 namespace slew::cosimulation {
-namespace {
+namespace explicit_schemes_test {
 
 using multibody::testing::read_table;
 using enum Coupling;
@@ -117,5 +117,5 @@ TEST(ExplicitSchemes, TheSymmetricCaseHasLimitsOfItsOwn) {
   }
 }
 
-}  // namespace
+}  // namespace explicit_schemes_test
 }  // namespace slew::cosimulation

@@ -7,7 +7,7 @@
 #include "tests/validation/cosimulation/split_masses.h"
 
 namespace slew::cosimulation {
-namespace {
+namespace levels_test {
 
 constexpr double kTime = 10;       // s
 constexpr double kSubstep = 1e-4;  // s, so that errors are the coupling's
@@ -86,5 +86,5 @@ TEST(LevelsOnTheOscillator, TheOthersHaveOne) {
   EXPECT_GT(linear, 1.05);
 }
 
-}  // namespace
+}  // namespace levels_test
 }  // namespace slew::cosimulation

@@ -10,7 +10,7 @@
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace crane_contact_test {
 
 constexpr double kWeight = 500 * 9.81;  // N, of the bag
 
@@ -60,5 +60,5 @@ TEST(CraneContact, SlewingBackTipsTheBagOverTheTrucksEdge) {
   EXPECT_GT(run.variable("Bag.center_of_mass.y"), 1.5);
 }
 
-}  // namespace
+}  // namespace crane_contact_test
 }  // namespace slew::coupling::test

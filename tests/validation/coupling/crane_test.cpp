@@ -11,7 +11,7 @@
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace crane_test {
 
 constexpr double kManoeuvre = 14;  // s: lift from 1 to 5.5 s, slew from 5 to 12 s
 constexpr std::size_t kLift = 1;   // port
@@ -141,5 +141,5 @@ TEST(Crane, settles_near_13_degrees_with_1500_kg_and_cannot_lift_them) {
   EXPECT_FALSE(crane.run.has_failed());
 }
 
-}  // namespace
+}  // namespace crane_test
 }  // namespace slew::coupling::test

@@ -15,7 +15,7 @@
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace crane_work_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -103,5 +103,5 @@ TEST(CraneWork, LowersTheBagWithoutRunningAway) {
   for (const std::string& volume : kPressures) EXPECT_LT(crane.range(volume, 0, 16).second, 250e5) << volume;
 }
 
-}  // namespace
+}  // namespace crane_work_test
 }  // namespace slew::coupling::test

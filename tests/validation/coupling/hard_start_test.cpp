@@ -16,7 +16,7 @@
 #include "tests/validation/coupling/planar_crane.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace hard_start_test {
 
 constexpr double kDuration = 3;      // s
 constexpr double kInterval = 10e-3;  // s, between comparisons
@@ -74,5 +74,5 @@ TEST(HardStart, with_a_fifth_of_the_air_the_planar_crane_agrees_on_a_shorter_fal
   EXPECT_NEAR(fall.drop, 0.54, 0.01);
 }
 
-}  // namespace
+}  // namespace hard_start_test
 }  // namespace slew::coupling::test

@@ -11,7 +11,7 @@
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace late_samples_test {
 
 constexpr double kBoomDuration = 3;  // s: full command from 0.2 to 1.2 s
 constexpr double kCraneDuration = 6;
@@ -117,5 +117,5 @@ TEST(LateSamples, exchanging_at_every_kth_step_is_as_good_as_that_step) {
   }
 }
 
-}  // namespace
+}  // namespace late_samples_test
 }  // namespace slew::coupling::test

@@ -12,7 +12,7 @@
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace levels_test {
 
 constexpr double kDuration = 8;  // s: lift from 1 to 5.5 s, slew from 5 s on
 
@@ -117,5 +117,5 @@ TEST(Levels, ChangedWhileItMovesKeepTheOil) {
   EXPECT_LT(worst_x, 1e-5);
 }
 
-}  // namespace
+}  // namespace levels_test
 }  // namespace slew::coupling::test

@@ -9,7 +9,7 @@
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace limit_test {
 
 scene::Scene load(const std::string& file, const scene::Overrides& overrides) {
   return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + file, overrides);
@@ -66,5 +66,5 @@ TEST(JointLimit, lifting_into_it_keeps_to_the_monolith) {
   EXPECT_LT(coarse.ports[kLift].F, 5e-4 * coarse.ports[kLift].F_range);
 }
 
-}  // namespace
+}  // namespace limit_test
 }  // namespace slew::coupling::test

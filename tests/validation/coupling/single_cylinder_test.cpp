@@ -11,7 +11,7 @@
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace single_cylinder_test {
 
 constexpr double kDuration = 3;  // s: full command from 0.2 to 1.2 s
 
@@ -144,5 +144,5 @@ TEST(SingleCylinder, level_two_follows_the_reference_into_the_end_stop) {
   }
 }
 
-}  // namespace
+}  // namespace single_cylinder_test
 }  // namespace slew::coupling::test

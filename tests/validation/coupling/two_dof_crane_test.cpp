@@ -16,7 +16,7 @@
 #include "tests/validation/multibody/csv_table.h"
 
 namespace slew::coupling::test {
-namespace {
+namespace two_dof_crane_test {
 
 constexpr double kDuration = 10;            // s
 constexpr double kStart = 0.5 - 0.442 / 2;  // m, element length at stroke zero
@@ -357,5 +357,5 @@ TEST(TwoDofCrane, level_two_is_stable_at_20_ms) {
   EXPECT_LT(two.s, 1e-3);
 }
 
-}  // namespace
+}  // namespace two_dof_crane_test
 }  // namespace slew::coupling::test

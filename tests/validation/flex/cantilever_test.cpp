@@ -9,7 +9,7 @@
 #include "tests/validation/flex/figure.h"
 
 namespace slew::flex {
-namespace {
+namespace cantilever_test {
 
 using namespace testing;
 using math::Vec3;
@@ -117,5 +117,5 @@ TEST(Cantilever, AxialAndTorsionFrequenciesConverge) {
   }
 }
 
-}  // namespace
+}  // namespace cantilever_test
 }  // namespace slew::flex

@@ -14,7 +14,7 @@
 #include "tests/validation/flex/figure.h"
 
 namespace slew::flex {
-namespace {
+namespace craig_bampton_test {
 
 using namespace testing;
 
@@ -178,5 +178,5 @@ TEST(CraigBamptonCase, AnotherModeNeverRaisesAFrequency) {
   }
 }
 
-}  // namespace
+}  // namespace craig_bampton_test
 }  // namespace slew::flex

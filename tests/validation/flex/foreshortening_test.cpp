@@ -4,7 +4,7 @@
 #include "tests/validation/flex/figure.h"
 
 namespace slew::flex {
-namespace {
+namespace foreshortening_test {
 
 using namespace testing;
 using Eigen::MatrixXd;
@@ -152,5 +152,5 @@ TEST(Foreshortening, FreeBodyShortensAboutItsMeanMass) {
   EXPECT_LT(norm(r.body.nodes.front().g[0] + r.body.nodes.back().g[0]), 1e-6 * norm(r.body.nodes[0].g[0]));
 }
 
-}  // namespace
+}  // namespace foreshortening_test
 }  // namespace slew::flex

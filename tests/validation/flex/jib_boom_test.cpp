@@ -4,7 +4,7 @@
 #include "tests/validation/flex/figure.h"
 
 namespace slew::flex {
-namespace {
+namespace jib_boom_test {
 
 using namespace testing;
 
@@ -75,5 +75,5 @@ TEST(JibBoom, SagsByWhatTheCraneDataSay) {
                 std::abs(-deflection(r.body.nodes.back(), q).y() - 0.068), 0.003);
 }
 
-}  // namespace
+}  // namespace jib_boom_test
 }  // namespace slew::flex

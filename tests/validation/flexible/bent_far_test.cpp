@@ -6,7 +6,7 @@
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {
-namespace {
+namespace bent_far_test {
 
 using namespace testing;
 
@@ -170,5 +170,5 @@ TEST(BentFar, ABodyWithoutModesBetweenTwoThatBendIsRigid) {
   }
 }
 
-}  // namespace
+}  // namespace bent_far_test
 }  // namespace slew::multibody

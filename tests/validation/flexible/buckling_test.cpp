@@ -4,7 +4,7 @@
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {
-namespace {
+namespace buckling_test {
 
 using namespace testing;
 
@@ -170,5 +170,5 @@ TEST(Buckling, SegmentsEndAtTheElastica) {
   }
 }
 
-}  // namespace
+}  // namespace buckling_test
 }  // namespace slew::multibody

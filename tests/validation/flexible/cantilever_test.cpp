@@ -13,7 +13,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace cantilever_test {
 
 using namespace testing;
 
@@ -81,5 +81,5 @@ TEST(CantileverOfModes, HasTheFrequenciesOfTimoshenkosBeam) {
   }
 }
 
-}  // namespace
+}  // namespace cantilever_test
 }  // namespace slew::multibody

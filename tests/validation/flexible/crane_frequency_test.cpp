@@ -13,7 +13,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace crane_frequency_test {
 
 using namespace testing;
 using slew::testing::BoxBeam;
@@ -170,5 +170,5 @@ TEST(CraneFrequencies, AreThoseOfAnIndependentLinearModel) {
   }
 }
 
-}  // namespace
+}  // namespace crane_frequency_test
 }  // namespace slew::multibody

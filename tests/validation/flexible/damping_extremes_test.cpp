@@ -8,7 +8,7 @@
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {
-namespace {
+namespace damping_extremes_test {
 
 using namespace testing;
 
@@ -140,5 +140,5 @@ TEST(HardlyDamped, DecaysByTwoPiZetaAPeriod) {
   }
 }
 
-}  // namespace
+}  // namespace damping_extremes_test
 }  // namespace slew::multibody

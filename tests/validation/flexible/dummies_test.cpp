@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace dummies_test {
 
 using namespace testing;
 
@@ -73,5 +73,5 @@ TEST(CylinderMassesAtNodes, KeepTheEnergyOfTheCrane) {
 
 INSTANTIATE_TEST_SUITE_P(Formulations, CylindersAtNodes, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace dummies_test
 }  // namespace slew::multibody

@@ -17,7 +17,7 @@
 #include "scene/scene.h"
 
 namespace slew {
-namespace {
+namespace exchange_test {
 
 using coupling::ElasticExchange;
 using coupling::ElasticSample;
@@ -329,5 +329,5 @@ TEST_F(Stated, SizesThatChangeOnTheWayAreFlagged) {
   EXPECT_TRUE(coupled.step().has(StepFlag::clamp_active));
 }
 
-}  // namespace
+}  // namespace exchange_test
 }  // namespace slew

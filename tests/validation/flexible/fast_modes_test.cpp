@@ -8,7 +8,7 @@
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {
-namespace {
+namespace fast_modes_test {
 
 using namespace testing;
 
@@ -150,5 +150,5 @@ TEST(FastModes, LetGoTheBarSwingsSlowly) {
   }
 }
 
-}  // namespace
+}  // namespace fast_modes_test
 }  // namespace slew::multibody

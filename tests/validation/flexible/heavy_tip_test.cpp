@@ -7,7 +7,7 @@
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {
-namespace {
+namespace heavy_tip_test {
 
 using namespace testing;
 
@@ -161,5 +161,5 @@ TEST(HeavyTip, NextToNothingChangesNothing) {
   EXPECT_EQ(refusal(def).find("Load.mass: "), 0U) << refusal(def);
 }
 
-}  // namespace
+}  // namespace heavy_tip_test
 }  // namespace slew::multibody

@@ -6,7 +6,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace large_deflection_test {
 
 using namespace testing;
 using slew::testing::BoxBeam;
@@ -120,5 +120,5 @@ TEST(JibDeflection, TheLargeDeflectionSolverGivesTheElastica) {
   EXPECT_NEAR(tip.drawn_in / beam.length, 0.05643, 2e-5);
 }
 
-}  // namespace
+}  // namespace large_deflection_test
 }  // namespace slew::multibody

@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "math/rotation.h"
+#include "tests/validation/flexible/small_motion.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody::testing {
@@ -35,19 +35,14 @@ class Linearised {
 
   // [Hz], ascending; without what moves freely
   [[nodiscard]] std::vector<double> frequencies() {
-    const auto n = static_cast<Eigen::Index>(m_.state.u.size());
-    Eigen::MatrixXd A(n, n);
-    for (Eigen::Index k = 0; k < n; ++k) {
+    SquareMatrix A(m_.state.u.size());
+    for (std::size_t k = 0; k < A.n; ++k) {
       const std::vector<double> above = accelerations_at(displaced(k, kStep)),
                                 below = accelerations_at(displaced(k, -kStep));
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const auto i = static_cast<std::size_t>(j);
-        A(j, k) = -(above[i] - below[i]) / (2 * kStep);
-      }
+      for (std::size_t i = 0; i < A.n; ++i) A(i, k) = -(above[i] - below[i]) / (2 * kStep);
     }
     std::vector<double> f;
-    const Eigen::EigenSolver<Eigen::MatrixXd> solved(A, false);
-    for (const std::complex<double> square : solved.eigenvalues()) {
+    for (const std::complex<double> square : eigenvalues(A)) {
       const double hertz = std::sqrt(std::abs(square)) / (2 * M_PI);
       if (hertz < 0.01) continue;
       EXPECT_LT(std::fabs(square.imag()), 1e-6 * square.real());
@@ -61,9 +56,9 @@ class Linearised {
   static constexpr double kStep = 1e-5;  // rad, m sqrt(kg)
 
   // one coordinate moved along its own speed
-  [[nodiscard]] State displaced(Eigen::Index k, double step) {
+  [[nodiscard]] State displaced(std::size_t k, double step) {
     State moved = m_.state;
-    moved.u[static_cast<std::size_t>(k)] = 1;
+    moved.u[k] = 1;
     observe(m_.model, moved, m_.ws);
     for (std::size_t i = 1; i < m_.model.links.size(); ++i) {
       const Link& link = m_.model.links[i];
@@ -75,7 +70,7 @@ class Linearised {
       moved.q[q] = turned.w, moved.q[q + 1] = turned.x, moved.q[q + 2] = turned.y, moved.q[q + 3] = turned.z;
     }
     for_each_mode(m_.model, [&](std::size_t q, std::size_t u) { moved.q[q] += step * moved.u[u]; });
-    moved.u[static_cast<std::size_t>(k)] = 0;
+    moved.u[k] = 0;
     return moved;
   }
 

@@ -7,7 +7,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace pendulum_test {
 
 using namespace testing;
 
@@ -140,5 +140,5 @@ TEST(FlexiblePendulums, ConvergeWithModesAndNodes) {
                                                                 .panel_height = 260}));
 }
 
-}  // namespace
+}  // namespace pendulum_test
 }  // namespace slew::multibody

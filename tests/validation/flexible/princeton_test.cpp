@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace princeton_test {
 
 using namespace testing;
 
@@ -141,5 +141,5 @@ TEST(PrincetonBeam, ModesGiveTheLinearAnswer) {
   }
 }
 
-}  // namespace
+}  // namespace princeton_test
 }  // namespace slew::multibody

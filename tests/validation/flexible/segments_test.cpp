@@ -1,16 +1,16 @@
 // B01 to B03 in finite segments: statics, frequencies, spin-up and pendulum, and how they converge over the segments.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "multibody/flexible/segment_speeds.h"
 #include "multibody/passes.h"
 #include "tests/validation/flexible/segmented_def.h"
+#include "tests/validation/flexible/small_motion.h"
 #include "tests/validation/multibody/csv_table.h"
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace segments_test {
 
 using namespace testing;
 
@@ -47,35 +47,10 @@ TEST(SegmentedCantilever, DeflectsAsTheBeamWithAnyNumber) {
   }
 }
 
-// Frequencies of small motion about the straight beam [Hz], ascending: accelerations that displacements cause, by
-// differences, are -M^-1 K.
+// Frequencies of small motion about the straight beam [Hz], ascending.
 std::vector<double> frequencies(int segments) {
-  constexpr double kProbe = 1e-6;
-  const Model model = build_model(cantilever(segments, 0));
-  Workspace ws(model);
-  const State start = start_state(model);
-  const auto n = static_cast<Eigen::Index>(start.u.size());
-  Eigen::MatrixXd A(n, n);
-  const std::vector<double> rest(start.u.size());
-  std::vector<double> rate(start.q.size());
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (const double sign : {1.0, -1.0}) {
-      State moved = start;
-      moved.u[static_cast<std::size_t>(j)] = 1;
-      update_motion(model, moved.q, moved.u, ws);
-      coordinate_rates(model, ws, moved.q, moved.u, rate);
-      for (std::size_t k = 0; k < rate.size(); ++k) moved.q[k] += sign * kProbe * rate[k];
-      moved.u = rest;
-      normalize_quaternions(model, moved.q);
-      evaluate(model, moved, ws);
-      if (sign > 0) A.col(j).setZero();
-      for (Eigen::Index i = 0; i < n; ++i) A(i, j) -= sign * ws.udot[static_cast<std::size_t>(i)] / (2 * kProbe);
-    }
-  }
-  const Eigen::VectorXd squares = A.eigenvalues().real();
   std::vector<double> hertz;
-  for (const double square : squares) hertz.push_back(std::sqrt(square) / (2 * M_PI));
-  std::sort(hertz.begin(), hertz.end());
+  for (const double square : squares_of(cantilever(segments, 0))) hertz.push_back(std::sqrt(square) / (2 * M_PI));
   return hertz;
 }
 
@@ -215,5 +190,5 @@ TEST_P(SegmentedPendulum, SwingsAndBendsAsTheExactBeam) {
 
 INSTANTIATE_TEST_SUITE_P(In, SegmentedPendulum, ::testing::Values(Formulation::recursive), kFormulationName);
 
-}  // namespace
+}  // namespace segments_test
 }  // namespace slew::multibody

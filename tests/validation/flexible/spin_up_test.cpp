@@ -9,7 +9,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace spin_up_test {
 
 using namespace testing;
 
@@ -196,5 +196,5 @@ TEST(SpinUp, IsDrawn) {
   }
 }
 
-}  // namespace
+}  // namespace spin_up_test
 }  // namespace slew::multibody

@@ -22,7 +22,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace slew {
-namespace {
+namespace split_test {
 
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
@@ -200,5 +200,5 @@ TEST(SplitFlexibleBody, AStatedStiffnessIsStableAtEveryStep) {
   }
 }
 
-}  // namespace
+}  // namespace split_test
 }  // namespace slew

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace start_test {
 
 using namespace testing;
 
@@ -165,5 +165,5 @@ TEST(FlexibleStart, LargeDeflectionsAreWarnedOf) {
   EXPECT_FALSE(is_bent_far(model, 0, std::vector<double>(model.start_q.size())));
 }
 
-}  // namespace
+}  // namespace start_test
 }  // namespace slew::multibody

@@ -2,7 +2,6 @@
 // 1e-4 of bending, clamped at its root; by modes that bend along y, or by segments.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "tests/validation/flexible/flexible_def.h"
 #include "tests/validation/flexible/segmented_def.h"
 #include "tests/validation/flexible/slender_beam.h"
+#include "tests/validation/flexible/small_motion.h"
 #include "tests/validation/multibody/every_formulation.h"
 #include "tests/validation/multibody/extremes/outcome.h"
 
@@ -71,35 +71,6 @@ inline MechanicsDef clamped_segments(int segments, double youngs_modulus = kStee
                            .start = SegmentStart::straight}};
   def.integrator = Integrator::trapezoidal;
   return def;
-}
-
-// Squares of small motion about the start [1/s2], ascending: accelerations that displacements cause.
-inline std::vector<double> squares_of(const MechanicsDef& def) {
-  constexpr double kProbe = 1e-6;
-  const Model model = build_model(def);
-  Workspace ws(model);
-  const State start = start_state(model);
-  const auto n = static_cast<Eigen::Index>(start.u.size());
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
-  const std::vector<double> rest(start.u.size());
-  std::vector<double> rate(start.q.size());
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (const double sign : {1.0, -1.0}) {
-      State moved = start;
-      moved.u[static_cast<std::size_t>(j)] = 1;
-      update_motion(model, moved.q, moved.u, ws);
-      coordinate_rates(model, ws, moved.q, moved.u, rate);
-      for (std::size_t k = 0; k < rate.size(); ++k) moved.q[k] += sign * kProbe * rate[k];
-      moved.u = rest;
-      normalize_quaternions(model, moved.q);
-      evaluate(model, moved, ws);
-      for (Eigen::Index i = 0; i < n; ++i) A(i, j) -= sign * ws.udot[static_cast<std::size_t>(i)] / (2 * kProbe);
-    }
-  }
-  const Eigen::VectorXd real = A.eigenvalues().real();
-  std::vector<double> squares(real.begin(), real.end());
-  std::sort(squares.begin(), squares.end());
-  return squares;
 }
 
 }  // namespace slew::multibody::testing

@@ -3,7 +3,7 @@
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {
-namespace {
+namespace turns_test {
 
 using namespace testing;
 
@@ -144,5 +144,5 @@ TEST(TenTurns, OnAFreeHingeKeepTheirMomentum) {
   }
 }
 
-}  // namespace
+}  // namespace turns_test
 }  // namespace slew::multibody

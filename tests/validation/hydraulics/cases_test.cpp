@@ -10,7 +10,7 @@
 #include "tests/properties/hydraulics/bench_circuit.h"
 
 namespace slew::hydraulics::test {
-namespace {
+namespace cases_test {
 
 // Oil without air, of constant bulk modulus, so that the closed forms hold.
 HydraulicsDef plain_oil(double bulk_modulus, double density) {
@@ -236,5 +236,5 @@ TEST(ValidationC04, the_pump_stops_following_at_its_largest_ls_pressure) {
   EXPECT_NEAR(result.pump_pressure, 250e5 - result.droop, 1e-2 * 250e5);
 }
 
-}  // namespace
+}  // namespace cases_test
 }  // namespace slew::hydraulics::test

@@ -9,7 +9,7 @@
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
-namespace {
+namespace ball_friction_test {
 
 constexpr const char* kBall = R"(
 mechanics: {gravity: [0, 0, 0]}
@@ -181,5 +181,5 @@ TEST(BallFrictionParameters, ThatAreBadAreNamed) {
   EXPECT_NE(text_of("Socket.bristle_damping=1").find("without bristles"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace ball_friction_test
 }  // namespace slew::testing

@@ -6,7 +6,7 @@
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
-namespace {
+namespace force_scenes_test {
 
 class ForceScene : public ::testing::TestWithParam<const char*> {
  protected:
@@ -103,5 +103,5 @@ TEST(OperatedLoad, IsMultipliedByItsInputAndNeutralWithoutOne) {
   }
 }
 
-}  // namespace
+}  // namespace force_scenes_test
 }  // namespace slew::testing

@@ -7,7 +7,7 @@
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
-namespace {
+namespace joint_axes_test {
 
 constexpr const char* kBall = R"(
 mechanics: {gravity: [0, 0, 0]}
@@ -133,5 +133,5 @@ TEST(JointAxisParameters, OfBothCoordinatesChangeWhileRunning) {
   EXPECT_FALSE(m.subsystem.change_parameter(m.n, {"Cross.limit_damping", 10, milliseconds(0)}));
 }
 
-}  // namespace
+}  // namespace joint_axes_test
 }  // namespace slew::testing

@@ -10,7 +10,7 @@
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
-namespace {
+namespace joint_friction_test {
 
 constexpr const char* kStickSlip = R"(
 mechanics: {gravity: [0, 0, 0], max_substep: 0.25 ms}
@@ -93,5 +93,5 @@ TEST(RegularisedFriction, Creeps) {
   EXPECT_NEAR(m.value("Rail.velocity"), 0.01 * std::atanh(33.552 / 40), 1e-5);
 }
 
-}  // namespace
+}  // namespace joint_friction_test
 }  // namespace slew::testing

@@ -6,7 +6,7 @@
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
-namespace {
+namespace motion_scenes_test {
 
 class PrescribedScene : public ::testing::TestWithParam<const char*> {
  protected:
@@ -51,5 +51,5 @@ INSTANTIATE_TEST_SUITE_P(Formulations, PrescribedScene,
                          ::testing::Values("recursive", "lagrange", "augmented", "penalty"),
                          [](const auto& test) { return std::string(test.param); });
 
-}  // namespace
+}  // namespace motion_scenes_test
 }  // namespace slew::testing

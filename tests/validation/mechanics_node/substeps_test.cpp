@@ -9,7 +9,7 @@
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {
-namespace {
+namespace substeps_test {
 
 using multibody::Formulation;
 using multibody::Integrator;
@@ -61,5 +61,5 @@ INSTANTIATE_TEST_SUITE_P(In, Substeps, ::testing::ValuesIn(every_rule()), [](con
   return std::string(multibody::key_of(tested.param.first)) + "_" + std::string(multibody::key_of(tested.param.second));
 });
 
-}  // namespace
+}  // namespace substeps_test
 }  // namespace slew::testing

@@ -14,7 +14,7 @@
 #include "tests/validation/multibody/squeezer_def.h"
 
 namespace slew::monolith {
-namespace {
+namespace body_reference_test {
 
 using multibody::BodyPose;
 using multibody::MechanicsDef;
@@ -178,5 +178,5 @@ TEST(References, RefuseContacts) {
   EXPECT_NE(status.text.find("'Landing'"), std::string::npos) << status.text;
 }
 
-}  // namespace
+}  // namespace body_reference_test
 }  // namespace slew::monolith

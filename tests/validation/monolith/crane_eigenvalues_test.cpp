@@ -12,7 +12,7 @@
 #include "tests/validation/flexible/linear_crane.h"
 
 namespace slew::monolith {
-namespace {
+namespace crane_eigenvalues_test {
 
 // Without the dampers at the bag's hook, which leave it no swing. In the plane of lifting, where the slewing that the
 // linear model locks takes no part: the bag fore and aft, the load on oil and boom, the booms on the oil. Two modes of
@@ -50,5 +50,5 @@ TEST(CraneEigenvalues, AreThoseOfTheLinearModelInThePlaneOfLifting) {
   }
 }
 
-}  // namespace
+}  // namespace crane_eigenvalues_test
 }  // namespace slew::monolith

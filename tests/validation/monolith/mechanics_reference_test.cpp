@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/loop_defs.h"
 
 namespace slew::monolith {
-namespace {
+namespace mechanics_reference_test {
 
 using multibody::BodyPose;
 using multibody::MechanicsDef;
@@ -68,5 +68,5 @@ TEST(MechanicsReference, FourBarPassesItsFlatPositions) {
   EXPECT_GT(way, 1) << "it did not pass";
 }
 
-}  // namespace
+}  // namespace mechanics_reference_test
 }  // namespace slew::monolith

@@ -10,7 +10,7 @@
 #include "monolith/monolith.h"
 
 namespace slew::monolith {
-namespace {
+namespace self_difference_test {
 
 struct Difference {
   double x = 0, F = 0;
@@ -52,5 +52,5 @@ TEST(Reference, differs_little_from_itself_on_the_crane) {
   EXPECT_LT(worst.F, 0.3);
 }
 
-}  // namespace
+}  // namespace self_difference_test
 }  // namespace slew::monolith

@@ -11,7 +11,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace chain_test {
 
 using namespace testing;
 
@@ -132,5 +132,5 @@ TEST_P(Chain, HangingSwingsWithItsFrequencies) {
 
 INSTANTIATE_TEST_SUITE_P(In, Chain, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace chain_test
 }  // namespace slew::multibody

@@ -9,7 +9,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace crane_test {
 
 using testing::crane_def;
 using testing::CraneOptions;
@@ -149,5 +149,5 @@ TEST_P(LiftBoom, HasTheCylinderForceOfTheTable) {
 
 INSTANTIATE_TEST_SUITE_P(In, LiftBoom, testing::kEveryFormulation, testing::kFormulationName);
 
-}  // namespace
+}  // namespace crane_test
 }  // namespace slew::multibody

@@ -5,7 +5,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace cylinder_test {
 
 using testing::Formulated;
 
@@ -55,5 +55,5 @@ TEST_P(Cylinders, AsBodiesGiveTheSameRowsToTheirActuators) {
 INSTANTIATE_TEST_SUITE_P(In, Cylinders, ::testing::Values(Formulation::recursive, Formulation::lagrange),
                          [](const auto& tested) { return testing::name_of(tested.param); });
 
-}  // namespace
+}  // namespace cylinder_test
 }  // namespace slew::multibody

@@ -7,7 +7,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace dummies_test {
 
 using math::Vec3;
 using testing::Mechanism;
@@ -239,5 +239,5 @@ TEST(Tyre, KeepsTheEnergyOfALeaningWheel) {
   EXPECT_LT(drift, 1e-5 * before);
 }
 
-}  // namespace
+}  // namespace dummies_test
 }  // namespace slew::multibody

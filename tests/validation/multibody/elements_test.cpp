@@ -12,7 +12,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace elements_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -351,5 +351,5 @@ TEST(Table, OfADamperIsItsCharacteristic) {
   EXPECT_NEAR(brake.value("Brake.torque"), -7, 1e-12);
 }
 
-}  // namespace
+}  // namespace elements_test
 }  // namespace slew::multibody

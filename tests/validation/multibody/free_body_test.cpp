@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace free_body_test {
 
 using namespace testing;
 
@@ -133,5 +133,5 @@ TEST_P(HeavyTop, FollowsTheTableFor2s) {
 INSTANTIATE_TEST_SUITE_P(In, Dzhanibekov, kEveryFormulation, kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, HeavyTop, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace free_body_test
 }  // namespace slew::multibody

@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/governor_def.h"
 
 namespace slew::multibody {
-namespace {
+namespace governor_test {
 
 using testing::Choice;
 using testing::Formulated;
@@ -103,5 +103,5 @@ INSTANTIATE_TEST_SUITE_P(Nightly, ExplicitGovernor,
 INSTANTIATE_TEST_SUITE_P(In, HeldGovernor, ::testing::Values(Formulation::augmented, Formulation::penalty),
                          testing::kFormulationName);
 
-}  // namespace
+}  // namespace governor_test
 }  // namespace slew::multibody

@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace joint_test {
 
 using testing::expect_figure;
 using testing::Formulated;
@@ -242,5 +242,5 @@ TEST_P(JointDrift, StaysBelowTheToleranceFor10s) {
 INSTANTIATE_TEST_SUITE_P(In, HeldJoint, testing::kEveryFormulation, testing::kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, JointDrift, testing::kEveryFormulation, testing::kFormulationName);
 
-}  // namespace
+}  // namespace joint_test
 }  // namespace slew::multibody

@@ -5,7 +5,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace kelvin_voigt_test {
 
 using testing::expect_figure;
 using testing::Formulated;
@@ -72,5 +72,5 @@ TEST_P(KelvinVoigt, ReboundsWithTheShareOfTheClosedForm) {
 
 INSTANTIATE_TEST_SUITE_P(In, KelvinVoigt, testing::kEveryFormulation, testing::kFormulationName);
 
-}  // namespace
+}  // namespace kelvin_voigt_test
 }  // namespace slew::multibody

@@ -10,7 +10,7 @@
 #include "tests/validation/multibody/squeezer_def.h"
 
 namespace slew::multibody {
-namespace {
+namespace loop_test {
 
 using testing::expect_figure;
 using testing::Formulated;
@@ -123,5 +123,5 @@ INSTANTIATE_TEST_SUITE_P(In, FourBars, testing::kEveryFormulation, testing::kFor
 INSTANTIATE_TEST_SUITE_P(In, Squeezer, testing::kEveryFormulation, testing::kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, SliderCrank, testing::kEveryFormulation, testing::kFormulationName);
 
-}  // namespace
+}  // namespace loop_test
 }  // namespace slew::multibody

@@ -13,7 +13,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace motion_test {
 
 using testing::Formulated;
 using testing::name_of;
@@ -301,5 +301,5 @@ TEST(PrescribedMotion, FailsWhereItsTableRefusesToBeLeft) {
   EXPECT_FALSE(pendulum.dynamics.advance(pendulum.model, pendulum.state, pendulum.ws, 0.01, {}, {}));
 }
 
-}  // namespace
+}  // namespace motion_test
 }  // namespace slew::multibody

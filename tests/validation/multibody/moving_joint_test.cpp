@@ -9,7 +9,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace moving_joint_test {
 
 using namespace testing;
 
@@ -157,5 +157,5 @@ TEST_P(MovingJoint, RevoluteAgreesWithAdams) {
 
 INSTANTIATE_TEST_SUITE_P(In, MovingJoint, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace moving_joint_test
 }  // namespace slew::multibody

@@ -9,7 +9,7 @@
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
-namespace {
+namespace pendulum_test {
 
 using namespace testing;
 
@@ -152,5 +152,5 @@ TEST_P(DoublePendulum, OfTheModelicaLibraryFollowsTheTable) {
 INSTANTIATE_TEST_SUITE_P(In, SimplePendulum, kEveryFormulation, kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, DoublePendulum, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace pendulum_test
 }  // namespace slew::multibody

@@ -6,7 +6,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace stiff_elements_test {
 
 using testing::Choice;
 using testing::Formulated;
@@ -304,5 +304,5 @@ INSTANTIATE_TEST_SUITE_P(Nightly, StiffElement,
                          ::testing::ValuesIn(testing::nightly_choices(kRules, kInBodyCoordinates)),
                          testing::kChoiceName);
 
-}  // namespace
+}  // namespace stiff_elements_test
 }  // namespace slew::multibody

@@ -3,7 +3,7 @@
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
-namespace {
+namespace stiff_test {
 
 using testing::Choice;
 using testing::Formulated;
@@ -135,5 +135,5 @@ INSTANTIATE_TEST_SUITE_P(In, Stiff, ::testing::ValuesIn(testing::gate_choices(kR
 INSTANTIATE_TEST_SUITE_P(Nightly, Stiff, ::testing::ValuesIn(testing::nightly_choices(kRules, kInBodyCoordinates)),
                          testing::kChoiceName);
 
-}  // namespace
+}  // namespace stiff_test
 }  // namespace slew::multibody

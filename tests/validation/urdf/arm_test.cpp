@@ -13,7 +13,7 @@
 #include "tests/validation/urdf/imported.h"
 
 namespace slew::urdf {
-namespace {
+namespace arm_test {
 
 using testing::Imported;
 
@@ -74,5 +74,5 @@ TEST(TwoLinkArm, HasTheLawsOfItsJoints) {
   EXPECT_NEAR(arm.mechanism.value("elbow.position"), 0, 1e-14);
 }
 
-}  // namespace
+}  // namespace arm_test
 }  // namespace slew::urdf

@@ -4,7 +4,7 @@
 #include "tests/validation/urdf/imported.h"
 
 namespace slew::urdf {
-namespace {
+namespace collision_shapes_test {
 
 using contact::ShapeType;
 using math::Vec3;
@@ -142,5 +142,5 @@ TEST(CollisionShapes, AnImportedBallLiesOnTheFloorItIsGiven) {
   EXPECT_NEAR(mechanism.pose("ball").position[2], -0.001 - 2 * 9.81 / 1e4, 1e-6);
 }
 
-}  // namespace
+}  // namespace collision_shapes_test
 }  // namespace slew::urdf

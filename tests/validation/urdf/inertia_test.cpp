@@ -5,7 +5,7 @@
 #include "tests/validation/urdf/imported.h"
 
 namespace slew::urdf {
-namespace {
+namespace inertia_test {
 
 using testing::Imported;
 
@@ -105,5 +105,5 @@ TEST(TurnedInertia, OfMassesOnAFrameIsTheirSumInTheLinksAxes) {
   expect_triple(robot.body("a").products, link_products, 1e-14);
 }
 
-}  // namespace
+}  // namespace inertia_test
 }  // namespace slew::urdf

@@ -5,7 +5,7 @@
 #include "tests/validation/urdf/imported.h"
 
 namespace slew::urdf {
-namespace {
+namespace joint_types_test {
 
 using math::Mat3;
 using math::Vec3;
@@ -188,5 +188,5 @@ TEST(JointTypes, WhatIsOnlySeenIsToldAsComments) {
       << text;
 }
 
-}  // namespace
+}  // namespace joint_types_test
 }  // namespace slew::urdf

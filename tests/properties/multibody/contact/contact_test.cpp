@@ -9,7 +9,7 @@
 #include "tests/validation/multibody/contact/contact_scene.h"
 
 namespace slew::multibody {
-namespace {
+namespace contact_test {
 
 using namespace testing;
 using slew::testing::rounds;
@@ -108,5 +108,5 @@ TEST_F(FreeContact, IsTheSameInBothFormulations) {
   }
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace slew::multibody

@@ -6,7 +6,7 @@
 #include "support/nightly.h"
 
 namespace slew::multibody {
-namespace {
+namespace block_test {
 
 using namespace testing;
 using slew::testing::rounds;
@@ -224,5 +224,5 @@ TEST(Pairs, ThatCannotMoveAgainstEachOtherAreKnownAndNotTested) {
   EXPECT_EQ(motion.value("Bed_Floor.contacts"), 0);
 }
 
-}  // namespace
+}  // namespace block_test
 }  // namespace slew::multibody

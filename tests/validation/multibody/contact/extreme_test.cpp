@@ -6,7 +6,7 @@
 #include "support/nightly.h"
 
 namespace slew::multibody {
-namespace {
+namespace extreme_test {
 
 using namespace testing;
 using slew::testing::rounds;
@@ -177,5 +177,5 @@ TEST_P(Bullet, ThatMissesTheWallIsNot) {
   EXPECT_NEAR(motion.pose("Ball").velocity[0], 1e3, 1e-9);
 }
 
-}  // namespace
+}  // namespace extreme_test
 }  // namespace slew::multibody

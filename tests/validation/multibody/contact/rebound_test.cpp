@@ -5,7 +5,7 @@
 #include "scene_cases.h"
 
 namespace slew::multibody {
-namespace {
+namespace rebound_test {
 
 using namespace testing;
 
@@ -107,5 +107,5 @@ TEST(ElasticBall, KeepsItsEnergy) {
   EXPECT_NEAR(deepest, 1.4105584557e-2, 1e-3 * 1.41e-2);
 }
 
-}  // namespace
+}  // namespace rebound_test
 }  // namespace slew::multibody

@@ -8,7 +8,7 @@
 #include "tests/validation/multibody/csv_table.h"
 
 namespace slew::multibody {
-namespace {
+namespace stick_slip_test {
 
 using namespace testing;
 using slew::testing::rounds;
@@ -55,5 +55,5 @@ TEST_P(StickSlip, FollowsTheTable) {
   EXPECT_NEAR(motion.pose("Block").position[0], 1.908839199226505, 1e-3);
 }
 
-}  // namespace
+}  // namespace stick_slip_test
 }  // namespace slew::multibody

@@ -6,7 +6,7 @@
 #include "tests/validation/multibody/loop_defs.h"
 
 namespace slew::multibody {
-namespace {
+namespace far_test {
 
 using namespace testing;
 
@@ -57,5 +57,5 @@ TEST_P(FarOff, FourBarMovesAsAtTheOrigin) {
 
 INSTANTIATE_TEST_SUITE_P(In, FarOff, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace far_test
 }  // namespace slew::multibody

@@ -9,7 +9,7 @@
 #include "tests/validation/multibody/loop_defs.h"
 
 namespace slew::multibody {
-namespace {
+namespace mass_ratio_test {
 
 using namespace testing;
 
@@ -161,5 +161,5 @@ INSTANTIATE_TEST_SUITE_P(Nightly, MassRatioUnder, ::testing::ValuesIn(nightly_ch
 INSTANTIATE_TEST_SUITE_P(In, MassRatio, kEveryFormulation, kFormulationName);
 INSTANTIATE_TEST_SUITE_P(In, LongChain, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace mass_ratio_test
 }  // namespace slew::multibody

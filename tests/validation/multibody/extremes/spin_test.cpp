@@ -5,7 +5,7 @@
 #include "tests/validation/multibody/extremes/outcome.h"
 
 namespace slew::multibody {
-namespace {
+namespace spin_test {
 
 using namespace testing;
 using math::Vec3;
@@ -83,5 +83,5 @@ TEST_P(Spin, OfAnUnbalancedRotorInItsBearingIsEven) {
 
 INSTANTIATE_TEST_SUITE_P(In, Spin, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace spin_test
 }  // namespace slew::multibody

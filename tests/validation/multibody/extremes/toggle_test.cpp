@@ -5,7 +5,7 @@
 #include "tests/validation/multibody/loop_defs.h"
 
 namespace slew::multibody {
-namespace {
+namespace toggle_test {
 
 using namespace testing;
 
@@ -176,5 +176,5 @@ TEST_P(Toggle, FullyStretchedTrussStaysOrIsFlagged) {
 
 INSTANTIATE_TEST_SUITE_P(In, Toggle, kEveryFormulation, kFormulationName);
 
-}  // namespace
+}  // namespace toggle_test
 }  // namespace slew::multibody
