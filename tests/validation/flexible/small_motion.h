@@ -20,8 +20,8 @@ struct SquareMatrix {
 
 [[nodiscard]] std::vector<std::complex<double>> eigenvalues(const SquareMatrix& A);
 
-// Squares of small motion about the start [1/s2], ascending: accelerations that displacements cause, by differences, are
-// -M^-1 K.
+// Squares of small motion about the start [1/s2], ascending: accelerations that displacements cause, by differences,
+// are -M^-1 K.
 [[nodiscard]] std::vector<double> squares_of(const MechanicsDef& def);
 
 }  // namespace slew::multibody::testing
