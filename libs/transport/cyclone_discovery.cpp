@@ -14,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "transport/cyclone_qos.h"
 #include "transport/cyclone_sertype.h"
 #include "transport/cyclone_transport.h"
 
@@ -133,11 +134,6 @@ void for_each_endpoint(dds_entity_t participant, dds_entity_t builtin_topic, Vis
   if (count > 0) dds_return_loan(reader, samples.data(), count);
   dds_delete(reader);
 }
-
-struct QosDeleter {
-  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
-};
-using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 Qos qos_of(dds_entity_t endpoint) {
   Qos qos(dds_create_qos());

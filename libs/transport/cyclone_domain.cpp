@@ -25,6 +25,8 @@
 #include <thread>
 #include <utility>
 
+#include "core/escaped.h"
+
 namespace slew::transport {
 namespace {
 
@@ -87,23 +89,6 @@ bool is_host(const std::string& text) {
   return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == ':';
   });
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 // the plugins lie beside the library, which finds them by these names

@@ -10,6 +10,7 @@
 #include <climits>
 #include <utility>
 
+#include "transport/cyclone_qos.h"
 #include "transport/cyclone_sertype.h"
 
 namespace slew::transport {
@@ -19,11 +20,6 @@ static_assert(wire::kTopics < 31);
 
 constexpr std::size_t kInFlight = 64;  // messages that have come and were not taken, or were written and go out
 constexpr std::int32_t kWriters = 4;   // of variables: io, mechanics, hydraulics, flex; of inputs: as many controllers
-
-struct QosDeleter {
-  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
-};
-using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 // in the order of wire::Topic
 constexpr std::array<const dds_topic_descriptor_t*, wire::kTopics> kDescriptors = {
