@@ -36,12 +36,6 @@ Topic topic_of(const recording::RecordedChannel& channel) {
   return Topic::count;
 }
 
-recording::MessageFilter only(std::initializer_list<Topic> topics) {
-  recording::MessageFilter filter;
-  for (const Topic topic : topics) filter.topics.emplace_back(node::to_text(topic));
-  return filter;
-}
-
 // A damaged chunk ends the reading; what was in front of it counts.
 void read_all(const Reader& reader, const recording::MessageFilter& filter,
               const std::function<Visit(const recording::RecordedMessage&)>& visit) {
@@ -74,6 +68,12 @@ bool was_paused(const std::map<std::uint64_t, bool>& paused_since, std::uint64_t
 }
 
 }  // namespace
+
+recording::MessageFilter only(std::initializer_list<Topic> topics) {
+  recording::MessageFilter filter;
+  for (const Topic topic : topics) filter.topics.emplace_back(node::to_text(topic));
+  return filter;
+}
 
 std::vector<scene::Asset> recorded_manifest(const Reader& reader) {
   std::vector<scene::Asset> assets;

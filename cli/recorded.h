@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <span>
@@ -19,6 +20,9 @@ namespace slew::cli {
 // Opens a recording; a folder of a run stands for the file in it. Throws Failure. A cut recording is told as a warning
 // on standard error.
 [[nodiscard]] std::unique_ptr<recording::Reader> open_recording(const std::string& path);
+
+// Messages of these topics.
+[[nodiscard]] recording::MessageFilter only(std::initializer_list<wire::Topic> topics);
 
 // Session, nodes, health and the names of all variables; values and extremes of the variables only when asked for.
 enum class Values : std::uint8_t { none, all };

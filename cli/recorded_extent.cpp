@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "cli/recorded.h"
 #include "core/failure.h"
 #include "node/identity.h"
 #include "transport/codec.h"
@@ -60,12 +61,6 @@ struct Epoch {
 
 bool is_of(const RecordedMessage& message, Topic topic) {
   return message.channel->topic == node::to_text(topic);
-}
-
-recording::MessageFilter only(std::initializer_list<Topic> topics) {
-  recording::MessageFilter filter;
-  for (const Topic topic : topics) filter.topics.emplace_back(node::to_text(topic));
-  return filter;
 }
 
 // Samples of and for flexible bodies come every k-th step from step 0 on.

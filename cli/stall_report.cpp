@@ -99,7 +99,7 @@ std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& dr
 }
 
 // The load as the mechanics sees it: its mass and what each kilogram asks of the cylinder.
-struct Load {
+struct HeldLoad {
   std::string body;
   double mass = 0;   // kg, at the stall
   double slope = 0;  // N/kg, of the static force against the direction
@@ -115,13 +115,13 @@ double value_at(const recording::Reader& reader, const std::string& name, double
 }
 
 // The mechanics states the mass of its last moving body, and every port's static force per kilogram of it.
-std::optional<Load> find_load(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
-                              double time) {
+std::optional<HeldLoad> find_load(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
+                                  double time) {
   const SessionView view = view_recording(reader, Values::none);
   for (const multibody::BodyDef& body : scene.mechanics.bodies) {
     if (view.find(body.name + ".mass") == nullptr) continue;
-    return Load{body.name, value_at(reader, body.name + ".mass", time),
-                drive.direction * value_at(reader, drive.cylinder->name + ".static_force_per_kg", time)};
+    return HeldLoad{body.name, value_at(reader, body.name + ".mass", time),
+                    drive.direction * value_at(reader, drive.cylinder->name + ".static_force_per_kg", time)};
   }
   return std::nullopt;
 }
@@ -149,7 +149,7 @@ std::string sentence(const recording::Reader& reader, const scene::Scene& scene,
   const double available =
       (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * cylinder.common.cylinder_coefficient -
       cylinder.common.seal_friction;
-  const std::optional<Load> load = find_load(reader, scene, drive, stall.to);
+  const std::optional<HeldLoad> load = find_load(reader, scene, drive, stall.to);
   if (!load || !(load->slope > 0)) return text;
   const double mass = load->mass - (stall.static_force - available) / load->slope;
   if (!(mass > 0)) return text + fmt::format("; not even {} without load could be moved there", load->body);

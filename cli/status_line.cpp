@@ -16,7 +16,7 @@ namespace {
 
 using wire::Role;
 
-constexpr std::int64_t kTerminalPeriodNs = 200'000'000;
+constexpr std::int64_t kStatusPeriodNs = 200'000'000;
 constexpr std::int64_t kLinesPeriodNs = 2'000'000'000;
 constexpr std::int64_t kFactorPeriodNs = 500'000'000;
 constexpr std::size_t kMostVariables = 6;
@@ -61,7 +61,7 @@ bool StatusLine::is_due(std::int64_t now_ns) const noexcept {
 void StatusLine::show(const std::string& text, std::int64_t now_ns) {
   if (mode_ == Mode::off) return;
   if (mode_ == Mode::terminal) {
-    next_ns_ = now_ns + kTerminalPeriodNs;
+    next_ns_ = now_ns + kStatusPeriodNs;
     std::printf("\r%s\x1b[K", text.substr(0, terminal_width() - 1).c_str());
     is_shown_ = true;
   } else {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr SimDuration kSurveyTime = milliseconds(700);
 constexpr SimDuration kLongestSurvey = milliseconds(3000);  // on a machine that is busy
-constexpr SimDuration kLongestWait = milliseconds(20);
+constexpr SimDuration kSurveyWait = milliseconds(20);
 
 using Found = std::map<wire::SessionId, FoundSession>;
 
@@ -71,7 +71,7 @@ std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& optio
   while (monotonic_ns() < end_ns() && node::stop_requested.load() == 0) {
     transport::Received message;
     while (carrier->take(message)) take(message, found);
-    carrier->wait_until(std::min(end_ns(), monotonic_ns() + kLongestWait.ns));
+    carrier->wait_until(std::min(end_ns(), monotonic_ns() + kSurveyWait.ns));
   }
   std::vector<FoundSession> sessions;
   for (auto& [id, session] : found) {

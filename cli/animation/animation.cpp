@@ -65,7 +65,7 @@ D.bodies.forEach((b,i)=>{const s=document.createElement('span');s.textContent=b.
 draw();
 )";
 
-std::string text_of(const Triple& p) {
+std::string point_text(const Triple& p) {
   return fmt::format("[{:.6g},{:.6g},{:.6g}]", p[0], p[1], p[2]);
 }
 
@@ -79,7 +79,7 @@ std::string data_text(const MachineDrawing& machine, const Motion& motion) {
     std::vector<std::string> lines;
     for (const Polyline& line : machine.bodies[i].lines) {
       std::vector<std::string> points;
-      for (const Triple& point : line) points.push_back(text_of(point));
+      for (const Triple& point : line) points.push_back(point_text(point));
       lines.push_back(joined(points));
     }
     std::string body =
@@ -97,10 +97,10 @@ std::string data_text(const MachineDrawing& machine, const Motion& motion) {
     bodies.push_back(body + "}");
   }
   for (const LinkDrawing& link : machine.links) {
-    links.push_back(fmt::format("{{\"b1\":{},\"p1\":{},\"b2\":{},\"p2\":{}}}", link.body1, text_of(link.point1),
-                                link.body2, text_of(link.point2)));
+    links.push_back(fmt::format("{{\"b1\":{},\"p1\":{},\"b2\":{},\"p2\":{}}}", link.body1, point_text(link.point1),
+                                link.body2, point_text(link.point2)));
   }
-  for (const Triple& axis : machine.axes) axes.push_back(text_of(axis));
+  for (const Triple& axis : machine.axes) axes.push_back(point_text(axis));
   for (const double time : motion.time) times.push_back(fmt::format("{:.12g}", time));
   for (const Gap& gap : motion.gaps) gaps.push_back(fmt::format("[{:.12g},{:.12g}]", gap.from, gap.to));
   for (const std::string_view colour : plotting::kColours) colours.push_back(plotting::json_string(colour));
@@ -109,10 +109,6 @@ std::string data_text(const MachineDrawing& machine, const Motion& motion) {
 }
 
 // ---- the picture
-
-math::Vec3 to_vec(const Triple& t) {
-  return {t[0], t[1], t[2]};
-}
 
 math::Vec3 placed(const Motion& motion, std::size_t body, std::size_t instant, const Triple& point) {
   if (body == 0) return to_vec(point);

@@ -23,9 +23,6 @@ constexpr double kSamePoint = 1e-9;  // m
 constexpr double kMark = 0.03;       // of the machine's size: half a cross in the place of a body that has no line
 constexpr double kLoneMark = 0.1;    // m, where nothing gives a size
 
-Vec3 to_vec(const Triple& t) {
-  return {t[0], t[1], t[2]};
-}
 Triple to_triple(const Vec3& v) {
   return {v[0], v[1], v[2]};
 }

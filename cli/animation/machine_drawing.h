@@ -10,11 +10,16 @@
 #include <string>
 #include <vector>
 
+#include "math/vector3.h"
 #include "multibody/defs.h"
 
 namespace slew::cli {
 
 using Polyline = std::vector<Triple>;  // m, in the body's frame
+
+[[nodiscard]] inline math::Vec3 to_vec(const Triple& t) noexcept {
+  return {t[0], t[1], t[2]};
+}
 
 struct BodyDrawing {
   std::string name;  // "Ground" first, which has no pose

@@ -13,7 +13,7 @@
 namespace slew::cli {
 namespace {
 
-std::string number(double value) {
+std::string error_number(double value) {
   return value == 0 ? "0" : fmt::format("{:.1e}", value);
 }
 
@@ -35,7 +35,7 @@ std::string verdict(const ComparedRow& row) {
 
 // what is within the reference's own error says only that
 std::string difference_text(double value, double reference_error) {
-  return value < reference_error ? '<' + number(reference_error) : number(value);
+  return value < reference_error ? '<' + error_number(reference_error) : error_number(value);
 }
 
 std::vector<ReportCell> cells_of(const Comparison& comparison, const ComparedRow& row) {
@@ -45,9 +45,9 @@ std::vector<ReportCell> cells_of(const Comparison& comparison, const ComparedRow
   const auto add = [&](std::string text, Json exact) {
     cells.push_back(row.has_run() ? ReportCell(std::move(text), std::move(exact)) : ReportCell("-", {}));
   };
-  add(number(row.gap.position), row.gap.position);
-  add(number(row.gap.rate), row.gap.rate);
-  add(row.energy_drift ? number(*row.energy_drift) : "-", row.energy_drift ? Json(*row.energy_drift) : Json());
+  add(error_number(row.gap.position), row.gap.position);
+  add(error_number(row.gap.rate), row.gap.rate);
+  add(row.energy_drift ? error_number(*row.energy_drift) : "-", row.energy_drift ? Json(*row.energy_drift) : Json());
   for (std::size_t i = 0; i < comparison.classes.size(); ++i) {
     const VariableClass& one = comparison.classes[i];
     const Difference difference = row.has_run() ? row.differences[i] : Difference{};
@@ -92,7 +92,7 @@ std::string energy_text(const Comparison& comparison) {
   const std::string unit = fmt::format("{:.3g} J", comparison.largest_kinetic_energy);
   if (comparison.energy_rule == EnergyRule::kept) {
     return fmt::format("largest |E - E(0)| over the largest kinetic energy, {}; the reference keeps it to {}", unit,
-                       number(comparison.reference_energy_drift));
+                       error_number(comparison.reference_energy_drift));
   }
   return fmt::format(
       "largest |E - E of the reference| over the largest kinetic energy, {}: this scene is driven or "
@@ -103,7 +103,7 @@ std::string energy_text(const Comparison& comparison) {
 std::string reference_text(const Comparison& comparison) {
   std::string errors;
   for (const VariableClass& one : comparison.classes) {
-    errors += fmt::format("{}{} {}", errors.empty() ? "" : ", ", number(one.reference_error), one.unit);
+    errors += fmt::format("{}{} {}", errors.empty() ? "" : ", ", error_number(one.reference_error), one.unit);
   }
   return fmt::format("{}, sub-steps of {}; its error is estimated at {} (difference to twice the sub-step)",
                      formulation_and_integrator(comparison.reference), step_text(comparison.reference.step), errors);
@@ -191,7 +191,7 @@ std::string preamble(const Comparison& comparison) {
   return text;
 }
 
-constexpr std::string_view kPageStyle =
+constexpr std::string_view kComparisonStyle =
     "body{font-family:sans-serif;margin:2em}svg{max-width:100%;height:auto}pre{white-space:pre-wrap}"
     "table{border-collapse:collapse;font-size:13px}"
     "td,th{padding:.2em .6em;text-align:left;border-bottom:1px solid #ddd;white-space:nowrap}";
@@ -254,7 +254,7 @@ std::string report_html(const Comparison& comparison) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}: accuracy against cost</title>\n"
       "<style>{1}</style></head>\n<body>\n{2}<pre>{3}</pre>\n{4}<pre>{5}</pre>\n</body>\n</html>\n",
-      escaped(comparison.scene), kPageStyle, report_svg(comparison), escaped(preamble(comparison)),
+      escaped(comparison.scene), kComparisonStyle, report_svg(comparison), escaped(preamble(comparison)),
       table_of(comparison).html(), escaped(remarks(comparison)));
 }
 

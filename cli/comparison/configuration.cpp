@@ -109,13 +109,6 @@ std::vector<double> select_steps(const ComparisonWish& wish, const scene::Scene&
   return steps;
 }
 
-std::string reason_of(const scene::LoadError& error) {
-  const scene::Diagnostic& first = error.diagnostics().front();
-  std::string text = first.path.empty() ? first.what : first.path + ": " + first.what;
-  if (!first.expected.empty()) text += "; expected " + first.expected;
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::string> choices_of(std::string_view key) {
@@ -174,7 +167,7 @@ Configured load(const ComparisonWish& wish, const scene::Scene& base, const Conf
   try {
     return {cli_support::load_scene(options), ""};
   } catch (const scene::LoadError& error) {
-    return {std::nullopt, reason_of(error)};
+    return {std::nullopt, error.first_reason()};
   }
 }
 

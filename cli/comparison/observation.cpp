@@ -19,9 +19,10 @@ constexpr StepIndex kStepsBetweenQuestions = 64;
 constexpr Role kPhysics[] = {Role::mechanics, Role::hydraulics};
 
 // Where the chosen variables stand among those of the two subsystems.
-class Reader {
+class SampleReader {
  public:
-  Reader(const DirectSession& session, std::span<const std::string> names) : session_(session), places_(names.size()) {
+  SampleReader(const DirectSession& session, std::span<const std::string> names)
+      : session_(session), places_(names.size()) {
     std::size_t found = 0;
     for (const Role role : kPhysics) {
       const coupling::Subsystem* subsystem = session.subsystem(role);
@@ -139,7 +140,7 @@ class TimedSteps {
 Observation observe_run(const scene::Scene& scene, std::span<const std::string> variables, SimDuration until,
                         SimDuration sample, const GoesOn& goes_on) {
   PlayedScene played(scene);
-  Reader reader(played.session(), variables);
+  SampleReader reader(played.session(), variables);
   Mechanism mechanism(played.session());
   Observation run;
   run.sample = sample;

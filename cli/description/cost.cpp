@@ -25,7 +25,7 @@ using wire::Role;
 constexpr StepIndex kSampledStates = 50;
 
 // by step, the fastest of the runs [ns]
-struct StepTimes {
+struct Costs {
   std::vector<std::int64_t> mechanics, hydraulics, whole;
 };
 
@@ -237,7 +237,7 @@ class Measurement {
   const scene::Overrides& overrides_;
   StepIndex steps_ = 0;
   double to_cost_ = 1;
-  StepTimes times_;
+  Costs times_;
   std::vector<MechanicsSample> mechanics_states_;
   std::vector<CircuitSample> circuit_states_;
   std::uint64_t accepted_ = 0, rejected_ = 0;

@@ -35,14 +35,7 @@ constexpr double kPenetration = 0.02;                           // m
 constexpr double kLift = 0.1, kMostLift = 5, kFineLift = 5e-3;  // m, of the ground's shape
 constexpr int kFineLifts = 40;
 constexpr double kSmallHose = 1e-6;  // m3
-constexpr StepIndex kStepsBetweenQuestions = 64;
-
-std::string reason_of(const scene::LoadError& error) {
-  const scene::Diagnostic& first = error.diagnostics().front();
-  std::string text = first.path.empty() ? first.what : first.path + ": " + first.what;
-  if (!first.expected.empty()) text += "; expected " + first.expected;
-  return text;
-}
+constexpr StepIndex kStepsBetweenLooks = 64;
 
 // What the pressures of a scene can come to by its valves and sources, and by what its actuators stop.
 class Ceiling {
@@ -202,7 +195,7 @@ class Stepper {
       session_.step(first + k, commands_, controls_);
       ++run_.measures.steps;
       look(k);
-      if (k % kStepsBetweenQuestions == 0 && std::clock() > limit) {
+      if (k % kStepsBetweenLooks == 0 && std::clock() > limit) {
         run_.measures.failure = fmt::format("it takes more than {} s of processor time", kRunLimit);
         run_.measures.ended_at = run_.measures.H * static_cast<double>(k);
       }
@@ -384,7 +377,7 @@ class Case {
       prepare();
       outcome.measures = measure();
     } catch (const scene::LoadError& error) {
-      outcome.measures.refusal = reason_of(error);
+      outcome.measures.refusal = error.first_reason();
     }
     outcome.measures.notes.insert(outcome.measures.notes.begin(), notes_.begin(), notes_.end());
     note_aim(outcome.measures);

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kSuite[] = {"single_cylinder.yaml", "truck_crane.yaml", "truck_crane_flexible.yaml",
                                   "truck_crane_contact.yaml"};
 
-std::string text_of(const scene::Scene& scene) {
+std::string scene_text(const scene::Scene& scene) {
   std::string text = scene.expanded_text;
   for (const scene::Asset& asset : scene.assets) {
     for (const std::uint8_t byte : asset.sha256) text += fmt::format("{:02x}", byte);
@@ -60,7 +60,7 @@ class Examiner {
     options.overrides = wish_.overrides;
     options.overrides.emplace_back("session.solution=split");
     const scene::Scene scene = cli_support::load_scene(options);
-    const std::string text = text_of(scene);
+    const std::string text = scene_text(scene);
     for (const ExtremeCase& one : extreme_cases(scene)) {
       result_.rows.push_back({.scene = scene.name,
                               .name = one.name,

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string trimmed(std::string text) {
+std::string line_of(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   return text;
 }
@@ -72,7 +72,7 @@ KeyFinding check_identity(const fs::path& folder, const std::string& name) {
     finding.problem = fmt::format("the certificate is not good: {}", reason_of(said));
     return finding;
   }
-  finding.expires = trimmed(run_openssl({"x509", "-in", files.certificate, "-noout", "-enddate"}));
+  finding.expires = line_of(run_openssl({"x509", "-in", files.certificate, "-noout", "-enddate"}));
   finding.expires = finding.expires.substr(finding.expires.find('=') + 1);
   const std::string of_certificate = run_openssl({"x509", "-in", files.certificate, "-noout", "-pubkey"});
   const std::string of_key = run_openssl({"pkey", "-in", files.private_key, "-pubout"});
@@ -118,7 +118,7 @@ std::vector<KeyFinding> check_keys(const fs::path& folder) {
                                          (folder / transport::kPermissionsAuthority).string());
   }
   if (whole.problem.empty()) whole.problem = problem_of_governance(folder / transport::kGovernance);
-  whole.expires = trimmed(run_openssl({"x509", "-in", authority.string(), "-noout", "-enddate"}));
+  whole.expires = line_of(run_openssl({"x509", "-in", authority.string(), "-noout", "-enddate"}));
   whole.expires = whole.expires.substr(whole.expires.find('=') + 1);
   std::vector<KeyFinding> findings = {whole};
   for (const std::string& name : names) findings.push_back(check_identity(folder, name));

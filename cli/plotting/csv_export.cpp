@@ -49,10 +49,6 @@ void append_head(fmt::memory_buffer& line, std::span<const Series> series) {
   line.push_back('\n');
 }
 
-std::size_t size_of(const Series& series) {
-  return std::min(series.time.size(), series.values.size());
-}
-
 }  // namespace
 
 void write_csv(std::span<const Series> series, std::ostream& out) {

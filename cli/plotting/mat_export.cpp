@@ -42,10 +42,6 @@ std::string mat_name(std::string_view name) {
   return valid.substr(0, kMostCharacters);
 }
 
-std::size_t size_of(const Series& series) {
-  return std::min(series.time.size(), series.values.size());
-}
-
 Variable text(std::string content) {
   std::size_t dims[] = {1, content.size()};
   return Variable(Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF8, 2, dims, content.data(), 0));

@@ -13,8 +13,8 @@ namespace slew::plotting {
 namespace {
 
 // distances in px
-constexpr double kLeft = 78, kRight = 110, kTop = 84, kBottom = 56;
-constexpr double kLegendRow = 18;
+constexpr double kScatterLeft = 78, kScatterRight = 110, kScatterTop = 84, kScatterBottom = 56;
+constexpr double kScatterLegendRow = 18;
 constexpr double kMarkRadius = 4.5;
 constexpr int kFewDecades = 2;  // with no more of them, 2 and 5 are labelled too
 
@@ -38,20 +38,20 @@ std::string tick_text(double factor, int power) {
                      std::abs(power));
 }
 
-class Picture {
+class ScatterPicture {
  public:
-  explicit Picture(const Scatter& scatter) : s_(scatter) {
+  explicit ScatterPicture(const Scatter& scatter) : s_(scatter) {
     find_axes();
-    right_ = s_.width - kRight;
-    bottom_ = s_.height - kBottom;
+    right_ = s_.width - kScatterRight;
+    bottom_ = s_.height - kScatterBottom;
   }
 
   std::string draw() {
     put("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
         "{1:.0f}\">\n<style>{2}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
         s_.width, s_.height, kStyle);
-    put("<text class=\"title\" x=\"{}\" y=\"30\">{}</text>\n", kLeft, escaped(s_.title));
-    put("<text class=\"sub\" x=\"{}\" y=\"50\">{}</text>\n", kLeft, escaped(s_.subtitle));
+    put("<text class=\"title\" x=\"{}\" y=\"30\">{}</text>\n", kScatterLeft, escaped(s_.title));
+    put("<text class=\"sub\" x=\"{}\" y=\"50\">{}</text>\n", kScatterLeft, escaped(s_.subtitle));
     draw_grid();
     if (s_.y_floor > 0) draw_floor();
     for (std::size_t i = 0; i < s_.groups.size(); ++i) draw_group(i);
@@ -90,8 +90,8 @@ class Picture {
     y_ = axis_around(std::min(y_low, 0.5 * floor_), std::max(y_high, floor_));
   }
 
-  [[nodiscard]] double x_of(double value) const { return kLeft + (right_ - kLeft) * x_.fraction(value); }
-  [[nodiscard]] double y_of(double value) const { return bottom_ - (bottom_ - kTop) * y_.fraction(value); }
+  [[nodiscard]] double x_of(double value) const { return kScatterLeft + (right_ - kScatterLeft) * x_.fraction(value); }
+  [[nodiscard]] double y_of(double value) const { return bottom_ - (bottom_ - kScatterTop) * y_.fraction(value); }
 
   void draw_line(const char* kind, double x1, double y1, double x2, double y2) {
     // at half pixels, where a line of one pixel is sharp
@@ -113,26 +113,26 @@ class Picture {
 
   void draw_grid() {
     each_tick(x_, [this](double value, const std::string& label) {
-      draw_line("grid", x_of(value), kTop, x_of(value), bottom_);
+      draw_line("grid", x_of(value), kScatterTop, x_of(value), bottom_);
       put("<text class=\"tick mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x_of(value), bottom_ + 18, label);
     });
     each_tick(y_, [this](double value, const std::string& label) {
-      draw_line("grid", kLeft, y_of(value), right_, y_of(value));
-      put("<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kLeft - 9, y_of(value) + 4, label);
+      draw_line("grid", kScatterLeft, y_of(value), right_, y_of(value));
+      put("<text class=\"tick end\" x=\"{}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft - 9, y_of(value) + 4, label);
     });
-    draw_line("axis", kLeft, kTop, kLeft, bottom_);
-    draw_line("axis", kLeft, bottom_, right_, bottom_);
-    put("<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", 0.5 * (kLeft + right_), bottom_ + 40,
+    draw_line("axis", kScatterLeft, kScatterTop, kScatterLeft, bottom_);
+    draw_line("axis", kScatterLeft, bottom_, right_, bottom_);
+    put("<text class=\"mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", 0.5 * (kScatterLeft + right_), bottom_ + 40,
         escaped(s_.x_label));
-    const double middle = 0.5 * (kTop + bottom_);
+    const double middle = 0.5 * (kScatterTop + bottom_);
     put("<text class=\"mid\" x=\"18\" y=\"{0:.1f}\" transform=\"rotate(-90 18 {0:.1f})\">{1}</text>\n", middle,
         escaped(s_.y_label));
   }
 
   void draw_floor() {
-    draw_line("zero dash", kLeft, y_of(s_.y_floor), right_, y_of(s_.y_floor));
+    draw_line("zero dash", kScatterLeft, y_of(s_.y_floor), right_, y_of(s_.y_floor));
     // nothing is below the floor
-    put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kLeft + 6, y_of(s_.y_floor) + 13,
+    put("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kScatterLeft + 6, y_of(s_.y_floor) + 13,
         escaped(s_.y_floor_label));
   }
 
@@ -159,8 +159,8 @@ class Picture {
   }
 
   void draw_legend() {
-    double x = kLeft;
-    const double y = kTop - kLegendRow + 4;
+    double x = kScatterLeft;
+    const double y = kScatterTop - kScatterLegendRow + 4;
     for (std::size_t i = 0; i < s_.groups.size(); ++i) {
       put("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x + kMarkRadius, y - 4, kMarkRadius,
           colour_of(i));
@@ -179,7 +179,7 @@ class Picture {
 }  // namespace
 
 std::string scatter_svg(const Scatter& scatter) {
-  return Picture(scatter).draw();
+  return ScatterPicture(scatter).draw();
 }
 
 }  // namespace slew::plotting

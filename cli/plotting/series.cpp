@@ -18,6 +18,10 @@ std::vector<double> sorted_instants(const Series& curve) {
 
 }  // namespace
 
+std::size_t size_of(const Series& curve) noexcept {
+  return std::min(curve.time.size(), curve.values.size());
+}
+
 void keep_common_instants(std::span<Series> curves) {
   if (curves.empty()) return;
   std::vector<double> common = sorted_instants(curves.front());

@@ -16,6 +16,9 @@ struct Series {
   double spacing = 0;          // s from one sample to the next where none is missing; 0: unknown
 };
 
+// Pairs of time and value.
+[[nodiscard]] std::size_t size_of(const Series& curve) noexcept;
+
 // Leaves the instants that every curve has. Variables of one node come in several messages, and any of them may be
 // missing.
 void keep_common_instants(std::span<Series> curves);

@@ -21,7 +21,7 @@ void take_place(const YardstickLoop& loop) noexcept {
   if (loop.cpu >= 0) static_cast<void>(run_on_cpu(loop.cpu));
 }
 
-void count(std::atomic<std::int32_t>& counter) noexcept {
+void count_up(std::atomic<std::int32_t>& counter) noexcept {
   ++counter;
   counter.notify_one();
 }
@@ -99,7 +99,7 @@ void Yardstick::lead(const YardstickRules& rules, SimDuration slice) {
 
 void Yardstick::follow(const YardstickLoop& loop) noexcept {
   take_place(loop);
-  count(placed_);
+  count_up(placed_);
   std::int32_t round = 0;
   while (true) {
     round_.wait(round);
@@ -107,7 +107,7 @@ void Yardstick::follow(const YardstickLoop& loop) noexcept {
     if (round == kNoMore) return;
     sleep_until_monotonic(due_ns_);
     burn(loop.computing);
-    if (loop.ends_step) count(done_);
+    if (loop.ends_step) count_up(done_);
     burn(loop.work - loop.computing);
   }
 }

@@ -13,7 +13,7 @@ namespace slew::cli {
 namespace {
 
 constexpr std::string_view kStep = "session.step", kCoupling = "session.coupling",
-                           kTolerance = "hydraulics.relative_tolerance", kSubstep = "mechanics.max_substep";
+                           kTolerance = "hydraulics.relative_tolerance", kMaxSubstep = "mechanics.max_substep";
 constexpr const char* kSteps[] = {"0.25ms", "0.5ms", "1ms", "2ms", "5ms", "10ms", "20ms"};
 constexpr const char* kSubsteps[] = {"0.1ms", "0.25ms", "0.5ms", "1ms", "2ms", "5ms"};
 constexpr const char* kTolerances[] = {"1e-2", "1e-3", "1e-4", "1e-5", "1e-6"};
@@ -105,7 +105,7 @@ std::vector<Axis> default_axes(const scene::Scene& scene) {
     std::vector<std::string> integrators = names_of("mechanics", "integrator");
     std::erase(integrators, "own");
     add("mechanics.integrator", integrators);
-    add(kSubstep, list_of(kSubsteps));
+    add(kMaxSubstep, list_of(kSubsteps));
   }
   if (scene.has_hydraulics()) {
     add("hydraulics.solver", names_of("hydraulics", "solver"));

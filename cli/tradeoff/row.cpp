@@ -17,7 +17,7 @@ namespace {
 
 using wire::Role;
 
-constexpr std::int64_t kMostSamples = 20'000;
+constexpr std::int64_t kMostRowSamples = 20'000;
 
 // ---- samples of a reference in a file: two sizes, then the values -------------------------------------------------
 
@@ -37,20 +37,13 @@ std::vector<double> read_samples(const std::string& file, std::size_t variables)
   std::ifstream in(file, std::ios::binary);
   std::array<std::uint64_t, 2> sizes{};
   in.read(reinterpret_cast<char*>(sizes.data()), sizeof sizes);
-  if (!in || sizes[1] != variables || sizes[0] > static_cast<std::uint64_t>(2 * kMostSamples)) {
+  if (!in || sizes[1] != variables || sizes[0] > static_cast<std::uint64_t>(2 * kMostRowSamples)) {
     throw Failure(ExitCode::failed, file + " is no reference of this row; remove the folder and run it again");
   }
   std::vector<double> values(sizes[0] * sizes[1]);
   in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(double)));
   if (!in) throw Failure(ExitCode::failed, file + " is cut short; remove the folder and run it again");
   return values;
-}
-
-std::string reason_of(const scene::LoadError& error) {
-  const scene::Diagnostic& first = error.diagnostics().front();
-  std::string text = first.path.empty() ? first.what : first.path + ": " + first.what;
-  if (!first.expected.empty()) text += "; expected " + first.expected;
-  return text;
 }
 
 std::vector<std::string> names_in(const DirectSession& session) {
@@ -196,7 +189,7 @@ class RowRun {
   std::size_t first_port_ = 0;
 };
 
-Json number(const std::optional<double>& value) {
+Json row_number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json();
 }
 
@@ -207,7 +200,7 @@ std::optional<double> optional_number(const Json& json) {
 }  // namespace
 
 SimDuration sample_interval(SimDuration H, SimDuration until) noexcept {
-  return {H.ns * std::max<std::int64_t>(1, until.ns / H.ns / kMostSamples)};
+  return {H.ns * std::max<std::int64_t>(1, until.ns / H.ns / kMostRowSamples)};
 }
 
 StepCost cost_of(std::vector<std::int64_t> step_ns, SimDuration H) {
@@ -226,7 +219,7 @@ RowResult compute(const RowJob& job) {
     const scene::Scene scene = cli_support::load_scene(job.scene);
     return RowRun(job, scene).run();
   } catch (const scene::LoadError& error) {
-    return {.refusal = reason_of(error)};
+    return {.refusal = error.first_reason()};
   } catch (const Failure& failure) {
     if (failure.code() == ExitCode::storage) throw;
     return {.refusal = failure.what()};
@@ -259,14 +252,14 @@ RowJob job_from(const Json& json) {
 Json to_json(const RowResult& result) {
   Json errors = Json::array();
   for (const std::optional<VariableError>& error : result.errors) {
-    errors.push_back(error ? Json{{"largest", number(error->largest)}, {"rms", number(error->rms)}} : Json());
+    errors.push_back(error ? Json{{"largest", row_number(error->largest)}, {"rms", row_number(error->rms)}} : Json());
   }
   return {{"refusal", result.refusal},
           {"failure", result.failure},
           {"failed_at", result.failed_at},
           {"errors", errors},
-          {"eta", number(result.eta)},
-          {"net", number(result.net)},
+          {"eta", row_number(result.eta)},
+          {"net", row_number(result.net)},
           {"gap", result.gap},
           {"open_joint", result.open_joint},
           {"not_converged", result.not_converged},

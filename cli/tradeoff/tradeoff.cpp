@@ -26,13 +26,6 @@ constexpr double kRowLimit = 60;              // s
 constexpr std::int64_t kReferenceParts = 16;  // of a communication step, where the monolith cannot go
 constexpr double kReferenceWeight = 2;        // of rows
 
-std::string reason_of(const scene::LoadError& error) {
-  const scene::Diagnostic& first = error.diagnostics().front();
-  std::string text = first.path.empty() ? first.what : first.path + ": " + first.what;
-  if (!first.expected.empty()) text += "; expected " + first.expected;
-  return text;
-}
-
 std::string exact(double value) {
   return fmt::format("{:.17g}", value);
 }
@@ -151,7 +144,7 @@ class Trader {
         if (!seen.insert(planned.text).second) continue;
       } catch (const scene::LoadError& error) {
         row.is_done = true;
-        row.result.refusal = reason_of(error);
+        row.result.refusal = error.first_reason();
         if (settings.size() == 1) refused.insert(settings.front());
       }
       planned_.push_back(std::move(planned));
@@ -274,7 +267,7 @@ class Trader {
           static_cast<void>(cli_support::load_scene(options_with(monolithic(H, kReferenceTolerance))));
           steps.push_back(H);
         } catch (const scene::LoadError& error) {
-          known->second = reason_of(error);
+          known->second = error.first_reason();
         }
       }
       if (known->second.empty()) continue;

@@ -18,7 +18,7 @@ std::string share(std::optional<double> value) {
   return value && std::isfinite(*value) ? fmt::format("{:.2g} %", 100 * *value) : "-";
 }
 
-std::string number(std::optional<double> value) {
+std::string short_number(std::optional<double> value) {
   if (!value || !std::isfinite(*value)) return "-";
   return *value == 0 ? "0" : fmt::format("{:.1e}", *value);
 }
@@ -55,7 +55,7 @@ std::vector<ReportCell> cells_of(const Tradeoff& tradeoff, std::size_t index) {
   const std::optional<double> worst = worst_error(tradeoff, row);
   add(share(worst), worst);
   for (const std::optional<double>& defect : {result.eta, result.net, std::optional(result.gap)}) {
-    add(number(defect), defect);
+    add(short_number(defect), defect);
   }
   for (const double microseconds : {result.cost.median, result.cost.mean, result.cost.worst}) {
     add(fmt::format("{:.3g}", microseconds), microseconds);
@@ -157,7 +157,7 @@ std::string variables_text(const Tradeoff& tradeoff) {
   return text;
 }
 
-constexpr std::string_view kPageStyle = R"(
+constexpr std::string_view kTradeoffStyle = R"(
 body{font-family:sans-serif;margin:1.5em;color:#222}
 svg{background:#fff;border:1px solid #ccc;width:100%;max-width:1000px;height:auto}
 #tip{position:fixed;pointer-events:none;background:#222;color:#fff;padding:.5em .7em;border-radius:4px;font-size:13px;
@@ -171,7 +171,7 @@ select,label{font-size:14px;margin-right:1em}
 )";
 
 // the figure and the table are drawn from the data, so that variable and kind of error can be chosen
-constexpr std::string_view kPageScript = R"(
+constexpr std::string_view kTradeoffScript = R"(
 const D=JSON.parse(document.getElementById('data').textContent),S='http://www.w3.org/2000/svg';
 const pick=document.getElementById('variable'),kind=document.getElementById('kind'),tip=document.getElementById('tip');
 const names=['worst of all',...D.variables.filter(v=>v.range>0).map(v=>v.name)];
@@ -283,8 +283,8 @@ std::string report_html(const Tradeoff& tradeoff, const std::optional<Answer>& a
       "</label></p>\n<svg id=\"plot\" viewBox=\"0 0 1000 560\"></svg>\n<div id=\"tip\"></div>\n"
       "<table id=\"rows\"></table>\n<script id=\"data\" type=\"application/json\">{3}</script>\n"
       "<script>{4}</script>\n</body>\n</html>\n",
-      escaped(tradeoff.scene), kPageStyle, escaped(note), plotting::in_script(to_json(tradeoff, answer).dump()),
-      kPageScript);
+      escaped(tradeoff.scene), kTradeoffStyle, escaped(note), plotting::in_script(to_json(tradeoff, answer).dump()),
+      kTradeoffScript);
 }
 
 }  // namespace slew::cli

@@ -11,7 +11,7 @@ using math::Mat3;
 using math::Vec3;
 
 // an edge axis must be better than the best face by this share, since faces carry more points
-constexpr double kFacePreference = 0.95;
+constexpr double kFaceOverEdge = 0.95;
 // edges closer to parallel than this have no axis of their own (sine of the angle)
 constexpr double kParallel = 1e-6;
 
@@ -49,7 +49,7 @@ Axis best_axis(const Boxes& boxes) noexcept {
       if (axis.depth < best.depth) best = axis;
     }
   }
-  double least = best.depth * kFacePreference;
+  double least = best.depth * kFaceOverEdge;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const Vec3 product = cross(boxes.a.R_WS.c[i], boxes.b.R_WS.c[j]);

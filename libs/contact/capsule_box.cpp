@@ -10,7 +10,7 @@ namespace {
 using math::Vec3;
 
 // the capsule's axis in the box's axes: centre + s direction
-struct Axis {
+struct CapsuleAxis {
   Vec3 centre, direction, half_size;
 
   [[nodiscard]] Vec3 at(double s) const noexcept { return centre + direction * s; }
@@ -25,7 +25,7 @@ struct Axis {
 };
 
 // where the distance stops falling between -half and half: halving of a slope that never falls
-double nearest_along(const Axis& axis, double half) noexcept {
+double nearest_along(const CapsuleAxis& axis, double half) noexcept {
   if (axis.slope(-half) >= 0) return -half;
   if (axis.slope(half) <= 0) return half;
   constexpr int kRounds = 60;  // more than a double has bits
@@ -43,7 +43,7 @@ struct Interval {
 };
 constexpr int kNoFace = -1;
 
-Interval over_face(const Axis& axis, int k, double half) noexcept {
+Interval over_face(const CapsuleAxis& axis, int k, double half) noexcept {
   Interval part{-half, half};
   for (int j = 0; j < 3; ++j) {
     const double d = axis.direction[j];
@@ -59,7 +59,7 @@ Interval over_face(const Axis& axis, int k, double half) noexcept {
 
 void capsule_box(const Solid& a, const Solid& b, Manifold& out) noexcept {
   const double half = a.geometry->half_length, radius = a.geometry->radius;
-  const Axis axis{b.to_shape(a.p_WS), transpose_multiply(b.R_WS, a.R_WS.c[2]), b.geometry->half_size};
+  const CapsuleAxis axis{b.to_shape(a.p_WS), transpose_multiply(b.R_WS, a.R_WS.c[2]), b.geometry->half_size};
   const auto add_ball = [&](double s) { ball_box(a.p_WS + a.R_WS.c[2] * s, radius, b, out); };
   const double nearest = nearest_along(axis, half);
   const Vec3 away = axis.outside(nearest);

@@ -7,41 +7,41 @@ using math::Mat3;
 namespace {
 
 // freedoms of one plane: displacement and turn of node 1, of node 2
-using Plane = std::array<double, 4>;
+using PlaneTerms = std::array<double, 4>;
 
 // where the planes' freedoms are among the element's twelve, and the sign of the turn (-ry in the x-z plane)
 constexpr std::array<int, 4> kPlaneY = {1, 5, 7, 11}, kPlaneZ = {2, 4, 8, 10};
 constexpr std::array<double, 4> kTurnY = {1, 1, 1, 1}, kTurnZ = {1, -1, 1, -1};
 
 // (2)
-Plane displacement(double xi, double l, double phi) noexcept {
+PlaneTerms displacement(double xi, double l, double phi) noexcept {
   const double x2 = xi * xi, x3 = x2 * xi, s = 1 / (1 + phi);
   return {s * (1 - 3 * x2 + 2 * x3 + phi * (1 - xi)), s * l * (xi - 2 * x2 + x3 + phi / 2 * (xi - x2)),
           s * (3 * x2 - 2 * x3 + phi * xi), s * l * (-x2 + x3 - phi / 2 * (xi - x2))};
 }
 
 // d(2)/dx
-Plane slope(double xi, double l, double phi) noexcept {
+PlaneTerms slope(double xi, double l, double phi) noexcept {
   const double x2 = xi * xi, s = 1 / (1 + phi);
   return {s / l * (-6 * xi + 6 * x2 - phi), s * (1 - 4 * xi + 3 * x2 + phi / 2 * (1 - 2 * xi)),
           s / l * (6 * xi - 6 * x2 + phi), s * (-2 * xi + 3 * x2 - phi / 2 * (1 - 2 * xi))};
 }
 
 // (3)
-Plane turn(double xi, double l, double phi) noexcept {
+PlaneTerms turn(double xi, double l, double phi) noexcept {
   const double x2 = xi * xi, s = 1 / (1 + phi);
   return {s * 6 / l * (x2 - xi), s * (1 - 4 * xi + 3 * x2 + phi * (1 - xi)), s * 6 / l * (xi - x2),
           s * (-2 * xi + 3 * x2 + phi * xi)};
 }
 
 // d(3)/dx
-Plane curvature(double xi, double l, double phi) noexcept {
+PlaneTerms curvature(double xi, double l, double phi) noexcept {
   const double s = 1 / ((1 + phi) * l);
   return {s * 6 / l * (2 * xi - 1), s * (-4 + 6 * xi - phi), s * 6 / l * (1 - 2 * xi), s * (-2 + 6 * xi + phi)};
 }
 
 template <typename Target>
-void put(Target&& row, const Plane& values, const std::array<int, 4>& where, const std::array<double, 4>& sign,
+void put(Target&& row, const PlaneTerms& values, const std::array<int, 4>& where, const std::array<double, 4>& sign,
          double factor = 1) {
   for (std::size_t i = 0; i < 4; ++i) row(where[i]) = factor * sign[i] * values[i];
 }
@@ -95,8 +95,8 @@ double shear_number(double bending, double shear_factor, double shear_modulus, d
 
 ElementField field_at(const BeamElement& element, double xi, RotaryInertia rotary) {
   const double l = element.length;
-  const Plane v = displacement(xi, l, element.phi_y), rz = turn(xi, l, element.phi_y);
-  const Plane w = displacement(xi, l, element.phi_z), ry = turn(xi, l, element.phi_z);
+  const PlaneTerms v = displacement(xi, l, element.phi_y), rz = turn(xi, l, element.phi_y);
+  const PlaneTerms w = displacement(xi, l, element.phi_z), ry = turn(xi, l, element.phi_z);
   Matrix3x12 axis = Matrix3x12::Zero(), per_y = Matrix3x12::Zero(), per_z = Matrix3x12::Zero();
   axis(0, 0) = 1 - xi;
   axis(0, 6) = xi;

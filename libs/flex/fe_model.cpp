@@ -17,6 +17,12 @@ std::size_t find_node(const FeModel& model, int id, const std::string& key) {
                                id, model.nodes.size(), model.nodes.front().id, model.nodes.back().id));
 }
 
+double extent(const FeModel& model) {
+  double size = 0;
+  for (const FeNode& node : model.nodes) size = std::max(size, norm(node.position - model.nodes.front().position));
+  return size;
+}
+
 Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const FeModel& model, Vec3 point) {
   Eigen::Matrix<double, Eigen::Dynamic, 6> R(model.freedoms(), 6);
   R.setZero();

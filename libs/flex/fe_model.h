@@ -53,6 +53,9 @@ struct FeModel {
 // Index of the node with the id. Throws InputError that names the key which asked for it.
 [[nodiscard]] std::size_t find_node(const FeModel& model, int id, const std::string& key);
 
+// m; of the node that is farthest from the first one
+[[nodiscard]] double extent(const FeModel& model);
+
 // freedoms x 6: displacements of the model moved as a rigid body, along x, y, z and about x, y, z of the body frame
 // through the point.
 [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const FeModel& model, math::Vec3 point = {});

@@ -15,7 +15,7 @@ using math::Vec3;
 namespace {
 
 // nodes off the line over its length, and turns of the section between elements [rad]
-constexpr double kStraight = 1e-6;
+constexpr double kOnAxis = 1e-6;
 
 // The beam along s from its first end, piece by piece.
 struct Piece {
@@ -88,11 +88,11 @@ class Segmenter {
 
   void check_piece(const UniformElement& e, int end) const {
     const Vec3 r = place(end) - start_;
-    if (norm(cross(axes_.c[0], r)) > kStraight * norm(r) || dot(axes_.c[0], r) <= 0)
+    if (norm(cross(axes_.c[0], r)) > kOnAxis * norm(r) || dot(axes_.c[0], r) <= 0)
       throw InputError(
           fmt::format("node {} is off the line of the nodes before it; segments take straight beams", end));
     const bool is_round = e.bend_y == e.bend_z && e.shear_y == e.shear_z && e.rotary_y == e.rotary_z;
-    if (!is_round && norm(cross(e.y, axes_.c[1])) > kStraight)
+    if (!is_round && norm(cross(e.y, axes_.c[1])) > kOnAxis)
       throw InputError(fmt::format(
           "the section before node {} is turned about the beam; segments take sections of one direction", end));
   }

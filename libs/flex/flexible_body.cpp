@@ -96,9 +96,9 @@ BeamOf beam_of(const FlexibleBodyDef& def) {
   return out;
 }
 
-class Checker {
+class BodyChecker {
  public:
-  explicit Checker(const FlexibleBodyDef& def) : def_(def) {}
+  explicit BodyChecker(const FlexibleBodyDef& def) : def_(def) {}
 
   Problems run() {
     check_name("model", def_.model);
@@ -218,7 +218,7 @@ std::set<int> known_ids(const std::string& path, const std::vector<double>& ids,
 }  // namespace
 
 Problems check_flexible_body(const FlexibleBodyDef& def) {
-  return Checker(def).run();
+  return BodyChecker(def).run();
 }
 
 Problems check_reduction(const FlexibleBodyDef& def, const FeModel& model) {

@@ -20,9 +20,9 @@ using math::Vec3;
 namespace {
 
 // |A - A^T| over the largest element: what eight printed digits leave
-constexpr double kSymmetric = 1e-7;
+constexpr double kSymmetricMatrix = 1e-7;
 // force of a rigid motion over that of its stiffest row: eight printed digits, and room for a fine mesh
-constexpr double kRigid = 1e-6;
+constexpr double kRigidForce = 1e-6;
 // masses in x, y and z
 constexpr double kOneMass = 1e-6;
 // a pivot of K + shift M over its diagonal below this is not positive
@@ -91,9 +91,10 @@ void check_symmetry(const std::string& name, const char* which, const SparseMatr
   const SparseMatrix transposed = A.transpose();
   const SparseMatrix difference = A - transposed;
   const double skew = largest(difference), scale = largest(A);
-  if (skew > kSymmetric * scale)
+  if (skew > kSymmetricMatrix * scale)
     refuse(name, fmt::format("the {} matrix is not symmetric: {:.3g} of its largest element", which, skew / scale),
-           fmt::format("at most {:.0e}", kSymmetric), "export it without follower loads, damping and gyroscopic terms");
+           fmt::format("at most {:.0e}", kSymmetricMatrix),
+           "export it without follower loads, damping and gyroscopic terms");
 }
 
 // nodes in ascending id, and the new row of each old one
@@ -138,12 +139,6 @@ SparseMatrix reordered(const SparseMatrix& A, const Ordered& order) {
   return out;
 }
 
-double extent(const FeModel& model) {
-  double size = 0;
-  for (const FeNode& node : model.nodes) size = std::max(size, norm(node.position - model.nodes.front().position));
-  return size;
-}
-
 // K R = 0: largest force over what the stiffness would give without cancelling
 void check_rigid_motions(const FeModel& model) {
   const Eigen::Matrix<double, Eigen::Dynamic, 6> R = rigid_motions(model, model.nodes.front().position);
@@ -167,7 +162,7 @@ void check_rigid_motions(const FeModel& model) {
     }
     // sums of few terms that cancel leave rounding of the largest row; compare with it too
     const double overall = *std::max_element(scale.begin(), scale.end());
-    if (worst > kRigid && std::abs(force[static_cast<std::size_t>(where)]) > kRigid * kRigid * overall) {
+    if (worst > kRigidForce && std::abs(force[static_cast<std::size_t>(where)]) > kRigidForce * kRigidForce * overall) {
       const auto node = std::find_if(model.nodes.begin(), model.nodes.end(),
                                      [&](const FeNode& n) { return where < n.first + n.freedoms; });
       refuse(model.name,
@@ -175,7 +170,7 @@ void check_rigid_motions(const FeModel& model) {
                  "moved {} as a rigid body the stiffness matrix resists: at node {} with {:.3g} of the forces that "
                  "should cancel",
                  kMotions[motion], node->id, worst),
-             fmt::format("at most {:.0e} for each of six rigid motions", kRigid),
+             fmt::format("at most {:.0e} for each of six rigid motions", kRigidForce),
              motion < 3
                  ? "take supports out of the model before the export"
                  : "give positions in the unit of the matrices (m), and the nodes in the order of the rows; take "

@@ -42,13 +42,6 @@ void turn_group(const FeModel& model, MatrixXd& Phi, Eigen::Index first, Eigen::
   Phi.middleCols(first, count) = turned;
 }
 
-double extent(const FeModel& model) {
-  double largest = 0;
-  for (const FeNode& node : model.nodes)
-    largest = std::max(largest, norm(node.position - model.nodes.front().position));
-  return largest;
-}
-
 // the sign of the first of the largest values in the rows offset to offset + 2 of every node
 double sign_of_largest(const FeModel& model, const MatrixXd& Phi, Eigen::Index mode, int offset, double largest) {
   for (const FeNode& node : model.nodes) {

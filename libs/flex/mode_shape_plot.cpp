@@ -79,10 +79,10 @@ Kind kind_of(const ReducedBody& body, std::size_t mode, double size) {
   return {largest, -1, fmt::format("moves along {}", "xyz"[strongest(moved)])};
 }
 
-class Plane {
+class PlotPlane {
  public:
   // px: middle of the plane, half of its width, its height; across: the axis that points up
-  Plane(const Frame& frame, double x, double y, double half_width, double height, int across)
+  PlotPlane(const Frame& frame, double x, double y, double half_width, double height, int across)
       : frame_(frame), x_(x), y_(y), scale_(half_width / frame.half), height_(height), across_(across) {}
 
   void draw(std::string& svg, const ReducedBody& body, std::size_t mode, const Kind& kind) const {
@@ -163,7 +163,7 @@ std::string mode_shape_svg(const Reduction& reduction, std::span<const int> ordi
     for (int plane = 0; plane < (kind.turns_about < 0 ? 2 : 1); ++plane) {
       const int across = plane == 0 ? (frame.along == 1 ? 2 : 1) : (frame.along == 0 ? 2 : 0);
       const double middle = top + kHead + (plane + 0.5) * plane_height;
-      Plane(frame, left + kLeft + 8 + half, middle, half, plane_height, across).draw(svg, body, mode, kind);
+      PlotPlane(frame, left + kLeft + 8 + half, middle, half, plane_height, across).draw(svg, body, mode, kind);
     }
   }
   return svg + "</svg>\n";

@@ -149,9 +149,9 @@ Section shaped(const SectionDef& def, double nu) {
   return {def.area, def.second_moment_y, def.second_moment_z, def.torsion_constant, 0, 0, def.points};
 }
 
-class Checker {
+class SectionChecker {
  public:
-  Checker(const std::string& owner, Problems& problems) : owner_(owner), problems_(problems) {}
+  SectionChecker(const std::string& owner, Problems& problems) : owner_(owner), problems_(problems) {}
 
   void positive(const char* key, double value, const char* unit) {
     if (std::isfinite(value) && value > 0) return;
@@ -195,7 +195,7 @@ class Checker {
 
 void check_section(const std::string& owner, const SectionDef& def, Problems& problems) {
   const std::size_t before = problems.size();
-  Checker check(owner, problems);
+  SectionChecker check(owner, problems);
   const bool is_round = def.shape == SectionShape::tube || def.shape == SectionShape::solid_circle;
   if (def.shape == SectionShape::given) {
     check.positive("area", def.area, "m2");

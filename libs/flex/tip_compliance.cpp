@@ -27,7 +27,7 @@ MatrixXd displacements(const FeModel& model, const ReducedBody& body, const std:
   return u;
 }
 
-std::vector<int> rows_of(const FeModel& model, const std::vector<std::size_t>& nodes) {
+std::vector<int> rows_at(const FeModel& model, const std::vector<std::size_t>& nodes) {
   std::vector<int> rows;
   for (const std::size_t i : nodes) {
     for (int a = 0; a < model.nodes[i].freedoms; ++a) rows.push_back(model.nodes[i].first + a);
@@ -39,7 +39,7 @@ std::vector<int> rows_of(const FeModel& model, const std::vector<std::size_t>& n
 MatrixXd seen_from(const FeModel& model, const ReducedBody& body, const std::vector<std::size_t>& reference,
                    std::size_t tip) {
   const Eigen::Matrix<double, Eigen::Dynamic, 6> R = rigid_motions(model, model.nodes[reference.front()].position);
-  const std::vector<int> rows = rows_of(model, reference);
+  const std::vector<int> rows = rows_at(model, reference);
   MatrixXd held(static_cast<Index>(rows.size()), 6);
   for (std::size_t i = 0; i < rows.size(); ++i) held.row(static_cast<Index>(i)) = R.row(rows[i]);
   const SmallSolution motion = solve_small(held, displacements(model, body, reference));
@@ -81,7 +81,7 @@ TipCompliance tip_compliance(const FeModel& model, const Reduction& all, const s
   for (const int id : reference_nodes) reference.push_back(find_node(model, id, "reference_nodes"));
   const MatrixXd Psi = seen_from(model, all.body, reference, at);
   if (Psi.rows() == 0 || std::find(reference.begin(), reference.end(), at) != reference.end()) return out;
-  std::vector<int> held = rows_of(model, reference);
+  std::vector<int> held = rows_at(model, reference);
   std::sort(held.begin(), held.end());
   const int first = model.nodes[at].first;
   const MatrixXd full = static_answer(model, held, {first, first + 1, first + 2});

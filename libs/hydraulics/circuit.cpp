@@ -4,16 +4,13 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/index.h"
 
 namespace slew::hydraulics {
 namespace {
 
 constexpr double kPositionScale = 1e-3;  // m: at rtol 1e-4 an error of 0.1 um, a few newtons of oil spring
 constexpr double kSpeedScale = 0.1;      // m/s
-
-std::size_t at(int i) noexcept {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

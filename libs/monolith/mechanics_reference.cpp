@@ -15,7 +15,7 @@ namespace slew::monolith {
 namespace {
 
 // loops are closed in the solver's values so often [s]: what it violates grows with the square of the time
-constexpr double kWindow = 0.05;
+constexpr double kClosingWindow = 0.05;
 
 // (1)
 class MechanicsEquations final : public DifferentialEquation {
@@ -95,7 +95,9 @@ Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<c
     SLEW_CHECK(time >= solver.time());
     bool is_closed = equations.take(solver.time(), solver.y().data());
     const double begin = solver.time(), way = time - begin;
-    const int windows = !(way > 0) ? 0 : result.model.cuts.empty() ? 1 : static_cast<int>(std::ceil(way / kWindow));
+    const int windows = !(way > 0)                  ? 0
+                        : result.model.cuts.empty() ? 1
+                                                    : static_cast<int>(std::ceil(way / kClosingWindow));
     for (int k = 1; k <= windows; ++k) {
       const double next = k == windows ? time : begin + way * k / windows;
       const std::string failure = solver.advance(next);

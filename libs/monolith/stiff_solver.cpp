@@ -26,7 +26,7 @@ int call_rates(realtype t, N_Vector y, N_Vector f, void* user) {
   return is_finite ? 0 : 1;
 }
 
-void ignore_message(int, const char*, const char*, char*, void*) {}
+void ignore_cvode_message(int, const char*, const char*, char*, void*) {}
 
 }  // namespace
 
@@ -67,7 +67,7 @@ StiffSolver::StiffSolver(DifferentialEquation& equation, std::span<const double>
   SLEW_CHECK(CVodeSetUserData(m.cvode, &equation_) == CV_SUCCESS);
   SLEW_CHECK(CVodeSetLinearSolver(m.cvode, m.solver, m.matrix) == CV_SUCCESS);
   SLEW_CHECK(CVodeSetMaxNumSteps(m.cvode, kMostSteps) == CV_SUCCESS);
-  SLEW_CHECK(CVodeSetErrHandlerFn(m.cvode, ignore_message, nullptr) == CV_SUCCESS);
+  SLEW_CHECK(CVodeSetErrHandlerFn(m.cvode, ignore_cvode_message, nullptr) == CV_SUCCESS);
 }
 
 StiffSolver::~StiffSolver() = default;

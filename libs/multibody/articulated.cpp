@@ -9,6 +9,7 @@
 // with a point on another node: flexible/node_dummies.h.
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/joint_directions.h"
 #include "multibody/passes.h"
 
@@ -19,18 +20,14 @@ using math::Vec3;
 
 namespace {
 
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
-struct Wrench {
+struct LinkWrench {
   Vec3 n, f;
 };
 
 // wrench and child-side force of a coupled mass when the child's point moves with acceleration u
 struct PointResponse {
-  Wrench both;   // on both points, about the child's origin
-  Vec3 F_child;  // on the child's point
+  LinkWrench both;  // on both points, about the child's origin
+  Vec3 F_child;     // on the child's point
 };
 
 PointResponse respond(const CoupledMass& mass, const CoupledMotion& m, Vec3 u) noexcept {
@@ -88,7 +85,8 @@ void add_to_parent(const ArticulatedInertia& I, Vec3 r, ArticulatedInertia& pare
 }
 
 // revolute and prismatic: one direction; U = IA S is given
-void factorize_axis(const Model& model, Workspace& ws, std::size_t i, Wrench U, double d, double residual) noexcept {
+void factorize_axis(const Model& model, Workspace& ws, std::size_t i, LinkWrench U, double d,
+                    double residual) noexcept {
   const Link& link = model.links[i];
   const bool is_revolute = link.joint == LinkJoint::revolute;
   const Vec3 axis = ws.motion[i].axis;
@@ -123,14 +121,14 @@ void factorize_axis(const Model& model, Workspace& ws, std::size_t i, Wrench U, 
 void factorize_revolute(const Model& model, Workspace& ws, std::size_t i) noexcept {
   const ArticulatedInertia& I = ws.inertia[i];
   const Vec3 axis = ws.motion[i].axis;
-  const Wrench U = {I.J * axis, I.K * axis};
+  const LinkWrench U = {I.J * axis, I.K * axis};
   factorize_axis(model, ws, i, U, dot(axis, U.n), ws.tau[at(model.links[i].u)] - dot(axis, I.n));
 }
 
 void factorize_prismatic(const Model& model, Workspace& ws, std::size_t i) noexcept {
   const ArticulatedInertia& I = ws.inertia[i];
   const Vec3 axis = ws.motion[i].axis;
-  const Wrench U = {transpose(I.K) * axis, I.M * axis};
+  const LinkWrench U = {transpose(I.K) * axis, I.M * axis};
   factorize_axis(model, ws, i, U, dot(axis, U.f), ws.tau[at(model.links[i].u)] - dot(axis, I.f));
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/index.h"
 #include "multibody/body_penalty.h"
 #include "multibody/constraint.h"
 #include "multibody/loops.h"
@@ -22,16 +23,12 @@ constexpr double kDependentAtStart = 1e-8;
 // compared with this share of the mobility of the mechanism as one body as well: with kDependentAtStart 1e-12, the
 // square of what six digits in a scene leave open.
 constexpr double kVanishing = 1e-4;
-constexpr int kMostIterations = 100;
-constexpr int kMostHalvings = 20;
-constexpr double kTurn = 0.05;   // rad, of the positions nearby
-constexpr double kSlide = 0.02;  // of the mechanism's size
+constexpr int kMostAssemblyIterations = 100;
+constexpr int kMostAssemblyHalvings = 20;
+constexpr double kNearTurn = 0.05;  // rad, of the positions nearby
+constexpr double kSlide = 0.02;     // of the mechanism's size
 // speeds that do not fit their loop by more than this are reported
-constexpr double kSpeedTolerance = 1e-6;
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
+constexpr double kAssembledSpeed = 1e-6;
 
 // Works on the model's rows as they are; made anew when they change.
 class Assembler {
@@ -42,13 +39,13 @@ class Assembler {
 
   // Newton's method for the independent rows, with damping
   void close() {
-    for (int i = 0; i < kMostIterations; ++i) {
+    for (int i = 0; i < kMostAssemblyIterations; ++i) {
       renew(state_);
       const double before = independent_violation();
       if (before <= kClosed * extent_of(ws_).length || !std::isfinite(before)) return;
       find_step([](const RowValue& row) { return row.g; });
       const State from = state_;
-      for (int halving = 0; halving < kMostHalvings; ++halving) {
+      for (int halving = 0; halving < kMostAssemblyHalvings; ++halving) {
         state_.q = from.q;
         solve_forward(model_, ws_, ws_.residual, ws_.loops.step);
         displace(model_, ws_, ws_.loops.step, state_.q);
@@ -79,10 +76,10 @@ class Assembler {
       return static_cast<double>(random >> 11) * 0x1p-52 - 1;
     };
     std::vector<double> step(state_.u.size());
-    for (double& x : step) x = kTurn * uniform();
+    for (double& x : step) x = kNearTurn * uniform();
     for (std::size_t i = 1; i < model_.links.size(); ++i) {
       const Link& link = model_.links[i];
-      const double slide = kSlide / kTurn * (size > 0 ? size : 1);
+      const double slide = kSlide / kNearTurn * (size > 0 ? size : 1);
       if (link.joint == LinkJoint::prismatic) step[at(link.u)] *= slide;
       if (link.joint == LinkJoint::cylindrical) step[at(link.u) + 1] *= slide;
       if (link.joint == LinkJoint::floating) std::for_each_n(&step[at(link.u)], 3, [&](double& x) { x *= slide; });
@@ -239,7 +236,7 @@ class Assembler {
                                                                const std::vector<std::size_t>& given) {
     std::vector<AssemblyReport::Speed> lost;
     const auto see = [&lost](std::string_view joint, double asked, double found) {
-      if (std::fabs(found - asked) <= kSpeedTolerance * std::max(1.0, std::fabs(asked))) return;
+      if (std::fabs(found - asked) <= kAssembledSpeed * std::max(1.0, std::fabs(asked))) return;
       lost.push_back({std::string(joint), asked, found});
     };
     for (const std::size_t j : given) {

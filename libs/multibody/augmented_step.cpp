@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+#include "core/reductions.h"
 #include "multibody/body_attitude.h"
 #include "multibody/contact_passes.h"
 #include "multibody/loops.h"
@@ -15,24 +17,14 @@ namespace {
 
 // corrections of Newton's method, m and rad of the mechanism's size: each is worth a factor of a hundred to ten
 // thousand
-constexpr int kMostCorrections = 30;
-constexpr double kSettled = 1e-12;
+constexpr int kMostStepCorrections = 30;
+constexpr double kStepSettled = 1e-12;
 // under stiff springs rounding ends the way down before that
 constexpr double kRounded = 1e-9;
-constexpr double kStalled = 0.5;
+constexpr double kStepStalled = 0.5;
 // the matrix is made anew when a correction shrinks by less
-constexpr double kSlow = 0.1;
+constexpr double kSlowStep = 0.1;
 constexpr double kClosedRate = 1e-12;  // m/s, 1/s of its speed
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
-double largest_of(std::span<const double> x) noexcept {
-  double largest = 0;
-  for (const double value : x) largest = std::max(largest, std::fabs(value));
-  return largest;
-}
 
 math::Quaternion turned(Vec3 turn, const math::Quaternion& attitude) noexcept {
   const double angle = norm(turn);
@@ -74,12 +66,12 @@ class Trapezoid {
     bool is_regular = factorize(model_, body_, ws_, pws_, h_);
     const double extent = extent_of(ws_).length;
     double before = 0, size = 0;
-    for (pws_.iterations = 1; pws_.iterations <= kMostCorrections; ++pws_.iterations) {
+    for (pws_.iterations = 1; pws_.iterations <= kMostStepCorrections; ++pws_.iterations) {
       correct();
-      size = largest_of(pws_.correction) / extent;
-      if (size <= kSettled) return is_regular;
-      const bool is_slow = pws_.iterations > 1 && size > kSlow * before;
-      if (is_slow && size <= kRounded && size > kStalled * before) return is_regular;
+      size = fixed_max_abs(pws_.correction) / extent;
+      if (size <= kStepSettled) return is_regular;
+      const bool is_slow = pws_.iterations > 1 && size > kSlowStep * before;
+      if (is_slow && size <= kRounded && size > kStepStalled * before) return is_regular;
       if (is_slow) is_regular = factorize(model_, body_, ws_, pws_, h_) && is_regular;
       before = size;
     }
@@ -90,7 +82,7 @@ class Trapezoid {
   void close_speeds() noexcept {
     const double closed = kClosedRate * extent_of(ws_).speed;
     double before = 0;
-    for (int round = 0; round < kMostCorrections; ++round) {
+    for (int round = 0; round < kMostStepCorrections; ++round) {
       std::fill(pws_.correction.begin(), pws_.correction.end(), 0.0);
       double largest = 0;
       for_each_row([&](std::size_t i, std::size_t row) {
@@ -100,7 +92,7 @@ class Trapezoid {
         largest = std::max(largest, std::fabs(rate));
         subtract_row(factored_row(body_, pws_, i, row), body_.alpha[row] * rate, pws_.correction);
       });
-      if (largest <= closed || (round > 0 && largest > kStalled * before)) return;
+      if (largest <= closed || (round > 0 && largest > kStepStalled * before)) return;
       before = largest;
       pws_.ldl.solve(pws_.correction);
       for (std::size_t k = 0; k < pws_.stage.u.size(); ++k) pws_.stage.u[k] += pws_.correction[k];

@@ -1,24 +1,13 @@
 // Solutions with the factors of articulated.cpp: forward for accelerations, backward for generalised forces.
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/joint_directions.h"
 #include "multibody/passes.h"
 
 namespace slew::multibody {
 
 using math::Vec3;
-
-namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
-void put(Vec3 a, double* x) noexcept {
-  for (int k = 0; k < 3; ++k) x[k] = a[k];
-}
-
-}  // namespace
 
 void solve_forward(const Model& model, Workspace& ws, std::span<const double> residual,
                    std::span<double> udot) noexcept {

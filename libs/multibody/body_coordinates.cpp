@@ -2,30 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "core/index.h"
 #include "multibody/body_passes.h"
+#include "multibody/joint_directions.h"
 #include "multibody/passes.h"
 
 namespace slew::multibody {
 
 using math::Mat3;
 using math::Vec3;
-
-namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
-Vec3 vector_at(std::span<const double> x, std::size_t i) noexcept {
-  return {x[i], x[i + 1], x[i + 2]};
-}
-
-void put(Vec3 a, double* x) noexcept {
-  for (int k = 0; k < 3; ++k) x[k] = a[k];
-}
-
-}  // namespace
 
 // ---- building -------------------------------------------------------------------------------------------------
 
@@ -163,8 +150,8 @@ namespace {
 
 // the angle that differs by whole turns and is nearest to the one before
 double continued(double angle, double before) noexcept {
-  constexpr double kTurn = 2 * 3.14159265358979323846;
-  return angle + kTurn * std::round((before - angle) / kTurn);
+  constexpr double turn = 2 * std::numbers::pi;
+  return angle + turn * std::round((before - angle) / turn);
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include <algorithm>
 
+#include "core/index.h"
 #include "multibody/body_passes.h"
 #include "multibody/contact_passes.h"
 #include "multibody/coupled_mass.h"
+#include "multibody/joint_directions.h"
 #include "multibody/loops.h"
 #include "multibody/passes.h"
 
@@ -11,18 +13,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
-void put(Vec3 a, double* x) noexcept {
-  for (int k = 0; k < 3; ++k) x[k] = a[k];
-}
-
-void subtract(Vec3 a, double* x) noexcept {
-  for (int k = 0; k < 3; ++k) x[k] -= a[k];
-}
 
 double* body_at(const math::BlockLdl& ldl, std::vector<double>& x, int link) noexcept {
   return x.data() + ldl.first_row(link - 1);

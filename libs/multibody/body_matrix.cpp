@@ -1,6 +1,7 @@
 // The saddle-point matrix of body coordinates, block by block.
 #include <array>
 
+#include "core/index.h"
 #include "multibody/body_block.h"
 #include "multibody/body_passes.h"
 
@@ -9,10 +10,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 class Filling {
  public:

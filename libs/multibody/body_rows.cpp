@@ -1,3 +1,4 @@
+#include "core/index.h"
 #include "multibody/body_passes.h"
 #include "multibody/rows.h"
 
@@ -6,10 +7,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 void add(Vec3 a, double* x) noexcept {
   for (int k = 0; k < 3; ++k) x[k] += a[k];

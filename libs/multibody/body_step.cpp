@@ -9,7 +9,7 @@ namespace slew::multibody {
 
 namespace {
 
-constexpr int kMostCorrections = 20;  // Newton with one matrix: an error of 1e-2 is gone after five
+constexpr int kMostBodyCorrections = 20;  // Newton with one matrix: an error of 1e-2 is gone after five
 
 // accelerations of a stage
 bool find_accelerations(const Model& model, const BodyModel& body, const BodyState& state,
@@ -68,14 +68,14 @@ bool project(const Model& model, const BodyModel& body, BodyState& state, State&
   const Extent extent = extent_of(ws);
   const double closed = kClosed * extent.length, steady = kClosed * extent.speed;
   Drift left = drift(bws);
-  for (int i = 0; i < kMostCorrections && left.position > closed; ++i) {
+  for (int i = 0; i < kMostBodyCorrections && left.position > closed; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.g; });
     displace(body, state, bws);
     update_body_motion(model, state, ws);
     evaluate_joints(model, body, ws, bws);
     left = drift(bws);
   }
-  for (int i = 0; i < kMostCorrections && left.rate > steady; ++i) {
+  for (int i = 0; i < kMostBodyCorrections && left.rate > steady; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.rate; });
     add_bodies(body, bws.ldl, bws.solution, 1, state.u);
     update_body_motion(model, state, ws);
@@ -90,7 +90,7 @@ bool project_step(const Model& model, const BodyModel& body, double h, BodyState
                   BodyWorkspace& bws) noexcept {
   update_body_motion(model, state, ws);
   const double closed = kClosed * extent_of(ws).length;
-  for (int i = 0; i < kMostCorrections && bws.ldl.smallest_pivot() >= kNearSingular; ++i) {
+  for (int i = 0; i < kMostBodyCorrections && bws.ldl.smallest_pivot() >= kNearSingular; ++i) {
     evaluate_joints(model, body, ws, bws);
     if (!(drift(bws).position > closed)) break;
     solve_violation(body, bws, [](const RowValue& row) { return row.g; });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/body_inertia.h"
 #include "multibody/build_rows.h"
 
@@ -13,10 +14,6 @@ namespace {
 
 using math::Mat3;
 using math::Vec3;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 template <typename Def>
 ElementLaw law_of(const Def& def, double free, double min, double max) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "multibody/assembly.h"
 #include "multibody/body_inertia.h"
 #include "multibody/build_forces.h"
@@ -23,10 +24,6 @@ namespace {
 
 using math::Mat3;
 using math::Vec3;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // half a turn about x: reverses a joint's axis, so that q keeps its sign when the tree walks the joint backwards
 const Mat3 kReverse = Mat3::diagonal(1, -1, -1);

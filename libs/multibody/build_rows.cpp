@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "multibody/joint_axes.h"
 #include "multibody/topology.h"
 
 namespace slew::multibody {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // appends all links between those given and Ground, outermost first; returns where they begin and end
 std::pair<int, int> add_support(Model& model, std::span<const int> links) {

@@ -19,37 +19,37 @@ constexpr Range kPointSlots{
 constexpr Range kGrid{.min = 2, .max = 1e4, .min_is_open = false, .max_is_open = false};
 
 constexpr Field kBody = field<&ShapeDef::body>("body", {.reference = "body", .doc = "body that the shape belongs to"});
-constexpr Field kPosition =
+constexpr Field kShapePosition =
     field<&ShapeDef::position>("position", {.dimension = length, .doc = "shape's origin in the body's frame"});
-constexpr Field kOrientation = field<&ShapeDef::orientation>(
+constexpr Field kShapeOrientation = field<&ShapeDef::orientation>(
     "orientation", {.dimension = angle, .doc = "shape's axes in the body: successive Euler rotations z, x', z''"});
 constexpr Field kRadius = field<&ShapeDef::radius>(
     "radius", {.dimension = length, .range = kPositive, .presence = Presence::required, .doc = "radius"});
 
-constexpr Field kSphereFields[] = {kBody, kPosition, kOrientation, kRadius};
+constexpr Field kSphereFields[] = {kBody, kShapePosition, kShapeOrientation, kRadius};
 constexpr Field kBoxFields[] = {
-    kBody, kPosition, kOrientation,
+    kBody, kShapePosition, kShapeOrientation,
     field<&ShapeDef::size>("size", {.dimension = length,
                                     .range = kPositive,
                                     .presence = Presence::required,
                                     .doc = "edges along x, y, z; the origin is in the middle"})};
 constexpr Field kCylinderFields[] = {
-    kBody, kPosition, kOrientation, kRadius,
+    kBody, kShapePosition, kShapeOrientation, kRadius,
     field<&ShapeDef::length>("length", {.dimension = length,
                                         .range = kPositive,
                                         .presence = Presence::required,
                                         .doc = "length along z; the origin is in the middle"})};
 constexpr Field kCapsuleFields[] = {
-    kBody, kPosition, kOrientation, kRadius,
+    kBody, kShapePosition, kShapeOrientation, kRadius,
     field<&ShapeDef::length>("length", {.dimension = length,
                                         .range = kPositive,
                                         .presence = Presence::required,
                                         .doc = "between the centres of its round ends, along z"})};
-constexpr Field kPlaneFields[] = {kBody, kPosition, kOrientation};
+constexpr Field kPlaneFields[] = {kBody, kShapePosition, kShapeOrientation};
 constexpr Field kHeightFieldFields[] = {
     kBody,
-    kPosition,
-    kOrientation,
+    kShapePosition,
+    kShapeOrientation,
     field<&ShapeDef::columns>("columns",
                               {.range = kGrid, .presence = Presence::required, .doc = "number of points along x"}),
     field<&ShapeDef::rows>("rows", {.range = kGrid, .presence = Presence::required, .doc = "number of points along y"}),
@@ -64,8 +64,8 @@ constexpr Field kHeightFieldFields[] = {
                                           .doc = "heights along z, row by row from the origin; solid below"})};
 constexpr Field kMeshFields[] = {
     kBody,
-    kPosition,
-    kOrientation,
+    kShapePosition,
+    kShapeOrientation,
     field<&ShapeDef::file>("file", {.doc = "mesh file beside the scene: .stl, .obj, .dae or .3ds"}),
     field<&ShapeDef::file_unit>(
         "unit",
@@ -111,7 +111,7 @@ void* append_shape(MechanicsDef& mechanics, std::string_view element) {
 }
 
 template <auto List>
-void* append_to(MechanicsDef& mechanics, std::string_view element) {
+void* append_contact(MechanicsDef& mechanics, std::string_view element) {
   auto& def = (mechanics.*List).emplace_back();
   def.name = element;
   return &def;
@@ -142,13 +142,13 @@ std::span<const ElementType> shape_types() noexcept {
 
 std::span<const ElementType> contact_types() noexcept {
   static const ElementType type{"", "contact", "pair of shapes that is tested, and its laws", pair_fields(),
-                                append_to<&MechanicsDef::contacts>};
+                                append_contact<&MechanicsDef::contacts>};
   return {&type, 1};
 }
 
 std::span<const ElementType> friction_types() noexcept {
   static const ElementType type{"", "friction", "friction of contacts: bristles that bend, hold and slip",
-                                contact::friction_law_fields(), append_to<&MechanicsDef::frictions>};
+                                contact::friction_law_fields(), append_contact<&MechanicsDef::frictions>};
   return {&type, 1};
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "contact/sweep.h"
+#include "core/index.h"
 #include "math/rotation.h"
 #include "multibody/contact_rate.h"
 
@@ -26,11 +27,7 @@ constexpr double kMostParts = 256, kMostStiffParts = 1024;
 // in the trapezoid of `augmented` corrections shrink by a half at 1
 constexpr double kExplicitReach = 1.5, kCorrectedReach = 1;
 // a sub-step that is a multiple but for rounding does not get one part more
-constexpr double kRounding = 1e-9;
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
+constexpr double kContactRounding = 1e-9;
 
 void place_frames(const ContactElements& elements, const Workspace& ws, std::span<contact::Pose> poses) noexcept {
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -261,7 +258,7 @@ int contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) no
   look_ahead(h, contacts);
   contacts.is_near = !contacts.before.states().empty() || !contacts.set.points().empty();
   // parts that are short against what they lead through
-  double parts = std::ceil(h / elements.substep * (1 - kRounding));
+  double parts = std::ceil(h / elements.substep * (1 - kContactRounding));
   for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
     const contact::Meeting meeting = sweep(elements.model, pair, contacts.start_poses, contacts.ahead, contacts.set);
     if (meeting.kind == contact::Meeting::Kind::none) continue;

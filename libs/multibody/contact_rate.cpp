@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace slew::multibody {
 
 using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // L^-1 of the inertia about the centre of mass, L its lower triangle; 0 of a point mass
 Mat3 inverse_root(const Link& link) noexcept {

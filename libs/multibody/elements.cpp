@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/contact_passes.h"
 #include "multibody/element_law.h"
 #include "multibody/passes.h"
@@ -11,10 +12,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // a damper alone needs the axis only
 bool needs_angle(const AngleElement& element) noexcept {

@@ -1,5 +1,6 @@
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/contact_passes.h"
 #include "multibody/coupled_mass.h"
 #include "multibody/element_law.h"
@@ -11,10 +12,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 Vec3 velocity_at(const LinkMotion& link, Vec3 point) noexcept {
   return link.v + cross(link.w, point - link.p);

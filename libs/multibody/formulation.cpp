@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/reductions.h"
 #include "multibody/body_coordinates.h"
 #include "multibody/body_passes.h"
 #include "multibody/body_penalty.h"
@@ -18,17 +19,9 @@ namespace slew::multibody {
 namespace {
 
 // a sub-step whose iteration does not settle is taken in 2, 4, ... parts, at most so many
-constexpr int kMostParts = 8;
+constexpr int kMostPartsOfAStep = 8;
 // An iteration that did not settle even then and left speeds so many times larger has run away.
 constexpr double kMostGrowth = 1e3;
-
-double largest_of(std::span<const double> x) noexcept {
-  double largest = 0;
-  for (const double value : x) {
-    if (!(std::fabs(value) <= largest)) largest = std::fabs(value);  // NaN stays
-  }
-  return largest;
-}
 
 }  // namespace
 
@@ -199,7 +192,7 @@ bool Dynamics::advance_by_rule(const Model& model, State& state, Workspace& ws, 
   BodyState* const bodies = bodies_ == nullptr ? nullptr : &bodies_->state;
   BodyWorkspace& bws = bodies_ == nullptr ? *s.matrix : bodies_->ws;
   const BodyModel& body = bodies_ == nullptr ? s.model : bodies_->model;
-  const int most = is_implicit(s.rule.integrator) ? kMostParts : 1;
+  const int most = is_implicit(s.rule.integrator) ? kMostPartsOfAStep : 1;
   if (most > 1) s.keep(state, bodies);
   s.iterations = 0;
   bool is_sound = true;
@@ -220,7 +213,7 @@ bool Dynamics::advance_by_rule(const Model& model, State& state, Workspace& ws, 
     s.go_back(state, bodies);
   }
   // what has run away is held where it was
-  if (most > 1 && !(largest_of(state.u) <= kMostGrowth * std::max(1.0, largest_of(s.start.joints.u)))) {
+  if (most > 1 && !(fixed_max_abs(state.u) <= kMostGrowth * std::max(1.0, fixed_max_abs(s.start.joints.u)))) {
     s.go_back(state, bodies);
     evaluate(model, state, ws);
   }

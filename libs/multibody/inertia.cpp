@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/coupled_mass.h"
 #include "multibody/passes.h"
 
@@ -10,10 +11,6 @@ using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 [[gnu::noinline]] void add_parts(const Model& model, Workspace& ws) noexcept {
   // Ground's own takes what its nodes pass on, which nothing reads

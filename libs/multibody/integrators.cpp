@@ -18,9 +18,9 @@ namespace {
 // Newton's method with a kept matrix gains a digit or two a correction; a jump that is halved in on takes more
 constexpr int kMostCorrections = 80;
 // a correction that is larger than so much of the one before asks for a new matrix
-constexpr double kSlow = 0.3;
+constexpr double kSlowStage = 0.3;
 // share of the mechanism's size that rounding leaves in the coordinates
-constexpr double kRounding = 1e-14;
+constexpr double kStageRounding = 1e-14;
 
 double product(std::span<const double> a, std::span<const double> b) noexcept {
   double sum = 0;
@@ -62,7 +62,7 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
   set_stage_time(at.model, at.moving.joints, stage.time, at.ws);
   place(at, stage.sigma);
   const Extent extent = extent_of(at.ws);
-  const double settled = tolerance * extent.speed + kRounding * extent.length / stage.tau;
+  const double settled = tolerance * extent.speed + kStageRounding * extent.length / stage.tau;
   bool is_regular = true, is_near_singular = at.bws.ldl.smallest_pivot() < kNearSingular;
   for (int i = 0; i < kMostCorrections; ++i, ++s.iterations) {
     const bool is_closed = !is_near_singular || show_on_joints(at);
@@ -76,7 +76,7 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
     at.bws.ldl.solve(at.bws.solution);
     const double size = share * largest_speed(at);
     if (!std::isfinite(size)) return false;
-    if (size > kSlow * last && fresh != i && size > settled) {
+    if (size > kSlowStage * last && fresh != i && size > settled) {
       fresh = -1;
       // from now on with what the joints pull
       for (std::size_t k = 0; k < s.multipliers.size(); ++k) s.multipliers[k] = at.bws.solution[k] / stage.tau;
@@ -85,7 +85,7 @@ bool solve_stage(const StageContext& at, const Stage& stage, double tolerance) n
       continue;
     }
     read_step(at, s.step);
-    if (size > kSlow * last && product(s.step, s.last_step) < 0) share *= 0.5;
+    if (size > kSlowStage * last && product(s.step, s.last_step) < 0) share *= 0.5;
     for (std::size_t j = 0; j < u.size(); ++j) u[j] += share * s.step[j];
     place(at, stage.sigma);
     if (size <= settled) {

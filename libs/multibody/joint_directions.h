@@ -15,6 +15,18 @@ inline void store(std::span<double> to, int first, math::Vec3 value) noexcept {
   to[static_cast<std::size_t>(first) + 2] = value[2];
 }
 
+inline void put(math::Vec3 value, double* to) noexcept {
+  for (int k = 0; k < 3; ++k) to[k] = value[k];
+}
+
+inline void subtract(math::Vec3 value, double* from) noexcept {
+  for (int k = 0; k < 3; ++k) from[k] -= value[k];
+}
+
+[[nodiscard]] inline math::Vec3 vector_at(std::span<const double> from, std::size_t first) noexcept {
+  return {from[first], from[first + 1], from[first + 2]};
+}
+
 [[nodiscard]] inline math::Vec3 load(std::span<const double> from, int first) noexcept {
   return {from[static_cast<std::size_t>(first)], from[static_cast<std::size_t>(first) + 1],
           from[static_cast<std::size_t>(first) + 2]};

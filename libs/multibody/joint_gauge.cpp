@@ -4,14 +4,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/constraint.h"
 
 namespace slew::multibody {
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // a joint with coordinates, between the links of its bodies
 Constraint closed_joint(const Model& model, int index) {

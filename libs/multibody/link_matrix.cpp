@@ -2,17 +2,11 @@
 
 #include <algorithm>
 
+#include "core/index.h"
+
 namespace slew::multibody {
 
 using math::Vec3;
-
-namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 void add_points(int link_a, Vec3 s_a, int link_b, Vec3 s_b, const math::Mat3& A, LinkMatrix& matrix) noexcept {
   // of the two blocks between two links one is the other's transposed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "multibody/element_law.h"
 #include "multibody/passes.h"
 
@@ -11,10 +12,6 @@ using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 class Adding {
  public:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/constraint.h"
 #include "multibody/passes.h"
 
@@ -13,13 +14,9 @@ using math::Vec3;
 
 namespace {
 
-constexpr int kMostCorrections = 40;  // Newton with one matrix: an error of 1e-2 is gone after five
-constexpr int kPolish = 2;            // more of them near a singular position, where (1) divides by little
-constexpr int kRenewal = 8;           // corrections after which the matrix is made again
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
+constexpr int kMostClosingCorrections = 40;  // Newton with one matrix: an error of 1e-2 is gone after five
+constexpr int kPolish = 2;                   // more of them near a singular position, where (1) divides by little
+constexpr int kRenewal = 8;                  // corrections after which the matrix is made again
 
 double product(const double* a, const double* b, std::size_t size) noexcept {
   double sum = 0;
@@ -78,7 +75,7 @@ template <typename Value, typename Move>
 bool correct(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws, double tolerance,
              Value value, Move move) noexcept {
   int polish = is_near_singular(ws) ? kPolish : 0;
-  for (int i = 0; i < kMostCorrections; ++i) {
+  for (int i = 0; i < kMostClosingCorrections; ++i) {
     if (largest(ws.loops, value) <= tolerance && polish-- == 0) return true;
     if (i > 0 && i % kRenewal == 0) renew_matrix(model, q, u, ws);
     find_step(model, ws, value);

@@ -10,7 +10,7 @@ using math::Vec3;
 namespace {
 
 template <typename Element>
-int find_named(const std::vector<Element>& elements, std::string_view name) noexcept {
+int index_of(const std::vector<Element>& elements, std::string_view name) noexcept {
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (elements[i].name == name) return static_cast<int>(i);
   }
@@ -20,11 +20,11 @@ int find_named(const std::vector<Element>& elements, std::string_view name) noex
 }  // namespace
 
 int find_body(const Model& model, std::string_view name) noexcept {
-  return find_named(model.bodies, name);
+  return index_of(model.bodies, name);
 }
 
 int find_joint(const Model& model, std::string_view name) noexcept {
-  return find_named(model.joints, name);
+  return index_of(model.joints, name);
 }
 
 int find_row(const Model& model, std::string_view name) noexcept {

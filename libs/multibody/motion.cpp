@@ -21,10 +21,6 @@ math::Quaternion quaternion_at(std::span<const double> q, std::size_t i) noexcep
   return {q[i], q[i + 1], q[i + 2], q[i + 3]};
 }
 
-Vec3 vector_at(std::span<const double> u, std::size_t i) noexcept {
-  return {u[i], u[i + 1], u[i + 2]};
-}
-
 void move_revolute(const Link& link, const LinkMotion& parent, double q, double u, LinkMotion& m) noexcept {
   m.R = turned_about_z(parent.R * link.R_PJ, q);
   m.axis = m.R.c[2];

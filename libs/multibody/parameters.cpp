@@ -4,14 +4,11 @@
 #include <array>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/joint_axes.h"
 
 namespace slew::multibody {
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 template <typename Law>
 struct Member {

@@ -1,6 +1,7 @@
 // The matrix of the penalty formulations, block by block: equation (1) of body_penalty.h, and A_h of (7).
 #include <array>
 
+#include "core/index.h"
 #include "multibody/link_stiffness.h"
 #include "multibody/penalty_passes.h"
 
@@ -9,10 +10,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 std::array<double, kLinkSpeeds> spatial(Vec3 v, Vec3 w) noexcept {
   return {v[0], v[1], v[2], w[0], w[1], w[2]};

@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+#include "core/reductions.h"
 #include "multibody/contact_passes.h"
+#include "multibody/joint_directions.h"
 #include "multibody/passes.h"
 #include "multibody/penalty_passes.h"
 #include "multibody/spatial_block.h"
@@ -23,16 +26,8 @@ constexpr double kStalled = 0.5;
 // than there are: what is left is a share of its acceleration. More than that is a matrix that does not fit.
 constexpr double kSettled = 1e-3;
 
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
 Vec3 vector_at(const double* x) noexcept {
   return {x[0], x[1], x[2]};
-}
-
-void subtract(Vec3 a, double* x) noexcept {
-  for (int k = 0; k < 3; ++k) x[k] -= a[k];
 }
 
 double* link_at(std::span<double> x, int link) noexcept {
@@ -41,12 +36,6 @@ double* link_at(std::span<double> x, int link) noexcept {
 
 const double* link_at(std::span<const double> x, int link) noexcept {
   return x.data() + kLinkSpeeds * (at(link) - 1);
-}
-
-double largest_of(std::span<const double> x) noexcept {
-  double largest = 0;
-  for (const double value : x) largest = std::fabs(value) > largest ? std::fabs(value) : largest;
-  return largest;
 }
 
 // of the modes of a part, with each other and with their frame
@@ -204,8 +193,8 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
     pws.ldl.solve(pws.correction);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] += pws.correction[k];
     // forces that nearly balance leave less than their rounding
-    const double size = largest_of(pws.correction);
-    whole = std::max(whole, largest_of(x));
+    const double size = fixed_max_abs(pws.correction);
+    whole = std::max(whole, fixed_max_abs(x));
     share = whole > 0 ? size / whole : 0;
     if (share <= kRounding || (share <= kSmall && size > kStalled * before)) break;
     before = size;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/constraint.h"
 #include "multibody/contact_passes.h"
 #include "multibody/coupled_mass.h"
@@ -17,10 +18,6 @@ using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // Gathers, body by body, the wrench that only the joints can supply: inertia forces less known forces.
 class ReactionSum {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/index.h"
 #include "core/reductions.h"
 #include "multibody/constraint.h"
 #include "multibody/coupled_mass.h"
@@ -17,10 +18,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // what the unit force of a row does to a link on its way: a force at a point, or a torque
 struct UnitWrench {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/index.h"
 #include "multibody/body_block.h"
 #include "multibody/contact_stiffness.h"
 #include "multibody/element_law.h"
@@ -14,10 +15,6 @@ using math::Vec3;
 
 namespace {
 
-std::size_t at_index(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
 // A joint's force F at s from a link's origin turns it back when it pulls: (F . s) across s. Where it pushes nothing is
 // added, the matrix stays definite.
 void add_pulls(const StageContext& at, double weight, LinkMatrix& matrix) noexcept {
@@ -27,14 +24,14 @@ void add_pulls(const StageContext& at, double weight, LinkMatrix& matrix) noexce
         at.stages.multipliers.data() + at.bws.ldl.first_row(static_cast<int>(i) - 1) + at.body.row_offset(i);
     Vec3 F1, F2;
     for (std::size_t k = 0; k < joint.rows.size(); ++k) {
-      const RowGradient& G = at.bws.rows[at_index(at.bws.first_row[i]) + k].G;
+      const RowGradient& G = at.bws.rows[slew::at(at.bws.first_row[i]) + k].G;
       F1 -= G.v1 * multipliers[k];
       F2 -= G.v2 * multipliers[k];
     }
-    const LinkMotion& link1 = at.ws.motion[at_index(joint.link1)];
-    const Vec3 s1 = joint.node < 0 ? link1.R * joint.p_L1 : at.ws.motion[at_index(joint.link2)].p - link1.p;
+    const LinkMotion& link1 = at.ws.motion[slew::at(joint.link1)];
+    const Vec3 s1 = joint.node < 0 ? link1.R * joint.p_L1 : at.ws.motion[slew::at(joint.link2)].p - link1.p;
     add_pull(joint.link1, s1, F1, weight, matrix);
-    add_pull(joint.link2, at.ws.motion[at_index(joint.link2)].R * joint.p_L2, F2, weight, matrix);
+    add_pull(joint.link2, at.ws.motion[slew::at(joint.link2)].R * joint.p_L2, F2, weight, matrix);
   }
 }
 
@@ -55,7 +52,7 @@ void see_stops(const Model& model, const Workspace& ws, std::span<signed char> s
   }
   const auto note = [&](int kind) { stops[k++] = static_cast<signed char>(kind); };
   for (const Rope& rope : model.elements.ropes) note(state_of(rope, ws.motion).springs);
-  for (const Tyre& tyre : model.elements.tyres) note(state_of(tyre, ws.motion[at_index(tyre.link)]).springs);
+  for (const Tyre& tyre : model.elements.tyres) note(state_of(tyre, ws.motion[slew::at(tyre.link)]).springs);
   if (model.contact == nullptr) return;
   const std::span<signed char> pairs = stops.subspan(k);
   std::fill(pairs.begin(), pairs.end(), static_cast<signed char>(0));

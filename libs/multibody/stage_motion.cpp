@@ -1,6 +1,7 @@
 // From speeds to coordinates, motion and accelerations in an implicit stage, and back from body coordinates to joints.
 #include <algorithm>
 
+#include "core/index.h"
 #include "multibody/contact_passes.h"
 #include "multibody/joint_directions.h"
 #include "multibody/passes.h"
@@ -11,10 +12,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at_index(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 void place_bodies(const StageContext& at, double sigma) noexcept {
   BodyState& state = *at.moving.bodies;
@@ -44,14 +41,14 @@ void add_joint_accelerations(const Model& model, std::span<const double> rate, W
   for (std::size_t i = 1; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
     LinkMotion& m = ws.motion[i];
-    Vec3 alpha = ws.delta_alpha[at_index(link.parent)];
-    Vec3 a = ws.delta_a[at_index(link.parent)] + cross(alpha, m.r);
+    Vec3 alpha = ws.delta_alpha[slew::at(link.parent)];
+    Vec3 a = ws.delta_a[slew::at(link.parent)] + cross(alpha, m.r);
     switch (link.joint) {
       case LinkJoint::revolute:
-        alpha += m.axis * rate[at_index(link.u)];
+        alpha += m.axis * rate[slew::at(link.u)];
         break;
       case LinkJoint::prismatic:
-        a += m.axis * rate[at_index(link.u)];
+        a += m.axis * rate[slew::at(link.u)];
         break;
       case LinkJoint::spherical:
         alpha += load(rate, link.u);
@@ -63,14 +60,14 @@ void add_joint_accelerations(const Model& model, std::span<const double> rate, W
       case LinkJoint::universal:
       case LinkJoint::cylindrical: {
         const Pair S = directions(link.joint, m);
-        const double first = rate[at_index(link.u)], second = rate[at_index(link.u) + 1];
+        const double first = rate[slew::at(link.u)], second = rate[slew::at(link.u) + 1];
         alpha += S.turn[0] * first + S.turn[1] * second;
         a += S.slide[0] * first + S.slide[1] * second;
         break;
       }
       case LinkJoint::node: {
-        const auto node = at_index(link.node);
-        const auto first = at_index(model.parts[at_index(model.nodes[node].part)].u);
+        const auto node = slew::at(link.node);
+        const auto first = slew::at(model.parts[slew::at(model.nodes[node].part)].u);
         for (std::size_t k = 0; k < ws.nodes[node].Phi.size(); ++k) {
           alpha += ws.nodes[node].Psi[k] * rate[first + k];
           a += ws.nodes[node].Phi[k] * rate[first + k];
@@ -112,7 +109,7 @@ namespace {
 // of all modes, in the stage
 std::span<const double> modal_rate(const StageContext& at) noexcept {
   const std::size_t first =
-      at.moving.bodies != nullptr ? 6 * at.moving.bodies->links() : at_index(at.model.parts.front().u);
+      at.moving.bodies != nullptr ? 6 * at.moving.bodies->links() : slew::at(at.model.parts.front().u);
   return std::span<const double>(at.stages.rate).subspan(first);
 }
 
@@ -139,12 +136,12 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
     const Constraint& joint = at.body.joints[i];
     double* x = at.bws.solution.data() + at.bws.ldl.first_row(static_cast<int>(i) - 1) + at.body.row_offset(i);
     for (std::size_t k = 0; k < joint.rows.size(); ++k) {
-      const RowValue& row = at.bws.rows[at_index(at.bws.first_row[i]) + k];
-      x[k] = -acceleration_of(row, at.ws.motion[at_index(joint.link1)], at.ws.motion[at_index(joint.link2)]);
+      const RowValue& row = at.bws.rows[slew::at(at.bws.first_row[i]) + k];
+      x[k] = -acceleration_of(row, at.ws.motion[slew::at(joint.link1)], at.ws.motion[slew::at(joint.link2)]);
       if (joint.node < 0) continue;
-      const auto part = at_index(at.model.nodes[at_index(joint.node)].part);
+      const auto part = slew::at(at.model.nodes[slew::at(joint.node)].part);
       const std::size_t modes = at.model.parts[part].modes;
-      const double* m = at.bws.modal.data() + at_index(at.bws.first_modal[i]) + k * modes;
+      const double* m = at.bws.modal.data() + slew::at(at.bws.first_modal[i]) + k * modes;
       const double* rate = modal_rate(at).data() + modal_place(at.model, part);
       for (std::size_t j = 0; j < modes; ++j) x[k] -= m[j] * rate[j];
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/index.h"
 #include "multibody/body_block.h"
 #include "multibody/body_passes.h"
 #include "multibody/contact_passes.h"
@@ -16,10 +17,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at_index(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // A symmetric matrix over the links' speeds times these, block by block.
 class SpeedProduct final : public LinkMatrix {
@@ -43,7 +40,7 @@ class SpeedProduct final : public LinkMatrix {
 
  private:
   [[nodiscard]] Six speeds(int link) const noexcept {
-    const LinkMotion& m = motion_[at_index(link)];
+    const LinkMotion& m = motion_[slew::at(link)];
     return {m.v[0], m.v[1], m.v[2], m.w[0], m.w[1], m.w[2]};
   }
 

@@ -7,14 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "core/index.h"
 #include "multibody/joint_axes.h"
 
 namespace slew::multibody {
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // a flexible body with modes, at a node of which the joint is
 bool rides_on_modes(const MechanicsDef& mechanics, const JointDef& joint) noexcept {

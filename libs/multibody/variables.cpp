@@ -1,6 +1,7 @@
 #include <array>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/constraint.h"
 #include "multibody/element_law.h"
 #include "multibody/flexible/deflection.h"
@@ -15,10 +16,6 @@ using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 std::span<const double> modes_of(const FlexiblePart& part, std::span<const double> q) noexcept {
   return q.subspan(at(part.q), part.modes);
@@ -262,7 +259,7 @@ void read_variables(const Model& model, const State& state, const Workspace& ws,
     out.put(value.speed);
     out.put(value.acceleration);
   }
-  const Energy sum = energy(model, ws);
+  const Energy sum = multibody::energy(model, ws);
   out.put(sum.kinetic);
   out.put(sum.potential);
   static_cast<void>(read_contact_variables(model, ws, out.rest()));

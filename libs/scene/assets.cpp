@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kReadBytes = 1 << 16;
 
-struct FileCloser {
+struct AssetCloser {
   void operator()(std::FILE* file) const noexcept { std::fclose(file); }
 };
 
@@ -32,7 +32,7 @@ Measured measure(const std::string& name, const std::string& path) {
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
     return {std::nullopt, "is not a regular file"};
   }
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
+  const std::unique_ptr<std::FILE, AssetCloser> file(std::fopen(path.c_str(), "rb"));
   if (!file) return {std::nullopt, std::string("cannot be read: ") + std::strerror(errno)};
   Asset asset{.name = name};
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash(EVP_MD_CTX_new(), &EVP_MD_CTX_free);

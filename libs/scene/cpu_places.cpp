@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kRoles[] = {"io", "mechanics", "hydraulics", "flex", "recorder"};
 constexpr int kMostCpus = 1024;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_spaces(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   return text;
@@ -24,14 +24,15 @@ Status wrong(std::string_view item, const std::string& what) {
 
 Status parse_cpu_places(const std::string& text, std::vector<CpuPlace>& places) {
   places.clear();
-  std::string_view rest = trimmed(text);
+  std::string_view rest = without_spaces(text);
   while (!rest.empty()) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
-    const std::string_view item = trimmed(rest.substr(0, comma));
+    const std::string_view item = without_spaces(rest.substr(0, comma));
     rest = comma < rest.size() ? rest.substr(comma + 1) : std::string_view();
     const std::size_t equals = item.find('=');
     if (equals == std::string_view::npos) return wrong(item, "is no role=number");
-    const std::string_view role = trimmed(item.substr(0, equals)), number = trimmed(item.substr(equals + 1));
+    const std::string_view role = without_spaces(item.substr(0, equals)),
+                           number = without_spaces(item.substr(equals + 1));
     if (std::find(std::begin(kRoles), std::end(kRoles), role) == std::end(kRoles)) {
       return wrong(role, "is no role: io, mechanics, hydraulics, flex, recorder");
     }

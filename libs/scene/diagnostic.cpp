@@ -33,6 +33,13 @@ std::string Diagnostic::text() const {
 LoadError::LoadError(std::vector<Diagnostic> diagnostics, std::size_t omitted)
     : std::runtime_error(join(diagnostics, omitted)), diagnostics_(std::move(diagnostics)), omitted_(omitted) {}
 
+std::string LoadError::first_reason() const {
+  const Diagnostic& first = diagnostics_.front();
+  std::string text = first.path.empty() ? first.what : first.path + ": " + first.what;
+  if (!first.expected.empty()) text += "; expected " + first.expected;
+  return text;
+}
+
 int Report::add_source(std::string label, Lines lines) {
   sources_.push_back({std::move(label), lines});
   return static_cast<int>(sources_.size()) - 1;

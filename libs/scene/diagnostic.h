@@ -43,6 +43,8 @@ class LoadError : public std::runtime_error {
   LoadError(std::vector<Diagnostic> diagnostics, std::size_t omitted);
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
   [[nodiscard]] std::size_t omitted() const noexcept { return omitted_; }
+  // of the first problem: where, what, what would be right
+  [[nodiscard]] std::string first_reason() const;
 
  private:
   std::vector<Diagnostic> diagnostics_;

@@ -252,11 +252,11 @@ class DescriptionReader {
   ReadContext context_{units_, report_, places_, references_, &surroundings_};
 };
 
-constexpr const char* kSetting = "key=value, such as 'line.nodes=40' or 'materials.Steel.youngs_modulus=20GPa'";
+constexpr const char* kModelSetting = "key=value, such as 'line.nodes=40' or 'materials.Steel.youngs_modulus=20GPa'";
 
 // Puts the value where the path leads; of the parts at the root one that is not there is made.
 void apply_setting(Node& root, const std::string& text, Report& report) {
-  std::optional<Setting> setting = parse_setting(text, kSetting, report);
+  std::optional<Setting> setting = parse_setting(text, kModelSetting, report);
   if (!setting) return;
   Node* map = &root;
   std::size_t at = 0;

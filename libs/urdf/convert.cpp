@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "math/euler_angles.h"
 #include "math/rotation.h"
 #include "urdf/names.h"
@@ -18,10 +19,6 @@ using multibody::JointDef;
 using multibody::JointType;
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // the turn about x, then y', that takes z to the axis
 Triple axis_angles(const Triple& a) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/index.h"
 #include "math/euler_angles.h"
 #include "math/rotation.h"
 
@@ -16,10 +17,6 @@ namespace {
 
 // rad, how near to half a turn rounding may take a start to the other side
 constexpr double kHalfTurn = 1e-9;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 // Links that move as one: by link, the one nearest to the root, and the link's frame in that one's.
 struct Group {

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 
+#include "core/index.h"
+
 namespace slew::urdf {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 void find_parents(Robot& robot, const Complain& complain) {
   robot.parent_joint.assign(robot.links.size(), -1);

@@ -42,8 +42,8 @@ constexpr Field kDirectReliefValveFields[] = {
 };
 
 constexpr double kCrackWidth =
-    1e-6;                       // of the crack force (lift: of the maximum lift), smoothing of the seat and the stop
-constexpr double kOpen = 1e-6;  // m, lift above which the valve counts as open
+    1e-6;  // of the crack force (lift: of the maximum lift), smoothing of the seat and the stop
+constexpr double kOpenDirect = 1e-6;  // m, lift above which the valve counts as open
 
 class DirectReliefValve final : public HydraulicComponent {
  public:
@@ -77,7 +77,7 @@ class DirectReliefValve final : public HydraulicComponent {
     outflow_slope[p_2_] += open - now;
   }
   [[nodiscard]] std::uint32_t flags(const CircuitView& view) const noexcept override {
-    return lift(view[p_1_] - view[p_2_]).value > kOpen ? static_cast<std::uint32_t>(StepFlag::relief_open) : 0;
+    return lift(view[p_1_] - view[p_2_]).value > kOpenDirect ? static_cast<std::uint32_t>(StepFlag::relief_open) : 0;
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("lift", Dimension::length));

@@ -35,7 +35,7 @@ CylinderGeometry geometry_of(const DoubleRodCylinderDef& def) {
           .motion = Motion::linear};
 }
 
-void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+void validate_double_rod(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
   const DoubleRodCylinderDef& def = static_cast<const DoubleRodCylinderDef&>(component);
   if (!(def.rod_diameter < def.common.piston_diameter)) {
     errors.push_back(
@@ -51,7 +51,7 @@ ComponentType double_rod_cylinder_type() {
           .fields = kDoubleRodCylinderFields,
           .doc = "cylinder with a rod through both ends on a translational force",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<DoubleRodCylinderDef>(); },
-          .validate = validate_cylinder,
+          .validate = validate_double_rod,
           .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
             return make_cylinder<DoubleRodCylinderDef>(def, geometry_of, builder);
           },

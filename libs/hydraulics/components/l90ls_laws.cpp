@@ -6,8 +6,8 @@
 namespace slew::hydraulics {
 namespace {
 
-constexpr double kClipWidth = 0.01;  // of a shock valve's opening, smoothing of its limits
-constexpr double kCheckWidth = 1e4;  // Pa over which an anti-cavitation valve lifts off
+constexpr double kShockClipWidth = 0.01;  // of a shock valve's opening, smoothing of its limits
+constexpr double kCheckWidth = 1e4;       // Pa over which an anti-cavitation valve lifts off
 
 }  // namespace
 
@@ -33,7 +33,7 @@ SupplyFlow metered(const L90Side& side, double opening, double drop, double load
 ValueSlope shock(const L90Side& side, double drop) noexcept {
   if (drop <= side.shock_setting) return {0, 0};
   // (5)
-  const ValueSlope u = unit_clip((drop - side.shock_setting) / side.shock_rise, kClipWidth);
+  const ValueSlope u = unit_clip((drop - side.shock_setting) / side.shock_rise, kShockClipWidth);
   const ValueSlope r = root(drop, side.transition);
   return {u.value * side.K_shock * r.value, side.K_shock * (u.slope / side.shock_rise * r.value + u.value * r.slope)};
 }
@@ -54,7 +54,7 @@ double steeper_return_slope(const L90Side& side, double drop, double margin) noe
     rise += std::max(0.0, open - anti_cavitation(side, drop).slope);
   }
   if (std::fabs(drop - side.shock_setting) <= margin) {
-    const double open = shock(side, side.shock_setting + std::max(margin, kClipWidth * side.shock_rise)).slope;
+    const double open = shock(side, side.shock_setting + std::max(margin, kShockClipWidth * side.shock_rise)).slope;
     rise += std::max(0.0, open - shock(side, drop).slope);
   }
   return rise;

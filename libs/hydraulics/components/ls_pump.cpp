@@ -53,8 +53,8 @@ constexpr Field kLsPumpFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure difference of leak_flow"}),
 };
 
-constexpr double kSwitchWidth = 2e4;  // Pa, smoothing between stand-by and load sensing, and of the LS limit
-constexpr double kClipWidth = 0.01;   // of the swash, smoothing of its limits
+constexpr double kPumpSwitchWidth = 2e4;  // Pa, smoothing between stand-by and load sensing, and of the LS limit
+constexpr double kSwashClipWidth = 0.01;  // of the swash, smoothing of its limits
 
 class LsPump final : public HydraulicComponent {
  public:
@@ -116,13 +116,13 @@ class LsPump final : public HydraulicComponent {
   // outlet pressure that the controller aims at, above tank; slope with respect to the LS pressure
   [[nodiscard]] ValueSlope set_point(const CircuitView& view) const noexcept {
     if (ls_ < 0) return {def_.standby_pressure, 0};
-    const ValueSlope limited = smooth_min(view.ls[ls_], def_.maximum_ls_pressure, kSwitchWidth);
-    const ValueSlope set = smooth_max(limited.value + def_.set_pressure, def_.standby_pressure, kSwitchWidth);
+    const ValueSlope limited = smooth_min(view.ls[ls_], def_.maximum_ls_pressure, kPumpSwitchWidth);
+    const ValueSlope set = smooth_max(limited.value + def_.set_pressure, def_.standby_pressure, kPumpSwitchWidth);
     return {set.value, set.slope * limited.slope};
   }
   // swash command; slope with respect to the unlimited command
   [[nodiscard]] ValueSlope command(const CircuitView& view) const noexcept {
-    return unit_clip(def_.controller_gain * (set_point(view).value - (view[a_] - view[b_])), kClipWidth);
+    return unit_clip(def_.controller_gain * (set_point(view).value - (view[a_] - view[b_])), kSwashClipWidth);
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
     return full_flow_ * view[alpha_] - G_leak_ * (view[a_] - view[b_]);

@@ -20,8 +20,8 @@ constexpr Field kLsShuttleFields[] = {
                                               .doc = "time constant of the LS line behind the shuttle; 0: none"}),
 };
 
-constexpr double kSwitchWidth = 1e4;  // Pa over which the shuttle changes over
-constexpr double kLineScale = 1e6;    // Pa, typical LS pressure
+constexpr double kShuttleSwitchWidth = 1e4;  // Pa over which the shuttle changes over
+constexpr double kLineScale = 1e6;           // Pa, typical LS pressure
 
 class LsShuttle final : public HydraulicComponent {
  public:
@@ -93,7 +93,7 @@ class LsShuttle final : public HydraulicComponent {
  private:
   [[nodiscard]] bool has_line() const noexcept { return line_ >= 0; }
   [[nodiscard]] ValueSlope higher(const CircuitView& view) const noexcept {
-    return smooth_max(view.ls[input_1_], view.ls[input_2_], kSwitchWidth);
+    return smooth_max(view.ls[input_1_], view.ls[input_2_], kShuttleSwitchWidth);
   }
 
   LsShuttleDef def_;

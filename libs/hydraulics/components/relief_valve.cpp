@@ -38,9 +38,9 @@ constexpr Field kReliefValveFields[] = {
         {.dimension = Dimension::time, .range = kPositive, .doc = "three time constants of the opening"}),
 };
 
-constexpr double kClipWidth = 0.02;   // of the opening, smoothing of its limits
-constexpr double kOpen = 1e-3;        // opening above which the valve counts as open
-constexpr double kTimeConstants = 3;  // in a step response: 95 % of the way
+constexpr double kOpeningClipWidth = 0.02;  // of the opening, smoothing of its limits
+constexpr double kOpenPilot = 1e-3;         // opening above which the valve counts as open
+constexpr double kPilotTimeConstants = 3;   // in a step response: 95 % of the way
 
 class ReliefValve final : public HydraulicComponent {
  public:
@@ -79,7 +79,7 @@ class ReliefValve final : public HydraulicComponent {
     jacobian.move(p_1_, p_2_, p_2_, -view[u_] * K_ * r.slope);
   }
   [[nodiscard]] std::uint32_t flags(const CircuitView& view) const noexcept override {
-    return view[u_] > kOpen ? static_cast<std::uint32_t>(StepFlag::relief_open) : 0;
+    return view[u_] > kOpenPilot ? static_cast<std::uint32_t>(StepFlag::relief_open) : 0;
   }
   void list_variables(std::vector<ElementVariable>& variables) const override {
     variables.push_back(variable("opening", Dimension::none));
@@ -89,19 +89,19 @@ class ReliefValve final : public HydraulicComponent {
   double* read_variables(const CircuitView& view, double* values) const noexcept override {
     *values++ = view[u_];
     *values++ = flow(view);
-    *values++ = view[u_] > kOpen ? 1 : 0;
+    *values++ = view[u_] > kOpenPilot ? 1 : 0;
     return values;
   }
   [[nodiscard]] void* def_address() noexcept override { return &def_; }
   void apply_parameters() noexcept override {
     K_ = def_.nominal_flow / std::sqrt(def_.nominal_pressure_drop);
     per_pressure_ = 1 / def_.opening_pressure_rise;
-    rate_ = kTimeConstants / def_.step_response;
+    rate_ = kPilotTimeConstants / def_.step_response;
   }
 
  private:
   [[nodiscard]] ValueSlope opening_command(const CircuitView& view) const noexcept {
-    return unit_clip((view[pilot_] - view[p_2_] - def_.setting_pressure) * per_pressure_, kClipWidth);
+    return unit_clip((view[pilot_] - view[p_2_] - def_.setting_pressure) * per_pressure_, kOpeningClipWidth);
   }
   [[nodiscard]] double flow(const CircuitView& view) const noexcept {
     if (view[u_] == 0) return 0;

@@ -26,7 +26,7 @@ CylinderGeometry geometry_of(const SlewCylinderDef& def) {
           .motion = Motion::rotary};
 }
 
-void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
+void validate_slew(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
   check_cylinder(circuit, component.name, static_cast<const SlewCylinderDef&>(component).common, 0, errors);
 }
 
@@ -37,7 +37,7 @@ ComponentType slew_cylinder_type() {
           .fields = kSlewCylinderFields,
           .doc = "rack-and-pinion cylinder on a rotational force",
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<SlewCylinderDef>(); },
-          .validate = validate_cylinder,
+          .validate = validate_slew,
           .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
             return make_cylinder<SlewCylinderDef>(def, geometry_of, builder);
           },

@@ -7,12 +7,12 @@
 namespace slew::multibody {
 namespace {
 
-const LinkMotion& at(std::span<const LinkMotion> motion, int link) noexcept {
+const LinkMotion& motion_of(std::span<const LinkMotion> motion, int link) noexcept {
   return motion[static_cast<std::size_t>(link)];
 }
 
 Deflection deflection_of(const FramePair& frames, std::span<const LinkMotion> motion) noexcept {
-  return multibody::deflection_of(frames, at(motion, frames.link1), at(motion, frames.link2));
+  return multibody::deflection_of(frames, motion_of(motion, frames.link1), motion_of(motion, frames.link2));
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ double stored_energy(const ElementSet& set, std::span<const LinkMotion> motion) 
   for (const Bushing& bushing : set.bushings) energy += stored_energy(bushing, deflection_of(bushing.frames, motion));
   for (const Beam& beam : set.beams) energy += stored_energy(beam, deflection_of(beam.frames, motion));
   for (const Rope& rope : set.ropes) energy += stored_energy(rope, state_of(rope, motion));
-  for (const Tyre& tyre : set.tyres) energy += stored_energy(tyre, state_of(tyre, at(motion, tyre.link)));
+  for (const Tyre& tyre : set.tyres) energy += stored_energy(tyre, state_of(tyre, motion_of(motion, tyre.link)));
   return energy;
 }
 

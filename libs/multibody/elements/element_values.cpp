@@ -29,19 +29,19 @@ constexpr std::array<std::string_view, 18> kBushingKeys = {"stiffness.x",
 constexpr std::array<std::string_view, 1> kBeamKeys = {"damping_time"};
 
 template <typename Element>
-struct Member {
+struct ElementMember {
   std::string_view key;
   double Element::*value;
 };
-constexpr std::array<Member<Rope>, 4> kRopeMembers = {{{"free_length", &Rope::free_length},
-                                                       {"stiffness", &Rope::spring},
-                                                       {"axial_rigidity", &Rope::rigidity},
-                                                       {"damping_constant", &Rope::damping}}};
-constexpr std::array<Member<Tyre>, 5> kTyreMembers = {{{"ground_height", &Tyre::height},
-                                                       {"stiffness", &Tyre::stiffness},
-                                                       {"damping", &Tyre::damping},
-                                                       {"friction", &Tyre::friction},
-                                                       {"rolling_resistance", &Tyre::rolling_resistance}}};
+constexpr std::array<ElementMember<Rope>, 4> kRopeMembers = {{{"free_length", &Rope::free_length},
+                                                              {"stiffness", &Rope::spring},
+                                                              {"axial_rigidity", &Rope::rigidity},
+                                                              {"damping_constant", &Rope::damping}}};
+constexpr std::array<ElementMember<Tyre>, 5> kTyreMembers = {{{"ground_height", &Tyre::height},
+                                                              {"stiffness", &Tyre::stiffness},
+                                                              {"damping", &Tyre::damping},
+                                                              {"friction", &Tyre::friction},
+                                                              {"rolling_resistance", &Tyre::rolling_resistance}}};
 
 template <std::size_t N>
 int index_of(const std::array<std::string_view, N>& keys, std::string_view key) noexcept {
@@ -52,7 +52,7 @@ int index_of(const std::array<std::string_view, N>& keys, std::string_view key) 
 }
 
 template <typename Element, std::size_t N>
-int index_of(const std::array<Member<Element>, N>& members, std::string_view key) noexcept {
+int index_of(const std::array<ElementMember<Element>, N>& members, std::string_view key) noexcept {
   for (std::size_t i = 0; i < N; ++i) {
     if (members[i].key == key) return static_cast<int>(i);
   }

@@ -9,9 +9,9 @@ namespace {
 
 using enum Dimension;
 
-class Names {
+class ElementNames {
  public:
-  explicit Names(std::vector<ElementVariable>& list) : list_(list) {}
+  explicit ElementNames(std::vector<ElementVariable>& list) : list_(list) {}
   void add(const std::string& name, Dimension dimension) { list_.push_back({name, dimension}); }
   void add_triple(const std::string& name, Dimension dimension) {
     for (const char* axis : {".x", ".y", ".z"}) add(name + axis, dimension);
@@ -22,7 +22,7 @@ class Names {
 };
 
 // what a connector shows: deflection and the wrench on body 2 at P2, all in frame 1's axes
-void list_connector(const std::string& name, Names& names) {
+void list_connector(const std::string& name, ElementNames& names) {
   names.add_triple(name + ".deflection", length);
   names.add_triple(name + ".rotation", angle);
   names.add_triple(name + ".force", force);
@@ -44,7 +44,7 @@ void read_connector(const Connector& connector, std::span<const LinkMotion> moti
 }  // namespace
 
 void list_variables(const ElementSet& set, std::vector<ElementVariable>& variables) {
-  Names names(variables);
+  ElementNames names(variables);
   for (const PointLoad& load : set.loads) {
     const bool is_force = load.kind == LoadKind::force;
     names.add(load.name + (is_force ? ".force" : ".torque"), is_force ? force : torque);

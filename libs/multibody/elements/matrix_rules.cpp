@@ -8,8 +8,8 @@ namespace slew::multibody {
 namespace {
 
 constexpr std::size_t kSize = 6;
-constexpr double kAlike = 1e-9;     // of the larger entry: both are printed alike
-constexpr double kRounding = 1e-9;  // of a scaled pivot, which is 1 before elimination
+constexpr double kSameValue = 1e-9;       // of the larger entry: both are printed alike
+constexpr double kMatrixRounding = 1e-9;  // of a scaled pivot, which is 1 before elimination
 
 }  // namespace
 
@@ -17,7 +17,7 @@ Entry find_asymmetry(const std::vector<double>& matrix) {
   for (std::size_t i = 0; i < kSize; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double a = matrix[kSize * i + j], b = matrix[kSize * j + i];
-      if (std::fabs(a - b) > kAlike * std::max(std::fabs(a), std::fabs(b)))
+      if (std::fabs(a - b) > kSameValue * std::max(std::fabs(a), std::fabs(b)))
         return {static_cast<int>(i), static_cast<int>(j)};
     }
   }
@@ -37,11 +37,11 @@ bool is_positive_semidefinite(std::vector<double> matrix) {
   // elimination; a pivot that is gone must leave nothing beside it
   for (std::size_t k = 0; k < kSize; ++k) {
     const double pivot = matrix[kSize * k + k];
-    if (pivot < -kRounding) return false;
+    if (pivot < -kMatrixRounding) return false;
     for (std::size_t i = k + 1; i < kSize; ++i) {
       const double below = matrix[kSize * i + k];
-      if (pivot <= kRounding) {
-        if (std::fabs(below) > std::sqrt(kRounding)) return false;
+      if (pivot <= kMatrixRounding) {
+        if (std::fabs(below) > std::sqrt(kMatrixRounding)) return false;
         continue;
       }
       for (std::size_t j = k + 1; j < kSize; ++j) matrix[kSize * i + j] -= below * matrix[kSize * k + j] / pivot;

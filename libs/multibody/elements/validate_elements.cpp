@@ -14,7 +14,7 @@ namespace {
 using math::Vec3;
 
 // printed inertias are rounded: share of the largest moment by which the triangle rule may fail
-constexpr double kInertiaTolerance = 1e-6;
+constexpr double kMatrixTolerance = 1e-6;
 
 class ElementValidator {
  public:
@@ -151,7 +151,7 @@ class ElementValidator {
 
   void check_inertia(const std::string& name, Triple I) {
     std::sort(I.begin(), I.end());
-    if (I[0] + I[1] >= I[2] * (1 - kInertiaTolerance)) return;
+    if (I[0] + I[1] >= I[2] * (1 - kMatrixTolerance)) return;
     add(name + ".inertia", fmt::format("moments {}, {}, {} kg m2 break the triangle rule", I[0], I[1], I[2]),
         "no moment larger than the sum of the other two");
   }

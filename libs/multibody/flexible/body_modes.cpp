@@ -2,19 +2,12 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "multibody/link_stiffness.h"
 
 namespace slew::multibody {
 
 using math::Vec3;
-
-namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 std::size_t mode_count(const Model& model) noexcept {
   std::size_t count = 0;

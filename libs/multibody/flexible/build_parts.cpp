@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/flexible/deflection.h"
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
@@ -14,10 +15,6 @@ using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 std::vector<Vec3> turned(const Mat3& R, const std::vector<Vec3>& vectors) {
   std::vector<Vec3> result;

@@ -1,6 +1,7 @@
 // The modes in the recursion: equation (7) of flexible_part.h.
 #include <cstddef>
 
+#include "core/index.h"
 #include "math/small_cholesky.h"
 #include "multibody/flexible/flexible_part.h"
 #include "multibody/state.h"
@@ -10,10 +11,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // X = E^-1 B with the factor C of E = C C^T, for all components of B at once
 void substitute(const std::vector<double>& C, const std::vector<Vec3>& B, std::vector<Vec3>& X) noexcept {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "multibody/flexible/node_span.h"
 #include "multibody/joint_directions.h"
 #include "multibody/spatial_block.h"
@@ -14,10 +15,6 @@ using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 int part_of(const Model& model, int node_link) noexcept {
   return model.nodes[at(model.links[at(node_link)].node)].part;

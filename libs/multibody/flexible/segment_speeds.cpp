@@ -11,8 +11,8 @@ namespace slew::multibody {
 namespace {
 
 constexpr int kMostIterations = 500;
-constexpr double kAlike = 1e-6;  // of two iterations
-constexpr double kProbe = 1e-8;  // m, rad
+constexpr double kAlike = 1e-6;         // of two iterations
+constexpr double kSegmentProbe = 1e-8;  // m, rad
 
 // the masses and the chains, nothing else that pushes
 Model bare(const Model& model) {
@@ -56,10 +56,10 @@ FastestSegments fastest_segments(const Model& given) {
     if (is_found) break;
     update_motion(model, start.q, v, ws);
     coordinate_rates(model, ws, start.q, v, rate);
-    for (std::size_t k = 0; k < q.size(); ++k) q[k] = start.q[k] + kProbe * rate[k];
+    for (std::size_t k = 0; k < q.size(); ++k) q[k] = start.q[k] + kSegmentProbe * rate[k];
     normalize_quaternions(model, q);
     forward_dynamics(model, q, rest, {}, ws);
-    for (std::size_t k = 0; k < n; ++k) v[k] = (held[k] - ws.udot[k]) / kProbe;
+    for (std::size_t k = 0; k < n; ++k) v[k] = (held[k] - ws.udot[k]) / kSegmentProbe;
   }
   FastestSegments fastest{.omega = std::sqrt(growth)};
   double largest = 0;

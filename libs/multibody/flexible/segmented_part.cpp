@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/observe.h"
 #include "multibody/topology.h"
@@ -13,10 +14,6 @@ using math::Mat3;
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 struct Frame {
   Mat3 R;

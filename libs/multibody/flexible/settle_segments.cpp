@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/index.h"
 #include "math/small_solve.h"
 #include "multibody/contact_passes.h"
 #include "multibody/flexible/segmented_part.h"
@@ -18,17 +19,13 @@ using math::Vec3;
 
 namespace {
 
-constexpr int kMostCorrections = 60;
-constexpr int kMostHalvings = 12;
-constexpr int kPatience = 3;        // corrections by compliance that need not shrink
-constexpr double kShrinks = 0.5;    // more slowly: Newton's method
-constexpr double kSettled = 1e-12;  // largest correction: m over the connector's length, rad
-constexpr double kRounding = 1e-8;  // below it corrections that do not shrink any more are rounding
-constexpr double kProbe = 1e-7;     // step of the differences, the same
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
+constexpr int kMostSettlingCorrections = 60;
+constexpr int kMostSettlingHalvings = 12;
+constexpr int kPatience = 3;                // corrections by compliance that need not shrink
+constexpr double kShrinks = 0.5;            // more slowly: Newton's method
+constexpr double kSegmentsSettled = 1e-12;  // largest correction: m over the connector's length, rad
+constexpr double kSettlingRounding = 1e-8;  // below it corrections that do not shrink any more are rounding
+constexpr double kSettlingProbe = 1e-7;     // step of the differences, the same
 
 class Chains {
  public:
@@ -129,7 +126,7 @@ class Settling {
     std::vector<double> x(chains_.count()), r(x.size());
     double merit = residual(x, r), before = 0;
     bool is_newton = false;
-    for (int i = 0; i < kMostCorrections; ++i) {
+    for (int i = 0; i < kMostSettlingCorrections; ++i) {
       std::vector<double> step = is_newton ? correction(x, r) : compliance(r);
       double change = size_of(step);
       if (!is_newton && i >= kPatience && !(change < kShrinks * before)) {
@@ -139,7 +136,7 @@ class Settling {
       }
       if (!std::isfinite(change)) return false;
       merit = go(step, merit, x, r);
-      if (change <= kSettled || (i > 0 && change < kRounding && change >= before)) return keep(x);
+      if (change <= kSegmentsSettled || (i > 0 && change < kSettlingRounding && change >= before)) return keep(x);
       before = change;
     }
     return false;
@@ -212,10 +209,10 @@ class Settling {
     std::vector<double> A(n * n), moved(n), probe = x, step(n);
     const std::vector<double> scale = scales();
     for (std::size_t j = 0; j < n; ++j) {
-      probe[j] = x[j] + kProbe * scale[j];
+      probe[j] = x[j] + kSettlingProbe * scale[j];
       residual(probe, moved);
       probe[j] = x[j];
-      for (std::size_t i = 0; i < n; ++i) A[i * n + j] = (moved[i] - r[i]) / (kProbe * scale[j]);
+      for (std::size_t i = 0; i < n; ++i) A[i * n + j] = (moved[i] - r[i]) / (kSettlingProbe * scale[j]);
     }
     for (std::size_t i = 0; i < n; ++i) step[i] = -r[i];
     if (!math::solve_in_place(A.data(), step.data(), n, 1)) std::fill(step.begin(), step.end(), std::nan(""));
@@ -245,11 +242,11 @@ class Settling {
   double go(const std::vector<double>& step, double merit, std::vector<double>& x, std::vector<double>& r) {
     const std::vector<double> from = x;
     double found = merit, share = 1;
-    for (int i = 0; i <= kMostHalvings; ++i, share /= 2) {
+    for (int i = 0; i <= kMostSettlingHalvings; ++i, share /= 2) {
       for (std::size_t k = 0; k < x.size(); ++k) x[k] = from[k] + share * step[k];
       found = residual(x, r);
       if (found < merit) break;
-      if (size_of(step) < kRounding) break;
+      if (size_of(step) < kSettlingRounding) break;
     }
     return found;
   }

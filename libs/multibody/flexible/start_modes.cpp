@@ -13,23 +13,23 @@
 namespace slew::multibody {
 namespace {
 
-constexpr int kMostCorrections = 200;
-constexpr double kSettled = 1e-11;  // correction, of the largest modal coordinate
-constexpr double kProbe = 1e-4;     // step of the differences, of the scale of the modes
+constexpr int kMostModeCorrections = 200;
+constexpr double kModesSettled = 1e-11;  // correction, of the largest modal coordinate
+constexpr double kModeProbe = 1e-4;      // step of the differences, of the scale of the modes
 
-class Settling {
+class ModalSettling {
  public:
-  explicit Settling(Model& model) : model_(model), ws_(model), state_(start_state(model)) {}
+  explicit ModalSettling(Model& model) : model_(model), ws_(model), state_(start_state(model)) {}
 
   bool run() {
     std::fill(state_.u.begin(), state_.u.end(), 0.0);
     double before = 0;
-    for (int i = 0; i < kMostCorrections; ++i) {
+    for (int i = 0; i < kMostModeCorrections; ++i) {
       const double change = correct();
       if (!std::isfinite(change)) return false;
-      if (change <= kSettled) return keep();
+      if (change <= kModesSettled) return keep();
       // differences of a potential end in its rounding
-      if (i > 1 && change >= before && change < 1e3 * kSettled) return keep();
+      if (i > 1 && change >= before && change < 1e3 * kModesSettled) return keep();
       before = change;
     }
     return false;
@@ -38,14 +38,14 @@ class Settling {
  private:
   [[nodiscard]] double potential() {
     observe(model_, state_, ws_);
-    return energy(model_, ws_).potential;
+    return multibody::energy(model_, ws_).potential;
   }
 
   // one step of (1) for all bodies; the largest change over the largest coordinate
   double correct() {
     double scale = 0;
     for_each_mode(model_, [&](std::size_t q, std::size_t) { scale = std::max(scale, std::fabs(state_.q[q])); });
-    const double probe = kProbe * (scale > 0 ? scale : 1);
+    const double probe = kModeProbe * (scale > 0 ? scale : 1);
     double largest = 0;
     std::vector<std::vector<double>> steps(model_.parts.size());
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -93,7 +93,7 @@ class Settling {
 }  // namespace
 
 bool settle_modes(Model& model) {
-  return model.parts.empty() || Settling(model).run();
+  return model.parts.empty() || ModalSettling(model).run();
 }
 
 }  // namespace slew::multibody

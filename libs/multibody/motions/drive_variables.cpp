@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/observe.h"
 
 namespace slew::multibody {
@@ -9,10 +10,6 @@ namespace slew::multibody {
 using math::Vec3;
 
 namespace {
-
-std::size_t at(int index) noexcept {
-  return static_cast<std::size_t>(index);
-}
 
 // z of a joint's frame in Ground
 Vec3 axis_of(const Model& model, const Workspace& ws, int body, const math::Mat3& R_BF) noexcept {

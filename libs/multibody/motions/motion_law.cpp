@@ -1,15 +1,16 @@
 #include "multibody/motions/motion_law.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "math/rotation.h"
 
 namespace slew::multibody {
 namespace {
 
-constexpr double kTurn = 2 * 3.14159265358979323846;  // rad
+constexpr double kTurn = 2 * std::numbers::pi;  // rad
 
-MotionValue harmonic(const MotionLaw& law, double time) noexcept {
+MotionValue harmonic_motion(const MotionLaw& law, double time) noexcept {
   // whole turns are taken out before they cost digits
   const double turns = law.frequency * time;
   const auto [s, c] = math::sin_cos(kTurn * (turns - std::floor(turns)) + law.phase);
@@ -17,7 +18,7 @@ MotionValue harmonic(const MotionLaw& law, double time) noexcept {
   return {law.offset + law.amplitude * s, law.amplitude * omega * c, -law.amplitude * omega * omega * s};
 }
 
-MotionValue ramp(const MotionLaw& law, double time) noexcept {
+MotionValue ramp_motion(const MotionLaw& law, double time) noexcept {
   const double tau = (time - law.start) / law.duration;
   if (tau <= 0) return {law.from, 0, 0};
   if (tau >= 1) return {law.to, 0, 0};
@@ -36,9 +37,9 @@ MotionValue evaluate(const MotionLaw& law, double time) noexcept {
       return {value.y, value.slope, value.second};
     }
     case MotionShape::harmonic:
-      return harmonic(law, time);
+      return harmonic_motion(law, time);
     case MotionShape::ramp:
-      return ramp(law, time);
+      return ramp_motion(law, time);
     case MotionShape::speed:
       break;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "multibody/assembly.h"
@@ -15,7 +16,6 @@
 namespace slew::multibody {
 namespace {
 
-constexpr double kTurn = 2 * 3.14159265358979323846;
 // speeds of a scene have six digits and more
 constexpr double kSpeedTolerance = 1e-6;
 
@@ -62,7 +62,7 @@ class MotionRules {
     const double pose = start_coordinates(joint.type, joint_frames(joint, body1, body2))[number];
     const MotionValue begin = evaluate(motion_law(motion, pose), 0);
     const bool is_angle = motion.kind == MotionKind::rotation;
-    const double gap = is_angle ? std::remainder(begin.position - pose, kTurn) : begin.position - pose;
+    const double gap = is_angle ? std::remainder(begin.position - pose, 2 * std::numbers::pi) : begin.position - pose;
     const double tolerance = std::max(m_.assembly_tolerance, kFrameTolerance);
     const char* unit = is_angle ? "rad" : "m";
     if (!(std::fabs(gap) <= tolerance)) {
