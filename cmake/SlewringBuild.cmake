@@ -99,6 +99,18 @@ function(slewring_compile_apart options)
                                                  SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
+# Headers and instances of templates are compiled once for six files. The sources of a library therefore name no two
+# things of their unnamed namespaces alike, and each test file has a namespace of its own; asan-ubsan compiles every file
+# alone. Sources that are long to compile stay alone with slewring_compile_alone.
+function(slewring_compile_together target)
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  endif()
+endfunction()
+function(slewring_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # slewring_library(NAME [COMPUTES | TEXTS] SOURCES ... DEPENDS lib ... LINK target ... PRECOMPILE <header> ...)
 # DEPENDS names libraries of ours; tests/architecture/edges.txt must allow each of them. COMPUTES: with numbers alone, in
 # every step. TEXTS: options, reports and what is done once. PRECOMPILE: heavy headers of most of its units, beside the
@@ -106,6 +118,7 @@ endfunction()
 function(slewring_library name)
   cmake_parse_arguments(ARG "COMPUTES;TEXTS" "" "SOURCES;DEPENDS;LINK;PRECOMPILE" ${ARGN})
   add_library(slewring_${name} STATIC ${ARG_SOURCES})
+  slewring_compile_together(slewring_${name})
   if(ARG_TEXTS)
     target_compile_options(slewring_${name} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
   endif()
@@ -144,10 +157,7 @@ function(slewring_test name)
   slewring_program(${name} SOURCES ${ARG_SOURCES} DEPENDS ${ARG_DEPENDS}
                    LINK ${ARG_LINK} slewring_build_paths GTest::gtest_main)
   target_compile_options(${name} PRIVATE ${SLEWRING_QUICK_TO_COMPILE})
-  # headers and instances of templates are compiled once for several files, each of which has a namespace of its own
-  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
-  endif()
+  slewring_compile_together(${name})
   if(NOT "${ARG_SOURCES}" MATCHES "\\.c(;|$)")  # the headers are those of C++
     slewring_precompile(${name} tests)
   endif()
