@@ -16,16 +16,6 @@ using namespace slew::testing;
 // relative to the largest entry
 constexpr double kTolerance = 1e-9;
 
-Vector to_vector(std::span<const double> values) {
-  Vector v(static_cast<Eigen::Index>(values.size()));
-  for (std::size_t i = 0; i < values.size(); ++i) v[static_cast<Eigen::Index>(i)] = values[i];
-  return v;
-}
-
-Real difference(const Vector& a, const Vector& b) {
-  return (a - b).cwiseAbs().maxCoeff() / (1 + b.cwiseAbs().maxCoeff());
-}
-
 const std::initializer_list<SeedRange> kRanges = {{1, 24}, {kFirstWithModes, 40}, {kFirstWithNodeDummies, 60}};
 const std::vector<std::uint32_t> kSeeds = seeds(kRanges);
 // half a second a seed for the rows: every row's derivatives by differences in long double
@@ -52,7 +42,7 @@ TEST(RandomTrees, RowsAgreeWithTheAssembledEquations) {
   for_each_seed(seeds(kRanges, kGateSeedsOfRows), [](std::uint32_t seed) {
     const RandomTree random = random_tree(seed, options_of(seed));
     Mechanism mechanism(random.def, random.rows);
-    const auto rows = static_cast<Eigen::Index>(random.rows.size());
+    const auto rows = static_cast<Index>(random.rows.size());
     if (rows == 0) return;  // nothing to act on
     const Assembled reference(random.def, mechanism.model, random.points);
     const State state = random_state(seed, mechanism.model);
@@ -61,20 +51,19 @@ TEST(RandomTrees, RowsAgreeWithTheAssembledEquations) {
     const Vector udot = reference.accelerations(q, u);
     Matrix J(rows, u.size());
     Vector a_free(rows), x(rows), v(rows);
-    for (Eigen::Index k = 0; k < rows; ++k) {
+    for (Index k = 0; k < rows; ++k) {
       const std::string& name = random.rows[static_cast<std::size_t>(k)];
       const Vector row = reference.row_jacobian(name, q);
-      J.row(k) = row;
+      J.put(k, 0, row.transposed());
       x[k] = reference.row_value(name, q);
       v[k] = row.dot(u);
       a_free[k] = row.dot(udot) + reference.row_bias(name, q, u);
     }
-    const Matrix W = J * reference.mass_matrix(q).ldlt().solve(J.transpose());
+    const Matrix W = J * solve(reference.mass_matrix(q), J.transposed());
     EXPECT_LT(difference(to_vector(row_positions(mechanism.ws)), x), kTolerance);
     EXPECT_LT(difference(to_vector(row_speeds(mechanism.ws)), v), kTolerance);
     EXPECT_LT(difference(to_vector(row_free_accelerations(mechanism.ws)), a_free), kTolerance);
-    const Vector flat = Eigen::Map<const Vector>(W.data(), W.size());
-    EXPECT_LT(difference(to_vector(row_mobility(mechanism.ws)), flat), kTolerance);
+    EXPECT_LT(difference(to_vector(row_mobility(mechanism.ws)), W.flat()), kTolerance);
   });
 }
 
@@ -113,15 +102,15 @@ TEST(RandomTrees, ObeyLagrangesEquations) {
     const Assembled reference(random.def, mechanism.model, random.points);
     const State state = random_state(seed, mechanism.model);
     const Vector q = to_vector(state.q), u = to_vector(state.u);
-    Vector rest = derivative_at_zero([&](Real t) { return Vector(reference.mass_matrix(q + t * u) * u); });
-    for (Eigen::Index k = 0; k < q.size(); ++k) {
-      const Vector e = Vector::Unit(q.size(), k);
+    Vector rest = derivative_at_zero([&](Real t) { return reference.mass_matrix(q + t * u) * u; });
+    for (Index k = 0; k < q.size(); ++k) {
+      const Vector e = Vector::unit(q.size(), k);
       rest[k] -= derivative_at_zero([&](Real t) {
         const Vector there = q + t * e;
         return Real(0.5L * u.dot(reference.mass_matrix(there) * u) - reference.potential(there));
       });
     }
-    const Vector expected = reference.mass_matrix(q).ldlt().solve(-rest);
+    const Vector expected = solve(reference.mass_matrix(q), -rest);
     forward_dynamics(mechanism.model, state.q, state.u, {}, mechanism.ws);
     EXPECT_LT(difference(to_vector(mechanism.ws.udot), expected), kTolerance);
   });

@@ -3,7 +3,6 @@
 // Def and shares no dynamics code with the library.
 #pragma once
 
-#include <Eigen/Dense>
 #include <string>
 #include <vector>
 
@@ -11,19 +10,20 @@
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/model.h"
 #include "tests/properties/multibody/random_modes.h"
+#include "tests/properties/multibody/reference_space.h"
+#include "tests/support/reference_algebra.h"
 
 namespace slew::multibody::testing {
 
-using Real = long double;
-using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
-using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
-using Vector3 = Eigen::Matrix<Real, 3, 1>;
-using Matrix3 = Eigen::Matrix<Real, 3, 3>;
-using Columns = Eigen::Matrix<Real, 3, Eigen::Dynamic>;
+using slew::testing::difference;
+using slew::testing::Index;
+using slew::testing::to_vector;
+using Vector = slew::testing::Dense<Real>;
+using Matrix = slew::testing::Dense<Real>;
 
 struct BodyMotion {
-  Matrix3 R = Matrix3::Identity();
-  Vector3 p = Vector3::Zero();
+  Matrix3 R = Matrix3::identity();
+  Vector3 p;
   Columns Jw, Jp;  // angular velocity and velocity of the origin per u
 };
 
@@ -58,9 +58,9 @@ class Assembled {
   // one moving mass: m J_v^T J_v, with rotational inertia about it as J_w^T I J_w
   struct Mass {
     Real mass = 0;
-    Matrix3 inertia = Matrix3::Zero();
+    Matrix3 inertia;
     Columns Jv, Jw;
-    Vector3 center = Vector3::Zero();
+    Vector3 center;
   };
   [[nodiscard]] std::vector<Mass> masses(const Vector& q) const;
   void add_force_dummies(const std::vector<BodyMotion>& bodies, std::vector<Mass>& list) const;

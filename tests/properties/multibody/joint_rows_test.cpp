@@ -24,7 +24,7 @@ struct Direction {
 };
 
 Direction direction_of(const Model& model, const Row& row, const Workspace& ws) {
-  Direction direction{Vector::Zero(static_cast<Eigen::Index>(ws.udot.size()))};
+  Direction direction{Vector(static_cast<Index>(ws.udot.size()))};
   const Link& link = model.links[static_cast<std::size_t>(row.link)];
   if (row.kind != RowKind::ball) {
     direction.J[link.u + row.place] = 1;
@@ -55,15 +55,13 @@ TEST(CoordinateRows, SeeTheInverseOfTheMassMatrix) {
       Mechanism mechanism(tree.def, rows);
       const Assembled reference(tree.def, mechanism.model);
       State state = random_state(seed, mechanism.model);
-      Vector q(static_cast<Eigen::Index>(state.q.size())), u(static_cast<Eigen::Index>(state.u.size()));
-      for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = state.q[static_cast<std::size_t>(i)];
-      for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = state.u[static_cast<std::size_t>(i)];
-      const Matrix mobility = reference.mass_matrix(q).inverse();
+      const Vector q = to_vector(state.q), u = to_vector(state.u);
+      const Matrix mobility = inverse(reference.mass_matrix(q));
       const Vector udot = reference.accelerations(q, u);
       Dynamics dynamics(formulation, mechanism.model, state);
       dynamics.evaluate(mechanism.model, state, mechanism.ws);
-      const double scale = 1 + static_cast<double>(mobility.cwiseAbs().maxCoeff());
-      const double a_scale = 1 + static_cast<double>(udot.cwiseAbs().maxCoeff());
+      const double scale = 1 + static_cast<double>(mobility.largest());
+      const double a_scale = 1 + static_cast<double>(udot.largest());
       const std::size_t count = rows.size();
       std::vector<Direction> directions;
       for (const Row& row : mechanism.model.rows)

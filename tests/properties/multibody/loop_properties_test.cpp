@@ -1,10 +1,9 @@
 // What random trees and loops keep in every formulation: degrees of freedom, momentum, rates that are derivatives, and
 // the same motion under each.
-#include <Eigen/Dense>
-
 #include "multibody/constraint.h"
 #include "tests/properties/multibody/random_motion.h"
 #include "tests/support/nightly.h"
+#include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
@@ -12,21 +11,22 @@ namespace loop_properties_test {
 
 using namespace testing;
 using math::Vec3;
+using slew::testing::Index;
+using Matrix = slew::testing::Dense<long double>;
 
 // ---- degrees of freedom -------------------------------------------------------------------------------------------
 
 // Gradients of all rows of all joints with respect to the six speeds of every link.
-Eigen::MatrixXd jacobian(const Model& model, const Workspace& ws) {
+Matrix jacobian(const Model& model, const Workspace& ws) {
   const std::vector<Constraint> joints = joint_constraints(model);
-  const auto links = static_cast<Eigen::Index>(model.links.size()) - 1;
-  Eigen::MatrixXd G(0, 6 * links);
+  const auto links = static_cast<Index>(model.links.size()) - 1;
+  Matrix G(0, 6 * links);
   for (const Constraint& joint : joints) {
     std::vector<RowValue> values(joint.rows.size());
     const auto motion = [&](int link) -> const LinkMotion& { return ws.motion[static_cast<std::size_t>(link)]; };
     evaluate(joint, motion(joint.link1), motion(joint.link2), {}, values);
     for (const RowValue& value : values) {
-      G.conservativeResize(G.rows() + 1, Eigen::NoChange);
-      G.bottomRows(1).setZero();
+      G.append_rows(Matrix(1, G.cols()));
       const auto put = [&](int link, Vec3 v, Vec3 w) {
         if (link == 0) return;
         for (int k = 0; k < 3; ++k) {
@@ -48,21 +48,16 @@ const std::vector<std::uint32_t> kSeeds = slew::testing::seeds({{1, 240}}, kGate
 TEST(DegreesOfFreedom, AreSixALinkLessTheRankOfAllRows) {
   slew::testing::for_each_seed(slew::testing::seeds({{1, 600}}, kGateSeeds), [&](std::uint32_t seed) {
     Mechanism mechanism(random_mechanism(seed));
-    const auto links = static_cast<Eigen::Index>(mechanism.model.links.size()) - 1;
+    const auto links = static_cast<Index>(mechanism.model.links.size()) - 1;
     if (links == 0) return;
-    const Eigen::MatrixXd G = jacobian(mechanism.model, mechanism.ws);
-    Eigen::Index rank = 0;
-    if (G.rows() > 0) {
-      Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-      qr.setThreshold(1e-9);
-      rank = qr.compute(G).rank();
-    }
+    const Matrix G = jacobian(mechanism.model, mechanism.ws);
+    const Index rank = G.rows() == 0 ? 0 : slew::testing::column_rank(G, 1e-9L);
     EXPECT_EQ(mechanism.model.degrees_of_freedom(), 6 * links - rank) << "seed " << seed;
     const Description text = describe(mechanism.model);
     EXPECT_EQ(text.degrees_of_freedom, 6 * links - rank) << "seed " << seed;
     // what is reported as redundant is what the rank misses
-    Eigen::Index redundant = 0;
-    for (const CutDescription& cut : text.cuts) redundant += static_cast<Eigen::Index>(cut.redundant.size());
+    Index redundant = 0;
+    for (const CutDescription& cut : text.cuts) redundant += static_cast<Index>(cut.redundant.size());
     EXPECT_EQ(redundant, G.rows() - rank) << "seed " << seed;
   });
 }

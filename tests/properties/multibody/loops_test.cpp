@@ -26,17 +26,6 @@ using math::Vec3;
 
 constexpr Real kTolerance = 1e-9L;
 
-Vector to_vector(const std::vector<double>& values) {
-  Vector v(static_cast<Eigen::Index>(values.size()));
-  for (std::size_t i = 0; i < values.size(); ++i) v[static_cast<Eigen::Index>(i)] = values[i];
-  return v;
-}
-
-Real difference(const Vector& a, const Vector& b) {
-  if (b.size() == 0) return 0;
-  return (a - b).cwiseAbs().maxCoeff() / (1 + b.cwiseAbs().maxCoeff());
-}
-
 // twelve seeds on end close loops with every joint type
 constexpr std::uint32_t kGateSeeds = 12;
 const std::vector<std::uint32_t> kSeeds = seeds({{1, 60}}, kGateSeeds);
@@ -74,32 +63,25 @@ struct MovingLoops {
   }
 
   void collect() {
-    const Eigen::Index n = mechanism.model.speed_count();
-    J.resize(0, n);
-    bias.resize(0);
+    const Index n = mechanism.model.speed_count();
+    J = Matrix(0, n);
+    bias = Vector(0);
     for (std::size_t j = 0; j < closing.def.joints.size(); ++j) {
       if (mechanism.model.joints[j].cut < 0) continue;
       const Matrix here = reference.cut_jacobian(j, q);
-      if (here.cwiseAbs().maxCoeff() < 1e-10L) continue;  // between bodies that fixed joints merge
-      const Vector b = reference.cut_bias(j, q, u);
-      J.conservativeResize(J.rows() + here.rows(), n);
-      J.bottomRows(here.rows()) = here;
-      bias.conservativeResize(bias.size() + b.size());
-      bias.tail(b.size()) = b;
+      if (here.largest() < 1e-10L) continue;  // between bodies that fixed joints merge
+      J.append_rows(here);
+      bias.append_rows(reference.cut_bias(j, q, u));
     }
     M = reference.mass_matrix(q);
   }
 
   // u' of M u' = Q + J^T f with J u' = right
   [[nodiscard]] Vector solve(const Vector& Q, const Vector& right) const {
-    const Vector free = M.ldlt().solve(Q);
+    const Vector free = slew::testing::solve(M, Q);
     if (J.rows() == 0) return free;
-    const Matrix response = M.ldlt().solve(J.transpose());
-    const Matrix W = J * response;
-    Eigen::CompleteOrthogonalDecomposition<Matrix> inverse;
-    inverse.setThreshold(1e-12L);
-    inverse.compute(W);
-    return free + response * inverse.solve(right - J * free);
+    const Matrix response = slew::testing::solve(M, J.transposed());
+    return free + response * smallest_solution(J * response, right - J * free, 1e-12L).x;
   }
 
   RandomTree closing;
@@ -122,17 +104,15 @@ void for_each_mechanism(Claim claim, const std::vector<std::uint32_t>& chosen = 
 TEST(RandomLoops, HaveTheFreedomsThatTheJacobianLeaves) {
   for_each_mechanism([](MovingLoops& loops) {
     if (loops.J.rows() == 0) return;  // no cut
-    Eigen::ColPivHouseholderQR<Matrix> qr;
-    qr.setThreshold(1e-9L);
-    qr.compute(loops.J.transpose());
-    EXPECT_EQ(loops.mechanism.model.degrees_of_freedom(), loops.mechanism.model.speed_count() - qr.rank());
+    EXPECT_EQ(loops.mechanism.model.degrees_of_freedom(),
+              loops.mechanism.model.speed_count() - column_rank(loops.J.transposed(), 1e-9L));
   });
 }
 
 TEST(RandomLoops, MoveAlongTheirJoints) {
   for_each_mechanism([](MovingLoops& loops) {
     if (loops.J.rows() == 0) return;  // no cut
-    EXPECT_LT((loops.J * loops.u).cwiseAbs().maxCoeff(), 1e-9L);
+    EXPECT_LT((loops.J * loops.u).largest(), 1e-9L);
   });
 }
 
@@ -147,16 +127,16 @@ TEST(RandomLoops, GiveTheirRowsTheMobilityOfTheClosedMechanism) {
   for_each_mechanism([](MovingLoops& loops) {
     const std::vector<std::string> names = loops.rows();
     if (names.empty()) return;  // no row
-    const auto count = static_cast<Eigen::Index>(names.size());
+    const auto count = static_cast<Index>(names.size());
     const Vector udot = loops.solve(loops.reference.forces(loops.q, loops.u), -loops.bias);
-    for (Eigen::Index k = 0; k < count; ++k) {
+    for (Index k = 0; k < count; ++k) {
       const std::string& name = names[static_cast<std::size_t>(k)];
       const Vector row = loops.reference.row_jacobian(name, loops.q);
       const Real a = row.dot(udot) + loops.reference.row_bias(name, loops.q, loops.u);
       EXPECT_NEAR(static_cast<double>(a), loops.mechanism.ws.row_a_free[static_cast<std::size_t>(k)],
                   1e-8 * (1 + std::fabs(static_cast<double>(a))));
-      const Vector response = loops.solve(row, Vector::Zero(loops.J.rows()));
-      for (Eigen::Index l = 0; l < count; ++l) {
+      const Vector response = loops.solve(row, Vector(loops.J.rows()));
+      for (Index l = 0; l < count; ++l) {
         const Real w = loops.reference.row_jacobian(names[static_cast<std::size_t>(l)], loops.q).dot(response);
         EXPECT_NEAR(static_cast<double>(w), loops.mechanism.ws.row_W[static_cast<std::size_t>(l * count + k)],
                     1e-8 * (1 + std::fabs(static_cast<double>(w))));

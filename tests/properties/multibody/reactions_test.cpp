@@ -1,12 +1,11 @@
 // Reactions of random trees and loops: they do no work through any velocity that the joints allow, they and the weight
 // are what every body's momenta gain, and where rows are redundant they are the smallest ones, against a
 // pseudo-inverse. Redundant rows do not change the motion.
-#include <Eigen/Dense>
-
 #include "multibody/constraint.h"
 #include "multibody/joint_gauge.h"
 #include "tests/properties/multibody/random_motion.h"
 #include "tests/support/nightly.h"
+#include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/every_formulation.h"
 
 namespace slew::multibody {
@@ -14,9 +13,9 @@ namespace reactions_test {
 
 using namespace testing;
 using math::Vec3;
-using Real = long double;
-using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
-using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+using slew::testing::Index;
+using Matrix = slew::testing::Dense<long double>;
+using Vector = slew::testing::Dense<long double>;
 
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
@@ -129,48 +128,47 @@ Matrix transmitted(const Mechanism& mechanism, const std::vector<Constraint>& co
                                   [&](const Constraint& constraint) { return constraint.joint == joint; });
   const Joint& named = mechanism.model.joints[at(joint)];
   // a fixed joint within a link transmits everything
-  if (found == constraints.end()) return Matrix::Identity(6, named.type == JointType::fixed ? 6 : 0);
-  if (found->rows.empty()) return {6, 0};
+  if (found == constraints.end()) return named.type == JointType::fixed ? Matrix::identity(6) : Matrix(6, 0);
+  if (found->rows.empty()) return Matrix(6, 0);
   std::vector<RowValue> rows(found->rows.size());
   const LinkMotion& m1 = mechanism.ws.motion[at(found->link1)];
   evaluate(*found, m1, mechanism.ws.motion[at(found->link2)], {}, rows);
   const Vec3 point = point_of(mechanism, named);
-  Matrix B(6, static_cast<Eigen::Index>(rows.size()));
+  Matrix B(6, static_cast<Index>(rows.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Vec3 f = rows[k].G.v1, n = rows[k].G.w1 + cross(m1.p - point, f);
     for (int i = 0; i < 3; ++i) {
-      B(i, static_cast<Eigen::Index>(k)) = f[i];
-      B(3 + i, static_cast<Eigen::Index>(k)) = n[i];
+      B(i, static_cast<Index>(k)) = f[i];
+      B(3 + i, static_cast<Index>(k)) = n[i];
     }
   }
-  Eigen::ColPivHouseholderQR<Matrix> qr;
-  qr.setThreshold(1e-12L);
-  qr.compute(B);
-  return Matrix(qr.householderQ()).leftCols(qr.rank());
+  return slew::testing::column_basis(B, 1e-12L);
 }
 
 // What the joints put on each body together, by the wrenches of all of them: force and moment about the origin.
 Matrix loads(const Mechanism& mechanism) {
-  const auto bodies = static_cast<Eigen::Index>(mechanism.model.bodies.size()) - 1;
-  const auto joints = static_cast<Eigen::Index>(mechanism.model.joints.size());
-  Matrix A = Matrix::Zero(6 * bodies, 6 * joints);
-  for (Eigen::Index j = 0; j < joints; ++j) {
+  const auto bodies = static_cast<Index>(mechanism.model.bodies.size()) - 1;
+  const auto joints = static_cast<Index>(mechanism.model.joints.size());
+  Matrix A(6 * bodies, 6 * joints);
+  for (Index j = 0; j < joints; ++j) {
     const Joint& joint = mechanism.model.joints[static_cast<std::size_t>(j)];
     const Vec3 p = point_of(mechanism, joint);
-    Matrix shift = Matrix::Identity(6, 6);
-    shift.block<3, 3>(3, 0) << 0, -p[2], p[1], p[2], 0, -p[0], -p[1], p[0], 0;
-    if (joint.body1 > 0) A.block<6, 6>(6 * (joint.body1 - 1), 6 * j) += shift;
-    if (joint.body2 > 0) A.block<6, 6>(6 * (joint.body2 - 1), 6 * j) -= shift;
+    Matrix shift = Matrix::identity(6);
+    shift(4, 0) = p[2], shift(5, 0) = -p[1], shift(5, 1) = p[0];
+    shift(3, 1) = -p[2], shift(3, 2) = p[1], shift(4, 2) = -p[0];
+    // the two bodies of a joint differ, so that neither block is written twice
+    if (joint.body1 > 0) A.put(6 * (joint.body1 - 1), 6 * j, shift);
+    if (joint.body2 > 0) A.put(6 * (joint.body2 - 1), 6 * j, -shift);
   }
   return A;
 }
 
 Vector stacked(const std::vector<JointReaction>& reactions) {
-  Vector w(6 * static_cast<Eigen::Index>(reactions.size()));
+  Vector w(6 * static_cast<Index>(reactions.size()));
   for (std::size_t j = 0; j < reactions.size(); ++j) {
     for (std::size_t k = 0; k < 3; ++k) {
-      w[static_cast<Eigen::Index>(6 * j + k)] = reactions[j].force[k];
-      w[static_cast<Eigen::Index>(6 * j + 3 + k)] = reactions[j].moment[k];
+      w[static_cast<Index>(6 * j + k)] = reactions[j].force[k];
+      w[static_cast<Index>(6 * j + 3 + k)] = reactions[j].moment[k];
     }
   }
   return w;
@@ -194,21 +192,18 @@ TEST(Reactions, OfRedundantLoopsAreThoseOfThePseudoInverse) {
     set_random_speeds(mechanism, seed, 1);
     const Vector found = stacked(reactions_of(mechanism));
     const std::vector<Constraint> constraints = joint_constraints(mechanism.model);
-    const auto joints = static_cast<Eigen::Index>(mechanism.model.joints.size());
-    Matrix B = Matrix::Zero(6 * joints, 0);
-    for (Eigen::Index j = 0; j < joints; ++j) {
+    const auto joints = static_cast<Index>(mechanism.model.joints.size());
+    Matrix B(6 * joints, 0);
+    for (Index j = 0; j < joints; ++j) {
       const Matrix own = transmitted(mechanism, constraints, static_cast<int>(j));
-      B.conservativeResize(Eigen::NoChange, B.cols() + own.cols());
-      B.rightCols(own.cols()).setZero();
-      B.block(6 * j, B.cols() - own.cols(), 6, own.cols()) = own;
+      Matrix wrenches(6 * joints, own.cols());
+      wrenches.put(6 * j, 0, own);
+      B.append_columns(wrenches);
     }
     const Matrix A = loads(mechanism);
-    Eigen::CompleteOrthogonalDecomposition<Matrix> inverse;
-    inverse.setThreshold(1e-11L);
-    inverse.compute(A * B);
-    if (inverse.rank() < B.cols()) ++redundant;
-    const Vector smallest = B * inverse.solve(A * found);
-    EXPECT_LT((smallest - found).cwiseAbs().maxCoeff(), 1e-9L * (1 + found.cwiseAbs().maxCoeff())) << "seed " << seed;
+    const auto [x, rank] = slew::testing::smallest_solution(A * B, A * found, 1e-11L);
+    if (rank < B.cols()) ++redundant;
+    EXPECT_LT((B * x - found).largest(), 1e-9L * (1 + found.largest())) << "seed " << seed;
   }
   EXPECT_GT(redundant, 20);
 }

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-#include <Eigen/SparseCholesky>
-
+#include "flex/decompositions.h"
 #include "tests/support/flex_beams.h"
+#include "tests/support/reference_algebra.h"
 
 namespace slew::flex {
 namespace finite_segments_test {
@@ -79,17 +78,19 @@ TEST(FiniteSegments, OneConnectorIsTheBeamBetweenItsEnds) {
   // node 7, the first, held: compliance of the last
   const Eigen::Index n = model.K.rows();
   const SparseMatrix free = model.K.bottomRightCorner(n - 6, n - 6);
-  const Eigen::SimplicialLDLT<SparseMatrix> solver(free);
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(n - 6, 6);
   unit.bottomRows(6).setIdentity();
-  const Eigen::MatrixXd compliance = Eigen::MatrixXd(solver.solve(unit)).bottomRows(6);
-  Eigen::Matrix<double, 6, 6> T = Eigen::Matrix<double, 6, 6>::Zero();
+  const Eigen::MatrixXd moved = solve_positive(free, unit, "beam held at its first node");
+  using Matrix = slew::testing::Dense<double>;
+  Matrix compliance(6, 6), T(6, 6);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) compliance(i, j) = moved(n - 12 + i, j);
+  }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) T(i, j) = T(3 + i, 3 + j) = c.axes(i, j);
   }
-  const Eigen::Matrix<double, 6, 6> K = Eigen::Matrix<double, 6, 6>(T.transpose() * compliance * T).inverse();
-  Eigen::Matrix<double, 6, 6> found = Eigen::Matrix<double, 6, 6>::Zero();
-  found.diagonal() << c.K.k11, c.K.k22, c.K.k33, c.K.k44, c.K.k55, c.K.k66;
+  const Matrix K = slew::testing::inverse(T.transposed() * compliance * T);
+  Matrix found = Matrix::diagonal(Matrix::column({c.K.k11, c.K.k22, c.K.k33, c.K.k44, c.K.k55, c.K.k66}));
   found(1, 5) = found(5, 1) = c.K.k26;
   found(2, 4) = found(4, 2) = c.K.k35;
   for (int i = 0; i < 6; ++i) {

@@ -3,60 +3,66 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <random>
+
+#include "tests/support/reference_algebra.h"
 
 namespace slew::math {
 namespace block_ldl_test {
+
+using testing::Index;
+using Matrix = testing::Dense<double>;
+using Vector = testing::Dense<double>;
 
 // The same system twice: as blocks, and dense.
 class System {
  public:
   explicit System(BlockPattern pattern) : pattern_(std::move(pattern)), ldl_(pattern_) {
-    dense_ = Eigen::MatrixXd::Zero(ldl_.rows(), ldl_.rows());
+    dense_ = Matrix(ldl_.rows(), ldl_.rows());
     ldl_.clear();
   }
-  void add(int row, int column, const Eigen::MatrixXd& block) {
+  void add(int row, int column, const Matrix& block) {
     std::vector<double> values;
     for (int r = 0; r < block.rows(); ++r) {
       for (int c = 0; c < block.cols(); ++c) values.push_back(block(r, c));
     }
-    dense_.block(ldl_.first_row(row), ldl_.first_row(column), block.rows(), block.cols()) += block;
+    add_dense(row, column, block);
     if (row == column) return ldl_.add_diagonal(row, values);
-    dense_.block(ldl_.first_row(column), ldl_.first_row(row), block.cols(), block.rows()) += block.transpose();
+    add_dense(column, row, block.transposed());
     ldl_.add_coupling(row, column, values);
   }
-  Eigen::MatrixXd random(int rows, int columns) {
-    Eigen::MatrixXd block(rows, columns);
+  Matrix random(int rows, int columns) {
+    Matrix block(rows, columns);
     for (int r = 0; r < rows; ++r) {
       for (int c = 0; c < columns; ++c) block(r, c) = uniform_(random_);
     }
     return block;
   }
-  Eigen::MatrixXd random_inertia(int size) {
-    const Eigen::MatrixXd a = random(size, size);
-    return a * a.transpose() + 0.1 * Eigen::MatrixXd::Identity(size, size);
+  Matrix random_inertia(int size) {
+    const Matrix a = random(size, size);
+    return a * a.transposed() + 0.1 * Matrix::identity(size);
   }
   // Adds a body with the rows of the joint that hangs it on another one; none: on the ground.
   void hang(int node, int joint_rows, int parent, double mass = 1) {
-    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(6 + joint_rows, 6 + joint_rows);
-    own.topLeftCorner(6, 6) = mass * random_inertia(6);
-    own.bottomLeftCorner(joint_rows, 6) = random(joint_rows, 6);
-    own.topRightCorner(6, joint_rows) = own.bottomLeftCorner(joint_rows, 6).transpose();
+    Matrix own(6 + joint_rows, 6 + joint_rows);
+    own.put(0, 0, mass * random_inertia(6));
+    const Matrix G = random(joint_rows, 6);
+    own.put(6, 0, G);
+    own.put(0, 6, G.transposed());
     add(node, node, own);
     if (parent >= 0) close(node, 6, joint_rows, parent);
   }
   // Adds rows of a node that act on another node's body.
   void close(int node, int first, int rows, int body) {
-    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(size(node), size(body));
-    block.block(first, 0, rows, 6) = random(rows, 6);
+    Matrix block(size(node), size(body));
+    block.put(first, 0, random(rows, 6));
     add(node, body, block);
   }
   [[nodiscard]] int size(int node) const { return pattern_.nodes[index(node)].size; }
   // The same values once more.
   void refill() {
-    const Eigen::MatrixXd values = dense_;
-    dense_.setZero();
+    const Matrix values = dense_;
+    dense_ = Matrix(ldl_.rows(), ldl_.rows());
     ldl_.clear();
     const auto again = [&](int row, int column) {
       add(row, column,
@@ -66,20 +72,24 @@ class System {
     for (std::size_t i = 0; i < pattern_.nodes.size(); ++i) again(static_cast<int>(i), static_cast<int>(i));
     for (const auto& [a, b] : pattern_.couplings) again(a, b);
   }
-  Eigen::VectorXd solve(const Eigen::VectorXd& b) const {
-    Eigen::VectorXd x = b;
+  Vector solve(const Vector& b) const {
+    Vector x = b;
     ldl_.solve({x.data(), static_cast<std::size_t>(x.size())});
     return x;
   }
   [[nodiscard]] BlockLdl& ldl() { return ldl_; }
-  [[nodiscard]] const Eigen::MatrixXd& dense() const { return dense_; }
+  [[nodiscard]] const Matrix& dense() const { return dense_; }
 
  private:
+  void add_dense(int row, int column, const Matrix& block) {
+    const Index first = ldl_.first_row(row), left = ldl_.first_row(column);
+    dense_.put(first, left, dense_.block(first, left, block.rows(), block.cols()) + block);
+  }
   static std::size_t index(int node) { return static_cast<std::size_t>(node); }
 
   BlockPattern pattern_;
   BlockLdl ldl_;
-  Eigen::MatrixXd dense_;
+  Matrix dense_;
   std::mt19937 random_{7};
   std::uniform_real_distribution<double> uniform_{-1, 1};
 };
@@ -97,10 +107,9 @@ BlockPattern chain(int bodies, int rows) {
 void expect_solved(System& system, double tolerance) {
   ASSERT_TRUE(system.ldl().factorize(kTolerance));
   EXPECT_EQ(system.ldl().redundant_rows(), 0);
-  const Eigen::VectorXd b = system.random(system.ldl().rows(), 1);
-  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-  const Wide solution = system.dense().cast<long double>().partialPivLu().solve(b.cast<long double>());
-  const Eigen::VectorXd expected = solution.cast<double>();
+  const Vector b = system.random(system.ldl().rows(), 1);
+  // in long double
+  const Vector expected = testing::solve(system.dense(), b);
   EXPECT_LT((system.solve(b) - expected).norm(), tolerance * expected.norm());
 }
 
@@ -127,8 +136,8 @@ TEST(BlockLdl, SolvesLoopsBranchesAndCoupledMasses) {
   for (const int body : {3, 5}) system.close(6, 0, 3, body);
   system.close(7, 0, 1, 2);
   // coupled masses make the inertia of two bodies one block
-  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(system.size(4), system.size(1));
-  mass.topLeftCorner(6, 6) = 0.05 * system.random(6, 6);
+  Matrix mass(system.size(4), system.size(1));
+  mass.put(0, 0, 0.05 * system.random(6, 6));
   system.add(4, 1, mass);
   expect_solved(system, 1e-10);
 }
@@ -145,10 +154,10 @@ TEST(BlockLdl, LeavesRedundantRowsOutAndMeetsThemAllTheSame) {
   System system(pattern);
   for (const int body : {0, 1}) system.add(body, body, system.random_inertia(6));
   for (const int body : {0, 1}) {
-    const Eigen::MatrixXd G = system.random(4, 6);
-    Eigen::MatrixXd again = system.random(3, 6);
-    again.row(0) = G.row(1) - 2 * G.row(3);
-    again.row(2) = G.row(0);
+    const Matrix G = system.random(4, 6);
+    Matrix again = system.random(3, 6);
+    again.put(0, 0, G.row(1) - 2 * G.row(3));
+    again.put(2, 0, G.row(0));
     system.add(2, body, G);
     system.add(3, body, again);
   }
@@ -161,7 +170,7 @@ TEST(BlockLdl, LeavesRedundantRowsOutAndMeetsThemAllTheSame) {
   EXPECT_EQ(among, 2);
   EXPECT_FALSE(system.ldl().is_redundant(3, 1));
   // a consistent right-hand side is met in every row
-  const Eigen::VectorXd b = system.dense() * system.random(system.ldl().rows(), 1);
+  const Vector b = system.dense() * system.random(system.ldl().rows(), 1);
   EXPECT_LT((system.dense() * system.solve(b) - b).norm(), 1e-11 * b.norm());
 }
 
@@ -171,8 +180,8 @@ TEST(BlockLdl, FindsARowThatRepeatsItselfWithinItsNode) {
   pattern.couplings = {{1, 0}};
   System system(pattern);
   system.add(0, 0, system.random_inertia(6));
-  Eigen::MatrixXd G = system.random(2, 6);
-  G.row(1) = 3 * G.row(0);
+  Matrix G = system.random(2, 6);
+  G.put(1, 0, 3 * G.row(0));
   system.add(1, 0, G);
   ASSERT_TRUE(system.ldl().factorize(kTolerance));
   EXPECT_EQ(system.ldl().redundant_rows(), 1);
@@ -188,10 +197,11 @@ TEST(BlockLdl, TakesABodyWithoutInertiaThatItsJointHolds) {
   System system(chain(2, 5));
   system.hang(0, 5, -1);
   // a point mass: no moments of inertia
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(11, 11);
-  own.diagonal().head(3).setConstant(2);
-  own.bottomLeftCorner(5, 6) = system.random(5, 6);
-  own.topRightCorner(6, 5) = own.bottomLeftCorner(5, 6).transpose();
+  Matrix own(11, 11);
+  own.put(0, 0, 2 * Matrix::identity(3));
+  const Matrix G = system.random(5, 6);
+  own.put(6, 0, G);
+  own.put(0, 6, G.transposed());
   system.add(1, 1, own);
   system.close(1, 6, 5, 0);
   expect_solved(system, 1e-10);
@@ -204,11 +214,11 @@ System sprung(int bodies, double stiffness) {
   for (int i = 1; i < bodies; ++i) pattern.couplings.emplace_back(i, i - 1);
   System system(pattern);
   for (int i = 0; i < bodies; ++i) {
-    const Eigen::MatrixXd G = system.random(5, 6), to_parent = system.random(5, 6);
-    system.add(i, i, system.random_inertia(6) + stiffness * G.transpose() * G);
+    const Matrix G = system.random(5, 6), to_parent = system.random(5, 6);
+    system.add(i, i, system.random_inertia(6) + stiffness * G.transposed() * G);
     if (i == 0) continue;
-    system.add(i - 1, i - 1, stiffness * to_parent.transpose() * to_parent);
-    system.add(i, i - 1, stiffness * G.transpose() * to_parent);
+    system.add(i - 1, i - 1, stiffness * to_parent.transposed() * to_parent);
+    system.add(i, i - 1, stiffness * G.transposed() * to_parent);
   }
   return system;
 }
@@ -226,7 +236,7 @@ TEST(BlockLdl, LosesTheRatioOfStiffAndSoftInADefiniteMatrixNotItsSquare) {
 
 TEST(BlockLdl, SaysThatADefiniteNodeIsNot) {
   System system = sprung(2, 10);
-  system.add(1, 1, -1e3 * Eigen::MatrixXd::Identity(6, 6));
+  system.add(1, 1, -1e3 * Matrix::identity(6));
   EXPECT_FALSE(system.ldl().factorize(kTolerance));
 }
 
@@ -241,8 +251,8 @@ TEST(BlockLdl, GivesTheSameBitsWhenItIsFilledAgain) {
   System system(chain(4, 5));
   for (int i = 0; i < 4; ++i) system.hang(i, 5, i - 1);
   ASSERT_TRUE(system.ldl().factorize(kTolerance));
-  const Eigen::VectorXd b = system.random(system.ldl().rows(), 1);
-  const Eigen::VectorXd first = system.solve(b);
+  const Vector b = system.random(system.ldl().rows(), 1);
+  const Vector first = system.solve(b);
   system.refill();
   ASSERT_TRUE(system.ldl().factorize(kTolerance));
   EXPECT_EQ(first, system.solve(b));

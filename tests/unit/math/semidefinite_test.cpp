@@ -3,51 +3,53 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <random>
+
+#include "tests/support/reference_algebra.h"
 
 namespace slew::math {
 namespace semidefinite_test {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using testing::Index;
+using Matrix = testing::Dense<double>;
+using Vector = testing::Dense<double>;
 
 // Row-major copy of a symmetric matrix.
-std::vector<double> values_of(const MatrixXd& a) {
+std::vector<double> values_of(const Matrix& a) {
   return {a.data(), a.data() + a.size()};
 }
 
-MatrixXd random_matrix(int rows, int columns, std::mt19937_64& random) {
+Matrix random_matrix(int rows, int columns, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
-  MatrixXd a(rows, columns);
-  for (double& x : a.reshaped()) x = uniform(random);
+  Matrix a(rows, columns);
+  for (Index i = 0; i < a.size(); ++i) a[i] = uniform(random);
   return a;
 }
 
 TEST(Semidefinite, RegularSystemIsSolved) {
   std::mt19937_64 random(1);
-  const MatrixXd J = random_matrix(7, 12, random), A = J * J.transpose();
-  const VectorXd x = random_matrix(7, 1, random);
+  const Matrix J = random_matrix(7, 12, random), A = J * J.transposed();
+  const Vector x = random_matrix(7, 1, random);
   Semidefinite factor(7);
   factor.factorize(values_of(A), {}, 1e-12);
   EXPECT_EQ(factor.rank(), 7);
-  VectorXd b = A * x;
+  Vector b = A * x;
   factor.solve({b.data(), 7});
   EXPECT_LT((b - x).norm(), 1e-10 * x.norm());
 }
 
 TEST(Semidefinite, LaterDependentRowsAreNamedAndGetZero) {
   std::mt19937_64 random(2);
-  MatrixXd J = random_matrix(6, 9, random);
-  J.row(2) = 3 * J.row(0) - J.row(1);
-  J.row(5) = J.row(4) * 1e-3;
-  const MatrixXd A = J * J.transpose();
+  Matrix J = random_matrix(6, 9, random);
+  J.put(2, 0, 3 * J.row(0) - J.row(1));
+  J.put(5, 0, J.row(4) * 1e-3);
+  const Matrix A = J * J.transposed();
   Semidefinite factor(6);
   factor.factorize(values_of(A), {}, 1e-12);
   EXPECT_EQ(factor.rank(), 4);
   for (int row = 0; row < 6; ++row) EXPECT_EQ(factor.is_redundant(row), row == 2 || row == 5) << row;
-  const VectorXd right = A * random_matrix(6, 1, random);
-  VectorXd x = right;
+  const Vector right = A * random_matrix(6, 1, random);
+  Vector x = right;
   factor.solve({x.data(), 6});
   EXPECT_EQ(x[2], 0);
   EXPECT_EQ(x[5], 0);
@@ -55,7 +57,7 @@ TEST(Semidefinite, LaterDependentRowsAreNamedAndGetZero) {
 }
 
 TEST(Semidefinite, RowWithoutAnythingIsRedundant) {
-  const MatrixXd A = Eigen::Vector3d(2, 0, 3).asDiagonal();
+  const Matrix A = Matrix::diagonal(Vector::column({2, 0, 3}));
   Semidefinite factor(3);
   factor.factorize(values_of(A), {}, 1e-12);
   EXPECT_TRUE(factor.is_redundant(1));

@@ -2,61 +2,60 @@
 // recursion's accelerations, found by differences, where the code under test assembles K and D in body coordinates.
 #include "multibody/step_rows.h"
 
-#include <Eigen/Dense>
 #include <random>
 
 #include "multibody/passes.h"
 #include "tests/properties/multibody/random_modes.h"
+#include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {
 namespace step_rows_test {
 
 using namespace testing;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using slew::testing::Index;
+using Matrix = slew::testing::Dense<double>;
+using Vector = slew::testing::Dense<double>;
 using math::Vec3;
 
 constexpr double kH = 5e-3;
 
-VectorXd to_vector(std::span<const double> values) {
-  return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+Vector to_vector(std::span<const double> values) {
+  return Vector::column({values.begin(), values.end()});
 }
 
 // a_free and W of all rows over H, for a mechanism without strain, force and gravity
 struct Dense {
-  VectorXd a_free;
-  MatrixXd W;
+  Vector a_free;
+  Matrix W;
 
   Dense(Mechanism& m, double H) {
-    const auto n = static_cast<Eigen::Index>(m.state.u.size()), rows = static_cast<Eigen::Index>(m.model.rows.size());
+    const auto n = static_cast<Index>(m.state.u.size()), rows = static_cast<Index>(m.model.rows.size());
     evaluate(m.model, m.state, m.ws);
-    const VectorXd u = to_vector(m.state.u), udot = to_vector(m.ws.udot_free);
-    const VectorXd a_instant = to_vector(row_free_accelerations(m.ws));
-    const MatrixXd J =
-        Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(row_jacobian(m.ws).data(), rows, n);
-    MatrixXd R(n, rows);
+    const Vector u = to_vector(m.state.u), udot = to_vector(m.ws.udot_free);
+    const Vector a_instant = to_vector(row_free_accelerations(m.ws));
+    Matrix J(rows, n), R(n, rows);
+    for (Index i = 0; i < rows * n; ++i) J(i / n, i % n) = row_jacobian(m.ws)[static_cast<std::size_t>(i)];
     std::vector<double> column(m.state.u.size());
-    for (Eigen::Index k = 0; k < rows; ++k) {
+    for (Index k = 0; k < rows; ++k) {
       response_column(m.model, m.ws, static_cast<int>(k), column);
-      R.col(k) = to_vector(column);
+      R.put(0, k, to_vector(column));
     }
-    MatrixXd K(n, n), D(n, n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      K.col(j) = (accelerations_at(m, j, -kStep, 0) - accelerations_at(m, j, kStep, 0)) / (2 * kStep);
-      D.col(j) = (accelerations_at(m, j, 0, -kStep) - accelerations_at(m, j, 0, kStep)) / (2 * kStep);
+    Matrix K(n, n), D(n, n);
+    for (Index j = 0; j < n; ++j) {
+      K.put(0, j, (accelerations_at(m, j, -kStep, 0) - accelerations_at(m, j, kStep, 0)) / (2 * kStep));
+      D.put(0, j, (accelerations_at(m, j, 0, -kStep) - accelerations_at(m, j, 0, kStep)) / (2 * kStep));
     }
-    const MatrixXd A = MatrixXd::Identity(n, n) + H * D + H * H / 2 * K;
-    const Eigen::PartialPivLU<MatrixXd> solver(A);
-    a_free = J * solver.solve(udot - H * K * u) + (a_instant - J * udot);
-    W = J * solver.solve(R);
+    const Matrix A = Matrix::identity(n) + H * D + H * H / 2 * K;
+    a_free = J * solve(A, udot - H * K * u) + (a_instant - J * udot);
+    W = J * solve(A, R);
   }
 
  private:
   static constexpr double kStep = 1e-6;
 
   // away from the state along one speed, or with that speed alone
-  static VectorXd accelerations_at(Mechanism& m, Eigen::Index j, double way, double speed) {
+  static Vector accelerations_at(Mechanism& m, Index j, double way, double speed) {
     std::vector<double> q = m.state.q, u(m.state.u.size()), rate(q.size());
     u[static_cast<std::size_t>(j)] = 1;
     update_motion(m.model, q, u, m.ws);
@@ -78,10 +77,9 @@ void expect_same(Mechanism& m, double H) {
   const Dense dense(m, H);
   StepRows rows(m.model);
   ASSERT_TRUE(rows.evaluate(m.model, m.state, m.ws, H));
-  const VectorXd a = to_vector(rows.free_accelerations()), W = to_vector(rows.mobility());
+  const Vector a = to_vector(rows.free_accelerations()), W = to_vector(rows.mobility());
   EXPECT_LT((a - dense.a_free).norm(), 1e-5 * dense.a_free.norm());
-  const MatrixXd transposed = dense.W.transpose();
-  const VectorXd flat = Eigen::Map<const VectorXd>(transposed.data(), transposed.size());
+  const Vector flat = dense.W.transposed().flat();
   EXPECT_LT((W - flat).norm(), 1e-6 * flat.norm());
   // springs matter here
   evaluate(m.model, m.state, m.ws);
@@ -129,11 +127,11 @@ TEST(StepRows, TwoMassesOnASpringAreAsWrittenOut) {
     StepRows rows(m.model);
     ASSERT_TRUE(rows.evaluate(m.model, m.state, m.ws, H));
     const double s = H * d + H * H / 2 * k;
-    Eigen::Matrix2d A;
-    A << 2 + s, -s, -s, 5 + s;
+    // A = (2 + s, -s; -s, 5 + s)
+    const double determinant = (2 + s) * (5 + s) - s * s;
     const double force = pull + H * k * -0.5;
-    EXPECT_NEAR(rows.mobility()[0], A.inverse()(0, 0), 1e-12);
-    const double a = A.inverse().row(0) * Eigen::Vector2d(force, -force);
+    EXPECT_NEAR(rows.mobility()[0], (5 + s) / determinant, 1e-12);
+    const double a = ((5 + s) * force - s * force) / determinant;
     EXPECT_NEAR(rows.free_accelerations()[0], a, 1e-9 * std::fabs(a)) << H;
   }
 }

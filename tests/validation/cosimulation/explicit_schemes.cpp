@@ -1,13 +1,14 @@
 #include "tests/validation/cosimulation/explicit_schemes.h"
 
-#include <Eigen/Eigenvalues>
-#include <cmath>
+#include <algorithm>
+
+#include "tests/support/reference_algebra.h"
 
 namespace slew::cosimulation {
 namespace {
 
 using Eigen::Matrix2d;
-using Eigen::MatrixXd;
+using Matrix = testing::Dense<double>;
 
 // (x, v) of one mass after H, of its own start and of what is held: x' = v, m v' = -k x - c v + b . held
 struct Half {
@@ -15,37 +16,31 @@ struct Half {
 };
 
 Half half(double m, double k, double c, const Eigen::RowVector2d& b, double H) {
-  MatrixXd A = MatrixXd::Zero(4, 4);
+  Matrix A(4, 4);
   A(0, 1) = 1;
   A(1, 0) = -k / m;
   A(1, 1) = -c / m;
-  A.block<1, 2>(1, 2) = b / m;
-  const MatrixXd E = exponential(A * H);
-  return {E.topLeftCorner<2, 2>(), E.topRightCorner<2, 2>()};
+  A(1, 2) = b[0] / m;
+  A(1, 3) = b[1] / m;
+  const Matrix E = testing::exponential(A * H);
+  Half result;
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      result.own(i, j) = E(i, j);
+      result.held(i, j) = E(i, j + 2);
+    }
+  }
+  return result;
 }
 
 }  // namespace
 
-MatrixXd exponential(const MatrixXd& A) {
-  // halved until the series of 20 terms is exact
-  constexpr int kTerms = 20;
-  const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(A.cwiseAbs().rowwise().sum().maxCoeff()))) + 2);
-  const MatrixXd small = A / std::pow(2.0, halvings);
-  MatrixXd sum = MatrixXd::Identity(A.rows(), A.cols()), term = sum;
-  for (int k = 1; k <= kTerms; ++k) {
-    term = (term * small / k).eval();
-    sum += term;
-  }
-  for (int i = 0; i < halvings; ++i) sum = (sum * sum).eval();
-  return sum;
-}
-
 Map exact_map(const TwoMasses& s, double H) {
-  MatrixXd A = MatrixXd::Zero(4, 4);
+  Matrix A(4, 4);
   A(0, 1) = A(2, 3) = 1;
-  A.row(1) << -(s.k1 + s.kc) / s.m1, -(s.c1 + s.cc) / s.m1, s.kc / s.m1, s.cc / s.m1;
-  A.row(3) << s.kc / s.m2, s.cc / s.m2, -(s.k2 + s.kc) / s.m2, -(s.c2 + s.cc) / s.m2;
-  return exponential(A * H);
+  A(1, 0) = -(s.k1 + s.kc) / s.m1, A(1, 1) = -(s.c1 + s.cc) / s.m1, A(1, 2) = s.kc / s.m1, A(1, 3) = s.cc / s.m1;
+  A(3, 0) = s.kc / s.m2, A(3, 1) = s.cc / s.m2, A(3, 2) = -(s.k2 + s.kc) / s.m2, A(3, 3) = -(s.c2 + s.cc) / s.m2;
+  return Map(testing::exponential(A * H).data());
 }
 
 Map step_map(const TwoMasses& s, Coupling coupling, Order order, double H) {
@@ -80,7 +75,9 @@ Map step_map(const TwoMasses& s, Coupling coupling, Order order, double H) {
 }
 
 double spectral_radius(const Map& map) {
-  return Eigen::EigenSolver<Map>(map, false).eigenvalues().cwiseAbs().maxCoeff();
+  Matrix A(4, 4);
+  std::copy(map.data(), map.data() + map.size(), A.data());
+  return testing::spectral_radius(A);
 }
 
 double energy(const TwoMasses& s, const State& y) {

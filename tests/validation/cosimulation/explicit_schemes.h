@@ -4,7 +4,7 @@
 //   wall -- k1, c1 -- m1 -- kc, cc -- m2 -- k2, c2 -- wall
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace slew::cosimulation {
 
@@ -24,9 +24,6 @@ inline const State kStart(0, 100, 0, -100);
 enum class Coupling { force_displacement, displacement_displacement };
 // Who steps first, with what is known at the start of the step; the other one then has the end of it.
 enum class Order { jacobi, first_2_then_1, first_1_then_2 };
-
-// e^A
-[[nodiscard]] Eigen::MatrixXd exponential(const Eigen::MatrixXd& A);
 
 [[nodiscard]] Map exact_map(const TwoMasses& of, double H);
 [[nodiscard]] Map step_map(const TwoMasses& of, Coupling coupling, Order order, double H);

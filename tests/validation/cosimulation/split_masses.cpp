@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/reference_algebra.h"
+
 namespace slew::cosimulation {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Matrix = testing::Dense<double>;
+using Vector = testing::Dense<double>;
 
 // the pressure force and nothing else
 class Line final : public coupling::RowLaws {
@@ -77,27 +79,26 @@ void SplitMasses::move_masses() {
 }
 
 void SplitMasses::move_oil(double x, double v, const Reduced& known) {
-  MatrixXd A = MatrixXd::Zero(4, 4);
+  Matrix A(4, 4);
   A(0, 0) = -lambda_;
   A(0, 2) = -of_.kc;
   A(1, 2) = 1;
   A(2, 0) = known.W;
   A(2, 3) = known.a_free;
-  const VectorXd start = Eigen::Vector4d(oil_[0] - of_.kc * (x - oil_[1]), x, v, 1);
-  const VectorXd end = exponential(A * H_) * start;
+  const Vector start = Vector::column({oil_[0] - of_.kc * (x - oil_[1]), x, v, 1});
+  const Vector end = testing::exponential(A * H_) * start;
   oil_ = {end[0], end[1], end[2]};
 }
 
 State exact_with_oil(const TwoMasses& s, double lambda, double time) {
-  MatrixXd A = MatrixXd::Zero(5, 5);
+  Matrix A(5, 5);
   A(0, 1) = A(2, 3) = 1;
-  A.row(1) << -s.k1 / s.m1, -s.c1 / s.m1, 0, 0, 1 / s.m1;
-  A.row(3) << 0, 0, -s.k2 / s.m2, -s.c2 / s.m2, -1 / s.m2;
-  A.row(4) << 0, -s.kc, 0, s.kc, -lambda;
-  VectorXd start(5);
-  start << kStart, -s.kc * (kStart[0] - kStart[2]);
-  const VectorXd end = exponential(A * time) * start;
-  return end.head<4>();
+  A(1, 0) = -s.k1 / s.m1, A(1, 1) = -s.c1 / s.m1, A(1, 4) = 1 / s.m1;
+  A(3, 2) = -s.k2 / s.m2, A(3, 3) = -s.c2 / s.m2, A(3, 4) = -1 / s.m2;
+  A(4, 1) = -s.kc, A(4, 3) = s.kc, A(4, 4) = -lambda;
+  const Vector start = Vector::column({kStart[0], kStart[1], kStart[2], kStart[3], -s.kc * (kStart[0] - kStart[2])});
+  const Vector end = testing::exponential(A * time) * start;
+  return {end[0], end[1], end[2], end[3]};
 }
 
 }  // namespace slew::cosimulation

@@ -1,17 +1,20 @@
 #include "tests/validation/flexible/linear_crane.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <cstddef>
 #include <functional>
+
+#include "tests/support/reference_algebra.h"
 
 namespace slew::testing {
 
 using Eigen::Matrix3d;
 using Eigen::Matrix4d;
-using Eigen::MatrixXd;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
+using Matrix = Dense<double>;
+using Vector = Dense<double>;
 
 namespace {
 
@@ -37,6 +40,15 @@ Matrix3d turned_by(const Vector3d& turn) {
 Vector3d turn_of(const Matrix3d& R) {
   const Eigen::AngleAxisd turn(R);
   return turn.angle() * turn.axis();
+}
+
+Vector3d part_at(const Vector& v, Index i) {
+  return {v[i], v[i + 1], v[i + 2]};
+}
+
+// from this row on of a column
+void put(Matrix& A, Index row, Index column, const Vector3d& part) {
+  for (int k = 0; k < 3; ++k) A(row + k, column) = part[k];
 }
 
 }  // namespace
@@ -88,11 +100,11 @@ void plane_element(const BoxBeam& beam, double l, Matrix4d& K, Matrix4d& M) {
 }
 
 // Matrices of the boom along -x, six freedoms a node: shifts along and turns about x, y, z.
-void beam_matrices(const BoxBeam& beam, int elements, MatrixXd& K, MatrixXd& M) {
+void beam_matrices(const BoxBeam& beam, int elements, Matrix& K, Matrix& M) {
   const double l = beam.length / elements;
   Matrix4d K_plane, M_plane;
   plane_element(beam, l, K_plane, M_plane);
-  K = M = MatrixXd::Zero(6 * (elements + 1), 6 * (elements + 1));
+  K = M = Matrix(6 * (elements + 1), 6 * (elements + 1));
   for (int e = 0; e < elements; ++e) {
     const int a = 6 * e, b = a + 6;
     // the way goes along -x: w = u_y has the slope -theta_z, w = u_z the slope theta_y
@@ -153,10 +165,9 @@ class Crane {
   }
 
   [[nodiscard]] std::vector<double> frequencies() {
-    const MatrixXd K = stiffness(), M = mass();
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solved(K, M, Eigen::EigenvaluesOnly);
+    const Matrix K = stiffness(), M = mass();
     std::vector<double> f;
-    for (const double square : solved.eigenvalues()) {
+    for (const double square : symmetric_modes(K, M).lambda) {
       const double hertz = std::sqrt(std::abs(square)) / (2 * M_PI);
       if (hertz > 0.01) f.push_back(hertz);
     }
@@ -164,7 +175,7 @@ class Crane {
   }
 
  private:
-  [[nodiscard]] Pose pose(const VectorXd& x) const {
+  [[nodiscard]] Pose pose(const Vector& x) const {
     const Vector3d z = Vector3d::UnitZ();
     Pose p;
     const Matrix3d R_p = about(Vector3d::UnitY(), degrees(37.5));
@@ -182,8 +193,8 @@ class Crane {
       Vector3d place = root, turn = Vector3d::Zero();
       place.x() -= def_.boom.length * i / def_.elements;
       if (i > 0) {
-        place += x.segment<3>(kRigid + 6 * (i - 1));
-        turn = x.segment<3>(kRigid + 6 * (i - 1) + 3);
+        place += part_at(x, kRigid + 6 * (i - 1));
+        turn = part_at(x, kRigid + 6 * (i - 1) + 3);
       }
       p.nodes.push_back(o_j + R_a * place);
       p.node_R.push_back(R_a * turned_by(turn));
@@ -193,7 +204,7 @@ class Crane {
     const Vector3d o_h = p.nodes.back() + R_h * (Vector3d(-6.5, -0.15, 0.15) - tip);
     p.bodies.push_back({20, {0.2, 0.2, 0.2}, o_h + R_h * Vector3d(0, -0.1, 0), R_h});
     // the bag hangs plumb
-    const Matrix3d R_b = turned_by(x.segment<3>(2)) * R_p;
+    const Matrix3d R_b = turned_by(part_at(x, 2)) * R_p;
     const double turning = 100 * def_.payload / 500;
     p.bodies.push_back({def_.payload,
                         {turning, turning, turning},
@@ -220,24 +231,24 @@ class Crane {
            (line->m1 * (line->P1 + line->e() * line->c1).y() + line->m2 * (line->P2 + line->e() * line->c2).y());
     }
     const Vector3d up = p.boom_R.transpose() * Vector3d::UnitY();
-    VectorXd lift = VectorXd::Zero(M_beam_.rows()), place = lift;
+    Vector lift(M_beam_.rows()), place = lift;
     for (std::size_t i = 0; i < p.nodes.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(6 * i);
-      lift.segment<3>(k) = up;
-      place.segment<3>(k) = p.boom_R.transpose() * p.nodes[i];
-      place.segment<3>(k + 3) = turn_of(p.boom_R.transpose() * p.node_R[i]);
+      const auto k = static_cast<Index>(6 * i);
+      put(lift, k, 0, up);
+      put(place, k, 0, p.boom_R.transpose() * p.nodes[i]);
+      put(place, k + 3, 0, turn_of(p.boom_R.transpose() * p.node_R[i]));
     }
     return V + kGravity * lift.dot(M_beam_ * place);
   }
   // less the work of the cylinders' static forces; strain is not in it
-  [[nodiscard]] double potential(const VectorXd& x) const {
+  [[nodiscard]] double potential(const Vector& x) const {
     const Pose p = pose(x);
     return weight(p) - lift_force_ * p.lift.length() - jib_force_ * p.jib.length();
   }
 
-  [[nodiscard]] VectorXd gradient(const std::function<double(const VectorXd&)>& V) const {
-    VectorXd g(count_);
-    VectorXd x = x_;
+  [[nodiscard]] Vector gradient(const std::function<double(const Vector&)>& V) const {
+    Vector g(count_);
+    Vector x = x_;
     for (int k = 0; k < count_; ++k) {
       x[k] = x_[k] + kStep;
       const double above = V(x);
@@ -250,16 +261,16 @@ class Crane {
 
   // bends the boom as it rests, and finds the forces that hold the cylinders
   void settle() {
-    x_ = VectorXd::Zero(count_);
+    x_ = Vector(count_);
     const int bending = count_ - kRigid;
-    const Eigen::LDLT<MatrixXd> factor(K_beam_.bottomRightCorner(bending, bending));
-    VectorXd g;
+    const Matrix K = K_beam_.block(6, 6, bending, bending);
+    Vector g;
     for (int i = 0; i < 12; ++i) {
-      g = gradient([this](const VectorXd& x) { return weight(pose(x)); });
-      x_.tail(bending) = -factor.solve(g.tail(bending));
+      g = gradient([this](const Vector& x) { return weight(pose(x)); });
+      x_.put(kRigid, 0, -solve(K, g.block(kRigid, 0, bending, 1)));
     }
     const auto way = [&](Line Pose::*line) {
-      return gradient([&](const VectorXd& x) { return (pose(x).*line).length(); });
+      return gradient([&](const Vector& x) { return (pose(x).*line).length(); });
     };
     lift_way_ = way(&Pose::lift);
     jib_way_ = way(&Pose::jib);
@@ -267,9 +278,9 @@ class Crane {
     jib_force_ = g[1] / jib_way_[1];
   }
 
-  [[nodiscard]] MatrixXd stiffness() const {
-    MatrixXd K(count_, count_);
-    VectorXd x = x_;
+  [[nodiscard]] Matrix stiffness() const {
+    Matrix K(count_, count_);
+    Vector x = x_;
     const auto at = [&](int k, double a, int l, double b) {
       x[k] += a;
       x[l] += b;
@@ -284,17 +295,19 @@ class Crane {
         K(k, l) = K(l, k) = (at(k, h, l, h) - at(k, h, l, -h) - at(k, -h, l, h) + at(k, -h, l, -h)) / (4 * h * h);
       }
     }
-    K += def_.lift_stiffness * lift_way_ * lift_way_.transpose() + def_.jib_stiffness * jib_way_ * jib_way_.transpose();
-    const int bending = count_ - kRigid;
-    K.bottomRightCorner(bending, bending) += K_beam_.bottomRightCorner(bending, bending);
+    K += def_.lift_stiffness * lift_way_ * lift_way_.transposed() +
+         def_.jib_stiffness * jib_way_ * jib_way_.transposed();
+    for (int k = kRigid; k < count_; ++k) {
+      for (int l = kRigid; l < count_; ++l) K(k, l) += K_beam_(k - kRigid + 6, l - kRigid + 6);
+    }
     return K;
   }
 
   // speeds of everything that has a mass, by coordinate, times the masses
-  [[nodiscard]] MatrixXd mass() const {
-    MatrixXd J_body(6 * 4, count_), J_boom(6 * (def_.elements + 1), count_), J_line(9 * 2, count_);
+  [[nodiscard]] Matrix mass() const {
+    Matrix J_body(6 * 4, count_), J_boom(6 * (def_.elements + 1), count_), J_line(9 * 2, count_);
     const Pose here = pose(x_);
-    VectorXd x = x_;
+    Vector x = x_;
     for (int k = 0; k < count_; ++k) {
       x[k] = x_[k] + kStep;
       const Pose above = pose(x);
@@ -307,43 +320,44 @@ class Crane {
       };
       for (int b = 0; b < 4; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        J_body.block<3, 1>(6 * b, k) = speed(above.bodies[i].centre, below.bodies[i].centre);
-        J_body.block<3, 1>(6 * b + 3, k) = here.bodies[i].R.transpose() * spin(above.bodies[i].R, below.bodies[i].R);
+        put(J_body, 6 * b, k, speed(above.bodies[i].centre, below.bodies[i].centre));
+        put(J_body, 6 * b + 3, k, here.bodies[i].R.transpose() * spin(above.bodies[i].R, below.bodies[i].R));
       }
       for (int n = 0; n <= def_.elements; ++n) {
         const auto i = static_cast<std::size_t>(n);
-        J_boom.block<3, 1>(6 * n, k) = here.boom_R.transpose() * speed(above.nodes[i], below.nodes[i]);
-        J_boom.block<3, 1>(6 * n + 3, k) = here.boom_R.transpose() * spin(above.node_R[i], below.node_R[i]);
+        put(J_boom, 6 * n, k, here.boom_R.transpose() * speed(above.nodes[i], below.nodes[i]));
+        put(J_boom, 6 * n + 3, k, here.boom_R.transpose() * spin(above.node_R[i], below.node_R[i]));
       }
       int row = 0;
       for (Line Pose::*line : {&Pose::lift, &Pose::jib}) {
         const Line &a = above.*line, &b = below.*line;
-        J_line.block<3, 1>(row, k) = speed(a.P1 + a.e() * a.c1, b.P1 + b.e() * b.c1);
-        J_line.block<3, 1>(row + 3, k) = speed(a.P2 + a.e() * a.c2, b.P2 + b.e() * b.c2);
-        J_line.block<3, 1>(row + 6, k) = speed(a.e(), b.e());
+        put(J_line, row, k, speed(a.P1 + a.e() * a.c1, b.P1 + b.e() * b.c1));
+        put(J_line, row + 3, k, speed(a.P2 + a.e() * a.c2, b.P2 + b.e() * b.c2));
+        put(J_line, row + 6, k, speed(a.e(), b.e()));
         row += 9;
       }
     }
-    VectorXd m_body(24), m_line(18);
+    Vector m_body(24), m_line(18);
     for (int b = 0; b < 4; ++b) {
-      m_body.segment<3>(6 * b).setConstant(here.bodies[static_cast<std::size_t>(b)].mass);
-      m_body.segment<3>(6 * b + 3) = here.bodies[static_cast<std::size_t>(b)].inertia;
+      const RigidBody& body = here.bodies[static_cast<std::size_t>(b)];
+      put(m_body, 6 * b, 0, Vector3d::Constant(body.mass));
+      put(m_body, 6 * b + 3, 0, body.inertia);
     }
     int row = 0;
     for (const Line* line : {&here.lift, &here.jib}) {
-      m_line.segment<3>(row).setConstant(line->m1);
-      m_line.segment<3>(row + 3).setConstant(line->m2);
-      m_line.segment<3>(row + 6).setConstant(line->transverse);
+      put(m_line, row, 0, Vector3d::Constant(line->m1));
+      put(m_line, row + 3, 0, Vector3d::Constant(line->m2));
+      put(m_line, row + 6, 0, Vector3d::Constant(line->transverse));
       row += 9;
     }
-    return J_body.transpose() * m_body.asDiagonal() * J_body + J_line.transpose() * m_line.asDiagonal() * J_line +
-           J_boom.transpose() * M_beam_ * J_boom;
+    return J_body.transposed() * Matrix::diagonal(m_body) * J_body +
+           J_line.transposed() * Matrix::diagonal(m_line) * J_line + J_boom.transposed() * M_beam_ * J_boom;
   }
 
   LinearCraneDef def_;
   int count_;
-  MatrixXd K_beam_, M_beam_;
-  VectorXd x_, lift_way_, jib_way_;
+  Matrix K_beam_, M_beam_;
+  Vector x_, lift_way_, jib_way_;
   double lift_force_ = 0, jib_force_ = 0;
 };
 

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <vector>
 
 #include "math/rotation.h"
-#include "tests/validation/flexible/small_motion.h"
+#include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody::testing {
@@ -35,14 +36,18 @@ class Linearised {
 
   // [Hz], ascending; without what moves freely
   [[nodiscard]] std::vector<double> frequencies() {
-    SquareMatrix A(m_.state.u.size());
-    for (std::size_t k = 0; k < A.n; ++k) {
+    const auto n = static_cast<slew::testing::Index>(m_.state.u.size());
+    slew::testing::Dense<double> A(n, n);
+    for (std::size_t k = 0; k < m_.state.u.size(); ++k) {
       const std::vector<double> above = accelerations_at(displaced(k, kStep)),
                                 below = accelerations_at(displaced(k, -kStep));
-      for (std::size_t i = 0; i < A.n; ++i) A(i, k) = -(above[i] - below[i]) / (2 * kStep);
+      for (slew::testing::Index i = 0; i < n; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        A(i, static_cast<slew::testing::Index>(k)) = -(above[at] - below[at]) / (2 * kStep);
+      }
     }
     std::vector<double> f;
-    for (const std::complex<double> square : eigenvalues(A)) {
+    for (const std::complex<double> square : slew::testing::eigenvalues(A)) {
       const double hertz = std::sqrt(std::abs(square)) / (2 * M_PI);
       if (hertz < 0.01) continue;
       EXPECT_LT(std::fabs(square.imag()), 1e-6 * square.real());

@@ -1,29 +1,23 @@
 #include "tests/validation/flexible/small_motion.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "multibody/passes.h"
+#include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody::testing {
-
-std::vector<std::complex<double>> eigenvalues(const SquareMatrix& A) {
-  const auto n = static_cast<Eigen::Index>(A.n);
-  const Eigen::MatrixXd matrix = Eigen::Map<const Eigen::MatrixXd>(A.values.data(), n, n);
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues();
-  return {values.begin(), values.end()};
-}
 
 std::vector<double> squares_of(const MechanicsDef& def) {
   constexpr double kProbe = 1e-6;
   const Model model = build_model(def);
   Workspace ws(model);
   const State start = start_state(model);
-  SquareMatrix A(start.u.size());
+  const auto n = static_cast<slew::testing::Index>(start.u.size());
+  slew::testing::Dense<double> A(n, n);
   const std::vector<double> rest(start.u.size());
   std::vector<double> rate(start.q.size());
-  for (std::size_t j = 0; j < A.n; ++j) {
+  for (std::size_t j = 0; j < start.u.size(); ++j) {
     for (const double sign : {1.0, -1.0}) {
       State moved = start;
       moved.u[j] = 1;
@@ -33,11 +27,13 @@ std::vector<double> squares_of(const MechanicsDef& def) {
       moved.u = rest;
       normalize_quaternions(model, moved.q);
       evaluate(model, moved, ws);
-      for (std::size_t i = 0; i < A.n; ++i) A(i, j) -= sign * ws.udot[i] / (2 * kProbe);
+      for (slew::testing::Index i = 0; i < n; ++i) {
+        A(i, static_cast<slew::testing::Index>(j)) -= sign * ws.udot[static_cast<std::size_t>(i)] / (2 * kProbe);
+      }
     }
   }
   std::vector<double> squares;
-  for (const std::complex<double> square : eigenvalues(A)) squares.push_back(square.real());
+  for (const std::complex<double> square : slew::testing::eigenvalues(A)) squares.push_back(square.real());
   std::sort(squares.begin(), squares.end());
   return squares;
 }

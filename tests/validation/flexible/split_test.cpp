@@ -14,19 +14,19 @@
 //   A1  the same with Q - K_e (q - q_n) - D_e (u - u_n), K_e = f K
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "tests/support/reference_algebra.h"
 
 namespace slew {
 namespace split_test {
 
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
+using testing::Index;
+using Matrix = testing::Dense<double>;
+using Vector = testing::Dense<double>;
 
 constexpr double kLength = 6.5, kMass = 127.6, kStiffness = 8e6, kHinge = 3e7, kDamping = 0.005;
 constexpr double kRoots[] = {1.8751040687, 4.6940911330};  // b L, clamped and free
@@ -38,21 +38,18 @@ double shape(int k, double x) {
 }
 
 struct Jib {
-  Matrix3d M, K, D;
-  Vector3d t;
+  Matrix M{3, 3}, K{3, 3}, D{3, 3};
+  Vector t{3};
 };
 
 Jib jib() {
   Jib j;
-  j.M.setZero();
-  j.K.setZero();
-  j.D.setZero();
   constexpr int kIntervals = 2000;
   for (int i = 0; i <= kIntervals; ++i) {
     const double x = static_cast<double>(i) / kIntervals;
     const double w = (i == 0 || i == kIntervals ? 1 : i % 2 == 1 ? 4 : 2) / (3.0 * kIntervals);
-    const Vector3d at(x * kLength * std::sqrt(kMass), shape(0, x), shape(1, x));
-    j.M += w * at * at.transpose();
+    const Vector at = Vector::column({x * kLength * std::sqrt(kMass), shape(0, x), shape(1, x)});
+    j.M += w * at * at.transposed();
   }
   j.K(0, 0) = kHinge;
   for (int k = 0; k < 2; ++k) {
@@ -60,46 +57,47 @@ Jib jib() {
     j.K(k + 1, k + 1) = omega * omega;
     j.D(k + 1, k + 1) = 2 * kDamping * omega;
   }
-  j.t = Vector3d(kLength, shape(0, 1) / std::sqrt(kMass), shape(1, 1) / std::sqrt(kMass));
+  j.t = Vector::column({kLength, shape(0, 1) / std::sqrt(kMass), shape(1, 1) / std::sqrt(kMass)});
   return j;
 }
 
-double spectral_radius(const MatrixXd& A) {
-  return A.eigenvalues().cwiseAbs().maxCoeff();
-}
-
 // exp of x' = A x + B h over H, h held: [F G]
-MatrixXd held(const MatrixXd& A, const MatrixXd& B, double H) {
-  MatrixXd all = MatrixXd::Zero(A.rows() + B.cols(), A.rows() + B.cols());
-  all.topLeftCorner(A.rows(), A.cols()) = A * H;
-  all.topRightCorner(B.rows(), B.cols()) = B * H;
-  return MatrixXd(all.exp()).topRows(A.rows());
+Matrix held(const Matrix& A, const Matrix& B, double H) {
+  Matrix all(A.rows() + B.cols(), A.rows() + B.cols());
+  all.put(0, 0, A * H);
+  all.put(0, A.cols(), B * H);
+  return testing::exponential(all).block(0, 0, A.rows(), all.cols());
 }
 
 // M z'' + D z' + K z = f
-MatrixXd first_order(const MatrixXd& M, const MatrixXd& D, const MatrixXd& K) {
-  const Eigen::Index n = M.rows();
-  MatrixXd A = MatrixXd::Zero(2 * n, 2 * n);
-  A.topRightCorner(n, n).setIdentity();
-  A.bottomLeftCorner(n, n) = -M.inverse() * K;
-  A.bottomRightCorner(n, n) = -M.inverse() * D;
+Matrix first_order(const Matrix& M, const Matrix& D, const Matrix& K) {
+  const Index n = M.rows();
+  Matrix A(2 * n, 2 * n);
+  A.put(0, n, Matrix::identity(n));
+  A.put(n, 0, -testing::inverse(M) * K);
+  A.put(n, n, -testing::inverse(M) * D);
   return A;
+}
+
+// the modes' part of a matrix by (theta, q1, q2)
+Matrix of_modes(const Matrix& A) {
+  return A.block(1, 1, 2, 2);
 }
 
 // A1 with K_e, D_e = factor K, D; A0 with factor 0. The law about (q_n, u_n): -K_e q - D_e u - (K - K_e) q_n - ...
 double scheme_A(double load, double H, double factor) {
   const Jib j = jib();
-  const MatrixXd M = j.M + load * j.t * j.t.transpose();
-  Matrix3d own_K = j.K, own_D = j.D, rest_K = Matrix3d::Zero(), rest_D = Matrix3d::Zero();
-  own_K.bottomRightCorner<2, 2>() *= factor;
-  own_D.bottomRightCorner<2, 2>() *= factor;
-  rest_K.bottomRightCorner<2, 2>() = (1 - factor) * j.K.bottomRightCorner<2, 2>();
-  rest_D.bottomRightCorner<2, 2>() = (1 - factor) * j.D.bottomRightCorner<2, 2>();
-  MatrixXd B = MatrixXd::Zero(6, 6);
-  B.bottomLeftCorner(3, 3) = -M.inverse() * rest_K;
-  B.bottomRightCorner(3, 3) = -M.inverse() * rest_D;
-  const MatrixXd FG = held(first_order(M, own_D, own_K), B, H);
-  return spectral_radius(FG.leftCols(6) + FG.rightCols(6));
+  const Matrix M = j.M + load * j.t * j.t.transposed();
+  Matrix own_K = j.K, own_D = j.D, rest_K(3, 3), rest_D(3, 3);
+  own_K.put(1, 1, factor * of_modes(j.K));
+  own_D.put(1, 1, factor * of_modes(j.D));
+  rest_K.put(1, 1, (1 - factor) * of_modes(j.K));
+  rest_D.put(1, 1, (1 - factor) * of_modes(j.D));
+  Matrix B(6, 6);
+  B.put(3, 0, -testing::inverse(M) * rest_K);
+  B.put(3, 3, -testing::inverse(M) * rest_D);
+  const Matrix FG = held(first_order(M, own_D, own_K), B, H);
+  return testing::spectral_radius(FG.block(0, 0, 6, 6) + FG.block(0, 6, 6, 6));
 }
 
 // N1, N2. State (theta, theta', q, q'); exchanged: theta'', load's reaction f = -m_L a_tip (N1), q''.
@@ -108,38 +106,39 @@ double scheme_A(double load, double H, double factor) {
 // (N2)]
 double naive(double load, double H, bool flex_knows_load) {
   const Jib j = jib();
-  const Eigen::RowVector2d coupling = j.M.block<1, 2>(0, 1), phi = j.t.tail<2>().transpose();
+  const Matrix coupling = j.M.block(0, 1, 1, 2), phi = j.t.block(1, 0, 2, 1).transposed();  // rows
   const double hub = j.M(0, 0) + load * kLength * kLength;
-  const Eigen::Matrix2d own = j.M.bottomRightCorner<2, 2>() + (flex_knows_load ? load : 0.0) * phi.transpose() * phi;
+  const Matrix own = of_modes(j.M) + (flex_knows_load ? load : 0.0) * phi.transposed() * phi;
   // hinge: x = (theta, theta'), held q''
-  MatrixXd A_r(2, 2), B_r = MatrixXd::Zero(2, 2);
-  A_r << 0, 1, -kHinge / hub, 0;
-  const Eigen::RowVector2d pull = coupling + load * kLength * phi;
-  B_r.row(1) = -pull / hub;
+  Matrix A_r(2, 2), B_r(2, 2);
+  A_r(0, 1) = 1;
+  A_r(1, 0) = -kHinge / hub;
+  const Matrix pull = coupling + load * kLength * phi;
+  B_r.put(1, 0, -pull / hub);
   // flexible: held theta'' and tip acceleration
-  const MatrixXd A_f = first_order(own, j.D.bottomRightCorner<2, 2>(), j.K.bottomRightCorner<2, 2>());
-  MatrixXd B_f = MatrixXd::Zero(4, 2);
-  const Eigen::Vector2d by_hinge = coupling.transpose() + (flex_knows_load ? load * kLength : 0.0) * phi.transpose();
-  const Eigen::Vector2d by_reaction = flex_knows_load ? Eigen::Vector2d::Zero() : Eigen::Vector2d(phi.transpose());
-  B_f.block<2, 1>(2, 0) = -own.inverse() * by_hinge;
-  B_f.block<2, 1>(2, 1) = own.inverse() * by_reaction;
-  const MatrixXd R = held(A_r, B_r, H), F = held(A_f, B_f, H);
+  const Matrix A_f = first_order(own, of_modes(j.D), of_modes(j.K));
+  Matrix B_f(4, 2);
+  const Vector by_hinge = coupling.transposed() + (flex_knows_load ? load * kLength : 0.0) * phi.transposed();
+  const Vector by_reaction = flex_knows_load ? Vector(2) : phi.transposed();
+  B_f.put(2, 0, -testing::inverse(own) * by_hinge);
+  B_f.put(2, 1, testing::inverse(own) * by_reaction);
+  const Matrix R = held(A_r, B_r, H), F = held(A_f, B_f, H);
   // y = (theta, theta', q, q', held theta'', held f, held q'')
-  MatrixXd map = MatrixXd::Zero(10, 10);
-  map.block<2, 2>(0, 0) = R.leftCols(2);
-  map.block<2, 2>(0, 8) = R.rightCols(2);
-  map.block<4, 4>(2, 2) = F.leftCols(4);
-  map.block<4, 2>(2, 6) = F.rightCols(2);
+  Matrix map(10, 10);
+  map.put(0, 0, R.block(0, 0, 2, 2));
+  map.put(0, 8, R.block(0, 2, 2, 2));
+  map.put(2, 2, F.block(0, 0, 4, 4));
+  map.put(2, 6, F.block(0, 4, 4, 2));
   // what is sent at the end: accelerations with the inputs as they were held
-  MatrixXd hinge = MatrixXd::Zero(1, 10), flex = MatrixXd::Zero(2, 10);
-  hinge += A_r.row(1) * map.topRows(2);
-  hinge.block<1, 2>(0, 8) += B_r.row(1);
-  flex += A_f.bottomRows(2) * map.middleRows(2, 4);
-  flex.block<2, 2>(0, 6) += B_f.bottomRows(2);
-  map.row(6) = hinge;
-  map.row(7) = -load * (kLength * hinge + phi * flex);
-  map.bottomRows(2) = flex;
-  return spectral_radius(map);
+  Matrix of_hinge(1, 10), of_flex(2, 10);
+  of_hinge.put(0, 8, B_r.row(1));
+  of_hinge += A_r.row(1) * map.block(0, 0, 2, 10);
+  of_flex.put(0, 6, B_f.block(2, 0, 2, 2));
+  of_flex += A_f.block(2, 0, 2, 4) * map.block(2, 0, 4, 10);
+  map.put(6, 0, of_hinge);
+  map.put(7, 0, -load * (kLength * of_hinge + phi * of_flex));
+  map.put(8, 0, of_flex);
+  return testing::spectral_radius(map);
 }
 
 constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 2e-3, 5e-3, 10e-3, 20e-3};

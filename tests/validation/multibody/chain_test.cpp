@@ -4,8 +4,8 @@
 // solutions, position 1e-3 m, constraints 1e-8. Hanging: joint forces by statics, 1e-8 relative; frequencies from the
 // stiffness and mass matrices of the chain's angles, which statics and geometry give in closed form.
 // Figures: docs/validation/A11_chains.md.
-#include <Eigen/Dense>
 
+#include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/chain_def.h"
 #include "tests/validation/multibody/csv_table.h"
 #include "tests/validation/multibody/every_formulation.h"
@@ -84,10 +84,10 @@ TEST_P(Chain, HangingCarriesItsWeightInItsJoints) {
 // K = diag(weight below the rod's centre x length), M from the rods' centres. Published: first and last frequency.
 struct Mode {
   double omega;
-  Eigen::VectorXd angles;
+  slew::testing::Dense<double> angles;
 };
 Mode mode_of(double tip_mass, int which) {
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(kLinks, kLinks), K = M;
+  slew::testing::Dense<double> M(kLinks, kLinks), K = M;
   const auto add = [&](double mass, int rods, double last) {
     for (int i = 0; i <= rods; ++i) {
       const double li = i == rods ? last : kLength;
@@ -100,8 +100,8 @@ Mode mode_of(double tip_mass, int which) {
     M(i, i) += kLength * kLength / 12;
   }
   add(tip_mass, kLinks - 1, kLength);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, M);
-  return {std::sqrt(solver.eigenvalues()[which]), solver.eigenvectors().col(which)};
+  const slew::testing::SymmetricModes modes = slew::testing::symmetric_modes(K, M);
+  return {std::sqrt(modes.lambda[static_cast<std::size_t>(which)]), modes.vectors.col(which)};
 }
 
 TEST_P(Chain, HangingSwingsWithItsFrequencies) {
@@ -114,7 +114,7 @@ TEST_P(Chain, HangingSwingsWithItsFrequencies) {
       const Mode mode = mode_of(row.tip, which);
       EXPECT_NEAR(mode.omega, published, 1e-7 * published);
       Formulated chain = start(chain_def({.tip_mass = row.tip, .direction = {0, -1, 0}}));
-      const Eigen::VectorXd start_angles = mode.angles * (1e-5 / mode.angles.cwiseAbs().maxCoeff());
+      const slew::testing::Dense<double> start_angles = mode.angles * (1e-5 / mode.angles.largest());
       for (int i = 0; i < kLinks; ++i) {
         chain.state.q[static_cast<std::size_t>(i)] = start_angles[i] - (i > 0 ? start_angles[i - 1] : 0);
       }
