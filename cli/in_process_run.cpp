@@ -35,6 +35,7 @@ class InProcessRun {
     wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
     io::IoConfig config = io::make_config(session, wish);
     config.name_check = {};  // nobody else is on this bus
+    config.join_timeout = node::kNoTimeout;
     roles_ = config.required_roles;
     io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
     nodes_.push_back(io_.get());
@@ -70,13 +71,15 @@ class InProcessRun {
     auto node = std::make_unique<node::PhysicsNode>(
         role, endpoint(role),
         cli_support::subsystem_factory([this, role](const scene::Scene& own) { return family_.make(role, own); },
-                                       options_.assets()));
+                                       options_.assets()),
+        node::JoinOptions{node::kNoTimeout, node::kNoTimeout, std::nullopt});
     nodes_.push_back(node.get());
     physics_.push_back(std::move(node));
   }
 
   void add_recorder() {
     recorder::RecorderConfig config;
+    config.join.session_timeout = node::kNoTimeout;
     config.runs_directory = options_.runs;
     config.keep_free = static_cast<std::uint64_t>(options_.keep_free_mb * 1e6);
     recorder_ = std::make_unique<recorder::RecorderNode>(endpoint(Role::recorder), std::move(config));

@@ -23,6 +23,8 @@
 namespace slew::node {
 
 inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
+// of nodes that run in turns in one thread: none of them can be missing, and the machine may take its time
+inline constexpr SimDuration kNoTimeout = {100LL * 365 * 86400 * 1'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
 inline constexpr SimDuration kSilentAfter = {300'000'000};   // named, everybody holds
 inline constexpr SimDuration kLostAfter = {2'000'000'000};   // given up

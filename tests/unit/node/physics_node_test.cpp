@@ -54,6 +54,19 @@ class Physics : public ::testing::Test {
   StepIndex newest_ = kJoinStep;
 };
 
+TEST_F(Physics, WaitsForJoinTenSecondsAndWithoutTimeoutAsLongAsItTakes) {
+  PhysicsNode patient{Role::mechanics, carrier, build, {kNoTimeout, kNoTimeout, std::nullopt}};
+  for (PhysicsNode* waiting : {&node, &patient}) {
+    played.say(Topic::session, played.session);
+    waiting->poll(now_ns);
+    waiting->poll(now_ns + kMs);
+    ASSERT_EQ(waiting->member().state(), NodeState::joining);
+    waiting->poll(now_ns + 3'600'000 * kMs);
+  }
+  EXPECT_EQ(node.member().exit_code(), ExitCode::failed);
+  EXPECT_EQ(patient.member().state(), NodeState::joining);
+}
+
 TEST_F(Physics, DoesAStepForATickAndTheSampleOfItsPartner) {
   get_ready();
   EXPECT_EQ(newest_sample(), 0);
