@@ -69,6 +69,7 @@ class Simplifier {
     if (!is_stopped_) try_alone();
     if (!is_stopped_) take_together();
     result_.is_interrupted = is_stopped_;
+    if (is_stopped_) take_nothing();
     return std::move(result_);
   }
 
@@ -199,6 +200,7 @@ class Simplifier {
     Trial trial{.candidate = std::move(candidate)};
     std::optional<scene::Scene> scene = load(trial.candidate.settings, &trial.refusal);
     if (scene) run_trial(*scene, trial);
+    trial.was_interrupted = is_stopped_;
     ++done_;
     return trial;
   }
@@ -265,6 +267,10 @@ class Simplifier {
     result_.combined = attempt({.title = "all that are taken", .group = "", .settings = result_.settings});
     // measured once more: what does not repeat is not handed out
     if (pays(result_.combined, result_.base_cost)) return;
+    take_nothing();
+  }
+
+  void take_nothing() {
     result_.settings.clear();
     for (Trial& trial : result_.trials) trial.is_taken = false;
   }
@@ -294,7 +300,7 @@ std::size_t worst_of(const std::vector<Watched>& watched, const Trial& trial) {
 }
 
 bool holds(const std::vector<Watched>& watched, const Trial& trial) {
-  if (trial.changes.size() != watched.size()) return false;
+  if (trial.was_interrupted || trial.changes.size() != watched.size()) return false;
   for (std::size_t i = 0; i < watched.size(); ++i) {
     if (!(trial.changes[i] <= watched[i].tolerance)) return false;
   }

@@ -39,8 +39,9 @@ struct Trial {
   std::vector<double> changes{};  // largest, SI, by watched variable
   double cost = 0;                // us per ms
   bool is_taken = false;
+  bool was_interrupted = false;   // before it could be judged
 
-  [[nodiscard]] bool has_run() const noexcept { return refusal.empty(); }
+  [[nodiscard]] bool has_run() const noexcept { return refusal.empty() && !was_interrupted; }
 };
 
 struct Simplification {

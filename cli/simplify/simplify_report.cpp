@@ -15,17 +15,19 @@ std::string settings_text(const scene::Overrides& settings) {
 }
 
 std::string worst_text(const Simplification& result, const Trial& trial) {
-  if (trial.changes.empty()) return "-";
+  if (trial.was_interrupted || trial.changes.empty()) return "-";
   const std::size_t worst = worst_of(result.watched, trial);
   return fmt::format("{} by {}", result.watched[worst].name,
                      quantity_text(trial.changes[worst], result.watched[worst].unit));
 }
 
 std::string verdict_text(const Simplification& result, const Trial& trial) {
+  if (trial.was_interrupted) return "interrupted, not judged";
   if (!trial.has_run()) return "cannot: " + trial.refusal;
   if (!holds(result.watched, trial)) return "changes too much";
   if (trial.is_taken) return "taken";
   if (trial.cost >= (1 - kLeastSaving) * result.base_cost) return "saves nothing";
+  if (result.is_interrupted) return "holds and saves; interrupted before it was tried with others";
   return result.helps() ? "not beside those taken" : "its saving did not repeat";
 }
 
@@ -37,13 +39,10 @@ std::vector<ReportCell> row(const Simplification& result, const Trial& trial) {
 Json to_json(const Simplification& result, const Trial& trial) {
   Json changes = Json::object();
   for (std::size_t i = 0; i < trial.changes.size(); ++i) changes[result.watched[i].name] = trial.changes[i];
-  Json json = {{"title", trial.candidate.title},
-               {"settings", trial.candidate.settings},
-               {"has_run", trial.has_run()},
-               {"holds", holds(result.watched, trial)},
-               {"is_taken", trial.is_taken},
-               {"refusal", trial.refusal},
-               {"changes", changes}};
+  Json json = {{"title", trial.candidate.title}, {"settings", trial.candidate.settings},
+               {"has_run", trial.has_run()},     {"holds", holds(result.watched, trial)},
+               {"is_taken", trial.is_taken},     {"was_interrupted", trial.was_interrupted},
+               {"refusal", trial.refusal},       {"changes", changes}};
   if (trial.cost > 0) json["us_per_ms"] = trial.cost;
   return json;
 }
@@ -51,8 +50,10 @@ Json to_json(const Simplification& result, const Trial& trial) {
 }  // namespace
 
 std::string report_text(const Simplification& result, std::size_t width) {
-  std::string text = fmt::format("{}, {} of its run; as it is {:.3g} us per simulated ms (fastest of {} runs)\n",
-                                 result.scene, duration_text(result.until), result.base_cost, result.repeats);
+  const std::string cost = result.base_cost > 0 ? fmt::format("{:.3g} us per simulated ms (fastest of {} runs)",
+                                                              result.base_cost, result.repeats)
+                                                : "not measured";
+  std::string text = fmt::format("{}, {} of its run; as it is {}\n", result.scene, duration_text(result.until), cost);
   ReportTable limits({"variable", "may change by", "range in the run"});
   for (const Watched& watched : result.watched) {
     limits.add(

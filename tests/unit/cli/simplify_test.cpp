@@ -126,12 +126,38 @@ TEST(Simplify, RefusesWhatItCannotJudge) {
   expect_refusal("Lode.position 1 mm", "Lode.position");
 }
 
-TEST(Simplify, EndsWhenItIsTold) {
-  int asked = 0;
-  const Simplification result = simplify(wish("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"),
-                                         [&](std::string_view, double) { return ++asked < 30; });
-  EXPECT_TRUE(result.is_interrupted);
-  EXPECT_FALSE(result.helps());
+// wherever it ends: what was not judged has no verdict, and nothing is taken
+TEST(Simplify, GivesNoVerdictOnWhatItWasInterruptedIn) {
+  int all = 0;
+  const Simplification whole =
+      simplify(wish("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"), [&](std::string_view, double) {
+        ++all;
+        return true;
+      });
+  int interrupted = 0;
+  for (int last = 1; last < all; last += 1 + all / 12) {
+    int asked = 0;
+    const Simplification result = simplify(wish("single_cylinder.yaml", {"Load.position 1mm"}, "1 s"),
+                                           [&](std::string_view, double) { return ++asked < last; });
+    if (!result.is_interrupted) continue;  // what saves time by chance is not tried with others
+    ++interrupted;
+    EXPECT_FALSE(result.helps());
+    EXPECT_TRUE(result.settings.empty());
+    for (std::size_t i = 0; i < result.trials.size(); ++i) {
+      const Trial &trial = result.trials[i], &judged = whole.trials[i];
+      EXPECT_FALSE(trial.is_taken) << last;
+      if (trial.was_interrupted) {
+        EXPECT_EQ(i + 1, result.trials.size()) << "only the last can be";
+        EXPECT_FALSE(trial.has_run());
+      } else {
+        EXPECT_EQ(holds(result.watched, trial), holds(whole.watched, judged)) << last << ": " << trial.candidate.title;
+      }
+    }
+    const std::string text = report_text(result);
+    EXPECT_EQ(text.find("did not repeat"), std::string::npos) << text;
+    EXPECT_EQ(text.find("as it is 0 us"), std::string::npos) << text;
+  }
+  EXPECT_GT(interrupted, 5);
 }
 
 }  // namespace simplify_test
