@@ -118,7 +118,7 @@ void add_what(options::Command& verb, Options& options) {
            "PATH=VALUES");
   repeated("--variables", wish.variables,
            "whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
-           "actuators and the place of the last body",
+           "actuators and the place of the payload (mechanics.payload)",
            "PATTERN");
   verb.flag("--full", options.is_full, "the whole product of the scene's own axes: may take hours");
   verb.option("--until", wish.scene.duration, "how long to simulate, such as '5 s'; without it the scene's duration")

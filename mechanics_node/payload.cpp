@@ -1,17 +1,47 @@
 #include "mechanics_node/payload.h"
 
 #include <algorithm>
+#include <vector>
 
+#include "core/index.h"
 #include "coupling/static_forces.h"
 #include "multibody/parameters.h"
 
 namespace slew::mechanics {
 
+namespace {
+
+// joints that move between a link and Ground
+int distance_of(const multibody::Model& model, int link) noexcept {
+  int joints = 0;
+  for (; link > 0; link = model.links[at(link)].parent) ++joints;
+  return joints;
+}
+
+// carries another body, or closes a loop
+std::vector<bool> links_inside(const multibody::Model& model) {
+  std::vector<bool> inside(model.links.size(), false);
+  for (const multibody::Link& link : model.links) inside[at(link.parent)] = true;
+  for (const multibody::Joint& joint : model.joints) {
+    if (joint.cut < 0) continue;
+    inside[at(model.bodies[at(joint.body1)].link)] = inside[at(model.bodies[at(joint.body2)].link)] = true;
+  }
+  return inside;
+}
+
+}  // namespace
+
 int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model& model) {
-  int payload = 0;
+  if (!mechanics.payload.empty()) return multibody::find_body(model, mechanics.payload);
+  const std::vector<bool> inside = links_inside(model);
+  int payload = 0, longest = 0;
   for (std::size_t i = 1; i <= mechanics.bodies.size(); ++i) {
-    const bool is_rigid = mechanics.bodies[i - 1].type == multibody::BodyType::rigid;
-    if (is_rigid && model.bodies[i].link > 0) payload = static_cast<int>(i);
+    const int link = model.bodies[i].link;
+    if (mechanics.bodies[i - 1].type != multibody::BodyType::rigid || link == 0) continue;
+    const int distance = inside[at(link)] ? 0 : distance_of(model, link);
+    if (distance < longest) continue;
+    longest = distance;
+    payload = static_cast<int>(i);
   }
   return payload;
 }

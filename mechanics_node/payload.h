@@ -12,7 +12,8 @@
 
 namespace slew::mechanics {
 
-// The scene's last rigid body that moves: what hangs on the machine. 0: none does.
+// The scene's `payload`, or the rigid body at the end of the longest chain of joints, the last of the file where
+// several are as far; bodies that close a loop are in the chain of nobody. 0: none moves.
 [[nodiscard]] int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model& model);
 
 // kg, now.

@@ -15,6 +15,8 @@
 #include "cli_support/name_pattern.h"
 #include "core/failure.h"
 #include "coupling/indicator.h"
+#include "mechanics_node/payload.h"
+#include "multibody/model.h"
 #include "node/identity.h"
 
 namespace slew::cli {
@@ -84,6 +86,14 @@ class Trader {
     if (result_.axes.empty()) result_.axes = default_axes(base_);
   }
 
+  // of a machine without a rigid body that moves its last one
+  [[nodiscard]] std::string payload_name() const {
+    if (!base_.has_mechanics()) return "";
+    const multibody::Model model = multibody::build_model(base_.mechanics);
+    const int payload = mechanics::payload_of(base_.mechanics, model);
+    return payload > 0 ? model.bodies[static_cast<std::size_t>(payload)].name : base_.mechanics.bodies.back().name;
+  }
+
   void choose_variables() {
     const std::vector<ElementVariable> variables = DirectSession(base_).variables();
     std::vector<std::string> names;
@@ -91,8 +101,8 @@ class Trader {
     std::vector<std::string> patterns = wish_.variables;
     if (patterns.empty()) {
       for (const scene::PortDef& port : base_.ports) patterns.push_back(port.name + ".force");
-      const auto& bodies = base_.mechanics.bodies;
-      if (!bodies.empty()) patterns.push_back(bodies.back().name + ".position.?");
+      const std::string lifted = payload_name();
+      if (!lifted.empty()) patterns.push_back(lifted + ".position.?");
       if (patterns.empty()) patterns.emplace_back("*.pressure");
     }
     // a vector is meant by its name

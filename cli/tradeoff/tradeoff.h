@@ -21,7 +21,7 @@ namespace slew::cli {
 struct TradeoffWish {
   cli_support::SceneOptions scene;     // duration: how long; as the scene says when empty
   std::vector<std::string> axes;       // texts; empty: those of the scene
-  std::vector<std::string> variables;  // patterns; empty: forces of the actuators and the place of the last body
+  std::vector<std::string> variables;  // patterns; empty: forces of the actuators and the place of the payload
   GridSize size = GridSize::modest;
   std::string folder;  // of the results; empty: runs/tradeoff-SCENE
   int workers = 2;

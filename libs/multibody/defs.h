@@ -200,6 +200,7 @@ struct MechanicsDef {
   Integrator integrator = Integrator::own;
   double spectral_radius = 0.8;       // rho_inf of generalised_alpha, 0 .. 1: 1 damps nothing
   double iteration_tolerance = 1e-9;  // implicit integrators: error of speeds, of the mechanism's speed or of 1 m/s
+  std::string payload;                // body that the machine lifts; empty: the end of the longest chain
 
   std::vector<BodyDef> bodies;
   std::vector<JointDef> joints;

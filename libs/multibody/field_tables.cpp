@@ -68,6 +68,12 @@ constexpr Field kMechanicsFields[] = {
         {.range = kIterationRange,
          .doc = "implicit integrators: error of speeds at which the iteration ends, of the mechanism's largest (at "
                 "least 1 m/s, 1 rad/s)"}),
+    field<&MechanicsDef::payload>(
+        "payload",
+        {.reference = "body",
+         .doc =
+             "body that the machine lifts, whose mass its load notes ask for: a rigid one that moves. Without it the "
+             "one at the end of the longest chain of joints outside of loops"}),
 };
 
 constexpr Field kRelativeTo = field<&BodyDef::relative_to>(

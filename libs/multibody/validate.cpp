@@ -198,7 +198,36 @@ class Validator {
     for (const TranslationalForceDef& force : m_.translational_forces) two_bodies(force);
     for (const RotationalForceDef& force : m_.rotational_forces) two_bodies(force);
     for (const StaticDummyDef& dummy : m_.static_dummies) reference(dummy.name, "relative_to", dummy.relative_to);
+    check_payload();
     check_unique();
+  }
+
+  void check_payload() {
+    if (m_.payload.empty()) return;
+    const auto found = std::find_if(given_.bodies.begin(), given_.bodies.end(),
+                                    [this](const BodyDef& body) { return body.name == m_.payload; });
+    if (found == given_.bodies.end()) {
+      add("mechanics.payload", fmt::format("there is no body '{}'", m_.payload), "the name of a rigid body that moves");
+    } else if (found->type != BodyType::rigid) {
+      add("mechanics.payload", fmt::format("'{}' is not a rigid body, whose mass could be changed", m_.payload),
+          "the name of a rigid body that moves");
+    } else if (is_held_by_ground(m_.payload)) {
+      add("mechanics.payload", fmt::format("'{}' is fixed to Ground and does not move", m_.payload),
+          "the name of a rigid body that moves");
+    }
+  }
+
+  // fixed joints alone lead from it to Ground
+  [[nodiscard]] bool is_held_by_ground(std::string_view body) const {
+    std::vector<std::string_view> held = {kGroundName};
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      for (const JointDef& joint : m_.joints) {
+        if (joint.type != JointType::fixed || (joint.body1 != held[k] && joint.body2 != held[k])) continue;
+        const std::string_view other = joint.body1 == held[k] ? joint.body2 : joint.body1;
+        if (std::find(held.begin(), held.end(), other) == held.end()) held.push_back(other);
+      }
+    }
+    return std::find(held.begin(), held.end(), body) != held.end();
   }
 
   void check_unique() {
