@@ -153,46 +153,46 @@ class ScriptReader {
     if (context_.report.size() == problems && (is_long || file.is_pinned)) scene_.script.file = std::move(file);
   }
 
-  // Columns named after an input are taken, `Stick` or `Stick.raw`; other variables of an export are passed over.
   void read_csv(const SourceText& text, TableFile& file) {
     const std::size_t problems = context_.report.size();
     TimeTable table(text, context_.units, context_.report);
     if (!table.read_head()) return;
-    std::vector<std::size_t> taken;
+    check_columns(table.head(), file);
     std::vector<std::string> passed_over;
-    const std::vector<ColumnHead>& head = table.head();
-    for (std::size_t i = 0; i < head.size(); ++i) {
-      if (table.is_time(i)) continue;
-      const std::string& name = head[i].name;
-      const bool is_listed = std::find(file.columns.begin(), file.columns.end(), name) != file.columns.end();
-      if (!file.columns.empty() && !is_listed) continue;
-      if (names_.kind_of(input_of(name)) == "input") {
-        taken.push_back(i);
-      } else if (!is_listed && name.find('.') != std::string::npos) {
-        passed_over.push_back(name);
-      } else {
-        (void)is_input(name, head[i].mark, "");
-      }
-    }
-    check_columns(head, file);
+    const std::vector<std::size_t> taken = columns_of(table, file, passed_over);
     if (context_.report.size() == problems && taken.empty()) {
       context_.report.add({text.source, 1, 1}, "",
                           {"no column is named after an input of the scene", "a column for an input", ""});
     }
     if (context_.report.size() > problems) return;
     add_columns(table, taken, file);
-    if (!passed_over.empty()) {
-      const std::string first = passed_over.front();
-      scene_.warnings.push_back(
-          fmt::format("script.file: {} column{} of '{}' {} no input and {} not taken ({}{})", passed_over.size(),
-                      passed_over.size() == 1 ? "" : "s", file.file, passed_over.size() == 1 ? "is" : "are",
-                      passed_over.size() == 1 ? "was" : "were", first, passed_over.size() == 1 ? "" : ", ..."));
+    if (passed_over.empty()) return;
+    const bool is_one = passed_over.size() == 1;
+    scene_.warnings.push_back(fmt::format("script.file: {} column{} of '{}' {} no input and {} not taken ({}{})",
+                                          passed_over.size(), is_one ? "" : "s", file.file, is_one ? "is" : "are",
+                                          is_one ? "was" : "were", passed_over.front(), is_one ? "" : ", ..."));
+  }
+
+  // Columns named after an input are taken, `Stick` or `Stick.raw`; other variables of an export are passed over.
+  std::vector<std::size_t> columns_of(const TimeTable& table, const TableFile& file,
+                                      std::vector<std::string>& passed_over) {
+    std::vector<std::size_t> taken;
+    for (std::size_t i = 0; i < table.head().size(); ++i) {
+      const std::string& name = table.head()[i].name;
+      const bool is_listed = std::find(file.columns.begin(), file.columns.end(), name) != file.columns.end();
+      if (table.is_time(i) || (!file.columns.empty() && !is_listed)) continue;
+      const bool is_variable = name.find('.') != std::string::npos && !name.ends_with(kRawSuffix);
+      if (is_variable && !is_listed) {
+        passed_over.push_back(name);
+      } else if (is_input(input_of(name), table.head()[i].mark, "")) {
+        taken.push_back(i);
+      }
     }
+    return taken;
   }
 
   [[nodiscard]] std::string input_of(const std::string& column) const {
-    const bool is_raw = column.ends_with(kRawSuffix) && names_.kind_of(column) != "input";
-    return is_raw ? column.substr(0, column.size() - kRawSuffix.size()) : column;
+    return column.ends_with(kRawSuffix) ? column.substr(0, column.size() - kRawSuffix.size()) : column;
   }
 
   void check_columns(const std::vector<ColumnHead>& head, const TableFile& file) {

@@ -147,6 +147,7 @@ TEST_F(Csv, AScriptFileWithoutAValueIsRefusedWithWhatItLacks) {
             "t.csv:1:6: a column has no name; expected a name in every cell of the header");
   EXPECT_EQ(refusal("time,Stick,Stick.raw\n0,0,0\n"), "t.csv:1:12: two columns are for 'Stick'; expected one of them");
   EXPECT_EQ(refusal("time,Stick,Stick\n0,0,0\n"), "t.csv:1:12: 'Stick' is there twice; expected one column for a name");
+  EXPECT_EQ(refusal("time,Stik.raw,B.position.x\n0,0,0\n"), "t.csv:1:6: no input 'Stik'; did you mean 'Stick'?");
   EXPECT_EQ(refusal("time [bar],Stick\n0,0\n"),
             "t.csv:1:1: 'bar' is a pressure; expected a time such as '10 ms', or "
             "a bare number in s");
