@@ -49,13 +49,23 @@ void require_order(const scene::Scene& scene) {
   for (const auto& force : scene.mechanics.point_forces) check(force.force_table, false);
 }
 
+// Gone at the end of the program.
+struct Folder {
+  const std::filesystem::path path = fuzz::written_file(".tables");
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::filesystem::path folder = fuzz::written_file(".tables");
+  static const Folder scratch;
+  const std::filesystem::path& folder = scratch.path;
   fuzz::Choices choices(data, size);
   const std::uint8_t choice = choices.byte();
-  std::filesystem::create_directories(folder);
   const std::string content = size > 0 ? std::string(reinterpret_cast<const char*>(data + 1), size - 1) : std::string();
   std::ofstream(folder / "t.csv", std::ios::binary) << content;
   std::ofstream(folder / "scene.yaml") << scene_of(choice, "t.csv");
