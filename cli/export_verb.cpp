@@ -72,9 +72,12 @@ std::string input_text(const recording::Reader& reader, const TimeRange& range) 
   std::vector<plotting::Series> curves = read_series(reader, names, Units::si, range);
   plotting::keep_common_instants(curves);
   check_values(reader, curves);
+  const std::vector<double>& time = curves.front().time;
+  if (time.front() > 0) {
+    fmt::print(stderr, "the table begins at {} s; played back, the inputs are neutral before\n", time.front());
+  }
   std::string text = "time";
   for (const scene::InputDef& input : scene.inputs) text += "," + input.name;
-  const std::vector<double>& time = curves.front().time;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (i > 0 && time[i] <= time[i - 1]) {
       throw Failure(ExitCode::bad_input,

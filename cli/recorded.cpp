@@ -107,7 +107,7 @@ std::unique_ptr<Reader> open_recording(const std::string& path) {
 scene::Scene recorded_scene(const Reader& reader, const std::string& assets) {
   const std::string text = attachment_text(reader, "scene.yaml"), name = reader.identity().scene;
   scene::Scene plain = scene::load_text(text, name);
-  if (!plain.has_flexible_bodies()) return plain;
+  if (!plain.needs_files()) return plain;
   const Status status = scene::check_assets(recorded_manifest(reader), assets);
   if (!status.is_ok()) {
     throw Failure(ExitCode::bad_input, "the scene's files are not in '" + assets +
@@ -150,21 +150,19 @@ std::string recorded_assets(const std::string& recording) {
 }
 
 void keep_assets(const scene::Scene& scene, const std::string& folder, const std::string& recording) {
-  if (scene.assets.empty()) return;
   const std::filesystem::path kept = recorded_assets(recording);
-  std::error_code error;
-  for (const scene::Asset& asset : scene.assets) {
-    const std::filesystem::path to = kept / asset.name;
+  const auto keep = [&](const std::filesystem::path& from, const std::string& name) {
+    std::error_code error;
+    const std::filesystem::path to = kept / name;
     std::filesystem::create_directories(to.parent_path(), error);
-    if (!error) {
-      std::filesystem::copy_file(std::filesystem::path(folder) / asset.name, to,
-                                 std::filesystem::copy_options::overwrite_existing, error);
-    }
-    if (!error) continue;
-    throw Failure(ExitCode::storage, "the scene's files were not all copied to " + kept.string() + ": " + asset.name +
-                                         ": " + error.message() +
-                                         "; the recording is complete; replay it with --assets " + folder);
-  }
+    if (!error) std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
+    if (!error) return;
+    throw Failure(ExitCode::storage, "the scene's files were not all copied to " + kept.string() + ": " + name + ": " +
+                                         error.message() + "; the recording is complete; replay it with --assets " +
+                                         folder);
+  };
+  for (const scene::Asset& asset : scene.assets) keep(std::filesystem::path(folder) / asset.name, asset.name);
+  if (scene.script.file && !scene.script.file->found.empty()) keep(scene.script.file->found, scene.script.file->file);
 }
 
 SessionView view_recording(const Reader& reader, Values values) {

@@ -8,9 +8,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <string_view>
 
+#include "core/input_file.h"
 #include "core/state_hash.h"
 
 namespace slew::io {
@@ -189,21 +189,13 @@ Status read_saved(const std::filesystem::path& path, SavedSession& saved) {
   const auto refuse = [&](const std::string& what) {
     return Status::error(ExitCode::bad_input, path.string() + ": " + what);
   };
-  std::error_code error;
-  const auto size = std::filesystem::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) {
-    const std::string why = error ? error.message() : std::strerror(errno);
-    return refuse("cannot be read (" + why + "); nothing was started");
-  }
-  char magic[sizeof kMagic] = {};
-  file.read(magic, sizeof magic);
-  if (!file || std::memcmp(magic, kMagic, sizeof kMagic) != 0) {
+  std::string text;
+  if (const auto fault = read_input(path, kMaxAssetBytes, text)) return refuse(fault->text() + "; nothing was started");
+  if (!text.starts_with(std::string_view(kMagic, sizeof kMagic))) {
     return refuse("is no saved session; expected a file of 'slewring control save'");
   }
-  std::vector<std::byte> bytes(size);
-  file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!file) return refuse("cannot be read to its end; nothing was started");
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+  const std::size_t size = bytes.size();
   constexpr std::size_t kFront = sizeof kMagic + sizeof kSavedFormat, kBack = sizeof(std::uint64_t);
   std::uint32_t format = 0;
   if (size >= kFront) std::memcpy(&format, bytes.data() + sizeof kMagic, sizeof format);
@@ -212,10 +204,9 @@ Status read_saved(const std::filesystem::path& path, SavedSession& saved) {
                   std::to_string(kSavedFormat) + "; use the slewring that wrote it");
   }
   std::uint64_t check = 0;
-  const std::span<const std::byte> all(bytes);
   if (size >= kFront + kBack) std::memcpy(&check, bytes.data() + size - kBack, kBack);
-  const bool is_whole = size >= kFront + kBack && check == check_of(all.first(size - kBack)) &&
-                        take_fields(all.subspan(kFront, size - kFront - kBack), saved);
+  const bool is_whole = size >= kFront + kBack && check == check_of(bytes.first(size - kBack)) &&
+                        take_fields(bytes.subspan(kFront, size - kFront - kBack), saved);
   if (!is_whole) return refuse("is cut or damaged; nothing was started; look for an intact copy of the file");
   return Status::ok();
 }

@@ -7,7 +7,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+
+#include "core/input_file.h"
 
 namespace slew::cli {
 
@@ -25,8 +26,10 @@ void write_file(const fs::path& path, const std::string& text) {
 }
 
 std::string read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  constexpr std::size_t kMost = 1'000'000;
+  std::string text;
+  static_cast<void>(read_input(path, kMost, text));  // empty: the caller refuses it
+  return text;
 }
 
 Folder make_private_folder(const fs::path& path) {

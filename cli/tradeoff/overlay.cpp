@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/failure.h"
+#include "core/input_file.h"
 #include "scene/canonical.h"
 #include "scene/sections.h"
 #include "scene/setting.h"
@@ -78,9 +79,8 @@ Node read_tree(const std::string& file) {
 }
 
 bool is_own(const std::string& path) {
-  std::ifstream in(path);
-  std::string line;
-  return std::getline(in, line) && line.starts_with(kFirstLine);
+  std::string text;
+  return !read_input(path, scene::kMaxFileBytes, text) && text.starts_with(kFirstLine);
 }
 
 }  // namespace

@@ -42,8 +42,16 @@ void replace_script(scene::Scene& scene, const std::string& file) {
   scene::UnitSystem units;
   scene::PlaceMap places;
   std::vector<scene::Reference> references;
-  const scene::ReadContext context{units, report, places, references};
-  scene::read_script(section, mark, {true, ""}, names, scene, context);
+  // the command line may name a file anywhere
+  const scene::Surroundings beside{.has_folder = true, .folder = "", .is_confined = false};
+  const scene::ReadContext context{units, report, places, references, &beside};
+  scene::read_script(section, mark, beside, names, scene, context);
+  // a recording keeps both in one folder
+  for (const scene::Asset& asset : scene.assets) {
+    const auto& script = scene.script.file;
+    if (!script || asset.name != script->file || asset.sha256 == script->sha256) continue;
+    report.add(mark, "", {"the scene has another file '" + asset.name + "'", "an input file of another name", ""});
+  }
   if (!report.is_clean()) report.fail(scene::kMaxReportedProblems);
 }
 
@@ -132,7 +140,8 @@ ContinuedScene continue_scene(const SceneOptions& options, const std::string& sc
   scene::Overrides overrides = of_session(options);
   std::copy_if(options.overrides.begin(), options.overrides.end(), std::back_inserter(overrides), is_of_controller);
   ContinuedScene continued{
-      with_input(scene::load_text(scene_text, scene_name, overrides, options.assets.empty() ? "." : options.assets),
+      with_input(scene::load_text(scene_text, scene_name, overrides, options.assets.empty() ? "." : options.assets,
+                                  options.input == "script" ? scene::ScriptFile::read : scene::ScriptFile::left_out),
                  options),
       {}};
   scene::ParameterDirectory directory(continued.scene);

@@ -33,7 +33,7 @@
 namespace slew {
 
 using Triple = std::array<double, 3>;              // x, y, z
-using Table = std::vector<std::array<double, 2>>;  // argument, value; arguments strictly increasing
+using Table = std::vector<std::array<double, 2>>;  // argument, value; arguments increasing, see FieldOptions::has_jumps
 
 enum class FieldType : std::uint8_t {
   number,
@@ -77,6 +77,7 @@ struct FieldOptions {
   double ramp = 0;                  // s: a live change is spread over this time by default
   std::string_view reference = {};  // kind of element the text must name: "body", "force", "component or force", ...
   std::span<const std::string_view> choices = {};
+  bool has_jumps = false;  // of a table: two points may have one argument
   std::string_view doc = {};
 };
 

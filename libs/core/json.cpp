@@ -50,18 +50,18 @@ struct Json::Value {
   [[nodiscard]] static Foreign to_foreign(const Json& json) {
     if (!json.value_) return nullptr;
     return std::visit(
-        [&](const auto& held) -> Foreign {
-          using Held = std::decay_t<decltype(held)>;
+        [&](const auto& content) -> Foreign {
+          using Held = std::decay_t<decltype(content)>;
           if constexpr (std::is_same_v<Held, std::vector<Json>>) {
             Foreign items = Foreign::array();
-            for (const Json& item : held) items.push_back(to_foreign<Foreign>(item));
+            for (const Json& item : content) items.push_back(to_foreign<Foreign>(item));
             return items;
           } else if constexpr (std::is_same_v<Held, Object>) {
             Foreign object = Foreign::object();
-            for (const std::string& name : held.as_put) object[name] = to_foreign<Foreign>(held.members.at(name));
+            for (const std::string& name : content.as_put) object[name] = to_foreign<Foreign>(content.members.at(name));
             return object;
           } else {
-            return held;
+            return content;
           }
         },
         json.value_->held);

@@ -5,18 +5,19 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 
+#include "core/input_file.h"
 #include "flex/input_error.h"
 
 namespace slew::flex {
 
 std::string read_text(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) refuse_file(file, 0, "this is a folder", "a file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) refuse_file(file, 0, "the file cannot be read", "a file that is there", "check its name and rights");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::string text;
+  const auto fault = read_input(file, kMaxAssetBytes, text);
+  if (fault && fault->expected.empty())
+    refuse_file(file, 0, "the file " + fault->what, "a file that is there", "check its name and rights");
+  if (fault) refuse_file(file, 0, "this " + fault->what, fault->expected);
+  return text;
 }
 
 void write_text(const std::filesystem::path& file, std::string_view text) {

@@ -1,25 +1,18 @@
 #include "scene/assets.h"
 
+#include <fmt/format.h>
 #include <openssl/evp.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <charconv>
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <system_error>
+#include <stdexcept>
 #include <utility>
-#include <vector>
+
+#include "core/input_file.h"
 
 namespace slew::scene {
 namespace {
-
-constexpr std::size_t kReadBytes = 1 << 16;
-
-struct AssetCloser {
-  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-};
 
 // Size and hash of a file, or why it cannot be read.
 struct Measured {
@@ -28,28 +21,37 @@ struct Measured {
 };
 
 Measured measure(const std::string& name, const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
-    return {std::nullopt, "is not a regular file"};
-  }
-  const std::unique_ptr<std::FILE, AssetCloser> file(std::fopen(path.c_str(), "rb"));
-  if (!file) return {std::nullopt, std::string("cannot be read: ") + std::strerror(errno)};
-  Asset asset{.name = name};
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-  bool is_hashed = hash && EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr) == 1;
-  std::vector<std::uint8_t> bytes(kReadBytes);
-  while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file.get())) {
-    is_hashed = is_hashed && EVP_DigestUpdate(hash.get(), bytes.data(), count) == 1;
-    asset.size += count;
-  }
-  if (std::ferror(file.get()) != 0) return {std::nullopt, std::string("cannot be read: ") + std::strerror(errno)};
-  if (!is_hashed || EVP_DigestFinal_ex(hash.get(), asset.sha256.data(), nullptr) != 1) {
-    return {std::nullopt, "cannot be hashed: OpenSSL has no SHA-256"};
-  }
-  return {std::move(asset), ""};
+  std::string bytes;
+  if (const auto fault = read_input(path, kMaxAssetBytes, bytes)) return {std::nullopt, fault->text()};
+  return {Asset{.name = name, .size = bytes.size(), .sha256 = sha256_of(bytes)}, ""};
 }
 
 }  // namespace
+
+Sha256 sha256_of(std::string_view bytes) {
+  Sha256 sum{};
+  if (EVP_Digest(bytes.data(), bytes.size(), sum.data(), nullptr, EVP_sha256(), nullptr) != 1) {
+    throw std::runtime_error("files cannot be hashed: OpenSSL has no SHA-256");
+  }
+  return sum;
+}
+
+std::string hex_text(const Sha256& sum) {
+  std::string text;
+  for (const std::uint8_t byte : sum) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+std::optional<Sha256> read_sha256(std::string_view text) {
+  Sha256 sum{};
+  if (text.size() != 2 * sum.size()) return std::nullopt;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const char* first = text.data() + 2 * i;
+    const auto [end, error] = std::from_chars(first, first + 2, sum[i], 16);
+    if (error != std::errc() || end != first + 2) return std::nullopt;
+  }
+  return sum;
+}
 
 std::optional<Asset> measure_asset(const std::string& name, const std::string& path, std::string& fault) {
   Measured measured = measure(name, path);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "scene/diagnostic.h"
 #include "scene/expand.h"
@@ -15,6 +16,11 @@ inline constexpr std::size_t kMaxAssets = 256;
 
 // Names stay inside the scene's folder, so that they mean the same on every machine.
 [[nodiscard]] bool is_inside_folder(const std::string& name);
+
+[[nodiscard]] Sha256 sha256_of(std::string_view bytes);
+// As 64 hexadecimal digits, and back; nothing when the text is something else.
+[[nodiscard]] std::string hex_text(const Sha256& sum);
+[[nodiscard]] std::optional<Sha256> read_sha256(std::string_view text);
 
 // Size and hash of a file; empty with the reason in `fault`, as what the file is or does.
 [[nodiscard]] std::optional<Asset> measure_asset(const std::string& name, const std::string& path, std::string& fault);

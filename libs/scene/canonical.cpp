@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/assets.h"
 #include "scene/sections.h"
+#include "scene/table_file.h"
 
 namespace slew::scene {
 namespace {
@@ -43,7 +45,10 @@ const Value& member(const Field& field, void* def) {
 template <typename Range, typename Format>
 std::string list_text(const Range& values, const Format& format) {
   std::string text = "[";
-  for (const auto& value : values) text += (text.size() > 1 ? ", " : "") + format(value);
+  for (const auto& value : values) {
+    if (text.size() > 1) text += ", ";
+    text += format(value);
+  }
   return text + "]";
 }
 
@@ -51,14 +56,25 @@ std::string point_text(const std::array<double, 2>& point) {
   return fmt::format("[{}, {}]", point[0], point[1]);
 }
 
-void write_fields(std::string& text, std::span<const Field> fields, void* def, std::string_view indent) {
-  for (const Field& field : fields) {
-    const std::string value = value_text(field, def);
+// The file of a table that is not in the text; null: it is.
+const TableFile* file_of(const Scene& scene, const std::string& path) {
+  for (const TableFile& table : scene.table_files) {
+    if (table.path == path) return &table;
+  }
+  return nullptr;
+}
+
+void write_fields(std::string& text, const Scene& scene, const ElementRef& element, std::string_view indent) {
+  for (const Field& field : element.fields) {
+    const TableFile* file =
+        field.type == FieldType::table ? file_of(scene, fmt::format("{}.{}", element.name, field.key)) : nullptr;
+    const std::string value = file != nullptr ? reference_text(*file) : value_text(field, element.def);
     if (!value.empty()) text += fmt::format("{}{}: {}\n", indent, field.key, value);
   }
 }
 
-void write_elements(std::string& text, const std::vector<ElementRef>& all, std::string_view section) {
+void write_elements(std::string& text, const Scene& scene, const std::vector<ElementRef>& all,
+                    std::string_view section) {
   bool is_first = true;
   for (const ElementRef& element : all) {
     if (element.section != section) continue;
@@ -66,19 +82,33 @@ void write_elements(std::string& text, const std::vector<ElementRef>& all, std::
     is_first = false;
     std::string fields;
     if (!element.type.empty()) fields += fmt::format("    type: {}\n", element.type);
-    write_fields(fields, element.fields, element.def, "    ");
+    write_fields(fields, scene, element, "    ");
     text += fmt::format("  {}:{}{}", element.name, fields.empty() ? " {}\n" : "\n", fields);
   }
 }
 
-void write_script(std::string& text, const ScriptDef& script) {
+void write_tracks(std::string& text, const Scene& scene) {
+  const ScriptDef& script = scene.script;
+  if (script.file) {
+    const TableFile& file = *script.file;
+    text += fmt::format("  file: {}\n  sha256: \"{}\"\n", yaml_text(file.file), hex_text(file.sha256));
+    if (!file.columns.empty()) text += fmt::format("  columns: {}\n", list_text(file.columns, yaml_text));
+    return;
+  }
+  if (!script.tracks.empty()) text += "  inputs:\n";
+  for (const ScriptTrack& track : script.tracks) {
+    const TableFile* file = file_of(scene, "script.inputs." + track.input);
+    text += fmt::format("    {}: {}\n", track.input,
+                        file != nullptr ? reference_text(*file) : list_text(track.points, point_text));
+  }
+}
+
+void write_script(std::string& text, const Scene& scene) {
+  const ScriptDef& script = scene.script;
   if (script.is_empty()) return;
   text += fmt::format("script:\n  interpolation: {}\n",
                       script.interpolation == ScriptInterpolation::linear ? "linear" : "step");
-  if (!script.tracks.empty()) text += "  inputs:\n";
-  for (const ScriptTrack& track : script.tracks) {
-    text += fmt::format("    {}: {}\n", track.input, list_text(track.points, point_text));
-  }
+  write_tracks(text, scene);
   if (!script.changes.empty()) text += "  parameters:\n";
   for (const ScriptChange& change : script.changes) {
     const std::string value = change.choice.empty() ? number_text(change.value) : change.choice;
@@ -153,16 +183,16 @@ std::string canonical_text(Scene& scene) {
   const std::vector<ElementRef> all = elements(scene);
   for (const ElementRef& single : single_sections(scene)) {
     text += fmt::format("{}:\n", single.section);
-    write_fields(text, single.fields, single.def, "  ");
+    write_fields(text, scene, single, "  ");
   }
-  for (const std::string_view section : element_sections()) write_elements(text, all, section);
-  write_script(text, scene.script);
+  for (const std::string_view section : element_sections()) write_elements(text, scene, all, section);
+  write_script(text, scene);
   if (text.size() > kMaxExpandedBytes) {
     throw LoadError(
         {{.file = scene.name,
           .path = "",
           .what = fmt::format("the scene with its script has {} bytes when it is sent to the nodes", text.size()),
-          .expected = fmt::format("at most {}", kMaxExpandedBytes),
+          .expected = fmt::format("at most {}; long tables in .csv files are not counted", kMaxExpandedBytes),
           .suggestion = ""}},
         0);
   }

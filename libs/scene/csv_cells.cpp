@@ -1,37 +1,239 @@
 #include "scene/csv_cells.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
+
+#include "scene/number.h"
+#include "scene/scene.h"
 
 namespace slew::scene {
 namespace {
 
-std::vector<Cell> split_line(const SourceText& source, std::size_t begin, std::size_t end) {
-  std::vector<Cell> cells;
-  const std::string_view text = source.text;
-  for (std::size_t start = begin; start <= end;) {
-    std::size_t stop = text.find(',', start);
-    if (stop == std::string_view::npos || stop > end) stop = end;
-    std::size_t first = start, last = stop;
-    while (first < last && (text[first] == ' ' || text[first] == '\t')) ++first;
-    while (last > first && (text[last - 1] == ' ' || text[last - 1] == '\t' || text[last - 1] == '\r')) --last;
-    cells.push_back({text.substr(first, last - first), first});
-    start = stop + 1;
+bool is_space(char c, char separator) {
+  return c == ' ' || (c == '\t' && separator != '\t');
+}
+
+// By the first line, outside of quotes.
+char separator_of(std::string_view line) {
+  bool is_quoted = false;
+  std::size_t commas = 0, tabs = 0;
+  for (const char c : line) {
+    if (c == '"') is_quoted = !is_quoted;
+    if (is_quoted) continue;
+    if (c == ';') return ';';
+    if (c == ',') ++commas;
+    if (c == '\t') ++tabs;
   }
-  return cells;
+  return tabs > commas ? '\t' : ',';
+}
+
+std::string name_of(char separator) {
+  return separator == '\t' ? "a tab" : fmt::format("'{}'", separator);
 }
 
 }  // namespace
 
-std::vector<std::vector<Cell>> csv_lines(const SourceText& source) {
-  std::vector<std::vector<Cell>> lines;
-  for (std::size_t line = 0; line < source.line_start.size(); ++line) {
-    const std::size_t begin = source.line_start[line];
-    const std::size_t end = line + 1 < source.line_start.size() ? source.line_start[line + 1] - 1 : source.text.size();
-    std::vector<Cell> cells = split_line(source, begin, end);
-    const bool is_blank = cells.size() == 1 && cells[0].text.empty();
-    if (!is_blank && !cells[0].text.starts_with('#')) lines.push_back(std::move(cells));
+void CsvFile::complain(const Cell& cell, Complaint complaint) {
+  ++complaints_;
+  report_.add(source_.mark_at(cell.byte), "", std::move(complaint));
+}
+
+// ---- lines and cells
+
+bool CsvFile::next_line() {
+  while (line_ < source_.line_start.size()) {
+    const std::size_t begin = source_.line_start[line_];
+    ++line_;
+    std::size_t end = line_ < source_.line_start.size() ? source_.line_start[line_] - 1 : source_.text.size();
+    if (end > begin && source_.text[end - 1] == '\r') --end;
+    const std::string_view line = std::string_view(source_.text).substr(begin, end - begin);
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first == std::string_view::npos || line[first] == '#') continue;
+    if (separator_ == 0 && line.size() == 5 && line.starts_with("sep=")) {
+      separator_ = line[4];
+      continue;
+    }
+    if (separator_ == 0) separator_ = separator_of(line);
+    return split(begin, end);
   }
-  return lines;
+  return false;
+}
+
+// Fills cells_ from a line. False after a complaint.
+bool CsvFile::split(std::size_t begin, std::size_t end) {
+  const std::string_view text = source_.text;
+  cells_.clear();
+  unquoted_.clear();
+  for (std::size_t at = begin; at <= end;) {
+    std::size_t first = at;
+    while (first < end && is_space(text[first], separator_)) ++first;
+    if (first < end && text[first] == '"') {
+      at = read_quoted(first, end);
+      if (at == std::string_view::npos) return false;
+    } else {
+      const std::size_t stop = std::min(text.find(separator_, first), end);
+      std::size_t last = stop;
+      while (last > first && is_space(text[last - 1], separator_)) --last;
+      cells_.push_back({text.substr(first, last - first), first});
+      at = stop;
+    }
+    ++at;  // over the separator
+  }
+  return true;
+}
+
+// The cell whose quote is at `open`; where it ends, at a separator or the line's end. npos after a complaint.
+std::size_t CsvFile::read_quoted(std::size_t open, std::size_t end) {
+  const std::string_view text = source_.text;
+  bool has_quotes = false;
+  std::size_t close = open + 1;
+  for (; close < end; ++close) {
+    if (text[close] != '"') continue;
+    if (close + 1 == end || text[close + 1] != '"') break;
+    has_quotes = true;
+    ++close;
+  }
+  if (close >= end) {
+    complain({{}, open}, {"this quote is not closed in its line", "a second \"", ""});
+    return std::string_view::npos;
+  }
+  std::string_view content = text.substr(open + 1, close - open - 1);
+  if (has_quotes) {
+    std::string& kept = unquoted_.emplace_back();
+    for (std::size_t i = 0; i < content.size(); ++i) {
+      kept += content[i];
+      if (content[i] == '"') ++i;
+    }
+    content = kept;
+  }
+  while (!content.empty() && content.front() == ' ') content.remove_prefix(1);
+  while (!content.empty() && content.back() == ' ') content.remove_suffix(1);
+  cells_.push_back({content, open});
+  std::size_t next = close + 1;
+  while (next < end && is_space(text[next], separator_)) ++next;
+  if (next == end || text[next] == separator_) return next;
+  complain({{}, next}, {"text stands behind a quoted cell", name_of(separator_) + " or the line's end", ""});
+  return std::string_view::npos;
+}
+
+// ---- header and rows
+
+bool CsvFile::read_column_head(const Cell& cell) {
+  ColumnHead& column = head_.emplace_back(ColumnHead{std::string(cell.text), "", source_.mark_at(cell.byte)});
+  const std::size_t open = column.name.rfind('[');
+  if (open == std::string::npos) return true;
+  if (!column.name.ends_with(']')) {
+    if (column.name.find(']', open) != std::string::npos) return true;  // part of the name
+    complain(cell, {"this '[' is not closed", "a name with its unit, such as 'force [kN]'", ""});
+    return false;
+  }
+  column.unit = column.name.substr(open + 1, column.name.size() - open - 2);
+  column.name.resize(open);
+  while (column.name.ends_with(' ')) column.name.pop_back();
+  return true;
+}
+
+bool CsvFile::read_head() {
+  if (!next_line()) {
+    if (complaints_ == 0) complain_of_file({"the file is empty", fmt::format("a header such as '{}'", example_), ""});
+    return false;
+  }
+  while (cells_.size() > 1 && cells_.back().text.empty()) cells_.pop_back();
+  for (const Cell& cell : cells_) {
+    if (split_number(cell.text).is_number) {
+      complain(cell, {fmt::format("the file begins with the number '{}'", cell.text),
+                      fmt::format("a header such as '{}'", example_), ""});
+      return false;
+    }
+    if (cell.text.empty()) {
+      complain(cell, {"a column has no name", "a name in every cell of the header", ""});
+      return false;
+    }
+  }
+  return std::all_of(cells_.begin(), cells_.end(), [this](const Cell& cell) { return read_column_head(cell); });
+}
+
+const std::vector<Cell>* CsvFile::next_row() {
+  if (complaints_ >= kMaxReportedProblems || !next_line()) return nullptr;
+  if (++rows_ > kMaxTableRows) {
+    complain(cells_[0], {fmt::format("the file has more than {} rows", kMaxTableRows), "a shorter record", ""});
+    line_ = source_.line_start.size();
+    return nullptr;
+  }
+  while (cells_.size() > head_.size() && cells_.back().text.empty()) cells_.pop_back();
+  if (cells_.size() == head_.size()) return &cells_;
+  // 0,5,1,2 where cells are separated by commas
+  const bool may_be_decimal_commas = separator_ == ',' && cells_.size() == 2 * head_.size();
+  complain(cells_[0], {fmt::format("the line has {} cell{}", cells_.size(), cells_.size() == 1 ? "" : "s"),
+                       fmt::format("{} as in the header{}", head_.size(),
+                                   may_be_decimal_commas ? "; decimal commas need ';' or tabs between cells" : ""),
+                       ""});
+  return nullptr;
+}
+
+// ---- numbers
+
+// The cell's text with a decimal point; empty after a complaint.
+std::string_view CsvFile::with_decimal_point(const Cell& cell) {
+  const std::size_t at = separator_ == ',' ? cell.text.find('.') : cell.text.find_first_of(".,");
+  if (at == std::string_view::npos) return cell.text;
+  if (cell.text.find_first_of(".,", at + 1) != std::string_view::npos) {
+    complain(cell, {fmt::format("'{}' is not a plain number", cell.text), "one decimal mark, no thousands", ""});
+    return {};
+  }
+  const char mark = cell.text[at];
+  if (decimal_ == 0) {
+    decimal_ = mark;
+    decimal_mark_ = source_.mark_at(cell.byte);
+  } else if (decimal_ != mark) {
+    complain(cell, {fmt::format("'{}' has a decimal {}, the number in line {} a decimal {}", cell.text,
+                                mark == ',' ? "comma" : "point", decimal_mark_.line, mark == ',' ? "point" : "comma"),
+                    "one kind of decimal mark in a file", ""});
+    return {};
+  }
+  if (mark == '.') return cell.text;
+  number_.assign(cell.text);
+  number_[at] = '.';
+  return number_;
+}
+
+std::optional<long double> CsvFile::number(const Cell& cell) {
+  const std::string_view text = with_decimal_point(cell);
+  if (text.empty()) {
+    if (cell.text.empty()) complain(cell, {"the cell is empty", "a number", ""});
+    return std::nullopt;
+  }
+  NumberText number = split_number(text);
+  if (!number.is_number) {
+    complain(cell, std::move(number.complaint));
+  } else if (!number.rest.empty()) {
+    complain(cell,
+             {fmt::format("'{}' is not a plain number", cell.text), "a number; its unit stands in the header", ""});
+  } else {
+    return number.value;
+  }
+  return std::nullopt;
+}
+
+// ---- units of columns
+
+bool ColumnScale::take(const ColumnHead& head, Dimension dimension, UnitSystem& units, Report& report) {
+  // as the programs that export write a number without unit
+  const bool is_one = is_plain_number(dimension) && (head.unit == "1" || head.unit == "-");
+  if (head.unit.empty() || is_one) return true;
+  UnitResult result = read_unit(head.unit, dimension, units);
+  if (result.unit == nullptr) {
+    report.add(head.mark, "", std::move(result.complaint));
+    return false;
+  }
+  unit_ = *result.unit;
+  return true;
+}
+
+double ColumnScale::in_si(long double number) const noexcept {
+  return static_cast<double>(unit_ ? number * unit_->scale + unit_->offset : number);
 }
 
 }  // namespace slew::scene

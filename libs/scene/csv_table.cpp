@@ -2,105 +2,129 @@
 
 #include <fmt/format.h>
 
-#include <optional>
+#include <algorithm>
 #include <string_view>
+#include <utility>
 
-#include "scene/csv_cells.h"
-#include "scene/number.h"
+#include "scene/scene.h"
 
 namespace slew::scene {
 namespace {
 
-// A plain number in a range, or nothing after a complaint.
-std::optional<double> read_cell(const SourceText& source, const Cell& cell, const Range& range, std::string_view what,
-                                Report& report) {
-  const NumberText number = split_number(cell.text);
-  const auto complain = [&](Complaint complaint) { report.add(source.mark_at(cell.byte), "", std::move(complaint)); };
-  if (!number.is_number) {
-    complain(number.complaint);
-  } else if (!number.rest.empty()) {
-    complain({fmt::format("'{}' is not a plain number", cell.text), "a number without unit", ""});
-  } else if (!range.contains(static_cast<double>(number.value))) {
-    complain(
-        {fmt::format("{} '{}' is out of range", what, cell.text), fmt::format("{} to {}", range.min, range.max), ""});
-  } else {
-    return static_cast<double>(number.value);
-  }
-  return std::nullopt;
+constexpr Range kTime{.min = 0, .max = 1e6, .min_is_open = false, .max_is_open = false};
+constexpr Range kRaw{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
+
+bool is_time_name(std::string_view name) {
+  constexpr std::string_view kName = "time";
+  return std::equal(name.begin(), name.end(), kName.begin(), kName.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
 }
-
-class TimeTableReader {
- public:
-  TimeTableReader(const SourceText& source, Report& report) : source_(source), report_(report) {}
-
-  std::vector<CsvColumn> read() {
-    for (const std::vector<Cell>& cells : csv_lines(source_)) {
-      if (!has_header_) {
-        if (!read_header(cells)) break;
-      } else {
-        read_row(cells);
-      }
-    }
-    if (!has_header_ && report_.size() == 0)
-      report_.add({source_.source, 1, 1}, "", {"the file is empty", "a header time,INPUT,...", ""});
-    return std::move(columns_);
-  }
-
- private:
-  void complain(const Cell& cell, Complaint complaint) {
-    report_.add(source_.mark_at(cell.byte), "", std::move(complaint));
-  }
-
-  bool read_header(const std::vector<Cell>& cells) {
-    if (cells[0].text != "time" || cells.size() < 2) {
-      complain(cells[0], {"the header begins with '" + std::string(cells[0].text) + "'", "time,INPUT,...", ""});
-      return false;
-    }
-    for (std::size_t i = 1; i < cells.size(); ++i) {
-      for (const CsvColumn& other : columns_) {
-        if (other.name == cells[i].text)
-          complain(cells[i], {"'" + other.name + "' is there twice", "one column for an input", ""});
-      }
-      columns_.push_back({std::string(cells[i].text), source_.mark_at(cells[i].byte), {}});
-    }
-    has_header_ = true;
-    return true;
-  }
-
-  void read_row(const std::vector<Cell>& cells) {
-    if (cells.size() != columns_.size() + 1) {
-      complain(cells[0], {fmt::format("the line has {} cell{}", cells.size(), cells.size() == 1 ? "" : "s"),
-                          fmt::format("{} as in the header", columns_.size() + 1), ""});
-      return;
-    }
-    constexpr Range kTime{.min = 0, .max = 1e6, .min_is_open = false, .max_is_open = false};
-    constexpr Range kRaw{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
-    const auto time = read_cell(source_, cells[0], kTime, "time", report_);
-    if (!time) return;
-    if (*time <= last_time_) {
-      complain(cells[0], {"time '" + std::string(cells[0].text) + "' does not lie behind the line before it",
-                          "increasing times", ""});
-      return;
-    }
-    last_time_ = *time;
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-      if (cells[i + 1].text.empty()) continue;
-      if (const auto value = read_cell(source_, cells[i + 1], kRaw, "value", report_))
-        columns_[i].points.push_back({*time, *value});
-    }
-  }
-
-  const SourceText& source_;
-  Report& report_;
-  bool has_header_ = false;
-  double last_time_ = -1;
-  std::vector<CsvColumn> columns_;
-};
 
 }  // namespace
 
-std::vector<CsvColumn> read_time_table(const SourceText& source, Report& report) {
-  return TimeTableReader(source, report).read();
+bool TimeTable::read_head() {
+  if (!file_.read_head()) return false;
+  const std::vector<ColumnHead>& head = file_.head();
+  const auto time = std::find_if(head.begin(), head.end(), [](const ColumnHead& h) { return is_time_name(h.name); });
+  if (time == head.end()) {
+    report_.add(head.front().mark, "", {"no column of the header is 'time'", "a header such as 'time [s],Stick'", ""});
+    return false;
+  }
+  time_ = static_cast<std::size_t>(time - head.begin());
+  return true;
+}
+
+bool TimeTable::take_scales(const std::vector<std::size_t>& columns) {
+  bool is_good = time_scale_.take(head()[time_], Dimension::time, units_, report_);
+  for (const std::size_t column : columns) {
+    for (const CsvColumn& other : columns_) {
+      if (head()[other.index].name != head()[column].name) continue;
+      report_.add(head()[column].mark, "",
+                  {"'" + head()[column].name + "' is there twice", "one column for a name", ""});
+      is_good = false;
+    }
+    columns_.push_back({.index = column, .points = {}});
+    is_good = scales_.emplace_back().take(head()[column], Dimension::none, units_, report_) && is_good;
+  }
+  return is_good;
+}
+
+std::vector<CsvColumn> TimeTable::read(const std::vector<std::size_t>& columns) {
+  const std::size_t problems = report_.size();
+  if (!take_scales(columns)) return {};
+  while (report_.size() < problems + kMaxReportedProblems) {
+    const std::size_t before = report_.size();
+    const std::vector<Cell>* cells = file_.next_row();
+    if (cells != nullptr) {
+      read_row(*cells);
+    } else if (report_.size() == before) {
+      break;
+    }
+  }
+  if (report_.size() == problems) finish();
+  return report_.size() == problems ? std::move(columns_) : std::vector<CsvColumn>();
+}
+
+// A second row at one time is a jump; a third would have no effect.
+bool TimeTable::is_behind(const Cell& cell, double time) {
+  const bool is_jump = time == last_time_;
+  if (time < last_time_ || (is_jump && is_jump_)) {
+    const char* what = is_jump ? "time '{}' stands in a third row" : "time '{}' lies before that of the row above";
+    file_.complain(cell, {fmt::format(fmt::runtime(what), cell.text),
+                          "times that do not fall; two rows at one time are a jump", ""});
+    return false;
+  }
+  is_jump_ = is_jump;
+  last_time_ = time;
+  return true;
+}
+
+void TimeTable::read_row(const std::vector<Cell>& cells) {
+  ++rows_;
+  const auto number = file_.number(cells[time_]);
+  if (!number) return;
+  const double time = time_scale_.in_si(*number);
+  if (!kTime.contains(time)) {
+    file_.complain(cells[time_], {fmt::format("time '{}' is out of range", cells[time_].text),
+                                  fmt::format("{} to {} s", kTime.min, kTime.max), ""});
+    return;
+  }
+  if (!is_behind(cells[time_], time)) return;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const Cell& cell = cells[columns_[i].index];
+    if (cell.text.empty()) continue;
+    const auto raw = file_.number(cell);
+    if (!raw) continue;
+    const double value = scales_[i].in_si(*raw);
+    if (kRaw.contains(value)) {
+      columns_[i].points.push_back({time, value});
+    } else {
+      file_.complain(cell, {fmt::format("value '{}' is out of range", cell.text),
+                            fmt::format("{} to {}", kRaw.min, kRaw.max), ""});
+    }
+  }
+}
+
+// What a file lacks as a whole, and the time before a record began.
+void TimeTable::finish() {
+  if (rows_ == 0) {
+    file_.complain_of_file({"the file has a header and no rows", "a line for each time", ""});
+    return;
+  }
+  for (CsvColumn& column : columns_) {
+    Table& points = column.points;
+    if (points.empty()) {
+      report_.add(head()[column.index].mark, "",
+                  {"the column '" + head()[column.index].name + "' has no values", "a value in some row", ""});
+      continue;
+    }
+    const auto [time, value] = points.front();
+    column.begin = time;
+    if (time == 0 || value == 0) continue;
+    // a jump there begins at 0: the first of its two values would last for no time
+    if (points.size() > 1 && points[1][0] == time) points.erase(points.begin());
+    points.insert(points.begin(), {{0, 0}, {time, 0}});
+  }
 }
 
 }  // namespace slew::scene

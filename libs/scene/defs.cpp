@@ -196,10 +196,12 @@ constexpr Field kScriptFields[] = {
 };
 
 constexpr Field kScriptTrackFields[] = {
-    field<&ScriptTrack::points>("points",
-                                {.dimension = Dimension::time,
-                                 .range = kRawRange,
-                                 .doc = "points [time, raw value -1 to 1]; the first and last value are held"}),
+    field<&ScriptTrack::points>(
+        "points",
+        {.dimension = Dimension::time,
+         .range = kRawRange,
+         .has_jumps = true,
+         .doc = "points [time, raw value -1 to 1]; two at one time are a jump; the first and last value are held"}),
 };
 
 constexpr Field kScriptChangeFields[] = {

@@ -1,7 +1,9 @@
 // What a scene says beside the physics: session, inputs, script, recording, plots.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -113,10 +115,23 @@ struct InputDef {
 
 enum class ScriptInterpolation : int { linear, step };
 
+using Sha256 = std::array<std::uint8_t, 32>;
+
+// A table that stays in its CSV file since it is long: where the scene has it, and the content that the file must have.
+struct TableFile {
+  std::string path;                  // of the field, "Drive.force_table"; "script"
+  std::string file;                  // relative to the folder of the scene's files
+  std::vector<std::string> columns;  // names of the columns that are taken; empty: all
+  std::uint64_t size = 0;            // bytes
+  Sha256 sha256{};
+  bool is_pinned = false;  // the scene states the content, another one is refused
+  std::string found;       // path that it was read from; empty: it was not read
+};
+
 // Raw value of one input over time.
 struct ScriptTrack {
   std::string input;
-  Table points;  // time [s], raw value -1..1
+  Table points;  // time [s], raw value -1..1; a second point at one time is a jump
 };
 
 // A parameter that the script changes.
@@ -133,8 +148,9 @@ struct ScriptDef {
   ScriptInterpolation interpolation = ScriptInterpolation::linear;
   std::vector<ScriptTrack> tracks;    // in the order of the scene's inputs
   std::vector<ScriptChange> changes;  // ordered by time
+  std::optional<TableFile> file;      // of long tracks: these have no points where the file was not read
 
-  [[nodiscard]] bool is_empty() const noexcept { return tracks.empty() && changes.empty(); }
+  [[nodiscard]] bool is_empty() const noexcept { return tracks.empty() && changes.empty() && !file; }
 };
 
 // Which variables the nodes publish and the recorder stores.
@@ -159,6 +175,7 @@ inline constexpr std::size_t kMaxNameLength = 32;               // of an element
 inline constexpr std::size_t kMaxSceneNameLength = 63;          // on the wire
 inline constexpr std::size_t kMaxAssetNameLength = 255;         // on the wire
 inline constexpr std::size_t kMaxExpandedBytes = 4 << 20;       // of Scene::expanded_text on the wire
+inline constexpr std::size_t kMaxPointsInText = 1000;           // of a table from a file; longer ones stay in it
 inline constexpr std::size_t kMaxInputs = 64;                   // channels on the wire
 inline constexpr std::size_t kMaxScriptChangesPerStep = 16;     // commands in one tick
 

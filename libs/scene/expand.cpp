@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/suggestion.h"
+#include "scene/assets.h"
 #include "scene/sections.h"
 #include "scene/setting.h"
 #include "scene/source.h"
@@ -55,6 +56,10 @@ std::vector<const Node*> included_files(const Node& include, Report& report) {
 }
 
 std::optional<Node> read_included(const Node& name, const Surroundings& surroundings, Report& report) {
+  if (auto refusal = surroundings.refusal_of(name.text)) {
+    report.add(name.mark, "include", std::move(*refusal));
+    return std::nullopt;
+  }
   const std::string path = surroundings.path_of(name.text);
   std::optional<Node> tree = read_tree(path, report.add_source(path), report);
   if (!tree) {
@@ -132,9 +137,17 @@ void apply_override(Node& root, const std::string& text, Report& report) {
 }  // namespace
 
 std::string Surroundings::path_of(const std::string& file) const {
-  const std::filesystem::path path(file);
-  if (path.is_absolute() || folder.empty()) return file;
-  return (std::filesystem::path(folder) / path).string();
+  return (std::filesystem::path(folder) / file).string();
+}
+
+std::string Surroundings::asset_path_of(const std::string& file) const {
+  return (std::filesystem::path(asset_folder) / file).string();
+}
+
+std::optional<Complaint> Surroundings::refusal_of(const std::string& file) const {
+  if (!is_confined || is_inside_folder(file)) return std::nullopt;
+  return Complaint{"'" + file + "' lies outside of the scene's folder and was not read",
+                   "a file in that folder or below", ""};
 }
 
 std::optional<Node> read_with_includes(const std::string& path, Report& report) {

@@ -13,11 +13,16 @@ namespace slew::scene {
 struct Surroundings {
   bool has_folder = false;
   std::string folder;  // empty: the working directory
-  // The same for the files of flexible bodies, which nodes read as well.
-  bool has_flexible_files = has_folder;
-  std::string flexible_folder = folder;
+  // The same for the files that nodes read as well: those of flexible bodies and of long tables.
+  bool has_assets = has_folder;
+  std::string asset_folder = folder;
+  bool is_confined = true;   // files must lie in the folder; not those that a command line names
+  bool reads_script = true;  // io alone needs the long tracks of a script
 
   [[nodiscard]] std::string path_of(const std::string& file) const;
+  [[nodiscard]] std::string asset_path_of(const std::string& file) const;
+  // What is wrong with the name of a file; nothing: it lies in the folder.
+  [[nodiscard]] std::optional<Complaint> refusal_of(const std::string& file) const;
 };
 
 // Reads the file and merges it over the files its `include` names (one level); problems go to the report.

@@ -11,6 +11,7 @@
 #include "scene/expand.h"
 #include "scene/number.h"
 #include "scene/point_file.h"
+#include "scene/table_file.h"
 
 namespace slew::scene {
 namespace {
@@ -165,24 +166,31 @@ class ValueReader {
     member<std::vector<Triple>>() = std::move(triples);
   }
 
-  // points in a file beside the scene
+  // Points in a file beside the scene. A long table stays there: it is no part of the scene's text.
   void read_table_file(const Node& node) {
-    if (context_.surroundings == nullptr || !context_.surroundings->has_folder) {
-      complain(node.mark, {"a scene without a folder cannot name a file", "the points themselves", ""});
+    std::optional<TableFile> table = read_table_reference(node, path_, context_);
+    if (!table) return;
+    if (!table->columns.empty() && table->columns.size() != 2) {
+      complain(node.find("columns")->value.mark,
+               {fmt::format("names {} columns", table->columns.size()), "two, of argument and value", ""});
       return;
     }
     const std::size_t problems = context_.report.size();
-    const std::string file = context_.surroundings->path_of(node.text);
-    const std::optional<SourceText> source = read_source(file, context_.report.add_source(file), context_.report);
-    if (source) {
-      if (auto table = read_point_file(*source, field_, context_.units, context_.report))
-        member<Table>() = std::move(*table);
+    const TableText opened = open_table(*table, node.mark, context_);
+    if (opened.text) {
+      if (auto points = read_point_file(*opened.text, table->columns, field_, context_.units, context_.report))
+        member<Table>() = std::move(*points);
     }
-    if (context_.report.size() > problems) complain(node.mark, {describe(node) + " cannot be used", "", ""});
+    if (context_.report.size() > problems && opened.is_file)
+      complain(node.mark, {"'" + table->file + "' cannot be used", "", ""});
+    const bool is_long = member<Table>().size() > kMaxPointsInText || table->is_pinned;
+    if (is_long && context_.report.size() == problems && context_.table_files != nullptr)
+      context_.table_files->push_back(std::move(*table));
   }
 
   void read_table(const Node& node) {
-    if (node.kind == Node::Kind::scalar && node.text.ends_with(".csv")) {
+    const bool is_file = node.kind == Node::Kind::scalar && node.text.ends_with(".csv");
+    if (is_file || node.kind == Node::Kind::map) {
       read_table_file(node);
       return;
     }
@@ -202,9 +210,9 @@ class ValueReader {
       const auto value = number(point.items[1], field_.value_dimension, true);
       is_sound = is_sound && argument && value;
       if (!argument || !value) continue;
-      if (is_sound && !table.empty() && !(*argument > table.back()[0])) {
+      if (is_sound && !may_follow(table, *argument, field_)) {
         complain(point.items[0].mark,
-                 {describe(point.items[0]) + " does not lie behind the point before it", "increasing arguments", ""});
+                 {describe(point.items[0]) + " does not lie behind the point before it", order_text(field_), ""});
         is_sound = false;
       }
       table.push_back({*argument, *value});
@@ -265,6 +273,17 @@ const Field* find_field(std::span<const Field> fields, std::string_view key) {
 }
 
 }  // namespace
+
+bool may_follow(const Table& table, double argument, const Field& field) {
+  if (table.empty() || argument > table.back()[0]) return true;
+  // of three points at one argument the middle one would have no effect
+  const bool is_second = table.size() < 2 || table[table.size() - 2][0] < argument;
+  return field.has_jumps && argument == table.back()[0] && is_second;
+}
+
+std::string order_text(const Field& field) {
+  return field.has_jumps ? "increasing arguments, or two points at one as a jump" : "increasing arguments";
+}
 
 std::string choice_list(std::span<const std::string_view> choices) {
   std::string all;

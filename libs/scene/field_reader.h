@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/field.h"
+#include "scene/defs.h"
 #include "scene/diagnostic.h"
 #include "scene/place_map.h"
 #include "scene/units.h"
@@ -29,7 +30,8 @@ struct ReadContext {
   Report& report;
   PlaceMap& places;
   std::vector<Reference>& references;
-  const Surroundings* surroundings = nullptr;  // null: no file may be named
+  const Surroundings* surroundings = nullptr;     // null: no file may be named
+  std::vector<TableFile>* table_files = nullptr;  // gets the tables that stay in their files
 };
 
 // Reads every entry of `map` into the Def at `def`. Keys in `other_keys` are the caller's and are left alone.
@@ -42,6 +44,10 @@ void read_value(const Node& node, const Field& field, void* def, const std::stri
 
 // Reports the keys that a map holds twice. path: "" at the root, else what stands before the key.
 void report_duplicates(const Node& map, const std::string& path, Report& report);
+
+// Whether a point with this argument may come behind those of the table, and how arguments of the field go on.
+[[nodiscard]] bool may_follow(const Table& table, double argument, const Field& field);
+[[nodiscard]] std::string order_text(const Field& field);
 
 // What a field takes, for messages: "a mass such as '500 kg', or a bare number in kg".
 [[nodiscard]] std::string expected_value(const Field& field);

@@ -65,7 +65,7 @@ class FlexibleReader {
                "numbers between semicolons, such as '0.005;0.005'");
     }
     const std::optional<Wanted> modes = modes_of(body);
-    if (surroundings_.has_flexible_files) {
+    if (surroundings_.has_assets) {
       const flex::FlexibleFileSet files = files_of(body);
       const flex::Reduction* reduction = reduction_of(body, files);
       if (reduction != nullptr && modes) take(body, files, *reduction, *modes, flexible);
@@ -83,7 +83,7 @@ class FlexibleReader {
                "'" + body.relative_damping + "' is not one number: the beams between segments are damped alike",
                "one number, of the files' first mode");
     }
-    if (surroundings_.has_flexible_files) {
+    if (surroundings_.has_assets) {
       const flex::FlexibleFileSet files = files_of(body);
       const flex::Reduction* reduction = reduction_of(body, files);
       if (reduction != nullptr) cut(body, files, *reduction, segmented);
@@ -93,8 +93,7 @@ class FlexibleReader {
 
  private:
   [[nodiscard]] flex::FlexibleFileSet files_of(const BodyDef& body) const {
-    return {surroundings_.flexible_folder, body.flex_model.empty() ? scene_.name : body.flex_model,
-            body.flex_file_prefix};
+    return {surroundings_.asset_folder, body.flex_model.empty() ? scene_.name : body.flex_model, body.flex_file_prefix};
   }
 
   void cut(const BodyDef& body, const flex::FlexibleFileSet& files, const flex::Reduction& reduction,
@@ -134,6 +133,12 @@ class FlexibleReader {
     const auto known = sets_.find({files.model, files.prefix});
     if (known != sets_.end()) return known->second.get();
     auto& set = sets_[{files.model, files.prefix}];
+    if ((files.model + files.prefix).find('/') != std::string::npos) {
+      complain(body, "flex_file_prefix",
+               "'" + files.model + "_" + files.prefix + "' lies outside of the scene's folder",
+               "names of files in that folder");
+      return nullptr;
+    }
     try {
       set = std::make_unique<flex::Reduction>(flex::read_flexible_files(files));
     } catch (const std::exception& error) {

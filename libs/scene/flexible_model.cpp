@@ -214,6 +214,10 @@ class DescriptionReader {
     if (matrices == nullptr) return;
     if (!surroundings_.has_folder)
       report_.add(matrices->mark, "matrices", {"a description without a folder cannot name files", "", ""});
+    for (const Node::Entry& entry : matrices->value.entries) {
+      if (auto refusal = surroundings_.refusal_of(entry.value.text))
+        report_.add(entry.value.mark, "matrices." + entry.key, std::move(*refusal));
+    }
     const auto keys = flex::beam_keys();
     for (const Node::Entry& entry : root_.entries) {
       if (std::find(keys.begin(), keys.end(), entry.key) != keys.end())

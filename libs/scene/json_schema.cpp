@@ -64,8 +64,13 @@ Json type_of(const Field& field) {
     case FieldType::table: {
       Json table = list_of(point(field), 0);
       table["minItems"] = 1;
-      const Json file = {{"type", "string"}, {"pattern", "\\.csv$"}};
-      return {{"anyOf", Json::array({std::move(table), file})}};
+      const Json name = {{"type", "string"}, {"pattern", "\\.csv$"}};
+      const Json text = {{"type", "string"}};
+      const Json file = {{"type", "object"},
+                         {"properties", {{"file", name}, {"columns", list_of(text, 2)}, {"sha256", text}}},
+                         {"required", Json::array({"file"})},
+                         {"additionalProperties", false}};
+      return {{"anyOf", Json::array({std::move(table), name, file})}};
     }
     case FieldType::numbers:
       return list_of(quantity(field.range), 0);
@@ -156,6 +161,10 @@ Json script() {
   change["required"].push_back("value");
   Json& properties = schema["properties"];
   properties["file"] = {{"type", "string"}, {"description", "CSV or YAML file beside the scene, instead of inputs"}};
+  const Json text = {{"type", "string"}};
+  properties["columns"] = list_of(text, 0);
+  properties["columns"]["description"] = "columns of the CSV file that are taken; without it those of inputs";
+  properties["sha256"] = {{"type", "string"}, {"description", "content that the CSV file must have"}};
   properties["inputs"] = {{"type", "object"}, {"additionalProperties", property(script_track_fields().front())}};
   properties["parameters"] = list_of(std::move(change), 0);
   return schema;

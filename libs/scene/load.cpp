@@ -24,6 +24,7 @@
 #include "scene/script_reader.h"
 #include "scene/sections.h"
 #include "scene/source.h"
+#include "scene/table_file.h"
 #include "scene/units.h"
 #include "scene/yaml_tree.h"
 
@@ -55,7 +56,7 @@ class SceneReader {
     if (mechanics_is_sound && hydraulics_is_sound) {
       check_problems([&](Problems& errors, Problems&) {
         make_ports(scene_, errors);
-        if (lacks_flexible_files()) return;
+        if (lacks_files()) return;
         if (errors.empty()) multibody::validate_rows(scene_.mechanics, row_names(scene_), errors);
         if (errors.empty() && !scene_.ports.empty()) check_start(scene_, errors);
       });
@@ -66,6 +67,7 @@ class SceneReader {
       read_script(script->value, script->mark, surroundings_, names_, scene_, context_);
     }
     check_content();
+    if (report_.is_clean()) add_assets_of_tables();
     return std::move(scene_);
   }
 
@@ -255,7 +257,7 @@ class SceneReader {
     check_problems([&](Problems& errors, Problems& warnings) {
       read_meshes(surroundings_, scene_.mechanics, errors);
       read_flexible_bodies(surroundings_, scene_, errors, warnings);
-      if (lacks_flexible_files()) return;
+      if (lacks_files()) return;
       if (errors.empty()) multibody::validate(scene_.mechanics, errors);
       if (errors.empty()) check_motion_ends(errors);
       if (errors.empty() && scene_.session.solution == Solution::split) {
@@ -271,8 +273,14 @@ class SceneReader {
     return report_.size() == problems;
   }
 
-  [[nodiscard]] bool lacks_flexible_files() const {
-    return scene_.has_flexible_bodies() && !surroundings_.has_flexible_files;
+  // some table or body is empty: what holds between elements cannot be checked
+  [[nodiscard]] bool lacks_files() const { return scene_.needs_files() && !surroundings_.has_assets; }
+
+  void add_assets_of_tables() {
+    add_table_assets(scene_);
+    if (scene_.assets.size() <= kMaxAssets) return;
+    const std::string what = fmt::format("the scene has {} files", scene_.assets.size());
+    report_.add(root_.mark, "", {what, fmt::format("at most {}", kMaxAssets), ""});
   }
 
   // a table that refuses to be left lasts as long as the session, where that ends
@@ -293,6 +301,7 @@ class SceneReader {
     for (const std::string_view section : kHydraulicsSections) read_section(section);
     resolve_references();
     if (report_.size() > problems || !has_sound_names_) return false;
+    if (!scene_.table_files.empty() && !surroundings_.has_assets) return true;
     // a scene without volumes has no circuit to look at
     if (scene_.has_hydraulics() || !scene_.hydraulics.components.empty()) {
       check_problems(
@@ -375,7 +384,7 @@ class SceneReader {
   PlaceMap places_;
   std::vector<Reference> references_;
   UnitSystem units_;
-  ReadContext context_{units_, report_, places_, references_, &surroundings_};
+  ReadContext context_{units_, report_, places_, references_, &surroundings_, &scene_.table_files};
 };
 
 Scene read_tree(Node root, Surroundings surroundings, const std::string& name, const Overrides& overrides,
@@ -401,15 +410,16 @@ Scene load_file(const std::string& path, const Overrides& overrides) {
 }
 
 Scene load_text(std::string text, const std::string& name, const Overrides& overrides,
-                const std::optional<std::string>& flexible_files) {
+                const std::optional<std::string>& files, ScriptFile script) {
   return guarded(name, [&] {
     Report report;
     const std::optional<SourceText> source = check_source(std::move(text), report.add_source(name), report);
     std::optional<Node> root = source ? parse_yaml(*source, report) : std::nullopt;
     if (!root) report.fail(kMaxReportedProblems);
     Surroundings surroundings;
-    surroundings.has_flexible_files = flexible_files.has_value();
-    surroundings.flexible_folder = flexible_files.value_or("");
+    surroundings.has_assets = files.has_value();
+    surroundings.asset_folder = files.value_or("");
+    surroundings.reads_script = script == ScriptFile::read;
     return read_tree(std::move(*root), std::move(surroundings), name, overrides, report);
   });
 }

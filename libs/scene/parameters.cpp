@@ -140,7 +140,10 @@ double mechanics_substep(const SessionDef& session, const multibody::MechanicsDe
 }
 
 ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.session), parameters_(parameters(scene)) {
-  if (scene.has_mechanics() && session_.solution == Solution::split) {
+  // of tables that were not read no mechanism can be built
+  const bool is_whole = std::all_of(scene.table_files.begin(), scene.table_files.end(),
+                                    [](const TableFile& table) { return !table.found.empty(); });
+  if (is_whole && scene.has_mechanics() && session_.solution == Solution::split) {
     mechanics_ = std::make_shared<const multibody::MechanicsDef>(scene.mechanics);
   }
   for (std::size_t i = 0; i < parameters_.size(); ++i) index_.emplace(parameters_[i].path, i);

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <string>
+#include <array>
+#include <cmath>
 #include <utility>
-#include <vector>
 
+#include "core/suggestion.h"
 #include "scene/csv_cells.h"
 #include "scene/field_reader.h"
-#include "scene/number.h"
 
 namespace slew::scene {
 namespace {
@@ -16,92 +16,94 @@ namespace {
 class PointFileReader {
  public:
   PointFileReader(const SourceText& source, const Field& field, UnitSystem& units, Report& report)
-      : source_(source), field_(field), units_(units), report_(report) {}
+      : field_(field), units_(units), report_(report), file_(source, "deflection [mm], force [kN]", report) {}
 
-  std::optional<Table> read() {
-    const std::vector<std::vector<Cell>> lines = csv_lines(source_);
-    if (lines.empty() || !read_header(lines.front())) {
-      if (lines.empty()) report_.add({source_.source, 1, 1}, "", {"the file is empty", kHeader, ""});
-      return std::nullopt;
+  std::optional<Table> read(const std::vector<std::string>& columns) {
+    if (!file_.read_head() || !find_columns(columns)) return std::nullopt;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!scale_[i].take(file_.head()[column_[i]], dimension(i), units_, report_)) return std::nullopt;
     }
+    const std::size_t problems = report_.size();
     Table table;
-    for (std::size_t i = 1; i < lines.size(); ++i) {
-      if (!read_line(lines[i], table)) return std::nullopt;
+    while (const std::vector<Cell>* cells = file_.next_row()) {
+      if (!read_row(*cells, table)) return std::nullopt;
     }
-    if (table.empty()) report_.add({source_.source, 1, 1}, "", {"the file has no points", "lines argument, value", ""});
+    if (report_.size() > problems) return std::nullopt;
+    if (table.empty()) file_.complain_of_file({"the file has a header and no points", "a line for each point", ""});
     return table.empty() ? std::nullopt : std::optional<Table>(std::move(table));
   }
 
  private:
-  static constexpr const char* kHeader = "a header such as 'deflection [mm], force [kN]'";
-
-  bool complain(const Cell& cell, Complaint complaint) {
-    report_.add(source_.mark_at(cell.byte), "", std::move(complaint));
-    return false;
+  [[nodiscard]] Dimension dimension(std::size_t column) const {
+    return column == 0 ? field_.dimension : field_.value_dimension;
   }
 
-  bool read_header(const std::vector<Cell>& cells) {
-    if (cells.size() != 2) {
-      return complain(cells[0], {fmt::format("the header has {} cell{}", cells.size(), cells.size() == 1 ? "" : "s"),
-                                 "two: argument and value", ""});
+  bool find_columns(const std::vector<std::string>& columns) {
+    const std::vector<ColumnHead>& head = file_.head();
+    if (columns.empty()) {
+      if (head.size() == 2) return true;
+      report_.add(head.front().mark, "",
+                  {fmt::format("the header has {} cell{}", head.size(), head.size() == 1 ? "" : "s"),
+                   "two, argument and value, or the names of two: {file: FILE, columns: [ARGUMENT, VALUE]}", ""});
+      return false;
     }
     for (std::size_t i = 0; i < 2; ++i) {
-      if (split_number(cells[i].text).is_number) {
-        return complain(cells[i], {fmt::format("the file begins with the number '{}'", cells[i].text), kHeader, ""});
-      }
-      const std::size_t open = cells[i].text.find('[');
-      if (open == std::string_view::npos) continue;
-      if (!cells[i].text.ends_with(']')) return complain(cells[i], {"this '[' is not closed", kHeader, ""});
-      unit_[i] = cells[i].text.substr(open + 1, cells[i].text.size() - open - 2);
+      if (!find_column(columns[i], column_[i])) return false;
     }
     return true;
   }
 
-  std::optional<double> read_cell(const Cell& cell, std::size_t column) {
-    const Dimension dimension = column == 0 ? field_.dimension : field_.value_dimension;
-    const NumberText number = split_number(cell.text);
-    if (!number.is_number || !number.rest.empty()) {
-      complain(cell, {fmt::format("'{}' is not a plain number", cell.text), "a number; its unit is in the header", ""});
-      return std::nullopt;
+  bool find_column(const std::string& name, std::size_t& index) {
+    std::vector<std::string_view> names;
+    for (const ColumnHead& column : file_.head()) {
+      if (column.name == name) {
+        index = names.size();
+        return true;
+      }
+      names.push_back(column.name);
     }
-    const std::string text = std::string(cell.text) + (unit_[column].empty() ? "" : " " + std::string(unit_[column]));
-    QuantityResult quantity = read_quantity(text, Writing::plain, dimension, units_);
-    if (!quantity.value) {
-      complain(cell, std::move(quantity.complaint));
-    } else if (column == 1 && !field_.range.contains(*quantity.value)) {
-      complain(cell, {fmt::format("'{}' is out of range", text), range_text(field_.range, dimension), ""});
-      return std::nullopt;
-    }
-    return quantity.value;
+    report_.add(file_.head().front().mark, "", {"no column '" + name + "'", "", closest(name, names)});
+    return false;
   }
 
-  bool read_line(const std::vector<Cell>& cells, Table& table) {
-    if (cells.size() != 2) {
-      return complain(cells[0], {fmt::format("the line has {} cell{}", cells.size(), cells.size() == 1 ? "" : "s"),
-                                 "two: argument and value", ""});
-    }
-    const auto argument = read_cell(cells[0], 0);
-    const auto value = read_cell(cells[1], 1);
+  std::optional<double> value_of(const Cell& cell, std::size_t i) {
+    const auto number = file_.number(cell);
+    if (!number) return std::nullopt;
+    const double value = scale_[i].in_si(*number);
+    const std::string& unit = file_.head()[column_[i]].unit;
+    if (std::isfinite(value) && (i == 0 || field_.range.contains(value))) return value;
+    file_.complain(cell, {fmt::format("'{}{}' is out of range", cell.text, unit.empty() ? "" : " " + unit),
+                          range_text(field_.range, dimension(i)), ""});
+    return std::nullopt;
+  }
+
+  bool read_row(const std::vector<Cell>& cells, Table& table) {
+    const auto argument = value_of(cells[column_[0]], 0);
+    const auto value = value_of(cells[column_[1]], 1);
     if (!argument || !value) return false;
-    if (!table.empty() && !(*argument > table.back()[0])) {
-      return complain(cells[0], {fmt::format("'{}' does not lie behind the line before it", cells[0].text),
-                                 "increasing arguments", ""});
+    if (!may_follow(table, *argument, field_)) {
+      file_.complain(
+          cells[column_[0]],
+          {fmt::format("'{}' does not lie behind the line before it", cells[column_[0]].text), order_text(field_), ""});
+      return false;
     }
     table.push_back({*argument, *value});
     return true;
   }
 
-  const SourceText& source_;
   const Field& field_;
   UnitSystem& units_;
   Report& report_;
-  std::string_view unit_[2];
+  CsvFile file_;
+  std::array<std::size_t, 2> column_ = {0, 1};
+  std::array<ColumnScale, 2> scale_;
 };
 
 }  // namespace
 
-std::optional<Table> read_point_file(const SourceText& source, const Field& field, UnitSystem& units, Report& report) {
-  return PointFileReader(source, field, units, report).read();
+std::optional<Table> read_point_file(const SourceText& source, const std::vector<std::string>& columns,
+                                     const Field& field, UnitSystem& units, Report& report) {
+  return PointFileReader(source, field, units, report).read(columns);
 }
 
 }  // namespace slew::scene

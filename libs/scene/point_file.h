@@ -1,12 +1,15 @@
-// The points of a table field in a CSV file of two columns:
+// The points of a table field in a CSV file:
 //
 //   deflection [mm], force [kN]
 //   -100, -1.2
 //   0, 0
-// A column's unit stands in brackets behind its name; without it the numbers are SI. The header is required.
+// A column's unit stands in brackets behind its name; without it the numbers are SI. The header is required. Of a file
+// with more than two columns those of argument and value are named. csv_cells.h says what a file may look like.
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/field.h"
 #include "scene/diagnostic.h"
@@ -15,8 +18,9 @@
 
 namespace slew::scene {
 
-// Empty after a complaint, which goes to the report. field: of type table.
-[[nodiscard]] std::optional<Table> read_point_file(const SourceText& source, const Field& field, UnitSystem& units,
-                                                   Report& report);
+// Empty after a complaint, which goes to the report. field: of type table; columns: names of argument and value, or
+// empty for a file of two columns.
+[[nodiscard]] std::optional<Table> read_point_file(const SourceText& source, const std::vector<std::string>& columns,
+                                                   const Field& field, UnitSystem& units, Report& report);
 
 }  // namespace slew::scene

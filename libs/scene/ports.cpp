@@ -46,7 +46,8 @@ PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& c
 
 void take_curve(PortDef& port, const std::string& name, const Scene& scene, Problems& problems) {
   const hydraulics::CurveDef* curve = hydraulics::find_curve(scene.hydraulics, name);
-  if (curve == nullptr) return;
+  // empty where the file that holds it was not read
+  if (curve == nullptr || curve->points.empty()) return;
   port.line_force.friction_curve = hydraulics::straight_lines(*curve);
   if (curve->points.front()[0] < 0) {
     problems.push_back({name + ".points",

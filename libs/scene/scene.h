@@ -42,7 +42,7 @@ struct PortDef {
 struct Asset {
   std::string name;  // relative to the scene's folder
   std::uint64_t size = 0;
-  std::array<std::uint8_t, 32> sha256{};
+  Sha256 sha256{};
   bool operator==(const Asset&) const = default;
 };
 
@@ -75,6 +75,7 @@ struct Scene {
   std::vector<std::string> warnings;
   std::vector<FlexibleBody> flexible_bodies;  // with modes, in the bodies' order; none in a scene without files
   std::vector<Asset> assets;
+  std::vector<TableFile> table_files;      // tables that stay in their files; those that were read are among the assets
   std::vector<MeshInertia> mesh_inertias;  // of the files that were read; none in a scene from its expanded text
 
   // The scene after includes and overrides as canonical YAML in SI: reading it gives the same Scene (assets by name).
@@ -91,6 +92,8 @@ struct Scene {
   [[nodiscard]] bool has_flexible_bodies() const noexcept {
     return !mechanics.flexible_bodies.empty() || !mechanics.segmented_bodies.empty();
   }
+  // Nothing can be built of it without the folder of its files.
+  [[nodiscard]] bool needs_files() const noexcept { return has_flexible_bodies() || !table_files.empty(); }
   [[nodiscard]] bool has_hydraulics() const noexcept { return !hydraulics.volumes.empty(); }
 };
 
@@ -102,12 +105,16 @@ inline constexpr std::size_t kMaxReportedProblems = 20;
 // Reads a scene file, its include and its assets. Throws LoadError, nothing else.
 [[nodiscard]] Scene load_file(const std::string& path, const Overrides& overrides = {});
 
-// Reads a scene from memory; `name` stands for the file in messages. Includes and script files are not allowed there,
-// and assets keep their names only (size 0): see check_assets. flexible_files: folder of the files of flexible bodies;
-// without it such bodies are not filled and the mechanics is not checked: nothing can be built of it. Throws LoadError,
-// nothing else.
+// Whether the long tracks of a script are read from its file: io alone needs them.
+enum class ScriptFile : std::uint8_t { left_out, read };
+
+// Reads a scene from memory; `name` stands for the file in messages. Includes are not allowed there, and assets keep
+// their names only (size 0): see check_assets. files: folder of the files of flexible bodies and long tables; without
+// it these are not filled and the mechanics and hydraulics are not checked: nothing can be built of it (needs_files()).
+// Throws LoadError, nothing else.
 [[nodiscard]] Scene load_text(std::string text, const std::string& name, const Overrides& overrides = {},
-                              const std::optional<std::string>& flexible_files = std::nullopt);
+                              const std::optional<std::string>& files = std::nullopt,
+                              ScriptFile script = ScriptFile::left_out);
 
 // Error (bad_input) for a scene whose physics is solved as one system: no node can have a part of it.
 [[nodiscard]] Status check_is_split(const Scene& scene);

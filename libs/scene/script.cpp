@@ -9,7 +9,7 @@ ScriptPlayer::ScriptPlayer(const Scene& scene)
     for (std::size_t i = 0; i < scene.inputs.size(); ++i) {
       if (scene.inputs[i].name != track.input) continue;
       for (const auto& [time, value] : track.points) tracks_[i].push_back({duration_of_seconds(time).ns, value});
-      end_.ns = std::max(end_.ns, tracks_[i].back().time_ns);
+      if (!tracks_[i].empty()) end_.ns = std::max(end_.ns, tracks_[i].back().time_ns);
     }
   }
   for (const ScriptChange& change : changes_) {

@@ -11,8 +11,8 @@
 namespace slew::scene {
 
 // At a point of the table the value is the table's, bit for bit. Between two points: a straight line, or the earlier
-// value (interpolation step). Before the first and behind the last point their values are held; an input without a
-// track is 0.
+// value (interpolation step). Of two points at one time the second one counts from then on. Before the first and behind
+// the last point their values are held; an input without a track is 0.
 class ScriptPlayer {
  public:
   explicit ScriptPlayer(const Scene& scene);

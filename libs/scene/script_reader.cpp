@@ -12,11 +12,13 @@
 #include "scene/csv_table.h"
 #include "scene/parameters.h"
 #include "scene/source.h"
+#include "scene/table_file.h"
 
 namespace slew::scene {
 namespace {
 
-constexpr std::string_view kScriptKeys[] = {"file", "inputs", "parameters"};
+constexpr std::string_view kScriptKeys[] = {"file", "columns", "sha256", "inputs", "parameters"};
+constexpr std::string_view kRawSuffix = ".raw";  // of an input's variable, as `slewring export` writes it
 constexpr std::string_view kChangeKeys[] = {"value"};
 
 class ScriptReader {
@@ -36,7 +38,12 @@ class ScriptReader {
     if (file != nullptr && inputs != nullptr) {
       complain(inputs->mark, "script.inputs", {"the script has a file and inputs of its own", "one of them", ""});
     } else if (file != nullptr) {
-      read_file(file->value);
+      read_file(section, file->value);
+    } else {
+      for (const char* key : {"columns", "sha256"}) {
+        if (const Node::Entry* entry = section.find(key))
+          complain(entry->mark, std::string("script.") + key, {"it has no effect without a file", "a file", ""});
+      }
     }
     if (inputs != nullptr) read_tracks(inputs->value);
     if (changes != nullptr) read_changes(changes->value);
@@ -56,9 +63,11 @@ class ScriptReader {
     report_duplicates(node, "script.inputs", context_.report);
     for (const Node::Entry& entry : node.entries) {
       if (!is_input(entry.key, entry.mark, "script.inputs." + entry.key)) continue;
+      const std::string path = "script.inputs." + entry.key;
       ScriptTrack track{.input = entry.key, .points = {}};
-      read_value(entry.value, script_track_fields().front(), &track, "script.inputs." + entry.key, context_);
-      if (!track.points.empty()) add_track(std::move(track), entry.value.mark);
+      read_value(entry.value, script_track_fields().front(), &track, path, context_);
+      const bool is_in_file = !scene_.table_files.empty() && scene_.table_files.back().path == path;
+      if (!track.points.empty() || is_in_file) add_track(std::move(track), entry.value.mark);
     }
   }
 
@@ -82,35 +91,139 @@ class ScriptReader {
     scene_.script.tracks.push_back(std::move(track));
   }
 
-  void read_file(const Node& name) {
-    if (name.kind != Node::Kind::scalar || name.text.empty()) {
+  // The file, its columns and its content: keys of a .csv file beside those that every script has.
+  void read_file(const Node& section, const Node& name) {
+    const bool is_text = name.kind == Node::Kind::scalar && !name.text.empty();
+    const bool is_yaml = is_text && (name.text.ends_with(".yaml") || name.text.ends_with(".yml"));
+    if (!is_text || (!is_yaml && !name.text.ends_with(".csv"))) {
       complain(name.mark, "script.file", {"is " + describe(name), "the name of a .csv or .yaml file", ""});
       return;
     }
-    if (!surroundings_.has_folder) {
+    // the text of a session states the content
+    if (!surroundings_.has_folder && section.find("sha256") == nullptr) {
       complain(name.mark, "script.file",
                {"a scene without a folder cannot name a file", "the points themselves under inputs", ""});
       return;
     }
-    const std::string path = surroundings_.path_of(name.text);
-    const bool is_csv = path.ends_with(".csv");
-    if (!is_csv && !path.ends_with(".yaml") && !path.ends_with(".yml")) {
-      complain(name.mark, "script.file", {describe(name) + " is of no kind that is known", "a .csv or .yaml file", ""});
-      return;
+    Node reference;
+    reference.kind = Node::Kind::map;
+    reference.entries.push_back(*section.find("file"));
+    for (const char* key : {"columns", "sha256"}) {
+      const Node::Entry* entry = section.find(key);
+      if (entry == nullptr) continue;
+      if (is_yaml)
+        complain(entry->mark, std::string("script.") + key, {"it has no effect on a .yaml file", "a .csv file", ""});
+      reference.entries.push_back(*entry);
     }
     const std::size_t problems = context_.report.size();
-    const std::optional<SourceText> text = read_source(path, context_.report.add_source(path), context_.report);
-    if (text && is_csv) read_csv(*text);
-    if (text && !is_csv) read_yaml(*text);
-    if (context_.report.size() > problems)
+    if (is_yaml) {
+      read_yaml_file(name);
+    } else if (auto file = read_table_reference(reference, "script", context_)) {
+      read_csv_file(name, std::move(*file));
+    }
+    if (context_.report.size() > problems && is_opened_)
       complain(name.mark, "script.file", {describe(name) + " cannot be used", "", ""});
   }
 
-  void read_csv(const SourceText& text) {
-    for (CsvColumn& column : read_time_table(text, context_.report)) {
-      if (!is_input(column.name, column.mark, "")) continue;
-      add_track({.input = std::move(column.name), .points = std::move(column.points)}, column.mark);
+  void read_yaml_file(const Node& name) {
+    if (auto refusal = surroundings_.refusal_of(name.text)) {
+      complain(name.mark, "script.file", std::move(*refusal));
+      return;
     }
+    is_opened_ = true;
+    const std::string path = surroundings_.path_of(name.text);
+    const auto text = read_source(path, context_.report.add_source(path), context_.report);
+    if (text) read_yaml(*text);
+  }
+
+  // Long tracks stay in the file; short ones become part of the scene's text.
+  void read_csv_file(const Node& name, TableFile file) {
+    if (file.is_pinned && !surroundings_.has_folder && !surroundings_.reads_script) {
+      scene_.script.file = std::move(file);
+      return;
+    }
+    const std::size_t problems = context_.report.size();
+    file.path = "script.file";
+    const TableText opened = open_table(file, name.mark, context_);
+    is_opened_ = opened.is_file;
+    if (opened.text) read_csv(*opened.text, file);
+    const auto& tracks = scene_.script.tracks;
+    const bool is_long = std::any_of(tracks.begin(), tracks.end(),
+                                     [](const ScriptTrack& track) { return track.points.size() > kMaxPointsInText; });
+    if (context_.report.size() == problems && (is_long || file.is_pinned)) scene_.script.file = std::move(file);
+  }
+
+  void read_csv(const SourceText& text, TableFile& file) {
+    const std::size_t problems = context_.report.size();
+    TimeTable table(text, context_.units, context_.report);
+    if (!table.read_head()) return;
+    check_columns(table.head(), file);
+    std::vector<std::string> passed_over;
+    const std::vector<std::size_t> taken = columns_of(table, file, passed_over);
+    if (context_.report.size() == problems && taken.empty()) {
+      context_.report.add({text.source, 1, 1}, "",
+                          {"no column is named after an input of the scene", "a column for an input", ""});
+    }
+    if (context_.report.size() > problems) return;
+    add_columns(table, taken, file);
+    if (passed_over.empty()) return;
+    const bool is_one = passed_over.size() == 1;
+    scene_.warnings.push_back(fmt::format("script.file: {} column{} of '{}' {} no input and {} not taken ({}{})",
+                                          passed_over.size(), is_one ? "" : "s", file.file, is_one ? "is" : "are",
+                                          is_one ? "was" : "were", passed_over.front(), is_one ? "" : ", ..."));
+  }
+
+  // Columns named after an input are taken, `Stick` or `Stick.raw`; other variables of an export are passed over.
+  std::vector<std::size_t> columns_of(const TimeTable& table, const TableFile& file,
+                                      std::vector<std::string>& passed_over) {
+    std::vector<std::size_t> taken;
+    for (std::size_t i = 0; i < table.head().size(); ++i) {
+      const std::string& name = table.head()[i].name;
+      const bool is_listed = std::find(file.columns.begin(), file.columns.end(), name) != file.columns.end();
+      if (table.is_time(i) || (!file.columns.empty() && !is_listed)) continue;
+      const bool is_variable = name.find('.') != std::string::npos && !name.ends_with(kRawSuffix);
+      if (is_variable && !is_listed) {
+        passed_over.push_back(name);
+      } else if (is_input(input_of(name), table.head()[i].mark, "")) {
+        taken.push_back(i);
+      }
+    }
+    return taken;
+  }
+
+  [[nodiscard]] std::string input_of(const std::string& column) const {
+    return column.ends_with(kRawSuffix) ? column.substr(0, column.size() - kRawSuffix.size()) : column;
+  }
+
+  void check_columns(const std::vector<ColumnHead>& head, const TableFile& file) {
+    for (const std::string& wanted : file.columns) {
+      std::vector<std::string_view> names;
+      for (const ColumnHead& column : head) names.push_back(column.name);
+      if (std::find(names.begin(), names.end(), wanted) == names.end())
+        context_.report.add(head.front().mark, "", {"no column '" + wanted + "'", "", closest(wanted, names)});
+    }
+  }
+
+  void add_columns(TimeTable& table, const std::vector<std::size_t>& taken, TableFile& file) {
+    std::string late;
+    double begin = 0;
+    file.columns.clear();
+    for (CsvColumn& column : table.read(taken)) {
+      const ColumnHead& head = table.head()[column.index];
+      const std::string input = input_of(head.name);
+      if (column.begin > 0 && column.points.front() != std::array{column.begin, 0.0}) {
+        begin = late.empty() ? column.begin : std::min(begin, column.begin);
+        late += (late.empty() ? "" : ", ") + input;
+      }
+      const auto& tracks = scene_.script.tracks;
+      if (std::any_of(tracks.begin(), tracks.end(), [&](const ScriptTrack& t) { return t.input == input; }))
+        context_.report.add(head.mark, "", {"two columns are for '" + input + "'", "one of them", ""});
+      file.columns.push_back(head.name);
+      add_track({.input = input, .points = std::move(column.points)}, head.mark);
+    }
+    if (late.empty()) return;
+    scene_.warnings.push_back(fmt::format("script.file: '{}' begins at {} s; {} neutral before", file.file, begin,
+                                          late + (late.find(',') == std::string::npos ? " is" : " are")));
   }
 
   void read_yaml(const SourceText& text) {
@@ -210,6 +323,7 @@ class ScriptReader {
   const NameTable& names_;
   Scene& scene_;
   const ReadContext& context_;
+  bool is_opened_ = false;  // problems are those of the file
   std::string change_path_;
   std::optional<ParameterDirectory> directory_;
 };

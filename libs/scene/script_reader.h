@@ -7,7 +7,8 @@
 //     parameters:
 //       - {at: 5 s, set: Bag.mass, value: 1500 kg, over: 1 s}
 // or
-//   script: {file: manoeuvre.csv}      columns: time, then one for each input, in any order; times in seconds
+//   script: {file: manoeuvre.csv}      a column `time` and one for each input, in any order (csv_table.h)
+//   script: {file: log.csv, columns: [Stick]}       these columns of it
 //   script: {file: manoeuvre.yaml}     the keys of `script:` except file
 #pragma once
 

@@ -1,23 +1,15 @@
 #include "scene/source.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 #include <utility>
+
+#include "core/input_file.h"
 
 namespace slew::scene {
 namespace {
-
-struct FileCloser {
-  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-};
 
 // Length of the UTF-8 sequence at text[at] (Unicode 15, table 3-7), 0 when it is malformed.
 std::size_t sequence_length(std::string_view text, std::size_t at) {
@@ -57,22 +49,10 @@ std::string megabytes(std::size_t bytes) {
   return fmt::format("{:.1f} MB", static_cast<double>(bytes) * 1e-6);
 }
 
-Complaint too_large(std::size_t bytes) {
-  return {"is " + megabytes(bytes) + " large", "at most " + megabytes(kMaxFileBytes), ""};
-}
-
-// The kind and size of the file, before it is opened.
-std::optional<Complaint> refuse_file(const std::string& path) {
-  struct stat status = {};
-  if (::stat(path.c_str(), &status) != 0) {
-    return Complaint{std::string("cannot be read: ") + std::strerror(errno), "", ""};
-  }
-  if (S_ISDIR(status.st_mode)) return Complaint{"is a directory", "a file", ""};
-  if (!S_ISREG(status.st_mode)) return Complaint{"is not a regular file", "a file", ""};
-  if (static_cast<std::size_t>(status.st_size) > kMaxFileBytes) {
-    return too_large(static_cast<std::size_t>(status.st_size));
-  }
-  return std::nullopt;
+int characters(std::string_view text) {
+  // continuation bytes are not characters of their own
+  return static_cast<int>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<std::uint8_t>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace
@@ -81,57 +61,57 @@ Mark SourceText::mark_at(std::size_t byte) const {
   const auto next = std::upper_bound(line_start.begin(), line_start.end(), byte);
   const auto line = static_cast<std::size_t>(next - line_start.begin());
   const std::size_t start = line_start[line - 1];
-  // continuation bytes are not characters of their own
-  int column = 1;
-  for (std::size_t i = start; i < byte && i < text.size(); ++i) {
-    if ((static_cast<std::uint8_t>(text[i]) & 0xC0) != 0x80) ++column;
-  }
-  return {source, static_cast<int>(line), column};
+  return {source, static_cast<int>(line), 1 + characters(std::string_view(text).substr(start, byte - start))};
 }
 
-std::optional<SourceText> check_source(std::string text, int source, Report& report) {
-  if (text.size() > kMaxFileBytes) {
-    report.add({source, 0, 0}, "", too_large(text.size()));
+Mark MarkCursor::mark_at(std::size_t byte) {
+  const bool is_behind = last_.line > 0 && byte >= last_byte_;
+  const auto next_line = static_cast<std::size_t>(last_.line);
+  const bool is_same_line =
+      is_behind && (next_line == source_.line_start.size() || byte < source_.line_start[next_line]);
+  if (is_same_line) {
+    last_.column += characters(std::string_view(source_.text).substr(last_byte_, byte - last_byte_));
+  } else {
+    last_ = source_.mark_at(byte);
+  }
+  last_byte_ = byte;
+  return last_;
+}
+
+std::optional<SourceText> check_source(std::string text, int source, Report& report, std::size_t most) {
+  if (text.size() > most) {
+    report.add({source, 0, 0}, "", {"is " + megabytes(text.size()) + " large", "at most " + megabytes(most), ""});
     return std::nullopt;
   }
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   SourceText result{source, std::move(text), {0}};
+  if (result.text.starts_with("\xFF\xFE") || result.text.starts_with("\xFE\xFF")) {
+    report.add({source, 1, 1}, "", {"the file is UTF-16", "UTF-8 text: save it as UTF-8", ""});
+    return std::nullopt;
+  }
   for (std::size_t i = 0; i < result.text.size();) {
-    std::string problem = character_problem(result.text, i);
-    if (!problem.empty()) {
-      report.add(result.mark_at(i), "", {std::move(problem), "UTF-8 text", ""});
-      return std::nullopt;
+    const char c = result.text[i];
+    const bool is_printable = c >= 0x20 && c < 0x7F;
+    if (!is_printable) {
+      std::string problem = character_problem(result.text, i);
+      if (!problem.empty()) {
+        report.add(result.mark_at(i), "", {std::move(problem), "UTF-8 text", ""});
+        return std::nullopt;
+      }
+      if (c == '\n') result.line_start.push_back(i + 1);
     }
-    if (result.text[i] == '\n') result.line_start.push_back(i + 1);
-    i += sequence_length(result.text, i);
+    i += is_printable ? 1 : sequence_length(result.text, i);
   }
   return result;
 }
 
-std::optional<SourceText> read_source(const std::string& path, int source, Report& report) {
-  const Mark whole{source, 0, 0};
-  if (const auto complaint = refuse_file(path)) {
-    report.add(whole, "", *complaint);
-    return std::nullopt;
-  }
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
-  if (!file) {
-    report.add(whole, "", {std::string("cannot be read: ") + std::strerror(errno), "", ""});
-    return std::nullopt;
-  }
-  // a file that grows while it is read stops at the limit
+std::optional<SourceText> read_source(const std::string& path, int source, Report& report, std::size_t most) {
   std::string text;
-  std::array<char, 65536> block;
-  while (text.size() <= kMaxFileBytes) {
-    const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
-    text.append(block.data(), count);
-    if (count < block.size()) break;
-  }
-  if (std::ferror(file.get()) != 0) {
-    report.add(whole, "", {std::string("cannot be read: ") + std::strerror(errno), "", ""});
+  if (std::optional<InputFault> fault = read_input(path, most, text)) {
+    report.add({source, 0, 0}, "", {std::move(fault->what), std::move(fault->expected), ""});
     return std::nullopt;
   }
-  return check_source(std::move(text), source, report);
+  return check_source(std::move(text), source, report, most);
 }
 
 }  // namespace slew::scene

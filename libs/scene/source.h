@@ -23,10 +23,24 @@ struct SourceText {
   [[nodiscard]] Mark mark_at(std::size_t byte) const;
 };
 
-// Reads a regular file of at most kMaxFileBytes; a problem goes to the report and nothing is returned.
-[[nodiscard]] std::optional<SourceText> read_source(const std::string& path, int source, Report& report);
+// Marks of bytes that are asked for mostly in rising order: a line of a million values is walked once.
+class MarkCursor {
+ public:
+  explicit MarkCursor(const SourceText& source) : source_(source) {}
+  [[nodiscard]] Mark mark_at(std::size_t byte);
+
+ private:
+  const SourceText& source_;
+  std::size_t last_byte_ = 0;
+  Mark last_;
+};
+
+// Reads a regular file of at most `most` bytes; a problem goes to the report and nothing is returned.
+[[nodiscard]] std::optional<SourceText> read_source(const std::string& path, int source, Report& report,
+                                                    std::size_t most = kMaxFileBytes);
 
 // Checks text that is already in memory: size, UTF-8, no NUL or control characters. A UTF-8 byte order mark is dropped.
-[[nodiscard]] std::optional<SourceText> check_source(std::string text, int source, Report& report);
+[[nodiscard]] std::optional<SourceText> check_source(std::string text, int source, Report& report,
+                                                     std::size_t most = kMaxFileBytes);
 
 }  // namespace slew::scene

@@ -303,6 +303,24 @@ std::string with_unit(double value, Dimension dimension) {
   return text;
 }
 
+namespace {
+
+// quantity: what the message quotes
+UnitResult find_unit(std::string_view text, Dimension dimension, UnitSystem& units, std::string_view quantity) {
+  const Unit* unit = units.find(text);
+  if (unit == nullptr) return {nullptr, unknown_unit(text, dimension, units)};
+  if (has_dimension(*unit, dimension)) return {unit, {}};
+  const std::string found = name_of(*unit);
+  std::string what = fmt::format("'{}' is {}", quantity, found.empty() ? "not " + name_of(dimension) : found);
+  return {nullptr, {std::move(what), expected_quantity(dimension), ""}};
+}
+
+}  // namespace
+
+UnitResult read_unit(std::string_view text, Dimension dimension, UnitSystem& units) {
+  return find_unit(text, dimension, units, text);
+}
+
 QuantityResult read_quantity(std::string_view text, Writing writing, Dimension dimension, UnitSystem& units) {
   const NumberText number = split_number(text);
   if (!number.is_number) {
@@ -316,13 +334,9 @@ QuantityResult read_quantity(std::string_view text, Writing writing, Dimension d
     const std::string what = is_plain_number(dimension) ? " is in quotes" : " is in quotes and has no unit";
     return {std::nullopt, {fmt::format("'{}'{}", text, what), expected_quantity(dimension), ""}};
   }
-  const Unit* unit = units.find(number.rest);
-  if (unit == nullptr) return {std::nullopt, unknown_unit(number.rest, dimension, units)};
-  if (!has_dimension(*unit, dimension)) {
-    const std::string found = name_of(*unit);
-    std::string what = fmt::format("'{}' is {}", text, found.empty() ? "not " + name_of(dimension) : found);
-    return {std::nullopt, {std::move(what), expected_quantity(dimension), ""}};
-  }
+  UnitResult found = find_unit(number.rest, dimension, units, text);
+  const Unit* unit = found.unit;
+  if (unit == nullptr) return {std::nullopt, std::move(found.complaint)};
   const long double value = number.value * unit->scale + unit->offset;
   if (!std::isfinite(static_cast<double>(value))) {
     return {std::nullopt, {fmt::format("'{}' is beyond what a number can hold", text), "a finite number", ""}};

@@ -49,6 +49,13 @@ struct QuantityResult {
 [[nodiscard]] QuantityResult read_quantity(std::string_view text, Writing writing, Dimension dimension,
                                            UnitSystem& units);
 
+// The unit of a column of numbers, or what is wrong with it: "mm" for a length. The pointer lasts as long as `units`.
+struct UnitResult {
+  const Unit* unit = nullptr;
+  Complaint complaint;
+};
+[[nodiscard]] UnitResult read_unit(std::string_view text, Dimension dimension, UnitSystem& units);
+
 // True for dimensions whose values are written without a unit; a fraction may be in %.
 [[nodiscard]] bool is_plain_number(Dimension dimension);
 

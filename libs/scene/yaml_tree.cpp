@@ -47,7 +47,7 @@ std::size_t closing_quote(std::string_view text, std::size_t open) {
 
 class TreeBuilder final : public YAML::EventHandler {
  public:
-  TreeBuilder(const SourceText& source, Report& report) : source_(source), report_(report) {}
+  TreeBuilder(const SourceText& source, Report& report) : source_(source), report_(report), marks_(source) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ < 2) return;
@@ -124,12 +124,12 @@ class TreeBuilder final : public YAML::EventHandler {
     std::map<std::string, Mark, std::less<>> seen;
   };
 
-  [[nodiscard]] Mark place(const YAML::Mark& mark) const {
+  [[nodiscard]] Mark place(const YAML::Mark& mark) {
     if (mark.is_null()) return {source_.source, 0, 0};
-    return source_.mark_at(std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), source_.text.size()));
+    return marks_.mark_at(std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), source_.text.size()));
   }
   // yaml-cpp's messages in the words of somebody who writes a scene
-  [[nodiscard]] Complaint explain(const YAML::Exception& error) const {
+  [[nodiscard]] Complaint explain(const YAML::Exception& error) {
     const std::string begin = "not valid YAML: ";
     if (line_begins_with_tab(place(error.mark))) return {begin + "the line is indented with a tab", "spaces", ""};
     if (error.msg == "illegal flow end" && !open_.empty()) {
@@ -224,6 +224,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   const SourceText& source_;
   Report& report_;
+  MarkCursor marks_;
   int documents_ = 0;
   std::vector<Open> open_;
   std::optional<Node> root_;

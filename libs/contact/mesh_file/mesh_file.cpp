@@ -1,5 +1,6 @@
 #include "contact/mesh_file/mesh_file.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/mesh.h>
 #include <assimp/postprocess.h>
@@ -12,6 +13,8 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+
+#include "core/input_file.h"
 
 namespace slew::contact {
 namespace {
@@ -84,6 +87,19 @@ aiMatrix4x4 undoing(const std::string& ending, const aiMatrix4x4& root) {
   return undone;
 }
 
+// The file alone, none that it names: a library of materials may lie anywhere and be no file.
+class OneFile final : public Assimp::DefaultIOSystem {
+ public:
+  explicit OneFile(std::string name) : name_(std::move(name)) {}
+  bool Exists(const char* file) const override { return file == name_ && DefaultIOSystem::Exists(file); }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return file == name_ ? DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+
+ private:
+  std::string name_;
+};
+
 }  // namespace
 
 MeshDef read_mesh(const std::string& owner, const MeshFileDef& def, Problems& problems) {
@@ -99,7 +115,11 @@ MeshDef read_mesh(const std::string& owner, const MeshFileDef& def, Problems& pr
   if (!(std::isfinite(def.unit) && def.unit > 0)) {
     return refuse(fmt::format("a unit of {} m is out of range", def.unit), "a number > 0 m");
   }
+  if (const auto fault = find_input_fault(def.path, kMaxAssetBytes)) {
+    return refuse(fmt::format("'{}' {}", name, fault->what), fault->expected.empty() ? "a mesh file" : fault->expected);
+  }
   Assimp::Importer importer;
+  importer.SetIOHandler(new OneFile(name));  // owned by the importer
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(name, aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) {

@@ -25,6 +25,12 @@ class Flex : public ::testing::Test {
     std::ofstream(work_.path() / name, std::ios::binary) << text;
     return work_.path() / name;
   }
+  // includes lie beside what includes them
+  std::string include_boom() {
+    fs::copy_file(scene_file("beams/jib_boom.yaml"), work_.path() / "jib_boom.yaml",
+                  fs::copy_options::overwrite_existing);
+    return "include: jib_boom.yaml";
+  }
   WorkFolder work_;
 };
 
@@ -74,7 +80,7 @@ TEST_F(Flex, BuildWritesTheFilesOfTheLibrary) {
 }
 
 TEST_F(Flex, BuildGoesBesideTheDescriptionAndSaysWhatItReplaces) {
-  const fs::path file = write("boom.yaml", "include: " + kBoom + "\n");
+  const fs::path file = write("boom.yaml", include_boom() + "\n");
   fs::create_directory(work_.path() / "elsewhere");
   const CommandResult first = flex({"build", file.string(), "--model", "m", "--prefix", "p_1"});
   ASSERT_EQ(first.code, 0) << first.err;
@@ -184,8 +190,8 @@ TEST_F(Flex, ReportOfFilesSaysWhatItCannotKnow) {
 }
 
 TEST_F(Flex, ErrorsNameTheirPlaceAndHaveTheirCodes) {
-  write("bad.yaml", "include: " + kBoom + "\nline: {nods: 3}\nreduction: {clamped_nodes: [77]}\n");
-  write("far.yaml", "include: " + kBoom + "\nreduction: {clamped_nodes: [77]}\n");
+  write("bad.yaml", include_boom() + "\nline: {nods: 3}\nreduction: {clamped_nodes: [77]}\n");
+  write("far.yaml", include_boom() + "\nreduction: {clamped_nodes: [77]}\n");
   write("bent.yaml",
         "model: m\nprefix: p\nmaterials: {S: {youngs_modulus: 2e11, density: 7700}}\n"
         "sections: {R: {shape: solid_circle, diameter: 0.1}}\nreduction: {stiffening: straight_beam, "

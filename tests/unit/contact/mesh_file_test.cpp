@@ -2,6 +2,7 @@
 #include "contact/mesh_file/mesh_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -156,6 +157,15 @@ TEST_F(MeshFile, ThatIsNoMeshIsRefused) {
   for (const double unit : {0.0, -1.0, std::nan("")}) {
     EXPECT_NE(refusal({.path = file, .unit = unit}).find("unit"), std::string::npos);
   }
+}
+
+// a FIFO waits for its writer for ever
+TEST_F(MeshFile, IsReadWithoutTheFilesThatItNames) {
+  ASSERT_EQ(::mkfifo((folder_ / "fifo.mtl").c_str(), 0600), 0);
+  const std::string text = "mtllib fifo.mtl\nusemtl paint\n" + obj_text(block());
+  expect_block(read({.path = write("block.obj", text)}), 1, {0.5, 1, 1.5});
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.stl").c_str(), 0600), 0);
+  EXPECT_NE(refusal({.path = folder_ / "pipe.stl"}).find("is not a regular file"), std::string::npos);
 }
 
 TEST_F(MeshFile, ThatIsOpenOrInsideOutIsNamedByTheChecks) {

@@ -1,6 +1,12 @@
 #include "scene/number.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <string>
 
 namespace slew::scene {
 namespace number_test {
@@ -20,6 +26,21 @@ TEST(Number, DecimalNumbersReadToTheNearestDouble) {
   EXPECT_EQ(value_of("1e308"), 1e308);
   EXPECT_EQ(value_of("3.21922"), 3.21922);
   EXPECT_EQ(value_of("0.00036178"), 0.00036178);
+}
+
+// the short way to a value and the long one of the C library
+TEST(Number, OfAnyLengthAndPowerIsTheNearestLongDouble) {
+  std::mt19937_64 random(20'261'126);
+  for (int i = 0; i < 20'000; ++i) {
+    const std::uint64_t digits = random() >> (random() % 64);
+    const int exponent = static_cast<int>(random() % 64) - 32;
+    const std::string text = fmt::format("{}{}.{}e{}", i % 2 == 0 ? "-" : "", digits % 1'000'000'007, digits, exponent);
+    const NumberText number = split_number(text);
+    ASSERT_TRUE(number.is_number) << text;
+    EXPECT_EQ(number.value, std::strtold(text.c_str(), nullptr)) << text;
+    const std::string whole = fmt::format("{}e{}", digits, exponent);
+    EXPECT_EQ(split_number(whole).value, std::strtold(whole.c_str(), nullptr)) << whole;
+  }
 }
 
 TEST(Number, TheRestBehindTheNumberIsTheUnit) {

@@ -1,0 +1,32 @@
+// Files that a user or a scene names: what they are is checked before a byte is read.
+//
+// A regular file of a stated size at most. A FIFO or a device is refused without waiting for its other end, a file that
+// grows while it is read stops at the bound.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace slew {
+
+inline constexpr std::size_t kMaxAssetBytes = 1'000'000'000;  // of a mesh, a saved session, a matrix of a flexible body
+
+// Why a file is not read.
+struct InputFault {
+  std::string what;      // "is a directory"
+  std::string expected;  // "a file"; may be empty
+
+  // "is a directory; expected a file"
+  [[nodiscard]] std::string text() const { return expected.empty() ? what : what + "; expected " + expected; }
+};
+
+// For a library that opens the file by itself; nothing: it may.
+[[nodiscard]] std::optional<InputFault> find_input_fault(const std::filesystem::path& path, std::size_t most);
+
+// Fills `bytes` with the whole file. After a fault they are empty.
+[[nodiscard]] std::optional<InputFault> read_input(const std::filesystem::path& path, std::size_t most,
+                                                   std::string& bytes);
+
+}  // namespace slew

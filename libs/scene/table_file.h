@@ -1,0 +1,48 @@
+// CSV files of tables: how a scene names them, and how they are opened.
+//
+//   force_table: drive.csv
+//   force_table: {file: log.csv, columns: [time, F1]}
+//
+// A table of more than kMaxPointsInText points is no part of the scene's expanded text, which every node and recording
+// has. It stays in its file, an asset of the session; the text has its name, columns and SHA-256:
+//
+//   force_table: {file: log.csv, columns: [time, F1], sha256: 9f86d0...}
+//
+// Who reads that text with the folder of the files takes this content and no other; without a folder the table is left
+// empty.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/field_reader.h"
+#include "scene/scene.h"
+#include "scene/source.h"
+#include "scene/yaml_tree.h"
+
+namespace slew::scene {
+
+// The file that a value names; nothing after a complaint. path: of the value in messages.
+[[nodiscard]] std::optional<TableFile> read_table_reference(const Node& node, const std::string& path,
+                                                            const ReadContext& context);
+
+// The columns of `columns: [NAME, ...]`; nothing after a complaint.
+[[nodiscard]] std::optional<std::vector<std::string>> read_column_names(const Node& node, const std::string& path,
+                                                                        Report& report);
+
+struct TableText {
+  std::optional<SourceText> text;  // nothing after a complaint, or where the folder is not known
+  bool is_file = false;            // complaints are about a file
+};
+
+// Reads the file and fills size, SHA-256 and place of the table.
+[[nodiscard]] TableText open_table(TableFile& table, const Mark& mark, const ReadContext& context);
+
+// The files of the scene's long tables, which every node must have, become its assets. Those of a script are io's
+// alone.
+void add_table_assets(Scene& scene);
+
+// The reference as YAML.
+[[nodiscard]] std::string reference_text(const TableFile& table);
+
+}  // namespace slew::scene
