@@ -29,7 +29,7 @@ char separator_of(std::string_view line) {
   return tabs > commas ? '\t' : ',';
 }
 
-std::string name_of(char separator) {
+std::string separator_name(char separator) {
   return separator == '\t' ? "a tab" : fmt::format("'{}'", separator);
 }
 
@@ -114,7 +114,7 @@ std::size_t CsvFile::read_quoted(std::size_t open, std::size_t end) {
   std::size_t next = close + 1;
   while (next < end && is_space(text[next], separator_)) ++next;
   if (next == end || text[next] == separator_) return next;
-  complain({{}, next}, {"text stands behind a quoted cell", name_of(separator_) + " or the line's end", ""});
+  complain({{}, next}, {"text stands behind a quoted cell", separator_name(separator_) + " or the line's end", ""});
   return std::string_view::npos;
 }
 
