@@ -39,7 +39,7 @@ struct Trial {
   std::vector<double> changes{};  // largest, SI, by watched variable
   double cost = 0;                // us per ms
   bool is_taken = false;
-  bool was_interrupted = false;   // before it could be judged
+  bool was_interrupted = false;  // before it could be judged
 
   [[nodiscard]] bool has_run() const noexcept { return refusal.empty() && !was_interrupted; }
 };
