@@ -122,28 +122,34 @@ class Assembler {
     return open;
   }
 
-  // Speeds that the scene gives stay, the others follow: a projection in which the given ones are rows of their own.
+  // Speeds that the scene gives and those of modes stay, the others follow: a projection in which they are rows of
+  // their own.
   [[nodiscard]] std::vector<AssemblyReport::Speed> settle_speeds() {
-    std::vector<std::size_t> given;
+    std::vector<std::size_t> given, modal;
     for (std::size_t j = 0; j < state_.u.size(); ++j) {
       if (model_.start_is_given[j] != 0 && !is_prescribed(j)) given.push_back(j);
     }
+    for_each_mode(model_, [&](std::size_t, std::size_t u) { modal.push_back(u); });
     if (given.empty() && model_.given_speeds.empty() && model_.drives.empty()) return {};
     const std::vector<double> wanted = state_.u;
     renew(state_);
     const std::size_t cuts = ws_.loops.rows.size(), first_cut_speed = cuts + given.size();
-    const std::size_t rows = first_cut_speed + model_.given_speeds.size(), speeds = state_.u.size();
+    const std::size_t first_modal = first_cut_speed + model_.given_speeds.size();
+    const std::size_t rows = first_modal + modal.size(), speeds = state_.u.size();
     std::vector<double> residual(rows * speeds), rate(rows * speeds), right(rows);
     std::copy(ws_.loops.residual.begin(), ws_.loops.residual.end(), residual.begin());
     std::copy(ws_.loops.rate.begin(), ws_.loops.rate.end(), rate.begin());
     std::vector<int> all_links;
     for (int link = static_cast<int>(model_.links.size()) - 1; link > 0; --link) all_links.push_back(link);
-    for (std::size_t k = 0; k < given.size(); ++k) {
+    const auto hold = [&](std::size_t speed, std::size_t row) {
       std::vector<double> tau(speeds);
-      tau[given[k]] = 1;
-      const std::size_t first = (cuts + k) * speeds;
+      tau[speed] = 1;
+      const std::size_t first = row * speeds;
       solve_backward(model_, ws_, all_links, tau, {&residual[first], speeds}, {&rate[first], speeds});
-    }
+    };
+    for (std::size_t k = 0; k < given.size(); ++k) hold(given[k], cuts + k);
+    // the last rows: where rigid motion alone cannot close the loops, modal speeds give way
+    for (std::size_t k = 0; k < modal.size(); ++k) hold(modal[k], first_modal + k);
     for (std::size_t k = 0; k < model_.given_speeds.size(); ++k) {
       const GivenSpeed& speed = model_.given_speeds[k];
       const Cut& cut = model_.cuts[at(speed.cut)];

@@ -32,11 +32,15 @@ struct AssemblyReport {
 // Rows of a cut joint that the tree and the cuts before it imply are taken out of the model: planar loops in space,
 // doubled hinges. A row is left out when it is dependent in several positions near the start; one that depends on the
 // others at the start alone (a singular position) stays. Then start_q and start_u are moved onto all joints, in the
-// metric of the masses. Speeds that the scene gives are kept, the others follow.
+// metric of the masses. Speeds that the scene gives are kept, and those of modes, which are zero: the loops close by
+// the bodies' rigid motion. The others follow.
 [[nodiscard]] AssemblyReport assemble(Model& model);
 
 // build_model() with what assemble() found.
 [[nodiscard]] Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows,
                                 AssemblyReport& report);
+
+// The same of a scene whose bodies are those of with_nodes() already, and whose segmented bodies are left out.
+[[nodiscard]] Model build_expanded_model(const MechanicsDef& expanded, AssemblyReport& report);
 
 }  // namespace slew::multibody

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -14,6 +15,7 @@
 #include "multibody/flexible/build_parts.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/flexible/start_modes.h"
+#include "multibody/flexible/welded_start.h"
 #include "multibody/model.h"
 #include "multibody/motions/build_drives.h"
 #include "multibody/start_pose.h"
@@ -34,12 +36,18 @@ class Builder {
  public:
   explicit Builder(const MechanicsDef& def)
       : expanded_(has_parts(def) ? with_nodes(def) : MechanicsDef()), def_(has_parts(def) ? expanded_ : def) {}
+  struct Expanded {
+    const MechanicsDef& def;
+  };
+  explicit Builder(Expanded expanded) : def_(expanded.def) {}
 
   Model run(std::span<const std::string> rows, AssemblyReport& report) {
     Problems problems;
     poses_ = start_poses(def_, problems);
     tree_ = find_tree(def_, problems);
     SLEW_CHECK(problems.empty());
+    const std::optional<WeldedStart> welded = welded_start(def_, tree_);
+    if (welded) poses_ = welded->poses;
     model_.gravity = Vec3(def_.gravity);
     model_.max_substep = def_.max_substep;
     model_.penalty = {def_.penalty_factor, def_.penalty_damping, def_.penalty_frequency};
@@ -63,6 +71,7 @@ class Builder {
     const bool is_settled = has_loops || (settle_segments(model_) && settle_modes(model_));
     report = assemble(model_);
     report.is_settled = is_settled;
+    if (welded) take_over(*welded, model_, report);
     return std::move(model_);
   }
 
@@ -305,6 +314,10 @@ Model build_model(const MechanicsDef& mechanics, std::span<const std::string> ro
 
 Model build_model(const MechanicsDef& mechanics, std::span<const std::string> rows, AssemblyReport& report) {
   return Builder(mechanics).run(rows, report);
+}
+
+Model build_expanded_model(const MechanicsDef& expanded, AssemblyReport& report) {
+  return Builder(Builder::Expanded{expanded}).run({}, report);
 }
 
 }  // namespace slew::multibody

@@ -24,9 +24,11 @@ constexpr double kLargestGyration = 3;
 void find_start_deflections(const Model& model, Problems& warnings) {
   for (const FlexiblePart& part : model.parts) {
     if (!model.cuts.empty() && !part.is_start_given) {
-      warnings.push_back({part.name + ".flex_modes",
-                          "the body starts undeformed and swings: in a mechanism with loops no rest is looked for",
-                          "nothing to do, or damping that ends it", ""});
+      warnings.push_back(
+          {part.name + ".flex_modes",
+           "the body starts undeformed, moves as a rigid one that the joints allow, and swings: in a mechanism with "
+           "loops no rest is looked for",
+           "nothing to do, or damping that ends it", ""});
     }
     const std::span<const double> q(model.start_q.data() + part.q, part.modes);
     const LargestDeflection largest = largest_deflection(*part.source, part.watched, q);
@@ -47,10 +49,10 @@ void find_start_bends(const Model& model, Problems& warnings) {
   for (const SegmentedPart& part : model.segmented) {
     if (!part.is_free || (!model.cuts.empty() && part.start == SegmentStart::at_rest)) {
       warnings.push_back({part.name + ".segments",
-                          part.is_free ? "the body starts undeformed and swings: in a mechanism with loops no rest is "
-                                         "looked for"
-                                       : "the body starts undeformed and swings: no rest is looked for where joints "
-                                         "hold more of it than its root",
+                          part.is_free ? "the body starts undeformed, moves as a rigid one that the joints allow, and "
+                                         "swings: in a mechanism with loops no rest is looked for"
+                                       : "the body starts undeformed, moves as a rigid one that the joints allow, and "
+                                         "swings: no rest is looked for where joints hold more of it than its root",
                           "nothing to do, or damping that ends it", ""});
     }
     const LargestBend bend = largest_bend(model, part, ws);

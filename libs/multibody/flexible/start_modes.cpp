@@ -6,8 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "core/index.h"
 #include "math/small_cholesky.h"
+#include "multibody/elements/point_load.h"
 #include "multibody/observe.h"
+#include "multibody/passes.h"
 #include "multibody/state.h"
 
 namespace slew::multibody {
@@ -41,6 +44,22 @@ class ModalSettling {
     return multibody::energy(model_, ws_).potential;
   }
 
+  // generalised force of point loads on the mode at this place in State::u: their power at its unit speed
+  [[nodiscard]] double load_on(std::size_t mode) {
+    const std::vector<PointLoad>& loads = model_.elements.loads;
+    if (loads.empty()) return 0;
+    state_.u[mode] = 1;
+    update_motion(model_, state_.q, state_.u, ws_);
+    state_.u[mode] = 0;
+    double power = 0;
+    for (const PointLoad& load : loads) {
+      const LinkMotion& link = ws_.motion[at(load.link)];
+      const Wrench wrench = wrench_of(load, link, 0);
+      power += dot(wrench.f, link.v) + dot(wrench.n, link.w);
+    }
+    return power;
+  }
+
   // one step of (1) for all bodies; the largest change over the largest coordinate
   double correct() {
     double scale = 0;
@@ -61,7 +80,7 @@ class ModalSettling {
         q = held - probe;
         const double below = potential();
         q = held;
-        step[k] = -(above - below) / (2 * probe);
+        step[k] = load_on(static_cast<std::size_t>(part.u) + k) - (above - below) / (2 * probe);
       }
       std::vector<double> factor = part.stiffness;
       const int modes = static_cast<int>(part.modes);

@@ -108,6 +108,24 @@ TEST_P(FlexibleStarts, BodiesWithoutModesAreRigid) {
   }
 }
 
+// 450 kg of the load as a force: in Ground's axes and in the body's, at the boom's node and at the body that it holds
+TEST_P(FlexibleStarts, RestUnderForcesAsUnderWeights) {
+  const double exact = sag(500, 2e11), force = 450 * kGravity;
+  const PointForceDef pushes[] = {
+      {.name = "Push", .body = "Load", .direction = {0, -1, 0}, .axes = LoadAxes::ground, .force = force},
+      {.name = "Push", .body = "Boom", .point = {-kLength, 0.02904, 0.1507}, .direction = {0, -2, 0}, .force = force},
+      {.name = "Push", .body = "Load", .direction = {0, -1, 0}, .force_table = {{0, force}, {1, force}}}};
+  for (const PointForceDef& push : pushes) {
+    MechanicsDef def = level_boom(50, 2e11, lowest(2));
+    def.point_forces = {push};
+    Formulated boom = start(def);
+    const double before = boom.value("Boom.deflection.y");
+    EXPECT_NEAR(before, -exact, 0.01 * exact);
+    boom.run(0.2, 2.5e-4);
+    EXPECT_NEAR(boom.value("Boom.deflection.y"), before, 1e-6 * std::fabs(before));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(In, FlexibleStarts, kEveryFormulation, kFormulationName);
 
 TEST(FlexibleStart, TooFastModesAreRefusedByName) {
