@@ -1,9 +1,11 @@
 #include "mechanics_node/payload.h"
 
 #include <algorithm>
+#include <deque>
+#include <map>
+#include <string_view>
 #include <vector>
 
-#include "core/index.h"
 #include "coupling/static_forces.h"
 #include "multibody/parameters.h"
 
@@ -11,39 +13,60 @@ namespace slew::mechanics {
 
 namespace {
 
-// joints that move between a link and Ground
-int distance_of(const multibody::Model& model, int link) noexcept {
-  int joints = 0;
-  for (; link > 0; link = model.links[at(link)].parent) ++joints;
-  return joints;
+using Names = std::map<std::string_view, std::vector<const multibody::JointDef*>>;
+
+// "Boom" of "Boom.Node20", which a joint may have for a body
+std::string_view body_of(std::string_view name, const Names& joints) {
+  return joints.count(name) > 0 ? name : name.substr(0, name.find('.'));
 }
 
-// carries another body, or closes a loop
-std::vector<bool> links_inside(const multibody::Model& model) {
-  std::vector<bool> inside(model.links.size(), false);
-  for (const multibody::Link& link : model.links) inside[at(link.parent)] = true;
-  for (const multibody::Joint& joint : model.joints) {
-    if (joint.cut < 0) continue;
-    inside[at(model.bodies[at(joint.body1)].link)] = inside[at(model.bodies[at(joint.body2)].link)] = true;
+// Joints that move between each body and Ground, on the shortest way over the scene's joints.
+std::map<std::string_view, int> distances(const Names& joints) {
+  std::map<std::string_view, int> found = {{multibody::kGroundName, 0}};
+  std::deque<std::string_view> next = {multibody::kGroundName};
+  while (!next.empty()) {
+    const std::string_view here = next.front();
+    next.pop_front();
+    for (const multibody::JointDef* joint : joints.at(here)) {
+      const std::string_view body1 = body_of(joint->body1, joints), body2 = body_of(joint->body2, joints);
+      const std::string_view there = body1 == here ? body2 : body1;
+      const bool moves = joint->type != multibody::JointType::fixed;
+      const int distance = found.at(here) + (moves ? 1 : 0);
+      const auto known = found.find(there);
+      if (known != found.end() && known->second <= distance) continue;
+      found[there] = distance;
+      if (moves) {
+        next.push_back(there);
+      } else {
+        next.push_front(there);
+      }
+    }
   }
-  return inside;
+  return found;
 }
 
 }  // namespace
 
 int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model& model) {
   if (!mechanics.payload.empty()) return multibody::find_body(model, mechanics.payload);
-  const std::vector<bool> inside = links_inside(model);
-  int payload = 0, longest = 0;
-  for (std::size_t i = 1; i <= mechanics.bodies.size(); ++i) {
-    const int link = model.bodies[i].link;
-    if (mechanics.bodies[i - 1].type != multibody::BodyType::rigid || link == 0) continue;
-    const int distance = inside[at(link)] ? 0 : distance_of(model, link);
-    if (distance < longest) continue;
-    longest = distance;
-    payload = static_cast<int>(i);
+  Names joints = {{multibody::kGroundName, {}}};
+  for (const multibody::BodyDef& body : mechanics.bodies) joints[body.name];
+  for (const multibody::JointDef& joint : mechanics.joints) {
+    joints[body_of(joint.body1, joints)].push_back(&joint);
+    joints[body_of(joint.body2, joints)].push_back(&joint);
   }
-  return payload;
+  const std::map<std::string_view, int> distance = distances(joints);
+  std::string_view payload;
+  int longest = 0;
+  for (const multibody::BodyDef& body : mechanics.bodies) {
+    const auto found = distance.find(body.name);
+    if (body.type != multibody::BodyType::rigid || found == distance.end() || found->second == 0) continue;
+    const int length = joints.at(body.name).size() == 1 ? found->second : 0;  // others carry, or close a loop
+    if (length < longest) continue;
+    longest = length;
+    payload = body.name;
+  }
+  return payload.empty() ? 0 : multibody::find_body(model, payload);
 }
 
 double mass_of(const multibody::Model& model, int body) noexcept {

@@ -37,6 +37,11 @@ TEST(Payload, IsTheSameInWhateverOrderTheBodiesStand) {
   }
 }
 
+// pieces of a segmented body stand among the model's bodies
+TEST(Payload, HangsOnASegmentedBoomAsOnARigidOne) {
+  EXPECT_EQ(payload_of(loaded("truck_crane_segmented.yaml").mechanics), "Bag");
+}
+
 TEST(Payload, IsTheBodyThatTheSceneNames) {
   EXPECT_EQ(payload_of(loaded("truck_crane.yaml", {"mechanics.payload=Truck_Hook"}).mechanics), "Truck_Hook");
 }
