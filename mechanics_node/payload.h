@@ -12,8 +12,9 @@
 
 namespace slew::mechanics {
 
-// The scene's `payload`, or the rigid body at the end of the longest chain of joints, the last of the file where
-// several are as far; bodies that close a loop are in the chain of nobody. 0: none moves.
+// The scene's `payload`. Without it, of the rigid bodies with a single joint the one with most moving joints on its way
+// to Ground, the last of the file where several have as many; of a machine without such a body the last that moves. 0:
+// none moves.
 [[nodiscard]] int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model& model);
 
 // kg, now.

@@ -1,6 +1,6 @@
 // Lines, cells and numbers of a CSV file as spreadsheets, measuring programs and this program write it.
 //
-// The first line says what separates cells: ';' where it has one, else the more frequent of tab and comma; or a line
+// The first line decides what separates cells: ';' where it has one, else the more frequent of tab and comma; or a line
 // "sep=;" in front of it does. Cells may stand in double quotes ("" is one of them), within a line. Blank lines and
 // lines that begin with # are skipped, empty cells behind the last column as well. Where cells are not separated by
 // commas a number may have a decimal comma; a file has one kind of decimal mark.

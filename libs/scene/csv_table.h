@@ -5,7 +5,7 @@
 //   500; 100; 1,31
 //   500; -100; 1,31        a second row at one time is a jump
 // Without a unit times are in seconds and values plain numbers. An empty cell is no point of its column; before the
-// first point of a column its value is 0, behind the last one it is held. csv_cells.h says what a file may look like.
+// first point of a column its value is 0, behind the last one it is held. csv_cells.h describes such files.
 #pragma once
 
 #include <optional>

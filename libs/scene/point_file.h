@@ -4,7 +4,7 @@
 //   -100, -1.2
 //   0, 0
 // A column's unit stands in brackets behind its name; without it the numbers are SI. The header is required. Of a file
-// with more than two columns those of argument and value are named. csv_cells.h says what a file may look like.
+// with more than two columns those of argument and value are named. csv_cells.h describes such files.
 #pragma once
 
 #include <optional>

@@ -84,7 +84,7 @@ TableText open_table(TableFile& table, const Mark& mark, const ReadContext& cont
   const Surroundings* around = context.surroundings;
   const bool has_folder = around != nullptr && (around->has_folder || around->has_assets);
   if (!has_folder) {
-    // the text of a session, read by who needs no table
+    // the text of a session, read where no table is needed
     if (!table.is_pinned)
       context.report.add(mark, table.path,
                          {"a scene without a folder cannot name a file", "the points themselves", ""});

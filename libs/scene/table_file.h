@@ -8,7 +8,7 @@
 //
 //   force_table: {file: log.csv, columns: [time, F1], sha256: 9f86d0...}
 //
-// Who reads that text with the folder of the files takes this content and no other; without a folder the table is left
+// Read with the folder of the files, that text takes this content and no other; without a folder the table is left
 // empty.
 #pragma once
 

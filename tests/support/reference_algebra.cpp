@@ -290,7 +290,7 @@ Dense<double> exponential(const Dense<double>& A) {
   }
   // halved until the series of 20 terms is exact
   constexpr int kTerms = 20;
-  const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(largest))) + 2);
+  const int halvings = largest > 0 ? std::max(0, static_cast<int>(std::ceil(std::log2(largest))) + 2) : 0;
   const Dense<double> small = A / std::pow(2.0, halvings);
   Dense<double> sum = Dense<double>::identity(A.rows()), term = sum;
   for (int k = 1; k <= kTerms; ++k) {

@@ -334,8 +334,8 @@ TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
   EXPECT_NE(result.err.find("was killed while it wrote"), std::string::npos) << result.err;
 }
 
-// The loop of a recorder that closes its file stands still, and others would give it up after 3 s. The session is
-// longer than io may be ahead of the recorder.
+// The loop of a recorder that closes its file stands still, and others would give it up after 3 s. The disk has to fail
+// long before the session ends: what is behind its end is told otherwise.
 TEST_F(SlowDisk, ThatTakesLongToCloseAFileInMidSessionEndsNothing) {
   const CommandResult result =
       run("/bin/bash",
