@@ -61,6 +61,7 @@ struct Description {
   std::vector<std::string> motions;   // "Body_Pillar (revolute, 1)"
   std::vector<std::string> flexible;  // "Boom: 2 modes ..."
   std::vector<std::string> driven;    // "Crank_Drive (Crank_Pin, angle)": prescribed motions
+  std::vector<std::string> gears;     // "Slew_Gear (Pinion_Axis, Slew_Joint)"
   std::vector<std::string> closed;    // "Coupler (revolute_revolute, 1 row)": joints outside of the tree
   std::vector<std::string> merged;    // "Pole with Pillar"
   std::vector<std::string> contacts;  // pairs that are tested
@@ -93,6 +94,7 @@ void describe_mechanics(const scene::Scene& scene, Description& d) {
   d.degrees_of_freedom = m.degrees_of_freedom;
   describe_cuts(m, d);
   d.driven = m.driven;
+  d.gears = m.gears;
   d.contacts = m.pairs;
   for (const std::string& pair : m.pairs_at_rest) {
     const auto& pairs = scene.mechanics.contacts;
@@ -222,6 +224,7 @@ Json to_json(const Description& d) {
             {"links", d.links},
             {"motions", d.motions},
             {"driven", d.driven},
+            {"gears", d.gears},
             {"flexible", d.flexible},
             {"closed", d.closed},
             {"merged", d.merged},
@@ -268,6 +271,7 @@ void print(const Description& d) {
   rows.add({"inputs", joined(d.inputs)});
   for (const std::string& body : d.flexible) rows.add({"flexible", body});
   if (!d.driven.empty()) rows.add({"driven", joined(d.driven)});
+  if (!d.gears.empty()) rows.add({"gears", joined(d.gears)});
   if (!d.closed.empty()) rows.add({"closed by rows", joined(d.closed)});
   for (const BodyNumbers& body : d.body_numbers) {
     if (body.mesh) rows.add({"inertia", mesh_text(body)});

@@ -20,6 +20,7 @@ struct Options {
   bool is_floating = false;
   bool is_overwriting = false;
   bool is_json = false;
+  urdf::Repairs repairs;
 };
 
 void write(const std::string& path, const std::string& text, bool is_overwriting) {
@@ -35,9 +36,16 @@ void write(const std::string& path, const std::string& text, bool is_overwriting
 }
 
 Json to_json(const Options& options, const urdf::Import& made) {
-  Json notes = Json::array();
-  for (const urdf::Note& note : made.notes) notes.push_back({{"line", note.line}, {"text", note.text}});
-  Json json = {{"bodies", made.bodies}, {"joints", made.joints}, {"shapes", made.shapes}, {"notes", notes}};
+  const auto listed = [](const std::vector<urdf::Note>& notes) {
+    Json list = Json::array();
+    for (const urdf::Note& note : notes) list.push_back({{"line", note.line}, {"text", note.text}});
+    return list;
+  };
+  Json json = {{"bodies", made.bodies},
+               {"joints", made.joints},
+               {"shapes", made.shapes},
+               {"notes", listed(made.notes)},
+               {"changes", listed(made.changes)}};
   if (options.output.empty()) {
     json["scene"] = made.text;
   } else {
@@ -48,7 +56,7 @@ Json to_json(const Options& options, const urdf::Import& made) {
 
 ExitCode import_urdf(const Options& options) {
   const auto mount = options.is_floating ? urdf::RootMount::floating : urdf::RootMount::fixed;
-  const urdf::Import made = urdf::import_file(options.file, mount, options.output);
+  const urdf::Import made = urdf::import_file(options.file, mount, options.output, options.repairs);
   if (!options.output.empty()) write(options.output, made.text, options.is_overwriting);
   if (options.is_json) {
     fmt::print("{}\n", to_json(options, made).dump(2));
@@ -58,6 +66,9 @@ ExitCode import_urdf(const Options& options) {
     fmt::print("{}: {}, {}, {}, {}\n", options.output, counted(made.bodies, "body", "bodies"),
                counted(made.joints, "joint", "joints"), counted(made.shapes, "shape", "shapes"),
                counted(made.notes.size(), "note on what was not taken over", "notes on what was not taken over"));
+    for (const urdf::Note& change : made.changes) {
+      fmt::print("  changed: {}:{}: {}\n", options.file, change.line, change.text);
+    }
   }
   return ExitCode::ok;
 }
@@ -73,6 +84,17 @@ void add_import(options::Command& program) {
   part.option("file", options->file, "URDF file, macros expanded").required().value_name("FILE");
   part.option("-o,--output", options->output, "the scene's file; without it the scene is printed").value_name("SCENE");
   part.flag("--floating", options->is_floating, "the root link is free, not fixed to Ground");
+  const options::Option repair =
+      part.flag("--repair", options->repairs.is_repairing,
+                "raise principal moments of inertia that no body has (listed); without it they are refused");
+  part.option("--repair-share", options->repairs.share,
+              "largest share of the largest moment that --repair may add to the others")
+      .between(0.0, 1.0)
+      .show_default()
+      .value_name("SHARE")
+      .needs(repair);
+  part.flag("--merge", options->repairs.is_merging,
+            "fix joints of links that move without mass or inertia (listed); without it they are refused");
   part.flag("--force", options->is_overwriting, "overwrite the scene's file");
   part.flag("--json", options->is_json, "for machines: counts and notes, and the scene when no file is named");
   part.footer("Example:\n  slewring import urdf robot.urdf -o robot.yaml && slewring check robot.yaml");

@@ -22,7 +22,6 @@ namespace {
 constexpr double kMicroStep = 0.25e-3;
 
 // what the rules of a scene allow is what the port problem holds
-static_assert(multibody::kMaxRows <= static_cast<int>(coupling::kMaxRows));
 
 // a limit takes part in the port problem when it could be reached within so many sub-steps
 constexpr double kLimitLookAhead = 4;

@@ -15,7 +15,38 @@ Vec3 middle_of(const MeshDef& mesh) {
   return (low + high) * 0.5;
 }
 
+// (4), from the integrals about o
+MassProperties about_centre(double volume, Vec3 first, const Mat3& second, Vec3 o, double density) {
+  MassProperties out;
+  out.volume = volume;
+  out.mass = density * volume;
+  const Vec3 r = first * (1 / volume);
+  out.centre = o + r;
+  const Mat3 central = second - outer(r, r) * volume;
+  const double trace = central(0, 0) + central(1, 1) + central(2, 2);
+  out.inertia = (Mat3::diagonal(trace, trace, trace) - central) * density;
+  return out;
+}
+
 }  // namespace
+
+MassProperties shell_properties(const MeshDef& mesh, double thickness, double density) {
+  SLEW_ASSERT(density > 0 && thickness > 0 && !mesh.triangles.empty());
+  const Vec3 o = middle_of(mesh);
+  double area = 0;
+  Vec3 first;
+  Mat3 second;
+  for (const auto& triangle : mesh.triangles) {
+    const Vec3 a = Vec3(mesh.vertices[triangle[0]]) - o, b = Vec3(mesh.vertices[triangle[1]]) - o,
+               c = Vec3(mesh.vertices[triangle[2]]) - o;
+    const double own = 0.5 * norm(cross(b - a, c - a));
+    const Vec3 sum = a + b + c;
+    area += own;
+    first += sum * (own / 3);
+    second += (outer(sum, sum) + outer(a, a) + outer(b, b) + outer(c, c)) * (own / 12);
+  }
+  return about_centre(thickness * area, first * thickness, second * thickness, o, density);
+}
 
 MassProperties mass_properties(const MeshDef& mesh, double density) {
   SLEW_ASSERT(density > 0 && !mesh.triangles.empty());

@@ -22,7 +22,13 @@ struct MassProperties {
   math::Mat3 inertia;  // kg m2 about the centre, mesh's axes; off-diagonal elements are -integral x y dm
 };
 
-// density: kg/m3, > 0. Pre-condition: find_closed_fault(mesh) found nothing (mesh_check.h).
+// density: kg/m3, > 0. Pre-condition: find_solid_fault(mesh) found nothing (mesh_check.h).
 [[nodiscard]] MassProperties mass_properties(const MeshDef& mesh, double density);
+
+// The same of a sheet of this thickness [m] on the mesh's surface, open or closed: with A the area of a triangle,
+//   V = t sum A,   V r = t sum A (a+b+c)/3,   C = t sum A/12 ((a+b+c)(a+b+c)^T + a a^T + b b^T + c c^T)   (5)
+// Exact for a thin sheet: what its thickness adds is of the order t^2 over the size squared. Which way triangles turn
+// has no effect; one that is there twice counts twice. Pre-condition: finite vertices, an area.
+[[nodiscard]] MassProperties shell_properties(const MeshDef& mesh, double thickness, double density);
 
 }  // namespace slew::contact

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "math/vector3.h"
 
@@ -31,26 +33,6 @@ Vec3 area_of(const MeshDef& mesh, std::size_t triangle) {
   const auto& t = mesh.triangles[triangle];
   const Vec3 on(mesh.vertices[t[0]]);
   return cross(Vec3(mesh.vertices[t[1]]) - on, Vec3(mesh.vertices[t[2]]) - on);
-}
-
-std::optional<MeshFault> find_number_fault(const MeshDef& mesh) {
-  if (mesh.vertices.size() < 3 || mesh.triangles.empty()) {
-    return MeshFault{
-        fmt::format("{} vertices and {} triangles are no surface", mesh.vertices.size(), mesh.triangles.size()),
-        "at least one triangle"};
-  }
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Triple& v = mesh.vertices[i];
-    if (std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2])) continue;
-    return MeshFault{fmt::format("vertex {} is not finite", i), "finite vertices"};
-  }
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& t = mesh.triangles[i];
-    if (*std::max_element(t.begin(), t.end()) < mesh.vertices.size()) continue;
-    return MeshFault{fmt::format("triangle {} has a vertex that does not exist", i),
-                     fmt::format("indices below {}", mesh.vertices.size())};
-  }
-  return std::nullopt;
 }
 
 // directed edges and a triangle that has each
@@ -95,6 +77,26 @@ Extent extent_of(const MeshDef& mesh) {
   return {low, high};
 }
 
+std::optional<MeshFault> find_number_fault(const MeshDef& mesh) {
+  if (mesh.vertices.size() < 3 || mesh.triangles.empty()) {
+    return MeshFault{
+        fmt::format("{} vertices and {} triangles are no surface", mesh.vertices.size(), mesh.triangles.size()),
+        "at least one triangle"};
+  }
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Triple& v = mesh.vertices[i];
+    if (std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2])) continue;
+    return MeshFault{fmt::format("vertex {} is not finite", i), "finite vertices"};
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    if (*std::max_element(t.begin(), t.end()) < mesh.vertices.size()) continue;
+    return MeshFault{fmt::format("triangle {} has a vertex that does not exist", i),
+                     fmt::format("indices below {}", mesh.vertices.size())};
+  }
+  return std::nullopt;
+}
+
 std::optional<MeshFault> find_surface_fault(const MeshDef& mesh) {
   if (auto fault = find_number_fault(mesh)) return fault;
   const double size = size_of(mesh);
@@ -117,6 +119,107 @@ std::optional<MeshFault> find_closed_fault(const MeshDef& mesh) {
                      "a closed mesh"};
   }
   if (!(volume_of(mesh) > 0)) return MeshFault{"it is inside out", kTurning};
+  return std::nullopt;
+}
+
+namespace {
+
+// triangles of an edge of a lower and a higher vertex: those that run upwards less those that run downwards
+struct EdgeBalance {
+  int sum = 0;
+  std::size_t triangle = 0;  // the first
+};
+
+// vertices that triangles connect, by union of their sets
+class Parts {
+ public:
+  explicit Parts(const MeshDef& mesh) : parent_(mesh.vertices.size()) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+    for (const auto& t : mesh.triangles) {
+      parent_[of(t[0])] = of(t[1]);
+      parent_[of(t[1])] = of(t[2]);
+    }
+  }
+  [[nodiscard]] std::uint32_t of(std::uint32_t vertex) {
+    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
+    return vertex;
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+struct Part {
+  double volume6 = 0;
+  Extent extent{};
+  std::size_t triangle = 0;  // the first
+};
+
+bool holds(const Extent& outer, const Extent& inner) {
+  for (int k = 0; k < 3; ++k) {
+    if (inner.low[k] < outer.low[k] || inner.high[k] > outer.high[k]) return false;
+  }
+  return true;
+}
+
+std::vector<Part> parts_of(const MeshDef& mesh) {
+  Parts sets(mesh);
+  std::map<std::uint32_t, std::size_t> index;
+  std::vector<Part> parts;
+  const Vec3 origin(mesh.vertices[0]);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [at, is_new] = index.insert({sets.of(mesh.triangles[i][0]), parts.size()});
+    const Vec3 first(mesh.vertices[mesh.triangles[i][0]]);
+    if (is_new) parts.push_back({0, {first, first}, i});
+    Part& part = parts[at->second];
+    part.volume6 += dot(first - origin, area_of(mesh, i));
+    for (const std::uint32_t vertex : mesh.triangles[i]) {
+      for (int k = 0; k < 3; ++k) {
+        const double x = mesh.vertices[vertex][static_cast<std::size_t>(k)];
+        part.extent.low.lanes[k] = std::min(part.extent.low[k], x);
+        part.extent.high.lanes[k] = std::max(part.extent.high[k], x);
+      }
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::optional<MeshFault> find_solid_fault(const MeshDef& mesh) {
+  if (auto fault = find_number_fault(mesh)) return fault;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, EdgeBalance> edges;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
+      if (from == to) continue;
+      edges.try_emplace(std::minmax(from, to), EdgeBalance{0, i}).first->second.sum += from < to ? 1 : -1;
+    }
+  }
+  for (const auto& [edge, balance] : edges) {
+    if (balance.sum == 0) continue;
+    if (balance.sum % 2 == 0) {
+      return MeshFault{fmt::format("triangles turn differently at the edge of vertices {} and {} (triangle {})",
+                                   edge.first, edge.second, balance.triangle),
+                       kTurning};
+    }
+    return MeshFault{fmt::format("it is not closed: triangle {} has no neighbour at the edge of vertices {} and {}",
+                                 balance.triangle, edge.first, edge.second),
+                     "a closed mesh"};
+  }
+  if (!(volume_of(mesh) > 0)) return MeshFault{"it is inside out", kTurning};
+  const std::vector<Part> parts = parts_of(mesh);
+  for (const Part& part : parts) {
+    if (!(part.volume6 < 0)) continue;
+    const bool is_hole = std::any_of(parts.begin(), parts.end(), [&part](const Part& other) {
+      return other.volume6 > -part.volume6 && holds(other.extent, part.extent);
+    });
+    if (is_hole) continue;
+    return MeshFault{
+        fmt::format("the part with triangle {} is inside out, and no other part surrounds it", part.triangle),
+        kTurning};
+  }
   return std::nullopt;
 }
 

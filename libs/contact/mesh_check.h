@@ -20,11 +20,19 @@ struct MeshFault {
   std::string expected;
 };
 
+// Triangles of vertices that are there and finite.
+[[nodiscard]] std::optional<MeshFault> find_number_fault(const MeshDef& mesh);
+
 // An oriented surface, open or closed: finite vertices, triangles with an area, all turning the same way.
 [[nodiscard]] std::optional<MeshFault> find_surface_fault(const MeshDef& mesh);
 
 // A surface that encloses a volume: every edge has one triangle on either side, and outside is outside.
 [[nodiscard]] std::optional<MeshFault> find_closed_fault(const MeshDef& mesh);
+
+// What encloses a volume for mass properties, which ask for less than contact does: solids may touch at vertices, edges
+// and faces, triangles may have no area, as long as each edge has as many triangles one way as the other. Parts that do
+// not hang together may be holes: turned inside out within another part.
+[[nodiscard]] std::optional<MeshFault> find_solid_fault(const MeshDef& mesh);
 
 // A closed surface without dents, which is then inside of all its triangles.
 [[nodiscard]] std::optional<MeshFault> find_convex_fault(const MeshDef& mesh);

@@ -32,7 +32,6 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 }  // namespace
 
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
-  SLEW_CHECK(capacity <= kMaxRows);
   for (std::vector<double>* values :
        {&x_,    &v_,      &z_,      &a_free_,  &a_free_rate_, &weighted_a_, &shrink_,   &drive_,
         &pull_, &x_base_, &v_base_, &z_base_,  &x_stage_,     &v_stage_,    &z_stage_,  &pressure_force_,

@@ -20,8 +20,6 @@
 
 namespace slew::coupling {
 
-inline constexpr std::size_t kMaxRows = 32;
-
 // Partner's linearisation for one row, equation (2), and its feed-through -D (v - v_ref).
 struct RowPartner {
   double F_dot = 0;   // N/s
@@ -66,7 +64,7 @@ struct PortStep {
 
 class PortDynamics {
  public:
-  // capacity <= kMaxRows; starts with that many rows.
+  // Starts with that many rows.
   explicit PortDynamics(std::size_t capacity);
 
   // Number of rows of the next sub-steps, at most the capacity; all inputs must be set again.

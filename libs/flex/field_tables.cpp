@@ -161,11 +161,14 @@ constexpr Field kElementFields[] = {
 
 constexpr Field kMatrixFileFields[] = {
     field<&MatrixFilesDef::mass>(
-        "mass", {.presence = Presence::required, .doc = "mass matrix, Matrix Market file in kg, kg m, kg m2"}),
-    field<&MatrixFilesDef::stiffness>(
-        "stiffness", {.presence = Presence::required, .doc = "stiffness matrix, Matrix Market file in N/m, N, N m"}),
+        "mass", {.presence = Presence::required, .doc = "mass matrix, Matrix Market file; in SI kg, kg m, kg m2"}),
+    field<&MatrixFilesDef::stiffness>("stiffness", {.presence = Presence::required,
+                                                    .doc = "stiffness matrix, Matrix Market file; in SI N/m, N, N m"}),
     field<&MatrixFilesDef::nodes>(
-        "nodes", {.presence = Presence::required, .doc = "table `id x y z freedoms` in the order of the rows, in m"}),
+        "nodes", {.presence = Presence::required, .doc = "table `id x y z freedoms` in the order of the rows"}),
+    field<&MatrixFilesDef::units>(
+        "units", {.choices = kUnitNames,
+                  .doc = "of all three files: length_mass_time; _lbf_: pound-force, its mass lbf s2 over the length"}),
 };
 
 constexpr Field kReductionFields[] = {

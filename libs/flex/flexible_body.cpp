@@ -259,7 +259,7 @@ FeModel model_of(const FlexibleBodyDef& def, const std::filesystem::path& folder
   refuse_if_any(check_flexible_body(def));
   if (!def.matrices.is_given()) return build_beam(beam_of(def).beam);
   const MatrixFilesDef& files = def.matrices;
-  return import_model({def.model, folder / files.mass, folder / files.stiffness, folder / files.nodes});
+  return import_model({def.model, folder / files.mass, folder / files.stiffness, folder / files.nodes, files.units});
 }
 
 ReductionDef reduction_of(const FlexibleBodyDef& def) {

@@ -12,6 +12,7 @@
 
 #include "core/problem.h"
 #include "flex/beam.h"
+#include "flex/model_units.h"
 #include "flex/reduction.h"
 
 namespace slew::flex {
@@ -51,6 +52,7 @@ struct ElementChainDef {
 // Files of imported_model.h; not absolute: from the description's folder.
 struct MatrixFilesDef {
   std::string mass, stiffness, nodes;
+  ModelUnits units = ModelUnits::m_kg_s;
   [[nodiscard]] bool is_given() const noexcept { return !nodes.empty(); }
 };
 

@@ -195,7 +195,8 @@ void check_density(const FeModel& model, double mass) {
     refuse(
         model.name,
         fmt::format("{:.6g} kg in a box of {:.3g} x {:.3g} x {:.3g} m around the nodes", mass, box[0], box[1], box[2]),
-        fmt::format("{} to {} kg/m3", kLightest, kDensest), "give lengths in m, masses in kg, stiffness in N/m");
+        fmt::format("{} to {} kg/m3", kLightest, kDensest),
+        "say `units:` of the matrices, or give lengths in m, masses in kg, stiffness in N/m");
 }
 
 void check_mass(const FeModel& model) {
@@ -274,7 +275,7 @@ void check_definite(const FeModel& model) {
 }  // namespace
 
 FeModel model_of_matrices(const std::string& name, std::vector<FeNode> nodes, const SparseMatrix& M,
-                          const SparseMatrix& K) {
+                          const SparseMatrix& K, ModelUnits units) {
   check_size(name, "mass", M, nodes);
   check_size(name, "stiffness", K, nodes);
   check_symmetry(name, "mass", M);
@@ -287,14 +288,16 @@ FeModel model_of_matrices(const std::string& name, std::vector<FeNode> nodes, co
   model.M = reordered(M, order);
   model.K = reordered(K, order);
   check_rigid_motions(model);
+  to_si(units, model);
   check_mass(model);
   check_definite(model);
+  judge_units(model, units);
   return model;
 }
 
 FeModel import_model(const ImportDef& def) {
   return model_of_matrices(def.name, read_nodes(def.nodes), read_matrix_market(def.mass),
-                           read_matrix_market(def.stiffness));
+                           read_matrix_market(def.stiffness), def.units);
 }
 
 void export_model(const FeModel& model, const ImportDef& files) {

@@ -79,7 +79,7 @@ class BodyEquations final : public AlgebraicEquation {
     multibody::add_modal_accelerations(model_, {y_rate + q + 6 * bodies_.links(), u - 6 * bodies_.links()}, ws_);
     multibody::update_coupled(model_, ws_);
     multibody::apply_elements(model_, ws_);
-    multibody::evaluate_joints(model_, body_, ws_, bws_);
+    multibody::evaluate_joints(model_, body_, joints_, ws_, bws_);
     multibody::put_bias(model_, body_, ws_, bws_);
     find_row_forces();
     for (std::size_t k = 0; k < forces_.size(); ++k) {
@@ -143,6 +143,10 @@ class BodyEquations final : public AlgebraicEquation {
       const double* x = bws_.solution.data() + bws_.ldl.first_row(static_cast<int>(i) - 1) + body_.row_offset(i);
       std::copy_n(x, body_.joints[i].rows.size(), lambda.begin() + bws_.first_row[i]);
     }
+    for (std::size_t k = 0; k < bws_.gears.size(); ++k) {
+      const int row = bws_.ldl.first_row(body_.first_gear + static_cast<int>(k));
+      lambda[rows_ - bws_.gears.size() + k] = bws_.solution[static_cast<std::size_t>(row)];
+    }
     return lambda;
   }
 
@@ -162,6 +166,16 @@ class BodyEquations final : public AlgebraicEquation {
         add(joint.link1, G.v1, G.w1);
         add(joint.link2, G.v2, G.w2);
       }
+    }
+    for (std::size_t k = 0; k < bws_.gears.size(); ++k) {
+      const double force = x[rows_ - bws_.gears.size() + k];
+      multibody::for_each_end(bws_.gears[k], [&](int link, math::Vec3 v, math::Vec3 w) {
+        double* a = y.data() + kBody * (link - 1);
+        for (int c = 0; c < 3; ++c) {
+          a[c] += v[c] * force;
+          a[3 + c] += w[c] * force;
+        }
+      });
     }
   }
 

@@ -56,7 +56,7 @@ class MechanicsEquations final : public DifferentialEquation {
     multibody::set_time(model_, t, ws_);
     multibody::impose_positions(model_, ws_, state_.q);
     multibody::impose_speeds(model_, ws_, state_.u);
-    if (model_.cuts.empty()) return true;
+    if (!model_.has_closing_rows()) return true;
     multibody::renew_matrix(model_, state_.q, state_.u, ws_);
     return multibody::project(model_, state_.q, state_.u, ws_);
   }
@@ -95,16 +95,16 @@ Status integrate_mechanics(const multibody::MechanicsDef& mechanics, std::span<c
     SLEW_CHECK(time >= solver.time());
     bool is_closed = equations.take(solver.time(), solver.y().data());
     const double begin = solver.time(), way = time - begin;
-    const int windows = !(way > 0)                  ? 0
-                        : result.model.cuts.empty() ? 1
-                                                    : static_cast<int>(std::ceil(way / kClosingWindow));
+    const int windows = !(way > 0)                         ? 0
+                        : !result.model.has_closing_rows() ? 1
+                                                           : static_cast<int>(std::ceil(way / kClosingWindow));
     for (int k = 1; k <= windows; ++k) {
       const double next = k == windows ? time : begin + way * k / windows;
       const std::string failure = solver.advance(next);
       result.statistics = solver.statistics();
       if (!failure.empty()) return give_up(failure);
       is_closed = equations.take(next, solver.y().data());
-      if (!result.model.cuts.empty()) solver.restart(next, equations.values());
+      if (result.model.has_closing_rows()) solver.restart(next, equations.values());
     }
     if (!is_closed) return give_up("its loops cannot be closed");
     result.states.push_back(equations.state());

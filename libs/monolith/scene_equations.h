@@ -102,7 +102,7 @@ class SceneEquations {
   // Unit quaternions, as the multibody steps leave them.
   void normalize(std::span<double> y) const noexcept;
   // Whether some joint is cut, and y onto these joints; false: they cannot be closed.
-  [[nodiscard]] bool has_loops() const noexcept { return !model_.cuts.empty(); }
+  [[nodiscard]] bool has_loops() const noexcept { return model_.has_closing_rows(); }
   [[nodiscard]] bool close(double t, std::span<double> y) noexcept;
 
   // Everything below belongs to the last rates() or observe().

@@ -50,7 +50,7 @@ class Assembler {
         solve_forward(model_, ws_, ws_.residual, ws_.loops.step);
         displace(model_, ws_, ws_.loops.step, state_.q);
         update_motion(model_, state_.q, state_.u, ws_);
-        evaluate_cuts(model_, ws_);
+        evaluate_cuts(model_, state_.q, state_.u, ws_);
         if (independent_violation() < before) break;
         for (double& r : ws_.residual) r *= 0.5;
         update_motion(model_, from.q, from.u, ws_);
@@ -61,7 +61,7 @@ class Assembler {
   [[nodiscard]] std::vector<bool> dependent_rows() {
     renew(state_);
     std::vector<bool> is_dependent;
-    for (int k = 0; k < model_.cut_row_count(); ++k) is_dependent.push_back(ws_.loops.factor.is_redundant(k));
+    for (int k = 0; k < model_.closing_row_count(); ++k) is_dependent.push_back(ws_.loops.factor.is_redundant(k));
     return is_dependent;
   }
 
@@ -105,6 +105,7 @@ class Assembler {
         }
       }
     }
+    for (auto k = at(model_.cut_row_count()); k < rows; ++k) result[k] = ws_.loops.W[k * rows + k];
     return result;
   }
 
@@ -114,10 +115,16 @@ class Assembler {
     for (const Cut& cut : model_.cuts) {
       const auto see = [&](const ConstraintRow& row) {
         const double g = evaluate(row, cut, ws_.motion[at(cut.link1)], ws_.motion[at(cut.link2)], ws_.drives).g;
-        if (!(std::fabs(g) <= kFrameTolerance)) open.push_back({cut.joint, describe(row), std::fabs(g)});
+        if (!(std::fabs(g) <= kFrameTolerance)) open.push_back({cut.joint, describe(row), std::fabs(g), {}});
       };
       for (const ConstraintRow& row : cut.rows) see(row);
       for (const ConstraintRow& row : cut.redundant) see(row);
+    }
+    for (const std::vector<Gear>* gears : {&model_.gears, &model_.idle_gears}) {
+      for (const Gear& gear : *gears) {
+        const double g = gear_value(gear, model_, state_.q, state_.u, ws_).g;
+        if (!(std::fabs(g) <= kFrameTolerance)) open.push_back({gear.ends[1].joint, "gear", std::fabs(g), gear.name});
+      }
     }
     return open;
   }
@@ -187,7 +194,7 @@ class Assembler {
     update_coupled(model_, ws_);
     std::fill(ws_.tau.begin(), ws_.tau.end(), 0.0);
     factorize(model_, ws_);
-    evaluate_cuts(model_, ws_);
+    evaluate_cuts(model_, state.q, state.u, ws_);
     factorize_cuts(model_, ws_, kDependentAtStart);
   }
 
@@ -276,6 +283,15 @@ std::vector<double> vanishing_mobilities(const Model& model) {
       mobilities.push_back(inertia > 0 ? kVanishing / inertia : 0);
     }
   }
+  for (const Gear& gear : model.gears) {
+    double mobility = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double inertia = is_angle(gear.kind, k) ? mass * length * length : mass;
+      const double factor = gear.ends[k].factor;
+      if (inertia > 0) mobility += kVanishing * factor * factor / inertia;
+    }
+    mobilities.push_back(mobility);
+  }
   return mobilities;
 }
 
@@ -325,8 +341,12 @@ std::vector<AssemblyReport::Row> find_held_twice(const Model& model, const Nearb
   for (const Cut& cut : model.cuts) {
     for (const ConstraintRow& held : cut.rows) {
       const bool was_dependent = held.drive < 0 && free.is_dependent[free_row++];
-      if (nearby.is_dependent[row++] && !was_dependent) twice.push_back({cut.joint, describe(held), 0});
+      if (nearby.is_dependent[row++] && !was_dependent) twice.push_back({cut.joint, describe(held), 0, {}});
     }
+  }
+  for (const Gear& gear : model.gears) {
+    const bool was_dependent = free.is_dependent[free_row++];
+    if (nearby.is_dependent[row++] && !was_dependent) twice.push_back({gear.ends[1].joint, "gear", 0, gear.name});
   }
   return twice;
 }
@@ -353,13 +373,20 @@ void leave_out(Model& model, const Nearby& nearby) {
     cut.first_row = first;
     first += static_cast<int>(cut.rows.size());
   }
+  std::vector<Gear> gears;
+  for (Gear& gear : model.gears) {
+    const std::size_t own = row++;
+    (nearby.is_dependent[own] ? model.idle_gears : gears).push_back(gear);
+    if (!nearby.is_dependent[own]) model.cut_reference.push_back(nearby.mobility[own]);
+  }
+  model.gears = std::move(gears);
 }
 
 }  // namespace
 
 AssemblyReport assemble(Model& model) {
   AssemblyReport report;
-  if (model.cuts.empty()) return report;
+  if (!model.has_closing_rows()) return report;
   const Nearby nearby = look_nearby(model);
   report.held_twice = find_held_twice(model, nearby);
   leave_out(model, nearby);

@@ -18,6 +18,7 @@ struct AssemblyReport {
     int joint = 0;         // Model::joints
     std::string what;      // describe() of its row
     double violation = 0;  // m or 1
+    std::string gear{};    // its name, where the row is a gear's
   };
   struct Speed {
     std::string joint;

@@ -85,12 +85,14 @@ class Trapezoid {
     for (int round = 0; round < kMostStepCorrections; ++round) {
       std::fill(pws_.correction.begin(), pws_.correction.end(), 0.0);
       double largest = 0;
-      for_each_row([&](std::size_t i, std::size_t row) {
-        const std::size_t place = row - at(body_.first_row[i]);
-        const double rate = along(present_row(body_, pws_, i, row), pws_.stage.u) -
-                            prescribed_rate(body_.constraints[i], place, ws_.drives);
-        largest = std::max(largest, std::fabs(rate));
-        subtract_row(factored_row(body_, pws_, i, row), body_.alpha[row] * rate, pws_.correction);
+      for (std::size_t row = 0; row < pws_.rates.size(); ++row) pws_.rates[row] = 0;
+      for_each_prescribed([&](std::size_t row, double rate) { pws_.rates[row] = -rate; });
+      for_each_present(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+        pws_.rates[row] += along(held, pws_.stage.u);
+        largest = std::max(largest, std::fabs(pws_.rates[row]));
+      });
+      for_each_factored(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+        subtract_row(held, body_.alpha[row] * pws_.rates[row], pws_.correction);
       });
       if (largest <= closed || (round > 0 && largest > kStepStalled * before)) return;
       before = largest;
@@ -100,11 +102,13 @@ class Trapezoid {
   }
 
  private:
+  // visit(row, rate that its law prescribes)
   template <typename Visit>
-  void for_each_row(Visit visit) noexcept {
+  void for_each_prescribed(Visit visit) noexcept {
     for (std::size_t i = 0; i < body_.constraints.size(); ++i) {
-      for (std::size_t row = at(body_.first_row[i]); row < at(body_.first_row[i + 1]); ++row) {
-        visit(i, row);
+      const std::size_t first = at(body_.first_row[i]);
+      for (std::size_t k = 0; k < body_.constraints[i].rows.size(); ++k) {
+        visit(first + k, prescribed_rate(body_.constraints[i], k, ws_.drives));
       }
     }
   }
@@ -133,16 +137,16 @@ class Trapezoid {
     put_free_forces(model_, ws_, pws_.correction);
     add_row_forces(model_, body_, pws_.stage_joints, ws_, pws_.row_force, pws_.ldl, pws_.correction);
     subtract_mass(model_, ws_, pws_.end_udot, pws_.correction);
-    for_each_row([&](std::size_t i, std::size_t row) {
-      subtract_row(present_row(body_, pws_, i, row), pws_.multipliers[row], pws_.correction);
+    for_each_present(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+      subtract_row(held, pws_.multipliers[row], pws_.correction);
     });
     for (double& x : pws_.correction) x *= quarter;
-    for_each_row([&](std::size_t i, std::size_t row) {
-      subtract_row(factored_row(body_, pws_, i, row), body_.alpha[row] * pws_.rows[row].g, pws_.correction);
+    for_each_factored(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+      subtract_row(held, body_.alpha[row] * pws_.rows[row].g, pws_.correction);
     });
     pws_.ldl.solve(pws_.correction);
-    for_each_row([&](std::size_t i, std::size_t row) {
-      const double missed = pws_.rows[row].g + along(factored_row(body_, pws_, i, row), pws_.correction);
+    for_each_factored(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+      const double missed = pws_.rows[row].g + along(held, pws_.correction);
       pws_.multipliers[row] += body_.alpha[row] / quarter * missed;
     });
     const std::size_t links = 6 * (model_.links.size() - 1);

@@ -72,6 +72,12 @@ BodyModel build_body_model(const Model& model) {
       if (link > 0) body.pattern.couplings.emplace_back(node, link - 1);
     }
   }
+  body.first_gear = static_cast<int>(body.pattern.nodes.size());
+  for (std::size_t k = 0; k < model.gears.size(); ++k) {
+    const int node = body.first_gear + static_cast<int>(k);
+    body.pattern.nodes.push_back({1, math::BlockKind::closing});
+    for (const int link : links_of(model, model.gears[k])) body.pattern.couplings.emplace_back(node, link - 1);
+  }
   body.modal = add_modal_blocks(model, math::BlockKind::regular, body.pattern);
   return body;
 }
@@ -84,12 +90,17 @@ BodyWorkspace::BodyWorkspace(const Model& model, const BodyModel& body) : ldl(bo
     first_modal.push_back(static_cast<int>(modal.size()));
     if (joint.node >= 0) modal.resize(modal.size() + joint.rows.size() * model.nodes[at(joint.node)].shift.size());
   }
-  rows.resize(at(row));
+  rows.resize(at(row) + model.gears.size());
+  gears.resize(model.gears.size());
   int cut_row = 0;
   for (std::size_t i = model.links.size(); i < body.joints.size(); ++i) {
     for (int k = 0; k < static_cast<int>(body.joints[i].rows.size()); ++k) {
       ldl.set_reference(static_cast<int>(i) - 1, k, model.cut_reference[at(cut_row++)]);
     }
+  }
+  for (std::size_t k = 0; k < model.gears.size(); ++k) {
+    const double reference = model.cut_reference.empty() ? 0 : model.cut_reference[at(cut_row++)];
+    ldl.set_reference(body.first_gear + static_cast<int>(k), 0, reference);
   }
   solution.resize(at(ldl.rows()));
   free.resize(at(ldl.rows()));

@@ -14,8 +14,8 @@
 // Layout of the state: link i has q at 7 (i - 1): position and quaternion w x y z of the link in Ground; u at 6 (i -
 // 1): velocity of the link's origin, angular velocity, both in Ground axes. The modes of flexible parts come after all
 // links (flexible/body_modes.h), with nodes of their own in the matrix. One node of math::BlockLdl holds a link and
-// its joint towards Ground, a closing node the rows of a joint that is cut: the cost is linear in the number of links,
-// but for the fill along loops. Nothing here allocates but the builders.
+// its joint towards Ground, a closing node the rows of a joint that is cut, or that of a gear: the cost is linear in
+// the number of links, but for the fill along loops. Nothing here allocates but the builders.
 #pragma once
 
 #include <cmath>
@@ -34,6 +34,7 @@ struct BodyModel {
   std::vector<Constraint> joints;  // by link, [0] is empty and link1 the parent; then those that are cut
   math::BlockPattern pattern;      // node i - 1: of joints[i]; of the tree: link i and the rows of its joint; modes
   std::vector<ModalBlock> modal;   // nodes of the modes
+  int first_gear = 0;              // node of the first gear's row; the others follow
 
   // First row of a joint among those of its node.
   [[nodiscard]] int row_offset(std::size_t joint) const noexcept { return static_cast<int>(joint) < links ? 6 : 0; }
@@ -49,8 +50,9 @@ struct BodyWorkspace {
   BodyWorkspace(const Model& model, const BodyModel& body);
 
   math::BlockLdl ldl;
-  std::vector<RowValue> rows;     // of all joints, by first_row
+  std::vector<RowValue> rows;     // of all joints, by first_row; then of gears, without gradients
   std::vector<int> first_row;     // by joint
+  std::vector<GearRow> gears;     // of the last ones in `rows`
   std::vector<double> modal;      // of the rows of nodes' joints: m_k of body_modes.h
   std::vector<int> first_modal;   // by joint
   std::vector<double> solution;   // u' and the multipliers, by ldl.first_row()

@@ -45,7 +45,8 @@ void put_bias(const Model& model, const BodyModel& body, const Workspace& ws, Bo
   }
 }
 
-void evaluate_joints(const Model& model, const BodyModel& body, Workspace& ws, BodyWorkspace& bws) noexcept {
+void evaluate_joints(const Model& model, const BodyModel& body, const State& near, Workspace& ws,
+                     BodyWorkspace& bws) noexcept {
   for (std::size_t i = 1; i < body.joints.size(); ++i) {
     const Constraint& joint = body.joints[i];
     const std::span<RowValue> rows(bws.rows.data() + bws.first_row[i], joint.rows.size());
@@ -54,6 +55,12 @@ void evaluate_joints(const Model& model, const BodyModel& body, Workspace& ws, B
       continue;
     }
     evaluate(joint, ws.motion[at(joint.link1)], ws.motion[at(joint.link2)], ws.drives, rows);
+  }
+  const std::size_t first_gear = bws.rows.size() - bws.gears.size();
+  for (std::size_t k = 0; k < bws.gears.size(); ++k) {
+    const GearRow row = gear_row(model, body, near, model.gears[k], ws);
+    bws.gears[k] = row;
+    bws.rows[first_gear + k] = {.g = row.g, .rate = row.rate, .bias = row.bias, .G = {}};
   }
 }
 
@@ -66,7 +73,7 @@ void apply_all(const Model& model, const BodyState& state, State& joints, Worksp
 bool prepare(const Model& model, const BodyModel& body, const BodyState& state, State& joints, Workspace& ws,
              BodyWorkspace& bws) noexcept {
   apply_all(model, state, joints, ws);
-  evaluate_joints(model, body, ws, bws);
+  evaluate_joints(model, body, joints, ws, bws);
   fill_matrix(model, body, ws, bws);
   const bool is_regular = bws.ldl.factorize(kDependent);
   put_bias(model, body, ws, bws);

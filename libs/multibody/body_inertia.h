@@ -1,5 +1,8 @@
-// Inertia of a body of the scene about its centre of mass. Internal to the library.
+// Inertia of a body of the scene about its centre of mass, and whether it can be one.
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include "math/rotation.h"
 #include "multibody/defs.h"
@@ -16,6 +19,17 @@ namespace slew::multibody {
     I += (c * c) * def.mass;
   }
   return I;
+}
+
+// printed inertias are rounded: share of the largest moment by which a rule may fail
+inline constexpr double kInertiaTolerance = 1e-6;
+
+// Whether a body can have this tensor about its centre of mass: no principal moment below zero or larger than the sum
+// of the other two.
+[[nodiscard]] inline bool is_inertia(const math::Mat3& tensor) noexcept {
+  const auto [a, b, c] = math::symmetric_eigenvalues(tensor);
+  const double tolerance = kInertiaTolerance * std::max({tensor(0, 0), tensor(1, 1), tensor(2, 2), std::abs(c)});
+  return a >= -tolerance && a + b >= c - tolerance;
 }
 
 // R I R^T: a tensor in other axes.

@@ -22,6 +22,7 @@ class Filling {
     add_masses(model_, ws_, matrix);
     for (std::size_t link = 1; link < model_.links.size(); ++link) add_joint(static_cast<int>(link));
     for (std::size_t i = model_.links.size(); i < body_.joints.size(); ++i) add_cut(i);
+    for (std::size_t k = 0; k < bws_.gears.size(); ++k) add_gear(k);
     add_modal_masses(
         model_, ws_, body_.modal, [this](int link) { return node_size(link); }, bws_.ldl);
     for (const ModalBlock& block : body_.modal) add_modal_rows(block);
@@ -84,6 +85,18 @@ class Filling {
       }
       bws_.ldl.add_coupling(static_cast<int>(index) - 1, link - 1, {block.data(), at(rows * columns)});
     }
+  }
+
+  void add_gear(std::size_t index) noexcept {
+    for_each_end(bws_.gears[index], [&](int link, Vec3 v, Vec3 w) {
+      ModalWide block{};
+      for (int c = 0; c < 3; ++c) {
+        block[at(c)] = v[c];
+        block[at(3 + c)] = w[c];
+      }
+      const int node = body_.first_gear + static_cast<int>(index);
+      bws_.ldl.add_coupling(node, link - 1, {block.data(), at(node_size(link))});
+    });
   }
 
   const Model& model_;

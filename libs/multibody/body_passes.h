@@ -15,8 +15,9 @@ void update_body_motion(const Model& model, const BodyState& state, Workspace& w
 // The same, and what acts there (apply_all()); joints: as of find_joint_coordinates().
 void apply_all(const Model& model, const BodyState& state, State& joints, Workspace& ws) noexcept;
 
-// Rows of all joints, from the motion.
-void evaluate_joints(const Model& model, const BodyModel& body, Workspace& ws, BodyWorkspace& bws) noexcept;
+// Rows of all joints and gears, from the motion. near: joint coordinates whose whole turns the gears' angles continue.
+void evaluate_joints(const Model& model, const BodyModel& body, const State& near, Workspace& ws,
+                     BodyWorkspace& bws) noexcept;
 
 // Minus what the joints' rows show, into the right-hand side bws.solution.
 template <typename Value>
@@ -25,6 +26,11 @@ void put_rows(const BodyModel& body, BodyWorkspace& bws, Value value) noexcept {
     double* x = bws.solution.data() + bws.ldl.first_row(static_cast<int>(i) - 1) + body.row_offset(i);
     const auto first = static_cast<std::size_t>(bws.first_row[i]);
     for (std::size_t k = 0; k < body.joints[i].rows.size(); ++k) x[k] = -value(bws.rows[first + k]);
+  }
+  const std::size_t first_gear = bws.rows.size() - bws.gears.size();
+  for (std::size_t k = 0; k < bws.gears.size(); ++k) {
+    const int row = bws.ldl.first_row(body.first_gear + static_cast<int>(k));
+    bws.solution[static_cast<std::size_t>(row)] = -value(bws.rows[first_gear + k]);
   }
 }
 

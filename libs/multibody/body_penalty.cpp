@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -21,6 +22,12 @@ std::vector<std::pair<int, int>> coupled_links(const Model& model, std::span<con
     if (link1 > 0 && link2 > 0 && link1 != link2) pairs.insert(std::minmax(link1 - 1, link2 - 1));
   };
   for (const Constraint& constraint : constraints) couple(constraint.link1, constraint.link2);
+  for (const Gear& gear : model.gears) {
+    const std::vector<int> links = links_of(model, gear);
+    for (const int link1 : links) {
+      for (const int link2 : links) couple(link1, link2);
+    }
+  }
   for (const CoupledMass& mass : model.coupled) {
     const LineElement& line = model.lines[static_cast<std::size_t>(mass.line)];
     couple(line.link1, line.link2);
@@ -76,6 +83,16 @@ PenaltyModel build_penalty_model(const Model& model, Formulation formulation, st
     }
   }
   body.first_row.push_back(static_cast<int>(body.alpha.size()));
+  for (const Gear& gear : model.gears) {
+    // what the row adds to either coordinate stays within alpha
+    double inertia = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double own = is_angle(gear.kind, k) ? alpha * length * length : alpha;
+      const double square = gear.ends[k].factor * gear.ends[k].factor;
+      if (square > 0) inertia = std::min(inertia, own / square);
+    }
+    body.alpha.push_back(inertia);
+  }
   body.pattern.nodes.resize(model.links.size() - 1, {kBody, math::BlockKind::definite});
   body.pattern.couplings = coupled_links(model, body.constraints);
   body.modal = add_modal_blocks(model, math::BlockKind::definite, body.pattern);
@@ -95,11 +112,13 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
   const std::size_t row_count = body.alpha.size();
   rows.resize(row_count);
   factored.resize(row_count);
+  gears.resize(model.gears.size());
+  factored_gears.resize(model.gears.size());
   for (std::size_t i = 0; i < body.constraints.size(); ++i) {
     modal.resize(modal.size() + body.constraints[i].rows.size() * body.modal_rows[i].modes);
   }
   factored_modal = modal;
-  for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target}) by_row->resize(row_count);
+  for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target, &rates}) by_row->resize(row_count);
   for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement}) by_u->resize(speeds);
   responses.resize(model.rows.size() * speeds);
   response_multipliers.resize(model.rows.size() * row_count);

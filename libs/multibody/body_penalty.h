@@ -2,6 +2,7 @@
 // six speeds a link as in body_coordinates.h, and one matrix that is positive definite whatever the rows are,
 //
 //   A = M + G^T alpha G,    alpha = f m_0 for rows in m, f m_0 l^2 for rows in 1                        (1)
+//                           (of a gear over the square of its ratio where that exceeds 1, lengths in l)
 //
 // M, Q, G, g, b: body_coordinates.h and constraint.h; f the scene's penalty_factor, m_0 the mechanism's mass, l its
 // length (penalty_length()). Rows may repeat each other and may become dependent in a singular position: they only add
@@ -52,8 +53,8 @@ struct PenaltyModel {
   Formulation formulation = Formulation::augmented;  // or penalty
   BodyModel bodies;                                  // joints of the tree, for the coordinates of rows
   std::vector<Constraint> constraints;
-  std::vector<int> first_row;  // by constraint, and the number of rows at the end
-  std::vector<double> alpha;   // by row [kg or kg m2]
+  std::vector<int> first_row;  // by constraint, and the number of their rows at the end
+  std::vector<double> alpha;   // by row [kg or kg m2]; those of gears come last
   math::BlockPattern pattern;  // node i - 1: link i; then modes
   std::vector<ModalBlock> modal;
   // by constraint: of a node's joint, where m_k of its rows begin, and the modes among the speeds
@@ -67,7 +68,8 @@ struct PenaltyWorkspace {
   PenaltyWorkspace(const Model& model, const PenaltyModel& body);
 
   math::BlockLdl ldl;
-  std::vector<RowValue> rows;                              // of all constraints, by first_row
+  std::vector<RowValue> rows;                              // of all constraints, by first_row; then of gears
+  std::vector<GearRow> gears, factored_gears;              // their gradients, and those in the factors
   std::vector<RowGradient> factored;                       // G in the factors
   std::vector<double> modal, factored_modal;               // the same of m_k
   std::vector<double> target;                              // by row: what (2) or (3) asks of G u', with the sign of b
@@ -76,6 +78,7 @@ struct PenaltyWorkspace {
   std::vector<double> responses, response_multipliers;     // by row of the model: for its unit force alone
   std::vector<double> multipliers;                         // lambda, by row
   std::vector<double> no_target;                           // zeros
+  std::vector<double> rates;                               // G u less what laws prescribe, by row
   std::vector<double> qdot, udot, end_udot, displacement;  // of a step
   BodyState stage, sum;
   State stage_joints;

@@ -72,14 +72,14 @@ bool project(const Model& model, const BodyModel& body, BodyState& state, State&
     solve_violation(body, bws, [](const RowValue& row) { return row.g; });
     displace(body, state, bws);
     update_body_motion(model, state, ws);
-    evaluate_joints(model, body, ws, bws);
+    evaluate_joints(model, body, joints, ws, bws);
     left = drift(bws);
   }
   for (int i = 0; i < kMostBodyCorrections && left.rate > steady; ++i) {
     solve_violation(body, bws, [](const RowValue& row) { return row.rate; });
     add_bodies(body, bws.ldl, bws.solution, 1, state.u);
     update_body_motion(model, state, ws);
-    evaluate_joints(model, body, ws, bws);
+    evaluate_joints(model, body, joints, ws, bws);
     left = drift(bws);
   }
   find_joint_coordinates(model, ws, joints);
@@ -91,7 +91,7 @@ bool project_step(const Model& model, const BodyModel& body, double h, BodyState
   update_body_motion(model, state, ws);
   const double closed = kClosed * extent_of(ws).length;
   for (int i = 0; i < kMostBodyCorrections && bws.ldl.smallest_pivot() >= kNearSingular; ++i) {
-    evaluate_joints(model, body, ws, bws);
+    evaluate_joints(model, body, joints, ws, bws);
     if (!(drift(bws).position > closed)) break;
     solve_violation(body, bws, [](const RowValue& row) { return row.g; });
     displace(body, state, bws);

@@ -56,6 +56,7 @@ class Builder {
     add_joints();
     add_parts(def_, model_);
     for (const int joint : cut_joints(def_, tree_)) add_cut(joint);
+    add_gears(def_, model_);
     add_forces(def_, link_pose_, model_);
     add_dummies(def_, model_);
     add_elements(def_, poses_, model_);
@@ -66,7 +67,7 @@ class Builder {
     for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
     for (Cut& cut : model_.cuts) add_supports(model_, cut);
     // loops would be open by what their bodies sag
-    const bool has_loops = !model_.cuts.empty();
+    const bool has_loops = model_.has_closing_rows();
     if (has_loops) straighten_segments(model_, model_.start_q, model_.start_u);
     const bool is_settled = has_loops || (settle_segments(model_) && settle_modes(model_));
     report = assemble(model_);

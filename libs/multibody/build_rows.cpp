@@ -86,6 +86,10 @@ void add_path(Model& model, int link1, int link2) {
   }
 }
 
+void add_supports(Model& model, Gear& gear) {
+  std::tie(gear.first_support, gear.support_end) = add_support(model, std::array{gear.ends[0].link, gear.ends[1].link});
+}
+
 void add_supports(Model& model, Cut& cut) {
   std::tie(cut.first_support, cut.support_end) = add_support(model, std::array{cut.link1, cut.link2});
 }
@@ -122,12 +126,6 @@ std::vector<std::string> joint_rows(const MechanicsDef& mechanics) {
 }
 
 void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems) {
-  if (rows.size() > static_cast<std::size_t>(kMaxRows)) {
-    problems.push_back({"joints",
-                        std::to_string(rows.size()) + " actuators and joints with friction or limits",
-                        "at most " + std::to_string(kMaxRows),
-                        {}});
-  }
   Problems ignored;
   const std::vector<int> merged = merged_into(mechanics, find_tree(mechanics, ignored));
   const auto is_merged = [&](const std::string& body1, const std::string& body2) {

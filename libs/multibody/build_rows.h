@@ -12,6 +12,7 @@ void add_path(Model& model, int link1, int link2);
 
 // Links that a cut's rows reach on their way to Ground.
 void add_supports(Model& model, Cut& cut);
+void add_supports(Model& model, Gear& gear);
 
 // Appends the row of the element or joint with this name; pre-condition: validate_rows() found nothing.
 void add_row(const MechanicsDef& mechanics, const std::string& name, Model& model);

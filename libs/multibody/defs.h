@@ -19,6 +19,7 @@
 #include "multibody/elements/element_defs.h"
 #include "multibody/flexible/flexible_def.h"
 #include "multibody/flexible/segmented_def.h"
+#include "multibody/gears/gear_defs.h"
 #include "multibody/motions/motion_defs.h"
 #include "multibody/not_given.h"
 
@@ -222,6 +223,7 @@ struct MechanicsDef {
   std::vector<PartDummyDef> part_dummies;
   std::vector<ConstraintDummyDef> constraint_dummies;
   std::vector<MotionDef> motions;
+  std::vector<GearDef> gears;
   std::vector<FlexibleBodyDef> flexible_bodies;    // of the bodies of that type, once their files were read
   std::vector<SegmentedBodyDef> segmented_bodies;  // the same of segmented bodies
 };

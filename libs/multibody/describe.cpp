@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/index.h"
 #include "multibody/constraint.h"
 #include "multibody/field_tables.h"
 #include "multibody/observe.h"
@@ -84,6 +85,13 @@ Description describe(const Model& model) {
     text.driven.push_back(drive.name + " (" + joint + (drive.is_angle ? ", angle)" : ", displacement)"));
     if (drive.link > 0) --text.links[static_cast<std::size_t>(drive.link) - 1].degrees_of_freedom;
   }
+  for (const std::vector<Gear>* gears : {&model.gears, &model.idle_gears}) {
+    for (const Gear& gear : *gears) {
+      text.gears.push_back(fmt::format("{} ({}, {})", gear.name, model.joints[at(gear.ends[0].joint)].name,
+                                       model.joints[at(gear.ends[1].joint)].name));
+    }
+  }
+  for (const Gear& gear : model.idle_gears) text.idle_gears.push_back(gear.name);
   for (const FlexiblePart& part : model.parts) text.flexible.push_back(describe(model, part));
   for (const SegmentedPart& part : model.segmented) text.flexible.push_back(describe(part));
   for (const Cut& cut : model.cuts) {

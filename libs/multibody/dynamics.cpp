@@ -18,7 +18,7 @@ namespace {
 void prepare(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   if (!ws.loops.is_shown || !are_shown(model, q, u, ws)) {
     update_motion(model, q, u, ws);
-    evaluate_cuts(model, ws);
+    evaluate_cuts(model, q, u, ws);
   }
   std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
   apply_all(model, q, ws);
@@ -34,7 +34,7 @@ void forward_dynamics(const Model& model, std::span<const double> q, std::span<c
     apply_row_forces(model, ws);
   }
   factorize(model, ws);
-  if (!model.cuts.empty()) {
+  if (model.has_closing_rows()) {
     factorize_cuts(model, ws);
     close_loops(model, ws);
   }
@@ -124,7 +124,7 @@ bool finish_step(const Model& model, State& state, Workspace& ws, double h, std:
   impose_positions(model, ws, state.q);
   impose_speeds(model, ws, state.u);
   normalize_quaternions(model, state.q);
-  if (!model.cuts.empty()) is_closed = project(model, state.q, state.u, ws) && is_closed;
+  if (model.has_closing_rows()) is_closed = project(model, state.q, state.u, ws) && is_closed;
   if (ws.contact != nullptr && ws.contact->is_near) {
     update_motion(model, state.q, state.u, ws);
     accept_contacts(model, h, state, ws);

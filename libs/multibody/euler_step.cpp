@@ -79,12 +79,12 @@ bool advance_by_euler(const Model& model, State& state, Workspace& ws, double h,
   if (!row_forces.empty()) accelerations(model, ws, row_forces, ws.udot);
   const std::vector<double>& udot = row_forces.empty() ? ws.udot_free : ws.udot;
   for (std::size_t j = 0; j < state.u.size(); ++j) state.u[j] += h * udot[j];
-  if (!model.cuts.empty() && !is_near_singular(ws)) aim(model, h, state.u, ws);
+  if (model.has_closing_rows() && !is_near_singular(ws)) aim(model, h, state.u, ws);
   set_stage_time(model, state, h, ws);
   impose_speeds(model, ws, state.u);
   move_on(model, h, state.u, state.q, ws);
   impose_positions(model, ws, state.q);
-  const bool is_closed = model.cuts.empty() || project_step(model, h, state.q, state.u, ws);
+  const bool is_closed = !model.has_closing_rows() || project_step(model, h, state.q, state.u, ws);
   state.time += h;
   if (ws.contact != nullptr && ws.contact->is_near) {
     update_motion(model, state.q, state.u, ws);

@@ -4,6 +4,7 @@
 
 #include "multibody/contact_fields.h"
 #include "multibody/elements/element_fields.h"
+#include "multibody/gears/gear_fields.h"
 #include "multibody/joint_fields.h"
 #include "multibody/motions/motion_fields.h"
 
@@ -307,10 +308,10 @@ constexpr ElementType kDummyTypes[] = {
 }  // namespace
 
 std::span<const Section> sections() noexcept {
-  static const Section kSections[] = {{"bodies", kBodyTypes},          {"joints", joint_types()},
-                                      {"forces", kForceTypes},         {"dummies", kDummyTypes},
-                                      {"shapes", shape_types()},       {"contacts", contact_types()},
-                                      {"frictions", friction_types()}, {"motions", motion_types()}};
+  static const Section kSections[] = {
+      {"bodies", kBodyTypes},          {"joints", joint_types()},   {"forces", kForceTypes},
+      {"dummies", kDummyTypes},        {"shapes", shape_types()},   {"contacts", contact_types()},
+      {"frictions", friction_types()}, {"motions", motion_types()}, {"gears", gear_types()}};
   return kSections;
 }
 

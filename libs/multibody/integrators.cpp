@@ -258,7 +258,7 @@ void add_turning(LinkJoint joint, std::size_t u, std::vector<std::size_t>& turni
 bool close(const StageContext& at) noexcept {
   State& joints = at.moving.joints;
   if (at.moving.bodies != nullptr) return project(at.model, at.body, *at.moving.bodies, joints, at.ws, at.bws);
-  if (at.model.cuts.empty()) return true;
+  if (!at.model.has_closing_rows()) return true;
   renew_matrix(at.model, joints.q, joints.u, at.ws);
   return project(at.model, joints.q, joints.u, at.ws);
 }

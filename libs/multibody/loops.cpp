@@ -53,7 +53,7 @@ void find_step(const Model& model, Workspace& ws, Value value) noexcept {
 
 void show_rows(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   update_motion(model, q, u, ws);
-  evaluate_cuts(model, ws);
+  evaluate_cuts(model, q, u, ws);
   LoopWorkspace& loops = ws.loops;
   loops.is_shown = ws.drives.empty();
   std::copy(q.begin(), q.end(), loops.shown_q.begin());
@@ -94,7 +94,7 @@ void renew_matrix(const Model& model, std::span<const double> q, std::span<const
   update_coupled(model, ws);
   std::fill(ws.tau.begin(), ws.tau.end(), 0.0);
   factorize(model, ws);
-  evaluate_cuts(model, ws);
+  evaluate_cuts(model, q, u, ws);
   factorize_cuts(model, ws);
 }
 
@@ -105,12 +105,48 @@ bool are_shown(const Model& model, std::span<const double> q, std::span<const do
          std::equal(q.begin(), q.end(), loops.shown_q.begin()) && std::equal(u.begin(), u.end(), loops.shown_u.begin());
 }
 
-void evaluate_cuts(const Model& model, Workspace& ws) noexcept {
+void evaluate_cuts(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept {
   for (const Cut& cut : model.cuts) {
     evaluate(cut, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)], ws.drives,
              {ws.loops.rows.data() + cut.first_row, cut.rows.size()});
   }
+  const auto first = at(model.cut_row_count());
+  for (std::size_t k = 0; k < model.gears.size(); ++k) {
+    ws.loops.rows[first + k] = gear_value(model.gears[k], model, q, u, ws);
+  }
 }
+
+namespace {
+
+// back-solves of the gears' rows
+void pass_gears_back(const Model& model, Workspace& ws) noexcept {
+  LoopWorkspace& loops = ws.loops;
+  const std::size_t speeds = ws.udot.size();
+  std::size_t row = at(model.cut_row_count());
+  for (const Gear& gear : model.gears) {
+    for (const GearEnd& end : gear.ends) loops.gear_tau[at(end.u)] += end.factor;
+    const std::span<const int> supports(model.supports.data() + gear.first_support,
+                                        model.supports.data() + gear.support_end);
+    solve_backward(model, ws, supports, loops.gear_tau, {loops.residual.data() + row * speeds, speeds},
+                   {loops.rate.data() + row * speeds, speeds});
+    for (const GearEnd& end : gear.ends) loops.gear_tau[at(end.u)] = 0;
+    ++row;
+  }
+}
+
+// g'' of every closing row with u' = 0: visit(row, value)
+template <typename Visit>
+void for_each_known(const Model& model, const Workspace& ws, Visit visit) noexcept {
+  for (const Cut& cut : model.cuts) {
+    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+      const std::size_t k = at(cut.first_row) + i;
+      visit(k, acceleration_of(ws.loops.rows[k], ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]));
+    }
+  }
+  for (auto k = at(model.cut_row_count()); k < ws.loops.rows.size(); ++k) visit(k, ws.loops.rows[k].bias);
+}
+
+}  // namespace
 
 void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcept {
   LoopWorkspace& loops = ws.loops;
@@ -123,6 +159,7 @@ void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcep
                    {loops.residual.data() + first * speeds, count * speeds},
                    {loops.rate.data() + first * speeds, count * speeds});
   }
+  pass_gears_back(model, ws);
   for (std::size_t k = 0; k < rows; ++k) {
     for (std::size_t l = 0; l <= k; ++l) {
       loops.W[k * rows + l] = product(loops.residual.data() + k * speeds, loops.rate.data() + l * speeds, speeds);
@@ -134,13 +171,9 @@ void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcep
 void close_loops(const Model& model, Workspace& ws) noexcept {
   LoopWorkspace& loops = ws.loops;
   const std::size_t speeds = ws.udot.size();
-  for (const Cut& cut : model.cuts) {
-    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
-      const std::size_t k = at(cut.first_row) + i;
-      const double known = acceleration_of(loops.rows[k], ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]);
-      loops.multipliers[k] = -(known + product(loops.rate.data() + k * speeds, ws.residual.data(), speeds));
-    }
-  }
+  for_each_known(model, ws, [&](std::size_t k, double known) {
+    loops.multipliers[k] = -(known + product(loops.rate.data() + k * speeds, ws.residual.data(), speeds));
+  });
   loops.factor.solve(loops.multipliers);
   add_rows(loops, ws.residual);
 }
@@ -195,20 +228,20 @@ void shift(const Model& model, Workspace& ws) noexcept {
       row.g += change_of(row, cut, ws);
     }
   }
+  std::size_t row = at(model.cut_row_count());
+  for (const Gear& gear : model.gears) {
+    for (const GearEnd& end : gear.ends) ws.loops.rows[row].g += end.factor * ws.loops.step[at(end.u)];
+    ++row;
+  }
 }
 
 }  // namespace
 
 void aim(const Model& model, double h, std::span<double> u, Workspace& ws) noexcept {
   LoopWorkspace& loops = ws.loops;
-  for (const Cut& cut : model.cuts) {
-    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
-      const std::size_t k = at(cut.first_row) + i;
-      const RowValue& row = loops.rows[k];
-      const double b = acceleration_of(row, ws.motion[at(cut.link1)], ws.motion[at(cut.link2)]);
-      loops.multipliers[k] = 0.5 * h * b - row.rate - row.g / h;
-    }
-  }
+  for_each_known(model, ws, [&](std::size_t k, double b) {
+    loops.multipliers[k] = 0.5 * h * b - loops.rows[k].rate - loops.rows[k].g / h;
+  });
   find_step(model, ws);
   for (std::size_t j = 0; j < u.size(); ++j) u[j] += loops.step[j];
 }

@@ -1,4 +1,4 @@
-// Joints that are cut: their forces in the recursion, and the way back onto them. Internal to the library.
+// Joints that are cut, and gears: their forces in the recursion, and the way back onto them. Internal to the library.
 //
 //   u' = u'_0 + M^-1 J^T f,   J u' + b = 0   ->   W f = -(b + J u'_0),   W = J M^-1 J^T                (1)
 // M and u'_0 are the tree's, so that W comes from one back-solve a row, as those of ports do (rows.h). (1) keeps g'' at
@@ -15,8 +15,8 @@
 
 namespace slew::multibody {
 
-// Values of the rows of all cuts, from the motion.
-void evaluate_cuts(const Model& model, Workspace& ws) noexcept;
+// Values of the rows of all cuts and gears, from the motion of these coordinates and speeds.
+void evaluate_cuts(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;
 
 // Whether the motion and the rows' values are those of q and u already, to the bit. A projection leaves them so where
 // its last look found nothing to correct: the next step's start need not make them again. Never with prescribed motion.

@@ -32,12 +32,12 @@
 #include "multibody/flexible/flexible_part.h"
 #include "multibody/flexible/node_dummies.h"
 #include "multibody/flexible/segmented_part.h"
+#include "multibody/gears/gear.h"
 #include "multibody/joint_law.h"
 #include "multibody/motions/drive.h"
 
 namespace slew::multibody {
 
-inline constexpr int kMaxRows = 32;
 inline constexpr int kMaxJointRows = 6;
 
 enum class LinkJoint : std::uint8_t { revolute, prismatic, spherical, floating, universal, cylindrical, node };
@@ -262,7 +262,9 @@ struct Model {
   std::vector<Joint> joints;
   std::vector<Cut> cuts;
   std::vector<Drive> drives;          // prescribed coordinates, in the order of the scene
-  std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by row of the cuts: a mobility that is not near zero
+  std::vector<Gear> gears;            // whose rows come after those of the cuts
+  std::vector<Gear> idle_gears;       // that the joints and the gears before them imply wherever the mechanism goes
+  std::vector<double> cut_reference;  // 1/kg or 1/(kg m2), by closing row: a mobility that is not near zero
   std::vector<int> body_order;        // bodies from Ground outwards, parents first; without Ground
   std::vector<double> start_q, start_u;
   std::vector<char> start_is_given;  // by u: 1 where the scene gives the speed
@@ -274,11 +276,14 @@ struct Model {
   [[nodiscard]] int cut_row_count() const noexcept {
     return cuts.empty() ? 0 : cuts.back().first_row + static_cast<int>(cuts.back().rows.size());
   }
+  // Rows that the tree's coordinates do not hold by themselves: of cuts, then one for each gear.
+  [[nodiscard]] bool has_closing_rows() const noexcept { return !cuts.empty() || !gears.empty(); }
+  [[nodiscard]] int closing_row_count() const noexcept { return cut_row_count() + static_cast<int>(gears.size()); }
   // Where the mechanism is not in a singular position.
   [[nodiscard]] int degrees_of_freedom() const noexcept {
     int prescribed = 0;
     for (const Drive& drive : drives) prescribed += drive.link > 0 ? 1 : 0;
-    return speed_count() - cut_row_count() - prescribed;
+    return speed_count() - closing_row_count() - prescribed;
   }
   [[nodiscard]] int row_count() const noexcept { return static_cast<int>(rows.size()); }
 };
@@ -296,7 +301,7 @@ void for_each_mode(const Model& model, Visit visit) noexcept {
 // Labels of the joints' coordinates that need a row because they have friction or limits, in the scene's order.
 [[nodiscard]] std::vector<std::string> joint_rows(const MechanicsDef& mechanics);
 
-// Appends a problem for every name that is no force and no coordinate of a joint, and for too many rows.
+// Appends a problem for every name that is no force and no coordinate of a joint.
 void validate_rows(const MechanicsDef& mechanics, std::span<const std::string> rows, Problems& problems);
 
 // Pre-condition: validate() and validate_rows() found nothing. rows: names of translational forces (coordinate:

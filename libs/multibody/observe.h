@@ -68,8 +68,9 @@ std::size_t read_contact_variables(const Model& model, const Workspace& ws, std:
 [[nodiscard]] bool is_bent_far(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
 
 // What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
-// scene, in the order and form of JointReaction; then "Motion.torque" or "Motion.force", and "Motion.power", for each
-// prescribed motion. Allocates.
+// scene, in the order and form of JointReaction; then "Gear.torque_1" and "Gear.force_2" (or "Gear.torque_2" ...), the
+// forces of a gear's row on the coordinates of its joints; then "Motion.torque" or "Motion.force", and "Motion.power",
+// for each prescribed motion. Allocates.
 [[nodiscard]] std::vector<ElementVariable> reaction_variables(const Model& model);
 
 // Values in the order of reaction_variables(), after joint_reactions() with this workspace. Does not allocate.
@@ -105,6 +106,8 @@ struct Description {
   int rows = 0;
   std::vector<LinkDescription> links;
   std::vector<CutDescription> cuts;
+  std::vector<std::string> gears;            // "Slew_Gear (Pinion_Axis, Slew_Joint)", those that others imply too
+  std::vector<std::string> idle_gears;       // names of these
   std::vector<std::string> driven;           // "Crank_Drive (Crank_Pin, angle)": prescribed motions
   std::vector<std::string> flexible;         // "Boom: 2 modes of 51.29 to 51.29 rad/s, nodes Boom.Node20 in use"
   std::vector<std::string> fixed_to_ground;  // bodies that do not move

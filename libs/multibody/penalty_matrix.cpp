@@ -56,6 +56,27 @@ class PenaltyMatrix final : public LinkMatrix {
   math::BlockLdl& ldl_;
 };
 
+// products of the ends of a gear's row; a link at two of them has both, and the products of the two
+void add_gear(const GearRow& gear, double alpha, math::BlockLdl& ldl) noexcept {
+  for (std::size_t i = 0; i < gear.links.size(); ++i) {
+    for (std::size_t j = 0; j < gear.links.size(); ++j) {
+      const int row = gear.links[i], column = gear.links[j];
+      // each pair of different links once
+      if (row <= 0 || column <= 0 || row < column) continue;
+      const auto one = spatial(gear.v[i], gear.w[i]), two = spatial(gear.v[j], gear.w[j]);
+      SpatialBlock block;
+      for (std::size_t r = 0; r < kLinkSpeeds; ++r) {
+        for (std::size_t c = 0; c < kLinkSpeeds; ++c) block[r * kLinkSpeeds + c] = alpha * (one[r] * two[c]);
+      }
+      if (row == column) {
+        ldl.add_diagonal(row - 1, block);
+      } else {
+        ldl.add_coupling(row - 1, column - 1, block);
+      }
+    }
+  }
+}
+
 // the squares of a node's rows along its modes, and their products with the links
 void add_modal_rows(const Model& model, const PenaltyModel& body, std::size_t index, PenaltyWorkspace& pws) noexcept {
   const Constraint& constraint = body.constraints[index];
@@ -135,6 +156,9 @@ bool factorize(const Model& model, const PenaltyModel& body, Workspace& ws, Pena
     blocks.put(constraint.link1, constraint.link2, pws.ldl);
     if (constraint.node >= 0) add_modal_rows(model, body, i, pws);
   }
+  pws.factored_gears = pws.gears;
+  const std::size_t first_gear = pws.rows.size() - pws.gears.size();
+  for (std::size_t k = 0; k < pws.gears.size(); ++k) add_gear(pws.gears[k], body.alpha[first_gear + k], pws.ldl);
   if (h > 0) {
     const ChangeWeights weights{.position = 0.25 * h * h, .rate = 0.5 * h};
     // contacts are resolved by parts of the sub-step instead (contact_rate.h)

@@ -21,17 +21,42 @@ void see(const Model& model, const PenaltyModel& body, const BodyState& state, S
 void put_free_forces(const Model& model, const Workspace& ws, std::span<double> y) noexcept;
 void subtract_mass(const Model& model, const Workspace& ws, std::span<const double> x, std::span<double> y) noexcept;
 
-// One row's gradient over the speeds: of two links, and of modes. row: among all rows.
+// One row's gradient over the speeds: of two links, and of modes; or of a gear. row: among all rows.
 struct HeldRow {
   int link1 = 0, link2 = 0;
   const RowGradient& G;
   std::span<const double> modal;
   std::size_t place = 0;  // of the first of these modes among the speeds
+  const GearRow* gear = nullptr;
 };
 [[nodiscard]] HeldRow present_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std::size_t constraint,
                                   std::size_t row) noexcept;
 [[nodiscard]] HeldRow factored_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std::size_t constraint,
                                    std::size_t row) noexcept;
+
+// visit(row, its gradient) for the rows of all constraints, then of gears.
+template <typename Visit>
+void for_each_factored(const PenaltyModel& body, const PenaltyWorkspace& pws, Visit visit) noexcept {
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < body.constraints.size(); ++i) {
+    for (; row < static_cast<std::size_t>(body.first_row[i + 1]); ++row) visit(row, factored_row(body, pws, i, row));
+  }
+  for (const GearRow& gear : pws.factored_gears) {
+    visit(row, HeldRow{0, 0, pws.factored[row], {}, 0, &gear});
+    ++row;
+  }
+}
+template <typename Visit>
+void for_each_present(const PenaltyModel& body, const PenaltyWorkspace& pws, Visit visit) noexcept {
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < body.constraints.size(); ++i) {
+    for (; row < static_cast<std::size_t>(body.first_row[i + 1]); ++row) visit(row, present_row(body, pws, i, row));
+  }
+  for (const GearRow& gear : pws.gears) {
+    visit(row, HeldRow{0, 0, pws.rows[row].G, {}, 0, &gear});
+    ++row;
+  }
+}
 
 // y -= G^T mu for one row, and G x.
 void subtract_row(const HeldRow& row, double mu, std::span<double> y) noexcept;

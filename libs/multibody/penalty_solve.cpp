@@ -78,6 +78,12 @@ void see(const Model& model, const PenaltyModel& body, const BodyState& state, S
     }
     evaluate(constraint, ws.motion[at(constraint.link1)], ws.motion[at(constraint.link2)], ws.drives, rows);
   }
+  const std::size_t first_gear = pws.rows.size() - pws.gears.size();
+  for (std::size_t k = 0; k < pws.gears.size(); ++k) {
+    const GearRow row = gear_row(model, body.bodies, joints, model.gears[k], ws);
+    pws.gears[k] = row;
+    pws.rows[first_gear + k] = {.g = row.g, .rate = row.rate, .bias = row.bias, .G = {}};
+  }
 }
 
 void put_free_forces(const Model& model, const Workspace& ws, std::span<double> y) noexcept {
@@ -146,6 +152,13 @@ HeldRow factored_row(const PenaltyModel& body, const PenaltyWorkspace& pws, std:
 }
 
 void subtract_row(const HeldRow& row, double mu, std::span<double> y) noexcept {
+  if (row.gear != nullptr) {
+    for_each_end(*row.gear, [&](int link, Vec3 v, Vec3 w) {
+      subtract(v * mu, link_at(y, link));
+      subtract(w * mu, link_at(y, link) + 3);
+    });
+    return;
+  }
   if (row.link1 > 0) {
     subtract(row.G.v1 * mu, link_at(y, row.link1));
     subtract(row.G.w1 * mu, link_at(y, row.link1) + 3);
@@ -159,6 +172,12 @@ void subtract_row(const HeldRow& row, double mu, std::span<double> y) noexcept {
 
 double along(const HeldRow& row, std::span<const double> x) noexcept {
   double sum = 0;
+  if (row.gear != nullptr) {
+    for_each_end(*row.gear, [&](int link, Vec3 v, Vec3 w) {
+      sum += dot(v, vector_at(link_at(x, link))) + dot(w, vector_at(link_at(x, link) + 3));
+    });
+    return sum;
+  }
   if (row.link1 > 0) {
     const double* one = link_at(x, row.link1);
     sum += dot(row.G.v1, vector_at(one)) + dot(row.G.w1, vector_at(one + 3));
@@ -182,14 +201,11 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
     // what is left of the equation of motion; of a plain penalty the multipliers are those of x alone
     std::copy(force.begin(), force.end(), pws.correction.begin());
     if (round > 0) subtract_mass(model, ws, x, pws.correction);
-    for (std::size_t i = 0; i < body.constraints.size(); ++i) {
-      for (std::size_t row = at(body.first_row[i]); row < at(body.first_row[i + 1]); ++row) {
-        const HeldRow held = factored_row(body, pws, i, row);
-        const double missed = body.alpha[row] * (along(held, x) + target[row]);
-        if (is_exact && round > 0) multipliers[row] += missed;
-        subtract_row(held, multipliers[row] + missed, pws.correction);
-      }
-    }
+    for_each_factored(body, pws, [&](std::size_t row, const HeldRow& held) {
+      const double missed = body.alpha[row] * (along(held, x) + target[row]);
+      if (is_exact && round > 0) multipliers[row] += missed;
+      subtract_row(held, multipliers[row] + missed, pws.correction);
+    });
     pws.ldl.solve(pws.correction);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] += pws.correction[k];
     // forces that nearly balance leave less than their rounding
@@ -199,11 +215,9 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
     if (share <= kRounding || (share <= kSmall && size > kStalled * before)) break;
     before = size;
   }
-  for (std::size_t i = 0; i < body.constraints.size(); ++i) {
-    for (std::size_t row = at(body.first_row[i]); row < at(body.first_row[i + 1]); ++row) {
-      multipliers[row] += body.alpha[row] * (along(factored_row(body, pws, i, row), x) + target[row]);
-    }
-  }
+  for_each_factored(body, pws, [&](std::size_t row, const HeldRow& held) {
+    multipliers[row] += body.alpha[row] * (along(held, x) + target[row]);
+  });
   return share <= kSettled;
 }
 

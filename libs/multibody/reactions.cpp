@@ -263,6 +263,7 @@ void joint_reactions(const Model& model, const State& state, Workspace& ws, std:
   sum.subtract_rows(row_forces, reactions);
   sum.subtract_cuts(ws.loops.multipliers, reactions);
   sum.pass_on(reactions);
+  std::copy_n(ws.loops.multipliers.begin() + model.cut_row_count(), model.gears.size(), ws.gear_force.begin());
   if (!ws.unit_shares.empty()) take_smallest(model, ws, reactions);
 }
 

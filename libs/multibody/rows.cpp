@@ -153,7 +153,7 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
   const std::span<const int> supports(model.supports.data() + row.first_support,
                                       model.supports.data() + row.support_end);
   const std::span<double> residual(ws.row_residual.data() + k * dof, dof), rate(ws.row_rate.data() + k * dof, dof);
-  if (model.cuts.empty()) return solve_backward(model, ws, supports, J, residual, rate);
+  if (!model.has_closing_rows()) return solve_backward(model, ws, supports, J, residual, rate);
   // loops reach links outside of the row's supports
   std::fill(residual.begin(), residual.end(), 0.0);
   std::fill(rate.begin(), rate.end(), 0.0);

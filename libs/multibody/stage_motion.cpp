@@ -129,7 +129,7 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
   update_coupled(at.model, at.ws);
   apply_elements(at.model, at.ws);
   apply_contacts(at.model, at.ws);
-  evaluate_joints(at.model, at.body, at.ws, at.bws);
+  evaluate_joints(at.model, at.body, at.moving.joints, at.ws, at.bws);
   put_bias(at.model, at.body, at.ws, at.bws);
   // rows of joints with the accelerations, where put_bias() left them out
   for (std::size_t i = 1; i < at.body.joints.size(); ++i) {
@@ -145,6 +145,14 @@ void find_residual(const StageContext& at, const Stage& stage) noexcept {
       const double* rate = modal_rate(at).data() + modal_place(at.model, part);
       for (std::size_t j = 0; j < modes; ++j) x[k] -= m[j] * rate[j];
     }
+  }
+  for (std::size_t k = 0; k < at.bws.gears.size(); ++k) {
+    const GearRow& gear = at.bws.gears[k];
+    double g = gear.bias;
+    for_each_end(gear, [&](int link, Vec3 v, Vec3 w) {
+      g += dot(v, at.ws.motion[slew::at(link)].a) + dot(w, at.ws.motion[slew::at(link)].alpha);
+    });
+    at.bws.solution[slew::at(at.bws.ldl.first_row(at.body.first_gear + static_cast<int>(k)))] = -g;
   }
   for (std::size_t k = 0; k < at.model.rows.size(); ++k) {
     if (at.ws.row_is_active[k] == 0) continue;

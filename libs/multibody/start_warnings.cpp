@@ -23,7 +23,7 @@ constexpr double kLargestGyration = 3;
 
 void find_start_deflections(const Model& model, Problems& warnings) {
   for (const FlexiblePart& part : model.parts) {
-    if (!model.cuts.empty() && !part.is_start_given) {
+    if (model.has_closing_rows() && !part.is_start_given) {
       warnings.push_back(
           {part.name + ".flex_modes",
            "the body starts undeformed, moves as a rigid one that the joints allow, and swings: in a mechanism with "
@@ -47,7 +47,7 @@ void find_start_bends(const Model& model, Problems& warnings) {
   Workspace ws(model);
   observe(model, start_state(model), ws);
   for (const SegmentedPart& part : model.segmented) {
-    if (!part.is_free || (!model.cuts.empty() && part.start == SegmentStart::at_rest)) {
+    if (!part.is_free || (model.has_closing_rows() && part.start == SegmentStart::at_rest)) {
       warnings.push_back({part.name + ".segments",
                           part.is_free ? "the body starts undeformed, moves as a rigid one that the joints allow, and "
                                          "swings: in a mechanism with loops no rest is looked for"
@@ -90,11 +90,16 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
   }
   find_start_deflections(model, warnings);
   find_start_bends(model, warnings);
-  for (const CutDescription& cut : describe(model).cuts) {
+  const Description description = describe(model);
+  for (const CutDescription& cut : description.cuts) {
     for (const std::string& row : cut.redundant) {
       warnings.push_back({cut.joint, row + " is redundant: other joints hold it already",
                           "nothing to do: motion is right, reactions are the smallest that fit", ""});
     }
+  }
+  for (const std::string& gear : description.idle_gears) {
+    warnings.push_back({gear, "the gear is redundant: joints or other gears hold its ratio already",
+                        "nothing to do: motion is right, this gear carries no force", ""});
   }
 }
 

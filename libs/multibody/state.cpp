@@ -36,12 +36,14 @@ Workspace::Workspace(const Model& model)
   row_rate.assign(rows * nu, 0.0);
   row_W.assign(rows * rows, 0.0);
   row_is_active.assign(rows, 1);
-  const auto cut_rows = static_cast<std::size_t>(model.cut_row_count());
+  const auto cut_rows = static_cast<std::size_t>(model.closing_row_count());
   loops.rows.resize(cut_rows);
   for (auto* by_row : {&loops.residual, &loops.rate}) by_row->assign(cut_rows * nu, 0.0);
   loops.W.assign(cut_rows * cut_rows, 0.0);
   loops.multipliers.assign(cut_rows, 0.0);
   loops.step.assign(nu, 0.0);
+  loops.gear_tau.assign(nu, 0.0);
+  gear_force.assign(model.gears.size(), 0.0);
   loops.shown_q.assign(nq, 0.0);
   loops.shown_u.assign(nu, 0.0);
   loops.factor = math::Semidefinite(static_cast<int>(cut_rows));

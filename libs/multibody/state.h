@@ -82,13 +82,14 @@ struct JointReaction {
   Triple force{}, moment{};
 };
 
-// Rows of all cut joints, filled by close_loops().
+// Rows of all cut joints, then of gears, filled by close_loops().
 struct LoopWorkspace {
   std::vector<RowValue> rows;
   std::vector<double> residual, rate;  // rows x speeds, of solve_backward()
   std::vector<double> W;               // rows x rows
   std::vector<double> multipliers;     // by row: the force that closes it, -lambda [N or N m]
   std::vector<double> step;            // by u
+  std::vector<double> gear_tau;        // by u, zero but while a gear's row is passed back
   math::Semidefinite factor;
   std::vector<double> shown_q, shown_u;  // coordinates that the motion and the rows' values were last made of,
   bool is_shown = false;                 // if they still are: see are_shown() of loops.h
@@ -130,6 +131,8 @@ struct Workspace {
   std::vector<double> unit_residual, unit_rate, unit_products, unit_shares;
   math::Semidefinite unit_factor;
   std::vector<JointReaction> found_reactions;
+
+  std::vector<double> gear_force;  // by gear, of the last joint_reactions() [N or N m]
 
   // by body of the scene: what joint_reactions() gathers, about the origin of the body's link
   std::vector<math::Vec3> body_n, body_f;

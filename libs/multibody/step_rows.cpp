@@ -77,7 +77,7 @@ bool StepRows::evaluate(const Model& model, const State& state, const Workspace&
   update_motion(model, state.q, state.u, ws_);
   forget_accelerations(ws_);
   apply_all(model, state.q, ws_);
-  evaluate_joints(model, body_, ws_, bws_);
+  evaluate_joints(model, body_, state, ws_, bws_);
   fill_matrix(model, body_, ws_, bws_);
   BodyMatrix matrix(body_, bws_.ldl);
   const ChangeWeights weights{.position = 0.5 * H * H, .rate = H};

@@ -54,18 +54,25 @@ bool is_driven(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
                      [&joint](const MotionDef& motion) { return motion.joint == joint.name; });
 }
 
+// their angles count whole turns, which those of cut joints do not
+bool is_geared(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
+  return std::any_of(mechanics.gears.begin(), mechanics.gears.end(),
+                     [&joint](const GearDef& gear) { return gear.joint1 == joint.name || gear.joint2 == joint.name; });
+}
+
 // joints are taken into the tree by classes, within a class in the order of the file
 int class_of(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
   if (joint.type == JointType::fixed || joint.type == JointType::node) return 0;
-  if (joint.type == JointType::floating) return 3;
-  return needs_coordinates(joint) || is_driven(mechanics, joint) ? 1 : 2;
+  if (is_geared(mechanics, joint)) return 1;
+  if (joint.type == JointType::floating) return 4;
+  return needs_coordinates(joint) || is_driven(mechanics, joint) ? 2 : 3;
 }
 
 // is_barred, by joint: must be cut
 std::vector<bool> choose_tree(const MechanicsDef& mechanics, const std::vector<bool>& is_barred) {
   std::vector<bool> is_in_tree(mechanics.joints.size(), false);
   Groups groups(mechanics.bodies.size() + 1);
-  for (int choice = 0; choice < 4; ++choice) {
+  for (int choice = 0; choice < 5; ++choice) {
     for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
       const JointDef& joint = mechanics.joints[j];
       const auto [body1, body2] = bodies_of(mechanics, joint);

@@ -16,6 +16,8 @@
 #include "multibody/field_tables.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/flexible/validate_flexible.h"
+#include "multibody/gears/gear_fields.h"
+#include "multibody/gears/validate_gears.h"
 #include "multibody/integrators.h"
 #include "multibody/joint_axes.h"
 #include "multibody/motions/motion_fields.h"
@@ -31,8 +33,6 @@ namespace {
 using math::Mat3;
 using math::Vec3;
 
-// printed inertias are rounded: share of the largest moment by which a rule may fail
-constexpr double kInertiaTolerance = 1e-6;
 // directions f1 and g1 are exact in practice; more than this is a wrong number
 constexpr double kRightAngleTolerance = 1e-3;
 // transverse moments of a cylinder as CAD prints them
@@ -70,6 +70,7 @@ class Validator {
     for (const StaticDummyDef& dummy : m_.static_dummies) check_dummy(dummy);
     if (!check_elements(m_, problems_)) references_hold_ = false;
     if (!check_motions(m_, problems_)) references_hold_ = false;
+    if (!check_gears(m_, problems_)) references_hold_ = false;
     if (!references_hold_) return;
     const std::size_t before = problems_.size();
     const std::vector<Pose> poses = start_poses(m_, problems_);
@@ -78,6 +79,7 @@ class Validator {
       check_start(m_, poses, tree, problems_);
       check_element_starts(m_, poses, problems_);
       check_motion_starts(m_, poses, problems_);
+      check_gear_starts(m_, poses, tree, problems_);
     }
     if (problems_.empty()) validate_contacts(m_, problems_);
     if (problems_.empty()) find_singular_joints(given_, problems_);
@@ -136,6 +138,7 @@ class Validator {
     check_all(m_.contacts, 5, first);
     check_all(m_.frictions, 6, first);
     check_all(m_.motions, 7, motion_type_index);
+    check_all(m_.gears, 8, [](const GearDef& gear) { return static_cast<std::size_t>(gear.kind); });
     for_each_element_list(m_, [&](const auto& defs, std::size_t section, std::size_t type) {
       check_all(defs, section, [type](const auto&) { return type; });
     });
@@ -242,6 +245,7 @@ class Validator {
     collect(m_.force_dummies);
     collect(m_.static_dummies);
     collect(m_.motions);
+    collect(m_.gears);
     for_each_element_list(m_, [&](const auto& defs, int, int) { collect(defs); });
     std::sort(names.begin(), names.end());
     for (std::size_t i = 1; i < names.size(); ++i) {
@@ -372,12 +376,22 @@ class Validator {
           "a load below the buckling load, or a start of its own");
     }
     for (const AssemblyReport::Row& row : report.held_twice) {
+      if (!row.gear.empty()) {
+        add(row.gear, "the prescribed motions hold both joints of this gear already",
+            "one motion for a chain of gears");
+        continue;
+      }
       add(model.joints[static_cast<std::size_t>(row.joint)].name,
           fmt::format("the prescribed motions hold what this joint holds: {}", row.what),
           "fewer prescribed motions than the loop has freedoms");
     }
     if (!report.held_twice.empty()) return;
     for (const AssemblyReport::Row& row : report.open) {
+      if (!row.gear.empty()) {
+        add(row.gear, fmt::format("the gear misses its ratio by {:.3g} after all bodies were moved", row.violation),
+            "ratios, offsets and poses that loops and other gears allow");
+        continue;
+      }
       add(model.joints[static_cast<std::size_t>(row.joint)].name,
           fmt::format("the joint cannot be closed: {} is off by {:.3g} after all bodies were moved", row.what,
                       row.violation),

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <cstddef>
 
@@ -183,6 +185,15 @@ std::vector<ElementVariable> reaction_variables(const Model& model) {
     names.add_triple(joint.name + ".reaction_force", Dimension::force);
     names.add_triple(joint.name + ".reaction_moment", Dimension::torque);
   }
+  for (const std::vector<Gear>* gears : {&model.gears, &model.idle_gears}) {
+    for (const Gear& gear : *gears) {
+      for (std::size_t end = 0; end < 2; ++end) {
+        const bool is_torque = is_angle(gear.kind, end);
+        names.add(fmt::format("{}.{}_{}", gear.name, is_torque ? "torque" : "force", end + 1),
+                  is_torque ? Dimension::torque : Dimension::force);
+      }
+    }
+  }
   list_drive_forces(model, names.list());
   return names.take();
 }
@@ -194,6 +205,11 @@ void read_reactions(const Model& model, const Workspace& ws, std::span<const dou
     out.put(reaction.force);
     out.put(reaction.moment);
   }
+  for (std::size_t k = 0; k < model.gears.size(); ++k) {
+    for (std::size_t end = 0; end < 2; ++end) out.put(gear_force(model, ws, k, end));
+  }
+  // the others carry nothing
+  for (std::size_t k = 0; k < 2 * model.idle_gears.size(); ++k) out.put(0);
   for (std::size_t k = 0; k < model.drives.size(); ++k) {
     const double force = drive_force(model, ws, k, row_forces, reactions);
     out.put(force);

@@ -31,8 +31,8 @@
 namespace slew::scene {
 namespace {
 
-constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies",   "joints",    "forces", "dummies",
-                                                   "shapes",    "contacts", "frictions", "motions"};
+constexpr std::string_view kMechanicsSections[] = {"mechanics", "bodies",   "joints",    "forces",  "dummies",
+                                                   "shapes",    "contacts", "frictions", "motions", "gears"};
 constexpr std::string_view kHydraulicsSections[] = {"hydraulics", "volumes", "components", "curves"};
 constexpr std::string_view kTypeKey[] = {"type"};
 

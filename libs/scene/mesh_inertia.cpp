@@ -28,10 +28,17 @@ constexpr std::string_view kDerivedKeys[] = {"center_of_mass", "products", "iner
 constexpr std::string_view kInertiaKey = "inertia";
 constexpr std::string_view kMassKey = "mass";
 
+// m, m3, kg/m3: beyond these it is another unit; a bucket-wheel excavator is 225 m long
+constexpr double kLargestSize = 1000, kSmallestSize = 1e-5, kLargestVolume = 1e6;
+constexpr double kLightest = 0.1, kDensest = 25000;
+// m, kg: beyond these it may be; single bodies of machines are smaller
+constexpr double kLikelySize = 100, kLikelySmall = 1e-3, kLikelyMass = 1e6;
+
 constexpr Field kFields[] = {
     field<&MeshInertiaDef::mesh>(
-        "mesh", {.presence = Presence::required,
-                 .doc = "closed mesh in the scene's folder, .stl, .obj, .dae or .3ds; it may hold several solids"}),
+        "mesh",
+        {.presence = Presence::required,
+         .doc = "closed mesh in the scene's folder, .stl, .obj, .dae, .3ds, .glb or .fbx; it may hold several solids"}),
     field<&MeshInertiaDef::mesh_unit>("mesh_unit", {.dimension = length,
                                                     .range = kPositive,
                                                     .presence = Presence::required,
@@ -52,6 +59,11 @@ constexpr Field kFields[] = {
                                           .range = kPositive,
                                           .change = Change::live,
                                           .doc = "mass of the solid, spread evenly; either this or density"}),
+    field<&MeshInertiaDef::shell_thickness>(
+        "shell_thickness",
+        {.dimension = length,
+         .range = kNotNegative,
+         .doc = "of a sheet on the mesh's surface, which may be open, instead of the solid inside; 0: the solid"}),
 };
 
 bool is_one_of(std::string_view key, std::span<const std::string_view> keys) {
@@ -74,8 +86,11 @@ class MeshBodyReader {
     if (context_.report.size() > problems) return;
     const std::optional<contact::MeshDef> mesh = read_solid();
     if (!mesh) return;
-    contact::MassProperties solid = contact::mass_properties(*mesh, 1);
+    const contact::MassProperties solid = def_.shell_thickness > 0
+                                              ? contact::shell_properties(*mesh, def_.shell_thickness, 1)
+                                              : contact::mass_properties(*mesh, 1);
     const double density_of_solid = std::isfinite(def_.density) ? def_.density : def_.mass / solid.volume;
+    if (!is_plausible(*mesh, solid, density_of_solid, scene)) return;
     put(solid, density_of_solid, body);
     scene.mesh_inertias.push_back({element_.key, def_.mesh, solid.volume, density_of_solid});
   }
@@ -134,11 +149,37 @@ class MeshBodyReader {
         element_.key, {.path = path, .unit = def_.mesh_unit, .up_in_file = def_.mesh_up, .up = def_.body_up}, problems);
     for (const Problem& problem : problems) complain(mark, "mesh", {problem.what, problem.expected, ""});
     if (!problems.empty()) return std::nullopt;
-    if (const auto fault = contact::find_closed_fault(mesh)) {
-      complain(mark, "mesh", {fmt::format("'{}' encloses no solid: {}", def_.mesh, fault->what), fault->expected, ""});
+    if (const auto fault =
+            def_.shell_thickness > 0 ? contact::find_number_fault(mesh) : contact::find_solid_fault(mesh)) {
+      complain(mark, "mesh",
+               {fmt::format("'{}' encloses no solid: {}", def_.mesh, fault->what),
+                fault->expected + "; shell_thickness takes the surface as a sheet", ""});
       return std::nullopt;
     }
     return mesh;
+  }
+
+  // Against a unit of the file that is another: whatever is refused, no machine is like that.
+  bool is_plausible(const contact::MeshDef& mesh, const contact::MassProperties& solid, double density_of_solid,
+                    Scene& scene) {
+    const auto [low, high] = contact::extent_of(mesh);
+    const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+    const double mass = solid.volume * density_of_solid;
+    const std::string found =
+        fmt::format("the mesh is {:.3g} x {:.3g} x {:.3g} m, {:.4g} m3, {:.4g} kg at {:.4g} kg/m3", high[0] - low[0],
+                    high[1] - low[1], high[2] - low[2], solid.volume, mass, density_of_solid);
+    const Mark mark = element_.value.find("mesh_unit")->value.mark;
+    if (!(solid.volume > 0) || size > kLargestSize || size < kSmallestSize || solid.volume > kLargestVolume ||
+        density_of_solid > kDensest || density_of_solid < kLightest) {
+      complain(mark, "mesh_unit", {found, "the length of one unit of the file, such as 1 mm or 1 m", ""});
+      return false;
+    }
+    if (size <= kLikelySize && size >= kLikelySmall && mass <= kLikelyMass) return true;
+    scene.warnings.push_back(context_.report
+                                 .at(mark, element_.key + ".mesh_unit",
+                                     {found, "the length of one unit of the file, such as 1 mm or 1 m", ""})
+                                 .text());
+    return true;
   }
 
   // (1)

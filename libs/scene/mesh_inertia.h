@@ -6,6 +6,9 @@
 // mesh's axes at mesh_position p_BM in the body's frame, turned by mesh_orientation R_BM, and the mesh's own centre c_M
 // and inertia I_M about it (contact/mass_properties.h):
 //   c_B = p_BM + R_BM c_M        I_B = R_BM I_M R_BM^T                                             (1)
+// With shell_thickness the solid is a sheet of that thickness on the mesh's surface, closed or open.
+// Sizes and masses that no machine has are refused, unlikely ones become warnings: a file in millimetres that is read
+// in metres is 1e9 times as heavy.
 // The scene keeps the numbers, not the mesh: the session's text and a recording hold them, nodes need no file.
 // Not covered: more than one density; a mesh that cuts through itself is not found (docs/models/contact_meshes.md).
 #pragma once
@@ -28,7 +31,7 @@ inline constexpr std::string_view kFromMesh = "from_mesh";
 
 // What stands in the place of inertia, products, inertia_about and center_of_mass.
 struct MeshInertiaDef {
-  std::string mesh{};                            // file in the scene's folder: .stl, .obj, .dae, .3ds
+  std::string mesh{};                            // file in the scene's folder, of the endings of mesh_file.h
   double mesh_unit = 1;                          // m per unit of the file, > 0
   contact::UpAxis mesh_up = contact::UpAxis::y;  // that axis of the file ...
   contact::UpAxis body_up = contact::UpAxis::y;  // ... becomes this axis, by a quarter turn about x
@@ -36,6 +39,7 @@ struct MeshInertiaDef {
   Triple mesh_orientation{};                     // rad, successive rotations z, x', z''
   double density = multibody::kUnlimited;        // kg/m3, > 0; infinite: from the mass
   double mass = multibody::kUnlimited;           // kg, > 0; infinite: from the density
+  double shell_thickness = 0;                    // m; > 0: a sheet on the mesh's surface, which may be open
 };
 
 [[nodiscard]] std::span<const Field> mesh_inertia_fields() noexcept;

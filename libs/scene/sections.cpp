@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "multibody/field_tables.h"
+#include "multibody/gears/gear_fields.h"
 #include "multibody/joint_fields.h"
 #include "multibody/motions/motion_fields.h"
 
@@ -161,6 +162,10 @@ void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& m
     const std::size_t type = multibody::motion_type_index(motion);
     refs.push_back(ref(table_of("motions", multibody::motion_types()[type].name), motion.name, &motion));
   }
+  for (multibody::GearDef& gear : mechanics.gears) {
+    const auto type = static_cast<std::size_t>(gear.kind);
+    refs.push_back(ref(table_of("gears", multibody::gear_types()[type].name), gear.name, &gear));
+  }
 }
 
 }  // namespace
@@ -177,17 +182,17 @@ const std::vector<SingleTable>& single_tables() {
 }
 
 const std::vector<std::string_view>& element_sections() {
-  static const std::vector<std::string_view> names = {"bodies",   "joints",    "forces",  "dummies", "shapes",
-                                                      "contacts", "frictions", "motions", "volumes", "components",
-                                                      "curves",   "inputs",    "plots"};
+  static const std::vector<std::string_view> names = {"bodies",     "joints",    "forces",  "dummies", "shapes",
+                                                      "contacts",   "frictions", "motions", "gears",   "volumes",
+                                                      "components", "curves",    "inputs",  "plots"};
   return names;
 }
 
 const std::vector<std::string_view>& top_level_keys() {
   static const std::vector<std::string_view> keys = {
-      "scene",      "description", "include", "assets",   "session",   "mechanics", "bodies",     "joints",
-      "forces",     "dummies",     "shapes",  "contacts", "frictions", "motions",   "hydraulics", "volumes",
-      "components", "curves",      "inputs",  "script",   "recording", "plots"};
+      "scene",   "description", "include", "assets",   "session",   "mechanics", "bodies", "joints",
+      "forces",  "dummies",     "shapes",  "contacts", "frictions", "motions",   "gears",  "hydraulics",
+      "volumes", "components",  "curves",  "inputs",   "script",    "recording", "plots"};
   return keys;
 }
 

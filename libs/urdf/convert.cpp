@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/index.h"
 #include "math/euler_angles.h"
@@ -69,22 +70,18 @@ std::string shape_text(const Geometry& shape) {
 
 class Converter {
  public:
-  Converter(const Robot& robot, RootMount mount, const Folders& folders, const Complain& complain)
-      : robot_(robot), mount_(mount), folders_(folders), complain_(complain) {}
+  Converter(const Robot& robot, RootMount mount, const Folders& folders)
+      : robot_(robot), mount_(mount), folders_(folders) {}
 
   Conversion convert() {
     out_.notes = robot_.notes;
     out_.mechanics.gravity = {0, 0, -9.81};
-    bool is_sound = true;
-    places_ = find_places(robot_, mount_, [&](int line, std::string what, std::string expected) {
-      is_sound = false;
-      complain_(line, std::move(what), std::move(expected));
-    });
-    if (!is_sound) return std::move(out_);
+    places_ = find_places(robot_, mount_);
     name_all();
     resistance_ = resistance_of_joints(robot_);
     for (const int link : robot_.order) add_link(link);
     for (const int link : robot_.order) add_joint_of(link);
+    for (const int link : robot_.order) add_gear_of(link);
     std::stable_sort(out_.notes.begin(), out_.notes.end(),
                      [](const Note& a, const Note& b) { return a.line < b.line; });
     return std::move(out_);
@@ -112,8 +109,9 @@ class Converter {
     return taken;
   }
 
-  // a fixed joint to a link that rides on the same body is in the places already
+  // a fixed joint to a link that rides on a body is in the places already
   [[nodiscard]] bool is_made(const Joint& joint) const {
+    if (joint.kind == JointKind::fixed && places_[at(joint.child)].body != joint.child) return false;
     return places_[at(joint.parent)].body != places_[at(joint.child)].body;
   }
 
@@ -183,7 +181,7 @@ class Converter {
     const std::string where = fmt::format("on {} at {} m, orientation (x, y', z'') {} rad", body_name(place.body),
                                           triple_text(position_of(place.pose)),
                                           triple_text(without_rounding(math::angles_xyz(place.pose.R), 1)));
-    out_.notes.push_back({link.line, fmt::format("link '{}' has no mass: a frame {}", link.name, where)});
+    out_.notes.push_back({link.line, fmt::format("link '{}' has no mass of its own: a frame {}", link.name, where)});
     add_shapes(link, body_name(place.body), place.pose);
   }
 
@@ -239,6 +237,33 @@ class Converter {
     if (joint.kind == JointKind::planar) add_parallel(joint, def);
   }
 
+  // (4), in the scene's coordinates
+  void add_gear_of(int link) {
+    const int index = robot_.parent_joint[at(link)];
+    if (index < 0 || !robot_.joints[at(index)].mimic) return;
+    const Joint& joint = robot_.joints[at(index)];
+    const Mimic& mimic = *joint.mimic;
+    const Joint& leader = robot_.joints[at(mimic.leader)];
+    const double offset = mimic.offset + mimic.multiplier * leader.turns - joint.turns;
+    multibody::GearDef def;
+    def.name = names_.take(joint.name + "_gear", "_mimic");
+    def.joint1 = joint_names_[at(mimic.leader)];
+    def.joint2 = joint_names_[at(index)];
+    def.ratio = mimic.multiplier;
+    def.offset = offset;
+    if (!leader.is_angle() && joint.is_angle()) {
+      // a rack turns its pinion
+      std::swap(def.joint1, def.joint2);
+      def.ratio = 1 / mimic.multiplier;
+      def.offset = -offset / mimic.multiplier;
+    }
+    def.kind = !leader.is_angle() && !joint.is_angle() ? multibody::GearKind::slides
+               : leader.is_angle() && joint.is_angle() ? multibody::GearKind::gear
+                                                       : multibody::GearKind::rack_and_pinion;
+    out_.lines.emplace(def.name, mimic.line);
+    out_.mechanics.gears.push_back(def);
+  }
+
   // (3): the normal of the body at a right angle to two directions of the plane
   void add_parallel(const Joint& joint, const JointDef& in_plane) {
     const Mat3 R_1A = math::rotation_xyz(in_plane.orientation1);
@@ -271,27 +296,22 @@ class Converter {
     if (joint.kind == JointKind::fixed || joint.kind == JointKind::planar) return;
     def.viscous_friction = joint.damping;
     def.coulomb_friction = joint.friction;
-    if (joint.kind == JointKind::continuous) return;
-    def.limit_min = joint.lower - whole_turns(joint);
-    def.limit_max = joint.upper - whole_turns(joint);
-    if (resistance <= 0) {
-      complain_(joint.line, fmt::format("joint '{}': what hangs on it has no inertia about its axis", joint.name),
-                "an inertia that the limits can stop");
+    if (joint.is_limited) {
+      def.limit_min = joint.lower;
+      def.limit_max = joint.upper;
+      // (2)
+      def.limit_stiffness = kStopFrequency * kStopFrequency * resistance;
+      def.limit_damping = 2 * kStopFrequency * resistance;
     }
-    // (2)
-    def.limit_stiffness = kStopFrequency * kStopFrequency * resistance;
-    def.limit_damping = 2 * kStopFrequency * resistance;
-    const double start = start_coordinate(joint);
-    if (start == 0) return;
+    if (joint.start == 0) return;
     const char* unit = joint.kind == JointKind::prismatic ? "m" : "rad";
-    out_.notes.push_back(
-        {joint.line, fmt::format("joint '{}' starts at {} {}: its limits exclude 0", joint.name, start, unit)});
+    out_.notes.push_back({joint.line, fmt::format("joint '{}' starts at {} {}: {}", joint.name, joint.start, unit,
+                                                  joint.mimic ? "it follows another" : "the limits exclude 0")});
   }
 
   const Robot& robot_;
   RootMount mount_;
   const Folders& folders_;
-  const Complain& complain_;
   Conversion out_;
   SceneNames names_;
   std::vector<Place> places_;
@@ -301,8 +321,8 @@ class Converter {
 
 }  // namespace
 
-Conversion convert(const Robot& robot, RootMount mount, const Folders& folders, const Complain& complain) {
-  return Converter(robot, mount, folders, complain).convert();
+Conversion convert(const Robot& robot, RootMount mount, const Folders& folders) {
+  return Converter(robot, mount, folders).convert();
 }
 
 }  // namespace slew::urdf

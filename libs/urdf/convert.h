@@ -9,6 +9,8 @@
 // (2) stops the load critically damped, within about v/omega of the limit. damping and friction become viscous and
 // Coulomb friction. A planar joint with the normal n becomes three joints:
 //   point of the child in the parent's plane, and n_C at a right angle to two directions of that plane           (3)
+// and a joint that follows another (<mimic>), q_2 = a q_1 + b, a gear, whose coordinates may be whole turns less:
+//   q_2' = a q_1' + b + a turns_1 - turns_2                                                                    (4)
 #pragma once
 
 #include <map>
@@ -31,9 +33,10 @@ struct Conversion {
   std::map<std::string, int> lines;                          // of the URDF, by element
   std::map<std::string, contact::MeshDef> meshes;            // of shapes with a file, by shape
   std::vector<Note> notes;                                   // the robot's and those of the conversion, by line
+  std::vector<Note> changes{};                               // made on request before the conversion
 };
 
-// Complains about what has no counterpart.
-[[nodiscard]] Conversion convert(const Robot& robot, RootMount mount, const Folders& folders, const Complain& complain);
+// Pre-condition: find_starts() and settle_mass_properties() found nothing to complain about.
+[[nodiscard]] Conversion convert(const Robot& robot, RootMount mount, const Folders& folders);
 
 }  // namespace slew::urdf

@@ -57,19 +57,15 @@ double ElementValues::number(const XMLElement& element, const char* attribute, s
 double ElementValues::number_not_negative(const XMLElement& element, const char* attribute,
                                           std::optional<double> missing) {
   const double value = number(element, attribute, missing);
-  if (value < 0) complain(element, fmt::format("{} is {}", in_tag(element, attribute), value), "at least 0");
-  return value;
+  if (value < -kRoundOff) {
+    complain(element, fmt::format("{} is {}", in_tag(element, attribute), value), "at least 0");
+  }
+  return std::max(value, 0.0);
 }
 
-double ElementValues::positive_number(const XMLElement& element, const char* attribute) {
-  // a value that could not be read has had its complaint
+double ElementValues::moment(const XMLElement& element, const char* attribute) {
   const double value = number(element, attribute, std::nullopt);
-  const char* text = element.Attribute(attribute);
-  std::string_view rest = text == nullptr ? "" : text;
-  if (value <= 0 && take_number(rest)) {
-    complain(element, fmt::format("{} is {}", in_tag(element, attribute), value), "more than 0");
-  }
-  return value;
+  return value < 0 && value >= -kRoundOff ? 0 : value;
 }
 
 Triple ElementValues::triple(const XMLElement& element, const char* attribute, std::optional<Triple> missing) {

@@ -17,6 +17,9 @@ namespace slew::urdf {
 
 using tinyxml2::XMLElement;
 
+// kg, kg m2: less than a grain of dust has; exporters print -5e-20 where they mean 0.
+inline constexpr double kRoundOff = 1e-15;
+
 class ElementValues {
  public:
   ElementValues(int source, scene::Report& report, std::vector<Note>& notes)
@@ -38,7 +41,8 @@ class ElementValues {
   [[nodiscard]] double number(const XMLElement& element, const char* attribute, std::optional<double> missing);
   [[nodiscard]] double number_not_negative(const XMLElement& element, const char* attribute,
                                            std::optional<double> missing);
-  [[nodiscard]] double positive_number(const XMLElement& element, const char* attribute);
+  // A value that rounding made negative is 0: kRoundOff.
+  [[nodiscard]] double moment(const XMLElement& element, const char* attribute);
   [[nodiscard]] Triple triple(const XMLElement& element, const char* attribute, std::optional<Triple> missing);
 
   // The element's <origin>, or none.

@@ -18,6 +18,7 @@
 #include "scene/source.h"
 #include "urdf/convert.h"
 #include "urdf/reader.h"
+#include "urdf/starts.h"
 
 namespace slew::urdf {
 namespace {
@@ -70,9 +71,13 @@ void write_element(std::string& text, const ElementRef& element, const Conversio
 
 std::string header(const std::string& file, const Conversion& conversion) {
   std::string text = fmt::format("# From {} by `slewring import urdf`: a starting point.\n", one_line(file));
-  if (conversion.notes.empty()) return text;
-  text += "#\n# What the file says otherwise or besides, by its lines:\n";
-  for (const Note& note : conversion.notes) text += fmt::format("# {:>5}  {}\n", note.line, one_line(note.text));
+  const auto list = [&text](const char* what, const std::vector<Note>& notes) {
+    if (notes.empty()) return;
+    text += fmt::format("#\n# {}, by its lines:\n", what);
+    for (const Note& note : notes) text += fmt::format("# {:>5}  {}\n", note.line, one_line(note.text));
+  };
+  list("Changed on request", conversion.changes);
+  list("What the file says otherwise or besides", conversion.notes);
   return text;
 }
 
@@ -121,20 +126,28 @@ void check(const std::string& text, const Conversion& conversion, int source, sc
 
 }  // namespace
 
-Import import_file(const std::string& path, RootMount mount, const std::string& scene_file) {
+Import import_file(const std::string& path, RootMount mount, const std::string& scene_file, const Repairs& repairs) {
   scene::Report report;
   const int source = report.add_source(path);
   const auto stop_at_problems = [&] {
     if (!report.is_clean()) report.fail(scene::kMaxReportedProblems);
   };
   const std::optional<scene::SourceText> text = scene::read_source(path, source, report);
-  const std::optional<Robot> robot = text ? read_robot(*text, report) : std::nullopt;
+  std::optional<Robot> robot = text ? read_robot(*text, report) : std::nullopt;
   stop_at_problems();
   const std::filesystem::path file(path), scene(scene_file.empty() ? path : scene_file);
   const Folders folders{file.parent_path(), scene.parent_path()};
-  Conversion conversion = convert(*robot, mount, folders, [&](int line, std::string what, std::string expected) {
+  find_starts(*robot);
+  std::vector<Note> changes;
+  settle_mass_properties(*robot, mount, repairs, changes, [&](int line, std::string what, std::string expected) {
     report.add({source, line, 0}, "", {std::move(what), std::move(expected), ""});
   });
+  stop_at_problems();
+  Conversion conversion = convert(*robot, mount, folders);
+  conversion.changes = std::move(changes);
+  if (conversion.mechanics.bodies.empty()) {
+    report.add({source, 0, 0}, "", {"no link of the robot has mass", "a machine: <inertial> in its links", ""});
+  }
   stop_at_problems();
   Import result;
   const std::string name = file.filename().string();
@@ -142,6 +155,7 @@ Import import_file(const std::string& path, RootMount mount, const std::string& 
   check(text_without_files(name, robot->name, conversion), conversion, source, report);
   stop_at_problems();
   result.notes = std::move(conversion.notes);
+  result.changes = std::move(conversion.changes);
   result.bodies = conversion.mechanics.bodies.size();
   result.joints = conversion.mechanics.joints.size();
   result.shapes = conversion.mechanics.shapes.size();

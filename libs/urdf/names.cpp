@@ -6,13 +6,14 @@
 #include "multibody/defs.h"
 #include "scene/defs.h"
 #include "scene/sections.h"
+#include "urdf/transliteration.h"
 
 namespace slew::urdf {
 namespace {
 
 // a name of letters, digits and _ that begins with a letter or _
 std::string word_of(const std::string& name) {
-  std::string word = name;
+  std::string word = in_ascii(name);
   for (char& c : word) {
     const bool is_kept = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (!is_kept) c = '_';
@@ -21,8 +22,13 @@ std::string word_of(const std::string& name) {
   return word;
 }
 
+// Long words lose their middle: names of parts differ at both ends ("..._left", "..._right").
 std::string joined(const std::string& word, const std::string& end) {
-  return word.substr(0, scene::kMaxNameLength - std::min(end.size(), scene::kMaxNameLength)) + end;
+  const std::size_t room = scene::kMaxNameLength - std::min(end.size(), scene::kMaxNameLength);
+  if (word.size() <= room) return word + end;
+  if (room < 3) return word.substr(0, room) + end;
+  const std::size_t tail = room / 2, head = room - tail - 1;
+  return word.substr(0, head) + '_' + word.substr(word.size() - tail) + end;
 }
 
 }  // namespace

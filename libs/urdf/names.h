@@ -6,8 +6,8 @@
 
 namespace slew::urdf {
 
-// Gives every name once. Characters that a scene does not take become _, what is too long is cut, what is taken or
-// reserved gets `suffix`, then a number.
+// Gives every name once. Other scripts are transliterated, other characters that a scene does not take become _, what
+// is too long loses its middle, what is taken or reserved gets `suffix`, then a number.
 class SceneNames {
  public:
   SceneNames();

@@ -15,14 +15,15 @@ using math::Vec3;
 
 namespace {
 
-// rad, how near to half a turn rounding may take a start to the other side
-constexpr double kHalfTurn = 1e-9;
+// share of what hangs on a joint below which its inertia about the axis is rounding
+constexpr double kNoInertia = 1e-12;
 
-// Links that move as one: by link, the one nearest to the root, and the link's frame in that one's.
-struct Group {
-  int head = 0;
-  Pose pose;
-};
+Mat3 parallel_axes(double mass, Vec3 r) {
+  const double square = dot(r, r);
+  return (Mat3::diagonal(square, square, square) - outer(r, r)) * mass;
+}
+
+}  // namespace
 
 std::vector<Group> find_groups(const Robot& robot) {
   std::vector<Group> groups(robot.links.size());
@@ -38,40 +39,30 @@ std::vector<Group> find_groups(const Robot& robot) {
   return groups;
 }
 
-// Mass, first moment and inertia of rigid bodies together, about the origin of a link's frame, in its axes.
-struct Lump {
-  double mass = 0;  // kg
-  Vec3 h;           // kg m
-  Mat3 I;           // kg m2
-};
-
-Mat3 parallel_axes(double mass, Vec3 r) {
-  const double square = dot(r, r);
-  return (Mat3::diagonal(square, square, square) - outer(r, r)) * mass;
-}
-
-void add_inertial(Lump& lump, const Inertial& inertial) {
-  const Pose pose = pose_of(inertial.origin);
+Mat3 tensor_of(const Inertial& inertial) noexcept {
   const auto [xx, yy, zz] = inertial.moments;
   const auto [xy, xz, yz] = inertial.products;
-  const Mat3 tensor{Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)};
-  lump.mass += inertial.mass;
-  lump.h += pose.p * inertial.mass;
-  lump.I += pose.R * tensor * transpose(pose.R) + parallel_axes(inertial.mass, pose.p);
+  return {Vec3(xx, xy, xz), Vec3(xy, yy, yz), Vec3(xz, yz, zz)};
 }
 
-// a lump of another frame, whose pose in this one is given
-void add_lump(Lump& lump, const Lump& other, const Pose& pose) {
-  if (other.mass == 0) return;
-  const Vec3 centre = other.h * (1 / other.mass);
-  const Mat3 central = other.I - parallel_axes(other.mass, centre);
+Lump lump_of(const Inertial& inertial) noexcept {
+  const Pose pose = pose_of(inertial.origin);
+  return {.mass = inertial.mass,
+          .h = pose.p * inertial.mass,
+          .I = pose.R * tensor_of(inertial) * transpose(pose.R) + parallel_axes(inertial.mass, pose.p)};
+}
+
+Mat3 central_inertia(const Lump& lump) noexcept {
+  return lump.mass > 0 ? lump.I - parallel_axes(lump.mass, lump.h * (1 / lump.mass)) : lump.I;
+}
+
+void add_lump(Lump& lump, const Lump& other, const Pose& pose) noexcept {
+  const Vec3 centre = other.mass > 0 ? other.h * (1 / other.mass) : Vec3();
   const Vec3 r = pose.p + pose.R * centre;
   lump.mass += other.mass;
   lump.h += r * other.mass;
-  lump.I += pose.R * central * transpose(pose.R) + parallel_axes(other.mass, r);
+  lump.I += pose.R * central_inertia(other) * transpose(pose.R) + parallel_axes(other.mass, r);
 }
-
-}  // namespace
 
 Pose pose_of(const Origin& origin) noexcept {
   const auto [roll, pitch, yaw] = origin.rpy;
@@ -107,7 +98,7 @@ Triple orientation_of(const Pose& pose) noexcept {
   return without_rounding(math::angles_zxz(pose.R), 1);
 }
 
-std::vector<Place> find_places(const Robot& robot, RootMount mount, const Complain& complain) {
+std::vector<Place> find_places(const Robot& robot, RootMount mount) {
   const std::vector<Group> groups = find_groups(robot);
   // the first body of each group, by its head
   std::vector<int> carrier(robot.links.size(), kOnGround);
@@ -125,10 +116,6 @@ std::vector<Place> find_places(const Robot& robot, RootMount mount, const Compla
       places[at(link)] = {link, {}};
     } else if (is_on_ground) {
       places[at(link)] = {kOnGround, group.pose};
-    } else if (body == kOnGround) {
-      if (group.head != link) continue;
-      complain(robot.links[at(link)].line, fmt::format("link '{}' moves and has no mass", robot.links[at(link)].name),
-               "an <inertial> in it or in a link fixed to it; 1e-9 kg where the mass should not matter");
     } else {
       places[at(link)] = {body, inverse(groups[at(body)].pose) * group.pose};
     }
@@ -136,23 +123,9 @@ std::vector<Place> find_places(const Robot& robot, RootMount mount, const Compla
   return places;
 }
 
-double whole_turns(const Joint& joint) noexcept {
-  if (joint.kind != JointKind::revolute || (joint.lower <= 0 && joint.upper >= 0)) return 0;
-  return 2 * M_PI * std::round((joint.lower + joint.upper) / 2 / (2 * M_PI));
-}
-
-double start_coordinate(const Joint& joint) noexcept {
-  if (joint.kind != JointKind::revolute && joint.kind != JointKind::prismatic) return 0;
-  if (joint.lower <= 0 && joint.upper >= 0) return 0;
-  const double middle = (joint.lower + joint.upper) / 2 - whole_turns(joint);
-  // half a turn is one way round as much as the other
-  const bool is_half_turn = joint.kind == JointKind::revolute && std::abs(middle) > M_PI - kHalfTurn;
-  return is_half_turn ? middle - std::copysign((joint.upper - joint.lower) / 4, middle) : middle;
-}
-
 Pose start_pose(const Joint& joint) noexcept {
   Pose pose = pose_of(joint.origin);
-  const double q = start_coordinate(joint);
+  const double q = joint.start;
   if (q == 0) return pose;
   const Vec3 axis(joint.axis);
   if (joint.kind == JointKind::prismatic) return pose * Pose{Mat3::identity(), axis * q};
@@ -162,17 +135,31 @@ Pose start_pose(const Joint& joint) noexcept {
   return pose * Pose{Mat3::identity() + a * s + a * a * (1 - c), {}};
 }
 
+void fix(Joint& joint) noexcept {
+  if (joint.start != 0) {
+    const Pose pose = start_pose(joint);
+    const Mat3& R = pose.R;  // Rz(yaw) Ry(pitch) Rx(roll)
+    joint.origin.xyz = pose.p.array();
+    joint.origin.rpy = {std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2))),
+                        std::atan2(R(1, 0), R(0, 0))};
+  }
+  joint.kind = JointKind::fixed;
+  joint.mimic.reset();
+  joint.start = joint.turns = 0;
+}
+
 std::vector<double> resistance_of_joints(const Robot& robot) {
   std::vector<Lump> lumps(robot.links.size());
   std::vector<double> resistance(robot.joints.size(), 0.0);
   for (auto link = robot.order.rbegin(); link != robot.order.rend(); ++link) {
     Lump& lump = lumps[at(*link)];
-    if (robot.links[at(*link)].inertial) add_inertial(lump, *robot.links[at(*link)].inertial);
+    if (robot.links[at(*link)].inertial) add_lump(lump, lump_of(*robot.links[at(*link)].inertial), {});
     const int index = robot.parent_joint[at(*link)];
     if (index < 0) continue;
     const Joint& joint = robot.joints[at(index)];
     const Vec3 axis(joint.axis);
-    resistance[at(index)] = joint.kind == JointKind::prismatic ? lump.mass : dot(axis, lump.I * axis);
+    const double turning = dot(axis, lump.I * axis), all = lump.I(0, 0) + lump.I(1, 1) + lump.I(2, 2);
+    resistance[at(index)] = joint.kind == JointKind::prismatic ? lump.mass : turning > kNoInertia * all ? turning : 0;
     if (joint.kind != JointKind::floating) add_lump(lumps[at(joint.parent)], lump, start_pose(joint));
   }
   return resistance;

@@ -8,7 +8,6 @@
 
 #include "multibody/topology.h"
 #include "urdf/robot.h"
-#include "urdf/tree.h"
 
 namespace slew::urdf {
 
@@ -33,19 +32,35 @@ struct Place {
 [[nodiscard]] Triple position_of(const Pose& pose) noexcept;     // m
 [[nodiscard]] Triple orientation_of(const Pose& pose) noexcept;  // rad, Euler z-x'-z''
 
-// By link. Complains about moving groups without mass.
-[[nodiscard]] std::vector<Place> find_places(const Robot& robot, RootMount mount, const Complain& complain);
+// Links that move as one: by link, the one nearest to the root, and the link's frame in that one's.
+struct Group {
+  int head = 0;
+  Pose pose;
+};
+[[nodiscard]] std::vector<Group> find_groups(const Robot& robot);
 
-// Coordinate of a joint at the start [rad or m]: 0 where the limits allow it, else the middle between them (a
-// quarter of their distance off where that is half a turn).
-[[nodiscard]] double start_coordinate(const Joint& joint) noexcept;
+// Mass, first moment and inertia of rigid bodies together, about the origin of a link's frame, in its axes.
+struct Lump {
+  double mass = 0;  // kg
+  math::Vec3 h;     // kg m
+  math::Mat3 I;     // kg m2
+};
+void add_lump(Lump& lump, const Lump& other, const Pose& pose) noexcept;  // of another frame, whose pose is given
+[[nodiscard]] Lump lump_of(const Inertial& inertial) noexcept;
+[[nodiscard]] math::Mat3 tensor_of(const Inertial& inertial) noexcept;  // about its centre, in its own axes
+[[nodiscard]] math::Mat3 central_inertia(const Lump& lump) noexcept;    // about the centre of mass
 
-// Child's frame in the parent's at the start, limits moved by whole turns so that the start lies within half a turn.
+// By link. Pre-condition: every group that moves has mass (mass_properties.h).
+[[nodiscard]] std::vector<Place> find_places(const Robot& robot, RootMount mount);
+
+// Child's frame in the parent's at the start.
 [[nodiscard]] Pose start_pose(const Joint& joint) noexcept;
-[[nodiscard]] double whole_turns(const Joint& joint) noexcept;  // rad, a multiple of 2 pi
+
+// The joint stays where it starts.
+void fix(Joint& joint) noexcept;
 
 // What hangs on a joint resists: its inertia about the axis [kg m2], or its mass [kg] along it, at the start. What
-// floating joints leave free does not count.
+// floating joints leave free does not count. 0 where that is rounding only.
 [[nodiscard]] std::vector<double> resistance_of_joints(const Robot& robot);
 
 }  // namespace slew::urdf

@@ -20,12 +20,8 @@ constexpr std::pair<std::string_view, JointKind> kJointKinds[] = {
     {"fixed", JointKind::fixed},       {"floating", JointKind::floating},     {"planar", JointKind::planar}};
 constexpr const char* kKindList = "revolute, continuous, prismatic, fixed, floating or planar";
 
-bool has_coordinate(JointKind kind) {
-  return kind == JointKind::revolute || kind == JointKind::continuous || kind == JointKind::prismatic;
-}
-
-bool has_axis(JointKind kind) {
-  return has_coordinate(kind) || kind == JointKind::planar;
+bool has_axis(const Joint& joint) {
+  return joint.has_coordinate() || joint.kind == JointKind::planar;
 }
 
 bool has_limits(JointKind kind) {
@@ -40,9 +36,12 @@ class Reader {
     const std::size_t problems = report_.size();
     read_root(root);
     if (report_.size() > problems) return std::nullopt;
-    find_tree(robot_, [&](int line, std::string what, std::string expected) {
+    const Complain complain = [&](int line, std::string what, std::string expected) {
       report_.add({source_, line, 0}, "", {std::move(what), std::move(expected), ""});
-    });
+    };
+    find_leaders(robot_, complain);
+    if (report_.size() > problems) return std::nullopt;
+    find_tree(robot_, complain);
     if (report_.size() > problems) return std::nullopt;
     return std::move(robot_);
   }
@@ -53,7 +52,7 @@ class Reader {
       values_.complain(root, fmt::format("the root element is <{}>", root.Name()), "<robot>, the root of a URDF file");
       return;
     }
-    if (auto name = values_.name(root, "name")) robot_.name = *name;
+    read_robot_name(root);
     // joints name links that may stand behind them
     for_each_child(root, [&](const XMLElement& child, std::string_view tag) {
       if (tag == "link") read_link(child);
@@ -71,6 +70,12 @@ class Reader {
     values_.set_owner("");
     note_once();
     if (robot_.links.empty()) values_.complain(root, "the robot has no links", "at least one <link>");
+  }
+
+  void read_robot_name(const XMLElement& root) {
+    const char* name = root.Attribute("name");
+    robot_.name = name == nullptr || *name == '\0' ? "robot" : name;
+    if (robot_.name != (name == nullptr ? "" : name)) values_.note(root, "the robot has no name: the scene is 'robot'");
   }
 
   template <typename Use>
@@ -134,23 +139,18 @@ class Reader {
         note_element(child);
       }
     });
-    if (report_.size() == problems && link.inertial && link.inertial->mass == 0) drop_inertial(link);
+    if (report_.size() == problems && link.inertial && is_nothing(*link.inertial)) link.inertial.reset();
     link_index_.emplace(*name, static_cast<int>(robot_.links.size()));
     robot_.links.push_back(std::move(link));
   }
 
-  // a mass of 0 with an inertia is a slip, without one it says that the link is a frame only
-  void drop_inertial(Link& link) {
-    const Inertial& i = *link.inertial;
-    for (const Triple& triple : {i.moments, i.products}) {
-      for (const double value : triple) {
-        if (value == 0) continue;
-        report_.add({source_, i.line, 0}, fmt::format("link '{}'", link.name),
-                    {"the mass is 0 and the inertia is not", "a mass, or no inertia", ""});
-        return;
-      }
+  // such a link is a frame
+  static bool is_nothing(const Inertial& inertial) {
+    double largest = inertial.mass;
+    for (const Triple& triple : {inertial.moments, inertial.products}) {
+      for (const double value : triple) largest = std::max(largest, std::abs(value));
     }
-    link.inertial.reset();
+    return largest <= kRoundOff;
   }
 
   Inertial read_inertial(const XMLElement& element) {
@@ -165,9 +165,8 @@ class Reader {
     if (tensor == nullptr) {
       values_.complain(element, "<inertial> has no <inertia>", "<inertia ixx=... ixy=... .../>; 0 for a point mass");
     } else {
-      inertial.moments = {values_.number_not_negative(*tensor, "ixx", std::nullopt),
-                          values_.number_not_negative(*tensor, "iyy", std::nullopt),
-                          values_.number_not_negative(*tensor, "izz", std::nullopt)};
+      inertial.moments = {values_.moment(*tensor, "ixx"), values_.moment(*tensor, "iyy"),
+                          values_.moment(*tensor, "izz")};
       inertial.products = {values_.number(*tensor, "ixy", 0), values_.number(*tensor, "ixz", 0),
                            values_.number(*tensor, "iyz", 0)};
     }
@@ -175,6 +174,7 @@ class Reader {
   }
 
   void read_shape(const XMLElement& element, Geometry::Use use, Link& link) {
+    const std::size_t problems = report_.size();
     Geometry shape{.use = use, .origin = values_.origin(element), .file = {}, .line = element.GetLineNum()};
     if (const XMLElement* material = element.FirstChildElement("material")) note_material(*material);
     const XMLElement* geometry = element.FirstChildElement("geometry");
@@ -189,11 +189,11 @@ class Reader {
       shape.size = values_.triple(*kind, "size", std::nullopt);
     } else if (tag == "sphere") {
       shape.kind = Geometry::Kind::sphere;
-      shape.radius = values_.positive_number(*kind, "radius");
+      shape.radius = values_.number(*kind, "radius", std::nullopt);
     } else if (tag == "cylinder" || tag == "capsule") {
       shape.kind = tag == "cylinder" ? Geometry::Kind::cylinder : Geometry::Kind::capsule;
-      shape.radius = values_.positive_number(*kind, "radius");
-      shape.length = values_.positive_number(*kind, "length");
+      shape.radius = values_.number(*kind, "radius", std::nullopt);
+      shape.length = values_.number(*kind, "length", std::nullopt);
     } else if (tag == "mesh") {
       shape.kind = Geometry::Kind::mesh;
       shape.file = values_.name(*kind, "filename").value_or("");
@@ -202,7 +202,28 @@ class Reader {
       values_.complain(*kind, fmt::format("<{}> is no shape", tag), "box, sphere, cylinder, capsule or mesh");
       return;
     }
+    if (report_.size() > problems) return;
+    if (!has_extent(shape)) {
+      values_.note(*kind, fmt::format("<{}>: a {} without extent is not taken over", element.Name(), tag));
+      return;
+    }
     link.geometries.push_back(std::move(shape));
+  }
+
+  // placeholders of other programs have a size of 0
+  static bool has_extent(const Geometry& shape) {
+    switch (shape.kind) {
+      case Geometry::Kind::box:
+        return std::all_of(shape.size.begin(), shape.size.end(), [](double size) { return size > 0; });
+      case Geometry::Kind::sphere:
+        return shape.radius > 0;
+      case Geometry::Kind::cylinder:
+      case Geometry::Kind::capsule:
+        return shape.radius > 0 && shape.length > 0;
+      case Geometry::Kind::mesh:
+        break;
+    }
+    return true;
   }
 
   void read_joint(const XMLElement& element) {
@@ -222,17 +243,27 @@ class Reader {
     read_axis(element, joint);
     read_limit(element, joint);
     read_dynamics(element, joint);
+    read_mimic(element, joint);
     for_each_child(element, [&](const XMLElement& child, std::string_view tag) {
-      constexpr std::string_view kRead[] = {"origin", "parent", "child", "axis", "limit", "dynamics"};
-      if (tag == "mimic") {
-        const char* other = child.Attribute("joint");
-        values_.note(child, fmt::format("<mimic joint=\"{}\"> is not taken over: the joint moves by itself",
-                                        other == nullptr ? "" : other));
-      } else if (std::find(std::begin(kRead), std::end(kRead), tag) == std::end(kRead)) {
-        note_element(child);
-      }
+      constexpr std::string_view kRead[] = {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"};
+      if (std::find(std::begin(kRead), std::end(kRead), tag) == std::end(kRead)) note_element(child);
     });
     robot_.joints.push_back(std::move(joint));
+  }
+
+  void read_mimic(const XMLElement& element, Joint& joint) {
+    const XMLElement* mimic = element.FirstChildElement("mimic");
+    if (mimic == nullptr) return;
+    constexpr std::string_view kKnown[] = {"joint", "multiplier", "offset"};
+    values_.note_other_attributes(*mimic, kKnown);
+    const auto leader = values_.name(*mimic, "joint");
+    const double multiplier = values_.number(*mimic, "multiplier", 1), offset = values_.number(*mimic, "offset", 0);
+    if (!leader) return;
+    if (!joint.has_coordinate()) {
+      values_.note(*mimic, "<mimic> of a joint without a coordinate is not taken over");
+      return;
+    }
+    joint.mimic = {.joint = *leader, .multiplier = multiplier, .offset = offset, .line = mimic->GetLineNum()};
   }
 
   std::optional<JointKind> read_kind(const XMLElement& element) {
@@ -262,7 +293,7 @@ class Reader {
 
   void read_axis(const XMLElement& element, Joint& joint) {
     const XMLElement* axis = element.FirstChildElement("axis");
-    if (axis == nullptr || !has_axis(joint.kind)) return;
+    if (axis == nullptr || !has_axis(joint)) return;
     joint.axis = values_.triple(*axis, "xyz", Triple{1, 0, 0});
     const double size = std::hypot(joint.axis[0], joint.axis[1], joint.axis[2]);
     if (size == 0) values_.complain(*axis, "the axis is zero", "a direction");
@@ -273,10 +304,7 @@ class Reader {
   void read_limit(const XMLElement& element, Joint& joint) {
     const XMLElement* limit = element.FirstChildElement("limit");
     if (limit == nullptr) {
-      if (has_limits(joint.kind)) {
-        values_.complain(element, "has no <limit>",
-                         "<limit lower=... upper=.../>; type continuous turns without limits");
-      }
+      if (has_limits(joint.kind)) values_.note(element, "has no <limit>: it moves without limits");
       return;
     }
     constexpr std::string_view kKnown[] = {"lower", "upper", "effort", "velocity"};
@@ -289,10 +317,12 @@ class Reader {
     const std::size_t problems = report_.size();
     joint.lower = values_.number(*limit, "lower", 0);
     joint.upper = values_.number(*limit, "upper", 0);
-    if (report_.size() == problems && joint.lower >= joint.upper) {
-      values_.complain(*limit, fmt::format("the limits {} and {} leave no motion", joint.lower, joint.upper),
-                       "lower < upper; type fixed for a joint that does not move");
-    }
+    joint.is_limited = joint.lower < joint.upper;
+    if (report_.size() > problems || joint.is_limited) return;
+    values_.note(
+        *limit, fmt::format("the limits {} and {} leave no motion and are not taken over: the joint is {}", joint.lower,
+                            joint.upper, joint.kind == JointKind::revolute ? "continuous" : "without limits"));
+    if (joint.kind == JointKind::revolute) joint.kind = JointKind::continuous;
   }
 
   void read_dynamics(const XMLElement& element, Joint& joint) {
@@ -302,7 +332,7 @@ class Reader {
     values_.note_other_attributes(*dynamics, kKnown);
     joint.damping = values_.number_not_negative(*dynamics, "damping", 0);
     joint.friction = values_.number_not_negative(*dynamics, "friction", 0);
-    if (!has_coordinate(joint.kind) && (joint.damping > 0 || joint.friction > 0)) {
+    if (!joint.has_coordinate() && (joint.damping > 0 || joint.friction > 0)) {
       values_.note(*dynamics, "<dynamics> of a joint without a coordinate is not taken over");
     }
   }

@@ -43,12 +43,21 @@ struct Geometry {
 
 struct Link {
   std::string name;
-  std::optional<Inertial> inertial;  // none also for a mass of 0
+  std::optional<Inertial> inertial;  // none also for a mass and an inertia of 0
   std::vector<Geometry> geometries;
   int line = 0;
 };
 
 enum class JointKind { revolute, continuous, prismatic, fixed, floating, planar };
+
+// The coordinate follows that of another joint: q = multiplier q_other + offset.
+struct Mimic {
+  std::string joint;      // its name
+  int leader = -1;        // joint; after find_starts() one that moves by itself
+  double multiplier = 1;  // of URDF's units: rad or m over rad or m
+  double offset = 0;      // rad or m
+  int line = 0;
+};
 
 struct Joint {
   std::string name;
@@ -56,11 +65,19 @@ struct Joint {
   int parent = 0, child = 0;  // links
   Origin origin;
   Triple axis{1, 0, 0};  // unit, child's frame; of a planar joint the normal
-  double lower = 0;      // rad or m; revolute and prismatic
+  bool is_limited = false;
+  double lower = 0;  // rad or m
   double upper = 0;
   double damping = 0;   // N m s/rad or N s/m
   double friction = 0;  // N m or N
+  std::optional<Mimic> mimic{};
   int line = 0;
+  // filled by find_starts()
+  double start = 0;  // rad or m, coordinate at the start, of an angle within half a turn
+  double turns = 0;  // rad, a multiple of 2 pi that the scene's coordinate is less than URDF's
+
+  [[nodiscard]] bool is_angle() const noexcept { return kind == JointKind::revolute || kind == JointKind::continuous; }
+  [[nodiscard]] bool has_coordinate() const noexcept { return is_angle() || kind == JointKind::prismatic; }
 };
 
 // Something of the file that the scene does not hold.

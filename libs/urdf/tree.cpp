@@ -65,4 +65,44 @@ void find_tree(Robot& robot, const Complain& complain) {
   }
 }
 
+namespace {
+
+bool follows_itself(const Robot& robot, const Joint& joint) {
+  std::size_t steps = 0;
+  for (const Joint* next = &joint; next->mimic && next->mimic->leader >= 0; ++steps) {
+    if (steps > robot.joints.size()) return true;
+    next = &robot.joints[at(next->mimic->leader)];
+  }
+  return false;
+}
+
+}  // namespace
+
+void find_leaders(Robot& robot, const Complain& complain) {
+  for (Joint& joint : robot.joints) {
+    if (!joint.mimic) continue;
+    Mimic& mimic = *joint.mimic;
+    const auto found = std::find_if(robot.joints.begin(), robot.joints.end(),
+                                    [&mimic](const Joint& other) { return other.name == mimic.joint; });
+    if (found == robot.joints.end()) {
+      complain(mimic.line,
+               fmt::format("joint '{}': follows the joint '{}', which is not there", joint.name, mimic.joint),
+               "the name of a joint");
+    } else if (!found->has_coordinate()) {
+      robot.notes.push_back(
+          {mimic.line, fmt::format("joint '{}': <mimic> of '{}', which has no coordinate, is not taken "
+                                   "over",
+                                   joint.name, mimic.joint)});
+      joint.mimic.reset();
+    } else {
+      mimic.leader = static_cast<int>(found - robot.joints.begin());
+    }
+  }
+  for (const Joint& joint : robot.joints) {
+    if (!follows_itself(robot, joint)) continue;
+    complain(joint.mimic->line, fmt::format("joint '{}': follows itself", joint.name),
+             "a joint that moves by itself at the end of every chain of <mimic>");
+  }
+}
+
 }  // namespace slew::urdf

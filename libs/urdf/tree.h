@@ -1,4 +1,4 @@
-// The links of a robot as a tree.
+// The links of a robot as a tree, and the joints that follow others.
 #pragma once
 
 #include <functional>
@@ -14,5 +14,9 @@ using Complain = std::function<void(int line, std::string what, std::string expe
 // Fills root, parent_joint and order. Complains about a link with two parents, about none or several roots, and about
 // links in a circle.
 void find_tree(Robot& robot, const Complain& complain);
+
+// Fills the leader of every <mimic>. Complains about one that is not there and about joints that follow themselves; a
+// leader without a coordinate is noted, and its follower moves by itself.
+void find_leaders(Robot& robot, const Complain& complain);
 
 }  // namespace slew::urdf

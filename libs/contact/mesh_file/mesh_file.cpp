@@ -19,7 +19,7 @@
 namespace slew::contact {
 namespace {
 
-constexpr std::array kEndings = {".stl", ".obj", ".dae", ".3ds"};
+constexpr std::array kEndings = {".stl", ".obj", ".dae", ".3ds", ".glb", ".fbx"};
 
 Triple turned(const Triple& p, const MeshFileDef& def) {
   Triple out = {p[0] * def.unit, p[1] * def.unit, p[2] * def.unit};
@@ -79,11 +79,12 @@ std::string ending_of(const std::filesystem::path& path) {
 }
 
 // Axes and unit are what the caller says, not what assimp makes of them: it turns .3ds from z up to y up, and scales
-// the root of .dae, which has no other transformation, by the unit in the file. No option prevents either.
+// the root of .dae by the unit in the file, and turns that of .fbx by its axes; these roots have no other
+// transformation. No option prevents it.
 aiMatrix4x4 undoing(const std::string& ending, const aiMatrix4x4& root) {
   if (ending == ".3ds") return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
   aiMatrix4x4 undone;
-  if (ending == ".dae") undone = aiMatrix4x4(root).Inverse();
+  if (ending == ".dae" || ending == ".fbx") undone = aiMatrix4x4(root).Inverse();
   return undone;
 }
 
@@ -110,7 +111,7 @@ MeshDef read_mesh(const std::string& owner, const MeshFileDef& def, Problems& pr
   const std::string name = def.path.string();
   const std::string ending = ending_of(def.path);
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end()) {
-    return refuse(fmt::format("'{}' has an unknown ending", name), ".stl, .obj, .dae or .3ds");
+    return refuse(fmt::format("'{}' has an unknown ending", name), ".stl, .obj, .dae, .3ds, .glb or .fbx");
   }
   if (!(std::isfinite(def.unit) && def.unit > 0)) {
     return refuse(fmt::format("a unit of {} m is out of range", def.unit), "a number > 0 m");

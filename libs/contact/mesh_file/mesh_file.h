@@ -1,4 +1,4 @@
-// Meshes from files: .stl, .obj, .dae and .3ds through assimp.
+// Meshes from files: .stl, .obj, .dae, .3ds, .glb and .fbx through assimp.
 //
 // These formats say little or nothing about units and axes, so both are asked for. All objects of a file become one
 // mesh; vertices at exactly the same place become one, so that a closed surface is closed by its indices too.
@@ -23,7 +23,7 @@ struct MeshFileDef {
 };
 
 // Appends one problem, at `owner`.mesh, and returns an empty mesh when the file cannot be read, has another ending than
-// the four, or holds no triangles. What the mesh encloses is not judged here: mesh_check.h.
+// these, or holds no triangles. What the mesh encloses is not judged here: mesh_check.h.
 [[nodiscard]] MeshDef read_mesh(const std::string& owner, const MeshFileDef& def, Problems& problems);
 
 }  // namespace slew::contact

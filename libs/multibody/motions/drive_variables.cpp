@@ -50,6 +50,11 @@ double drive_force(const Model& model, const Workspace& ws, std::size_t index, s
     const Row& row = model.rows[k];
     if (row.kind == RowKind::joint && row.element == drive.joint && row.number == drive.number) force -= row_forces[k];
   }
+  for (std::size_t k = 0; k < model.gears.size(); ++k) {
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (model.gears[k].ends[end].joint == drive.joint) force -= gear_force(model, ws, k, end);
+    }
+  }
   return force;
 }
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "contact/mesh_check.h"
 #include "math/rotation.h"
@@ -109,28 +111,147 @@ TEST(MassProperties, OfAPrismAreExactAndThoseOfACylinderInTheLimit) {
 }
 
 // an octahedron refined on the unit sphere: mass and inertia of a ball with an error of 1/4 a refinement
-TEST(MassProperties, OfARefinedOctahedronBecomeThoseOfABall) {
+MeshDef octahedron() {
   MeshDef mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  return mesh;
+}
+
+// each triangle parted into four, the new vertices on the unit ball
+MeshDef refined(const MeshDef& mesh) {
+  MeshDef finer;
+  for (const auto& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(finer.vertices.size());
+    for (std::size_t k = 0; k < 3; ++k) finer.vertices.push_back(mesh.vertices[t[k]]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 half = Vec3(mesh.vertices[t[k]]) + Vec3(mesh.vertices[t[(k + 1) % 3]]);
+      finer.vertices.push_back((half * (1 / norm(half))).array());
+    }
+    for (const auto& part : {std::array{0U, 3U, 5U}, {3U, 1U, 4U}, {5U, 4U, 2U}, {3U, 4U, 5U}}) {
+      finer.triangles.push_back({first + part[0], first + part[1], first + part[2]});
+    }
+  }
+  return finer;
+}
+
+TEST(MassProperties, OfARefinedOctahedronBecomeThoseOfABall) {
+  MeshDef mesh = octahedron();
   double before = 0;
   for (int level = 0; level < 5; ++level) {
-    MeshDef finer;
-    for (const auto& t : mesh.triangles) {
-      const auto first = static_cast<std::uint32_t>(finer.vertices.size());
-      for (std::size_t k = 0; k < 3; ++k) finer.vertices.push_back(mesh.vertices[t[k]]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 half = Vec3(mesh.vertices[t[k]]) + Vec3(mesh.vertices[t[(k + 1) % 3]]);
-        finer.vertices.push_back((half * (1 / norm(half))).array());
-      }
-      for (const auto& part : {std::array{0U, 3U, 5U}, {3U, 1U, 4U}, {5U, 4U, 2U}, {3U, 4U, 5U}}) {
-        finer.triangles.push_back({first + part[0], first + part[1], first + part[2]});
-      }
-    }
-    mesh = finer;
+    mesh = refined(mesh);
     const MassProperties p = mass_properties(mesh, 1);
     const double ball = 4 * M_PI / 3;
     const double gap = 1 - p.inertia(0, 0) / (0.4 * ball);
+    if (level > 1) {
+      EXPECT_NEAR(before / gap, 4, 0.3);
+    }
+    before = gap;
+    EXPECT_LT(norm(p.centre), 1e-13);
+  }
+  EXPECT_LT(before, 0.01);
+}
+
+// ---- solids that touch, triangles without area ----------------------------------------------------------------------
+
+// vertices at one place become one, as read_mesh() has it
+MeshDef welded(const MeshDef& mesh) {
+  MeshDef out;
+  std::map<Triple, std::uint32_t> index;
+  for (const auto& t : mesh.triangles) {
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Triple& p = mesh.vertices[t[k]];
+      const auto [at, is_new] = index.insert({p, static_cast<std::uint32_t>(out.vertices.size())});
+      if (is_new) out.vertices.push_back(p);
+      triangle[k] = at->second;
+    }
+    out.triangles.push_back(triangle);
+  }
+  return out;
+}
+
+MeshDef two_boxes(Vec3 apart) {
+  MeshDef both = box_mesh(1, 2, 3).mesh;
+  append(both, moved(box_mesh(1, 2, 3).mesh, Mat3::identity(), apart));
+  return welded(both);
+}
+
+TEST(SolidCheck, TakesSolidsThatTouchAtAFaceAnEdgeOrAVertex) {
+  for (const Vec3 apart : {Vec3(1, 0, 0), Vec3(1, 2, 0), Vec3(1, 2, 3)}) {
+    const MeshDef both = two_boxes(apart);
+    ASSERT_LT(both.vertices.size(), 16U) << "they touch";
+    const auto fault = find_solid_fault(both);
+    ASSERT_FALSE(fault.has_value()) << fault->what;
+    const MassProperties p = mass_properties(both, kDensity);
+    EXPECT_NEAR(p.volume, 12, 1e-12);
+    EXPECT_LT(norm(p.centre - apart * 0.5), 1e-13);
+    const Vec3 d = apart * 0.5;
+    const Mat3 far = Mat3::diagonal(dot(d, d), dot(d, d), dot(d, d)) - outer(d, d);
+    const double m = 6 * kDensity;
+    expect_inertia(p.inertia, (box_inertia(m, 1, 2, 3) + far * m) * 2, 1e-13);
+  }
+}
+
+TEST(SolidCheck, TakesTrianglesWithoutArea) {
+  MeshDef box = box_mesh(1, 2, 3).mesh;
+  // an edge is split on one side only, which a triangle without area closes
+  const auto [a, b, c] = box.triangles[0];
+  const auto middle = static_cast<std::uint32_t>(box.vertices.size());
+  box.vertices.push_back(((Vec3(box.vertices[a]) + Vec3(box.vertices[b])) * 0.5).array());
+  box.triangles[0] = {a, middle, c};
+  box.triangles.push_back({middle, b, c});
+  EXPECT_TRUE(find_solid_fault(box).has_value());
+  box.triangles.push_back({a, b, middle});
+  box.triangles.push_back({a, a, b});
+  ASSERT_FALSE(find_solid_fault(box).has_value());
+  ASSERT_TRUE(find_closed_fault(box).has_value()) << "contact asks for more";
+  const MassProperties p = mass_properties(box, kDensity);
+  EXPECT_NEAR(p.volume, 6, 1e-13);
+  expect_inertia(p.inertia, box_inertia(6 * kDensity, 1, 2, 3), 1e-13);
+}
+
+TEST(SolidCheck, RefusesWhatEnclosesNothingOrTurnsWrongly) {
+  MeshDef open = box_mesh(1, 2, 3).mesh;
+  open.triangles.pop_back();
+  EXPECT_NE(find_solid_fault(open)->what.find("it is not closed"), std::string::npos);
+  MeshDef turned = box_mesh(1, 2, 3).mesh;
+  std::swap(turned.triangles[0][0], turned.triangles[0][1]);
+  EXPECT_NE(find_solid_fault(turned)->what.find("turn differently"), std::string::npos);
+  // a second part inside out beside a larger one would take its volume away; within it, it is a hole
+  const auto with_reversed = [](Vec3 at) {
+    MeshDef mesh = box_mesh(4, 4, 4).mesh, small = moved(box_mesh(1, 1, 1).mesh, Mat3::identity(), at);
+    for (auto& t : small.triangles) std::swap(t[0], t[1]);
+    append(mesh, small);
+    return mesh;
+  };
+  EXPECT_FALSE(find_solid_fault(with_reversed({0.5, 0, 0})).has_value());
+  const auto beside = find_solid_fault(with_reversed({5, 0, 0}));
+  ASSERT_TRUE(beside.has_value());
+  EXPECT_NE(beside->what.find("is inside out, and no other part surrounds it"), std::string::npos);
+}
+
+// ---- sheets ---------------------------------------------------------------------------------------------------------
+
+TEST(ShellProperties, OfAPlateAreItsFormulas) {
+  // 2 x 3 m in the plane z = 0.5, 4 mm thick, its triangles turning either way
+  MeshDef plate;
+  plate.vertices = {{0, 0, 0.5}, {2, 0, 0.5}, {2, 3, 0.5}, {0, 3, 0.5}};
+  plate.triangles = {{0, 1, 2}, {0, 3, 2}};
+  const MassProperties p = shell_properties(plate, 0.004, kDensity);
+  const double m = 6 * 0.004 * kDensity;
+  EXPECT_NEAR(p.mass, m, 1e-13 * m);
+  EXPECT_LT(norm(p.centre - Vec3(1, 1.5, 0.5)), 1e-14);
+  expect_inertia(p.inertia, Mat3::diagonal(m * 9 / 12, m * 4 / 12, m * 13 / 12), 1e-13);
+}
+
+TEST(ShellProperties, OfARefinedOctahedronBecomeThoseOfAHollowBall) {
+  MeshDef mesh = octahedron();
+  double before = 0;
+  for (int level = 0; level < 5; ++level) {
+    mesh = refined(mesh);
+    const MassProperties p = shell_properties(mesh, 0.01, 1);
+    const double m = 4 * M_PI * 0.01, gap = 1 - p.inertia(0, 0) / (2 * m / 3);
     if (level > 1) {
       EXPECT_NEAR(before / gap, 4, 0.3);
     }

@@ -135,9 +135,85 @@ std::string studio_bytes(const MeshDef& mesh) {
   return chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, object)));
 }
 
+// binary glTF 2.0: a chunk of JSON, a chunk of positions and indices
+std::string glb_bytes(const MeshDef& mesh) {
+  std::string data;
+  for (const Triple& p : mesh.vertices) {
+    for (const double x : p) data += bytes(static_cast<float>(x));
+  }
+  const std::size_t positions = data.size();
+  for (const auto& t : mesh.triangles) {
+    for (const auto v : t) data += bytes(v);
+  }
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"buffers":[{"byteLength":)" +
+      std::to_string(data.size()) + R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)" +
+      std::to_string(positions) + R"(},{"buffer":0,"byteOffset":)" + std::to_string(positions) + R"(,"byteLength":)" +
+      std::to_string(data.size() - positions) + R"(}],"accessors":[{"bufferView":0,"componentType":5126,"count":)" +
+      std::to_string(mesh.vertices.size()) +
+      R"(,"type":"VEC3","min":[0,0,0],"max":[1,2,3]},{"bufferView":1,"componentType":5125,"count":)" +
+      std::to_string(3 * mesh.triangles.size()) + R"(,"type":"SCALAR"}]})";
+  while (json.size() % 4 != 0) json += ' ';
+  const auto part = [](std::uint32_t kind, const std::string& content) {
+    return bytes(static_cast<std::uint32_t>(content.size())) + bytes(kind) + content;
+  };
+  const std::string chunks = part(0x4E4F534A, json) + part(0x004E4942, data);
+  return bytes(std::uint32_t{0x46546C67}) + bytes(std::uint32_t{2}) +
+         bytes(static_cast<std::uint32_t>(chunks.size() + 12)) + chunks;
+}
+
+// ASCII FBX 7.4 with z up and centimetres, which must have no effect
+std::string fbx_text(const MeshDef& mesh) {
+  std::string positions, indices;
+  for (const Triple& p : mesh.vertices) {
+    for (const double x : p) positions += (positions.empty() ? "" : ",") + std::to_string(x);
+  }
+  for (const auto& t : mesh.triangles) {
+    // the last corner of a polygon is its complement
+    indices += (indices.empty() ? "" : ",") + std::to_string(t[0]) + "," + std::to_string(t[1]) + "," +
+               std::to_string(-1 - static_cast<int>(t[2]));
+  }
+  return R"(; FBX 7.4.0 project file
+FBXHeaderExtension:  {
+	FBXHeaderVersion: 1003
+	FBXVersion: 7400
+}
+GlobalSettings:  {
+	Version: 1000
+	Properties70:  {
+		P: "UpAxis", "int", "Integer", "",2
+		P: "UpAxisSign", "int", "Integer", "",1
+		P: "FrontAxis", "int", "Integer", "",1
+		P: "FrontAxisSign", "int", "Integer", "",-1
+		P: "CoordAxis", "int", "Integer", "",0
+		P: "CoordAxisSign", "int", "Integer", "",1
+		P: "UnitScaleFactor", "double", "Number", "",100
+	}
+}
+Objects:  {
+	Geometry: 1000, "Geometry::block", "Mesh" {
+		Vertices: *)" +
+         std::to_string(3 * mesh.vertices.size()) + " {\n\t\t\ta: " + positions + "\n\t\t}\n\t\tPolygonVertexIndex: *" +
+         std::to_string(3 * mesh.triangles.size()) + " {\n\t\t\ta: " + indices + R"(
+		}
+		GeometryVersion: 124
+	}
+	Model: 2000, "Model::block", "Mesh" {
+		Version: 232
+	}
+}
+Connections:  {
+	C: "OO",1000,2000
+	C: "OO",2000,0
+}
+)";
+}
+
 TEST_F(MeshFile, OfEveryFormatHoldsTheSameBlock) {
-  const fs::path files[] = {write("block.stl", stl_text(block())), write("block.OBJ", obj_text(block())),
-                            write("block.dae", dae_text(block())), write("block.3ds", studio_bytes(block()))};
+  const fs::path files[] = {write("block.stl", stl_text(block())),  write("block.OBJ", obj_text(block())),
+                            write("block.dae", dae_text(block())),  write("block.3ds", studio_bytes(block())),
+                            write("block.glb", glb_bytes(block())), write("block.fbx", fbx_text(block()))};
   for (const fs::path& file : files) {
     SCOPED_TRACE(file);
     expect_block(read({.path = file}), 1, {0.5, 1, 1.5});

@@ -204,5 +204,90 @@ TEST_F(Import, TwoLoosePiecesAreRefused) {
   EXPECT_NE(error(M, K, nodes).find("expected six near zero and all others above"), std::string::npos);
 }
 
+// ---- units ----------------------------------------------------------------------------------------------------------
+
+// what a code without units makes of a cantilever of 3 m, 100 x 100 mm, when lengths, masses and times have these units
+struct Exported {
+  SparseMatrix M, K;
+  std::vector<FeNode> nodes;
+};
+Exported exported(const FeModel& model, double length, double mass, double time) {
+  Exported out{model.M, model.K, model.nodes};
+  std::vector<double> d;
+  for (FeNode& node : out.nodes) {
+    node.position = node.position * (1 / length);
+    for (int a = 0; a < node.freedoms; ++a) d.push_back(a < 3 ? 1 : 1 / length);
+  }
+  const auto scale = [&d](SparseMatrix& A, double factor) {
+    for (int j = 0; j < A.outerSize(); ++j) {
+      for (SparseMatrix::InnerIterator it(A, j); it; ++it) {
+        it.valueRef() *= factor * d[static_cast<std::size_t>(it.row())] * d[static_cast<std::size_t>(j)];
+      }
+    }
+  };
+  scale(out.M, 1 / mass);
+  scale(out.K, time * time / mass);
+  return out;
+}
+
+struct NamedUnits {
+  ModelUnits units;
+  double length, mass, time;
+};
+const NamedUnits kOthers[] = {{ModelUnits::mm_t_s, 1e-3, 1e3, 1},
+                              {ModelUnits::mm_kg_ms, 1e-3, 1, 1e-3},
+                              {ModelUnits::mm_kg_s, 1e-3, 1, 1},
+                              {ModelUnits::in_lbf_s, 0.0254, 175.126835, 1},
+                              {ModelUnits::ft_lbf_s, 0.3048, 14.5939029, 1}};
+
+class Units : public ::testing::Test {
+ protected:
+  Units() : line_(build_beam(straight(square(0.1), steel(), {3, 0, 0}, 13))) {}
+  FeModel line_;
+};
+
+TEST_F(Units, OfALineOfNodesAreFoundByItsWaveSpeedAndNamed) {
+  for (const NamedUnits& other : kOthers) {
+    const Exported out = exported(line_, other.length, other.mass, other.time);
+    const std::string error = error_of([&] { (void)model_of_matrices("Boom", out.nodes, out.M, out.K); });
+    const std::string name(kUnitNames[static_cast<std::size_t>(other.units)]);
+    EXPECT_NE(error.find("Boom: in m_kg_s this is no solid: "), std::string::npos) << name << ": " << error;
+    EXPECT_NE(error.find("units: " + name + " (235.5 kg, 3 m long, "), std::string::npos) << name << ": " << error;
+  }
+}
+
+TEST_F(Units, ThatAreStatedGiveTheModelInSi) {
+  for (const NamedUnits& other : kOthers) {
+    const Exported out = exported(line_, other.length, other.mass, other.time);
+    const FeModel back = model_of_matrices("Boom", out.nodes, out.M, out.K, other.units);
+    EXPECT_NEAR(rigid_mass(back).mass, 235.5, 1e-5);
+    EXPECT_NEAR(centre_of(rigid_mass(back))[0], 1.5, 1e-9);
+    EXPECT_LE((back.K - line_.K).norm(), 1e-7 * line_.K.norm());
+    EXPECT_LE((back.M - line_.M).norm(), 1e-7 * line_.M.norm());
+  }
+}
+
+TEST_F(Units, ThatAreStatedWronglyAreRefused) {
+  const std::string error =
+      error_of([&] { (void)model_of_matrices("Boom", line_.nodes, line_.M, line_.K, ModelUnits::mm_t_s); });
+  EXPECT_NE(error.find("in mm_t_s this is no solid"), std::string::npos) << error;
+  EXPECT_NE(error.find("say units: m_kg_s (235.5 kg, 3 m long"), std::string::npos) << error;
+}
+
+// a mass in grams or milligrams leaves the wave speed of its own stiffness unit
+TEST_F(Units, OfMassAloneAreFoundByTheDensityAlongTheLine) {
+  const Exported out = exported(line_, 1, 1e-3, 1);
+  const std::string error = error_of([&] { (void)model_of_matrices("Boom", out.nodes, out.M, out.K); });
+  EXPECT_NE(error.find("kg/m3 along the line"), std::string::npos) << error;
+}
+
+TEST_F(Units, OfThinTubesAndOfOtherDirectionsAreTakenAsTheyAre) {
+  const Triple ends[] = {{3, 0, 0}, {0, -40, 0}, {1, 1, 0.5}};
+  for (const Triple& end : ends) {
+    const FeModel beam = build_beam(straight(square(0.02), steel(), end, 6));
+    EXPECT_EQ(error_of([&] { (void)model_of_matrices("Boom", beam.nodes, beam.M, beam.K); }), "");
+  }
+}
+
 }  // namespace imported_model_test
 }  // namespace slew::flex

@@ -358,7 +358,7 @@ TEST(ValidateRows, NamesWhatCannotBeActedOn) {
   };
   EXPECT_EQ(problem_with({"Strut", "Damper", "Hinge"}), "");
   EXPECT_NE(problem_with({"Ball"}).find("no force and no joint with one coordinate"), std::string::npos);
-  EXPECT_NE(problem_with(std::vector<std::string>(33, "Strut")).find("at most 32"), std::string::npos);
+  EXPECT_EQ(problem_with(std::vector<std::string>(100, "Strut")), "") << "any number";
 }
 
 // every number's range: a value outside is named by its key

@@ -262,6 +262,42 @@ TEST_F(FromMesh, WhatEnclosesNoSolidIsRefusedWithTheReason) {
   EXPECT_NE(refusal(keys).find("is not finite"), std::string::npos) << refusal(keys);
 }
 
+TEST_F(FromMesh, AnOpenMeshIsTakenAsASheetOfAStatedThickness) {
+  MeshDef open = box(1, 2, 3);
+  open.triangles.resize(10);  // without the last face
+  write(open);
+  const std::string keys = "mesh_unit: 1 m, mesh_up: y, density: 7850, mesh: part.stl";
+  EXPECT_NE(refusal(keys).find("; shell_thickness takes the surface as a sheet"), std::string::npos) << refusal(keys);
+  double area = 0;
+  for (const auto& t : open.triangles) {
+    const Vec3 a(open.vertices[t[0]]), b(open.vertices[t[1]]), c(open.vertices[t[2]]);
+    area += norm(cross(b - a, c - a)) / 2;
+  }
+  EXPECT_NEAR(load(keys + ", shell_thickness: 4 mm").mechanics.bodies.at(0).mass, area * 0.004 * 7850, kSingle * 1000);
+}
+
+TEST_F(FromMesh, AFileInAnotherUnitIsRefusedOrNamed) {
+  const auto keys = [](const char* unit, const char* weight) {
+    return std::string("mesh: part.stl, mesh_up: y, mesh_unit: ") + unit + ", " + weight;
+  };
+  // a bracket of 126 mm in millimetres, read in metres: 2e6 m3
+  write(box(126, 126, 126));
+  EXPECT_NE(refusal(keys("1 m", "density: 7850")).find("Part.mesh_unit: the mesh is 126 x 126 x 126 m, 2e+06 m3, "),
+            std::string::npos)
+      << refusal(keys("1 m", "density: 7850"));
+  EXPECT_EQ(refusal(keys("1 mm", "density: 7850")), "accepted");
+  // by the mass that is given: 15.7 kg in 2000 m3
+  write(box(10, 10, 20));
+  EXPECT_NE(refusal(keys("1 m", "mass: 15.7")).find("at 0.00785 kg/m3"), std::string::npos);
+  // by size and mass: a pin of 50 mm
+  EXPECT_EQ(load(keys("1 m", "density: 7850")).warnings.size(), 1U);
+  EXPECT_TRUE(load(keys("1 mm", "density: 7850")).warnings.empty());
+  // metres read in millimetres
+  write(box(0.5, 0.5, 0.9));
+  EXPECT_EQ(load(keys("1 mm", "density: 7850")).warnings.size(), 1U);
+  EXPECT_TRUE(load(keys("1 m", "density: 7850")).warnings.empty());
+}
+
 TEST_F(FromMesh, TheMeshIsAFileInTheScenesFolder) {
   const std::string keys = "mesh_unit: 1 m, mesh_up: y, density: 7850, mesh: ";
   EXPECT_NE(refusal(keys + "none.stl").find("scene.yaml:2:79: Part.mesh: 'none.stl' cannot be read"), std::string::npos)

@@ -1,0 +1,131 @@
+// Gears on random trees, against the assembled equations of motion (assembled.h) with multipliers in long double:
+//   M u' = Q + J^T f,   J u' = 0,   J = e_2 - r e_1 for each gear.
+#include <gtest/gtest.h>
+
+#include "multibody/dynamics.h"
+#include "multibody/gears/gear.h"
+#include "tests/properties/multibody/assembled.h"
+#include "tests/properties/multibody/random_tree.h"
+#include "tests/support/nightly.h"
+#include "tests/validation/multibody/mechanism.h"
+
+namespace slew::multibody {
+namespace gears_test {
+
+using namespace testing;
+using namespace slew::testing;
+
+constexpr Formulation kFormulations[] = {Formulation::recursive, Formulation::lagrange, Formulation::augmented};
+constexpr double kTolerance = 1e-9;  // relative to the largest entry
+
+GearKind kind_of(const JointDef& joint1, const JointDef& joint2) {
+  if (joint2.type == JointType::revolute) return GearKind::gear;
+  return joint1.type == JointType::revolute ? GearKind::rack_and_pinion : GearKind::slides;
+}
+
+// every joint with one coordinate is geared to the one before it with a chance of a half; joint 1 of a rack turns
+RandomTree geared_tree(std::uint32_t seed) {
+  RandomTree tree = random_tree(seed, {.bodies = 2 + static_cast<int>(seed) % 9});
+  std::mt19937 random(seed + 77);
+  std::uniform_real_distribution<double> number(0.3, 2);
+  const JointDef* before = nullptr;
+  for (JointDef& joint : tree.def.joints) {
+    if (joint.type != JointType::revolute && joint.type != JointType::prismatic) continue;
+    joint.initial_velocity = kNotGiven;
+    const JointDef* other = before;
+    before = &joint;
+    if (other == nullptr || std::uniform_int_distribution<int>(0, 1)(random) == 0) continue;
+    const bool is_swapped = joint.type == JointType::revolute && other->type == JointType::prismatic;
+    const JointDef &joint1 = is_swapped ? joint : *other, &joint2 = is_swapped ? *other : joint;
+    const double sign = std::uniform_int_distribution<int>(0, 1)(random) == 0 ? -1 : 1;
+    tree.def.gears.push_back({.name = "Gear_" + joint.name,
+                              .kind = kind_of(joint1, joint2),
+                              .joint1 = joint1.name,
+                              .joint2 = joint2.name,
+                              .ratio = sign * number(random)});
+  }
+  return tree;
+}
+
+Matrix jacobian_of(const Model& model) {
+  Matrix J(static_cast<Index>(model.gears.size()), static_cast<Index>(model.speed_count()));
+  for (std::size_t k = 0; k < model.gears.size(); ++k) {
+    for (const GearEnd& end : model.gears[k].ends) J(static_cast<Index>(k), end.u) += end.factor;
+  }
+  return J;
+}
+
+// coordinates and speeds that fit the gears: joint 2 follows, from the root of a chain outwards in the file's order
+void fit(const Model& model, State& state) {
+  for (std::size_t round = 0; round <= model.gears.size(); ++round) {
+    for (const Gear& gear : model.gears) {
+      const auto &one = gear.ends[0], &two = gear.ends[1];
+      const double r = -one.factor;
+      // of a gear that stands on a joint which another one holds already, the free side moves: settled by rounds
+      state.q[static_cast<std::size_t>(two.q)] = r * state.q[static_cast<std::size_t>(one.q)] + gear.offset;
+      state.u[static_cast<std::size_t>(two.u)] = r * state.u[static_cast<std::size_t>(one.u)];
+    }
+  }
+}
+
+bool is_fitting(const Model& model, const State& state) {
+  for (const Gear& gear : model.gears) {
+    double gap = -gear.offset;
+    for (const GearEnd& end : gear.ends) gap += end.factor * state.q[static_cast<std::size_t>(end.q)];
+    if (std::fabs(gap) > 1e-12) return false;
+  }
+  return true;
+}
+
+TEST(GearedTrees, AccelerateAsTheAssembledEquationsWithMultipliersSay) {
+  int tested = 0;
+  for_each_seed(seeds({{1, 24}}), [&](std::uint32_t seed) {
+    RandomTree tree = geared_tree(seed);
+    if (tree.def.gears.empty()) return;
+    Mechanism mechanism(tree.def);
+    State state = random_state(seed, mechanism.model);
+    fit(mechanism.model, state);
+    if (!is_fitting(mechanism.model, state)) return;  // a joint that two gears drive
+    ++tested;
+    const Assembled reference(tree.def, mechanism.model);
+    const Vector q = to_vector(state.q), u = to_vector(state.u);
+    const Matrix mobility = inverse(reference.mass_matrix(q)), J = jacobian_of(mechanism.model);
+    const Vector free = mobility * reference.forces(q, u);
+    const Vector f = inverse(J * mobility * J.transposed()) * (J * free) * Real(-1);
+    const Vector expected = free + mobility * (J.transposed() * f);
+    forward_dynamics(mechanism.model, state.q, state.u, {}, mechanism.ws);
+    EXPECT_LT(difference(to_vector(mechanism.ws.udot), expected), kTolerance);
+    std::vector<JointReaction> reactions(mechanism.model.joints.size());
+    joint_reactions(mechanism.model, state, mechanism.ws, {}, reactions);
+    std::vector<double> forces;
+    for (std::size_t k = 0; k < mechanism.model.gears.size(); ++k) {
+      forces.push_back(gear_force(mechanism.model, mechanism.ws, k, 1));
+    }
+    EXPECT_LT(difference(to_vector(forces), f), kTolerance);
+  });
+  EXPECT_GT(tested, 3);
+}
+
+TEST(GearedTrees, MoveAlikeInEveryFormulation) {
+  for_each_seed(seeds({{1, 24}}), [](std::uint32_t seed) {
+    RandomTree tree = geared_tree(seed);
+    if (tree.def.gears.empty()) return;
+    std::vector<double> by_recursion;
+    for (const Formulation formulation : kFormulations) {
+      tree.def.formulation = formulation;
+      Formulated moving(tree.def);
+      moving.run(0.05, 5e-4);
+      if (by_recursion.empty()) by_recursion = moving.state.u;
+      const double tolerance = formulation == Formulation::augmented ? 2e-3 : 1e-7;
+      EXPECT_LT(difference(to_vector(moving.state.u), to_vector(by_recursion)), tolerance) << name_of(formulation);
+      for (const Gear& gear : moving.model.gears) {
+        double gap = -gear.offset;
+        for (const GearEnd& end : gear.ends) gap += end.factor * moving.state.q[static_cast<std::size_t>(end.q)];
+        EXPECT_NEAR(gap, 0, 1e-7) << name_of(formulation);
+      }
+    }
+  });
+}
+
+}  // namespace gears_test
+}  // namespace slew::multibody
