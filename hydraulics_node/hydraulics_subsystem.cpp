@@ -348,6 +348,7 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
   take_tick(n, controls);
   if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_, stiffness_);
   std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
+  circuit_->set_vapour_capacities(step.vapour);
   integrator_->refresh();
   StepReport report;
   report.flags = circuit_->flags(step.state.data());
