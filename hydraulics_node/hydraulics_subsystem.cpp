@@ -352,7 +352,8 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
   integrator_->refresh();
   StepReport report;
   report.flags = circuit_->flags(step.state.data());
-  report.offender = circuit_->first_cavitating(step.state.data());
+  report.offender = circuit_->farthest_beyond_oil_law(step.state.data());
+  if (report.offender < 0) report.offender = circuit_->first_cavitating(step.state.data());
   publish(sample.actuators, report.flags, false);
   std::copy(step.work.begin(), step.work.end(), sample.actuators.work.begin());
   std::copy(step.impulse.begin(), step.impulse.end(), sample.actuators.impulse.begin());

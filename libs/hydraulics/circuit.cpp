@@ -428,8 +428,18 @@ int Circuit::first_cavitating(const double* y) const noexcept {
   return -1;
 }
 
+int Circuit::farthest_beyond_oil_law(const double* y) const noexcept {
+  int farthest = -1;
+  double highest = OilCompressibility::kHighest;
+  for (int i = 0; i < volume_count(); ++i) {
+    if (y[i] > highest) farthest = i, highest = y[i];
+  }
+  return farthest;
+}
+
 std::uint32_t Circuit::flags(const double* y) noexcept {
   std::uint32_t flags = first_cavitating(y) < 0 ? 0 : static_cast<std::uint32_t>(StepFlag::cavitating);
+  if (farthest_beyond_oil_law(y) >= 0) flags |= static_cast<std::uint32_t>(StepFlag::beyond_oil_law);
   for (const Piece& piece : pieces_) {
     if (piece.position >= 0 && piece.is_closed(y)) flags |= static_cast<std::uint32_t>(StepFlag::clamp_active);
   }

@@ -183,6 +183,8 @@ class Circuit {
   // pressed shut); and the first volume that cavitates (-1: none).
   [[nodiscard]] std::uint32_t flags(const double* y) noexcept;
   [[nodiscard]] int first_cavitating(const double* y) const noexcept;
+  // The volume with the highest pressure beyond the oil's law; -1: none.
+  [[nodiscard]] int farthest_beyond_oil_law(const double* y) const noexcept;
 
   // variables of all volumes and components, in a fixed order
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }

@@ -76,8 +76,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   void align(std::span<const double> x, std::span<const double> v) noexcept;
 
   // Advances by H seconds. A non-finite state is latched: the last finite one stays, every further report says so.
-  // offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), or of the first
-  // volume that cavitates.
+  // offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), of the volume
+  // farthest beyond the oil's law, or of the first volume that cavitates.
   StepReport step(double H, const PistonMotion& motion) noexcept;
 
   [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }

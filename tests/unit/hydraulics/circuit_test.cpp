@@ -513,6 +513,20 @@ TEST(CircuitIntegrator, names_the_state_that_was_not_finite_before_the_step) {
   EXPECT_EQ(integrator.step(1e-3, HeldSpeed(3)).offender, report.offender);
 }
 
+TEST(CircuitIntegrator, a_pressure_beyond_the_oils_law_is_flagged_with_the_volume_where_it_is_highest) {
+  const HydraulicsDef def = crane_circuit();
+  Circuit circuit(def);
+  CircuitIntegrator integrator(circuit, def);
+  integrator.start(kCraneStrokes, kAtRest, kCraneForces);
+  EXPECT_FALSE(integrator.step(1e-6, HeldSpeed(3)).has(StepFlag::beyond_oil_law));
+  const int lift = circuit.find_volume("Vol_LiftCyl_A"), jib = circuit.find_volume("Vol_JibCyl_A");
+  integrator.mutable_state()[at(lift)] = 1100e5;
+  integrator.mutable_state()[at(jib)] = 1300e5;
+  const StepReport report = integrator.step(1e-6, HeldSpeed(3));
+  EXPECT_TRUE(report.has(StepFlag::beyond_oil_law));
+  EXPECT_EQ(report.offender, jib);
+}
+
 TEST(CircuitIntegrator, a_saved_state_in_vapour_goes_on_with_the_same_bits) {
   HydraulicsDef def = crane_circuit();
   for (auto& c : def.components) {
