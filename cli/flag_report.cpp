@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "cli/display.h"
+#include "cli/recorded.h"
 #include "core/failure.h"
 #include "core/step_report.h"
 #include "node/identity.h"
+#include "scene/scene.h"
 #include "transport/codec.h"
 #include "transport/wire.h"
 
@@ -24,7 +26,7 @@ struct Meaning {
   const char* remedy;
 };
 
-constexpr std::array<Meaning, 7> kMeanings = {{
+constexpr std::array<Meaning, 8> kMeanings = {{
     {StepFlag::not_converged, "an iteration reached its limit and its residual was accepted", "choose a smaller step"},
     {StepFlag::step_budget, "the sub-step budget was used up and the error of the last one accepted",
      "raise hydraulics.substep_budget or the tolerances"},
@@ -34,6 +36,8 @@ constexpr std::array<Meaning, 7> kMeanings = {{
     {StepFlag::coupling_creates_energy, "the coupling created energy, so the run may be unstable",
      "choose session.coupling: two or a smaller step"},
     {StepFlag::cavitating, "a volume cavitated", "look at the pressures near zero"},
+    {StepFlag::beyond_oil_law, "a pressure was beyond what the oil's law is good for (1000 bar)",
+     "limit it: a relief valve on the line, a lower load or setting"},
     {StepFlag::large_deflection, "a flexible body was bent by more than a tenth of its length",
      "its theory is one of small deflections: take the numbers for estimates"},
 }};
@@ -41,7 +45,25 @@ constexpr std::array<Meaning, 7> kMeanings = {{
 struct Seen {
   std::uint64_t steps = 0;
   StepIndex first = 0;
+  std::int32_t volume = -1;  // that the first step names which names one
 };
+
+// Of hydraulics' samples: the offender is a volume where none of the flags that name something else is up.
+bool names_volume(StepFlag flag, const wire::SampleState& state) {
+  constexpr auto kOthers = static_cast<std::uint32_t>(StepFlag::not_converged) |
+                           static_cast<std::uint32_t>(StepFlag::step_budget) |
+                           static_cast<std::uint32_t>(StepFlag::non_finite);
+  const bool is_beyond = (state.flags & static_cast<std::uint32_t>(StepFlag::beyond_oil_law)) != 0;
+  if ((state.flags & kOthers) != 0) return false;
+  return flag == StepFlag::beyond_oil_law || (flag == StepFlag::cavitating && !is_beyond);
+}
+
+std::vector<std::string> volumes_of(const recording::Reader& reader) {
+  const scene::Scene scene = scene::load_text(attachment_text(reader, "scene.yaml"), reader.identity().scene);
+  std::vector<std::string> names;
+  for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) names.push_back(volume.name);
+  return names;
+}
 
 // How a free-running node fared without its partner's samples.
 struct Late {
@@ -71,6 +93,8 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
       if ((state.flags & static_cast<std::uint32_t>(kMeanings[i].flag)) == 0) continue;
       Seen& entry = seen[{header.role, i}];
       if (entry.steps++ == 0) entry.first = header.step;
+      const bool is_named = header.role == wire::Role::hydraulics && names_volume(kMeanings[i].flag, state);
+      if (entry.volume < 0 && is_named) entry.volume = state.offender;
     }
   };
   recording::MessageFilter filter;
@@ -99,9 +123,13 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
                     100.0 * static_cast<double>(entry.steps) / static_cast<double>(entry.all), entry.longest,
                     counted(entry.lost, "sample", "samples")));
   }
+  std::vector<std::string> volumes;
   for (const auto& [key, entry] : seen) {
     const Meaning& meaning = kMeanings[key.second];
-    sentences.push_back(fmt::format("{}: {} in {}, first at {}; {}", node::to_text(key.first), meaning.what,
+    if (entry.volume >= 0 && volumes.empty()) volumes = volumes_of(reader);
+    const bool is_named = entry.volume >= 0 && static_cast<std::size_t>(entry.volume) < volumes.size();
+    const std::string name = is_named ? volumes[static_cast<std::size_t>(entry.volume)] + ": " : "";
+    sentences.push_back(fmt::format("{}: {}{} in {}, first at {}; {}", node::to_text(key.first), name, meaning.what,
                                     counted(entry.steps, "step", "steps"),
                                     duration_text(static_cast<double>(entry.first) * H), meaning.remedy));
   }

@@ -9,8 +9,8 @@
 
 namespace slew::cli {
 
-// Flags of the two physics nodes' samples: not converged, sub-step budget, clamp, energy from the coupling, cavitation,
-// deflections that are not small.
+// Flags of the two physics nodes' samples: not converged, sub-step budget, clamp, energy from the coupling, cavitation
+// and pressures beyond the oil's law with the volume's name, deflections that are not small.
 // What happens in sound runs too, end stops and open relief valves, is left out. Of a free-running session also how
 // often its nodes went on without a sample. Throws Failure when the recording cannot be read.
 [[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);

@@ -84,7 +84,8 @@ class Monolithic {
     return {monolith_->equations().mechanism_state(), F_, work_, impulse_};
   }
   [[nodiscard]] hydraulic_node::FollowedCircuit circuit() const noexcept {
-    return {monolith_->equations().circuit_state(), work_, impulse_};
+    const monolith::SceneEquations& equations = monolith_->equations();
+    return {equations.circuit_state(), equations.circuit_vapour(), work_, impulse_};
   }
   // Empty: all is well.
   [[nodiscard]] const std::string& failure() const noexcept { return failure_; }

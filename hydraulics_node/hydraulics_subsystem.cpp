@@ -348,10 +348,12 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
   take_tick(n, controls);
   if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_, stiffness_);
   std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
+  circuit_->set_vapour_capacities(step.vapour);
   integrator_->refresh();
   StepReport report;
   report.flags = circuit_->flags(step.state.data());
-  report.offender = circuit_->first_cavitating(step.state.data());
+  report.offender = circuit_->farthest_beyond_oil_law(step.state.data());
+  if (report.offender < 0) report.offender = circuit_->first_cavitating(step.state.data());
   publish(sample.actuators, report.flags, false);
   std::copy(step.work.begin(), step.work.end(), sample.actuators.work.begin());
   std::copy(step.impulse.begin(), step.impulse.end(), sample.actuators.impulse.begin());

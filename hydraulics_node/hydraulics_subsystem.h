@@ -74,10 +74,10 @@ class ReducedMechanics final : public hydraulics::PistonMotion {
   coupling::PortArray a_free_;
 };
 
-// The end of a step that somebody else computed: all states of the circuit, pistons included; work and impulse of the
-// ports over the step [J, N s].
+// The end of a step that somebody else computed: all states of the circuit, pistons included, and what belongs to them
+// of volumes that cavitate (Circuit::vapour_capacities()); work and impulse of the ports over the step [J, N s].
 struct FollowedCircuit {
-  std::span<const double> state, work, impulse;
+  std::span<const double> state, vapour, work, impulse;
 };
 
 class HydraulicsSubsystem final : public coupling::Subsystem {

@@ -8,12 +8,14 @@
 
 #include "cli/direct_session.h"
 #include "hydraulics/components/hose.h"
+#include "hydraulics/components/ls_pump.h"
 #include "scene/parameters.h"
 
 namespace slew::cli {
 namespace {
 
-constexpr double kHeavyLoad = 1500;                        // kg
+constexpr const char* kOilWithModulus = "hydraulics.oil_law=oil_and_air";  // the law that has the numbers of a case
+constexpr double kHeavyLoad = 1500;                                        // kg
 constexpr double kLeastLoad = 1e-3;                        // kg, in the place of a mass that must be more than 0
 constexpr double kSmallVolume = 1e-6;                      // m3
 constexpr double kSoftOil = 70e6, kHardOil = 2e9;          // Pa
@@ -155,9 +157,9 @@ void add_hydraulics(const scene::Scene& scene, const Parts& parts, Cases& cases)
   add("volume_1e-6_m3", "every hose and rigid block holds 1 cm3; inputs full, reversed, 0",
       small.empty() ? "no hose and no rigid volume" : "", small, there_and_back);
   add("bulk_70e6_Pa", "bulk modulus of the oil 70e6 Pa; inputs full, reversed, 0", "",
-      {set("hydraulics.oil_bulk_modulus", kSoftOil)}, there_and_back);
+      {kOilWithModulus, set("hydraulics.oil_bulk_modulus", kSoftOil)}, there_and_back);
   add("bulk_2e9_Pa", "bulk modulus of the oil 2e9 Pa without air; inputs full, reversed, 0", "",
-      {set("hydraulics.oil_bulk_modulus", kHardOil), "hydraulics.entrained_air=0"}, there_and_back);
+      {kOilWithModulus, set("hydraulics.oil_bulk_modulus", kHardOil), "hydraulics.entrained_air=0"}, there_and_back);
   std::vector<InputPoint> reversing;
   for (int i = 0; i < 12; ++i) reversing.push_back({0.2 + 0.2 * i, i % 2 == 0 ? 1.0 : -1.0});
   add("orifice_through_zero", "orifices turbulent down to 1 Pa, inputs reversed every 0.2 s", no_inputs,
@@ -166,13 +168,16 @@ void add_hydraulics(const scene::Scene& scene, const Parts& parts, Cases& cases)
   add("valve_closes_in_1_ms", "valves of 1 ms close at full flow", fast.empty() ? "no valve with a step response" : "",
       fast, {{0.2, 1}, {1.5, 0}, {2, -1}, {2.5, 0}});
   scene::Overrides dry = parts.all("anti_cavitation_flow", 1e-9);
-  append(dry, {"hydraulics.start=table13", "hydraulics.entrained_air=0.0005"});
+  append(dry, {"hydraulics.start=table13", kOilWithModulus, "hydraulics.entrained_air=0.0005"});
   add("cavitation_and_back",
       "from 1 bar with 0.05 % of air, without anti-cavitation valves: the load draws the rod sides empty, then full "
       "input",
       parts.without_ports(), dry, {{1, 1}, {2.5, 0}}, Aim::cavitation);
-  scene::Overrides closed = parts.all("set_pressure", 400e5);
-  append(closed, parts.all("standby_pressure", 400e5));
+  scene::Overrides closed = parts.all("standby_pressure", 400e5);
+  for (const auto& component : scene.hydraulics.components) {
+    const auto* pump = dynamic_cast<const hydraulics::LsPumpDef*>(component.get());
+    if (pump != nullptr && !pump->ls_port.empty()) closed.push_back(set(pump->name + ".set_pressure", 400e5));
+  }
   for (const auto& component : scene.hydraulics.components) {
     if (component->type_name() == "bleed") closed.push_back(set(component->name + ".nominal_flow", 1e-9));
   }
@@ -320,7 +325,8 @@ scene::Overrides hoses_of(const scene::Scene& scene, double content) {
 }
 
 scene::Overrides stiffer_by(const scene::Scene& scene, double factor) {
-  scene::Overrides overrides = {set("hydraulics.oil_bulk_modulus", factor * scene.hydraulics.oil_bulk_modulus),
+  scene::Overrides overrides = {kOilWithModulus,
+                                set("hydraulics.oil_bulk_modulus", factor * scene.hydraulics.oil_bulk_modulus),
                                 "hydraulics.entrained_air=0"};
   for (const scene::ParameterInfo& one : scene::parameters(scene)) {
     const bool is_wall = one.path.ends_with(".bulk_modulus") || one.path.ends_with(".maximum_bulk_modulus");

@@ -16,6 +16,10 @@ constexpr Range kRestitution{.min = kSmallestRestitution, .max = 1, .min_is_open
 constexpr Range kDepthExponent{.min = 1, .max = 3, .min_is_open = false, .max_is_open = false};
 constexpr Range kStribeckExponent{.min = 1, .max = 4, .min_is_open = false, .max_is_open = false};
 
+constexpr ReadBy kReadByCurvedLaw[] = {{"contact_exponent", "contact_exponent above 1", [](const void* def) noexcept {
+                                          return static_cast<const NormalLawDef*>(def)->exponent != 1;
+                                        }}};
+
 constexpr Field kNormalLawFields[] = {
     field<&NormalLawDef::stiffness>("spring_constant", {.dimension = slew::Dimension::stiffness,
                                                         .range = kPositive,
@@ -26,9 +30,10 @@ constexpr Field kNormalLawFields[] = {
         {.range = kRestitution, .doc = "rebound speed over impact speed; 0.01 is the least there is"}),
     field<&NormalLawDef::exponent>("contact_exponent",
                                    {.range = kDepthExponent, .doc = "force over depth: 1 linear, 1.5 Hertz"}),
-    field<&NormalLawDef::reference_depth>(
-        "reference_depth",
-        {.dimension = length, .range = kPositive, .doc = "depth at which the stiffness holds; no effect with 1"}),
+    field<&NormalLawDef::reference_depth>("reference_depth", {.dimension = length,
+                                                              .range = kPositive,
+                                                              .read_by = kReadByCurvedLaw,
+                                                              .doc = "depth at which the stiffness holds"}),
     field<&NormalLawDef::smallest_impact_speed>(
         "smallest_impact_speed",
         {.dimension = velocity, .range = kPositive, .doc = "slower impacts rebound with more than the coefficient"}),

@@ -68,6 +68,17 @@ inline constexpr Range kNotNegative{.min = 0, .min_is_open = false};
 inline constexpr Range kFraction{.min = 0, .max = 1, .min_is_open = false, .max_is_open = false};
 inline constexpr Range kFractionAboveZero{.min = 0, .max = 1, .max_is_open = false};
 
+// What has to hold for a field to be read: another field of the same table makes a choice.
+struct ReadBy {
+  // error_in_files: an override only warns, since sweeps over choices carry such settings along
+  enum class Otherwise : std::uint8_t { error, error_in_files, warning };
+
+  std::string_view key;   // that other field
+  std::string_view what;  // what of it reads the field, for messages: "rk4 or implicit_euler"
+  bool (*holds)(const void* def) noexcept = nullptr;
+  Otherwise otherwise = Otherwise::error;  // of a field that is stated and not read
+};
+
 struct FieldOptions {
   Dimension dimension = Dimension::none;
   Dimension value_dimension = Dimension::none;  // of a table's values
@@ -78,8 +89,17 @@ struct FieldOptions {
   std::string_view reference = {};  // kind of element the text must name: "body", "force", "component or force", ...
   std::span<const std::string_view> choices = {};
   bool has_jumps = false;  // of a table: two points may have one argument
+  std::span<const ReadBy> read_by = {};  // all of these; empty: always
   std::string_view doc = {};
 };
+
+// The member is one of the values.
+template <auto Member, auto... Values>
+[[nodiscard]] constexpr ReadBy read_by(std::string_view key, std::string_view what,
+                                       ReadBy::Otherwise otherwise = ReadBy::Otherwise::error);
+// The member is set: a text or table that is not empty, a number that is not 0.
+template <auto Member>
+[[nodiscard]] constexpr ReadBy read_by_set(std::string_view key, std::string_view what);
 
 struct Field : FieldOptions {
   std::string_view key;
@@ -135,6 +155,27 @@ constexpr auto& member_at(auto& object) {
 }
 
 }  // namespace detail
+
+template <auto Member, auto... Values>
+constexpr ReadBy read_by(std::string_view key, std::string_view what, ReadBy::Otherwise otherwise) {
+  using Class = typename detail::MemberOf<decltype(Member)>::class_type;
+  return {key, what,
+          [](const void* def) noexcept { return ((static_cast<const Class*>(def)->*Member == Values) || ...); },
+          otherwise};
+}
+
+template <auto Member>
+constexpr ReadBy read_by_set(std::string_view key, std::string_view what) {
+  using Class = typename detail::MemberOf<decltype(Member)>::class_type;
+  return {key, what, [](const void* def) noexcept {
+            const auto& value = static_cast<const Class*>(def)->*Member;
+            if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
+              return value != 0;
+            } else {
+              return !value.empty();
+            }
+          }};
+}
 
 template <auto First, auto... Rest>
 [[nodiscard]] constexpr Field field(std::string_view key, const FieldOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -11,12 +12,15 @@ namespace {
 
 constexpr double kPositionScale = 1e-3;  // m: at rtol 1e-4 an error of 0.1 um, a few newtons of oil spring
 constexpr double kSpeedScale = 0.1;      // m/s
+constexpr double kNearFloor = 2;         // of the pressure scale: where air makes oil soft
 
 }  // namespace
 
 Circuit::Circuit(const HydraulicsDef& def)
     : oil_(def),
       floor_(def.pressure_floor),
+      kappa_at_floor_(oil_.at(def.pressure_floor).value),
+      near_floor_(def.pressure_floor + kNearFloor * def.pressure_scale),
       start_(def.start),
       start_return_(def.start_return_pressure),
       start_slew_(def.start_slew_pressure),
@@ -32,6 +36,7 @@ Circuit::Circuit(const HydraulicsDef& def)
     volume_name_.push_back(volume.name);
     is_fixed_.push_back(volume.fixed ? 1 : 0);
     initial_pressure_.push_back(volume.initial_pressure);
+    vapour_.begins_below.push_back(volume.fixed ? -std::numeric_limits<double>::infinity() : floor_);
   }
   actuators_ = builder.actuators();
   states_ = builder.states();
@@ -46,6 +51,8 @@ Circuit::Circuit(const HydraulicsDef& def)
   for (const ComponentState& state : states_) scale_.push_back(state.scale);
   relative_.assign(at(size_), 1);
   for (int j = 0; j < actuator_count(); ++j) relative_[at(position(j))] = 0;
+  relative_below_zero_ = relative_;
+  std::fill_n(relative_below_zero_.begin(), volume_count(), 0.0);
 
   control_.assign(control_name_.size(), 0);
   line_force_.assign(actuators_.size(), 0);
@@ -53,7 +60,12 @@ Circuit::Circuit(const HydraulicsDef& def)
   jacobian_.assign((at(size_) + ls_.size()) * at(size_), 0);
   moved_.assign(at(size_), 0);
   way_.assign(actuators_.size(), 0);
+  growth_.assign(at(volume_count()), 0);
+  physical_.assign(at(size_), 0);
+  kept_.assign(at(size_), 0);
+  kept_rates_.assign(at(size_), 0);
   for (std::vector<double>& k : slope_) k.assign(at(volume_count()), 0);
+  for (std::size_t i = 0; i < volumes_.size(); ++i) vapour_.capacity.push_back(capacity_at_floor(i, moved_.data()));
   order_ls_sources(builder);
   declare_pattern();
   list_variables();
@@ -79,6 +91,10 @@ void Circuit::add_contents(const CircuitBuilder& builder) {
       }
     }
     volume.end = pieces_.size();
+    const auto is_chamber = [](const Piece& piece) { return piece.position >= 0; };
+    if (std::any_of(pieces_.begin() + static_cast<std::ptrdiff_t>(volume.begin), pieces_.end(), is_chamber)) {
+      with_chambers_.push_back(static_cast<std::size_t>(i));
+    }
     volumes_.push_back(volume);
   }
   lines_.resize(2 * actuators_.size());
@@ -189,8 +205,7 @@ ParameterResult Circuit::set_parameter(int index, double value) noexcept {
   return ParameterResult::ok;
 }
 
-void Circuit::evaluate_ls(const double* y) noexcept {
-  const CircuitView now = view(y);
+void Circuit::evaluate_ls(const CircuitView& now) noexcept {
   for (const LsSource& source : ls_order_) ls_[at(source.index)] = source.component->ls_pressure(now);
 }
 
@@ -204,8 +219,13 @@ ValueSlope Circuit::Piece::elastic_wall_at(double p) const noexcept {
 // (1)
 inline Circuit::Capacity Circuit::capacity(std::size_t volume, const double* y) const noexcept {
   const double p = y[volume];
-  const ValueSlope oil = oil_.at(p);
   const VolumeContent& contents = volumes_[volume];
+  if (vapour_.is_in(volume, y)) {
+    double V = contents.volume;
+    for (std::size_t k = contents.begin; k < contents.end; ++k) V += pieces_[k].content_at(y);
+    return {vapour_.capacity[volume], 0, V, 0};
+  }
+  const ValueSlope oil = oil_.at(p);
   double V = contents.volume, lumped = contents.volume, walls = contents.wall, d_walls = 0;
   for (std::size_t k = contents.begin; k < contents.end; ++k) {
     const Piece& piece = pieces_[k];
@@ -236,14 +256,15 @@ void Circuit::capacities(const double* y, double* C) const noexcept {
 // a line's flow in place of the piston's
 void Circuit::add_line_flows(const double* y, Rates& sums) const noexcept {
   for (const LineChamber& line : lines_) {
-    if (line.is_line) sums.add_flow(line.volume, line.slope * y[line.speed] - line.inflow(y[line.volume]));
+    if (line.is_line)
+      sums.add_flow(line.volume, line.slope * y[line.speed] - line.inflow(pressure(line.volume, y).value));
   }
 }
 
 void Circuit::rates(const double* y, double* f) noexcept {
   std::fill(f, f + size_, 0.0);
-  evaluate_ls(y);
   const CircuitView now = view(y);
+  evaluate_ls(now);
   Rates sums(f);
   for (const HydraulicComponent* component : active_) component->add_rates(now, sums);
   add_line_flows(y, sums);
@@ -253,7 +274,7 @@ void Circuit::rates(const double* y, double* f) noexcept {
   for (int j = 0; j < actuator_count(); ++j) f[position(j)] = y[speed(j)];
 }
 
-void Circuit::add_rates_of(std::size_t component, const double* y, double* f) const noexcept {
+void Circuit::add_rates_of(std::size_t component, const double* y, double* f) noexcept {
   const HydraulicComponent& one = *components_[component];
   if (!one.has_equations()) return;
   Rates sums(f);
@@ -272,8 +293,8 @@ void Circuit::add_slopes_of(std::size_t component, const double* y) noexcept {
 // Partial derivatives of the flows and of the component states' rates.
 void Circuit::stamp_flows(const double* y) noexcept {
   std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
-  evaluate_ls(y);
   const CircuitView now = view(y);
+  evaluate_ls(now);
   JacobianStamp stamp(jacobian_.data(), size_);
   for (const LsSource& source : ls_order_) source.component->add_ls_jacobian(now, stamp);
   for (const HydraulicComponent* component : active_) component->add_jacobian(now, stamp);
@@ -283,8 +304,8 @@ void Circuit::stamp_flows(const double* y) noexcept {
 void Circuit::evaluate_flows(const double* y, double* f) noexcept {
   std::fill(f, f + size_, 0.0);
   std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
-  evaluate_ls(y);
   const CircuitView now = view(y);
+  evaluate_ls(now);
   Rates sums(f);
   JacobianStamp stamp(jacobian_.data(), size_);
   for (const LsSource& source : ls_order_) source.component->add_ls_jacobian(now, stamp);
@@ -301,9 +322,19 @@ void Circuit::stamp_lines() noexcept {
   }
 }
 
+// Columns of pressures become columns of the volumes' states.
+void Circuit::to_state_slopes(const double* y) noexcept {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    if (!vapour_.is_in(i, y)) continue;
+    const double slope = vapour_.pressure(i, y[i]).slope;
+    for (int row = 0; row < size_; ++row) jacobian_[at(row * size_) + i] *= slope;
+  }
+}
+
 double* Circuit::jacobian(const double* y, const double* f) noexcept {
   stamp_flows(y);
   stamp_lines();
+  to_state_slopes(y);
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
     to_pressure_rates(i, is_fixed_[i] ? Capacity{} : capacity(i, y), f[i], y);
   }
@@ -314,6 +345,7 @@ double* Circuit::jacobian(const double* y, const double* f) noexcept {
 double* Circuit::linearise(const double* y, double* f) noexcept {
   evaluate_flows(y, f);
   stamp_lines();
+  to_state_slopes(y);
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
     const Capacity C = is_fixed_[i] ? Capacity{} : capacity(i, y);
     f[i] = is_fixed_[i] ? 0 : f[i] / C.value;
@@ -335,6 +367,8 @@ void Circuit::to_pressure_rates(std::size_t volume, const Capacity& C, double ra
   }
   const double inverse = 1 / C.value;
   for (int j = 0; j < size_; ++j) row[j] *= inverse;
+  // a capacity that is constant
+  if (vapour_.is_in(volume, y)) return;
   const double share = rate * inverse;
   row[volume] -= share * C.d_pressure;
   for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
@@ -369,7 +403,7 @@ void Circuit::rates_and_outflow(const double* y, double* f, double* slope, doubl
 void Circuit::pressure_forces(const double* y, double* F) const noexcept {
   for (std::size_t j = 0; j < actuators_.size(); ++j) {
     const Actuator& actuator = actuators_[j];
-    F[j] = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
+    F[j] = pressure(actuator.port_a, y).value * actuator.area_a - pressure(actuator.port_b, y).value * actuator.area_b;
   }
 }
 
@@ -377,7 +411,7 @@ bool Circuit::bound(double* y) const noexcept {
   bool was_moved = false;
   const double lowest = oil_.lowest_pressure();
   for (std::size_t i = 0; i < volume_name_.size(); ++i) {
-    if (y[i] >= lowest) continue;
+    if (y[i] >= lowest || vapour_.is_in(i, y)) continue;
     y[i] = lowest;
     was_moved = true;
   }
@@ -391,8 +425,18 @@ int Circuit::first_cavitating(const double* y) const noexcept {
   return -1;
 }
 
-std::uint32_t Circuit::flags(const double* y) const noexcept {
+int Circuit::farthest_beyond_oil_law(const double* y) const noexcept {
+  int farthest = -1;
+  double highest = OilCompressibility::kHighest;
+  for (int i = 0; i < volume_count(); ++i) {
+    if (y[i] > highest) farthest = i, highest = y[i];
+  }
+  return farthest;
+}
+
+std::uint32_t Circuit::flags(const double* y) noexcept {
   std::uint32_t flags = first_cavitating(y) < 0 ? 0 : static_cast<std::uint32_t>(StepFlag::cavitating);
+  if (farthest_beyond_oil_law(y) >= 0) flags |= static_cast<std::uint32_t>(StepFlag::beyond_oil_law);
   for (const Piece& piece : pieces_) {
     if (piece.position >= 0 && piece.is_closed(y)) flags |= static_cast<std::uint32_t>(StepFlag::clamp_active);
   }
@@ -412,13 +456,14 @@ void Circuit::read_variables(const double* y, std::span<double> values) noexcept
   double* out = values.data();
   for (std::size_t i = 0; i < volume_name_.size(); ++i) {
     const Capacity C = capacity(i, y);
-    *out++ = y[i];
+    const ValueSlope p = vapour_.pressure(i, y[i]);
+    *out++ = p.value;
     *out++ = C.content;
-    *out++ = C.value > 0 ? C.content / C.value : 0;
+    *out++ = C.value > 0 ? C.content * p.slope / C.value : 0;
     *out++ = !is_fixed_[i] && y[i] < floor_ ? 1 : 0;
   }
-  evaluate_ls(y);
   const CircuitView now = view(y);
+  evaluate_ls(now);
   for (const auto& component : components_) out = component->read_variables(now, out);
   SLEW_ASSERT(out == values.data() + values.size());
 }

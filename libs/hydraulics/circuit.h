@@ -1,9 +1,10 @@
 // A hydraulic circuit as a system of ordinary differential equations.
 //
-//   y = [p of all volumes | x | v of all actuators | component states]
-//   p_i' = sum Q_i / C_i,   C_i = sum_k V_k (kappa_oil(p_i) + 1/B_k(p_i))          free volumes          (1)
-//   p_i' = 0                                                                       fixed volumes         (2)
+//   y = [u of all volumes | x | v of all actuators | component states]
+//   u_i' = sum Q_i / C_i,   C_i = sum_k V_k (kappa_oil(p_i) + 1/B_k(p_i))          free volumes          (1)
+//   u_i' = 0                                                                       fixed volumes         (2)
 //   x' = v;  v' = 0 here: the owner adds the pistons' accelerations                                      (3)
+// u is the pressure p; of a volume that cavitates it counts the vapour (vapour.h), and C_i is constant there.
 // V_k: hoses, rigid blocks, and chambers V_0 +- A x; kappa_oil in oil.h, wall moduli B_k by their component.
 // Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27 (lumped fluid theory). Not covered:
 // inertia of the oil, wave travel, temperature.
@@ -27,6 +28,7 @@
 #include "hydraulics/hydraulics_def.h"
 #include "hydraulics/line_chambers.h"
 #include "hydraulics/oil.h"
+#include "hydraulics/vapour.h"
 
 namespace slew::hydraulics {
 
@@ -74,10 +76,12 @@ class Circuit {
     return state_owner_[static_cast<std::size_t>(state)];
   }
   [[nodiscard]] bool is_fixed(int volume) const noexcept { return is_fixed_[static_cast<std::size_t>(volume)] != 0; }
-  [[nodiscard]] int find_volume(std::string_view name) const noexcept;                       // -1: none
-  [[nodiscard]] const std::vector<double>& scales() const noexcept { return scale_; }        // typical sizes of y
-  [[nodiscard]] const std::vector<double>& relatives() const noexcept { return relative_; }  // 1, or 0 for positions
-  [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }   // of jacobian()
+  [[nodiscard]] int find_volume(std::string_view name) const noexcept;                 // -1: none
+  [[nodiscard]] const std::vector<double>& scales() const noexcept { return scale_; }  // typical sizes of y
+  // 1, or 0 for positions; of states below zero 0 for volumes too: the size of a tension is no measure of its error
+  [[nodiscard]] const std::vector<double>& relatives() const noexcept { return relative_; }
+  [[nodiscard]] const std::vector<double>& relatives_below_zero() const noexcept { return relative_below_zero_; }
+  [[nodiscard]] const math::SparsityPattern& pattern() const noexcept { return pattern_; }  // of jacobian()
   [[nodiscard]] double lowest_pressure() const noexcept { return oil_.lowest_pressure(); }
 
   // start states [y without x and v, which the caller owns]
@@ -108,7 +112,7 @@ class Circuit {
   void rates(const double* y, double* f) noexcept;
   // One component's part of rates(), added to f, and of jacobian(), for who measures what each costs. Pre-condition:
   // rates() was called at this y.
-  void add_rates_of(std::size_t component, const double* y, double* f) const noexcept;
+  void add_rates_of(std::size_t component, const double* y, double* f) noexcept;
   void add_slopes_of(std::size_t component, const double* y) noexcept;
   // Jacobian of rates() at y, with f = rates(y); row-major, stride state_count(); valid until the next call.
   double* jacobian(const double* y, const double* f) noexcept;
@@ -116,7 +120,25 @@ class Circuit {
   double* linearise(const double* y, double* f) noexcept;
   void pressure_forces(const double* y, double* F) const noexcept;
 
-  // Capacities C_i [m3/Pa]; 0 for fixed volumes.
+  // Absolute pressure of a volume and its slope over the state: 1, less while it cavitates.
+  [[nodiscard]] ValueSlope pressure(int volume, const double* y) const noexcept {
+    return vapour_.pressure(static_cast<std::size_t>(volume), y[volume]);
+  }
+  [[nodiscard]] ValueSlope pressure_at(int volume, double u) const noexcept {
+    return vapour_.pressure(static_cast<std::size_t>(volume), u);
+  }
+  // Remembers the capacities at the floor of the volumes that are not below it, (3) of vapour.h; at the end of every
+  // sub-step.
+  void follow_vapour(const double* y) noexcept;
+  [[nodiscard]] std::span<const double> vapour_capacities() const noexcept { return vapour_.capacity; }
+  void set_vapour_capacities(std::span<const double> C) noexcept;
+  void save_vapour(StateWriter& bytes, const double* y) const;
+  void load_vapour(StateReader& bytes, const double* y) noexcept;
+  void add_vapour_to(StateHash& hash, const double* y) const noexcept;  // of the volumes that cavitate at y
+  // Of a quasi-static volume: no, it stores nothing.
+  void take_up_vapour(int volume, bool does) noexcept;
+
+  // Capacities C_i [m3/Pa] over the state; 0 for fixed volumes.
   void capacities(const double* y, double* C) const noexcept;
   // d ln C / dp of a volume that is not fixed [1/Pa]
   [[nodiscard]] double capacity_growth(int volume, const double* y) const noexcept;
@@ -124,8 +146,13 @@ class Circuit {
   void outflow_slopes(const double* y, double* slope) noexcept;
   // rates(), outflow_slopes() and capacities() at once.
   void rates_and_outflow(const double* y, double* f, double* slope, double* C) noexcept;
+  // Oil of volumes that nothing but pistons and lines changed from y_before on, with rates f_before, to y, sets their
+  // states at y right: where air makes the oil soft, a method's error in a pressure is a large one in its oil. Near the
+  // floor only. pressures: int p dt over the sub-step of h seconds by line [Pa s]: what a line took from its volume.
+  void keep_closed_oil(double h, const double* y_before, const double* f_before, double* y,
+                       std::span<const double> pressures) noexcept;
   // Moves the pistons to x_new and lets each pressure follow its chamber's change of volume, no oil lost:
-  // C dp + A dx = 0, integrated over the way. False when a pressure had to be held at the lowest pressure.
+  // C du + A dx = 0, integrated over the way. False when a wave of a line had to be held at the lowest pressure.
   bool move_pistons(double* y, const double* x_new) noexcept;
 
   // Chambers of an actuator as transmission lines (line_chambers.h), and back; the oil is kept. delay [s] is the
@@ -149,13 +176,15 @@ class Circuit {
   void save(StateWriter& bytes) const;
   void load(StateReader& bytes) noexcept;
 
-  // Holds pressures at or above the lowest pressure; true when one had to be moved.
+  // Holds the pressures of volumes without vapour at or above the lowest pressure; true when one had to be moved.
   bool bound(double* y) const noexcept;
 
   // StepFlag bits that hold at y: cavitating, relief_open, limit_hit (a piston in its stop), clamp_active (a chamber
   // pressed shut); and the first volume that cavitates (-1: none).
-  [[nodiscard]] std::uint32_t flags(const double* y) const noexcept;
+  [[nodiscard]] std::uint32_t flags(const double* y) noexcept;
   [[nodiscard]] int first_cavitating(const double* y) const noexcept;
+  // The volume with the highest pressure beyond the oil's law; -1: none.
+  [[nodiscard]] int farthest_beyond_oil_law(const double* y) const noexcept;
 
   // variables of all volumes and components, in a fixed order
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }
@@ -206,9 +235,11 @@ class Circuit {
   void declare_pattern();
   void list_variables();
   void list_parameters();
-  void evaluate_ls(const double* y) noexcept;
-  [[nodiscard]] CircuitView view(const double* y) const noexcept {
-    return {y, control_.data(), ls_.data(), line_force_.data()};
+  void evaluate_ls(const CircuitView& now) noexcept;
+  // y with the pressures of volumes that cavitate in the place of their u; y itself when none does.
+  [[nodiscard]] const double* physical(const double* y) noexcept;
+  [[nodiscard]] CircuitView view(const double* y) noexcept {
+    return {physical(y), control_.data(), ls_.data(), line_force_.data()};
   }
   [[nodiscard]] Capacity capacity(std::size_t volume, const double* y) const noexcept;
   [[nodiscard]] double capacity_at(std::size_t volume, const double* y) const noexcept;
@@ -219,7 +250,15 @@ class Circuit {
   void to_pressure_rates(std::size_t volume, const Capacity& C, double rate, const double* y) noexcept;
   void read_outflow(const double* y, double* slope) noexcept;
   void chamber_rates(const double* y, double* dp) const noexcept;
+  [[nodiscard]] double chamber_growth(std::size_t volume) const noexcept;
+  [[nodiscard]] double capacity_at_floor(std::size_t volume, const double* y) const noexcept;
+  void move_through_floor(std::size_t volume, double dV, double share, double* y) noexcept;
+  void to_state_slopes(const double* y) noexcept;
+  [[nodiscard]] bool is_closed(std::size_t volume, const double* y, const double* f) const noexcept;
+  [[nodiscard]] double intake_of_lines(std::size_t volume, double h, std::span<const double> pressures) const noexcept;
+  [[nodiscard]] double moved_alone(std::size_t volume, double dV, const double* y_start) noexcept;
   bool move_lines(const double* x_new) noexcept;
+  [[nodiscard]] double filled_pressure(const LineChamber& line, double oil, double dx, double p) const noexcept;
   [[nodiscard]] std::span<LineChamber> lines_of(int actuator) noexcept {
     return std::span(lines_).subspan(2 * static_cast<std::size_t>(actuator), 2);
   }
@@ -229,7 +268,8 @@ class Circuit {
 
   int size_ = 0;
   OilCompressibility oil_;
-  double floor_;
+  double floor_, kappa_at_floor_, near_floor_;  // Pa, 1/Pa, Pa
+  Vapour vapour_;
   std::vector<std::string> volume_name_;
   std::vector<char> is_fixed_;
   std::vector<double> initial_pressure_;
@@ -240,11 +280,12 @@ class Circuit {
 
   std::vector<Piece> pieces_;  // by volume
   std::vector<VolumeContent> volumes_;
-  std::vector<LineChamber> lines_;  // two by actuator
+  std::vector<std::size_t> with_chambers_;  // volumes that pistons change
+  std::vector<LineChamber> lines_;          // two by actuator
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
   std::vector<std::string> state_owner_;
-  std::vector<double> scale_, relative_;
+  std::vector<double> scale_, relative_, relative_below_zero_;
 
   std::vector<std::unique_ptr<HydraulicComponent>> components_;
   std::vector<HydraulicComponent*> active_;  // with equations
@@ -263,7 +304,7 @@ class Circuit {
   std::vector<double> parameter_value_;
 
   // work space
-  std::vector<double> ls_, jacobian_, moved_, way_;
+  std::vector<double> ls_, jacobian_, moved_, way_, growth_, physical_, kept_, kept_rates_;
   std::array<std::vector<double>, 4> slope_;  // stages of move_pistons()
 };
 

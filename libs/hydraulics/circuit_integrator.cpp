@@ -35,7 +35,8 @@ math::StiffOptions options_of(const Circuit& circuit, const HydraulicsDef& def) 
           .maximum_step = def.max_substep,
           .substep_budget = static_cast<std::uint32_t>(def.substep_budget),
           .scale = circuit.scales(),
-          .relative = circuit.relatives()};
+          .relative = circuit.relatives(),
+          .relative_below_zero = circuit.relatives_below_zero()};
 }
 
 std::unique_ptr<math::StiffIntegrator> make_solver(const Circuit& circuit, Solver choice,
@@ -52,6 +53,24 @@ std::unique_ptr<math::StiffIntegrator> make_solver(const Circuit& circuit, Solve
       break;
   }
   return std::make_unique<math::Rodas3>(coupled_pattern(circuit), stride, options);
+}
+
+// Of a volume, over its state.
+class VolumePressure final : public math::StateFunction {
+ public:
+  VolumePressure(const Circuit& circuit, int volume) noexcept : circuit_(circuit), volume_(volume) {}
+  [[nodiscard]] Value at(double u) const noexcept override {
+    const ValueSlope p = circuit_.pressure_at(volume_, u);
+    return {p.value, p.slope};
+  }
+
+ private:
+  const Circuit& circuit_;
+  int volume_;
+};
+
+std::size_t at(int i) noexcept {
+  return static_cast<std::size_t>(i);
 }
 
 constexpr int kMostCorrections = 40;        // of the quasi-static pressures; the way to a far solution is halved often
@@ -77,6 +96,7 @@ CircuitIntegrator::CircuitIntegrator(Circuit& circuit, const HydraulicsDef& def)
       C_(static_cast<std::size_t>(circuit.volume_count())),
       outflow_(C_),
       pressure_integral_(2 * m_),
+      substep_pressure_(2 * m_),
       published_(m_),
       options_(options_of(circuit, def)),
       choice_(def.solver),
@@ -112,6 +132,7 @@ void CircuitIntegrator::start(std::span<const double> x, std::span<const double>
   has_failed_ = false;
   choose_quasi_static();
   is_consistent_ = make_consistent();
+  circuit_.follow_vapour(y_.data());
   refresh();
 }
 
@@ -131,6 +152,7 @@ void CircuitIntegrator::choose_quasi_static() {
 void CircuitIntegrator::list_quasi_static() {
   quasi_static_.clear();
   for (std::size_t i = 0; i < is_quasi_static_.size(); ++i) {
+    circuit_.take_up_vapour(static_cast<int>(i), is_quasi_static_[i] == 0);
     mass_[i] = is_quasi_static_[i] != 0 ? 0 : 1;
     if (is_quasi_static_[i] != 0) quasi_static_.push_back(static_cast<StateIndex>(i));
   }
@@ -255,12 +277,21 @@ void CircuitIntegrator::stamp_accelerations(const double* y, double* J) noexcept
     for (int j = 0; j < m; ++j) {
       const Actuator& actuator = circuit_.actuators()[static_cast<std::size_t>(j)];
       const double da_dF = da_dF_[static_cast<std::size_t>(i * m + j)];
-      if (!circuit_.is_fixed(actuator.port_a)) row[actuator.port_a] += da_dF * actuator.area_a;
-      if (!circuit_.is_fixed(actuator.port_b)) row[actuator.port_b] -= da_dF * actuator.area_b;
+      if (!circuit_.is_fixed(actuator.port_a))
+        row[actuator.port_a] += da_dF * actuator.area_a * circuit_.pressure(actuator.port_a, y).slope;
+      if (!circuit_.is_fixed(actuator.port_b))
+        row[actuator.port_b] -= da_dF * actuator.area_b * circuit_.pressure(actuator.port_b, y).slope;
       row[circuit_.position(j)] = da_dx_[static_cast<std::size_t>(i * m + j)];
       row[circuit_.speed(j)] = da_dv_[static_cast<std::size_t>(i * m + j)];
     }
   }
+}
+
+CircuitIntegrator::PressureForce CircuitIntegrator::pressure_force(const Actuator& actuator, const double* y,
+                                                                   const double* f) const noexcept {
+  const ValueSlope a = circuit_.pressure(actuator.port_a, y), b = circuit_.pressure(actuator.port_b, y);
+  return {a.value * actuator.area_a - b.value * actuator.area_b,
+          a.slope * f[actuator.port_a] * actuator.area_a - b.slope * f[actuator.port_b] * actuator.area_b};
 }
 
 // (1); the slope at the end of a sub-step is taken when the next one starts.
@@ -270,9 +301,8 @@ void CircuitIntegrator::accepted(double h, const double* y_before, const double*
   for (std::size_t j = 0; j < m_; ++j) {
     const Actuator& actuator = circuit_.actuators()[j];
     const int x = circuit_.position(static_cast<int>(j)), v = circuit_.speed(static_cast<int>(j));
-    const double F_0 = y_before[actuator.port_a] * actuator.area_a - y_before[actuator.port_b] * actuator.area_b;
-    const double F_1 = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
-    const double F_dot = f_before[actuator.port_a] * actuator.area_a - f_before[actuator.port_b] * actuator.area_b;
+    const PressureForce before = pressure_force(actuator, y_before, f_before);
+    const double F_0 = before.F, F_1 = pressure_force(actuator, y, f_before).F, F_dot = before.rate;
     const double half = 0.5 * (F_1 - F_0);
     F_mean_[j] = 0.5 * (F_0 + F_1);
     published_[j].work += F_mean_[j] * (y[x] - y_before[x]) + 0.5 * h * half * (y[v] - y_before[v]) +
@@ -282,6 +312,8 @@ void CircuitIntegrator::accepted(double h, const double* y_before, const double*
   integrate_pressures(h, y_before, f_before, y);
   open_quadrature_ = weight;
   was_clamped_ = circuit_.bound(y) || was_clamped_;
+  circuit_.keep_closed_oil(h, y_before, f_before, y, substep_pressure_);
+  circuit_.follow_vapour(y);
 }
 
 void CircuitIntegrator::integrate_pressures(double h, const double* y_before, const double* f_before,
@@ -289,7 +321,9 @@ void CircuitIntegrator::integrate_pressures(double h, const double* y_before, co
   for (std::size_t i = 0; i < pressure_integral_.size(); ++i) {
     const LineChamber& line = circuit_.lines()[i];
     if (!line.is_line) continue;
-    pressure_integral_[i] += solver_->integral(static_cast<std::size_t>(line.volume), h, y_before, f_before, y);
+    const VolumePressure pressure(circuit_, line.volume);
+    substep_pressure_[i] = solver_->integral(pressure, at(line.volume), h, y_before, f_before, y);
+    pressure_integral_[i] += substep_pressure_[i];
   }
 }
 
@@ -298,8 +332,7 @@ void CircuitIntegrator::close_quadrature(const double* y, const double* f) noexc
   for (std::size_t j = 0; j < m_; ++j) {
     const Actuator& actuator = circuit_.actuators()[j];
     const int v = circuit_.speed(static_cast<int>(j));
-    const double F = y[actuator.port_a] * actuator.area_a - y[actuator.port_b] * actuator.area_b;
-    const double F_dot = f[actuator.port_a] * actuator.area_a - f[actuator.port_b] * actuator.area_b;
+    const auto [F, F_dot] = pressure_force(actuator, y, f);
     published_[j].work -= open_quadrature_ * (F_dot * y[v] + (F - F_mean_[j]) * f[v]);
     published_[j].impulse -= open_quadrature_ * F_dot;
   }
@@ -346,7 +379,8 @@ StepReport CircuitIntegrator::step(double H, const PistonMotion& motion) noexcep
 
 void CircuitIntegrator::report_flags(StepReport& report) noexcept {
   report.flags = circuit_.flags(y_.data());
-  report.offender = circuit_.first_cavitating(y_.data());
+  report.offender = circuit_.farthest_beyond_oil_law(y_.data());
+  if (report.offender < 0) report.offender = circuit_.first_cavitating(y_.data());
   report.substeps = report_.accepted;
   report.iterations = report_.accepted + report_.rejected;
   report.residual = report_.largest_error;
@@ -373,13 +407,16 @@ void CircuitIntegrator::publish() noexcept {
     ActuatorLinearisation& out = published_[j];
     out.x = y_[static_cast<std::size_t>(circuit_.position(static_cast<int>(j)))];
     out.v = y_[static_cast<std::size_t>(circuit_.speed(static_cast<int>(j)))];
-    out.p_a = y_[a], out.p_b = y_[b];
-    out.F = out.p_a * actuator.area_a - out.p_b * actuator.area_b;
-    out.F_dot = f_[a] * actuator.area_a - f_[b] * actuator.area_b;
+    const ValueSlope p_a = circuit_.pressure(actuator.port_a, y_.data());
+    const ValueSlope p_b = circuit_.pressure(actuator.port_b, y_.data());
+    out.p_a = p_a.value, out.p_b = p_b.value;
+    const auto [F, F_dot] = pressure_force(actuator, y_.data(), f_.data());
+    out.F = F, out.F_dot = F_dot;
     out.Q_a = C_[a] * f_[a] + out.v * actuator.area_a;
     out.Q_b = C_[b] * f_[b] - out.v * actuator.area_b;
-    const double K_a = C_[a] > 0 ? actuator.area_a * actuator.area_a / C_[a] : 0;
-    const double K_b = C_[b] > 0 ? actuator.area_b * actuator.area_b / C_[b] : 0;
+    // a chamber that cavitates is no spring
+    const double K_a = C_[a] > 0 ? actuator.area_a * actuator.area_a / C_[a] * p_a.slope : 0;
+    const double K_b = C_[b] > 0 ? actuator.area_b * actuator.area_b / C_[b] * p_b.slope : 0;
     out.K = K_a + K_b;
     const double weighted = (K_a > 0 ? K_a * outflow_[a] / C_[a] : 0) + (K_b > 0 ? K_b * outflow_[b] / C_[b] : 0);
     out.lambda = out.K > 0 ? std::max(0.0, weighted / out.K) : 0;
@@ -399,7 +436,7 @@ void CircuitIntegrator::publish_line(int actuator) noexcept {
   for (std::size_t side = 0; side < 2; ++side) {
     const LineChamber& line = circuit_.lines()[2 * static_cast<std::size_t>(actuator) + side];
     if (!line.is_line) continue;
-    const double p = y_[static_cast<std::size_t>(line.volume)];
+    const double p = circuit_.pressure(line.volume, y_.data()).value;
     const double C = C_[static_cast<std::size_t>(line.volume)];
     out.stiffness += line.slope * line.slope / (C + circuit_.line_capacity(line, p, out.x));
     (side == 0 ? out.Q_a : out.Q_b) = C * f_[static_cast<std::size_t>(line.volume)] + line.inflow(p);
@@ -410,6 +447,7 @@ void CircuitIntegrator::add_to(StateHash& hash) const noexcept {
   hash.add(std::span<const double>(y_));
   solver_->add_to(hash);
   hash.add(has_failed_);
+  circuit_.add_vapour_to(hash, y_.data());
   hash.add(circuit_.parameter_values());
   circuit_.add_lines_to(hash);
 }

@@ -3,6 +3,7 @@
 // Within a step the circuit's equations and the pistons' motion (PistonMotion) are one system for the solver that the
 // Def chooses (math/rodas3.h, runge_kutta4.h, implicit_euler.h, cvode_stepper.h):
 //   y' = rates(y),  x' = v,  v' = a(F, x, v),  F = p_A A_A - p_B A_B
+// State of a volume is its pressure, below the cavitation floor its vapour (vapour.h).
 // The row of a quasi-static volume is algebraic, 0 = sum Q; its pressure is solved for at the start and again at the
 // start of every step, so that a jump of an input finds it consistent.
 // Work and impulse of each actuator are integrated beside it with the cubic through both ends of a sub-step:
@@ -75,8 +76,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   void align(std::span<const double> x, std::span<const double> v) noexcept;
 
   // Advances by H seconds. A non-finite state is latched: the last finite one stays, every further report says so.
-  // offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), or of the first
-  // volume that cavitates.
+  // offender: StateIndex of the state that failed, ran out of budget or of stability (not_converged), of the volume
+  // farthest beyond the oil's law, or of the first volume that cavitates.
   StepReport step(double H, const PistonMotion& motion) noexcept;
 
   [[nodiscard]] std::span<const ActuatorLinearisation> actuators() const noexcept { return published_; }
@@ -107,6 +108,11 @@ class CircuitIntegrator final : private math::StiffSystem {
   const double* linearise(const double* y, double* f) noexcept override;
   [[nodiscard]] double time_to_bend(const double* y, const double* f, const double* J) noexcept override;
   void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept override;
+  struct PressureForce {
+    double F = 0, rate = 0;  // N, N/s
+  };
+  // Of an actuator at y with rates f.
+  [[nodiscard]] PressureForce pressure_force(const Actuator& actuator, const double* y, const double* f) const noexcept;
   void add_accelerations(const double* y, double* f) noexcept;
   void stamp_accelerations(const double* y, double* J) noexcept;
   void publish() noexcept;
@@ -124,7 +130,7 @@ class CircuitIntegrator final : private math::StiffSystem {
   std::size_t m_;
   std::vector<double> y_, y_start_, f_;
   std::vector<double> F_, F_dot_, F_mean_, jerk_, da_dF_, da_dx_, da_dv_, C_, outflow_;
-  std::vector<double> pressure_integral_;  // Pa s, by line
+  std::vector<double> pressure_integral_, substep_pressure_;  // Pa s, by line; of the step, of the last sub-step
   std::vector<ActuatorLinearisation> published_;
   double open_quadrature_ = 0;  // h^2/12 of the last sub-step, whose end slope is not known yet
   bool was_clamped_ = false;

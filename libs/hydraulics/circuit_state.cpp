@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/reductions.h"
 #include "hydraulics/circuit.h"
 
 namespace slew::hydraulics {
@@ -102,30 +103,31 @@ void Circuit::start(std::span<const double> F, std::span<double> y) const {
   }
 }
 
-// dp/ds = -(dV/dx . way) / C at the state y; s runs from 0 to 1 along the pistons' way.
-void Circuit::chamber_rates(const double* y, double* dp) const noexcept {
+// du/ds = -(dV/dx . way) / C at the state y; s runs from 0 to 1 along the pistons' way.
+void Circuit::chamber_rates(const double* y, double* du) const noexcept {
   for (std::size_t i = 0; i < volume_name_.size(); ++i) {
-    dp[i] = 0;
+    du[i] = 0;
     if (is_fixed_[i]) continue;
-    double dV = 0;
-    for (std::size_t k = volumes_[i].begin; k < volumes_[i].end; ++k) {
-      const Piece& piece = pieces_[k];
-      // a line's oil follows in move_lines()
-      if (piece.position >= 0 && piece.lumped == 1)
-        dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
-    }
-    if (dV != 0) dp[i] = -dV / capacity_at(i, y);
+    if (growth_[i] != 0) du[i] = -growth_[i] / capacity_at(i, y);
   }
 }
 
 bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
   const std::size_t n = volume_name_.size(), m = actuators_.size();
   for (std::size_t j = 0; j < m; ++j) way_[j] = x_new[j] - y[n + j];
-  bool is_within = move_lines(x_new);
+  // a piston that is lost takes no pressure with it: its state is the one to be named
+  if (!all_finite({x_new, m})) {
+    std::copy(x_new, x_new + m, y + n);
+    return false;
+  }
+  const bool is_within = move_lines(x_new);
+  for (std::size_t i = 0; i < n; ++i) growth_[i] = chamber_growth(i);
   // parts short enough for the stiffness of oil with air to change little within one
   chamber_rates(y, slope_[0].data());
   double change = 0;
-  for (std::size_t i = 0; i < n; ++i) change = std::max(change, std::fabs(slope_[0][i]) / std::max(y[i], floor_));
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!vapour_.is_in(i, y)) change = std::max(change, std::fabs(slope_[0][i]) / std::max(y[i], floor_));
+  }
   const double wanted = std::min(std::ceil(change / kLargestChange), static_cast<double>(kMostParts));
   const int parts = std::max(1, static_cast<int>(wanted));
   const double h = 1.0 / parts;
@@ -140,10 +142,15 @@ bool Circuit::move_pistons(double* y, const double* x_new) noexcept {
       chamber_rates(moved_.data(), slope_[stage].data());
     }
     for (std::size_t i = 0; i < n; ++i) {
-      y[i] += h / 6 * (slope_[0][i] + 2 * slope_[1][i] + 2 * slope_[2][i] + slope_[3][i]);
+      const double moved = y[i] + h / 6 * (slope_[0][i] + 2 * slope_[1][i] + 2 * slope_[2][i] + slope_[3][i]);
+      const bool crosses = vapour_.is_in(i, y) || moved < vapour_.begins_below[i];
+      if (slope_[0][i] != 0 && crosses) {
+        move_through_floor(i, h * growth_[i], h, y);
+      } else {
+        y[i] = moved;
+      }
     }
     for (std::size_t j = 0; j < m; ++j) y[n + j] += h * way_[j];
-    is_within = !bound(y) && is_within;
   }
   for (std::size_t j = 0; j < m; ++j) y[n + j] = x_new[j];
   return is_within;

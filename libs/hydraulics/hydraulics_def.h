@@ -85,14 +85,32 @@ inline constexpr Range kPeakRange{.min = 1300e5};
 inline constexpr Range kAirRange{.min = 0, .max = 0.2, .min_is_open = false, .max_is_open = false};
 inline constexpr Range kPolytropicRange{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
 
+inline constexpr ReadBy kReadByAir[] = {
+    read_by<&HydraulicsDef::oil_law, OilLaw::oil_and_air>("oil_law", "oil_law: oil_and_air")};
+inline constexpr ReadBy kReadByAirThere[] = {
+    read_by<&HydraulicsDef::oil_law, OilLaw::oil_and_air>("oil_law", "oil_law: oil_and_air"),
+    read_by_set<&HydraulicsDef::entrained_air>("entrained_air", "entrained_air above 0")};
+inline constexpr ReadBy kReadByParabola[] = {
+    read_by<&HydraulicsDef::oil_law, OilLaw::density_parabola>("oil_law", "oil_law: density_parabola")};
+inline constexpr ReadBy kReadByTolerance[] = {
+    read_by<&HydraulicsDef::solver, Solver::rodas3, Solver::implicit_euler, Solver::cvode>(
+        "solver", "solver: rodas3, implicit_euler or cvode", ReadBy::Otherwise::warning)};
+inline constexpr ReadBy kReadByHalving[] = {read_by<&HydraulicsDef::solver, Solver::rodas3, Solver::implicit_euler>(
+    "solver", "solver: rodas3 or implicit_euler", ReadBy::Otherwise::error_in_files)};
+inline constexpr ReadBy kReadByFixedStep[] = {read_by<&HydraulicsDef::solver, Solver::rk4, Solver::implicit_euler>(
+    "solver", "solver: rk4 or implicit_euler", ReadBy::Otherwise::error_in_files)};
+inline constexpr ReadBy kReadByEquilibrium[] = {
+    read_by<&HydraulicsDef::start, StartState::equilibrium>("start", "start: equilibrium")};
+
 inline constexpr Field kHydraulicsFields[] = {
     field<&HydraulicsDef::oil_law>(
         "oil_law", {.choices = kOilLawChoices,
                     .doc = "oil_and_air: bulk modulus with entrained air; density_parabola: density over pressure as a "
                            "parabola, no air"}),
-    field<&HydraulicsDef::oil_bulk_modulus>(
-        "oil_bulk_modulus",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "bulk modulus of the oil without air"}),
+    field<&HydraulicsDef::oil_bulk_modulus>("oil_bulk_modulus", {.dimension = Dimension::pressure,
+                                                                 .range = kPositive,
+                                                                 .read_by = kReadByAir,
+                                                                 .doc = "bulk modulus of the oil without air"}),
     field<&HydraulicsDef::oil_density>(
         "oil_density", {.dimension = Dimension::density, .range = kPositive, .doc = "density of the oil"}),
     field<&HydraulicsDef::oil_viscosity>("oil_viscosity",
@@ -100,21 +118,25 @@ inline constexpr Field kHydraulicsFields[] = {
                                           .range = kPositive,
                                           .doc = "kinematic viscosity of the oil at working temperature"}),
     field<&HydraulicsDef::entrained_air>(
-        "entrained_air",
-        {.range = kAirRange, .doc = "volume of entrained air per volume of oil at the reference pressure"}),
+        "entrained_air", {.range = kAirRange,
+                          .read_by = kReadByAir,
+                          .doc = "volume of entrained air per volume of oil at the reference pressure"}),
     field<&HydraulicsDef::air_reference_pressure>("air_reference_pressure",
                                                   {.dimension = Dimension::pressure,
                                                    .range = kPositive,
+                                                   .read_by = kReadByAirThere,
                                                    .doc = "absolute pressure at which the air content is stated"}),
-    field<&HydraulicsDef::polytropic_exponent>("polytropic_exponent",
-                                               {.range = kPolytropicRange, .doc = "polytropic exponent of the air"}),
-    field<&HydraulicsDef::oil_compressibility>("oil_compressibility",
-                                               {.dimension = Dimension::pressure_gain,
-                                                .range = kPositive,
-                                                .doc = "compressibility at zero pressure, for density_parabola"}),
+    field<&HydraulicsDef::polytropic_exponent>(
+        "polytropic_exponent",
+        {.range = kPolytropicRange, .read_by = kReadByAirThere, .doc = "polytropic exponent of the air"}),
+    field<&HydraulicsDef::oil_compressibility>("oil_compressibility", {.dimension = Dimension::pressure_gain,
+                                                                       .range = kPositive,
+                                                                       .read_by = kReadByParabola,
+                                                                       .doc = "compressibility at zero pressure"}),
     field<&HydraulicsDef::oil_density_peak>("oil_density_peak",
                                             {.dimension = Dimension::pressure,
                                              .range = kPeakRange,
+                                             .read_by = kReadByParabola,
                                              .doc = "absolute pressure at the top of the density parabola"}),
     field<&HydraulicsDef::pressure_floor>(
         "pressure_floor", {.dimension = Dimension::pressure,
@@ -129,18 +151,23 @@ inline constexpr Field kHydraulicsFields[] = {
         {.choices = kSolverChoices,
          .doc = "rodas3: adaptive, L-stable; rk4 and implicit_euler: sub-steps of fixed size; cvode: adaptive BDF "
                 "of variable order, for reference runs"}),
-    field<&HydraulicsDef::relative_tolerance>("relative_tolerance",
-                                              {.range = kToleranceRange, .doc = "relative error allowed per sub-step"}),
+    field<&HydraulicsDef::relative_tolerance>(
+        "relative_tolerance",
+        {.range = kToleranceRange, .read_by = kReadByTolerance, .doc = "relative error allowed per sub-step"}),
     field<&HydraulicsDef::pressure_scale>(
         "pressure_scale",
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure added to the scale of the error"}),
-    field<&HydraulicsDef::minimum_step>("minimum_step",
-                                        {.dimension = Dimension::time, .range = kPositive, .doc = "smallest sub-step"}),
-    field<&HydraulicsDef::max_substep>(
-        "max_substep", {.dimension = Dimension::time, .range = kPositive, .doc = "sub-step of rk4 and implicit_euler"}),
+    field<&HydraulicsDef::minimum_step>(
+        "minimum_step",
+        {.dimension = Dimension::time, .range = kPositive, .read_by = kReadByHalving, .doc = "smallest sub-step"}),
+    field<&HydraulicsDef::max_substep>("max_substep", {.dimension = Dimension::time,
+                                                       .range = kPositive,
+                                                       .read_by = kReadByFixedStep,
+                                                       .doc = "sub-step of rk4 and implicit_euler"}),
     field<&HydraulicsDef::substep_budget>(
         "substep_budget",
         {.range = kBudgetRange,
+         .read_by = kReadByHalving,
          .doc = "sub-steps allowed in one communication step; beyond, steps are accepted and flagged"}),
     field<&HydraulicsDef::quasi_static_above>(
         "quasi_static_above", {.dimension = Dimension::frequency,
@@ -153,14 +180,17 @@ inline constexpr Field kHydraulicsFields[] = {
     field<&HydraulicsDef::start_return_pressure>(
         "start_return_pressure", {.dimension = Dimension::pressure,
                                   .range = kPositive,
+                                  .read_by = kReadByEquilibrium,
                                   .doc = "absolute rod-side pressure of linear cylinders at an equilibrium start"}),
     field<&HydraulicsDef::start_slew_pressure>(
         "start_slew_pressure", {.dimension = Dimension::pressure,
                                 .range = kPositive,
+                                .read_by = kReadByEquilibrium,
                                 .doc = "absolute mean pressure of slew cylinders at an equilibrium start"}),
     field<&HydraulicsDef::start_pump_pressure>("start_pump_pressure",
                                                {.dimension = Dimension::pressure,
                                                 .range = kPositive,
+                                                .read_by = kReadByEquilibrium,
                                                 .doc = "absolute pressure of pump volumes at an equilibrium start"}),
 };
 

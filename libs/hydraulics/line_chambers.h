@@ -8,10 +8,12 @@
 // mean of both waves, p = (c_h + c_m)/2: with (2), C (p+ - p) = T (mean(Q_h) - S mean(v)). C depends on pressure and
 // stroke; where it changes within a step, c_h+ takes what (2) leaves to  int C dp = int Q_h dt - S dx            (3)
 //
+// A wave ends at the pressure of vapour (vapour.h). What that would make of oil is room that the oil does not fill, is
+// counted (LineState::room), and is filled again before the line's pressure rises. (4)
+//
 // kLumpedShare of the chamber stays with the volume, so that its pressure is a state with the time constant 0.01 T also
 // where no hose is connected. Sources: Auslander (1968); Krus et al. (1990), transmission lines between the
-// parts of a distributed simulation. Not covered: cavitation within the line (waves end at the lowest pressure; then
-// oil is made), losses.
+// parts of a distributed simulation. Not covered: where in the line vapour is, losses.
 #pragma once
 
 #include <cstddef>
@@ -27,9 +29,11 @@ struct LineState {
   double c_h = 0;       // Pa, arrives at the volume in this step
   double c_m = 0;       // Pa, arrives at the piston in this step
   double c_m_next = 0;  // Pa, in the next one
+  double held = 0;      // Pa, by which c_m_next lies above (2)
   double Z = 0;         // Pa s/m3, of this step
   double Z_next = 0;    // Pa s/m3
   double x = 0;         // m, where the piston was at the last exchange
+  double room = 0;      // m3 without oil, (4)
 };
 
 struct LineChamber {

@@ -9,8 +9,6 @@ namespace {
 
 constexpr double kHighestPressure = 4e9;  // Pa; beyond, kappa keeps its last value
 constexpr double kLowestFraction = 1e-3;  // of the floor: the table's lower end
-constexpr double kParabolaEnd = 1000e5;   // Pa; the top, where kappa is zero, lies above 1300 bar
-constexpr double kVapour = 10;            // c of (3): 110 % expansion at half the floor
 
 }  // namespace
 
@@ -20,11 +18,10 @@ OilCompressibility::OilCompressibility(const HydraulicsDef& def)
       alpha_(def.entrained_air),
       p_0_(def.air_reference_pressure),
       inverse_n_(1 / def.polytropic_exponent),
-      floor_(def.pressure_floor),
       a_(def.oil_compressibility),
       peak_(def.oil_density_peak) {
   const auto start_of = [](std::uint64_t bits) { return std::bit_cast<double>(bits << kPartsShift); };
-  first_ = leading_bits(kLowestFraction * floor_);
+  first_ = leading_bits(kLowestFraction * def.pressure_floor);
   lowest_ = start_of(first_);
   const std::uint64_t last = leading_bits(kHighestPressure);
   for (std::uint64_t bits = first_; bits <= last; ++bits) {
@@ -47,24 +44,18 @@ ValueSlope OilCompressibility::oil_and_air(double p) const noexcept {
   return {-V_1 / V, -V_2 / V + V_1 * V_1 / (V * V)};
 }
 
-// (4)
+// (3)
 ValueSlope OilCompressibility::density_parabola(double p) const noexcept {
-  const bool is_beyond = p > kParabolaEnd;
-  const double q = is_beyond ? kParabolaEnd : p;
+  // the top, where kappa is zero, lies above 1300 bar
+  const bool is_beyond = p > kHighest;
+  const double q = is_beyond ? kHighest : p;
   const double rho = 1 + a_ * q * (1 - q / (2 * peak_)), rho_1 = a_ * (1 - q / peak_), rho_2 = -a_ / peak_;
   const double kappa = rho_1 / rho;
   return {kappa, is_beyond ? 0 : rho_2 / rho - kappa * kappa};
 }
 
-// (3) on top of the law
 ValueSlope OilCompressibility::exact(double p) const noexcept {
-  ValueSlope kappa = law_ == OilLaw::density_parabola ? density_parabola(p) : oil_and_air(p);
-  if (p < floor_) {
-    const double q = floor_ / p - 1;
-    kappa.value += kVapour / floor_ * q * q;
-    kappa.slope -= 2 * kVapour * q / (p * p);
-  }
-  return kappa;
+  return law_ == OilLaw::density_parabola ? density_parabola(p) : oil_and_air(p);
 }
 
 }  // namespace slew::hydraulics

@@ -1,16 +1,14 @@
-// Compressibility of oil with entrained air, and vapour below the cavitation floor.
+// Compressibility of oil with entrained air. What a volume does below the cavitation floor p_f is in vapour.h.
 //
 //   V(p)/V_0 = exp(-(p - p_0)/B) + alpha (p_0/p)^(1/n)                                          (1)
 //   kappa(p) = -V'/V                                  1/Pa, the inverse bulk modulus            (2)
-//   rho(p)/rho_0 = 1 + a p - a p^2/(2 p_m),  kappa = rho'/rho   instead of (1) as density_parabola    (4)
-//   kappa(p) += c/p_f (p_f/p - 1)^2  for p < p_f      vapour fills what the oil cannot          (3)
+//   rho(p)/rho_0 = 1 + a p - a p^2/(2 p_m),  kappa = rho'/rho   instead of (1) as density_parabola    (3)
 //
-// p absolute; p_0 air reference pressure, alpha air content there, n polytropic exponent, p_f floor, c = 10. The
-// integral of (3) diverges towards p = 0, so no finite expansion brings a pressure to zero. kappa is tabulated once as
-// piecewise cubics over 32 equal parts of each octave of p (relative error below 1e-6 above the floor, 1e-4 in vapour)
-// and read without a transcendental function. Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to
-// 27; the air term is the usual polytropic one; (4) as 1 + a p + b p^2 in Naya et al. 2011, p_m = -a/(2 b): kappa keeps
-// its value at 1000 bar beyond that, and there is no air. Not covered: dissolution of air, temperature.
+// p absolute; p_0 air reference pressure, alpha air content there, n polytropic exponent. kappa is tabulated once from
+// 1e-3 p_f on as piecewise cubics over 32 equal parts of each octave of p (relative error below 1e-6) and read without
+// a transcendental function. Sources: the flexible-body tutorial thesis (Saimaa UAS 2017), eq. 22 to 27; the air term
+// is the usual polytropic one; (3) as 1 + a p + b p^2 in Naya et al. 2011, p_m = -a/(2 b): kappa keeps its value at
+// 1000 bar beyond that, and there is no air. Not covered: dissolution of air, temperature.
 #pragma once
 
 #include <array>
@@ -43,7 +41,10 @@ class OilCompressibility {
   // (2), (3) evaluated directly; what the table is made from.
   [[nodiscard]] ValueSlope exact(double p) const noexcept;
 
-  // Pressures below this one are outside of (3): the solver moves them back.
+  // What (1) and (3) are good for [Pa absolute]: beyond, kappa goes on or keeps its value, and steps are flagged.
+  static constexpr double kHighest = 1000e5;
+
+  // Beginning of the table: pressures that cannot stand for vapour are held there.
   [[nodiscard]] double lowest_pressure() const noexcept { return lowest_; }
 
  private:
@@ -62,7 +63,7 @@ class OilCompressibility {
   };
 
   OilLaw law_;
-  double B_, alpha_, p_0_, inverse_n_, floor_, a_, peak_;
+  double B_, alpha_, p_0_, inverse_n_, a_, peak_;
   double lowest_;
   std::uint64_t first_ = 0;  // leading bits of the first segment's start
   std::vector<Segment> segment_;

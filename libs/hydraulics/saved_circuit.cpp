@@ -1,4 +1,6 @@
 // The state of a circuit and of its integration as bytes.
+#include <cmath>
+
 #include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
 
@@ -18,10 +20,22 @@ void Circuit::visit(Self& self, Bytes& bytes) {
   bytes.numbers(self.line_force_);
   bytes.numbers(self.ls_);
   for (auto& line : self.lines_) {
-    bytes.flag(line.is_line);
-    bytes.number(line.delay);
     auto& state = line.state;
+    // 0: no line, 1: a line, 2: one that counts room without oil
+    const bool counts_room = state.held != 0 || state.room != 0;
+    auto kind = static_cast<std::uint8_t>(!line.is_line ? 0 : counts_room ? 2 : 1);
+    bytes.number(kind);
+    bytes.number(line.delay);
     for (auto* x : {&state.c_h, &state.c_m, &state.c_m_next, &state.Z, &state.Z_next, &state.x}) bytes.number(*x);
+    if constexpr (Bytes::kIsReading) {
+      if (kind > 2) return bytes.refuse();
+      line.is_line = kind > 0;
+      state.held = state.room = 0;
+    }
+    if (kind == 2) {
+      bytes.number(state.held);
+      bytes.number(state.room);
+    }
     if constexpr (Bytes::kIsReading) {
       if (!line.is_line) continue;
       // of a chamber alone
@@ -38,6 +52,24 @@ void Circuit::save(StateWriter& bytes) const {
 void Circuit::load(StateReader& bytes) noexcept {
   for (Piece& piece : pieces_) piece.lumped = 1;
   visit(*this, bytes);
+}
+
+// Of the volumes that cavitate at y; of the others they follow from y.
+void Circuit::save_vapour(StateWriter& bytes, const double* y) const {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    if (vapour_.is_in(i, y)) bytes.number(vapour_.capacity[i]);
+  }
+}
+
+void Circuit::load_vapour(StateReader& bytes, const double* y) noexcept {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    if (!vapour_.is_in(i, y)) continue;
+    double C = 0;
+    bytes.number(C);
+    if (!(C > 0 && std::isfinite(C))) return bytes.refuse();
+    vapour_.capacity[i] = C;
+  }
+  follow_vapour(y);
 }
 
 template <typename Self, typename Bytes>
@@ -64,14 +96,16 @@ void CircuitIntegrator::visit(Self& self, Bytes& bytes) {
 void CircuitIntegrator::save(StateWriter& bytes) const {
   circuit_.save(bytes);
   visit(*this, bytes);
+  circuit_.save_vapour(bytes, y_.data());
   solver_->save(bytes);
 }
 
 void CircuitIntegrator::load(StateReader& bytes) {
   circuit_.load(bytes);
   visit(*this, bytes);
-  solver_->load(bytes);
   if (bytes.is_sound()) list_quasi_static();
+  circuit_.load_vapour(bytes, y_.data());
+  solver_->load(bytes);
   // nothing else can be inconsistent
   if (!is_consistent_ && quasi_static_.empty()) bytes.refuse();
 }

@@ -25,14 +25,17 @@ Stall find_stall(const HydraulicsDef& def, std::span<const double> x, const Held
   if (held.control >= 0) circuit.set_control(held.control, held.signal);
   const HeldSpeed blocked(m);
   Stall stall;
-  stall.pressures.assign(integrator.state().begin(), integrator.state().begin() + static_cast<std::ptrdiff_t>(volumes));
+  const auto pressure = [&](std::size_t i) {
+    return circuit.pressure(static_cast<int>(i), integrator.state().data()).value;
+  };
+  for (std::size_t i = 0; i < volumes; ++i) stall.pressures.push_back(pressure(i));
   int quiet = 0;
   for (double t = 0; t < kLongestStall && quiet < kQuietSteps; t += kStep) {
     if (integrator.step(kStep, blocked).has_failed()) break;
     double change = 0;
     for (std::size_t i = 0; i < volumes; ++i) {
-      change = std::max(change, std::fabs(integrator.state()[i] - stall.pressures[i]));
-      stall.pressures[i] = integrator.state()[i];
+      change = std::max(change, std::fabs(pressure(i) - stall.pressures[i]));
+      stall.pressures[i] = pressure(i);
     }
     quiet = change < kUnchanged ? quiet + 1 : 0;
   }

@@ -6,6 +6,7 @@
 
 #include "core/dimension.h"
 #include "hydraulics/hydraulics_def.h"
+#include "hydraulics/pump_lines.h"
 
 namespace slew::hydraulics {
 namespace {
@@ -274,6 +275,7 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
   if (!are_types_known) return;
   check_ls_chain(def, errors, warnings);
   check_forces(def, errors);
+  if (errors.empty()) find_unrelieved_pumps(def, warnings);
 }
 
 }  // namespace slew::hydraulics

@@ -80,7 +80,7 @@ struct CvodeStepper::Memory {
     const realtype* const values = N_VGetArrayPointer(at);
     realtype* const weight = N_VGetArrayPointer(out);
     for (std::size_t i = 0; i < m.y.size(); ++i) {
-      const double size = options.scale[i] + options.relative[i] * std::fabs(values[i] + m.offset[i]);
+      const double size = options.size_of(i, values[i] + m.offset[i]);
       weight[i] = 1 / (options.relative_tolerance * size);
     }
     return 0;
@@ -135,7 +135,7 @@ void CvodeStepper::begin_at(std::span<const double> y, StiffReport& report) noex
 void CvodeStepper::take_along(std::span<const double> y, StiffReport& report) noexcept {
   bool is_smooth = has_history_;
   for (std::size_t i = 0; is_smooth && i < y.size(); ++i) {
-    const double size = options_.scale[i] + options_.relative[i] * std::fabs(y[i]);
+    const double size = options_.size_of(i, y[i]);
     is_smooth = std::fabs(y[i] - reached_[i]) <= kJump * size;
   }
   if (!is_smooth) {
@@ -143,6 +143,15 @@ void CvodeStepper::take_along(std::span<const double> y, StiffReport& report) no
     return;
   }
   for (std::size_t i = 0; i < y.size(); ++i) memory_->offset[i] += y[i] - reached_[i];
+}
+
+// What accepted() made of a step, as an offset (1); false: too much for one.
+bool CvodeStepper::take_correction() noexcept {
+  for (std::size_t i = 0; i < new_.size(); ++i) {
+    if (std::fabs(new_[i] - given_[i]) > kJump * options_.size_of(i, new_[i])) return false;
+  }
+  for (std::size_t i = 0; i < new_.size(); ++i) memory_->offset[i] += new_[i] - given_[i];
+  return true;
 }
 
 StiffReport CvodeStepper::advance(StiffSystem& system, std::span<double> y, double duration) noexcept {
@@ -178,8 +187,7 @@ StiffReport CvodeStepper::advance(StiffSystem& system, std::span<double> y, doub
     for (std::size_t i = 0; i < y.size(); ++i) given_[i] = new_[i] = z[i] + m.offset[i];
     system.accepted(h, y.data(), f_.data(), new_.data());
     std::copy(new_.begin(), new_.end(), y.begin());
-    if (new_ != given_) {
-      // held at a bound
+    if (new_ != given_ && !take_correction()) {
       done += t_ - begin;
       begin_at(y, report);
       begin = 0, t_end = duration - done;

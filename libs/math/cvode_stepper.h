@@ -39,6 +39,7 @@ class CvodeStepper final : public StiffIntegrator {
 
   void begin_at(std::span<const double> y, StiffReport& report) noexcept;
   void take_along(std::span<const double> y, StiffReport& report) noexcept;
+  [[nodiscard]] bool take_correction() noexcept;
   [[nodiscard]] std::int32_t worst_state() const noexcept;
 
   StiffOptions options_;

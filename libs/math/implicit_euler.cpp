@@ -47,7 +47,7 @@ ImplicitEuler::Newton ImplicitEuler::try_step(StiffSystem& system, const double*
     newton.last = 0;
     for (std::size_t i = 0; i < size_; ++i) {
       new_[i] += d_[i];
-      const double size = options_.scale[i] + options_.relative[i] * std::fabs(y[i]);
+      const double size = options_.size_of(i, y[i]);
       const double e = std::fabs(d_[i]) / (kConverged * options_.relative_tolerance * size);
       if (!std::isfinite(e)) {
         newton.is_finite = false;

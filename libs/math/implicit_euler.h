@@ -22,9 +22,9 @@ class ImplicitEuler final : public StiffIntegrator {
   void restart() noexcept override {}
   [[nodiscard]] double step_size() const noexcept override { return options_.maximum_step; }
   void set_step_size(double) noexcept override {}
-  [[nodiscard]] double integral(std::size_t state, double h, const double*, const double*,
+  [[nodiscard]] double integral(const StateFunction& g, std::size_t state, double h, const double*, const double*,
                                 const double* y) const noexcept override {
-    return h * y[state];
+    return h * g.at(y[state]).value;
   }
   [[nodiscard]] bool takes_algebraic_rows() const noexcept override { return true; }
   void set_mass(std::span<const double> mass) noexcept override { matrix_.set_mass(mass); }

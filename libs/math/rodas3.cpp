@@ -78,7 +78,7 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
   worst_ = -1;
   for (std::size_t i = 0; i < n; ++i) {
     new_[i] = stage_[i] + k4_[i];
-    const double size = options_.scale[i] + options_.relative[i] * std::fabs(y[i]);
+    const double size = options_.size_of(i, y[i]);
     const double e = std::fabs(k4_[i]) / (options_.relative_tolerance * size);
     is_number = is_number && e <= std::numeric_limits<double>::max();
     if (e > error) {
@@ -89,17 +89,17 @@ double Rodas3::try_step(StiffSystem& system, const double* y, double h) noexcept
   return is_number ? error : kInfinity;
 }
 
-// (1) for w' = y_i, whose row of J is the unit vector of i: with q the K of w,
-//   q_s = h gamma (stage_s + K_s) + gamma sum_j c_sj q_j
-double Rodas3::integral(std::size_t state, double h, const double* before, const double*,
+// (1) for w' = g(y_i), whose row of J is g' at the start in column i: with q the K of w,
+//   q_s = h gamma (g(stage_s) + g' K_s) + gamma sum_j c_sj q_j
+double Rodas3::integral(const StateFunction& g, std::size_t state, double h, const double* before, const double*,
                         const double*) const noexcept {
-  const double y_before = before[state];
-  const double k1 = k1_[state], k2 = k2_[state], k3 = k3_[state], k4 = k4_[state];
-  const double y3 = y_before + 2 * k1, y4 = y3 + k3, weight = h * kGamma;
-  const double q1 = weight * (y_before + k1);
-  const double q2 = weight * (y_before + k2) + kGamma * kC21 * q1;
-  const double q3 = weight * (y3 + k3) + kGamma * (kC31 * q1 + kC32 * q2);
-  const double q4 = weight * (y4 + k4) + kGamma * (kC41 * q1 + kC42 * q2 + kC43 * q3);
+  const auto [g_1, slope] = g.at(before[state]);
+  const double k1 = slope * k1_[state], k2 = slope * k2_[state], k3 = slope * k3_[state], k4 = slope * k4_[state];
+  const double y3 = before[state] + 2 * k1_[state], y4 = y3 + k3_[state], weight = h * kGamma;
+  const double q1 = weight * (g_1 + k1);
+  const double q2 = weight * (g_1 + k2) + kGamma * kC21 * q1;
+  const double q3 = weight * (g.at(y3).value + k3) + kGamma * (kC31 * q1 + kC32 * q2);
+  const double q4 = weight * (g.at(y4).value + k4) + kGamma * (kC41 * q1 + kC42 * q2 + kC43 * q3);
   return 2 * q1 + q3 + q4;
 }
 

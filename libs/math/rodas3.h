@@ -34,8 +34,8 @@ class Rodas3 final : public StiffIntegrator {
   void set_step_size(double h) noexcept override { step_size_ = h; }
   void save(StateWriter& bytes) const override { bytes.number(step_size_); }
   void load(StateReader& bytes) noexcept override { bytes.number(step_size_); }
-  [[nodiscard]] double integral(std::size_t state, double h, const double* y_before, const double* f_before,
-                                const double* y) const noexcept override;
+  [[nodiscard]] double integral(const StateFunction& g, std::size_t state, double h, const double* y_before,
+                                const double* f_before, const double* y) const noexcept override;
   [[nodiscard]] bool takes_algebraic_rows() const noexcept override { return true; }
   void set_mass(std::span<const double> mass) noexcept override { matrix_.set_mass(mass); }
 

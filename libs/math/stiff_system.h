@@ -7,6 +7,7 @@
 // each sub-step. Deterministic: the same system, state and history give the same bits.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -40,14 +41,20 @@ class StiffSystem {
   virtual void accepted(double h, const double* y_before, const double* f_before, double* y) noexcept = 0;
 };
 
-// What the integrators judge errors and residuals by: the size of state i is s_i + r_i |y_i|.
+// What the integrators judge errors and residuals by: the size of state i is s_i + r_i |y_i|, with an r_i of its own
+// below zero.
 struct StiffOptions {
   double relative_tolerance = 1e-4;
-  double minimum_step = 1e-6;          // s
-  double maximum_step = 1e-4;          // s, sub-step of the integrators with a fixed one
-  std::uint32_t substep_budget = 200;  // accepted and rejected sub-steps per interval
-  std::vector<double> scale;           // s_i of the error measure, one per state, > 0
-  std::vector<double> relative;        // r_i: 1, or 0 for a state whose zero is arbitrary (a position)
+  double minimum_step = 1e-6;                    // s
+  double maximum_step = 1e-4;                    // s, sub-step of the integrators with a fixed one
+  std::uint32_t substep_budget = 200;            // accepted and rejected sub-steps per interval
+  std::vector<double> scale;                     // s_i of the error measure, one per state, > 0
+  std::vector<double> relative;                  // r_i: 1, or 0 for a state whose zero is arbitrary (a position)
+  std::vector<double> relative_below_zero = {};  // r_i of y_i < 0; empty: the same
+
+  [[nodiscard]] double size_of(std::size_t i, double y) const noexcept {
+    return scale[i] + (y < 0 && !relative_below_zero.empty() ? relative_below_zero : relative)[i] * std::fabs(y);
+  }
 };
 
 struct StiffReport {
@@ -62,6 +69,16 @@ struct StiffReport {
   bool is_finite = true;                   // false: y is the last finite state, the interval is not finished
   double largest_error = 0;                // of the accepted steps, 1 = tolerance; explicit: h |lambda|_max / limit
   std::int32_t worst_state = -1;           // the state with that error; when not finite: the first such state
+};
+
+// Of one state: g(y_i) and its slope.
+class StateFunction {
+ public:
+  struct Value {
+    double value, slope;
+  };
+  virtual ~StateFunction() = default;
+  [[nodiscard]] virtual Value at(double y) const noexcept = 0;
 };
 
 class StiffIntegrator {
@@ -87,12 +104,13 @@ class StiffIntegrator {
   virtual void save(StateWriter& bytes) const { static_cast<void>(bytes); }
   virtual void load(StateReader& bytes) noexcept { static_cast<void>(bytes); }
 
-  // Integral of a state over the sub-step that is being accepted; for StiffSystem::accepted() only. As the method
-  // itself would integrate it where that differs from a parabola: what flows out of one state and into another is the
-  // same.
-  [[nodiscard]] virtual double integral(std::size_t state, double h, const double* y_before, const double* f_before,
-                                        const double* y) const noexcept {
-    return h / 3 * (2 * y_before[state] + y[state]) + h * h / 6 * f_before[state];
+  // Integral of g(y_i), i = state, over the sub-step that is being accepted; for StiffSystem::accepted() only. As the
+  // method itself would integrate it where that differs from a parabola: what flows out of one state and into another
+  // is the same.
+  [[nodiscard]] virtual double integral(const StateFunction& g, std::size_t state, double h, const double* y_before,
+                                        const double* f_before, const double* y) const noexcept {
+    const StateFunction::Value before = g.at(y_before[state]);
+    return h / 3 * (2 * before.value + g.at(y[state]).value) + h * h / 6 * (before.slope * f_before[state]);
   }
 
   // Diagonal of M in (1), ones and zeros, one per state. Pre-condition: takes_algebraic_rows().

@@ -147,6 +147,7 @@ void SceneEquations::take(const multibody::Model& model, const multibody::State&
   for (std::size_t i = 0; i < circuit->parameters().size(); ++i) {
     circuit_->set_parameter(static_cast<int>(i), circuit->parameter_values()[i]);
   }
+  circuit_->set_vapour_capacities(circuit->vapour_capacities());
   std::copy_n(circuit_y.begin(), component_ - p_, y.begin() + static_cast<std::ptrdiff_t>(p_));
   std::copy(circuit_y.begin() + circuit_->first_component_state(), circuit_y.end(),
             y.begin() + static_cast<std::ptrdiff_t>(component_));
@@ -344,6 +345,7 @@ void SceneEquations::rates(double t, const double* y, double* f) noexcept {
 
 void SceneEquations::observe(double t, const double* y) {
   take_state(t, y);
+  if (circuit_) circuit_->follow_vapour(circuit_y_.data());
   evaluate_ports();
   const std::size_t rows = model_.rows.size();
   const std::span<const double> W = multibody::row_mobility(workspace_);

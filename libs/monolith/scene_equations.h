@@ -15,8 +15,7 @@
 //
 // The laws are the very code that the split simulation runs: multibody dynamics, coupling::LineForceLaw (3),
 // multibody::JointLaw (4), hydraulics::Circuit::rates (5). What differs is only that nothing is held, extrapolated or
-// replaced by a reduced model. Not covered: the circuit's clamp of pressures at the lowest pressure of its oil law (the
-// law itself keeps them above, see hydraulics/oil.h); contact.
+// replaced by a reduced model. Not covered: contact.
 #pragma once
 
 #include <memory>
@@ -105,7 +104,8 @@ class SceneEquations {
   [[nodiscard]] bool has_loops() const noexcept { return model_.has_closing_rows(); }
   [[nodiscard]] bool close(double t, std::span<double> y) noexcept;
 
-  // Everything below belongs to the last rates() or observe().
+  // Everything below belongs to the last rates() or observe(). observe() ends an interval: volumes that cavitate in the
+  // next one begin from there (hydraulics/vapour.h).
   void observe(double t, const double* y);
   [[nodiscard]] std::span<const PortState> ports() const noexcept { return port_states_; }
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept { return variables_; }
@@ -115,6 +115,9 @@ class SceneEquations {
   [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
   [[nodiscard]] const multibody::State& mechanism_state() const noexcept { return state_; }
   [[nodiscard]] std::span<const double> circuit_state() const noexcept { return circuit_y_; }  // pistons included
+  [[nodiscard]] std::span<const double> circuit_vapour() const noexcept {
+    return circuit_ ? circuit_->vapour_capacities() : std::span<const double>{};
+  }
 
  private:
   struct Port {

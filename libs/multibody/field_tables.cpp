@@ -5,6 +5,7 @@
 #include "multibody/contact_fields.h"
 #include "multibody/elements/element_fields.h"
 #include "multibody/gears/gear_fields.h"
+#include "multibody/integrators.h"
 #include "multibody/joint_fields.h"
 #include "multibody/motions/motion_fields.h"
 
@@ -28,6 +29,22 @@ constexpr std::array<std::string_view, 4> kFormulations = {"recursive", "lagrang
 constexpr std::array<std::string_view, 7> kIntegrators = {
     "rk4", "semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2", "index3_trapezoidal", "own"};
 
+constexpr ReadBy kReadByPenaltyFactor[] = {
+    read_by<&MechanicsDef::formulation, Formulation::augmented, Formulation::penalty>(
+        "formulation", "formulation: augmented or penalty")};
+constexpr ReadBy kReadByPenalty[] = {
+    read_by<&MechanicsDef::formulation, Formulation::penalty>("formulation", "formulation: penalty")};
+constexpr ReadBy kReadByAlpha[] = {
+    read_by<&MechanicsDef::integrator, Integrator::generalised_alpha>("integrator", "integrator: generalised_alpha")};
+// augmented takes index3_trapezoidal as its own
+constexpr ReadBy kReadByImplicit[] = {{"integrator", "an implicit integrator", [](const void* def) noexcept {
+                                         const auto& mechanics = *static_cast<const MechanicsDef*>(def);
+                                         const Integrator rule = mechanics.integrator == Integrator::own
+                                                                     ? own_integrator(mechanics.formulation)
+                                                                     : mechanics.integrator;
+                                         return rule != Integrator::rk4 && rule != Integrator::semi_implicit_euler;
+                                       }}};
+
 constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::gravity>(
         "gravity", {.dimension = acceleration, .change = Change::live, .doc = "acceleration of gravity, global axes"}),
@@ -47,12 +64,15 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::penalty_factor>(
         "penalty_factor",
         {.range = kPenaltyFactorRange,
+         .read_by = kReadByPenaltyFactor,
          .doc = "augmented, penalty: mass that resists a joint's opening, over the mechanism's mass"}),
-    field<&MechanicsDef::penalty_damping>(
-        "penalty_damping", {.range = kPenaltyDampingRange, .doc = "penalty: damping ratio of what opens a joint"}),
+    field<&MechanicsDef::penalty_damping>("penalty_damping", {.range = kPenaltyDampingRange,
+                                                              .read_by = kReadByPenalty,
+                                                              .doc = "penalty: damping ratio of what opens a joint"}),
     field<&MechanicsDef::penalty_frequency>("penalty_frequency",
                                             {.dimension = angular_velocity,
                                              .range = kPenaltyFrequencyRange,
+                                             .read_by = kReadByPenalty,
                                              .doc = "penalty: angular frequency at which a joint closes again"}),
     field<&MechanicsDef::integrator>(
         "integrator",
@@ -63,10 +83,12 @@ constexpr Field kMechanicsFields[] = {
     field<&MechanicsDef::spectral_radius>(
         "spectral_radius",
         {.range = kRadiusRange,
+         .read_by = kReadByAlpha,
          .doc = "generalised_alpha: share of an oscillation far too fast for the sub-step that is left after one"}),
     field<&MechanicsDef::iteration_tolerance>(
         "iteration_tolerance",
         {.range = kIterationRange,
+         .read_by = kReadByImplicit,
          .doc = "implicit integrators: error of speeds at which the iteration ends, of the mechanism's largest (at "
                 "least 1 m/s, 1 rad/s)"}),
     field<&MechanicsDef::payload>(

@@ -289,6 +289,10 @@ class Validator {
     if (axis.bristle_stiffness == 0 && (axis.bristle_damping > 0 || axis.breakaway_ratio > 1)) {
       add(joint.name, "bristle_damping or breakaway_ratio without bristles", "bristle_stiffness > 0");
     }
+    if (!has_limits(axis) && (axis.limit_stiffness > 0 || axis.limit_damping > 0)) {
+      complain(axis.limit_stiffness > 0 ? "limit_stiffness" : "limit_damping",
+               "nothing reads this key: the joint has no limits", "limit_min or limit_max, or no such key");
+    }
     if (has_limits(axis) && axis.limit_stiffness == 0) {
       complain("limit_stiffness", "the joint has limits but they have no stiffness",
                "limit_stiffness > 0, or no limits");

@@ -49,6 +49,15 @@ constexpr std::string_view kControllerModes[] = {"sampled", "lockstep"};
 constexpr std::string_view kSubs[] = {"control_voltage"};
 constexpr std::string_view kInterpolations[] = {"linear", "step"};
 
+constexpr ReadBy kReadByMonolith[] = {
+    read_by<&SessionDef::solution, Solution::monolithic>("solution", "solution: monolithic")};
+constexpr ReadBy kReadByRealPace[] = {read_by<&SessionDef::pace, Pace::real>("pace", "pace: real")};
+constexpr ReadBy kReadByStopping[] = {
+    read_by<&SessionDef::pace, Pace::real>("pace", "pace: real"),
+    read_by<&SessionDef::overrun, OverrunPolicy::hold, OverrunPolicy::stop>("overrun", "overrun: hold or stop")};
+constexpr ReadBy kReadByLockstep[] = {
+    read_by<&InputDef::controller, ControllerMode::lockstep>("controller", "controller: lockstep")};
+
 constexpr Field kSessionFields[] = {
     field<&SessionDef::step>("step",
                              {.dimension = Dimension::time,
@@ -98,7 +107,9 @@ constexpr Field kSessionFields[] = {
         {.choices = kSolutions,
          .doc = "split: every node solves its own part; monolithic: all physics as one system in one process, the "
                 "reference for accuracy; coupling, formulation and integrators then have no effect"}),
-    field<&SessionDef::rtol>("rtol", {.range = kToleranceRange, .doc = "relative tolerance of a monolithic solution"}),
+    field<&SessionDef::rtol>(
+        "rtol",
+        {.range = kToleranceRange, .read_by = kReadByMonolith, .doc = "relative tolerance of a monolithic solution"}),
     field<&SessionDef::contact>(
         "contact",
         {.choices = kContactUses,
@@ -121,26 +132,31 @@ constexpr Field kSessionFields[] = {
     field<&SessionDef::overrun>(
         "overrun",
         {.choices = kOverrunPolicies,
+         .read_by = kReadByRealPace,
          .doc = "what becomes of a session in real pace that the machine cannot keep up with. slip: whole steps of "
                 "wall time are given up and counted; hold: it pauses until somebody resumes it; stop: it ends with "
                 "exit code 3"}),
     field<&SessionDef::overrun_after>(
         "overrun_after", {.range = kOverrunAfterRange,
+                          .read_by = kReadByStopping,
                           .doc = "steps in a row longer than session.step, after which hold or stop takes effect; 0: "
                                  "overrun_lag alone decides"}),
     field<&SessionDef::overrun_lag>("overrun_lag", {.dimension = Dimension::time,
                                                     .range = kOverrunLagRange,
+                                                    .read_by = kReadByRealPace,
                                                     .doc = "time behind the wall clock after which slip, hold or stop "
                                                            "takes effect"}),
     field<&SessionDef::shed>(
         "shed",
         {.choices = kShedLoads,
+         .read_by = kReadByRealPace,
          .doc = "what a session that overruns may leave out, in this order. view: the values of the flex node's "
                 "variables; variables: those of mechanics and hydraulics too, while no controller steers; never a "
                 "step's messages"}),
-    field<&SessionDef::start_grace>(
-        "start_grace",
-        {.dimension = Dimension::time, .range = kGraceRange, .doc = "time after step 0 in which nothing is judged"}),
+    field<&SessionDef::start_grace>("start_grace", {.dimension = Dimension::time,
+                                                    .range = kGraceRange,
+                                                    .read_by = kReadByRealPace,
+                                                    .doc = "time after step 0 in which nothing is judged"}),
     field<&SessionDef::cpus>("cpus", {.doc = "where `run` puts the nodes it starts, such as \"mechanics=1, "
                                              "hydraulics=0\"; without it anywhere"}),
 };
@@ -178,12 +194,14 @@ constexpr Field kInputFields[] = {
     field<&InputDef::controller_delay>(
         "controller_delay",
         {.range = kDelayRange,
+         .read_by = kReadByLockstep,
          .doc = "lockstep: tick n takes the value computed from the variables of step n less this, or of the last step "
                 "up to it that has variables (recording.every)"}),
     field<&InputDef::controller_wait>(
         "controller_wait",
         {.dimension = Dimension::time,
          .range = kWaitRange,
+         .read_by = kReadByLockstep,
          .doc = "lockstep: longest time that a tick waits; then the input holds its value, and goes to neutral after "
                 "session.controller_timeout"}),
     field<&InputDef::supervisor>(

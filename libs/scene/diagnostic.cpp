@@ -45,6 +45,16 @@ int Report::add_source(std::string label, Lines lines) {
   return static_cast<int>(sources_.size()) - 1;
 }
 
+bool Report::is_override(const Mark& mark) const noexcept {
+  return sources_[static_cast<std::size_t>(mark.source)].lines == Lines::none;
+}
+
+int Report::layer(const Mark& mark) const noexcept {
+  const auto count = static_cast<int>(sources_.size());
+  // the scene's own file is read first, then what it includes, then the overrides
+  return is_override(mark) ? 2 * count : mark.source == 0 ? count : mark.source;
+}
+
 Diagnostic Report::at(const Mark& mark, std::string path, Complaint complaint) const {
   const Source& source = sources_.at(static_cast<std::size_t>(mark.source));
   const bool is_numbered = source.lines == Lines::numbered;

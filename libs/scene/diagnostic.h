@@ -64,6 +64,9 @@ class Report {
   enum class Lines { numbered, none };  // none: an override, whose places are not worth telling
   // Registers a file or override by its label; the index goes into marks.
   int add_source(std::string label, Lines lines = Lines::numbered);
+  [[nodiscard]] bool is_override(const Mark& mark) const noexcept;
+  // Layer that a place belongs to: files that are included, the scene's own file over them, overrides over both.
+  [[nodiscard]] int layer(const Mark& mark) const noexcept;
   // The text of a diagnostic at this place: for warnings as for problems.
   [[nodiscard]] Diagnostic at(const Mark& mark, std::string path, Complaint complaint) const;
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/suggestion.h"
+#include "scene/canonical.h"
 #include "scene/expand.h"
 #include "scene/number.h"
 #include "scene/point_file.h"
@@ -272,6 +273,42 @@ const Field* find_field(std::span<const Field> fields, std::string_view key) {
   return nullptr;
 }
 
+// "oil_law: density_parabola", as the Def has it; "no ls_port" where it is empty.
+std::string setting_text(const Field* field, std::string_view key, void* def) {
+  const std::string value = field == nullptr ? "" : value_text(*field, def);
+  return value.empty() || value == "[]" ? "no " + std::string(key) : fmt::format("{}: {}", key, value);
+}
+
+// faulty: keys with problems of their own, about which nothing more is said
+void check_unread(const Node& map, std::span<const Field> fields, void* def, const std::string& path,
+                  std::span<const std::string_view> faulty, const ReadContext& context) {
+  const auto is_faulty = [&](std::string_view key) {
+    return std::find(faulty.begin(), faulty.end(), key) != faulty.end();
+  };
+  for (const Node::Entry& entry : map.entries) {
+    const Field* const field = find_field(fields, entry.key);
+    if (field == nullptr || is_faulty(entry.key)) continue;
+    const auto unmet = std::find_if(field->read_by.begin(), field->read_by.end(),
+                                    [&](const ReadBy& condition) { return !condition.holds(def); });
+    if (unmet == field->read_by.end() || is_faulty(unmet->key)) continue;
+    const Node::Entry* const choice = map.find(unmet->key);
+    const std::string value_path = path + "." + entry.key;
+    const Complaint complaint{
+        "nothing reads this key with " + setting_text(find_field(fields, unmet->key), unmet->key, def),
+        fmt::format("{}, or no such key", unmet->what), ""};
+    const bool is_left_unread =
+        choice != nullptr && context.report.layer(choice->mark) > context.report.layer(entry.mark);
+    const bool is_carried_along =
+        unmet->otherwise == ReadBy::Otherwise::warning ||
+        (unmet->otherwise == ReadBy::Otherwise::error_in_files && context.report.is_override(entry.mark));
+    if (is_left_unread || is_carried_along) {
+      context.warnings->push_back(context.report.at(entry.mark, value_path, complaint).text());
+    } else {
+      context.report.add(entry.mark, value_path, complaint);
+    }
+  }
+}
+
 }  // namespace
 
 bool may_follow(const Table& table, double argument, const Field& field) {
@@ -348,12 +385,15 @@ void read_value(const Node& node, const Field& field, void* def, const std::stri
 void read_fields(const Node& map, std::span<const Field> fields, void* def, const std::string& path, const Mark& place,
                  std::span<const std::string_view> other_keys, const ReadContext& context) {
   report_duplicates(map, path, context.report);
+  std::vector<std::string_view> faulty;
   for (const Node::Entry& entry : map.entries) {
     if (std::find(other_keys.begin(), other_keys.end(), entry.key) != other_keys.end()) continue;
     const std::string value_path = path + "." + entry.key;
     if (const Field* field = find_field(fields, entry.key)) {
       context.places.add(value_path, entry.value.mark);
+      const std::size_t problems = context.report.size();
       read_value(entry.value, *field, def, value_path, context);
+      if (context.report.size() > problems) faulty.push_back(field->key);
       continue;
     }
     std::vector<std::string_view> candidates(other_keys.begin(), other_keys.end());
@@ -369,6 +409,7 @@ void read_fields(const Node& map, std::span<const Field> fields, void* def, cons
                          {"the key '" + std::string(field.key) + "' is missing", expected_value(field), ""});
     }
   }
+  if (context.warnings != nullptr) check_unread(map, fields, def, path, faulty, context);
 }
 
 }  // namespace slew::scene

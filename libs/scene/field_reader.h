@@ -32,10 +32,13 @@ struct ReadContext {
   std::vector<Reference>& references;
   const Surroundings* surroundings = nullptr;     // null: no file may be named
   std::vector<TableFile>* table_files = nullptr;  // gets the tables that stay in their files
+  std::vector<std::string>* warnings = nullptr;   // null: keys that nothing reads are not looked for
 };
 
-// Reads every entry of `map` into the Def at `def`. Keys in `other_keys` are the caller's and are left alone.
-// path: what stands before the keys in messages, "Bag"; place: where a missing key is reported.
+// Reads every entry of `map` into the Def at `def`. Keys in `other_keys` are the caller's and are left alone. A key
+// that nothing reads with the choices beside it (Field::read_by) is an error; where a choice of a later layer (an
+// overlay, an override) left it unread, or where sweeps carry it along, a warning. path: what stands before the keys in
+// messages, "Bag"; place: where a missing key is reported.
 void read_fields(const Node& map, std::span<const Field> fields, void* def, const std::string& path, const Mark& place,
                  std::span<const std::string_view> other_keys, const ReadContext& context);
 

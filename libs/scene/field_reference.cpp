@@ -48,6 +48,12 @@ std::string unit_text(const Field& field) {
   return std::string(info(field.dimension).si_unit);
 }
 
+std::string meaning_text(const Field& field) {
+  std::string text(field.doc);
+  for (const ReadBy& condition : field.read_by) text += fmt::format("; read with {}", condition.what);
+  return text;
+}
+
 // Markdown tables part cells with |
 std::string cell(std::string text) {
   for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
@@ -69,7 +75,7 @@ std::string table_of(std::span<const Field> fields, void* defaults) {
                            field.type == FieldType::numbers || field.type == FieldType::table;
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", field.key, cell(type_text(field)), unit_text(field),
                         has_range ? range_text(field.range, Dimension::none) : "", cell(default_text(field, defaults)),
-                        field.change == Change::live ? "live" : "", cell(std::string(field.doc)));
+                        field.change == Change::live ? "live" : "", cell(meaning_text(field)));
   }
   return text;
 }

@@ -29,6 +29,8 @@ constexpr Field kHoseFields[] = {
         {.dimension = Dimension::pressure, .range = kPositive, .doc = "upper bound of the wall's law"}),
 };
 
+constexpr double kHighestPressure = 1000e5;  // Pa, of what a hose is made for and beyond
+
 class Hose final : public HydraulicComponent {
  public:
   Hose(const HoseDef& def, CircuitBuilder& builder) : HydraulicComponent(def), def_(def) {
@@ -57,6 +59,13 @@ void validate_hose(const HydraulicsDef& circuit, const ComponentDef& component, 
     errors.push_back({def.name + ".minimum_bulk_modulus",
                       "the lower bound of the wall's modulus is above the upper bound", "at most maximum_bulk_modulus",
                       ""});
+  }
+  const double highest_rise = def.bulk_modulus * std::sqrt(kHighestPressure);
+  if (def.minimum_bulk_modulus == def.maximum_bulk_modulus || highest_rise <= def.minimum_bulk_modulus) {
+    warnings.push_back({def.name + ".bulk_modulus",
+                        "the wall's modulus is at its lower bound at every pressure, so this value has no effect",
+                        "a value above minimum_bulk_modulus / sqrt(pressure), and two different bounds", ""});
+    return;
   }
   // the law is at its cap already at the lowest pressure there is
   if (def.bulk_modulus * std::sqrt(circuit.pressure_floor) >= def.maximum_bulk_modulus) {

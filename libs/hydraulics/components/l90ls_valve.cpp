@@ -12,6 +12,9 @@ namespace {
 
 constexpr Range kOverlapRange{.min = 0, .max = 0.99, .min_is_open = false, .max_is_open = false};
 
+constexpr ReadBy kReadByAntiCavitation[] = {
+    read_by_set<&L90lsValveDef::anti_cavitation_flow>("anti_cavitation_flow", "anti_cavitation_flow above 0")};
+
 constexpr Field kL90lsValveFields[] = {
     field<&L90lsValveDef::port_p>("port_p",
                                   {.presence = Presence::required, .reference = "volume", .doc = "volume at port P"}),
@@ -94,12 +97,15 @@ constexpr Field kL90lsValveFields[] = {
         "anti_cavitation_flow", {.dimension = Dimension::volume_flow,
                                  .range = kNotNegative,
                                  .doc = "flow of an anti-cavitation valve at anti_cavitation_pressure_drop"}),
-    field<&L90lsValveDef::anti_cavitation_pressure_drop>(
-        "anti_cavitation_pressure_drop",
-        {.dimension = Dimension::pressure, .range = kPositive, .doc = "pressure drop of anti_cavitation_flow"}),
+    field<&L90lsValveDef::anti_cavitation_pressure_drop>("anti_cavitation_pressure_drop",
+                                                         {.dimension = Dimension::pressure,
+                                                          .range = kPositive,
+                                                          .read_by = kReadByAntiCavitation,
+                                                          .doc = "pressure drop of anti_cavitation_flow"}),
     field<&L90lsValveDef::anti_cavitation_crack_pressure>("anti_cavitation_crack_pressure",
                                                           {.dimension = Dimension::pressure,
                                                            .range = kNotNegative,
+                                                           .read_by = kReadByAntiCavitation,
                                                            .doc = "pressure drop that opens an anti-cavitation valve"}),
     field<&L90lsValveDef::maximum_ls_pressure_a>("maximum_ls_pressure_a",
                                                  {.dimension = Dimension::pressure,

@@ -7,6 +7,8 @@
 namespace slew::hydraulics {
 namespace {
 
+constexpr ReadBy kReadByLs[] = {read_by_set<&LsPumpDef::ls_port>("ls_port", "an ls_port")};
+
 constexpr Field kLsPumpFields[] = {
     field<&LsPumpDef::port_a>("port_a",
                               {.presence = Presence::required, .reference = "volume", .doc = "volume at the outlet"}),
@@ -34,6 +36,7 @@ constexpr Field kLsPumpFields[] = {
     field<&LsPumpDef::set_pressure>("set_pressure", {.dimension = Dimension::pressure,
                                                      .range = kPositive,
                                                      .change = Change::live,
+                                                     .read_by = kReadByLs,
                                                      .doc = "margin above the load-sensing pressure"}),
     field<&LsPumpDef::standby_pressure>("standby_pressure", {.dimension = Dimension::pressure,
                                                              .range = kNotNegative,
@@ -43,6 +46,7 @@ constexpr Field kLsPumpFields[] = {
                                            {.dimension = Dimension::pressure,
                                             .range = kPositive,
                                             .change = Change::live,
+                                            .read_by = kReadByLs,
                                             .doc = "limit of the load-sensing pressure, above tank"}),
     field<&LsPumpDef::leak_flow>("leak_flow", {.dimension = Dimension::volume_flow,
                                                .range = kNotNegative,

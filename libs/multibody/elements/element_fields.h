@@ -126,6 +126,10 @@ constexpr Field beam_number(std::string_view key, Dimension dimension, std::stri
   return field<Member>(key, {.dimension = dimension, .range = kPositive, .presence = Presence::required, .doc = doc});
 }
 
+inline constexpr ReadBy kReadByNoShearModulus[] = {{"shear_modulus", "no shear_modulus", [](const void* def) noexcept {
+                                                      return !(static_cast<const BeamDef*>(def)->shear_modulus > 0);
+                                                    }}};
+
 inline constexpr Field kBeamFields[] = {
     connector_body<&BeamDef::frames, &ConnectorFrames::body1>("body1", "body at the near end"),
     connector_point<&BeamDef::frames, &ConnectorFrames::point1>("point1", "near end in body 1"),
@@ -140,8 +144,9 @@ inline constexpr Field kBeamFields[] = {
     field<&BeamDef::shear_modulus>("shear_modulus", {.dimension = Dimension::pressure,
                                                      .range = kNotNegative,
                                                      .doc = "shear modulus G; 0: E / (2 (1 + poisson_ratio))"}),
-    field<&BeamDef::poisson_ratio>("poisson_ratio",
-                                   {.range = kPoissonRange, .doc = "Poisson's ratio, where shear_modulus is 0"}),
+    field<&BeamDef::poisson_ratio>(
+        "poisson_ratio",
+        {.range = kPoissonRange, .read_by = kReadByNoShearModulus, .doc = "Poisson's ratio, where shear_modulus is 0"}),
     beam_number<&BeamDef::area>("area", Dimension::area, "area of the section"),
     beam_number<&BeamDef::second_moment_y>("second_moment_y", Dimension::second_moment_of_area,
                                            "second moment of area Iyy: bending along z"),

@@ -25,9 +25,11 @@ constexpr Field kPositionEnds = field<&MotionDef::ends>(
     "ends",
     {.choices = kEnds,
      .doc = "outside of the times: stands still (slope 0 at the ends), goes on with the end's speed, or fails"});
+constexpr ReadBy kReadByPoints[] = {read_by_set<&MotionDef::points>("points", "points")};
 constexpr Field kSpeedEnds = field<&MotionDef::ends>(
-    "ends",
-    {.choices = kEnds, .doc = "outside of the times: the speed stays, goes on with the end's acceleration, or fails"});
+    "ends", {.choices = kEnds,
+             .read_by = kReadByPoints,
+             .doc = "outside of the times: the speed stays, goes on with the end's acceleration, or fails"});
 constexpr Field offset_row(Dimension position) {
   return field<&MotionDef::offset>(
       "offset", {.dimension = position, .doc = "mean position; none: such that the motion fits the start position"});

@@ -271,5 +271,57 @@ TEST(HydraulicsValidation, hose_walls_without_effect_and_valves_that_never_open_
   EXPECT_NE(what_at(findings(def).errors, "Hose_Lift_A.minimum_bulk_modulus"), "");
 }
 
+// a pump on a block, and what a test connects to it
+HydraulicsDef pump_on_a_block() {
+  HydraulicsDef def;
+  add_volume(def, "Vol_P").rigid_volume = 1e-3;
+  add_volume(def, "Vol_Q").rigid_volume = 1e-3;
+  add_tank(def, "Vol_T");
+  LsPumpDef& pump = add<LsPumpDef>(def, "Pump");
+  pump.port_a = "Vol_P", pump.port_b = "Vol_T", pump.speed = 157, pump.displacement = 10e-6, pump.leak_flow = kLeak;
+  return def;
+}
+
+OrificeDef& connect(HydraulicsDef& def, const char* from, const char* to) {
+  OrificeDef& orifice = add<OrificeDef>(def, std::string("Orifice_") + from + to);
+  orifice.port_1 = from, orifice.port_2 = to, orifice.diameter = 1e-3;
+  return orifice;
+}
+
+void relieve(HydraulicsDef& def, const char* volume) {
+  DirectReliefValveDef& relief = add<DirectReliefValveDef>(def, "Relief");
+  relief.port_1 = volume, relief.port_2 = "Vol_T", relief.seat_diameter = 0.01, relief.crack_pressure = 200 * kBar;
+  relief.spring_constant = 4e4;
+}
+
+TEST(PumpLines, without_relief_are_warned_about_with_the_pressure_that_ends_them) {
+  HydraulicsDef def = pump_on_a_block();
+  component<LsPumpDef>(def, "Pump").standby_pressure = 1000e5;
+  const Findings found = findings(def);
+  EXPECT_TRUE(found.errors.empty()) << listing(found.errors);
+  EXPECT_NE(what_at(found.warnings, "Pump.port_a").find("'Vol_P' is closed off"), std::string::npos);
+  EXPECT_NE(what_at(found.warnings, "Pump.port_a").find("1000 bar above tank"), std::string::npos);
+}
+
+TEST(PumpLines, are_relieved_through_what_is_always_open) {
+  HydraulicsDef direct = pump_on_a_block();
+  relieve(direct, "Vol_P");
+  EXPECT_EQ(what_at(findings(direct).warnings, "Pump.port_a"), "");
+  HydraulicsDef behind = pump_on_a_block();
+  relieve(behind, "Vol_Q");
+  EXPECT_NE(what_at(findings(behind).warnings, "Pump.port_a"), "");
+  OrificeDef& orifice = connect(behind, "Vol_Q", "Vol_P");
+  EXPECT_EQ(what_at(findings(behind).warnings, "Pump.port_a"), "");
+  orifice.opening = 0;
+  EXPECT_NE(what_at(findings(behind).warnings, "Pump.port_a"), "");
+  HydraulicsDef to_tank = pump_on_a_block();
+  connect(to_tank, "Vol_P", "Vol_T");
+  EXPECT_EQ(what_at(findings(to_tank).warnings, "Pump.port_a"), "");
+}
+
+TEST(PumpLines, of_the_crane_have_their_relief_valve) {
+  EXPECT_EQ(what_at(findings(crane_circuit()).warnings, "MainPump.port_a"), "");
+}
+
 }  // namespace validate_test
 }  // namespace slew::hydraulics::test

@@ -127,6 +127,72 @@ TEST(Load, ANumberOfOverrunsThatNoPolicyLooksAtIsToldAsAWarning) {
   EXPECT_TRUE(load_text("session: {overrun_after: 5, overrun: hold}\n" + kPendulum, "test").warnings.empty());
 }
 
+constexpr const char* kTank = "volumes: {Tank: {fixed: true}}\n";
+
+std::string refusal_of(const std::string& file, const Overrides& overrides = {}) {
+  try {
+    (void)load_file(file, overrides);
+  } catch (const LoadError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string all_of(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) text += warning + "\n";
+  return text;
+}
+
+TEST(Load, AKeyThatNothingReadsIsAnErrorWhereItIsStatedAndAWarningWhereALaterChoiceLeftIt) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("scene.yaml", std::string(kTank) + "hydraulics: {oil_bulk_modulus: 1.4 GPa}\n");
+  EXPECT_EQ(refusal_of(file), "");
+  // the choice is of a later layer than the key
+  const Overrides parabola = {"hydraulics.oil_law=density_parabola"};
+  ASSERT_EQ(refusal_of(file, parabola), "");
+  EXPECT_NE(all_of(load_file(file, parabola).warnings)
+                .find("hydraulics.oil_bulk_modulus: nothing reads this key with oil_law: density_parabola; expected "
+                      "oil_law: oil_and_air, or no such key"),
+            std::string::npos);
+  const std::string overlay =
+      folder.write("over.yaml", "include: scene.yaml\nhydraulics: {oil_law: density_parabola}\n");
+  EXPECT_EQ(refusal_of(overlay), "");
+  // the key is
+  EXPECT_NE(refusal_of(overlay, {"hydraulics.entrained_air=0.01"}).find("hydraulics.entrained_air"), std::string::npos)
+      << refusal_of(overlay, {"hydraulics.entrained_air=0.01"});
+  EXPECT_NE(refusal_of(file, {"hydraulics.oil_compressibility=6e-10"}), "");
+}
+
+TEST(Load, TheTextOfASessionStatesEveryKeyAndIsReadWithoutAWord) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("scene.yaml", std::string(kTank) + "hydraulics: {oil_law: density_parabola}\n");
+  const std::string text = load_file(file).expanded_text;
+  ASSERT_NE(text.find("oil_bulk_modulus"), std::string::npos);
+  const Scene again = load_text(text, "scene");
+  EXPECT_EQ(again.expanded_text, text);
+  EXPECT_EQ(all_of(again.warnings), "");
+}
+
+TEST(Load, AnInputWithoutEffectIsToldAsAWarning) {
+  const std::string body =
+      "bodies:\n  Rod: {mass: 1 kg, inertia: [1, 1, 1]}\njoints:\n  Hinge: {type: revolute, body2: Rod}\n";
+  const auto warnings = [&](const std::string& load, const std::string& input) {
+    return all_of(load_text(body + "forces:\n  Push: {type: point_force, body: Rod" + load +
+                                "}\ninputs:\n  Stick: {type: "
+                                "analog, primitive: Push" +
+                                input + "}\n",
+                            "test")
+                      .warnings);
+  };
+  EXPECT_NE(warnings("", "").find("Stick.primitive: the input has no effect: it is multiplied by the force of 'Push'"),
+            std::string::npos);
+  EXPECT_NE(warnings(", force: 0 N, force_table: [[0, 0], [1, 0]]", "").find("no effect"), std::string::npos);
+  EXPECT_NE(warnings(", force: 1 N", ", scale: 0").find("Stick.scale: the input has no effect"), std::string::npos);
+  EXPECT_EQ(warnings(", force: 1 N", "").find("no effect"), std::string::npos);
+  EXPECT_EQ(warnings(", force_table: [[0, 0], [1, 5]]", "").find("no effect"), std::string::npos);
+}
+
 TEST(Load, TheWindowFollowsThePaceWhenItIsNotGiven) {
   EXPECT_EQ(load_text(kPendulum, "test").session.window_steps(), 1);
   EXPECT_EQ(load_text(kPendulum, "test", {"session.pace=free"}).session.window_steps(), 4);

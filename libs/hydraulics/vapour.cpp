@@ -1,0 +1,199 @@
+// The circuit's part of cavitation: pressures that components see, capacities at the floor, pistons that move through
+// it.
+#include "hydraulics/vapour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hydraulics/circuit.h"
+
+namespace slew::hydraulics {
+namespace {
+
+constexpr int kLiquidParts = 4;          // of Runge-Kutta, for the liquid part of a way through the floor
+constexpr double kClosed = 1e-12;        // of what the pistons sweep: rounding of a sum of flows
+constexpr double kLargestChange = 0.02;  // of a pressure, per part of a piston's way
+constexpr int kMostParts = 64;
+
+}  // namespace
+
+const double* Circuit::physical(const double* y) noexcept {
+  const std::size_t n = volume_name_.size();
+  bool is_any_in = false;
+  for (std::size_t i = 0; i < n; ++i) is_any_in = is_any_in || vapour_.is_in(i, y);
+  if (!is_any_in) return y;
+  std::copy(y, y + size_, physical_.begin());
+  for (std::size_t i = 0; i < n; ++i) physical_[i] = vapour_.pressure(i, y[i]).value;
+  return physical_.data();
+}
+
+void Circuit::take_up_vapour(int volume, bool does) noexcept {
+  const bool may = does && !is_fixed(volume);
+  vapour_.begins_below[static_cast<std::size_t>(volume)] = may ? floor_ : -std::numeric_limits<double>::infinity();
+}
+
+void Circuit::set_vapour_capacities(std::span<const double> C) noexcept {
+  std::copy(C.begin(), C.end(), vapour_.capacity.begin());
+}
+
+void Circuit::add_vapour_to(StateHash& hash, const double* y) const noexcept {
+  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+    if (vapour_.is_in(i, y)) hash.add(vapour_.capacity[i]);
+  }
+}
+
+double Circuit::capacity_at_floor(std::size_t volume, const double* y) const noexcept {
+  const VolumeContent& contents = volumes_[volume];
+  double lumped = contents.volume, walls = contents.wall;
+  for (std::size_t k = contents.begin; k < contents.end; ++k) {
+    const double share = pieces_[k].lumped * pieces_[k].content_at(y);
+    lumped += share;
+    walls += share * pieces_[k].wall_at(floor_).value;
+  }
+  return lumped * kappa_at_floor_ + walls;
+}
+
+void Circuit::follow_vapour(const double* y) noexcept {
+  for (const std::size_t i : with_chambers_) {
+    if (!vapour_.is_in(i, y)) vapour_.capacity[i] = capacity_at_floor(i, y);
+  }
+}
+
+// Growth of a volume by its chambers along the whole way [m3]; a line's oil follows in move_lines().
+double Circuit::chamber_growth(std::size_t volume) const noexcept {
+  double dV = 0;
+  for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
+    const Piece& piece = pieces_[k];
+    if (piece.position >= 0 && piece.lumped == 1)
+      dV += piece.slope * way_[static_cast<std::size_t>(piece.position - volume_count())];
+  }
+  return dV;
+}
+
+// A share of the way, the pistons still at its beginning, with the volume's oil kept exactly; dV: the room that it
+// makes [m3]. (3) below the floor, and above it  du/ds = -dV/C  up from the floor, or  ds/du = -C/dV  down to it.
+void Circuit::move_through_floor(std::size_t volume, double dV, double share, double* y) noexcept {
+  const double floor = vapour_.begins_below[volume];
+  const auto go_to = [&](double s) {
+    for (int j = 0; j < actuator_count(); ++j) {
+      const auto x = static_cast<std::size_t>(position(j));
+      moved_[x] = y[x] + s * share * way_[static_cast<std::size_t>(j)];
+    }
+  };
+  const auto capacity_on_way = [&](double u, double s) {
+    go_to(s);
+    moved_[volume] = std::max(u, floor);
+    return capacity_at(volume, moved_.data());
+  };
+  double u = y[volume], s = 0;
+  if (vapour_.is_in(volume, y)) {
+    const double C = vapour_.capacity[volume];
+    y[volume] = u - dV / C;
+    if (vapour_.is_in(volume, y)) return;
+    s = std::clamp(C * (u - floor) / dV, 0.0, 1.0), u = floor;
+    const double h = (1 - s) / kLiquidParts;
+    for (int part = 0; part < kLiquidParts; ++part, s += h) {
+      const auto rate = [&](double p, double at) { return -dV / capacity_on_way(p, at); };
+      const double k_1 = rate(u, s), k_2 = rate(u + 0.5 * h * k_1, s + 0.5 * h);
+      const double k_3 = rate(u + 0.5 * h * k_2, s + 0.5 * h), k_4 = rate(u + h * k_3, s + h);
+      u += h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + k_4);
+    }
+    y[volume] = u;
+    return;
+  }
+  const double h = (floor - u) / kLiquidParts;
+  for (int part = 0; part < kLiquidParts; ++part, u += h) {
+    const auto rate = [&](double p, double at) { return -capacity_on_way(p, at) / dV; };
+    const double k_1 = rate(u, s), k_2 = rate(u + 0.5 * h, s + 0.5 * h * k_1);
+    const double k_3 = rate(u + 0.5 * h, s + 0.5 * h * k_2), k_4 = rate(u + h, s + h * k_3);
+    s += h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + k_4);
+  }
+  s = std::clamp(s, 0.0, 1.0);
+  go_to(s);
+  vapour_.capacity[volume] = capacity_at_floor(volume, moved_.data());
+  y[volume] = floor - (1 - s) * dV / vapour_.capacity[volume];
+}
+
+// Whether pistons and lines make up all the flows that change a volume at y, with rates f.
+bool Circuit::is_closed(std::size_t volume, const double* y, const double* f) const noexcept {
+  double sum = capacity_at(volume, y) * f[volume], size = 0;
+  for (std::size_t k = volumes_[volume].begin; k < volumes_[volume].end; ++k) {
+    const Piece& piece = pieces_[k];
+    if (piece.position < 0) continue;
+    const double swept = piece.slope * y[piece.position + actuator_count()];
+    if (piece.lumped == 1) sum += swept;
+    size += std::fabs(swept);
+  }
+  for (const LineChamber& line : lines_) {
+    if (!line.is_line || line.volume != static_cast<int>(volume)) continue;
+    const double inflow = line.inflow(pressure(line.volume, y).value);
+    sum += inflow;
+    size += std::fabs(inflow);
+  }
+  return std::fabs(sum) <= kClosed * size;
+}
+
+// What the lines of a volume took in a sub-step [m3].
+double Circuit::intake_of_lines(std::size_t volume, double h, std::span<const double> pressures) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const LineChamber& line = lines_[i];
+    if (line.is_line && line.volume == static_cast<int>(volume)) {
+      sum += (pressures[i] - h * line.state.c_h) / line.state.Z;
+    }
+  }
+  return sum;
+}
+
+// State of one volume at the end of way_ from y_start on, which takes dV of oil from it; as move_pistons().
+double Circuit::moved_alone(std::size_t volume, double dV, const double* y_start) noexcept {
+  std::copy(y_start, y_start + size_, kept_.begin());
+  const double change = vapour_.is_in(volume, y_start)
+                            ? 0
+                            : std::fabs(dV) / capacity_at(volume, y_start) / std::max(y_start[volume], floor_);
+  const int parts = static_cast<int>(std::clamp(std::ceil(change / kLargestChange), 1.0, double{kMostParts}));
+  const double h = 1.0 / parts;
+  for (int part = 0; part < parts; ++part) {
+    const double u = kept_[volume];
+    const auto rate = [&](double at_u, double s) {
+      for (int j = 0; j < actuator_count(); ++j) {
+        const auto x = static_cast<std::size_t>(position(j));
+        moved_[x] = kept_[x] + s * h * way_[static_cast<std::size_t>(j)];
+      }
+      moved_[volume] = at_u;
+      return -dV / capacity_at(volume, moved_.data());
+    };
+    const double k_1 = rate(u, 0), k_2 = rate(u + 0.5 * h * k_1, 0.5), k_3 = rate(u + 0.5 * h * k_2, 0.5);
+    const double moved = u + h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + rate(u + h * k_3, 1));
+    if (vapour_.is_in(volume, kept_.data()) || moved < vapour_.begins_below[volume]) {
+      move_through_floor(volume, h * dV, h, kept_.data());
+    } else {
+      kept_[volume] = moved;
+    }
+    for (int j = 0; j < actuator_count(); ++j) {
+      kept_[static_cast<std::size_t>(position(j))] += h * way_[static_cast<std::size_t>(j)];
+    }
+  }
+  return kept_[volume];
+}
+
+void Circuit::keep_closed_oil(double h, const double* y_before, const double* f_before, double* y,
+                              std::span<const double> pressures) noexcept {
+  bool is_looked_at = false;
+  for (const std::size_t i : with_chambers_) {
+    const bool is_near_floor = vapour_.begins_below[i] > 0 && std::min(y_before[i], y[i]) < near_floor_;
+    if (!is_near_floor || !is_closed(i, y_before, f_before)) continue;
+    if (!is_looked_at) {
+      rates(y, kept_rates_.data());
+      for (int j = 0; j < actuator_count(); ++j) {
+        way_[static_cast<std::size_t>(j)] = y[position(j)] - y_before[position(j)];
+      }
+      is_looked_at = true;
+    }
+    if (!is_closed(i, y, kept_rates_.data())) continue;
+    y[i] = moved_alone(i, chamber_growth(i) + intake_of_lines(i, h, pressures), y_before);
+  }
+}
+
+}  // namespace slew::hydraulics

@@ -1,0 +1,50 @@
+// Cavitation of a volume: what its state means below the cavitation floor.
+//
+// A volume's state u [Pa] is its pressure down to the floor p_f. Below, it is the pressure that oil in tension would
+// have, and stands for the room that the oil does not fill:
+//   p = u                                        u >= p_f                                            (1)
+//   p = p_f/2 (1 + exp(2 (u - p_f)/p_f))         u <  p_f, slope 1 at the floor                       (2)
+//   V_void = C_f (p_f - u),  V_void' = -sum Q    u <  p_f                                             (3)
+// C_f is the volume's capacity at the floor when it got there, and constant until the oil has filled the room again:
+// (3) is linear in u and in the strokes, so that every integration method keeps the oil of a closed volume to rounding,
+// whatever its tolerance, and u runs through the floor without a bend. The pressure alone cannot do that: between p_f
+// and zero it is one number for any amount of vapour. Not covered: dissolved air, inertia of collapsing bubbles.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "hydraulics/smooth.h"
+
+namespace slew::hydraulics {
+
+// What (2) goes to: the pressure of much vapour.
+[[nodiscard]] inline double vapour_pressure_of(double floor) noexcept {
+  return 0.5 * floor;
+}
+
+// (2): pressure and slope over u; pre-condition: u < floor.
+[[nodiscard]] inline ValueSlope vapour_pressure(double u, double floor) noexcept {
+  const double slope = std::exp(2 * (u - floor) / floor);
+  return {0.5 * floor * (1 + slope), slope};
+}
+
+// Of all volumes of a circuit.
+struct Vapour {
+  std::vector<double> begins_below;  // Pa; -infinity: this volume takes up no vapour
+  std::vector<double> capacity;      // C_f [m3/Pa]
+
+  [[nodiscard]] bool is_in(std::size_t volume, const double* y) const noexcept {
+    return y[volume] < begins_below[volume];
+  }
+  // (1), (2)
+  [[nodiscard]] ValueSlope pressure(std::size_t volume, double u) const noexcept {
+    return u < begins_below[volume] ? vapour_pressure(u, begins_below[volume]) : ValueSlope{u, 1};
+  }
+  // Room without oil [m3].
+  [[nodiscard]] double void_volume(std::size_t volume, const double* y) const noexcept {
+    return is_in(volume, y) ? capacity[volume] * (begins_below[volume] - y[volume]) : 0;
+  }
+};
+
+}  // namespace slew::hydraulics
