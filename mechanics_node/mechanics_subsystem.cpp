@@ -10,6 +10,7 @@
 #include "math/small_solve.h"
 #include "mechanics_node/parameter_handle.h"
 #include "mechanics_node/payload.h"
+#include "mechanics_node/row_laws.h"
 #include "multibody/joint_law.h"
 #include "multibody/parameters.h"
 #include "multibody/rows.h"
@@ -24,9 +25,6 @@ constexpr double kMicroStep = 0.25e-3;
 // what the rules of a scene allow is what the port problem holds
 static_assert(multibody::kMaxRows <= static_cast<int>(coupling::kMaxRows));
 
-// a limit takes part in the port problem when it could be reached within so many sub-steps
-constexpr double kLimitLookAhead = 4;
-
 // A change of W over a step, of sqrt(W_ii W_jj), from which on the step's is published: an error of a tenth in W is far
 // inside of what level two bears (coupling study, section 3), and the step's rows cost a factorisation a step.
 constexpr double kWorthAStep = 0.1;
@@ -37,56 +35,6 @@ multibody::MechanicsDef as_moved(multibody::MechanicsDef mechanics, Motion motio
 }
 
 }  // namespace
-
-// the row's own law: cylinder line force or joint friction and limits
-class MechanicsSubsystem::Laws final : public coupling::RowLaws {
- public:
-  explicit Laws(MechanicsSubsystem& owner) : owner_(owner) {}
-  bool begin(double h) const noexcept override {
-    owner_.bristle_interval_ = h;
-    owner_.stage_speed_ = owner_.workspace_.row_v;
-    return owner_.has_balls_ || !owner_.state_.bristles.empty();
-  }
-  void carry(std::size_t index, double v, double h) const noexcept override {
-    const std::size_t row = owner_.active_[index];
-    if (row < owner_.ports_.size()) return;
-    const multibody::JointLaw& law = multibody::law_of(owner_.model_, row);
-    const bool is_ball = owner_.is_ball(row);
-    // the three parts of a ball come one after the other
-    if (is_ball && owner_.model_.rows[row].number == 0) held_speed_ = speed_of(row);
-    if (multibody::has_bristles(law)) {
-      double& z = owner_.state_.bristles[row];
-      z = is_ball ? multibody::bent_part(law, v, held_speed_, h, z) : multibody::bent(law, v, h, z);
-    }
-    owner_.stage_speed_[row] = v;
-  }
-  coupling::RowForce evaluate(std::size_t index, double z, double x, double v) const noexcept override {
-    const std::size_t row = owner_.active_[index];
-    if (row < owner_.ports_.size()) {
-      const coupling::LineForce line = owner_.ports_[row].law.evaluate(z, x, v);
-      return {line.force, line.d_pressure, line.d_position, line.d_speed};
-    }
-    const multibody::JointLaw& law = multibody::law_of(owner_.model_, row);
-    const double h = owner_.bristle_interval_, bending = owner_.bristle_of(row);
-    const multibody::JointForce joint = owner_.is_ball(row)
-                                            ? multibody::evaluate_part(law, v, speed_of(row), h, bending)
-                                            : multibody::evaluate(law, x, v, h, bending);
-    return {joint.force, 0, joint.d_x, joint.d_v};
-  }
-  void evaluate_all(std::size_t rows, const double* z, const double* x, const double* v,
-                    coupling::RowForce* force) const noexcept override {
-    for (std::size_t i = 0; i < rows; ++i) force[i] = Laws::evaluate(i, z[i], x[i], v[i]);
-  }
-
- private:
-  // of a ball, in the stage before
-  [[nodiscard]] double speed_of(std::size_t row) const noexcept {
-    return multibody::ball_speed(owner_.model_, row, owner_.stage_speed_);
-  }
-
-  MechanicsSubsystem& owner_;
-  mutable double held_speed_ = 0;  // rad/s, of the ball whose parts are carried
-};
 
 MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
     : def_(as_moved(scene.mechanics, motion)),
@@ -206,30 +154,6 @@ Status MechanicsSubsystem::start(const coupling::PartnerSamples& partners, coupl
 
 // ---- step -----------------------------------------------------------------------------------------------------
 
-// rows of the coming sub-step; true when the choice changed
-bool MechanicsSubsystem::select_rows(double h) noexcept {
-  bool has_changed = false;
-  const std::span<const double> x = multibody::row_positions(workspace_);
-  const std::span<const double> v = multibody::row_speeds(workspace_);
-  for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
-    const multibody::JointLaw& law = multibody::law_of(model_, row);
-    const double reach = kLimitLookAhead * h * std::fabs(v[row]);
-    const bool near_limit =
-        law.limit_stiffness > 0 && (x[row] - reach <= law.limit_min || x[row] + reach >= law.limit_max);
-    const bool is_active = law.coulomb > 0 || law.viscous > 0 || near_limit;
-    if (is_active == (row_is_active_[row] != 0)) continue;
-    has_changed = true;
-    row_is_active_[row] = is_active ? 1 : 0;
-    a_free_trends_.forget(row);
-    if (is_active) {
-      multibody::activate_row(workspace_, static_cast<int>(row));
-    } else {
-      multibody::deactivate_row(workspace_, static_cast<int>(row));
-    }
-  }
-  return has_changed;
-}
-
 void MechanicsSubsystem::note_age(StepIndex n, const coupling::PartnerSamples& partners, StepReport& report) noexcept {
   partner_age_ = partners.actuators_age;
   has_news_ = n - partner_age_ != used_step_;
@@ -238,120 +162,6 @@ void MechanicsSubsystem::note_age(StepIndex n, const coupling::PartnerSamples& p
   const double age = static_cast<double>(partner_age_) * H_.seconds();
   if (coupling::coupling_frequency(published_.mechanism.W, partners.actuators->K, age) > coupling::kDegradedAbove) {
     report.raise(StepFlag::late_input);
-  }
-}
-
-// The pressure force at the start of the step, where the port is at x: that of this step's sample, moved to the true
-// position; without news the copy goes on, and a late sample corrects it by what it says of its own step.
-double MechanicsSubsystem::force_at_exchange(std::size_t port, const coupling::ActuatorSample& partner,
-                                             double x) noexcept {
-  const double copy = ports_[port].z;
-  if (!has_news_) return copy;
-  const bool is_hold = levels_[port] == coupling::Level::hold;
-  const auto at = [&](double position) {
-    return is_hold ? partner.F[port] : partner.F[port] - partner.K[port] * (position - partner.x_ref[port]);
-  };
-  if (partner_age_ == 0) return at(x);
-  if (!past_.has(used_step_)) return copy;
-  const double correction = at(past_.first(used_step_, port)) - past_.second(used_step_, port);
-  past_.correct(used_step_, port, 0, correction);
-  return copy + correction;
-}
-
-// the partner's linearisation, and where the pressure force starts
-void MechanicsSubsystem::load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept {
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const std::size_t row = active_[k];
-    coupling::RowPartner law;
-    double z = 0;
-    if (row < ports_.size() && partner != nullptr) {
-      z = is_first_substep ? force_at_exchange(row, *partner, dynamics_.x()[k]) : ports_[row].z;
-      if (levels_[row] != coupling::Level::hold) {
-        law = {partner->F_dot[row], partner->K[row], partner->lambda[row],
-               partner->D[row],     partner->F[row], partner->v_ref[row]};
-      }
-    }
-    dynamics_.partner()[k] = law;
-    dynamics_.z()[k] = z;
-  }
-}
-
-coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coupling::ActuatorSample* partner,
-                                               bool is_first_substep) noexcept {
-  evaluate();
-  if (select_rows(h)) {
-    is_evaluated_ = false;
-    evaluate();
-  }
-  // the reduced model at the rows, in port coordinates
-  active_.clear();
-  for (std::size_t row = 0; row < model_.rows.size(); ++row) {
-    if (row_is_active_[row] != 0) active_.push_back(row);
-  }
-  const std::size_t rows = model_.rows.size();
-  const bool takes_step = touches() || (has_long_substeps_ && is_soft_behind_ports_);
-  const Rows of = takes_step ? rows_over(h) : rows_now();
-  dynamics_.set_rows(active_.size());
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const std::size_t row = active_[k];
-    const double ratio = ratio_of(row);
-    dynamics_.x()[k] = (row < ports_.size() ? ports_[row].offset : 0) + ratio * workspace_.row_x[row];
-    dynamics_.v()[k] = ratio * workspace_.row_v[row];
-    dynamics_.a_free()[k] = ratio * of.a_free[row];
-    // that over a sub-step is a mean already
-    const bool is_mean = of.kind == coupling::MobilityKind::step;
-    if (is_mean) a_free_trends_.forget(row);
-    dynamics_.a_free_rate()[k] = is_mean ? 0.0 : a_free_trends_.next(row, ratio * of.a_free[row]) / h;
-    for (std::size_t j = 0; j < active_.size(); ++j) {
-      dynamics_.W()[k * active_.size() + j] = ratio * of.W[row * rows + active_[j]] * ratio_of(active_[j]);
-    }
-  }
-  load_partner(partner, is_first_substep);
-  if (is_first_substep && is_free_running_) {
-    past_.keep(n, dynamics_.x().first(ports_.size()), dynamics_.z().first(ports_.size()));
-  }
-  coupling::PortStep solved = dynamics_.solve(h, micro_steps_, *laws_);
-  // the mechanism under these forces
-  std::fill(force_mean_.begin(), force_mean_.end(), 0.0);
-  std::fill(force_slope_.begin(), force_slope_.end(), 0.0);
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const std::size_t row = active_[k];
-    force_mean_[row] = ratio_of(row) * dynamics_.f_mean()[k];
-    force_slope_[row] = ratio_of(row) * dynamics_.f_slope()[k];
-    if (row >= ports_.size()) continue;
-    const coupling::RowPartner& law = dynamics_.partner()[k];
-    ports_[row].z = dynamics_.z()[k];
-    ports_[row].F = dynamics_.z()[k] - law.D * (dynamics_.v()[k] - law.v_ref);
-  }
-  const bool is_closed = mechanism_.advance(model_, state_, workspace_, h, force_mean_, force_slope_);
-  solved.has_converged = solved.has_converged && is_closed;
-  is_evaluated_ = false;
-  return solved;
-}
-
-// Work and impulse of the sub-step. The mechanism moved by dx more than its reduced model in the port problem: the
-// pressure force follows the true way, and does its work on it. Without this the large static force times the tiny dx
-// would look like a coupling error.
-void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
-                                        coupling::MechanismSample& sample) noexcept {
-  evaluate();
-  for (std::size_t k = 0; k < active_.size() && active_[k] < ports_.size(); ++k) {
-    const std::size_t row = active_[k];
-    Port& port = ports_[row];
-    const double dx = port.offset + port.ratio * workspace_.row_x[row] - dynamics_.x()[k];
-    const double K = partner == nullptr ? 0.0 : dynamics_.partner()[k].K;
-    sample.work[row] += dynamics_.work()[k] + (port.F - 0.5 * K * dx) * dx;
-    sample.impulse[row] += dynamics_.impulse()[k];
-    port.z -= K * dx;
-    port.F -= K * dx;
-  }
-  // bristles follow the true way as well: what sticks stays where it is
-  for (std::size_t k = 0; k < active_.size() && !state_.bristles.empty(); ++k) {
-    const std::size_t row = active_[k];
-    // a ball has no coordinate to tell by
-    if (multibody::has_bristles(model_.rows[row].law) && !is_ball(row)) {
-      state_.bristles[row] += workspace_.row_x[row] - dynamics_.x()[k];
-    }
   }
 }
 
