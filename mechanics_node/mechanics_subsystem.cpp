@@ -19,9 +19,6 @@
 namespace slew::mechanics {
 namespace {
 
-// micro-step of the port problem: resolves an oil spring of 300 rad/s to 1e-3 of its phase
-constexpr double kMicroStep = 0.25e-3;
-
 // what the rules of a scene allow is what the port problem holds
 static_assert(multibody::kMaxRows <= static_cast<int>(coupling::kMaxRows));
 
@@ -73,12 +70,16 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
   }
   put_signals({});
   substeps_ = multibody::substep_count(model_, H_.seconds());
-  micro_steps_ = static_cast<int>(std::ceil(H_.seconds() / substeps_ / kMicroStep - 1e-9));
-  micro_steps_ = std::max(1, micro_steps_);
-  const multibody::Integrator integrator = multibody::step_rule(def_).integrator;
-  has_long_substeps_ = multibody::is_implicit(integrator) || integrator == multibody::Integrator::index3_trapezoidal;
+  rule_ = multibody::step_rule(def_).integrator;
+  has_long_substeps_ = multibody::is_implicit(rule_) || rule_ == multibody::Integrator::index3_trapezoidal;
   active_.reserve(model_.rows.size());
-  stage_speed_.resize(model_.rows.size());
+  for (auto* by_row : {&stage_speed_, &v_begin_, &z_begin_, &a_begin_, &a_middle_, &a_end_})
+    by_row->resize(model_.rows.size());
+  const bool has_tables = std::any_of(model_.elements.loads.begin(), model_.elements.loads.end(),
+                                      [](const multibody::PointLoad& load) { return !load.table.empty(); });
+  // drives change coordinates, too, by time alone
+  has_timed_loads_ = has_tables && model_.drives.empty() && !model_.rows.empty();
+  prepare_substeps();
   for (std::size_t row = 0; row < model_.rows.size(); ++row) has_balls_ = has_balls_ || is_ball(row);
   const std::size_t rows = model_.rows.size();
   matrix_.resize(rows * rows);
@@ -89,7 +90,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
   list_variables();
   saved_model_ =
       coupling::saved_model(variables_, {H_.ns, exchange_every_, is_free_running_, static_cast<int>(def_.formulation),
-                                         static_cast<int>(integrator), static_cast<int>(scene.session.flexible)});
+                                         static_cast<int>(rule_), static_cast<int>(scene.session.flexible)});
 }
 
 MechanicsSubsystem::~MechanicsSubsystem() = default;
@@ -171,6 +172,7 @@ void MechanicsSubsystem::put_signals(std::span<const double> controls) noexcept 
     const double signal = operated.channel < controls.size() ? controls[operated.channel] : 0.0;
     if (model_.elements.loads[operated.load].signal == signal) continue;
     for (multibody::Model* model : {&model_, &heavier_}) model->elements.loads[operated.load].signal = signal;
+    a_free_trends_.clear();
     is_evaluated_ = false;
   }
 }
@@ -207,14 +209,9 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   evaluate();
   const PortPositions begin = port_positions();
   for (int i = 0; i < substeps_; ++i) {
-    const coupling::PortStep solved = advance(n, h, partners.actuators, i == 0);
+    take_substep({n, partners.actuators, out, report}, h, i == 0, 0);
     // by the count of steps, not by adding them up
     state_.time = static_cast<double>(n) * H_.seconds() + (i + 1) * h;
-    if (!solved.has_converged) report.raise(StepFlag::not_converged);
-    report.iterations += static_cast<std::uint32_t>(solved.iterations + mechanism_.iterations());
-    report.substeps += static_cast<std::uint32_t>(mechanism_.parts());
-    if (!(solved.residual <= report.residual)) report.residual = solved.residual;  // NaN stays
-    finish_substep(partners.actuators, out);
   }
   if (!multibody::is_finite(state_)) {
     has_failed_ = true;
@@ -272,6 +269,7 @@ void MechanicsSubsystem::apply_ramps(StepIndex n) noexcept {
   ramps_.apply(n, [this](int handle, double value) {
     for (multibody::Model* model : {&model_, &heavier_}) multibody::set_parameter(*model, parameter_of(handle), value);
   });
+  a_free_trends_.clear();
   is_evaluated_ = false;
 }
 
@@ -314,19 +312,25 @@ std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noe
 
 // At the start of the scene, for good: part of neither the state nor of what may change under way.
 void MechanicsSubsystem::choose_mobility() {
-  if (ports_.empty() || !multibody::has_springs(model_)) return;
+  if (model_.rows.empty() || !multibody::has_springs(model_)) return;
   auto rows_of_step = std::make_unique<multibody::StepRows>(model_);
   evaluate();
   is_evaluated_ = false;
-  is_soft_behind_ports_ = rows_of_step->evaluate(model_, state_, workspace_, exchange_interval()) &&
-                          differ(multibody::row_mobility(workspace_), rows_of_step->mobility());
-  if (is_soft_behind_ports_ || model_.contact != nullptr) step_rows_ = std::move(rows_of_step);
+  const auto changes = [&](std::size_t count, double h) {
+    return rows_of_step->evaluate(model_, state_, workspace_, h) &&
+           differ(count, multibody::row_mobility(workspace_), rows_of_step->mobility());
+  };
+  is_soft_behind_ports_ = !ports_.empty() && changes(ports_.size(), exchange_interval());
+  is_soft_behind_rows_ =
+      has_long_substeps_ && (is_soft_behind_ports_ || changes(model_.rows.size(), H_.seconds() / substeps_));
+  if (is_soft_behind_ports_ || is_soft_behind_rows_ || model_.contact != nullptr) step_rows_ = std::move(rows_of_step);
 }
 
-// Whether a port's mobility is worth the rows of the step.
-bool MechanicsSubsystem::differ(std::span<const double> W, std::span<const double> W_H) const noexcept {
+// Whether a mobility is worth the rows of the step.
+bool MechanicsSubsystem::differ(std::size_t count, std::span<const double> W,
+                                std::span<const double> W_H) const noexcept {
   const std::size_t rows = model_.rows.size();
-  for (std::size_t i = 0; i < ports_.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const double scale = std::sqrt(W[i * rows + i] * W[j * rows + j]);
       if (std::fabs(W_H[i * rows + j] - W[i * rows + j]) > kWorthAStep * scale) return true;
@@ -345,8 +349,8 @@ MechanicsSubsystem::Rows MechanicsSubsystem::rows_now() const noexcept {
 }
 
 // Where the matrix is singular, which W_kind shows, at the instant.
-MechanicsSubsystem::Rows MechanicsSubsystem::rows_over(double h) noexcept {
-  if (step_rows_ == nullptr || !step_rows_->evaluate(model_, state_, workspace_, h)) return rows_now();
+MechanicsSubsystem::Rows MechanicsSubsystem::rows_over(double h, multibody::StepShares shares) noexcept {
+  if (step_rows_ == nullptr || !step_rows_->evaluate(model_, state_, workspace_, h, shares)) return rows_now();
   return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
 }
 

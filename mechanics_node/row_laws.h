@@ -10,11 +10,26 @@ namespace slew::mechanics {
 
 class MechanicsSubsystem::Laws final : public coupling::RowLaws {
  public:
-  explicit Laws(MechanicsSubsystem& owner) : owner_(owner) {}
+  explicit Laws(MechanicsSubsystem& owner)
+      : owner_(owner), kept_bristles_(owner.state_.bristles), kept_speed_(owner.model_.rows.size()) {}
   bool begin(double h) const noexcept override {
     owner_.bristle_interval_ = h;
     owner_.stage_speed_ = owner_.workspace_.row_v;
     return owner_.has_balls_ || !owner_.state_.bristles.empty();
+  }
+  void set_interval(double h) const noexcept override { owner_.bristle_interval_ = h; }
+  void keep() const noexcept override {
+    kept_bristles_ = owner_.state_.bristles;
+    kept_speed_ = owner_.stage_speed_;
+  }
+  void go_back() const noexcept override {
+    owner_.state_.bristles = kept_bristles_;
+    owner_.stage_speed_ = kept_speed_;
+  }
+  bool is_at_stop(std::size_t index, double x) const noexcept override {
+    const std::size_t row = owner_.active_[index];
+    return row < owner_.ports_.size() ? owner_.ports_[row].law.touches_stop(x)
+                                      : multibody::touches_limit(owner_.model_.rows[row].law, x);
   }
   void carry(std::size_t index, double v, double h) const noexcept override {
     const std::size_t row = owner_.active_[index];
@@ -33,14 +48,14 @@ class MechanicsSubsystem::Laws final : public coupling::RowLaws {
     const std::size_t row = owner_.active_[index];
     if (row < owner_.ports_.size()) {
       const coupling::LineForce line = owner_.ports_[row].law.evaluate(z, x, v);
-      return {line.force, line.d_pressure, line.d_position, line.d_speed};
+      return {line.force, line.d_pressure, line.d_position, line.d_speed, line.stop};
     }
     const multibody::JointLaw& law = multibody::law_of(owner_.model_, row);
     const double h = owner_.bristle_interval_, bending = owner_.bristle_of(row);
     const multibody::JointForce joint = owner_.is_ball(row)
                                             ? multibody::evaluate_part(law, v, speed_of(row), h, bending)
                                             : multibody::evaluate(law, x, v, h, bending);
-    return {joint.force, 0, joint.d_x, joint.d_v};
+    return {joint.force, 0, joint.d_x, joint.d_v, joint.limit};
   }
   void evaluate_all(std::size_t rows, const double* z, const double* x, const double* v,
                     coupling::RowForce* force) const noexcept override {
@@ -55,6 +70,7 @@ class MechanicsSubsystem::Laws final : public coupling::RowLaws {
 
   MechanicsSubsystem& owner_;
   mutable double held_speed_ = 0;  // rad/s, of the ball whose parts are carried
+  mutable std::vector<double> kept_bristles_, kept_speed_;
 };
 
 }  // namespace slew::mechanics

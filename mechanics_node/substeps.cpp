@@ -1,6 +1,7 @@
 // One sub-step of the mechanics: rows, their implicit solve, the mechanism under their forces.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mechanics_node/mechanics_subsystem.h"
 #include "mechanics_node/row_laws.h"
@@ -12,6 +13,24 @@ namespace {
 
 // a limit takes part in the port problem when it could be reached within so many sub-steps
 constexpr double kLimitLookAhead = 4;
+
+// micro-step of the port problem: resolves an oil spring of 300 rad/s to 1e-3 of its phase
+constexpr double kMicroStep = 0.25e-3;
+
+// How the mechanism's rule answers a force that is held over a sub-step; generalised_alpha is the trapezoid but for
+// what it carries along. sdirk2: to second order, and what swings much faster than the sub-step stops at its end.
+multibody::StepShares shares_of(multibody::Integrator rule) noexcept {
+  switch (rule) {
+    case multibody::Integrator::trapezoidal:
+    case multibody::Integrator::generalised_alpha:
+    case multibody::Integrator::index3_trapezoidal:
+      return multibody::kTrapezoidalShares;
+    case multibody::Integrator::sdirk2:
+      return {.position = 0.5, .rate = 1, .strain = 0.5};
+    default:
+      return {};
+  }
+}
 
 }  // namespace
 
@@ -74,42 +93,62 @@ void MechanicsSubsystem::load_partner(const coupling::ActuatorSample* partner, b
   }
 }
 
-coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coupling::ActuatorSample* partner,
-                                               bool is_first_substep) noexcept {
-  evaluate();
-  if (select_rows(h)) {
-    is_evaluated_ = false;
-    evaluate();
+// Free accelerations of the present motion under the loads of the middle and of the end of the sub-step.
+void MechanicsSubsystem::look_ahead(double h) noexcept {
+  const double now = state_.time;
+  for (auto [later, a] : {std::pair{0.5 * h, &a_middle_}, std::pair{h, &a_end_}}) {
+    state_.time = now + later;
+    mechanism_.evaluate(model_, state_, workspace_);
+    *a = workspace_.row_a_free;
   }
-  // the reduced model at the rows, in port coordinates
+  state_.time = now;
+  is_evaluated_ = false;
+}
+
+// A line through what the mechanism's rule will integrate: its quadrature of the change by time alone.
+MechanicsSubsystem::Course MechanicsSubsystem::course_of(std::size_t row, double a_free, double h) const noexcept {
+  if (!has_timed_loads_ || rule_ == multibody::Integrator::semi_implicit_euler) return {};
+  const double middle = a_middle_[row] - a_free, end = a_end_[row] - a_free;
+  const double mean = rule_ == multibody::Integrator::rk4 ? (4 * middle + end) / 6 : 0.5 * end;
+  return {mean - 0.5 * end, end / h};
+}
+
+// the reduced model at the active rows, in port coordinates
+void MechanicsSubsystem::take_rows(double h) noexcept {
   active_.clear();
   for (std::size_t row = 0; row < model_.rows.size(); ++row) {
     if (row_is_active_[row] != 0) active_.push_back(row);
   }
+  if (has_timed_loads_) a_begin_ = workspace_.row_a_free;
   const std::size_t rows = model_.rows.size();
-  const bool takes_step = touches() || (has_long_substeps_ && is_soft_behind_ports_);
-  const Rows of = takes_step ? rows_over(h) : rows_now();
+  const bool is_touching = touches();
+  const Rows of = is_touching || is_soft_behind_rows_ ? rows_over(h, shares_of(rule_)) : rows_now();
+  // that over a sub-step is a mean already, and a contact's no free acceleration that goes on
+  const bool goes_on = of.kind == coupling::MobilityKind::instant && !is_touching;
   dynamics_.set_rows(active_.size());
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const std::size_t row = active_[k];
     const double ratio = ratio_of(row);
     dynamics_.x()[k] = (row < ports_.size() ? ports_[row].offset : 0) + ratio * workspace_.row_x[row];
     dynamics_.v()[k] = ratio * workspace_.row_v[row];
-    dynamics_.a_free()[k] = ratio * of.a_free[row];
-    // that over a sub-step is a mean already
-    const bool is_mean = of.kind == coupling::MobilityKind::step;
-    if (is_mean) a_free_trends_.forget(row);
-    dynamics_.a_free_rate()[k] = is_mean ? 0.0 : a_free_trends_.next(row, ratio * of.a_free[row]) / h;
+    double a_free = ratio * of.a_free[row], rate = 0;
+    if (goes_on) {
+      const Course course = course_of(row, of.a_free[row], h);
+      rate = a_free_trends_.begin(row, a_free) / h + ratio * course.rate;
+      a_free += ratio * course.start;
+    } else {
+      a_free_trends_.forget(row);
+    }
+    dynamics_.a_free()[k] = a_free;
+    dynamics_.a_free_rate()[k] = rate;
     for (std::size_t j = 0; j < active_.size(); ++j) {
       dynamics_.W()[k * active_.size() + j] = ratio * of.W[row * rows + active_[j]] * ratio_of(active_[j]);
     }
   }
-  load_partner(partner, is_first_substep);
-  if (is_first_substep && is_free_running_) {
-    past_.keep(n, dynamics_.x().first(ports_.size()), dynamics_.z().first(ports_.size()));
-  }
-  coupling::PortStep solved = dynamics_.solve(h, micro_steps_, *laws_);
-  // the mechanism under these forces
+}
+
+// means and slopes of the last solve; pressure forces at its end
+void MechanicsSubsystem::put_row_forces() noexcept {
   std::fill(force_mean_.begin(), force_mean_.end(), 0.0);
   std::fill(force_slope_.begin(), force_slope_.end(), 0.0);
   for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -121,6 +160,23 @@ coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coup
     ports_[row].z = dynamics_.z()[k];
     ports_[row].F = dynamics_.z()[k] - law.D * (dynamics_.v()[k] - law.v_ref);
   }
+}
+
+coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coupling::ActuatorSample* partner,
+                                               bool is_first_substep) noexcept {
+  if (select_rows(h)) is_evaluated_ = false;
+  if (has_timed_loads_) look_ahead(h);
+  evaluate();
+  take_rows(h);
+  load_partner(partner, is_first_substep);
+  std::copy(dynamics_.v().begin(), dynamics_.v().end(), v_begin_.begin());
+  std::copy(dynamics_.z().begin(), dynamics_.z().end(), z_begin_.begin());
+  if (is_first_substep && is_free_running_) {
+    past_.keep(n, dynamics_.x().first(ports_.size()), dynamics_.z().first(ports_.size()));
+  }
+  const int micro_steps = std::max(1, static_cast<int>(std::ceil(h / kMicroStep - 1e-9)));
+  coupling::PortStep solved = dynamics_.solve(h, micro_steps, *laws_);
+  put_row_forces();
   const bool is_closed = mechanism_.advance(model_, state_, workspace_, h, force_mean_, force_slope_);
   solved.has_converged = solved.has_converged && is_closed;
   is_evaluated_ = false;
@@ -133,6 +189,12 @@ coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coup
 void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
                                         coupling::MechanismSample& sample) noexcept {
   evaluate();
+  for (const std::size_t row : active_) {
+    const double a_free = workspace_.row_a_free[row];
+    const double by_time = has_timed_loads_ ? a_end_[row] - a_begin_[row] : 0.0;
+    a_free_trends_.end(row, ratio_of(row) * (a_free - by_time));
+  }
+  if (touches()) a_free_trends_.clear();
   for (std::size_t k = 0; k < active_.size() && active_[k] < ports_.size(); ++k) {
     const std::size_t row = active_[k];
     Port& port = ports_[row];
