@@ -10,6 +10,7 @@
 #include "math/small_solve.h"
 #include "mechanics_node/parameter_handle.h"
 #include "mechanics_node/payload.h"
+#include "mechanics_node/row_laws.h"
 #include "multibody/joint_law.h"
 #include "multibody/parameters.h"
 #include "multibody/rows.h"
@@ -18,13 +19,7 @@
 namespace slew::mechanics {
 namespace {
 
-// micro-step of the port problem: resolves an oil spring of 300 rad/s to 1e-3 of its phase
-constexpr double kMicroStep = 0.25e-3;
-
 // what the rules of a scene allow is what the port problem holds
-
-// a limit takes part in the port problem when it could be reached within so many sub-steps
-constexpr double kLimitLookAhead = 4;
 
 // A change of W over a step, of sqrt(W_ii W_jj), from which on the step's is published: an error of a tenth in W is far
 // inside of what level two bears (coupling study, section 3), and the step's rows cost a factorisation a step.
@@ -36,56 +31,6 @@ multibody::MechanicsDef as_moved(multibody::MechanicsDef mechanics, Motion motio
 }
 
 }  // namespace
-
-// the row's own law: cylinder line force or joint friction and limits
-class MechanicsSubsystem::Laws final : public coupling::RowLaws {
- public:
-  explicit Laws(MechanicsSubsystem& owner) : owner_(owner) {}
-  bool begin(double h) const noexcept override {
-    owner_.bristle_interval_ = h;
-    owner_.stage_speed_ = owner_.workspace_.row_v;
-    return owner_.has_balls_ || !owner_.state_.bristles.empty();
-  }
-  void carry(std::size_t index, double v, double h) const noexcept override {
-    const std::size_t row = owner_.active_[index];
-    if (row < owner_.ports_.size()) return;
-    const multibody::JointLaw& law = multibody::law_of(owner_.model_, row);
-    const bool is_ball = owner_.is_ball(row);
-    // the three parts of a ball come one after the other
-    if (is_ball && owner_.model_.rows[row].number == 0) held_speed_ = speed_of(row);
-    if (multibody::has_bristles(law)) {
-      double& z = owner_.state_.bristles[row];
-      z = is_ball ? multibody::bent_part(law, v, held_speed_, h, z) : multibody::bent(law, v, h, z);
-    }
-    owner_.stage_speed_[row] = v;
-  }
-  coupling::RowForce evaluate(std::size_t index, double z, double x, double v) const noexcept override {
-    const std::size_t row = owner_.active_[index];
-    if (row < owner_.ports_.size()) {
-      const coupling::LineForce line = owner_.ports_[row].law.evaluate(z, x, v);
-      return {line.force, line.d_pressure, line.d_position, line.d_speed};
-    }
-    const multibody::JointLaw& law = multibody::law_of(owner_.model_, row);
-    const double h = owner_.bristle_interval_, bending = owner_.bristle_of(row);
-    const multibody::JointForce joint = owner_.is_ball(row)
-                                            ? multibody::evaluate_part(law, v, speed_of(row), h, bending)
-                                            : multibody::evaluate(law, x, v, h, bending);
-    return {joint.force, 0, joint.d_x, joint.d_v};
-  }
-  void evaluate_all(std::size_t rows, const double* z, const double* x, const double* v,
-                    coupling::RowForce* force) const noexcept override {
-    for (std::size_t i = 0; i < rows; ++i) force[i] = Laws::evaluate(i, z[i], x[i], v[i]);
-  }
-
- private:
-  // of a ball, in the stage before
-  [[nodiscard]] double speed_of(std::size_t row) const noexcept {
-    return multibody::ball_speed(owner_.model_, row, owner_.stage_speed_);
-  }
-
-  MechanicsSubsystem& owner_;
-  mutable double held_speed_ = 0;  // rad/s, of the ball whose parts are carried
-};
 
 MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
     : def_(as_moved(scene.mechanics, motion)),
@@ -124,12 +69,16 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
   }
   put_signals({});
   substeps_ = multibody::substep_count(model_, H_.seconds());
-  micro_steps_ = static_cast<int>(std::ceil(H_.seconds() / substeps_ / kMicroStep - 1e-9));
-  micro_steps_ = std::max(1, micro_steps_);
-  const multibody::Integrator integrator = multibody::step_rule(def_).integrator;
-  has_long_substeps_ = multibody::is_implicit(integrator) || integrator == multibody::Integrator::index3_trapezoidal;
+  rule_ = multibody::step_rule(def_).integrator;
+  has_long_substeps_ = multibody::is_implicit(rule_) || rule_ == multibody::Integrator::index3_trapezoidal;
   active_.reserve(model_.rows.size());
-  stage_speed_.resize(model_.rows.size());
+  for (auto* by_row : {&stage_speed_, &v_begin_, &z_begin_, &a_begin_, &a_middle_, &a_end_})
+    by_row->resize(model_.rows.size());
+  const bool has_tables = std::any_of(model_.elements.loads.begin(), model_.elements.loads.end(),
+                                      [](const multibody::PointLoad& load) { return !load.table.empty(); });
+  // drives change coordinates, too, by time alone
+  has_timed_loads_ = has_tables && model_.drives.empty() && !model_.rows.empty();
+  prepare_substeps();
   for (std::size_t row = 0; row < model_.rows.size(); ++row) has_balls_ = has_balls_ || is_ball(row);
   const std::size_t rows = model_.rows.size();
   matrix_.resize(rows * rows);
@@ -140,7 +89,7 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
   list_variables();
   saved_model_ =
       coupling::saved_model(variables_, {H_.ns, exchange_every_, is_free_running_, static_cast<int>(def_.formulation),
-                                         static_cast<int>(integrator), static_cast<int>(scene.session.flexible)});
+                                         static_cast<int>(rule_), static_cast<int>(scene.session.flexible)});
 }
 
 MechanicsSubsystem::~MechanicsSubsystem() = default;
@@ -205,30 +154,6 @@ Status MechanicsSubsystem::start(const coupling::PartnerSamples& partners, coupl
 
 // ---- step -----------------------------------------------------------------------------------------------------
 
-// rows of the coming sub-step; true when the choice changed
-bool MechanicsSubsystem::select_rows(double h) noexcept {
-  bool has_changed = false;
-  const std::span<const double> x = multibody::row_positions(workspace_);
-  const std::span<const double> v = multibody::row_speeds(workspace_);
-  for (std::size_t row = ports_.size(); row < model_.rows.size(); ++row) {
-    const multibody::JointLaw& law = multibody::law_of(model_, row);
-    const double reach = kLimitLookAhead * h * std::fabs(v[row]);
-    const bool near_limit =
-        law.limit_stiffness > 0 && (x[row] - reach <= law.limit_min || x[row] + reach >= law.limit_max);
-    const bool is_active = law.coulomb > 0 || law.viscous > 0 || near_limit;
-    if (is_active == (row_is_active_[row] != 0)) continue;
-    has_changed = true;
-    row_is_active_[row] = is_active ? 1 : 0;
-    a_free_trends_.forget(row);
-    if (is_active) {
-      multibody::activate_row(workspace_, static_cast<int>(row));
-    } else {
-      multibody::deactivate_row(workspace_, static_cast<int>(row));
-    }
-  }
-  return has_changed;
-}
-
 void MechanicsSubsystem::note_age(StepIndex n, const coupling::PartnerSamples& partners, StepReport& report) noexcept {
   partner_age_ = partners.actuators_age;
   has_news_ = n - partner_age_ != used_step_;
@@ -240,126 +165,13 @@ void MechanicsSubsystem::note_age(StepIndex n, const coupling::PartnerSamples& p
   }
 }
 
-// The pressure force at the start of the step, where the port is at x: that of this step's sample, moved to the true
-// position; without news the copy goes on, and a late sample corrects it by what it says of its own step.
-double MechanicsSubsystem::force_at_exchange(std::size_t port, const coupling::ActuatorSample& partner,
-                                             double x) noexcept {
-  const double copy = ports_[port].z;
-  if (!has_news_) return copy;
-  const bool is_hold = levels_[port] == coupling::Level::hold;
-  const auto at = [&](double position) {
-    return is_hold ? partner.F[port] : partner.F[port] - partner.K[port] * (position - partner.x_ref[port]);
-  };
-  if (partner_age_ == 0) return at(x);
-  if (!past_.has(used_step_)) return copy;
-  const double correction = at(past_.first(used_step_, port)) - past_.second(used_step_, port);
-  past_.correct(used_step_, port, 0, correction);
-  return copy + correction;
-}
-
-// the partner's linearisation, and where the pressure force starts
-void MechanicsSubsystem::load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept {
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const std::size_t row = active_[k];
-    coupling::RowPartner law;
-    double z = 0;
-    if (row < ports_.size() && partner != nullptr) {
-      z = is_first_substep ? force_at_exchange(row, *partner, dynamics_.x()[k]) : ports_[row].z;
-      if (levels_[row] != coupling::Level::hold) {
-        law = {partner->F_dot[row], partner->K[row], partner->lambda[row],
-               partner->D[row],     partner->F[row], partner->v_ref[row]};
-      }
-    }
-    dynamics_.partner()[k] = law;
-    dynamics_.z()[k] = z;
-  }
-}
-
-coupling::PortStep MechanicsSubsystem::advance(StepIndex n, double h, const coupling::ActuatorSample* partner,
-                                               bool is_first_substep) noexcept {
-  evaluate();
-  if (select_rows(h)) {
-    is_evaluated_ = false;
-    evaluate();
-  }
-  // the reduced model at the rows, in port coordinates
-  active_.clear();
-  for (std::size_t row = 0; row < model_.rows.size(); ++row) {
-    if (row_is_active_[row] != 0) active_.push_back(row);
-  }
-  const std::size_t rows = model_.rows.size();
-  const bool takes_step = touches() || (has_long_substeps_ && is_soft_behind_ports_);
-  const Rows of = takes_step ? rows_over(h) : rows_now();
-  dynamics_.set_rows(active_.size());
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const std::size_t row = active_[k];
-    const double ratio = ratio_of(row);
-    dynamics_.x()[k] = (row < ports_.size() ? ports_[row].offset : 0) + ratio * workspace_.row_x[row];
-    dynamics_.v()[k] = ratio * workspace_.row_v[row];
-    dynamics_.a_free()[k] = ratio * of.a_free[row];
-    // that over a sub-step is a mean already
-    const bool is_mean = of.kind == coupling::MobilityKind::step;
-    if (is_mean) a_free_trends_.forget(row);
-    dynamics_.a_free_rate()[k] = is_mean ? 0.0 : a_free_trends_.next(row, ratio * of.a_free[row]) / h;
-    for (std::size_t j = 0; j < active_.size(); ++j) {
-      dynamics_.W()[k * active_.size() + j] = ratio * of.W[row * rows + active_[j]] * ratio_of(active_[j]);
-    }
-  }
-  load_partner(partner, is_first_substep);
-  if (is_first_substep && is_free_running_) {
-    past_.keep(n, dynamics_.x().first(ports_.size()), dynamics_.z().first(ports_.size()));
-  }
-  coupling::PortStep solved = dynamics_.solve(h, micro_steps_, *laws_);
-  // the mechanism under these forces
-  std::fill(force_mean_.begin(), force_mean_.end(), 0.0);
-  std::fill(force_slope_.begin(), force_slope_.end(), 0.0);
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const std::size_t row = active_[k];
-    force_mean_[row] = ratio_of(row) * dynamics_.f_mean()[k];
-    force_slope_[row] = ratio_of(row) * dynamics_.f_slope()[k];
-    if (row >= ports_.size()) continue;
-    const coupling::RowPartner& law = dynamics_.partner()[k];
-    ports_[row].z = dynamics_.z()[k];
-    ports_[row].F = dynamics_.z()[k] - law.D * (dynamics_.v()[k] - law.v_ref);
-  }
-  const bool is_closed = mechanism_.advance(model_, state_, workspace_, h, force_mean_, force_slope_);
-  solved.has_converged = solved.has_converged && is_closed;
-  is_evaluated_ = false;
-  return solved;
-}
-
-// Work and impulse of the sub-step. The mechanism moved by dx more than its reduced model in the port problem: the
-// pressure force follows the true way, and does its work on it. Without this the large static force times the tiny dx
-// would look like a coupling error.
-void MechanicsSubsystem::finish_substep(const coupling::ActuatorSample* partner,
-                                        coupling::MechanismSample& sample) noexcept {
-  evaluate();
-  for (std::size_t k = 0; k < active_.size() && active_[k] < ports_.size(); ++k) {
-    const std::size_t row = active_[k];
-    Port& port = ports_[row];
-    const double dx = port.offset + port.ratio * workspace_.row_x[row] - dynamics_.x()[k];
-    const double K = partner == nullptr ? 0.0 : dynamics_.partner()[k].K;
-    sample.work[row] += dynamics_.work()[k] + (port.F - 0.5 * K * dx) * dx;
-    sample.impulse[row] += dynamics_.impulse()[k];
-    port.z -= K * dx;
-    port.F -= K * dx;
-  }
-  // bristles follow the true way as well: what sticks stays where it is
-  for (std::size_t k = 0; k < active_.size() && !state_.bristles.empty(); ++k) {
-    const std::size_t row = active_[k];
-    // a ball has no coordinate to tell by
-    if (multibody::has_bristles(model_.rows[row].law) && !is_ball(row)) {
-      state_.bristles[row] += workspace_.row_x[row] - dynamics_.x()[k];
-    }
-  }
-}
-
 // what inputs give to loads; neutral where there is no value yet
 void MechanicsSubsystem::put_signals(std::span<const double> controls) noexcept {
   for (const OperatedLoad& operated : operated_) {
     const double signal = operated.channel < controls.size() ? controls[operated.channel] : 0.0;
     if (model_.elements.loads[operated.load].signal == signal) continue;
     for (multibody::Model* model : {&model_, &heavier_}) model->elements.loads[operated.load].signal = signal;
+    a_free_trends_.clear();
     is_evaluated_ = false;
   }
 }
@@ -396,14 +208,9 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   evaluate();
   const PortPositions begin = port_positions();
   for (int i = 0; i < substeps_; ++i) {
-    const coupling::PortStep solved = advance(n, h, partners.actuators, i == 0);
+    take_substep({n, partners.actuators, out, report}, h, i == 0, 0);
     // by the count of steps, not by adding them up
     state_.time = static_cast<double>(n) * H_.seconds() + (i + 1) * h;
-    if (!solved.has_converged) report.raise(StepFlag::not_converged);
-    report.iterations += static_cast<std::uint32_t>(solved.iterations + mechanism_.iterations());
-    report.substeps += static_cast<std::uint32_t>(mechanism_.parts());
-    if (!(solved.residual <= report.residual)) report.residual = solved.residual;  // NaN stays
-    finish_substep(partners.actuators, out);
   }
   if (!multibody::is_finite(state_)) {
     has_failed_ = true;
@@ -461,6 +268,7 @@ void MechanicsSubsystem::apply_ramps(StepIndex n) noexcept {
   ramps_.apply(n, [this](int handle, double value) {
     for (multibody::Model* model : {&model_, &heavier_}) multibody::set_parameter(*model, parameter_of(handle), value);
   });
+  a_free_trends_.clear();
   is_evaluated_ = false;
 }
 
@@ -503,19 +311,25 @@ std::string_view MechanicsSubsystem::offender_name(std::int32_t index) const noe
 
 // At the start of the scene, for good: part of neither the state nor of what may change under way.
 void MechanicsSubsystem::choose_mobility() {
-  if (ports_.empty() || !multibody::has_springs(model_)) return;
+  if (model_.rows.empty() || !multibody::has_springs(model_)) return;
   auto rows_of_step = std::make_unique<multibody::StepRows>(model_);
   evaluate();
   is_evaluated_ = false;
-  is_soft_behind_ports_ = rows_of_step->evaluate(model_, state_, workspace_, exchange_interval()) &&
-                          differ(multibody::row_mobility(workspace_), rows_of_step->mobility());
-  if (is_soft_behind_ports_ || model_.contact != nullptr) step_rows_ = std::move(rows_of_step);
+  const auto changes = [&](std::size_t count, double h) {
+    return rows_of_step->evaluate(model_, state_, workspace_, h) &&
+           differ(count, multibody::row_mobility(workspace_), rows_of_step->mobility());
+  };
+  is_soft_behind_ports_ = !ports_.empty() && changes(ports_.size(), exchange_interval());
+  is_soft_behind_rows_ =
+      has_long_substeps_ && (is_soft_behind_ports_ || changes(model_.rows.size(), H_.seconds() / substeps_));
+  if (is_soft_behind_ports_ || is_soft_behind_rows_ || model_.contact != nullptr) step_rows_ = std::move(rows_of_step);
 }
 
-// Whether a port's mobility is worth the rows of the step.
-bool MechanicsSubsystem::differ(std::span<const double> W, std::span<const double> W_H) const noexcept {
+// Whether a mobility is worth the rows of the step.
+bool MechanicsSubsystem::differ(std::size_t count, std::span<const double> W,
+                                std::span<const double> W_H) const noexcept {
   const std::size_t rows = model_.rows.size();
-  for (std::size_t i = 0; i < ports_.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const double scale = std::sqrt(W[i * rows + i] * W[j * rows + j]);
       if (std::fabs(W_H[i * rows + j] - W[i * rows + j]) > kWorthAStep * scale) return true;
@@ -534,8 +348,8 @@ MechanicsSubsystem::Rows MechanicsSubsystem::rows_now() const noexcept {
 }
 
 // Where the matrix is singular, which W_kind shows, at the instant.
-MechanicsSubsystem::Rows MechanicsSubsystem::rows_over(double h) noexcept {
-  if (step_rows_ == nullptr || !step_rows_->evaluate(model_, state_, workspace_, h)) return rows_now();
+MechanicsSubsystem::Rows MechanicsSubsystem::rows_over(double h, multibody::StepShares shares) noexcept {
+  if (step_rows_ == nullptr || !step_rows_->evaluate(model_, state_, workspace_, h, shares)) return rows_now();
   return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
 }
 

@@ -3,9 +3,11 @@
 //
 // Ports come first among the rows, in the scene's order; then the joints with friction or limits. Per sub-step:
 //   rows x, v, a_free, W  ->  PortDynamics: mean and slope of every row's force  ->  one step of the mechanism.
-// Published a_free and W contain the joints' laws condensed implicitly over H (MobilityKind::step), so that the partner
-// sees a slewing ring with its friction, not without. Where springs or modes behind the ports change W over a step, the
-// published rows are those of the step (multibody/step_rows.h); decided once, at the start of the scene.
+// What a_free changes by on the way goes on as it did over the sub-step before, unless an input, a parameter or a
+// contact has changed since (coupling/trends.h); loads that follow a table are looked up ahead. Published a_free and W
+// contain the joints' laws condensed implicitly over H (MobilityKind::step), so that the partner sees a slewing ring
+// with its friction, not without. Where springs or modes behind the ports change W over a step, the published rows are
+// those of the step (multibody/step_rows.h); decided once, at the start of the scene.
 #pragma once
 
 #include <memory>
@@ -92,6 +94,33 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void note_age(StepIndex n, const coupling::PartnerSamples& partners, StepReport& report) noexcept;
   [[nodiscard]] double force_at_exchange(std::size_t port, const coupling::ActuatorSample& partner, double x) noexcept;
   void load_partner(const coupling::ActuatorSample* partner, bool is_first_substep) noexcept;
+  // What the sub-steps of a step have in common.
+  struct StepContext {
+    StepIndex n;
+    const coupling::ActuatorSample* partner;
+    coupling::MechanismSample& sample;
+    StepReport& report;
+  };
+  // A sub-step h, in parts where it meets a stop that it does not resolve; depth: how often it was parted already.
+  void take_substep(const StepContext& step, double h, bool is_first, std::size_t depth) noexcept;
+  void prepare_substeps();
+  void keep(std::size_t depth) noexcept;
+  void go_back(std::size_t depth) noexcept;
+  [[nodiscard]] bool comes_near_stop(double h) const noexcept;
+  [[nodiscard]] bool strays_in_stop(double h) noexcept;
+  // of a row's stop that stood still at x, on the row's own coordinate
+  struct Stop {
+    double force = 0, stiffness = 0;  // N, N/m
+  };
+  [[nodiscard]] Stop stop_at(std::size_t row, double x) const noexcept;
+  void look_ahead(double h) noexcept;
+  // change of a_free over a sub-step by loads that follow tables, as the mechanism's rule will see them
+  struct Course {
+    double start = 0, rate = 0;  // to add to a_free, and its rate [1/s]
+  };
+  [[nodiscard]] Course course_of(std::size_t row, double a_free, double h) const noexcept;
+  void take_rows(double h) noexcept;
+  void put_row_forces() noexcept;
   [[nodiscard]] coupling::PortStep advance(StepIndex n, double h, const coupling::ActuatorSample* partner,
                                            bool is_first_substep) noexcept;
   void finish_substep(const coupling::ActuatorSample* partner, coupling::MechanismSample& sample) noexcept;
@@ -106,10 +135,11 @@ class MechanicsSubsystem final : public coupling::Subsystem {
     std::span<const double> a_free, W;  // of all rows, on their own coordinates
     coupling::MobilityKind kind = coupling::MobilityKind::instant;
   };
-  [[nodiscard]] bool differ(std::span<const double> W, std::span<const double> W_H) const noexcept;
+  // of the first `count` rows
+  [[nodiscard]] bool differ(std::size_t count, std::span<const double> W, std::span<const double> W_H) const noexcept;
   [[nodiscard]] bool touches() const noexcept;
   [[nodiscard]] Rows rows_now() const noexcept;
-  [[nodiscard]] Rows rows_over(double h) noexcept;
+  [[nodiscard]] Rows rows_over(double h, multibody::StepShares shares = {}) noexcept;
   void condense_joints(const Rows& of, coupling::MechanismSample& sample) noexcept;
   void update_line_forces(coupling::MechanismSample& sample) noexcept;
   [[nodiscard]] coupling::PortArray static_forces() const noexcept;
@@ -150,17 +180,28 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   StepIndex partner_age_ = 0;  // of that sample in the last step
   bool has_news_ = false;      // it came in this step
   int substeps_ = 1;
-  int micro_steps_ = 1;
+  multibody::Integrator rule_ = multibody::Integrator::rk4;
   bool has_long_substeps_ = false;  // implicit ones, which do not resolve the springs behind the rows
   std::vector<Port> ports_;
   std::vector<double> port_ratios_;
   std::vector<OperatedLoad> operated_;
   ModalExchange modal_;
   std::vector<char> row_is_active_;
-  std::vector<std::size_t> active_;                 // rows of the port problem, ascending
-  coupling::Trends a_free_trends_;                  // by row, from sub-step to sub-step
+  std::vector<std::size_t> active_;  // rows of the port problem, ascending
+  coupling::Trends a_free_trends_;   // by row, from sub-step to sub-step
+  bool has_timed_loads_ = false;
+  std::vector<double> a_begin_, a_middle_,
+      a_end_;  // by row, a_free of the sub-step's start under the loads of now and later
+  // of a sub-step that may meet a stop
+  struct Start {
+    multibody::State state;
+    std::vector<std::byte> mechanism;
+  };
+  std::vector<Start> starts_;                       // by depth
+  std::vector<double> v_begin_, z_begin_;           // by row of the port problem
   std::unique_ptr<multibody::StepRows> step_rows_;  // none: the rows at the instant hold over any step
   bool is_soft_behind_ports_ = false;               // they do not, whether anything touches or not
+  bool is_soft_behind_rows_ = false;                // the same of long sub-steps and all rows
   std::unique_ptr<Laws> laws_;
   coupling::PortDynamics dynamics_;
   std::vector<double> force_mean_, force_slope_;  // by row, for the Runge-Kutta step

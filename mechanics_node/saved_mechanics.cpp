@@ -6,7 +6,7 @@
 namespace slew::mechanics {
 namespace {
 
-constexpr std::uint32_t kLayout = 1;
+constexpr std::uint32_t kLayout = 2;
 constexpr std::size_t kFrameNumbers = 13;  // of a flexible body in its sample
 
 template <typename Sample, typename Bytes>
@@ -29,7 +29,6 @@ void MechanicsSubsystem::visit(Self& self, Bytes& bytes) {
     self.ramps_.load(bytes, [&](int handle) { return multibody::has_parameter(self.model_, parameter_of(handle)); });
     self.levels_.load(bytes);
     self.a_free_trends_.load(bytes);
-    self.dynamics_.load(bytes);
     if (self.is_free_running_) self.past_.load(bytes);
   } else {
     multibody::save(self.model_, self.state_, bytes);
@@ -37,7 +36,6 @@ void MechanicsSubsystem::visit(Self& self, Bytes& bytes) {
     self.ramps_.save(bytes);
     self.levels_.save(bytes);
     self.a_free_trends_.save(bytes);
-    self.dynamics_.save(bytes);
     if (self.is_free_running_) self.past_.save(bytes);
   }
   for (auto& operated : self.operated_) bytes.number(self.model_.elements.loads[operated.load].signal);

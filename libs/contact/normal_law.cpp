@@ -79,6 +79,22 @@ NormalForce evaluate(const NormalLaw& law, double share, double depth, double de
   return {.force = share * spring.force * factor, .d_depth = share * spring.slope * factor, .d_depth_rate = d_rate};
 }
 
+NormalForce slopes_of_impact(const NormalLaw& law, double share, double depth, double depth_rate,
+                             const NormalState& state, double mass) noexcept {
+  const double v0 = std::max({state.impact_speed, depth_rate, law.smallest_impact_speed});
+  const double d = std::max(depth, 0.0), n = law.exponent;
+  const NormalState met{v0};
+  if (!(depth_rate > 0 && share > 0)) return evaluate(law, share, d, depth_rate, met);
+  const double K = share * law.stiffness * std::pow(law.reference_depth, 1 - n);
+  double taken = 0.5 * depth_rate;
+  if (law.damping_number > 0) taken = std::min(taken, v0 / law.damping_number);
+  const double power = std::pow(d, n + 1) + (n + 1) * mass * depth_rate * taken / K;
+  const double deepest = std::pow(power, 1 / (n + 1));
+  NormalForce steepest = evaluate(law, share, deepest, 0, met);
+  steepest.d_depth *= 1 + law.damping_number * depth_rate / v0;
+  return steepest;
+}
+
 double stored_energy(const NormalLaw& law, double share, double depth) noexcept {
   if (!(depth > 0)) return 0;
   return share * spring_at(law, depth).force * depth / (law.exponent + 1);

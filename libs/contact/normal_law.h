@@ -79,6 +79,12 @@ struct NormalForce {
 [[nodiscard]] NormalForce evaluate(const NormalLaw& law, double share, double depth, double depth_rate,
                                    const NormalState& state) noexcept;
 
+// The steepest slopes that a free mass [kg] finds on its way in from a depth [m] at a rate [m/s]: at its deepest point,
+// which lies no deeper than where the spring, or the damping alone, has taken the speed:
+//   K (d_1^(n+1) - d^(n+1))/(n + 1) = min(m d'^2/2, m d' v0/a),   K = w k d_ref^(1-n)                 (4)
+[[nodiscard]] NormalForce slopes_of_impact(const NormalLaw& law, double share, double depth, double depth_rate,
+                                           const NormalState& state, double mass) noexcept;
+
 // Energy [J] that the spring of (1) holds: integral of F over d at d' = 0.
 [[nodiscard]] double stored_energy(const NormalLaw& law, double share, double depth) noexcept;
 

@@ -40,6 +40,8 @@ class Sweeper {
       if (set.manifold_.empty()) continue;
       meeting.kind = Meeting::Kind::found;
       meeting.n_W = set.manifold_[0].n_W;
+      meeting.p_W = set.manifold_[0].p_W;
+      meeting.share = s;
       return meeting;
     }
     return meeting;

@@ -18,6 +18,8 @@ struct Meeting {
   enum class Kind { none, found, too_fast };  // too_fast: near, but longer than kMostLooks pieces
   Kind kind = Kind::none;
   math::Vec3 n_W{};   // found: normal at the first look that found an overlap, from B to A
+  math::Vec3 p_W{};   // found: a point of the overlap there
+  double share = 0;   // found: of the way, where that was
   double travel = 0;  // m, of A's middle seen from B
 };
 

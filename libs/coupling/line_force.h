@@ -38,6 +38,7 @@ struct LineForce {
   double d_pressure = 1;  // dF_line/dF [-]
   double d_position = 0;  // dF_line/dx [N/m]
   double d_speed = 0;     // dF_line/dv [N s/m]
+  double stop = 0;        // of it, F_stop [N]
 };
 
 class LineForceLaw {
@@ -121,7 +122,8 @@ inline LineForce LineForceLaw::evaluate(double F, double x, double v) const noex
   return {.force = F - friction.force + stop.force,
           .d_pressure = 1 - friction.d_pressure,
           .d_position = stop.d_x,
-          .d_speed = stop.d_v - friction.d_speed};
+          .d_speed = stop.d_v - friction.d_speed,
+          .stop = stop.force};
 }
 
 }  // namespace slew::coupling

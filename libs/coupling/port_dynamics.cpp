@@ -11,8 +11,10 @@
 namespace slew::coupling {
 namespace {
 
-// Alexander (1977), SIAM J. Numer. Anal. 14, 1006: gamma = 1 - 1/sqrt(2)
-constexpr double kGamma = 0.29289321881345247560;
+// instants of the stages' forces in a step, with which mean and slope of a force that is linear in time are exact:
+// (1 - gamma)(1 - t_1) gamma + gamma (1 - t_2) = 1/6 and (1 - gamma)(1 - t_1) + gamma (1 - t_2) = 1/2
+constexpr double kFirstOfLine = 1.0 / 3;
+constexpr double kEndOfLine = 0.90236892706218252;
 
 // A piecewise linear law needs one iteration per kink that is crossed. More are left for the halvings of two rows that
 // come to a jump at once.
@@ -29,21 +31,55 @@ constexpr double kRelativeTolerance = 1e-12;
 constexpr double kAbsoluteTolerance = 1e-15;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
+// parts of micro-steps in a solve; beyond, what is left of a micro-step goes in one
+constexpr int kMostTries = 512;
+
 }  // namespace
 
 PortDynamics::PortDynamics(std::size_t capacity) : capacity_(capacity), rows_(capacity) {
-  for (std::vector<double>* values :
-       {&x_,    &v_,      &z_,      &a_free_,  &a_free_rate_, &weighted_a_, &shrink_,   &drive_,
-        &pull_, &x_base_, &v_base_, &z_base_,  &x_stage_,     &v_stage_,    &z_stage_,  &pressure_force_,
-        &f_,    &slope_,  &f_mean_, &f_slope_, &work_,        &impulse_,    &residual_, &low_,
-        &high_, &f_low_,  &f_held_, &f_high_,  &last_step_,   &k_x_,        &k_v_,      &k_z_}) {
+  for (std::vector<double>* values : {&x_,
+                                      &v_,
+                                      &z_,
+                                      &a_free_,
+                                      &a_free_rate_,
+                                      &weighted_a_,
+                                      &shrink_,
+                                      &drive_,
+                                      &pull_,
+                                      &x_base_,
+                                      &v_base_,
+                                      &z_base_,
+                                      &x_stage_,
+                                      &v_stage_,
+                                      &z_stage_,
+                                      &pressure_force_,
+                                      &f_,
+                                      &slope_,
+                                      &f_mean_,
+                                      &f_slope_,
+                                      &work_,
+                                      &impulse_,
+                                      &residual_,
+                                      &low_,
+                                      &high_,
+                                      &f_low_,
+                                      &f_held_,
+                                      &f_high_,
+                                      &last_step_,
+                                      &k_x_,
+                                      &k_v_,
+                                      &k_z_,
+                                      &v_first_,
+                                      &f_first_,
+                                      &pressure_first_}) {
     values->assign(capacity, 0.0);
   }
-  law_.assign(capacity, RowForce{});
+  for (std::vector<RowForce>* laws : {&law_, &law_first_, &law_start_}) laws->assign(capacity, RowForce{});
   W_.assign(capacity * capacity, 0.0);
   weighted_W_.assign(capacity * capacity, 0.0);
   A_.assign(capacity * capacity, 0.0);
   is_at_jump_.assign(capacity, 0);
+  jump_first_.assign(capacity, 0);
   partner_.assign(capacity, RowPartner{});
 }
 
@@ -185,43 +221,105 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
   }
 }
 
+void PortDynamics::set_weight(double weight, const RowLaws& laws) noexcept {
+  prepare(weight);
+  laws.set_interval(weight);
+}
+
+void PortDynamics::keep_first() noexcept {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    v_first_[i] = v_stage_[i];
+    f_first_[i] = f_[i];
+    pressure_first_[i] = pressure_force_[i];
+    law_first_[i] = law_[i];
+    jump_first_[i] = is_at_jump_[i];
+  }
+}
+
+void PortDynamics::add(double share, const Instant& at, std::span<const double> f,
+                       std::span<const double> pressure_force, std::span<const double> v) noexcept {
+  for (std::size_t i = 0; i < rows_; ++i) {
+    const bool has_partner = partner_[i].K != 0 || partner_[i].F_dot != 0;
+    const double time = at.is_at_stop ? at.of_way : has_partner ? at.of_stage : at.of_line;
+    f_mean_[i] += share * f[i];
+    f_slope_[i] += share * (time - 0.5 * h_) * f[i];
+    work_[i] += share * pressure_force[i] * v[i];
+    impulse_[i] += share * pressure_force[i];
+  }
+}
+
+// to the end of the last stage
+void PortDynamics::move(PortStep& report) noexcept {
+  is_at_stop_ = false;
+  for (std::size_t i = 0; i < rows_; ++i) {
+    x_[i] = x_stage_[i];
+    v_[i] = v_stage_[i];
+    z_[i] = z_stage_[i];
+    is_at_stop_ = is_at_stop_ || law_[i].stop != 0 || is_at_jump_[i] != 0;
+  }
+  report.meets_stop = report.meets_stop || is_at_stop_;
+}
+
+// Two stages; false, and nothing has moved, where a stop asks for a shorter step.
+bool PortDynamics::try_stages(const Span& span, const RowLaws& laws, PortStep& report) noexcept {
+  const double weight = kGamma * span.length, rate = 1 / weight;
+  PortStep tried;
+  if (has_memory_) laws.keep();
+  for (int stage = 0; stage < 2; ++stage) {
+    // first stage at gamma delta, second at delta
+    const double carried = (1 - kGamma) * span.length;
+    for (std::size_t i = 0; i < rows_; ++i) {
+      x_base_[i] = stage == 0 ? x_[i] : x_[i] + carried * k_x_[i];
+      v_base_[i] = stage == 0 ? v_[i] : v_[i] + carried * k_v_[i];
+      z_base_[i] = stage == 0 ? z_[i] : z_[i] + carried * k_z_[i];
+      if (stage == 0) v_stage_[i] = v_[i];
+    }
+    tried.has_converged &= solve_stage(weight, stage == 0 ? span.first : span.end, laws, tried);
+    if (stage == 0) keep_first();
+    const double share = (stage == 0 ? 1 - kGamma : kGamma) * span.length;
+    for (std::size_t i = 0; i < rows_; ++i) {
+      k_x_[i] = v_stage_[i];
+      k_v_[i] = (v_stage_[i] - v_base_[i]) * rate;
+      k_z_[i] = (z_stage_[i] - z_base_[i]) * rate;
+      if (has_memory_) laws.carry(i, v_stage_[i], share);
+    }
+  }
+  report.iterations += tried.iterations;
+  if (!follows_stops(span, laws)) {
+    if (has_memory_) laws.go_back();
+    return false;
+  }
+  report.has_converged &= tried.has_converged;
+  if (!(tried.residual <= report.residual)) report.residual = tried.residual;
+  const bool is_at_stop = is_at_stop_;
+  move(report);
+  report.meets_stop = report.meets_stop || is_at_stop;
+  const bool all = is_at_stop || is_at_stop_;
+  const auto instant = [&](double of_stage, double of_line, double of_way) {
+    return Instant{of_stage, span.begin + of_line * span.length, span.begin + of_way * span.length, all};
+  };
+  add((1 - kGamma) * span.length, instant(span.first, kFirstOfLine, 1 - 2 * kGamma), f_first_, pressure_first_,
+      v_first_);
+  add(kGamma * span.length, instant(span.end, kEndOfLine, 1 - kGamma), f_, pressure_force_, v_stage_);
+  return true;
+}
+
 PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noexcept {
   PortStep report;
+  h_ = h;
   const double delta = h / micro_steps;
-  const double weight = kGamma * delta, rate = 1 / weight;
+  const double weight = kGamma * delta;
   prepare(weight);
-  for (std::size_t i = 0; i < rows_; ++i) f_mean_[i] = f_slope_[i] = work_[i] = impulse_[i] = 0;
-  const bool has_memory = laws.begin(weight);
+  is_at_stop_ = false;
+  for (std::size_t i = 0; i < rows_; ++i) {
+    f_mean_[i] = f_slope_[i] = work_[i] = impulse_[i] = 0;
+    is_at_stop_ = is_at_stop_ || laws.is_at_stop(i, x_[i]);
+  }
+  has_memory_ = laws.begin(weight);
+  tries_left_ = kMostTries;
   for (int step = 0; step < micro_steps; ++step) {
-    for (int stage = 0; stage < 2; ++stage) {
-      // first stage at gamma delta, second at delta
-      const double carried = stage == 0 ? 0.0 : (1 - kGamma) * delta;
-      for (std::size_t i = 0; i < rows_; ++i) {
-        x_base_[i] = x_[i] + carried * k_x_[i];
-        v_base_[i] = v_[i] + carried * k_v_[i];
-        z_base_[i] = z_[i] + carried * k_z_[i];
-        if (stage == 0) v_stage_[i] = v_[i];
-      }
-      const double time = (step + (stage == 0 ? kGamma : 1.0)) * delta;
-      report.has_converged &= solve_stage(weight, time, laws, report);
-      const double share = (stage == 0 ? 1 - kGamma : kGamma) * delta;
-      for (std::size_t i = 0; i < rows_; ++i) {
-        k_x_[i] = v_stage_[i];
-        k_v_[i] = (v_stage_[i] - v_base_[i]) * rate;
-        k_z_[i] = (z_stage_[i] - z_base_[i]) * rate;
-        f_mean_[i] += share * f_[i];
-        f_slope_[i] += share * (time - 0.5 * h) * f_[i];
-        work_[i] += share * pressure_force_[i] * v_stage_[i];
-        impulse_[i] += share * pressure_force_[i];
-      }
-      if (!has_memory) continue;
-      for (std::size_t i = 0; i < rows_; ++i) laws.carry(i, v_stage_[i], share);
-    }
-    for (std::size_t i = 0; i < rows_; ++i) {
-      x_[i] = x_stage_[i];
-      v_[i] = v_stage_[i];
-      z_[i] = z_stage_[i];
-    }
+    const Span span{step * delta, delta, (step + kGamma) * delta, (step + 1) * delta};
+    if (!try_stages(span, laws, report)) take_in_parts(span, laws, report);
   }
   for (std::size_t i = 0; i < rows_; ++i) {
     f_mean_[i] /= h;
@@ -229,14 +327,6 @@ PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noe
     f_slope_[i] *= 12 / (h * h * h);
   }
   return report;
-}
-
-void PortDynamics::save(StateWriter& bytes) const {
-  for (const std::vector<double>* slopes : {&k_x_, &k_v_, &k_z_}) bytes.numbers(*slopes);
-}
-
-void PortDynamics::load(StateReader& bytes) noexcept {
-  for (std::vector<double>* slopes : {&k_x_, &k_v_, &k_z_}) bytes.numbers(*slopes);
 }
 
 }  // namespace slew::coupling

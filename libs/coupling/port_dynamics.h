@@ -10,6 +10,13 @@
 // iteration on the m speeds; where a law jumps, as a stop's damping does when it is touched, and no speed fits, the
 // force is the one between its two sides that holds the speed at the jump. Friction slopes of 4e4 1/s and end stops are
 // thus inside the implicit solve, while the mechanism itself sees only the mean and the slope in time of f.
+//
+// The second stage begins where the first one's acceleration leads, 2.4 times as far: behind a stop that only pushes,
+// which then lets go of what it has just stopped at up to 1.4 times its speed. A micro-step in which a stop begins or
+// ends to push is therefore taken in parts, ever shorter ones towards the event, and the shortest one with it by
+//   implicit Euler:  x_1 = x_0 + h v_1,  v_1 = v_0 + h (a_free + W f_1)                            (3)
+// which never leaves a stop with energy that its spring did not hold. While a stop's spring throws back, parts are
+// short against its swing, omega = sqrt(k W_ii); one that is faster than the shortest part loses its rebound.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +43,7 @@ struct RowForce {
   double d_z = 0;    // 1
   double d_x = 0;    // N/m
   double d_v = 0;    // N s/m
+  double stop = 0;   // of it, the push of a stop [N]
 };
 
 // The rows' force laws; row i depends on its own z, x, v only.
@@ -51,15 +59,23 @@ class RowLaws {
 
   // Laws that remember something (bristles of dry friction), which their owner keeps. begin(): from here on evaluate()
   // means the end of an interval h at its speed, begun with what is remembered; true when any row of this solve
-  // remembers. carry(): the memory of a row moves on by h at the speed v.
+  // remembers. set_interval(): another h from here on. carry(): the memory of a row moves on by h at the speed v.
+  // go_back(): the memory is that of the last keep().
   virtual bool begin(double /*h*/) const noexcept { return false; }
+  virtual void set_interval(double /*h*/) const noexcept {}
   virtual void carry(std::size_t /*row*/, double /*v*/, double /*h*/) const noexcept {}
+  virtual void keep() const noexcept {}
+  virtual void go_back() const noexcept {}
+
+  // Whether x is where a stop of this row can push.
+  [[nodiscard]] virtual bool is_at_stop(std::size_t /*row*/, double /*x*/) const noexcept { return false; }
 };
 
 struct PortStep {
   double residual = 0;  // largest of all stages when they ended [m/s or rad/s]; NaN once a number was lost
   int iterations = 0;   // Newton iterations of all stages
   bool has_converged = true;
+  bool meets_stop = false;  // one pushed on the way
 };
 
 class PortDynamics {
@@ -83,20 +99,39 @@ class PortDynamics {
   // Integrates over h in `micro_steps` equal steps.
   PortStep solve(double h, int micro_steps, const RowLaws& laws) noexcept;
 
-  // What a solve() takes over from the one before: slopes that it multiplies by zero, whose signs and whether they are
-  // finite can be told from what comes out.
-  void save(StateWriter& bytes) const;
-  void load(StateReader& bytes) noexcept;
-
   // results of the last solve(): force over the sub-step is f_mean + (t - h/2) f_slope to first order; of a force that
-  // is linear in time the mean is exact, the slope too large by 24 % over the square of micro_steps (the quadrature's)
+  // is linear in time the mean is exact, the slope of rows with a partner too large by 24 % over the square of
+  // micro_steps (the quadrature's)
   [[nodiscard]] std::span<const double> f_mean() const noexcept { return {f_mean_.data(), rows_}; }
   [[nodiscard]] std::span<const double> f_slope() const noexcept { return {f_slope_.data(), rows_}; }
   [[nodiscard]] std::span<const double> work() const noexcept { return {work_.data(), rows_}; }        // of z [J]
   [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }  // of z [N s]
 
  private:
+  // Alexander (1977), SIAM J. Numer. Anal. 14, 1006: gamma = 1 - 1/sqrt(2)
+  static constexpr double kGamma = 0.29289321881345247560;
+  // A part of a solve: where it begins, its length, times of its stages.
+  struct Span {
+    double begin, length, first, end;  // s
+  };
   void prepare(double weight) noexcept;
+  bool try_stages(const Span& span, const RowLaws& laws, PortStep& report) noexcept;
+  void take_in_parts(const Span& span, const RowLaws& laws, PortStep& report) noexcept;
+  void take_euler(const Span& span, const RowLaws& laws, PortStep& report) noexcept;
+  void set_weight(double weight, const RowLaws& laws) noexcept;
+  void keep_first() noexcept;
+  // When the force of a stage acts. of_stage: where the stage is, for rows with a partner; of_line: so that mean and
+  // slope of a force that is linear in time are exact, for friction that holds against what grows; of_way: so that they
+  // move the row as far as the stages did (x_1 has h^2 (2 gamma (1 - gamma) f_first + gamma^2 f_end)), at a stop.
+  struct Instant {
+    double of_stage, of_line, of_way;  // s
+    bool is_at_stop;
+  };
+  void add(double share, const Instant& at, std::span<const double> f, std::span<const double> pressure_force,
+           std::span<const double> v) noexcept;
+  void move(PortStep& report) noexcept;
+  bool follows_stops(const Span& span, const RowLaws& laws) noexcept;
+  [[nodiscard]] double longest_in_swing(std::size_t row, double time) const noexcept;
   bool solve_stage(double weight, double time, const RowLaws& laws, PortStep& report) noexcept;
   void evaluate_rows(double weight, const RowLaws& laws) noexcept;
   void forget_bracket(std::size_t row) noexcept;
@@ -122,7 +157,16 @@ class PortDynamics {
   std::vector<double> last_step_;        // of the iteration, inside the bracket
   std::vector<char> is_at_jump_;         // the bracket holds a jump
   std::vector<double> k_x_, k_v_, k_z_;  // slopes of the first stage
-  double largest_a_ = 0;                 // of weighted_a_
+  std::vector<double> v_first_, f_first_, pressure_first_;  // of the first stage
+  std::vector<RowForce> law_first_, law_start_;
+  std::vector<char> jump_first_;
+  double h_ = 0;           // of the solve
+  double largest_a_ = 0;   // of weighted_a_
+  double swing_rate_ = 0;  // of the stops that push, squared [1/s2]
+  double allowed_ = 0;     // length that a stop's swing allows [s]
+  int tries_left_ = 0;     // of parts
+  bool is_at_stop_ = false;
+  bool has_memory_ = false;
 };
 
 }  // namespace slew::coupling

@@ -5,13 +5,19 @@
 
 namespace slew::coupling {
 
-double Trends::next(std::size_t index, double value) noexcept {
+double Trends::begin(std::size_t index, double value) noexcept {
   Last& last = last_[index];
-  const double change = std::isnan(last.value) ? 0.0 : value - last.value;
-  const double before = last.change;
-  last = {value, change};
-  if (!(change * before > 0)) return 0;
-  return std::copysign(std::min(std::fabs(change), 2 * std::fabs(before)), change);
+  last.begun = value;
+  if (!(last.change * last.before > 0)) return 0;
+  return std::copysign(std::min(std::fabs(last.change), 2 * std::fabs(last.before)), last.change);
+}
+
+void Trends::end(std::size_t index, double value) noexcept {
+  Last& last = last_[index];
+  if (std::isnan(last.begun)) return;
+  last.before = last.change;
+  last.change = value - last.begun;
+  last.begun = std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace slew::coupling

@@ -22,10 +22,7 @@ namespace {
 // a way that leads into something thin is taken in parts of a quarter of its half thickness, but not in more than this;
 // stiff contacts may ask for more
 constexpr double kPartsPerThickness = 4;
-constexpr double kMostParts = 256, kMostStiffParts = 1024;
-// longest part times fastest rate: Runge-Kutta's rule is stable to 2.7, with a stack of ten boxes on bristles to 2.1;
-// in the trapezoid of `augmented` corrections shrink by a half at 1
-constexpr double kExplicitReach = 1.5, kCorrectedReach = 1;
+constexpr double kMostParts = 256;
 // a sub-step that is a multiple but for rounding does not get one part more
 constexpr double kContactRounding = 1e-9;
 
@@ -258,22 +255,32 @@ int contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) no
   look_ahead(h, contacts);
   contacts.is_near = !contacts.before.states().empty() || !contacts.set.points().empty();
   // parts that are short against what they lead through
-  double parts = std::ceil(h / elements.substep * (1 - kContactRounding));
+  double parts = std::ceil(h / elements.substep * (1 - kContactRounding)), met_rate = 0;
   for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
     const contact::Meeting meeting = sweep(elements.model, pair, contacts.start_poses, contacts.ahead, contacts.set);
     if (meeting.kind == contact::Meeting::Kind::none) continue;
     contacts.is_near = true;
     parts = std::max(parts, kPartsPerThickness * meeting.travel / elements.model.pairs()[pair].half_thickness);
+    const bool is_new = contacts.was_touching[pair] == 0 && meeting.kind == contact::Meeting::Kind::found;
+    if (is_new && kind != StepKind::implicit) {
+      met_rate = std::max(met_rate, impact_rate(model, ws, pair, meeting, h));
+    }
   }
   if (!contacts.is_near) return 1;
   parts = std::clamp(parts, 1.0, kMostParts);
   if (kind != StepKind::implicit) {
-    const double needed =
-        h * contact_rate(model, ws) / (kind == StepKind::explicit_rule ? kExplicitReach : kCorrectedReach);
+    const double needed = h * std::max(contact_rate(model, ws), met_rate) / reach_of(kind);
     contacts.is_lost = contacts.is_lost || !(needed <= kMostStiffParts);
     parts = std::max(parts, std::min(needed, kMostStiffParts));
   }
   return static_cast<int>(std::ceil(parts));
+}
+
+int contact_parts_again(const Model& model, double h, int parts, StepKind kind, Workspace& ws) noexcept {
+  if (kind == StepKind::implicit) return 1;
+  const double needed = h * contact_rate(model, ws) / reach_of(kind);
+  ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);
+  return static_cast<int>(std::ceil(std::max(1.0, std::min(needed, kMostStiffParts) / parts * (1 - kContactRounding))));
 }
 
 }  // namespace slew::multibody

@@ -36,11 +36,22 @@ void accept_contacts(const Model& model, double h, State& state, Workspace& ws) 
 // (`augmented`), or with their slopes inside the iteration.
 enum class StepKind { explicit_rule, corrected, implicit };
 
+// At most so many parts of a sub-step for contacts that answer fast.
+inline constexpr double kMostStiffParts = 1024;
+// Longest part times fastest rate: Runge-Kutta's rule is stable to 2.7, with a stack of ten boxes on bristles to 2.1;
+// in the trapezoid of `augmented` corrections shrink by a half at 1.
+[[nodiscard]] constexpr double reach_of(StepKind kind) noexcept {
+  return kind == StepKind::corrected ? 1.0 : 1.5;
+}
+
 // In how many equal parts a sub-step of h [s] from here should go, after an evaluation at its start: one when nothing
 // touches and the present speeds lead into nothing within h; there is then no search until the next start. Contacts
 // that touch are resolved as fast as they answer (contact_rate.h); those too fast for the shortest part set
 // ws.contact->is_lost.
 [[nodiscard]] int contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept;
+
+// The same for one of `parts` of the sub-step, of what has come to touch on the way.
+[[nodiscard]] int contact_parts_again(const Model& model, double h, int parts, StepKind kind, Workspace& ws) noexcept;
 
 // What the force of one contact point loses by a small motion of shape A against shape B, after update_contacts() at an
 // instant after the start: position and rate of the weights, ways beginning at the start.

@@ -95,8 +95,8 @@ struct Slopes {
 };
 
 Slopes slopes_of(const contact::ContactPair& pair, const contact::ContactPoint& point, double rate,
-                 const contact::RememberedContact& state) noexcept {
-  const contact::NormalForce normal = evaluate(pair.normal, point.share, point.depth, rate, state.normal);
+                 const contact::NormalState& state, double mass) noexcept {
+  const contact::NormalForce normal = slopes_of_impact(pair.normal, point.share, point.depth, rate, state, mass);
   Slopes slopes{.c_n = normal.d_depth_rate, .k_n = normal.d_depth};
   if (!pair.has_friction) return slopes;
   slopes.c_t = point.share * (pair.friction.def.damping + pair.friction.def.viscosity);
@@ -104,18 +104,47 @@ Slopes slopes_of(const contact::ContactPair& pair, const contact::ContactPoint& 
   return slopes;
 }
 
-void add_contact(const Model& model, const Workspace& ws, const ContactForce& force, const Slopes& slopes,
-                 std::span<ContactRates> rates) noexcept {
-  const int links[2] = {model.contact->frames[at(force.frame_a)].link, model.contact->frames[at(force.frame_b)].link};
-  const double both = links[0] == 0 || links[1] == 0 ? 1 : 2;
-  for (const int link : links) {
-    if (link == 0 || !(model.links[at(link)].mass > 0)) continue;
-    ContactRates& sum = rates[at(link)];
-    if (!sum.is_touched) begin(model.links[at(link)], ws.motion[at(link)], sum);
-    const Leverage leverage(sum, force.p_W, force.n_W);
-    add_slopes(leverage, both * slopes.c_t, both * slopes.c_n, sum.damping);
-    add_slopes(leverage, both * slopes.k_t, both * slopes.k_n, sum.stiffness);
+// Both links of a contact point, those that move.
+struct Pushed {
+  Pushed(const Model& mechanism, const Workspace& at_now, std::size_t frame_a, std::size_t frame_b) noexcept
+      : links{mechanism.contact->frames[frame_a].link, mechanism.contact->frames[frame_b].link},
+        both(links[0] == 0 || links[1] == 0 ? 1 : 2),
+        model(mechanism),
+        ws(at_now) {}
+
+  [[nodiscard]] bool moves(int link) const noexcept { return link != 0 && model.links[at(link)].mass > 0; }
+  // f (n L^-1 J)^2 along the normal, summed; its reciprocal is the mass that the point feels [kg]
+  [[nodiscard]] double mass(const ContactRates (&as_free)[2], Vec3 p_W, Vec3 n_W) const noexcept {
+    double inverse = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!moves(links[i])) continue;
+      const Leverage leverage(as_free[i], p_W, n_W);
+      inverse += both * (leverage.per_root_mass * leverage.per_root_mass + dot(leverage.S_n, leverage.S_n));
+    }
+    return inverse > 0 ? 1 / inverse : 0;
   }
+  [[nodiscard]] ContactRates as_free(std::size_t i) const noexcept {
+    ContactRates rates;
+    if (moves(links[i])) begin(model.links[at(links[i])], ws.motion[at(links[i])], rates);
+    return rates;
+  }
+
+  int links[2];
+  double both;
+  const Model& model;
+  const Workspace& ws;
+};
+
+void add_slopes_of(const Pushed& pushed, Vec3 p_W, Vec3 n_W, const Slopes& slopes, std::size_t i,
+                   ContactRates& sum) noexcept {
+  if (!sum.is_touched) sum = pushed.as_free(i);
+  const Leverage leverage(sum, p_W, n_W);
+  add_slopes(leverage, pushed.both * slopes.c_t, pushed.both * slopes.c_n, sum.damping);
+  add_slopes(leverage, pushed.both * slopes.k_t, pushed.both * slopes.k_n, sum.stiffness);
+}
+
+double rate_of(const ContactRates& link) noexcept {
+  return link.is_touched ? std::max(bound_of(link.damping), std::sqrt(bound_of(link.stiffness))) : 0.0;
 }
 
 }  // namespace
@@ -125,17 +154,57 @@ double contact_rate(const Model& model, Workspace& ws) noexcept {
   ContactWorkspace& contacts = *ws.contact;
   for (ContactRates& link : contacts.rates) link.is_touched = false;
   const std::span<const contact::ContactPoint> points = contacts.set.points();
-  for (std::size_t i = 0; i < contacts.force_count; ++i) {
-    const contact::ContactPair& pair = model.contact->model.pairs()[points[i].pair];
-    const ContactForce& force = contacts.forces[i];
-    add_contact(model, ws, force, slopes_of(pair, points[i], force.depth_rate, contacts.now.states()[i]),
-                contacts.rates);
+  for (std::size_t k = 0; k < contacts.force_count; ++k) {
+    const contact::ContactPair& pair = model.contact->model.pairs()[points[k].pair];
+    const ContactForce& force = contacts.forces[k];
+    const Pushed pushed(model, ws, at(force.frame_a), at(force.frame_b));
+    const double mass = pushed.mass({pushed.as_free(0), pushed.as_free(1)}, force.p_W, force.n_W);
+    const Slopes slopes = slopes_of(pair, points[k], force.depth_rate, contacts.now.states()[k].normal, mass);
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!pushed.moves(pushed.links[i])) continue;
+      add_slopes_of(pushed, force.p_W, force.n_W, slopes, i, contacts.rates[at(pushed.links[i])]);
+    }
   }
   double rate = 0;
-  for (const ContactRates& link : contacts.rates) {
-    if (link.is_touched) rate = std::max({rate, bound_of(link.damping), std::sqrt(bound_of(link.stiffness))});
+  for (const ContactRates& link : contacts.rates) rate = std::max(rate, rate_of(link));
+  return rate;
+}
+
+double impact_rate(const Model& model, const Workspace& ws, std::size_t pair, const contact::Meeting& meeting,
+                   double h) noexcept {
+  const contact::ContactPair& laws = model.contact->model.pairs()[pair];
+  const std::size_t frames[2] = {model.contact->model.frame_of(laws.shape_a),
+                                 model.contact->model.frame_of(laws.shape_b)};
+  const Pushed pushed(model, ws, frames[0], frames[1]);
+  ContactRates as_free[2] = {pushed.as_free(0), pushed.as_free(1)};
+  Vec3 apart;
+  for (std::size_t i = 0; i < 2; ++i) {
+    // where they have come to
+    const Vec3 way = (ws.contact->ahead[frames[i]].p_WF - ws.contact->start_poses[frames[i]].p_WF) * meeting.share;
+    as_free[i].c_W = as_free[i].c_W + way;
+    const LinkMotion& link = ws.motion[at(pushed.links[i])];
+    const Vec3 v_W = link.v + cross(link.w, meeting.p_W - way - link.p);
+    apart = i == 0 ? v_W : apart - v_W;
+  }
+  const double approach = std::max(meeting.travel / h, -dot(meeting.n_W, apart));
+  const contact::ContactPoint point{.pair = pair, .p_W = meeting.p_W, .n_W = meeting.n_W, .depth = 0, .share = 1};
+  const Slopes slopes = slopes_of(laws, point, approach, {}, pushed.mass(as_free, meeting.p_W, meeting.n_W));
+  double rate = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!pushed.moves(pushed.links[i])) continue;
+    add_slopes_of(pushed, meeting.p_W, meeting.n_W, slopes, i, as_free[i]);
+    rate = std::max(rate, rate_of(as_free[i]));
   }
   return rate;
+}
+
+bool has_impact(const Model& model, const Workspace& ws) noexcept {
+  const ContactWorkspace& contacts = *ws.contact;
+  for (std::size_t k = 0; k < contacts.force_count; ++k) {
+    const contact::ContactPair& pair = model.contact->model.pairs()[contacts.set.points()[k].pair];
+    if (std::fabs(contacts.forces[k].depth_rate) > pair.normal.smallest_impact_speed) return true;
+  }
+  return false;
 }
 
 }  // namespace slew::multibody

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "contact/find_named.h"
 #include "contact/mesh_check.h"
 #include "multibody/contact_conversion.h"
 #include "multibody/contact_elements.h"
+#include "multibody/contact_passes.h"
+#include "multibody/integrators.h"
 #include "multibody/model.h"
 #include "multibody/observe.h"
 #include "multibody/topology.h"
@@ -136,10 +139,52 @@ void find_deep_starts(const MechanicsDef& m, Problems& warnings) {
   }
 }
 
+// sqrt(k/m) or c/m, for the slowest impact that the law knows
+double rate_of_impact(const Model& model, const contact::ContactPair& pair) {
+  const int links[2] = {model.contact->frames[model.contact->model.frame_of(pair.shape_a)].link,
+                        model.contact->frames[model.contact->model.frame_of(pair.shape_b)].link};
+  const double both = links[0] == 0 || links[1] == 0 ? 1 : 2;
+  double largest = 0, sum = 0;
+  for (const int link : links) {
+    const double mass = link == 0 ? 0 : model.links[static_cast<std::size_t>(link)].mass;
+    if (!(mass > 0)) continue;
+    largest = std::max(largest, both / mass);
+    sum += both / mass;
+  }
+  if (!(sum > 0)) return 0;
+  const contact::NormalForce slopes =
+      slopes_of_impact(pair.normal, 1, 0, pair.normal.smallest_impact_speed, {}, 1 / sum);
+  return std::max(slopes.d_depth_rate * largest, std::sqrt(slopes.d_depth * largest));
+}
+
 }  // namespace
 
 void validate_contacts(const MechanicsDef& mechanics, Problems& problems) {
   ContactValidator(mechanics, problems).run();
+}
+
+void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems& problems) {
+  if (mechanics.contacts.empty() || is_implicit(step_rule(mechanics).integrator)) return;
+  const StepKind kind = mechanics.formulation == Formulation::augmented ? StepKind::corrected : StepKind::explicit_rule;
+  const double fastest = kMostStiffParts * reach_of(kind) / substep;
+  const Model model = build_model(mechanics);
+  if (model.contact == nullptr) return;
+  const std::span<const contact::ContactPair> pairs = model.contact->model.pairs();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const int tested = model.contact->pair_of_tested[i];
+    const contact::NormalLaw& law = pairs[i].normal;
+    const double rate = rate_of_impact(model, pairs[i]);
+    if (!(rate > fastest)) continue;
+    problems.push_back(
+        {model.contact->pairs[static_cast<std::size_t>(tested)].name + ".spring_constant",
+         fmt::format("an impact is over within {:.2g} s, the shortest part of a sub-step of {:.3g} s is {:.2g} s: the "
+                     "bodies would leave each other faster than they met",
+                     1 / rate, substep, substep / kMostStiffParts),
+         fmt::format("at most {:.2g} N/m, a larger restitution_coefficient, mechanics.max_substep of at most {:.2g} s, "
+                     "or an implicit mechanics.integrator such as trapezoidal",
+                     law.stiffness * std::pow(fastest / rate, law.exponent + 1), substep * fastest / rate),
+         ""});
+  }
 }
 
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings) {

@@ -62,21 +62,18 @@ struct Dynamics::Stages {
     BodyState bodies;
     std::vector<double> algorithmic;
     std::vector<math::Vec3> algorithmic_turn;
-    bool has_algorithmic = false;
   };
   void keep(const State& joints, const BodyState* bodies) noexcept {
     copy_state(joints, start.joints);
     if (bodies != nullptr) start.bodies = *bodies;
     start.algorithmic = ws.algorithmic;
     start.algorithmic_turn = ws.algorithmic_turn;
-    start.has_algorithmic = ws.has_algorithmic;
   }
   void go_back(State& joints, BodyState* bodies) noexcept {
     copy_state(start.joints, joints);
     if (bodies != nullptr) *bodies = start.bodies;
     ws.algorithmic = start.algorithmic;
     ws.algorithmic_turn = start.algorithmic_turn;
-    ws.has_algorithmic = start.has_algorithmic;
   }
 
   StepRule rule;
@@ -155,13 +152,17 @@ bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h
   const int parts = contact_parts(model, h, contact_step(), ws);
   if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && is_right(model, state, ws);
   // the rows' forces go on along their lines
-  const double part = h / parts;
   bool is_sound = true;
   for (int i = 0; i < parts; ++i) {
     if (i > 0) evaluate(model, state, ws);
-    const double later = (i + 0.5) * part - 0.5 * h;
-    for (std::size_t k = 0; k < mean.size(); ++k) ws.row_part[k] = mean[k] + later * slope[k];
-    is_sound = advance_part(model, state, ws, part, ws.row_part, slope) && is_sound;
+    const int finer = i > 0 ? contact_parts_again(model, h, parts, contact_step(), ws) : 1;
+    const double part = h / parts / finer;
+    for (int j = 0; j < finer; ++j) {
+      if (j > 0) evaluate(model, state, ws);
+      const double later = (i * finer + j + 0.5) * part - 0.5 * h;
+      for (std::size_t k = 0; k < mean.size(); ++k) ws.row_part[k] = mean[k] + later * slope[k];
+      is_sound = advance_part(model, state, ws, part, ws.row_part, slope) && is_sound;
+    }
   }
   return is_right(model, state, ws) && is_sound;
 }
@@ -264,7 +265,6 @@ void Dynamics::visit(Self& self, Bytes& bytes) {
   if (self.held_ != nullptr) visit_bodies(self.held_->state);
   if (self.stages_ == nullptr) return;
   auto& ws = self.stages_->ws;
-  bytes.flag(ws.has_algorithmic);
   bytes.numbers(ws.algorithmic);
   for (auto& turn : ws.algorithmic_turn) visit_vector(bytes, turn);
   // an implicit stage in joint coordinates begins with how near to singular the last one was

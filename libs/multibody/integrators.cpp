@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "multibody/contact_passes.h"
+#include "multibody/contact_rate.h"
 #include "multibody/dynamics.h"
 #include "multibody/loops.h"
 #include "multibody/passes.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr int kMostCorrections = 80;
 // a correction that is larger than so much of the one before asks for a new matrix
 constexpr double kSlowStage = 0.3;
+// of an impact, rate times sub-step
+constexpr double kUnresolved = 4;
 // share of the mechanism's size that rounding leaves in the coordinates
 constexpr double kStageRounding = 1e-14;
 
@@ -136,8 +139,17 @@ bool take_touch(const StageContext& at, double tolerance, const RowForces& force
   std::fill(s.base.begin(), s.base.end(), 0.0);
   std::fill(s.turn.begin(), s.turn.end(), Vec3());
   forces.put(0.5 * forces.h, s.row_force);
-  s.has_algorithmic = false;
+  std::fill(s.algorithmic.begin(), s.algorithmic.end(), 0.0);
+  std::fill(s.algorithmic_turn.begin(), s.algorithmic_turn.end(), Vec3());
   return solve_stage(at, {forces.h, forces.h, forces.h}, tolerance);
+}
+
+// A contact in the middle of an impact that the rules of order 2 step over; whatever touches so stiffly where A carries
+// what was between two searches.
+bool is_blow(const StageContext& at, Integrator integrator, double h) noexcept {
+  if (at.ws.contact == nullptr) return false;
+  const bool concerns = integrator == Integrator::generalised_alpha || has_impact(at.model, at.ws);
+  return concerns && h * contact_rate(at.model, at.ws) > kUnresolved;
 }
 
 bool take_trapezoid(const StageContext& at, double tolerance, const RowForces& forces) noexcept {
@@ -173,6 +185,18 @@ bool take_sdirk(const StageContext& at, double tolerance, const RowForces& force
   return has_touched(at, has_settled) ? take_touch(at, tolerance, forces) : has_settled;
 }
 
+// r of (3); leaves the rates at the start without it
+void take_row_rates(const StageContext& at, const RowForces& forces) noexcept {
+  StageWorkspace& s = at.stages;
+  s.row_rate = s.rate_0;
+  s.row_turn_rate = s.turn_rate_0;
+  std::fill(s.row_force.begin(), s.row_force.end(), 0.0);
+  take_start(at);
+  for (std::size_t j = 0; j < s.rate_0.size(); ++j) s.row_rate[j] -= s.rate_0[j];
+  for (std::size_t i = 1; i < s.turn_rate_0.size(); ++i) s.row_turn_rate[i] = s.row_turn_rate[i] - s.turn_rate_0[i];
+  forces.put(0.5 * forces.h, s.row_force);
+}
+
 // (3)
 bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const RowForces& forces) noexcept {
   StageWorkspace& s = at.stages;
@@ -180,34 +204,34 @@ bool take_generalised_alpha(const StageContext& at, const StepRule& rule, const 
   const double alpha_m = (2 * rho - 1) / (rho + 1), alpha_f = rho / (rho + 1);
   const double gamma = 0.5 - alpha_m + alpha_f, beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
   const double tau = h * gamma * (1 - alpha_f) / (1 - alpha_m), sigma = h * beta / gamma;
-  if (!s.has_algorithmic) {
-    s.algorithmic = s.rate_0;
-    s.algorithmic_turn = s.turn_rate_0;
-    s.has_algorithmic = true;
-  }
+  take_row_rates(at, forces);
   for (std::size_t j = 0; j < s.u_0.size(); ++j) {
-    const double A = s.algorithmic[j];
-    s.fixed[j] = s.u_0[j] + h * (1 - gamma) * A - tau * (alpha_m * A - alpha_f * s.rate_0[j]) / (1 - alpha_f);
-    s.base[j] = (h - sigma) * s.u_0[j] + h * (0.5 * h - sigma) * A;
+    const double A = s.rate_0[j] + s.algorithmic[j], r = s.row_rate[j];
+    s.fixed[j] =
+        s.u_0[j] + h * (1 - gamma) * A - tau * (alpha_m * A - alpha_f * s.rate_0[j]) / (1 - alpha_f) + (h - tau) * r;
+    s.base[j] = (h - sigma) * s.u_0[j] + h * (0.5 * h - sigma) * (A + r);
   }
   for (std::size_t i = 0; i < s.turn.size(); ++i) {
-    s.turn[i] = s.turn_0[i] * (h - sigma) + s.algorithmic_turn[i] * (h * (0.5 * h - sigma));
+    s.turn[i] = s.turn_0[i] * (h - sigma) +
+                (s.turn_rate_0[i] + s.algorithmic_turn[i] + s.row_turn_rate[i]) * (h * (0.5 * h - sigma));
   }
-  forces.put(h, s.row_force);
   const bool has_settled = solve_stage(at, {tau, sigma, h}, rule.iteration_tolerance);
   if (has_touched(at, has_settled)) return take_touch(at, rule.iteration_tolerance, forces);
-  // the algorithmic acceleration at the end, from what the speeds became
+  // A - f at the end, from what the speeds became
   const std::span<const double> u = at.u();
-  const auto carried = [&](auto A_0, auto f_0, auto f_1) {
-    return (f_1 * (1 - alpha_f) + f_0 * alpha_f - A_0 * alpha_m) * (1 / (1 - alpha_m));
+  const auto carried = [&](auto lead, auto f_0, auto f_1) {
+    return ((f_0 - f_1) * (alpha_f - alpha_m) - lead * alpha_m) * (1 / (1 - alpha_m));
   };
   for (std::size_t j = 0; j < u.size(); ++j) s.rate[j] = (u[j] - s.fixed[j]) / tau;
   if (at.moving.bodies == nullptr) clear_prescribed(at.model, s.rate);
   if (!s.turn.empty()) add_accelerations(at, s.rate);
   for (std::size_t i = 1; i < s.turn.size(); ++i) {
-    s.algorithmic_turn[i] = carried(s.algorithmic_turn[i], s.turn_rate_0[i], at.ws.motion[i].alpha);
+    s.algorithmic_turn[i] =
+        carried(s.algorithmic_turn[i], s.turn_rate_0[i], at.ws.motion[i].alpha - s.row_turn_rate[i]);
   }
-  for (std::size_t j = 0; j < u.size(); ++j) s.algorithmic[j] = carried(s.algorithmic[j], s.rate_0[j], s.rate[j]);
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    s.algorithmic[j] = carried(s.algorithmic[j], s.rate_0[j], s.rate[j] - s.row_rate[j]);
+  }
   return has_settled;
 }
 
@@ -252,6 +276,25 @@ void add_turning(LinkJoint joint, std::size_t u, std::vector<std::size_t>& turni
     case LinkJoint::floating:
       return add(3, 3);
   }
+}
+
+bool take_rule(const StageContext& at, const StepRule& rule, const RowForces& forces) noexcept {
+  switch (rule.integrator) {
+    case Integrator::rk4:
+    case Integrator::index3_trapezoidal:
+    case Integrator::own:
+      return false;
+    case Integrator::semi_implicit_euler:
+      take_euler(at, forces.h);
+      return true;
+    case Integrator::trapezoidal:
+      return take_trapezoid(at, rule.iteration_tolerance, forces);
+    case Integrator::generalised_alpha:
+      return take_generalised_alpha(at, rule, forces);
+    case Integrator::sdirk2:
+      return take_sdirk(at, rule.iteration_tolerance, forces);
+  }
+  return false;
 }
 
 // back onto the joints
@@ -305,8 +348,12 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
   const std::size_t modes = mode_count(model);
   q_0.resize(is_body ? 7 * (links - 1) + modes : model.start_q.size());
   const std::size_t speeds = is_body ? 6 * (links - 1) + modes : model.start_u.size();
-  for (auto* by_u : {&u_0, &rate_0, &rate, &fixed, &base, &algorithmic, &step, &last_step}) by_u->resize(speeds);
-  for (auto* by_link : {&turn, &turn_0, &turn_rate_0, &algorithmic_turn}) by_link->resize(is_body ? 0 : links);
+  for (auto* by_u : {&u_0, &rate_0, &rate, &fixed, &base, &algorithmic, &step, &last_step, &row_rate}) {
+    by_u->resize(speeds);
+  }
+  for (auto* by_link : {&turn, &turn_0, &turn_rate_0, &algorithmic_turn, &row_turn_rate}) {
+    by_link->resize(is_body ? 0 : links);
+  }
   for (auto* by_element : {&stops, &stops_0}) by_element->resize(stop_count(model));
   has_stops = !model.elements.ropes.empty() || !model.elements.tyres.empty() || model.contact != nullptr;
   for (const LineElement& line : model.lines) has_stops = has_stops || line.law.end_spring > 0;
@@ -333,29 +380,13 @@ bool advance(const Model& model, const BodyModel& body, const StepRule& rule, Mo
   const StageContext at{model, body, moving, ws, bws, stages};
   const RowForces forces{h, mean, slope};
   stages.is_near_singular = false;
-  // an impulse needs the mean force, the implicit ones begin with the force at the start
-  forces.put(is_implicit(rule.integrator) ? 0 : 0.5 * h, stages.row_force);
+  // an impulse and (3) need the mean force, the others begin with the force at the start
+  const bool begins_at_start = rule.integrator == Integrator::trapezoidal || rule.integrator == Integrator::sdirk2;
+  forces.put(begins_at_start ? 0 : 0.5 * h, stages.row_force);
   take_start(at);
   see_stops(model, ws, stages.stops_0);
-  bool has_settled = true;
-  switch (rule.integrator) {
-    case Integrator::rk4:
-    case Integrator::index3_trapezoidal:
-    case Integrator::own:
-      return false;
-    case Integrator::semi_implicit_euler:
-      take_euler(at, h);
-      break;
-    case Integrator::trapezoidal:
-      has_settled = take_trapezoid(at, rule.iteration_tolerance, forces);
-      break;
-    case Integrator::generalised_alpha:
-      has_settled = take_generalised_alpha(at, rule, forces);
-      break;
-    case Integrator::sdirk2:
-      has_settled = take_sdirk(at, rule.iteration_tolerance, forces);
-      break;
-  }
+  const bool takes_blow = is_implicit(rule.integrator) && is_blow(at, rule.integrator, h);
+  const bool has_settled = takes_blow ? take_touch(at, rule.iteration_tolerance, forces) : take_rule(at, rule, forces);
   const bool is_impulse = rule.integrator == Integrator::semi_implicit_euler;
   const bool is_closed = is_impulse ? close_impulse(at, h) : close(at);
   moving.joints.time += h;

@@ -11,6 +11,9 @@
 //     (1 - alpha_m) A_1 + alpha_m A_0 = (1 - alpha_f) f_1 + alpha_f f_0,   u_1 = u_0 + h ((1 - gamma) A_0 + gamma A_1),
 //     q_1 = q_0 (+) (h u_0 + h^2 ((1/2 - beta) A_0 + beta A_1)),   alpha_m = (2 rho - 1)/(rho + 1),
 //     alpha_f = rho/(rho + 1), gamma = 1/2 - alpha_m + alpha_f, beta = (1/2 + gamma)^2/4                     (3)
+//     carried is A - f, so that a jump of f between two sub-steps is one of A as well.
+//     What the rows' forces are in the mean makes an acceleration r at the start, which is not part of f and A: they
+//     add h r and h^2/2 r, so that a blow or a friction that changes from sub-step to sub-step is over with its own.
 // (+) adds what is a coordinate and turns quaternions by the exponential in Ground axes; (1) turns a link on a ball
 // with the angular velocity that the new speeds give it about the axes of q_0. f: accelerations of the mechanism, of
 // the form (1) of body_coordinates.h whichever coordinates are integrated, so that stiff elements, joints and loops are
@@ -24,7 +27,8 @@
 // that jumps at the edge of a stop takes a value between its two there: (4) is relaxed when it goes to and fro. A
 // sub-step in which a stop is touched or left, or whose iteration a stop or a singular position keeps from settling, is
 // taken with tau = sigma = h, u* = u_0, d = 0 in the place of the rule: of order 1, but it never gains energy from a
-// spring that only pushes, as the others do when the touch is shorter than h. After the step the state is put onto the
+// spring that only pushes, as the others do when the touch is shorter than h. So is one in the middle of an impact that
+// swings or is damped faster than kUnresolved/h. After the step the state is put onto the
 // joints (project()).
 //
 // The trapezoid leaves h^2/12 (a_1 - a_0) out of a turn, the others nearly as much. A sub-step in which that is more
@@ -75,17 +79,18 @@ struct StageWorkspace {
   std::vector<double> q_0, u_0;                 // at the start of the sub-step
   std::vector<double> rate_0, rate;             // u' at its start and in the stage, by u
   std::vector<double> fixed, base;              // u* and d of (2), by u
-  std::vector<double> algorithmic;              // A of (3), by u
+  std::vector<double> algorithmic;              // A - f of (3) at the end of the last sub-step, by u
   std::vector<double> step, last_step;          // by u
   std::vector<std::size_t> turning;             // of u, free angular velocities
   std::vector<math::Vec3> turn;                 // d of the quaternions of joint coordinates, by link
   std::vector<math::Vec3> turn_0, turn_rate_0;  // angular velocity and acceleration at the start, by link
   std::vector<math::Vec3> algorithmic_turn;     // A of the same
+  std::vector<double> row_rate;                 // r of (3)
+  std::vector<math::Vec3> row_turn_rate;        // r of the same, by link
   std::vector<signed char> stops, stops_0;      // what pushes on one side only, as see_stops(): now, at the start
   std::vector<double> row_force;
   std::vector<double> multipliers;  // of the joints, by BlockLdl::first_row(), once they are asked for
   bool has_multipliers = false;
-  bool has_algorithmic = false;
   bool has_stops = false;
   bool is_near_singular = false;  // in the sub-step, as loops.h
   int iterations = 0;             // of the last sub-step

@@ -13,7 +13,7 @@ namespace {
 JointForce without_dry_friction(const JointLaw& law, double x, double v) noexcept {
   const math::StopForce limit =
       math::stop_force(x, v, law.limit_min, law.limit_max, law.limit_stiffness, law.limit_damping);
-  return {limit.force - law.viscous * v, limit.d_x, limit.d_v - law.viscous};
+  return {limit.force - law.viscous * v, limit.d_x, limit.d_v - law.viscous, limit.force};
 }
 
 // the contact's law along one tangent, under a normal force of one
@@ -96,6 +96,7 @@ JointForce evaluate(const JointLaw& law, double x, double v) noexcept {
   result.force += limit.force;
   result.d_x = limit.d_x;
   result.d_v += limit.d_v;
+  result.limit = limit.force;
   return result;
 }
 

@@ -40,6 +40,7 @@ struct JointForce {
   double force = 0;  // F [N m or N]
   double d_x = 0;    // dF/dx
   double d_v = 0;    // dF/dv
+  double limit = 0;  // of it, F_min - F_max [N m or N]
 };
 
 // (1); of a law without bristles.

@@ -70,7 +70,8 @@ bool has_springs(const Model& model) noexcept {
 StepRows::StepRows(const Model& model)
     : body_(build_stiff_body_model(model)), ws_(model), bws_(model, body_), strain_(bws_.solution.size()) {}
 
-bool StepRows::evaluate(const Model& model, const State& state, const Workspace& at, double H) noexcept {
+bool StepRows::evaluate(const Model& model, const State& state, const Workspace& at, double H,
+                        StepShares shares) noexcept {
   std::copy(at.row_is_active.begin(), at.row_is_active.end(), ws_.row_is_active.begin());
   begin_contacts(model, state, ws_);
   set_time(model, state.time, ws_);
@@ -80,13 +81,13 @@ bool StepRows::evaluate(const Model& model, const State& state, const Workspace&
   evaluate_joints(model, body_, state, ws_, bws_);
   fill_matrix(model, body_, ws_, bws_);
   BodyMatrix matrix(body_, bws_.ldl);
-  const ChangeWeights weights{.position = 0.5 * H * H, .rate = H};
+  const ChangeWeights weights{.position = shares.position * H * H, .rate = shares.rate * H};
   add_stiffness(model, ws_, weights, matrix);
   add_contact_stiffness(model, ws_, weights, matrix);
   add_modal_stiffness(model, body_.modal, weights, ws_, bws_.ldl);
   const bool is_regular = bws_.ldl.factorize(kDependent);
   put_bias(model, body_, ws_, bws_);
-  subtract_strain(model, H);
+  subtract_strain(model, shares.strain * H);
   bws_.ldl.solve(bws_.solution);
   bws_.free = bws_.solution;
   find_rows(model, body_, state, ws_, bws_);

@@ -28,13 +28,21 @@
 
 namespace slew::multibody {
 
+// Shares of (2): position of H^2 K, rate of H D, strain of H K u. Those of (1), or those with which the trapezoidal
+// rule answers a force that is held: (M + H/2 D + H^2/4 K) a = Q - H/2 K u + J^T F, exact for what is linear.
+struct StepShares {
+  double position = 0.5, rate = 1, strain = 1;
+};
+inline constexpr StepShares kTrapezoidalShares{0.25, 0.5, 0.5};
+
 class StepRows {
  public:
   // Allocates. evaluate() takes any model of the same mechanism.
   explicit StepRows(const Model& model);
 
   // (2) over H [s], for the rows that are active in `at`. False: singular to working precision.
-  [[nodiscard]] bool evaluate(const Model& model, const State& state, const Workspace& at, double H) noexcept;
+  [[nodiscard]] bool evaluate(const Model& model, const State& state, const Workspace& at, double H,
+                              StepShares shares = {}) noexcept;
 
   // After evaluate(), laid out as row_free_accelerations() and row_mobility() of dynamics.h.
   [[nodiscard]] std::span<const double> free_accelerations() const noexcept { return ws_.row_a_free; }

@@ -24,6 +24,9 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings);
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings);
 
 // Appends a warning for every pair whose shapes start deep in each other. Pre-condition: validate() found nothing.
+// Contacts that answer an impact faster than the shortest part of a sub-step [s] of the scene's own rule resolves, each
+// body as if it were free and hit in its centre of mass.
+void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems& problems);
 void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings);
 
 }  // namespace slew::multibody

@@ -263,6 +263,7 @@ class SceneReader {
       if (errors.empty()) check_motion_ends(errors);
       if (errors.empty() && scene_.session.solution == Solution::split) {
         multibody::check_element_speeds(scene_.mechanics, mechanics_substep(scene_.session, scene_.mechanics), errors);
+        multibody::check_contact_rates(scene_.mechanics, mechanics_substep(scene_.session, scene_.mechanics), errors);
       }
       if (errors.empty()) {
         multibody::find_unlikely_inertia(scene_.mechanics, warnings);

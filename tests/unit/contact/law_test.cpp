@@ -43,6 +43,35 @@ TEST(DampingNumber, HasTheRightLimits) {
   EXPECT_NEAR(damping_number(kSmallestRestitution), 100, 1e-10);
 }
 
+// a free mass on its way in, in steps of a thousandth of the way
+TEST(NormalForce, IsNeverSteeperOnAFreeImpactThanSaidBefore) {
+  for (const double e : {0.01, 0.1, 0.5, 1.0}) {
+    for (const double n : {1.0, 1.5, 3.0}) {
+      for (const double speed : {1e-3, 0.05, 3.0}) {
+        const NormalLaw law = build({.stiffness = 1e8, .restitution = e, .exponent = n, .reference_depth = 1e-3});
+        constexpr double kMass = 2;
+        NormalState state;
+        observe(law, 0, speed, state);
+        const NormalForce most = slopes_of_impact(law, 1, 0, speed, state, kMass);
+        EXPECT_GT(most.d_depth_rate + most.d_depth, 0);
+        double u = speed, d = 0, worst_spring = 0, worst_damping = 0;
+        const double h = 1e-4 / std::sqrt(most.d_depth / kMass + std::pow(most.d_depth_rate / kMass, 2));
+        while (u > 0) {
+          const NormalForce now = evaluate(law, 1, d, u, state);
+          worst_spring = std::max(worst_spring, now.d_depth);
+          worst_damping = std::max(worst_damping, now.d_depth_rate);
+          u -= h * now.force / kMass;
+          d += h * u;
+        }
+        EXPECT_LE(worst_spring, 1.001 * most.d_depth);
+        EXPECT_LE(worst_damping, 1.001 * most.d_depth_rate);
+        // not much more than that either
+        EXPECT_LT(std::max(most.d_depth, 0.0), (e < 0.05 ? 120 : 15) * worst_spring);
+      }
+    }
+  }
+}
+
 TEST(NormalState, HoldsTheLargestApproachUntilTheContactOpens) {
   const NormalLaw law = build({.stiffness = 1e6, .smallest_impact_speed = 0.01});
   NormalState state;

@@ -23,8 +23,9 @@ class OneCylinder final : public RowLaws {
   explicit OneCylinder(const LineForceDef& def) : law_(def) {}
   RowForce evaluate(std::size_t, double z, double x, double v) const noexcept override {
     const LineForce line = law_.evaluate(z, x, v);
-    return {line.force, line.d_pressure, line.d_position, line.d_speed};
+    return {line.force, line.d_pressure, line.d_position, line.d_speed, line.stop};
   }
+  bool is_at_stop(std::size_t, double x) const noexcept override { return law_.touches_stop(x); }
 
  private:
   LineForceLaw law_;
@@ -108,6 +109,62 @@ TEST(PortDynamics, EndStopBringsAMovingMassToRest) {
   EXPECT_LT(deepest, 0.5 * std::sqrt(5000 / 5e7));  // less than without the damper
 }
 
+// a mass between its end stop and an oil spring: neither gives what it did not hold, however stiff, and a stop that
+// only damps does not throw back
+TEST(PortDynamics, EndStopReturnsNoMoreThanItsSpringHeld) {
+  for (const double stop : {0.0, 1e3, 1e7, 1e9, 1e12}) {
+    for (const double per_step : {0.0, 1e-2, 1.0, 1e2, 1e4, 1e6}) {
+      SCOPED_TRACE("k = " + std::to_string(stop) + ", c h/m = " + std::to_string(per_step));
+      constexpr double kMass = 2000, kOil = 4e6, kPlace = 0.05;
+      LineForceDef def;
+      def.stroke_min = -1;
+      def.stroke_max = 0.002;
+      def.stop_stiffness = stop;
+      def.stop_damping = per_step * kMass / 1e-3;
+      const OneCylinder laws(def);
+      PortDynamics ports(1);
+      ports.v()[0] = 1.5;
+      ports.W()[0] = 1 / kMass;
+      ports.z()[0] = -kOil * kPlace;
+      ports.partner()[0] = {0, kOil, 0, 0, 0, 0};
+      const auto energy = [&] {
+        const double depth = std::max(0.0, ports.x()[0] - def.stroke_max), oil = ports.x()[0] + kPlace;
+        return 0.5 * kMass * ports.v()[0] * ports.v()[0] + 0.5 * stop * depth * depth + 0.5 * kOil * oil * oil;
+      };
+      const double start = energy();
+      double least = start;
+      for (int i = 0; i < 300; ++i) {
+        ASSERT_TRUE(ports.solve(1e-3, 4, laws).has_converged) << i;
+        ASSERT_LT(energy(), least + 1e-3 * start) << i;
+        least = std::min(least, energy());
+      }
+    }
+  }
+}
+
+// What a stop did in a part of the sub-step is in mean and slope: under them the mass goes where the rows' problem
+// went.
+TEST(PortDynamics, MeanAndSlopeOfABlowGoTheSameWay) {
+  for (const double x : {-0.0021, -0.0017, -0.0003, 0.0011, 0.0019}) {
+    LineForceDef def;
+    def.stroke_max = 0.002;
+    def.stroke_min = -1;
+    def.stop_stiffness = 1e10;
+    def.stop_damping = 1e6;
+    const OneCylinder laws(def);
+    constexpr double kMass = 2000, h = 1e-3;
+    PortDynamics ports(1);
+    ports.x()[0] = x;
+    ports.v()[0] = 4;
+    ports.W()[0] = 1 / kMass;
+    const PortStep solved = ports.solve(h, 4, laws);
+    EXPECT_EQ(solved.meets_stop, x > -0.002);
+    const double mean = ports.f_mean()[0] / kMass, slope = ports.f_slope()[0] / kMass;
+    EXPECT_NEAR(4 + h * mean, ports.v()[0], 1e-9);
+    EXPECT_NEAR(x + 4 * h + 0.5 * h * h * mean - h * h * h / 12 * slope, ports.x()[0], 2e-6);
+  }
+}
+
 // a force that is linear in time, by a partner without stiffness: z' = F_dot
 // a stop that pushes while v is below its speed, and not above: no speed has a force between the two; beside it a
 // damper
@@ -169,6 +226,22 @@ TEST(PortDynamics, GivesMeanAndSlopeOfALinearForce) {
     const double excess = 12 * ((1 - gamma) * gamma * gamma + gamma - 1.0 / 3) / (micro_steps * micro_steps);
     EXPECT_NEAR(ports.f_slope()[0], -7e5 * (1 + excess), 1e-9 * 7e5) << micro_steps;
   }
+}
+
+// a damper that holds against a force that grows: 1 kg, 1e9 N s/m
+TEST(PortDynamics, GivesTheSlopeOfAFrictionThatHolds) {
+  class Damper final : public RowLaws {
+   public:
+    RowForce evaluate(std::size_t, double, double, double v) const noexcept override { return {-1e9 * v, 0, 0, -1e9}; }
+  };
+  PortDynamics ports(1);
+  ports.W()[0] = 1;
+  ports.a_free()[0] = 5;
+  ports.a_free_rate()[0] = 3e4;
+  ports.v()[0] = 5e-9;
+  ports.solve(1e-3, 4, Damper());
+  EXPECT_NEAR(ports.f_mean()[0], -5 - 0.5 * 30, 1e-3);
+  EXPECT_NEAR(ports.f_slope()[0], -3e4, 1e-4 * 3e4);
 }
 
 TEST(PortDynamics, MeanAndSlopeReproduceTheMotion) {

@@ -1,0 +1,120 @@
+// Contacts far stiffer and more damped than `contact_substep` resolves: a touch may be missed in its details, but it
+// never gives back more than it took. The explicit rules find out on the way in how fast a contact will answer
+// (contact_rate.h), and what not even their shortest part resolves is refused with the scene.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "multibody/validate.h"
+#include "scene_cases.h"
+#include "support/nightly.h"
+
+namespace slew::multibody {
+namespace stiff_rebound_test {
+
+using namespace testing;
+
+constexpr double kStep = 1e-3;
+
+MechanicsDef ball(double stiffness, double restitution, double exponent, double speed) {
+  MechanicsDef def;
+  def.gravity = {0, 0, 0};
+  add_free(def, free_body("Ball", 1, {4e-3, 4e-3, 4e-3}, {0, 0.1 + 0.02, 0}), {0, -speed, 0});
+  def.shapes = {ball_shape("Skin", "Ball", 0.1), ground_shape("Floor")};
+  contact::NormalLawDef law{.stiffness = stiffness, .restitution = restitution, .exponent = exponent};
+  law.reference_depth = 1e-3;
+  def.contacts = {pair_of("Skin", "Floor", law)};
+  return def;
+}
+
+bool is_refused(MechanicsDef def, const Way& way) {
+  def.formulation = way.formulation;
+  if (way.integrator != Integrator::rk4) def.integrator = way.integrator;
+  Problems problems;
+  check_contact_rates(def, kStep, problems);
+  return !problems.empty();
+}
+
+class StiffRebound : public EveryWay {};
+INSTANTIATE_TEST_SUITE_P(All, StiffRebound, ::testing::ValuesIn(gate_ways()), name_of_way);
+INSTANTIATE_TEST_SUITE_P(AllNightly, StiffRebound, ::testing::ValuesIn(nightly_ways()), name_of_way);
+
+// was 4.6, 55 and 560 times the speed of the impact at e = 0.01 and 1e8, 1e9 and 1e10 N/m
+TEST_P(StiffRebound, IsNeverFasterThanTheRestitutionSays) {
+  for (const double k : {1e6, 1e7, 1e8, 1e9, 1e10}) {
+    for (const double e : {0.01, 0.1, 0.5, 0.9}) {
+      SCOPED_TRACE("k = " + std::to_string(k) + ", e = " + std::to_string(e));
+      for (const double speed : {0.3, 3.0}) {
+        const MechanicsDef def = ball(k, e, 1, speed);
+        if (is_refused(def, GetParam())) continue;
+        Motion motion(def, GetParam());
+        motion.run(0.1, kStep);
+        const double rebound = motion.pose("Ball").velocity[1] / speed;
+        EXPECT_LT(rebound, e + 0.1);
+        EXPECT_GT(rebound, 0);
+        EXPECT_TRUE(motion.is_sound);
+      }
+    }
+  }
+}
+
+TEST_P(StiffRebound, OfSpheresOfElasticMaterialToo) {
+  for (const double k : {1e6, 1e8, 1e9}) {
+    for (const double e : {0.01, 0.3, 0.9}) {
+      SCOPED_TRACE("k = " + std::to_string(k) + ", e = " + std::to_string(e));
+      Motion motion(ball(k, e, 1.5, 2), GetParam());
+      motion.run(0.1, kStep);
+      const double rebound = motion.pose("Ball").velocity[1] / 2;
+      EXPECT_LT(rebound, e + 0.1);
+      EXPECT_TRUE(motion.is_sound);
+    }
+  }
+}
+
+// a box that tumbles onto its corners and edges, with friction
+TEST_P(StiffRebound, OfATumblingBoxTakesEnergy) {
+  for (const std::uint32_t seed : slew::testing::seeds({{1, 30}}, 3)) {
+    SCOPED_TRACE(slew::testing::seed_text(seed));
+    MechanicsDef def;
+    add_free(def, box_body("Box", 2, {0.2, 0.1, 0.3}, {0, 0.35, 0}), {1, -3, 0});
+    def.joints.back().initial_rotation = {3.0 * seed, -2.0 + seed, 1.7};
+    def.shapes = {box_shape("Sides", "Box", {0.2, 0.1, 0.3}), ground_shape("Floor")};
+    def.frictions = {dry_friction("Dry", 0.4)};
+    const double k = std::pow(10.0, 6 + seed % 4);
+    def.contacts = {pair_of("Sides", "Floor", {.stiffness = k, .restitution = 0.05}, "Dry")};
+    Motion motion(def, GetParam());
+    double least = motion.total_energy();
+    const double start = least;
+    for (int i = 0; i < 300; ++i) {
+      motion.run(kStep, kStep);
+      ASSERT_LT(motion.total_energy(), least + 0.02 * start) << "after " << i << " ms, sound: " << motion.is_sound;
+      least = std::min(least, motion.total_energy());
+    }
+  }
+}
+
+TEST(StiffContact, BeyondTheShortestPartIsRefusedByName) {
+  MechanicsDef def = ball(1e12, 0.01, 1, 3);
+  Problems problems;
+  check_contact_rates(def, kStep, problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].path, "Skin_Floor.spring_constant");
+  EXPECT_NE(problems[0].expected.find("N/m"), std::string::npos);
+  // each of the remedies suits
+  for (const auto& change : std::vector<std::function<void(MechanicsDef&)>>{
+           [](MechanicsDef& d) { d.contacts[0].normal.stiffness = 1e10; },
+           [](MechanicsDef& d) { d.integrator = Integrator::trapezoidal; }}) {
+    MechanicsDef suits = def;
+    change(suits);
+    problems.clear();
+    check_contact_rates(suits, kStep, problems);
+    EXPECT_TRUE(problems.empty());
+  }
+  problems.clear();
+  check_contact_rates(def, 0.05 * kStep, problems);
+  EXPECT_TRUE(problems.empty());
+}
+
+}  // namespace stiff_rebound_test
+}  // namespace slew::multibody
