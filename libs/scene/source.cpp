@@ -12,6 +12,8 @@
 #include <memory>
 #include <utility>
 
+#include "core/printable.h"
+
 namespace slew::scene {
 namespace {
 
@@ -19,33 +21,10 @@ struct FileCloser {
   void operator()(std::FILE* file) const noexcept { std::fclose(file); }
 };
 
-// Length of the UTF-8 sequence at text[at] (Unicode 15, table 3-7), 0 when it is malformed.
-std::size_t sequence_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
-  };
-  const auto continues = [&](std::size_t i, int low, int high) { return byte(i) >= low && byte(i) <= high; };
-  const int first = byte(at);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return continues(at + 1, 0x80, 0xBF) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {
-    const int low = first == 0xE0 ? 0xA0 : 0x80;
-    const int high = first == 0xED ? 0x9F : 0xBF;
-    return continues(at + 1, low, high) && continues(at + 2, 0x80, 0xBF) ? 3 : 0;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    const int low = first == 0xF0 ? 0x90 : 0x80;
-    const int high = first == 0xF4 ? 0x8F : 0xBF;
-    const bool ok = continues(at + 1, low, high) && continues(at + 2, 0x80, 0xBF) && continues(at + 3, 0x80, 0xBF);
-    return ok ? 4 : 0;
-  }
-  return 0;
-}
-
 // What is wrong with the character at a byte, or nothing.
 std::string character_problem(std::string_view text, std::size_t at) {
   const auto byte = static_cast<std::uint8_t>(text[at]);
-  if (byte == 0) return "NUL byte: this is not a text file";
+  if (byte == 0) return "NUL byte";
   if (byte == 0x7F || (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r')) {
     return fmt::format("control character 0x{:02X}", byte);
   }
@@ -77,16 +56,41 @@ std::optional<Complaint> refuse_file(const std::string& path) {
 
 }  // namespace
 
+namespace {
+
+// continuation bytes are not characters of their own
+int characters(std::string_view text) {
+  return static_cast<int>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<std::uint8_t>(c) & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
 Mark SourceText::mark_at(std::size_t byte) const {
-  const auto next = std::upper_bound(line_start.begin(), line_start.end(), byte);
-  const auto line = static_cast<std::size_t>(next - line_start.begin());
-  const std::size_t start = line_start[line - 1];
-  // continuation bytes are not characters of their own
-  int column = 1;
-  for (std::size_t i = start; i < byte && i < text.size(); ++i) {
-    if ((static_cast<std::uint8_t>(text[i]) & 0xC0) != 0x80) ++column;
+  return MarkReader(*this).at(byte);
+}
+
+Mark MarkReader::at(std::size_t byte) {
+  const std::vector<std::size_t>& starts = source_.line_start;
+  const auto next = std::upper_bound(starts.begin(), starts.end(), byte);
+  const auto line = static_cast<std::size_t>(next - starts.begin());
+  const std::size_t end = std::min(byte, source_.text.size());
+  const bool goes_on = last_.line > 0 && starts[line - 1] == start_ && end >= byte_;
+  const std::size_t from = goes_on ? byte_ : starts[line - 1];
+  const int before = goes_on ? last_.column : 1;
+  last_ = {source_.source, static_cast<int>(line),
+           before + characters(std::string_view(source_.text).substr(from, end - from))};
+  byte_ = end;
+  start_ = starts[line - 1];
+  return last_;
+}
+
+std::string text_problem(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); i += sequence_length(text, i)) {
+    std::string problem = character_problem(text, i);
+    if (!problem.empty()) return problem;
   }
-  return {source, static_cast<int>(line), column};
+  return {};
 }
 
 std::optional<SourceText> check_source(std::string text, int source, Report& report) {
@@ -99,6 +103,7 @@ std::optional<SourceText> check_source(std::string text, int source, Report& rep
   for (std::size_t i = 0; i < result.text.size();) {
     std::string problem = character_problem(result.text, i);
     if (!problem.empty()) {
+      if (result.text[i] == '\0') problem += ": this is not a text file";
       report.add(result.mark_at(i), "", {std::move(problem), "UTF-8 text", ""});
       return std::nullopt;
     }

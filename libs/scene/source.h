@@ -23,10 +23,26 @@ struct SourceText {
   [[nodiscard]] Mark mark_at(std::size_t byte) const;
 };
 
+// The same marks one after the other: a byte that lies behind the last one in its line is counted from there, so that a
+// line of any length is counted once.
+class MarkReader {
+ public:
+  explicit MarkReader(const SourceText& source) : source_(source) {}
+  [[nodiscard]] Mark at(std::size_t byte);
+
+ private:
+  const SourceText& source_;
+  std::size_t byte_ = 0, start_ = 0;  // of the last mark, and of its line
+  Mark last_{};
+};
+
 // Reads a regular file of at most kMaxFileBytes; a problem goes to the report and nothing is returned.
 [[nodiscard]] std::optional<SourceText> read_source(const std::string& path, int source, Report& report);
 
 // Checks text that is already in memory: size, UTF-8, no NUL or control characters. A UTF-8 byte order mark is dropped.
 [[nodiscard]] std::optional<SourceText> check_source(std::string text, int source, Report& report);
+
+// What is wrong with a text whose escapes are resolved, by the same rules; empty: nothing.
+[[nodiscard]] std::string text_problem(std::string_view text);
 
 }  // namespace slew::scene

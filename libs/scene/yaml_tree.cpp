@@ -12,6 +12,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/printable.h"
+
 namespace slew::scene {
 namespace {
 
@@ -77,6 +79,10 @@ class TreeBuilder final : public YAML::EventHandler {
       report_.add(place(mark), "", {"this quote is not closed", std::string("a second ") + first, ""});
       throw StopReading();
     }
+    // an escape may stand for what the source itself must not hold
+    if (std::string problem = text_problem(value); !problem.empty()) {
+      report_.add(place(mark), "", {std::move(problem) + " after its escapes are resolved", "UTF-8 text", ""});
+    }
     Node node;
     node.kind = Node::Kind::scalar;
     node.is_quoted = tag != "?" && !has_tag;
@@ -124,12 +130,12 @@ class TreeBuilder final : public YAML::EventHandler {
     std::map<std::string, Mark, std::less<>> seen;
   };
 
-  [[nodiscard]] Mark place(const YAML::Mark& mark) const {
+  [[nodiscard]] Mark place(const YAML::Mark& mark) {
     if (mark.is_null()) return {source_.source, 0, 0};
-    return source_.mark_at(std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), source_.text.size()));
+    return marks_.at(std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), source_.text.size()));
   }
   // yaml-cpp's messages in the words of somebody who writes a scene
-  [[nodiscard]] Complaint explain(const YAML::Exception& error) const {
+  [[nodiscard]] Complaint explain(const YAML::Exception& error) {
     const std::string begin = "not valid YAML: ";
     if (line_begins_with_tab(place(error.mark))) return {begin + "the line is indented with a tab", "spaces", ""};
     if (error.msg == "illegal flow end" && !open_.empty()) {
@@ -223,6 +229,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   const SourceText& source_;
+  MarkReader marks_{source_};
   Report& report_;
   int documents_ = 0;
   std::vector<Open> open_;
@@ -273,7 +280,7 @@ std::string describe(const Node& node) {
     case Node::Kind::scalar:
       break;
   }
-  return fmt::format("'{}'", shortened(node.text));
+  return fmt::format("'{}'", printable(shortened(node.text)));
 }
 
 std::optional<Node> parse_yaml(const SourceText& source, Report& report) {
