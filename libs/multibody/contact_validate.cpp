@@ -48,7 +48,7 @@ class ContactValidator {
   }
 
   void check_lists(const ShapeDef& shape) {
-    if (find_body(m_, shape.body) == kNoBody) {
+    if (number_of_(shape.body) == kNoBody) {
       add(shape.name, "body", fmt::format("there is no body '{}'", shape.body), "the name of a body, or Ground");
     }
     if (!is_mesh(shape)) return;
@@ -77,7 +77,7 @@ class ContactValidator {
   }
 
   [[nodiscard]] int carrier_of(const ShapeDef& shape) const {
-    return carrier_[static_cast<std::size_t>(find_body(m_, shape.body))];
+    return carrier_[static_cast<std::size_t>(number_of_(shape.body))];
   }
 
   // everything, but pairs that cannot move against each other only with their law
@@ -113,6 +113,7 @@ class ContactValidator {
   }
 
   const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
   Problems& problems_;
   std::vector<int> carrier_;
 };
