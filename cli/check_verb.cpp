@@ -12,6 +12,7 @@
 #include "cli_support/name_pattern.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
 
@@ -84,8 +85,9 @@ ExitCode check(const Options& options) {
       fmt::print("{}\n", Json({{"ok", true}, {"scene", scene.name}, {"warnings", warnings}}).dump(2));
       return ExitCode::ok;
     }
-    for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    fmt::print("{}: ok ({}, {}, {}, {})\n", options.scene, counted(scene.mechanics.bodies.size(), "body", "bodies"),
+    for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
+    fmt::print("{}: ok ({}, {}, {}, {})\n", printable(options.scene),
+               counted(scene.mechanics.bodies.size(), "body", "bodies"),
                counted(scene.hydraulics.volumes.size(), "volume", "volumes"),
                counted(scene.hydraulics.components.size(), "component", "components"),
                counted(scene.inputs.size(), "input", "inputs"));

@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "io_node/saved_session.h"
 #include "node/driver.h"
 #include "node/identity.h"
@@ -58,7 +59,8 @@ void tell(const Options& options, const std::string& command, const Observer& ob
                                            observer.session_name() + "': " + reply.reason);
   }
   if (!options.is_json) {
-    fmt::print("accepted({}): {} of session '{}'{}\n", reply.header.step, command, observer.session_name(), more);
+    fmt::print("accepted({}): {} of session '{}'{}\n", reply.header.step, command, printable(observer.session_name()),
+               printable(more));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "cli/display.h"
 #include "cli/verbs.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "core/report_table.h"
 #include "hydraulics/circuit.h"
 #include "multibody/model.h"
@@ -250,7 +251,7 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 void print(const Description& d) {
-  if (!d.text.empty()) fmt::print("{}\n\n", d.text);
+  if (!d.text.empty()) fmt::print("{}\n\n", printable_lines(d.text));
   ReportTable rows({"", ""});
   rows.add({"scene", d.name});
   rows.add({"session", fmt::format("step {}, duration {}, pace {}", duration_text(d.step),

@@ -124,6 +124,7 @@ Json to_json(const recording::Reader& reader, double simulated) {
           {"complete", reader.has_all_messages()},
           {"damage", reader.damage_text()},
           {"end", end_of(reader)},
+          {"ticks_behind_end", tick_span(reader).behind_end},
           {"gaps", gaps_of(reader)},
           {"notes", explain_flags(reader)},
           {"events", events_json(reader)},
@@ -145,6 +146,7 @@ void print(const recording::Reader& reader, double simulated, bool has_all_event
                                   counted(static_cast<std::uint64_t>(span.steps), "step", "steps"),
                                   duration_text(span.wall_time))});
   rows.add({"end", end_of(reader)});
+  if (span.behind_end > 0) rows.add({"end", behind_end_text(span)});
   for (const auto& [topic, count] : counts_of(reader)) {
     rows.add(
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});

@@ -10,6 +10,7 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "core/report_table.h"
 #include "core/suggestion.h"
 #include "node/driver.h"
@@ -173,7 +174,7 @@ ExitCode get(const Options& options) {
   if (options.is_json) {
     fmt::print("{}\n", to_json(present, source.is_session()).dump(2));
   } else {
-    fmt::print("{} = {} ({})\n", path, value_text(present.value, *parameter),
+    fmt::print("{} = {} ({})\n", printable(path), value_text(present.value, *parameter),
                circumstances(present, source.is_session()));
   }
   return ExitCode::ok;

@@ -14,6 +14,7 @@
 #include "cli/text_output.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/printable.h"
 
 namespace slew::cli {
 namespace {
@@ -107,7 +108,8 @@ ExitCode plot(const Options& options) {
   if (read.plots.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("{}; nothing was written", fmt::join(read.left_out, "; ")));
   }
-  for (const std::string& left_out : read.left_out) std::fprintf(stderr, "warning: %s\n", left_out.c_str());
+  for (const std::string& left_out : read.left_out)
+    std::fprintf(stderr, "warning: %s\n", printable_lines(left_out).c_str());
   if (!options.output.empty()) return draw(read.plots, look, options.output);
   fmt::print("{}\n", write_plots(read.plots, *reader));
   return ExitCode::ok;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "cli/display.h"
+#include "core/printable.h"
 #include "core/time.h"
 
 namespace slew::cli {
@@ -23,10 +24,10 @@ void ProgressLine::show(std::string_view doing, double share) {
   if (is_quiet_) return;
   const std::int64_t now_ns = monotonic_ns();
   if (!is_terminal_) {
-    if (doing != last_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * share, std::string(doing).c_str());
+    if (doing != last_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * share, printable(doing).c_str());
   } else if (doing != last_ || now_ns >= next_ns_) {
     next_ns_ = now_ns + kTerminalPeriodNs;
-    std::fprintf(stderr, "\r%3.0f %%  %s%s\x1b[K", 100 * share, std::string(doing).c_str(),
+    std::fprintf(stderr, "\r%3.0f %%  %s%s\x1b[K", 100 * share, printable(doing).c_str(),
                  left_text(share, now_ns).c_str());
     is_shown_ = true;
   }

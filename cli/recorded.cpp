@@ -17,6 +17,7 @@
 #include "cli_support/name_pattern.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
 #include "scene/units.h"
@@ -41,7 +42,7 @@ void read_all(const Reader& reader, const recording::MessageFilter& filter,
               const std::function<Visit(const recording::RecordedMessage&)>& visit) {
   const Status status = reader.for_each(filter, visit);
   if (status.code == ExitCode::storage) throw Failure(status.code, status.text);
-  if (!status.is_ok()) std::fprintf(stderr, "warning: %s\n", status.text.c_str());
+  if (!status.is_ok()) std::fprintf(stderr, "warning: %s\n", printable_lines(status.text).c_str());
 }
 
 // Where in the curves a variable's values go: by writer and index.
@@ -100,7 +101,7 @@ std::unique_ptr<Reader> open_recording(const std::string& path) {
   std::unique_ptr<Reader> reader;
   require(Reader::open(file, reader));
   const std::string damage = reader->damage_text();
-  if (!damage.empty()) std::fprintf(stderr, "warning: %s\n", damage.c_str());
+  if (!damage.empty()) std::fprintf(stderr, "warning: %s\n", printable_lines(damage).c_str());
   return reader;
 }
 
@@ -266,6 +267,7 @@ TickSpan tick_span(const Reader& reader) {
   std::vector<std::uint64_t> ticks;                                 // ns, wall clock of their writer
   std::map<std::uint64_t, bool> paused_since;                       // ns, at each status of io_node
   std::map<std::uint32_t, std::pair<StepIndex, StepIndex>> epochs;  // first and last step
+  std::map<std::uint32_t, StepIndex> ends;                          // first step that an END names
   wire::Tick tick;
   wire::NodeStatus status;
   read_all(reader, only({Topic::tick, Topic::node_status}), [&](const recording::RecordedMessage& message) {
@@ -276,13 +278,25 @@ TickSpan tick_span(const Reader& reader) {
         first = std::min(first, tick.header.step);
         last = std::max(last, tick.header.step);
       }
+      if (tick.header.phase == wire::Phase::running && is_end) {
+        StepIndex& end = ends.try_emplace(tick.header.epoch, tick.header.step).first->second;
+        end = std::min(end, tick.header.step);
+      }
       if (message.publish_time_ns != 0) ticks.push_back(message.publish_time_ns);
     } else if (transport::decode(message.payload, status) && status.header.role == wire::Role::io) {
       paused_since[message.publish_time_ns] = is_pause(status);
     }
     return Visit::go_on;
   });
-  for (const auto& [epoch, steps] : epochs) span.steps += steps.second - steps.first + 1;
+  for (const auto& [epoch, steps] : epochs) {
+    span.steps += steps.second - steps.first + 1;
+    span.epoch = epoch;
+    span.next = steps.second + 1;
+    const auto end = ends.find(epoch);
+    if (end != ends.end() && steps.second >= end->second) {
+      span.behind_end += static_cast<std::uint64_t>(steps.second - std::max(steps.first, end->second) + 1);
+    }
+  }
   std::sort(ticks.begin(), ticks.end());
   const auto step_ns = static_cast<std::uint64_t>(reader.identity().communication_step.ns);
   for (std::size_t i = 1; i < ticks.size(); ++i) {
@@ -293,6 +307,14 @@ TickSpan tick_span(const Reader& reader) {
     span.paused_time += static_cast<double>(gap_ns - running_ns) * 1e-9;
   }
   return span;
+}
+
+std::string behind_end_text(const TickSpan& span) {
+  if (span.behind_end == 0) return "";
+  return fmt::format(
+      "{} behind an END of their epoch: another program wrote that END or those ticks, or a message was "
+      "changed; replay computes up to the END",
+      counted(span.behind_end, "tick is", "ticks are"));
 }
 
 std::string attachment_text(const Reader& reader, const std::string& name) {

@@ -58,8 +58,13 @@ struct TickSpan {
   double wall_time = 0;    // s, without pauses
   double paused_time = 0;  // s
   StepIndex steps = 0;
+  std::uint32_t epoch = 0;       // the last one
+  StepIndex next = 0;            // step behind the last one of that epoch
+  std::uint64_t behind_end = 0;  // ticks behind the END of their epoch, which a session in order has not got
 };
 [[nodiscard]] TickSpan tick_span(const recording::Reader& reader);
+// Names ticks behind an END; empty: there are none.
+[[nodiscard]] std::string behind_end_text(const TickSpan& span);
 
 // The scene of a recording, with the files of its flexible bodies from the folder, which must be those of the
 // recording. Throws Failure, LoadError.

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "cli/direct_session.h"
@@ -69,6 +70,7 @@ class Replay {
     if (!status.is_ok()) throw Failure(status.code, status.text);
     if (!has_stopped_ && (end_ == nullptr || is_at_end())) finish_epoch(EpochEnd::recording);
     if (end_ != nullptr && !has_stopped_) save_end();
+    if (end_ == nullptr && !has_stopped_) count_unreached();
     if (result_.steps == 0 && end_ == nullptr && result_.problem.empty()) {
       throw Failure(ExitCode::bad_input, "the recording has no tick 0; there is nothing to replay");
     }
@@ -180,6 +182,7 @@ class Replay {
     const auto states = states_.find(epoch_);
     begin_ = states == states_.end() ? 0 : states->second.front().state.step;
     next_ = begin_;
+    has_ended_ = false;
     waiting_ticks_.clear();
     waiting_samples_.clear();
     hashes_ = {};
@@ -215,6 +218,20 @@ class Replay {
         if (!of_role.is_compared[i]) ++result_.unrecorded;
       }
     }
+    // samples whose ticks did not come
+    for (const auto& [key, hash] : waiting_samples_) unreached_samples_.emplace(epoch_, key.first, key.second);
+  }
+
+  void count_unreached() {
+    result_.unreached_steps = unreached_ticks_.size();
+    result_.unreached_hashes = unreached_samples_.size();
+    if (!unreached_ticks_.empty()) {
+      const auto [epoch, step] = *unreached_ticks_.begin();
+      result_.end = fmt::format("tick {} of epoch {}", step, epoch);
+    } else if (!unreached_samples_.empty()) {
+      const auto [epoch, step, role] = *unreached_samples_.begin();
+      result_.end = fmt::format("the sample of step {} of epoch {} from {}", step, epoch, node::to_text(role));
+    }
   }
 
   // ---- ticks --------------------------------------------------------------------------------------------------
@@ -229,20 +246,33 @@ class Replay {
       session_.reset();
       return start_epoch();
     }
-    if (header.phase != Phase::running || header.epoch != epoch_ || header.step < next_ || is_at_end()) return;
+    if (header.phase != Phase::running || is_at_end()) return;
+    const bool is_end = (tick_.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0;
+    if (header.epoch > epoch_ ||
+        (header.epoch == epoch_ && (has_ended_ ? header.step >= end_step_ : header.step < begin_))) {
+      if (!is_end) unreached_ticks_.emplace(header.epoch, header.step);
+      return;
+    }
+    if (header.epoch != epoch_ || header.step < next_ || has_ended_) return;
     waiting_ticks_.emplace(header.step, tick_);
     while (!waiting_ticks_.empty() && waiting_ticks_.begin()->first == next_ && !has_stopped_ && !is_at_end()) {
       const wire::Tick tick = std::move(waiting_ticks_.begin()->second);
       waiting_ticks_.erase(waiting_ticks_.begin());
       // the END tick ends the epoch: nothing was computed with it
-      if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) {
-        waiting_ticks_.clear();
-        next_ = std::numeric_limits<StepIndex>::max();
-        return;
-      }
+      if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) return end_epoch(tick.header.step);
       step(tick);
     }
     if (waiting_ticks_.size() > kMostWaiting) finish_epoch(EpochEnd::recording);
+  }
+
+  // Ticks behind the END, which a session in order has not got, are not reached.
+  void end_epoch(StepIndex step) {
+    has_ended_ = true;
+    end_step_ = step;
+    for (const auto& [behind, tick] : waiting_ticks_) {
+      if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) == 0) unreached_ticks_.emplace(epoch_, behind);
+    }
+    waiting_ticks_.clear();
   }
 
   void step(const wire::Tick& tick) {
@@ -275,6 +305,10 @@ class Replay {
   // ---- comparing ----------------------------------------------------------------------------------------------
 
   void take_sample(const wire::Header& header, std::uint64_t hash) {
+    if (header.phase == Phase::running && (header.epoch > epoch_ || (header.epoch == epoch_ && header.step < begin_))) {
+      unreached_samples_.emplace(header.epoch, header.step, header.role);
+      return;
+    }
     if (header.epoch != epoch_) return;
     if (header.phase == Phase::init) {
       if (header.role == Role::mechanics && hash != init_hash_) differ(header.role, kJoinStep);
@@ -333,6 +367,10 @@ class Replay {
   std::array<Hashes, std::size(wire::kPhysicsRoles)> hashes_;
   std::map<StepIndex, wire::Tick> waiting_ticks_;
   std::map<std::pair<StepIndex, Role>, std::uint64_t> waiting_samples_;
+  bool has_ended_ = false;                                                  // the epoch's END was taken
+  StepIndex end_step_ = 0;                                                  // of that END
+  std::set<std::pair<std::uint32_t, StepIndex>> unreached_ticks_;           // epoch and step
+  std::set<std::tuple<std::uint32_t, StepIndex, Role>> unreached_samples_;  // epoch, step and writer
   wire::Tick tick_;
   wire::MechanismMessage mechanism_;
   wire::ActuatorMessage actuators_;

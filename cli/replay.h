@@ -24,10 +24,15 @@ struct ReplayResult {
   std::uint32_t epochs = 0;
   std::uint64_t compared = 0;  // samples whose hash was compared
   std::uint64_t different = 0;
-  std::uint64_t unrecorded = 0;  // computed steps without a recorded sample
-  double compute_time = 0;       // s
-  std::string problem;           // first difference or gap, by name; empty: none
+  std::uint64_t unrecorded = 0;        // computed steps without a recorded sample
+  std::uint64_t unreached_steps = 0;   // recorded ticks that nothing was computed with
+  std::uint64_t unreached_hashes = 0;  // recorded samples of steps that were not computed
+  std::string end;                     // where the ticks that were not reached begin, by name; empty: all were
+  double compute_time = 0;             // s
+  std::string problem;                 // first difference or gap, by name; empty: none
   [[nodiscard]] bool is_equal() const noexcept { return problem.empty() && different == 0; }
+  // Every recorded step and hash was reached.
+  [[nodiscard]] bool is_whole() const noexcept { return unreached_steps == 0 && unreached_hashes == 0; }
 };
 
 // Until where a recording is computed, and the session as it is there.

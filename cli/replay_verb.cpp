@@ -12,6 +12,7 @@
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "node/driver.h"
 #include "node/identity.h"
 
@@ -31,9 +32,16 @@ struct Options {
 };
 
 Json to_json(const ReplayResult& result) {
-  return {{"steps", result.steps},         {"epochs", result.epochs},         {"compared", result.compared},
-          {"different", result.different}, {"unrecorded", result.unrecorded}, {"compute_time", result.compute_time},
-          {"equal", result.is_equal()},    {"problem", result.problem}};
+  return {{"steps", result.steps},
+          {"epochs", result.epochs},
+          {"compared", result.compared},
+          {"different", result.different},
+          {"unrecorded", result.unrecorded},
+          {"compute_time", result.compute_time},
+          {"unreached_steps", result.unreached_steps},
+          {"unreached_hashes", result.unreached_hashes},
+          {"equal", result.is_equal() && result.is_whole()},
+          {"problem", result.problem}};
 }
 
 // ---- until a time, and on from there --------------------------------------------------------------------------
@@ -123,12 +131,17 @@ ExitCode run(const Options& options) {
     if (result.unrecorded > 0) {
       fmt::print("not in the recording and not compared: {}\n", counted(result.unrecorded, "sample", "samples"));
     }
+    if (!result.is_whole()) {
+      fmt::print("in the recording and not reached: {}, {}, from {} on; nothing is known of them\n",
+                 counted(result.unreached_steps, "step", "steps"), counted(result.unreached_hashes, "hash", "hashes"),
+                 result.end);
+    }
   }
   // a gap is no build's fault
   const bool may_be_build = result.different > 0 && reader->identity().build != node::build_id();
   if (!result.is_equal()) {
     std::fflush(stdout);
-    std::fprintf(stderr, "slewring: %s%s\n", result.problem.c_str(),
+    std::fprintf(stderr, "slewring: %s%s\n", printable_lines(result.problem).c_str(),
                  may_be_build ? ("; the recording was made by build " + reader->identity().build + ", this is " +
                                  node::build_id() + ": replay it with its own build")
                                     .c_str()
@@ -136,7 +149,7 @@ ExitCode run(const Options& options) {
   }
   if (!options.is_verifying) return ExitCode::ok;
   if (!result.is_equal()) return ExitCode::failed;
-  if (result.unrecorded > 0) return ExitCode::losses;
+  if (result.unrecorded > 0 || !result.is_whole()) return ExitCode::losses;
   if (!options.is_json) fmt::print("equal bit for bit\n");
   return ExitCode::ok;
 }
@@ -148,7 +161,8 @@ void add_replay(options::Command& program) {
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
   verb.flag("--verify", options->is_verifying,
-            "stop at the first step whose state differs, or at a gap, with exit code 1");
+            "stop at the first step whose state differs, or at a gap, with exit code 1; 3 when recorded steps were not "
+            "reached");
   verb.option("--assets", options->assets,
               "folder with the scene's files; without it the copies that lie beside the recording")
       .value_name("FOLDER");

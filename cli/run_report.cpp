@@ -16,6 +16,7 @@
 #include "cli/text_output.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "core/report_table.h"
 #include "coupling/indicator.h"
 #include "io_node/session_clock.h"
@@ -202,8 +203,31 @@ void explain(const recording::Reader& reader, const SessionView& recorded, const
   report.plots = write_plots(read.plots, reader);
 }
 
+// Steps of the session that the recording has not got, and ticks that it should not have. A session that was in order
+// then ends with losses.
+void compare_steps(const TickSpan& span, const NodeView& io, RunReport& report) {
+  const bool is_in_order =
+      report.code == ExitCode::ok || report.code == ExitCode::interrupted || report.code == ExitCode::terminated;
+  if (!is_in_order) return;
+  std::vector<std::string> found;
+  // io's own last word of the epoch that the recording ends with
+  StepIndex run_to = 0;
+  for (const wire::Header& header : {io.status.header, io.health.header}) {
+    if (header.epoch == span.epoch) run_to = std::max(run_to, header.step);
+  }
+  if (span.next < run_to) {
+    found.push_back(fmt::format("the session ran to step {}, its recording ends with step {}: {} missing", run_to - 1,
+                                span.next - 1,
+                                counted(static_cast<std::uint64_t>(run_to - span.next), "step is", "steps are")));
+  }
+  if (span.behind_end > 0) found.push_back("recording: " + behind_end_text(span));
+  if (found.empty()) return;
+  for (std::string& text : found) report.messages.push_back(std::move(text));
+  if (report.code == ExitCode::ok) report.code = ExitCode::losses;
+}
+
 // The recording has every message; an observer may have missed some.
-void report_recorded(const scene::Scene& scene, const std::string& assets, RunReport& report) {
+void report_recorded(const scene::Scene& scene, const std::string& assets, const SessionView& seen, RunReport& report) {
   const auto reader = open_recording(report.recording);
   const SessionView recorded = view_recording(*reader, Values::all);
   report_variables(recorded, scene, report);
@@ -218,6 +242,7 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, RunRe
       report.paused_time = span.paused_time;
     }
   }
+  if (!is_short) compare_steps(span, seen.node(Role::io), report);
   if (span.steps == 0) return;
   if (is_short) {
     report.notes.push_back(
@@ -250,7 +275,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
     report_left_out(outcome.view, report);
   } else {
     try {
-      report_recorded(scene, assets, report);
+      report_recorded(scene, assets, outcome.view, report);
     } catch (const Failure& failure) {
       // of a session that failed before its first step there is nothing to read, and that is no further failure
       if (report.steps > 0 || report.code == ExitCode::ok) report.messages.emplace_back(failure.what());
@@ -263,7 +288,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
 
 void print(const RunReport& report) {
   if (report.steps == 0 && report.code != ExitCode::ok) {
-    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
+    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
     return;
   }
   ReportTable rows({"", ""});
@@ -304,9 +329,9 @@ void print(const RunReport& report) {
   for (const std::string& note : report.notes) rows.add({"note", note});
   print_table(rows);
   std::fflush(stdout);
-  for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
-  if (!report.plots.empty()) fmt::print("{}\n", report.plots);
-  if (!report.recording.empty()) fmt::print("{}\n", report.recording);
+  for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
+  if (!report.plots.empty()) fmt::print("{}\n", printable(report.plots));
+  if (!report.recording.empty()) fmt::print("{}\n", printable(report.recording));
 }
 
 std::string to_json_text(const RunReport& report) {

@@ -11,6 +11,7 @@
 #include "cli/unrecorded.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
+#include "core/printable.h"
 
 namespace slew::cli {
 
@@ -60,9 +61,12 @@ ExitCode run(RunOptions options, const options::Command& verb) {
 
 ExitCode run_session(RunOptions options, const io::SessionScene& session) {
   const scene::Scene& scene = session.scene;
-  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  for (const std::string& warning : unrecorded_plots(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  for (const std::string& warning : coupling_warnings(scene)) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : scene.warnings)
+    std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
+  for (const std::string& warning : unrecorded_plots(scene))
+    std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
+  for (const std::string& warning : coupling_warnings(scene))
+    std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
   if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
   if (options.is_in_process && !options.remote.empty()) {
     throw Failure(ExitCode::bad_input,
@@ -81,13 +85,14 @@ ExitCode run_session(RunOptions options, const io::SessionScene& session) {
   const RunOutcome outcome =
       options.is_in_process ? run_in_process(options, session) : run_distributed(options, session);
   if (!outcome.has_begun) {
-    for (const std::string& message : without_echoes(outcome.messages)) std::fprintf(stderr, "%s\n", message.c_str());
+    for (const std::string& message : without_echoes(outcome.messages))
+      std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
     return outcome.code;
   }
   const RunReport report = make_report(outcome, scene, options.assets());
   if (options.is_json) {
     fmt::print("{}\n", to_json_text(report));
-    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", message.c_str());
+    for (const std::string& message : report.messages) std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
   } else {
     print(report);
   }

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "cli/display.h"
+#include "core/printable.h"
 #include "coupling/indicator.h"
 #include "node/identity.h"
 #include "scene/names.h"
@@ -62,18 +63,18 @@ void StatusLine::show(const std::string& text, std::int64_t now_ns) {
   if (mode_ == Mode::off) return;
   if (mode_ == Mode::terminal) {
     next_ns_ = now_ns + kStatusPeriodNs;
-    std::printf("\r%s\x1b[K", text.substr(0, terminal_width() - 1).c_str());
+    std::printf("\r%s\x1b[K", printable(text).substr(0, terminal_width() - 1).c_str());
     is_shown_ = true;
   } else {
     next_ns_ = now_ns + kLinesPeriodNs;
-    std::printf("%s\n", text.c_str());
+    std::printf("%s\n", printable(text).c_str());
   }
   std::fflush(stdout);
 }
 
 void StatusLine::say(const std::string& line) {
   clear();
-  std::fprintf(stderr, "%s\n", line.c_str());
+  std::fprintf(stderr, "%s\n", printable_lines(line).c_str());
 }
 
 void StatusLine::clear() {

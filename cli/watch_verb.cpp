@@ -9,6 +9,7 @@
 #include "cli_support/name_pattern.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "core/printable.h"
 #include "node/driver.h"
 
 namespace slew::cli {
@@ -63,7 +64,7 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
                           : variable.step >= 0   ? quantity_text(variable.value, variable.unit)
                                                  : missing);
     }
-    fmt::print("{}\n", line);
+    fmt::print("{}\n", printable(line));
   }
   std::fflush(stdout);
 }

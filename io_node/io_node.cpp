@@ -339,6 +339,8 @@ void IoNode::show_running() {
     member_.hold(vacancy_text(vacancies_.front()));
   } else if (const std::optional<Role> silent = member_.silent_peer()) {
     member_.hold(member_.silence_text(*silent));
+  } else if (stall_.is_named()) {
+    member_.hold(stall_.text(member_, health().resends_asked));
   } else if (is_withheld()) {
     member_.hold("");
   } else if (controllers_due_ns_ != 0) {
@@ -375,14 +377,17 @@ bool IoNode::advance_ticks(std::int64_t now_ns) {
     if (is_withheld()) {
       controllers_wait_ns_ = 0;
       waits_for_.reset();
+      end_stall(now_ns);
       return any;
     }
     if (!has_its_controllers(now_ns)) return any;
     measure_wait(now_ns);
     if (!partners_allow(n_)) {
       ask_for_missing(now_ns);
+      look_for_stall(now_ns);
       return any;
     }
+    end_stall(now_ns);
     if (config_.pace == wire::Pace::real) {
       if (is_paused_) {
         clock_.excuse(n_, now_ns);  // a single step is due when it is asked for

@@ -30,6 +30,7 @@
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "node/sent_cache.h"
+#include "node/stall_watch.h"
 
 namespace slew::io {
 
@@ -78,10 +79,11 @@ struct IoConfig {
   SimDuration name_check = milliseconds(300);  // listens so long for a holder of the name; 0 in one process
   SimDuration join_timeout = node::kJoinTimeout;
   bool starts_paused = false;
-  bool is_free_running = false;  // nodes may be ahead of the ticks by the window
-  SimDuration rejoin{};          // a lost physics node's place is held so long; 0: the session ends
-  std::string save_obstacle{};   // why the session's state cannot be saved; empty: it can
-  StepIndex save_unit = 1;       // every how many steps it can, because all nodes have exchanged then
+  bool is_free_running = false;                      // nodes may be ahead of the ticks by the window
+  SimDuration rejoin{};                              // a lost physics node's place is held so long; 0: the session ends
+  SimDuration stall_timeout = milliseconds(10'000);  // longest wait for one message of a node that is heard otherwise
+  std::string save_obstacle{};                       // why the session's state cannot be saved; empty: it can
+  StepIndex save_unit = 1;  // every how many steps it can, because all nodes have exchanged then
   std::optional<Beginning> beginning{};
   // of those who send values: the same on loopback, where their time stamps tell when they did
   node::WriterClock controllers_clock = node::WriterClock::other;
@@ -217,6 +219,9 @@ class IoNode final : public node::Node {
   void give_up(wire::Role role, std::int64_t now_ns);
   void watch_vacancies(std::int64_t now_ns);
   [[nodiscard]] std::string vacancy_text(const Vacancy& vacancy) const;
+  [[nodiscard]] std::optional<node::Awaited> awaited() const noexcept;
+  void look_for_stall(std::int64_t now_ns);
+  void end_stall(std::int64_t now_ns);
   [[nodiscard]] StepIndex& newest_of(wire::Role role) noexcept {
     return role == wire::Role::mechanics ? mechanics_at_ : role == wire::Role::hydraulics ? hydraulics_at_ : flex_at_;
   }
@@ -268,6 +273,7 @@ class IoNode final : public node::Node {
   std::int64_t deadline_ns_ = 0;       // of the stage
   int warnings_left_ = kControllerWarnings;
   node::ResendClock resend_;
+  node::StallWatch stall_;
   std::int64_t fault_seen_ns_ = 0;
   std::vector<double> script_raw_;
   std::vector<wire::Command> script_changes_;

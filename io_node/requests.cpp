@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/printable.h"
 #include "io_node/io_node.h"
 
 namespace slew::io {
@@ -26,7 +27,8 @@ void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t n
   }
   const int found = gate_.find(input_.channel);
   const auto channel = static_cast<std::size_t>(found);
-  const bool is_known = found >= 0 && !input_.controller.empty();
+  const bool has_name = !input_.controller.empty() && is_printable(input_.controller);
+  const bool is_known = found >= 0 && has_name;
   // in every step: no memory is taken for it
   if (is_known && input_.action == wire::ControllerAction::write) {
     if (gate_.write(channel, input_.controller, input_.value, n_, now_ns, input_.based_on_step, writer_)) {
@@ -39,8 +41,9 @@ void IoNode::receive_controller(std::span<const std::byte> bytes, std::int64_t n
     return;
   }
   if (!is_known) {
-    return tell_lease(
-        {false, "", found < 0 ? "the scene has no input '" + input_.channel + "'" : "a controller needs a name"});
+    return tell_lease({false, "",
+                       found < 0 ? "the scene has no input '" + printable(input_.channel) + "'"
+                                 : "a controller needs a name, without control characters"});
   }
   LeaseAnswer answer = input_.action == wire::ControllerAction::release
                            ? gate_.release(channel, input_.controller, input_.based_on_step, writer_)

@@ -8,6 +8,7 @@
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/file_size_limit.h"
+#include "core/printable.h"
 #include "core/real_time_thread.h"
 #include "node/driver.h"
 #include "node/identity.h"
@@ -18,7 +19,11 @@ namespace {
 
 int report(const std::string& program, const char* text, ExitCode code) noexcept {
   std::fflush(stdout);
-  std::fprintf(stderr, "%s: %s\n", program.c_str(), text);
+  try {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), printable_lines(text).c_str());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: out of memory\n", program.c_str());
+  }
   return static_cast<int>(code);
 }
 
@@ -47,7 +52,7 @@ int guarded(const std::string& program, const std::function<ExitCode()>& body) n
   } catch (const scene::LoadError& error) {
     // one line a problem, each beginning with its place in the file
     std::fflush(stdout);
-    std::fprintf(stderr, "%s\n", error.what());
+    std::fprintf(stderr, "%s\n", printable_lines(error.what()).c_str());
     return static_cast<int>(ExitCode::bad_input);
   } catch (const std::bad_alloc&) {
     return report(program, "out of memory; the program ends; close other programs or use a smaller scene",
@@ -80,7 +85,7 @@ void apply_real_time(const NodeOptions& options, const std::string& program) {
   if (options.cpu >= 0) require(run_on_cpu(options.cpu));
   if (!options.is_real_time) return;
   const Status status = make_real_time(options.priority);
-  if (!status.is_ok()) std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), status.text.c_str());
+  if (!status.is_ok()) std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), printable_lines(status.text).c_str());
 }
 
 std::optional<ExitCode> run_node(node::Node& node) {

@@ -44,6 +44,7 @@ node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets)
       built.flexible = {scene->session.flexible, scene->flexible_every()};
       built.exchange_unit = scene->exchange_unit();
       built.start_grace = duration_of_seconds(scene->session.start_grace);
+      built.stall_timeout = duration_of_seconds(scene->session.stall_timeout);
       built.published_variables = published_variables(*scene, *built.subsystem);
       return Status::ok();
     } catch (const scene::LoadError& error) {

@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "core/printable.h"
 #include "transport/codec.h"
 #include "transport/given_up.h"
 #include "transport/protection.h"
@@ -56,7 +57,7 @@ transport::Protection protection_of_environment() {
 }
 
 bool is_name(const std::string& text) {
-  return !text.empty() && text.size() <= wire::kMaxNameLength;
+  return !text.empty() && text.size() <= wire::kMaxNameLength && is_printable(text);
 }
 
 }  // namespace

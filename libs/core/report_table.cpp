@@ -9,6 +9,7 @@
 
 #include "core/check.h"
 #include "core/escaped.h"
+#include "core/printable.h"
 
 namespace slew {
 namespace {
@@ -36,7 +37,7 @@ std::vector<Texts> shown_lines(const std::vector<ReportColumn>& columns,
   for (const std::vector<ReportCell>& row : rows) {
     Texts& line = lines.emplace_back();
     for (std::size_t c = 0; c < row.size(); ++c) {
-      if (columns[c].text) line.push_back(row[c].text);
+      if (columns[c].text) line.push_back(printable(row[c].text));
     }
   }
   return lines;

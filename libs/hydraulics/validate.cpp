@@ -5,8 +5,10 @@
 #include <set>
 
 #include "core/dimension.h"
+#include "hydraulics/circuit_builder.h"
 #include "hydraulics/hydraulics_def.h"
 #include "hydraulics/pump_lines.h"
+#include "math/pattern_lu.h"
 
 namespace slew::hydraulics {
 namespace {
@@ -253,7 +255,38 @@ const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volu
   return nullptr;
 }
 
+namespace {
+
+// The solver's elimination takes so many unknowns; the others' matrices are dense, and a step would take seconds.
+std::size_t most_unknowns(Solver solver) {
+  constexpr std::size_t kMostDense = 1000;
+  return solver == Solver::rodas3 || solver == Solver::implicit_euler ? math::PatternLu::kMostUnknowns : kMostDense;
+}
+
+void check_size(const HydraulicsDef& def, std::size_t unknowns, Problems& errors) {
+  const std::size_t most = most_unknowns(def.solver);
+  if (unknowns <= most) return;
+  errors.push_back({"volumes",
+                    fmt::format("the circuit has {} unknowns (a pressure for each volume, stroke and speed for each "
+                                "cylinder, the states of components)",
+                                unknowns),
+                    fmt::format("at most {} with this hydraulics.solver", most), ""});
+}
+
+// Pre-condition: no errors.
+std::size_t count_unknowns(const HydraulicsDef& def) {
+  CircuitBuilder builder(def);
+  for (const auto& component : def.components) {
+    (void)find_component_type(component->type_name())->build(*component, builder);
+  }
+  return static_cast<std::size_t>(builder.state_count());
+}
+
+}  // namespace
+
 void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
+  check_size(def, def.volumes.size(), errors);
+  if (!errors.empty()) return;
   check_names(def, errors);
   check_circuit_numbers(def, errors);
   for (const CurveDef& curve : def.curves) check_curve(curve, errors);
@@ -276,6 +309,7 @@ void validate(const HydraulicsDef& def, Problems& errors, Problems& warnings) {
   check_ls_chain(def, errors, warnings);
   check_forces(def, errors);
   if (errors.empty()) find_unrelieved_pumps(def, warnings);
+  if (errors.empty()) check_size(def, count_unknowns(def), errors);
 }
 
 }  // namespace slew::hydraulics

@@ -26,7 +26,7 @@ std::size_t elimination_cost(const std::vector<char>& a, const std::vector<char>
 
 PatternLu::PatternLu(const SparsityPattern& pattern, std::size_t stride)
     : size_(pattern.size()), stride_(stride), mass_(size_, 1), inverse_pivot_(size_), work_(size_) {
-  SLEW_CHECK(stride >= size_ && size_ <= 200);
+  SLEW_CHECK(stride >= size_ && size_ <= kMostUnknowns);
   choose_order(pattern);
 }
 

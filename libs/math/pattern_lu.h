@@ -32,6 +32,9 @@ class SparsityPattern {
 
 class PatternLu {
  public:
+  // so many unknowns fill no more slots than a Slot counts, whatever their pattern
+  static constexpr std::size_t kMostUnknowns = 200;
+
   // J will be handed over row-major with this many columns (>= pattern.size()).
   PatternLu(const SparsityPattern& pattern, std::size_t stride);
 

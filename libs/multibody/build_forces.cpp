@@ -72,7 +72,7 @@ class ForceBuilder {
   }
 
  private:
-  [[nodiscard]] int body_index(const std::string& name) const { return find_body(def_, name); }
+  [[nodiscard]] int body_index(const std::string& name) const { return number_of_(name); }
   [[nodiscard]] const Body& body_of(const std::string& name) const { return model_.bodies[at(body_index(name))]; }
 
   // with all joints on the way about one axis the angle is a sum of joint angles, whatever the number of turns
@@ -98,6 +98,7 @@ class ForceBuilder {
   }
 
   const MechanicsDef& def_;
+  BodyNumbers number_of_{def_};
   std::span<const Pose> link_pose_;
   Model& model_;
 };
@@ -108,7 +109,7 @@ class DummyBuilder {
 
   void add_static_dummies() {
     for (const StaticDummyDef& def : def_.static_dummies) {
-      const int carrier = find_body(def_, def.relative_to);
+      const int carrier = number_of_(def.relative_to);
       const Body& body = model_.bodies[at(carrier)];
       const Mat3 R_LD = body.R_LB * math::rotation_zxz(def.orientation);
       const Vec3 p_LD = body.p_LB + body.R_LB * Vec3(def.position);
@@ -188,6 +189,7 @@ class DummyBuilder {
   }
 
   const MechanicsDef& def_;
+  BodyNumbers number_of_{def_};
   Model& model_;
   std::vector<CoupledMass> at_nodes_;
 };

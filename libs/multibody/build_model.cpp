@@ -77,7 +77,7 @@ class Builder {
   }
 
  private:
-  [[nodiscard]] int body_index(const std::string& name) const { return find_body(def_, name); }
+  [[nodiscard]] int body_index(const std::string& name) const { return number_of_(name); }
 
   void add_bodies() {
     model_.bodies.resize(def_.bodies.size() + 1);
@@ -300,6 +300,7 @@ class Builder {
 
   const MechanicsDef expanded_;
   const MechanicsDef& def_;
+  BodyNumbers number_of_{def_};
   Model model_;
   std::vector<Pose> poses_;
   std::vector<TreeEdge> tree_;

@@ -51,7 +51,7 @@ class ContactValidator {
   }
 
   void check_lists(const ShapeDef& shape) {
-    if (find_body(m_, shape.body) == kNoBody) {
+    if (number_of_(shape.body) == kNoBody) {
       add(shape.name, "body", fmt::format("there is no body '{}'", shape.body), "the name of a body, or Ground");
     }
     if (!is_mesh(shape)) return;
@@ -80,7 +80,7 @@ class ContactValidator {
   }
 
   [[nodiscard]] int carrier_of(const ShapeDef& shape) const {
-    return carrier_[static_cast<std::size_t>(find_body(m_, shape.body))];
+    return carrier_[static_cast<std::size_t>(number_of_(shape.body))];
   }
 
   // everything, but pairs that cannot move against each other only with their law
@@ -116,6 +116,7 @@ class ContactValidator {
   }
 
   const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
   Problems& problems_;
   std::vector<int> carrier_;
 };

@@ -37,6 +37,7 @@ class DummyRules {
         is_node_(merged_.size(), 0),
         is_free_(merged_.size(), false),
         across_(merged_.size(), kNoBody) {
+    const BodyNumbers number_of(mechanics);
     for (const TreeEdge& edge : tree) {
       const auto child = at(edge.child);
       if (merged_[child] != edge.child) continue;
@@ -44,7 +45,7 @@ class DummyRules {
       const JointDef* joint = edge.joint == kNoJoint ? nullptr : &mechanics.joints[at(edge.joint)];
       is_free_[child] = joint == nullptr || joint->type == JointType::floating;
       if (joint != nullptr && joint->type == JointType::node) {
-        flexible_[child] = multibody::find_body(mechanics, joint->body1);
+        flexible_[child] = number_of(joint->body1);
         is_node_[child] = 1;
       }
     }
@@ -166,8 +167,7 @@ class StartRules {
     for (const ForceDummyDef& dummy : m_.force_dummies) {
       for (const TranslationalForceDef& force : m_.translational_forces) {
         if (force.name != dummy.relative_to) continue;
-        const DummyRules::Verdict verdict =
-            rules.check(multibody::find_body(m_, force.body1), multibody::find_body(m_, force.body2));
+        const DummyRules::Verdict verdict = rules.check(number_of_(force.body1), number_of_(force.body2));
         if (verdict.what == nullptr) continue;
         add(dummy.name + ".relative_to", fmt::format("'{}' {}", force.name, verdict.what), verdict.expected);
       }
@@ -180,10 +180,11 @@ class StartRules {
   }
 
   [[nodiscard]] const Pose& pose_of(const std::string& body) const {
-    return poses_[static_cast<std::size_t>(multibody::find_body(m_, body))];
+    return poses_[static_cast<std::size_t>(number_of_(body))];
   }
 
   const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
   std::span<const Pose> poses_;
   Problems& problems_;
 };

@@ -104,24 +104,30 @@ void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
 }
 
 void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
-  for (const BodyDef& body : mechanics.bodies) {
+  const BodyNumbers number_of(mechanics);
+  std::vector<double> extent(mechanics.bodies.size() + 1, 0);
+  const auto see = [&](const std::string& owner, const Triple& point) {
+    const int number = number_of(owner);
+    if (number == kGround || number == kNoBody) return;
+    const BodyDef& body = mechanics.bodies[static_cast<std::size_t>(number) - 1];
+    double& reach = extent[static_cast<std::size_t>(number)];
+    reach = std::max(reach, math::norm(Vec3(point) - Vec3(body.center_of_mass)));
+  };
+  for (const JointDef& joint : mechanics.joints) see(joint.body1, joint.point1), see(joint.body2, joint.point2);
+  for (const TranslationalForceDef& force : mechanics.translational_forces) {
+    see(force.body1, force.point1), see(force.body2, force.point2);
+  }
+  for (std::size_t b = 0; b < mechanics.bodies.size(); ++b) {
+    const BodyDef& body = mechanics.bodies[b];
     if (body.type != BodyType::rigid) continue;
-    double extent = 0;
-    const auto see = [&](const std::string& owner, const Triple& point) {
-      if (owner == body.name) extent = std::max(extent, math::norm(Vec3(point) - Vec3(body.center_of_mass)));
-    };
-    for (const JointDef& joint : mechanics.joints) see(joint.body1, joint.point1), see(joint.body2, joint.point2);
-    for (const TranslationalForceDef& force : mechanics.translational_forces) {
-      see(force.body1, force.point1), see(force.body2, force.point2);
-    }
     const double largest = math::symmetric_eigenvalues(inertia_about_center(body))[2];
     const double gyration = std::sqrt(std::max(0.0, largest) / body.mass);
     // a body whose points all lie in its centre says nothing about its size
-    if (extent == 0 || gyration <= kLargestGyration * extent) continue;
+    if (extent[b + 1] == 0 || gyration <= kLargestGyration * extent[b + 1]) continue;
     warnings.push_back({body.name + ".inertia",
                         fmt::format("the radius of gyration is {:.3g} m, all points on the body are within {:.3g} m of "
                                     "its centre of mass",
-                                    gyration, extent),
+                                    gyration, extent[b + 1]),
                         "the inertia about inertia_about, in kg m2", ""});
   }
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -20,8 +22,15 @@ bool rides_on_modes(const MechanicsDef& mechanics, const JointDef& joint) noexce
                      [&](const FlexibleBodyDef& body) { return body.body == joint.body1 && body.modes->modes() > 0; });
 }
 
-std::pair<int, int> bodies_of(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
-  return {find_body(mechanics, joint.body1), find_body(mechanics, joint.body2)};
+// The two bodies of each joint.
+using JointEnds = std::vector<std::pair<int, int>>;
+
+JointEnds ends_of_joints(const MechanicsDef& mechanics) {
+  const BodyNumbers number_of(mechanics);
+  JointEnds ends;
+  ends.reserve(mechanics.joints.size());
+  for (const JointDef& joint : mechanics.joints) ends.emplace_back(number_of(joint.body1), number_of(joint.body2));
+  return ends;
 }
 
 // Bodies that joints connect, by union of their sets.
@@ -35,8 +44,9 @@ class Groups {
     parent_[at(a)] = b;
     return a != b;
   }
-  [[nodiscard]] int root_of(int body) const {
-    while (parent_[at(body)] != body) body = parent_[at(body)];
+  // Shortens the way for the next look.
+  [[nodiscard]] int root_of(int body) {
+    while (parent_[at(body)] != body) body = parent_[at(body)] = parent_[at(parent_[at(body)])];
     return body;
   }
 
@@ -49,35 +59,30 @@ bool needs_coordinates(const JointDef& joint) noexcept {
          is_given(joint.initial_velocity_2) || is_given(joint.initial_rotation);
 }
 
-bool is_driven(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
-  return std::any_of(mechanics.motions.begin(), mechanics.motions.end(),
-                     [&joint](const MotionDef& motion) { return motion.joint == joint.name; });
-}
-
-// their angles count whole turns, which those of cut joints do not
-bool is_geared(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
-  return std::any_of(mechanics.gears.begin(), mechanics.gears.end(),
-                     [&joint](const GearDef& gear) { return gear.joint1 == joint.name || gear.joint2 == joint.name; });
-}
-
-// joints are taken into the tree by classes, within a class in the order of the file
-int class_of(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
+// Joints are taken into the tree by classes, within a class in the order of the file. Names of joints: driven by a
+// motion; geared, whose angles count whole turns, which those of cut joints do not.
+int class_of(const std::set<std::string_view>& driven, const std::set<std::string_view>& geared,
+             const JointDef& joint) noexcept {
   if (joint.type == JointType::fixed || joint.type == JointType::node) return 0;
-  if (is_geared(mechanics, joint)) return 1;
+  if (geared.contains(joint.name)) return 1;
   if (joint.type == JointType::floating) return 4;
-  return needs_coordinates(joint) || is_driven(mechanics, joint) ? 2 : 3;
+  return needs_coordinates(joint) || driven.contains(joint.name) ? 2 : 3;
 }
 
 // is_barred, by joint: must be cut
-std::vector<bool> choose_tree(const MechanicsDef& mechanics, const std::vector<bool>& is_barred) {
+std::vector<bool> choose_tree(const MechanicsDef& mechanics, const JointEnds& ends,
+                              const std::vector<bool>& is_barred) {
+  std::set<std::string_view> driven, geared;
+  for (const MotionDef& motion : mechanics.motions) driven.insert(motion.joint);
+  for (const GearDef& gear : mechanics.gears) geared.insert({gear.joint1, gear.joint2});
   std::vector<bool> is_in_tree(mechanics.joints.size(), false);
   Groups groups(mechanics.bodies.size() + 1);
   for (int choice = 0; choice < 5; ++choice) {
     for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
       const JointDef& joint = mechanics.joints[j];
-      const auto [body1, body2] = bodies_of(mechanics, joint);
+      const auto [body1, body2] = ends[j];
       const bool is_of_tree = has_coordinates(joint.type) || joint.type == JointType::node;
-      if (body1 == kNoBody || body2 == kNoBody || !is_of_tree || is_barred[j] || class_of(mechanics, joint) != choice) {
+      if (body1 == kNoBody || body2 == kNoBody || !is_of_tree || is_barred[j] || class_of(driven, geared, joint) != choice) {
         continue;
       }
       is_in_tree[j] = groups.connect(body1, body2);
@@ -86,10 +91,9 @@ std::vector<bool> choose_tree(const MechanicsDef& mechanics, const std::vector<b
   return is_in_tree;
 }
 
-std::vector<bool> connected_to_ground(const MechanicsDef& mechanics) {
+std::vector<bool> connected_to_ground(const MechanicsDef& mechanics, const JointEnds& ends) {
   Groups groups(mechanics.bodies.size() + 1);
-  for (const JointDef& joint : mechanics.joints) {
-    const auto [body1, body2] = bodies_of(mechanics, joint);
+  for (const auto& [body1, body2] : ends) {
     if (body1 != kNoBody && body2 != kNoBody) groups.connect(body1, body2);
   }
   std::vector<bool> is_connected(mechanics.bodies.size() + 1);
@@ -99,14 +103,18 @@ std::vector<bool> connected_to_ground(const MechanicsDef& mechanics) {
   return is_connected;
 }
 
-void report_unreached(const MechanicsDef& mechanics, const std::vector<bool>& is_reached, Problems& problems) {
+void report_unreached(const MechanicsDef& mechanics, const JointEnds& ends, const std::vector<bool>& is_reached,
+                      Problems& problems) {
+  std::vector<bool> has_joint(is_reached.size(), false);
+  for (const auto& [body1, body2] : ends) {
+    if (body1 != kNoBody) has_joint[at(body1)] = true;
+    if (body2 != kNoBody) has_joint[at(body2)] = true;
+  }
   for (std::size_t b = 1; b < is_reached.size(); ++b) {
     if (is_reached[b]) continue;
     const std::string& name = mechanics.bodies[b - 1].name;
-    bool has_joint = false;
-    for (const JointDef& joint : mechanics.joints) has_joint |= joint.body1 == name || joint.body2 == name;
     problems.push_back({name,
-                        has_joint ? "no chain of joints leads from this body to Ground" : "this body has no joint",
+                        has_joint[b] ? "no chain of joints leads from this body to Ground" : "this body has no joint",
                         "a joint to Ground or to a body that is connected to it; type floating for a free body",
                         {}});
   }
@@ -132,6 +140,19 @@ int find_body(const MechanicsDef& mechanics, std::string_view name) noexcept {
   return kNoBody;
 }
 
+BodyNumbers::BodyNumbers(const MechanicsDef& mechanics) {
+  numbers_.reserve(mechanics.bodies.size() + 1);
+  numbers_.emplace(kGroundName, kGround);
+  for (std::size_t i = 0; i < mechanics.bodies.size(); ++i) {
+    numbers_.emplace(mechanics.bodies[i].name, static_cast<int>(i) + 1);
+  }
+}
+
+int BodyNumbers::operator()(std::string_view name) const noexcept {
+  const auto found = numbers_.find(name);
+  return found == numbers_.end() ? kNoBody : found->second;
+}
+
 std::string_view body_name(const MechanicsDef& mechanics, int body) noexcept {
   return body == kGround ? kGroundName : std::string_view(mechanics.bodies[static_cast<std::size_t>(body) - 1].name);
 }
@@ -146,9 +167,22 @@ bool has_coordinates(JointType type) noexcept {
 
 namespace {
 
-std::vector<TreeEdge> walk_tree(const MechanicsDef& mechanics, const std::vector<bool>& is_barred,
-                                std::vector<bool>& is_reached) {
-  const std::vector<bool> is_in_tree = choose_tree(mechanics, is_barred);
+// Joints of the tree by body, in the order of the file.
+std::vector<std::vector<int>> joints_by_body(const MechanicsDef& mechanics, const JointEnds& ends,
+                                             const std::vector<bool>& is_in_tree) {
+  std::vector<std::vector<int>> joints(mechanics.bodies.size() + 1);
+  for (std::size_t j = 0; j < ends.size(); ++j) {
+    if (!is_in_tree[j]) continue;
+    joints[at(ends[j].first)].push_back(static_cast<int>(j));
+    joints[at(ends[j].second)].push_back(static_cast<int>(j));
+  }
+  return joints;
+}
+
+std::vector<TreeEdge> walk_tree(const MechanicsDef& mechanics, const JointEnds& ends,
+                                const std::vector<bool>& is_barred, std::vector<bool>& is_reached) {
+  const std::vector<bool> is_in_tree = choose_tree(mechanics, ends, is_barred);
+  const std::vector<std::vector<int>> joints = joints_by_body(mechanics, ends, is_in_tree);
   std::vector<TreeEdge> tree;
   is_reached.assign(mechanics.bodies.size() + 1, false);
   is_reached[kGround] = true;
@@ -158,20 +192,18 @@ std::vector<TreeEdge> walk_tree(const MechanicsDef& mechanics, const std::vector
   const auto walk = [&] {
     for (; next < frontier.size(); ++next) {
       const int body = frontier[next];
-      for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
-        if (!is_in_tree[j]) continue;
-        const auto [body1, body2] = bodies_of(mechanics, mechanics.joints[j]);
-        if (body1 != body && body2 != body) continue;
+      for (const int j : joints[at(body)]) {
+        const auto [body1, body2] = ends[at(j)];
         const int other = body1 == body ? body2 : body1;
         if (is_reached[at(other)]) continue;
         is_reached[at(other)] = true;
-        tree.push_back({static_cast<int>(j), body, other, body1 == other});
+        tree.push_back({j, body, other, body1 == other});
         frontier.push_back(other);
       }
     }
   };
   walk();
-  const std::vector<bool> is_connected = connected_to_ground(mechanics);
+  const std::vector<bool> is_connected = connected_to_ground(mechanics, ends);
   for (std::size_t body = 1; body < is_reached.size(); ++body) {
     if (is_reached[body] || !is_connected[body]) continue;
     is_reached[body] = true;
@@ -199,20 +231,24 @@ int entry_at_a_node(const MechanicsDef& mechanics, const std::vector<TreeEdge>& 
 std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems) {
   check_floating(mechanics, problems);
   std::vector<bool> is_barred(mechanics.joints.size(), false), is_reached;
-  std::vector<TreeEdge> tree = walk_tree(mechanics, is_barred, is_reached);
+  const JointEnds ends = ends_of_joints(mechanics);
+  std::vector<TreeEdge> tree = walk_tree(mechanics, ends, is_barred, is_reached);
   for (int entry = entry_at_a_node(mechanics, tree); entry != kNoJoint; entry = entry_at_a_node(mechanics, tree)) {
     is_barred[at(entry)] = true;
-    tree = walk_tree(mechanics, is_barred, is_reached);
+    tree = walk_tree(mechanics, ends, is_barred, is_reached);
   }
-  report_unreached(mechanics, is_reached, problems);
+  report_unreached(mechanics, ends, is_reached, problems);
   return tree;
 }
 
 std::vector<int> cut_joints(const MechanicsDef& mechanics, const std::vector<TreeEdge>& tree) {
+  std::vector<bool> is_in_tree(mechanics.joints.size(), false);
+  for (const TreeEdge& edge : tree) {
+    if (edge.joint != kNoJoint) is_in_tree[at(edge.joint)] = true;
+  }
   std::vector<int> cuts;
   for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
-    const auto is_this = [j](const TreeEdge& edge) { return edge.joint == static_cast<int>(j); };
-    if (mechanics.joints[j].type == JointType::floating || std::any_of(tree.begin(), tree.end(), is_this)) continue;
+    if (mechanics.joints[j].type == JointType::floating || is_in_tree[j]) continue;
     cuts.push_back(static_cast<int>(j));
   }
   return cuts;
@@ -220,25 +256,35 @@ std::vector<int> cut_joints(const MechanicsDef& mechanics, const std::vector<Tre
 
 std::vector<Pose> start_poses(const MechanicsDef& mechanics, Problems& problems) {
   const std::size_t count = mechanics.bodies.size() + 1;
+  const BodyNumbers number_of(mechanics);
+  std::vector<int> reference(count, kNoBody);
+  for (std::size_t b = 1; b < count; ++b) reference[b] = number_of(mechanics.bodies[b - 1].relative_to);
   std::vector<Pose> poses(count);
-  std::vector<bool> is_known(count, false);
-  is_known[kGround] = true;
-  // each sweep places the bodies whose reference is placed; a sweep without one means a cycle
-  for (bool has_advanced = true; has_advanced;) {
-    has_advanced = false;
-    for (std::size_t b = 1; b < count; ++b) {
+  enum class Place : std::uint8_t { open, asked, known, none };
+  std::vector<Place> place(count, Place::open);
+  place[kGround] = Place::known;
+  // from each body along its references to one that is placed, and back; one that is asked twice is in a cycle
+  std::vector<std::size_t> chain;
+  for (std::size_t first = 1; first < count; ++first) {
+    std::size_t b = first;
+    for (; place[b] == Place::open; b = at(reference[b])) {
+      place[b] = Place::asked;
+      chain.push_back(b);
+      if (reference[b] == kNoBody) break;
+    }
+    const bool is_placed = place[b] == Place::known;
+    for (; !chain.empty(); chain.pop_back()) {
+      b = chain.back();
+      place[b] = is_placed ? Place::known : Place::none;
+      if (!is_placed) continue;
       const BodyDef& body = mechanics.bodies[b - 1];
-      const int reference = find_body(mechanics, body.relative_to);
-      if (is_known[b] || reference == kNoBody || !is_known[static_cast<std::size_t>(reference)]) continue;
-      const Pose& base = poses[static_cast<std::size_t>(reference)];
+      const Pose& base = poses[at(reference[b])];
       poses[b] = {base.R * math::rotation_zxz(body.orientation), base.p + base.R * math::Vec3(body.position)};
-      is_known[b] = true;
-      has_advanced = true;
     }
   }
   for (std::size_t b = 1; b < count; ++b) {
     const BodyDef& body = mechanics.bodies[b - 1];
-    if (is_known[b] || find_body(mechanics, body.relative_to) == kNoBody) continue;
+    if (place[b] == Place::known || reference[b] == kNoBody) continue;
     problems.push_back({body.name + ".relative_to",
                         "the chain of relative_to from '" + body.name + "' does not end",
                         "a chain of bodies that ends at Ground",

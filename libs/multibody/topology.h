@@ -10,6 +10,7 @@
 #pragma once
 
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "core/problem.h"
@@ -35,8 +36,18 @@ struct TreeEdge {
   bool is_reversed = false;  // the child is the joint's body 1
 };
 
-// Index of a body by name, kNoBody when there is none.
+// Index of a body by name, kNoBody when there is none. Linear in the bodies.
 [[nodiscard]] int find_body(const MechanicsDef& mechanics, std::string_view name) noexcept;
+
+// The same for many names: the mechanics outlives it and does not change.
+class BodyNumbers {
+ public:
+  explicit BodyNumbers(const MechanicsDef& mechanics);
+  [[nodiscard]] int operator()(std::string_view name) const noexcept;
+
+ private:
+  std::unordered_map<std::string_view, int> numbers_;  // looked up, never walked
+};
 [[nodiscard]] std::string_view body_name(const MechanicsDef& mechanics, int body) noexcept;
 
 // Joints in an order in which every parent comes before its children. Appends a problem for every body without a way to

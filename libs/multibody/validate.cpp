@@ -33,6 +33,8 @@ namespace {
 using math::Mat3;
 using math::Vec3;
 
+// no machine has a part of this radius of gyration; beyond it masses and moments lose each other in double precision
+constexpr double kLargestRadius = 1e6;  // m
 // directions f1 and g1 are exact in practice; more than this is a wrong number
 constexpr double kRightAngleTolerance = 1e-3;
 // transverse moments of a cylinder as CAD prints them
@@ -182,7 +184,7 @@ class Validator {
 
   void check_names() {
     const auto reference = [this](const std::string& owner, std::string_view key, const std::string& body) {
-      if (multibody::find_body(m_, body) != kNoBody) return;
+      if (number_of_(body) != kNoBody) return;
       references_hold_ = false;
       const std::string nodes = nodes_beside(given_, body);
       add(fmt::format("{}.{}", owner, key), fmt::format("there is no body '{}'", body),
@@ -260,6 +262,12 @@ class Validator {
     const auto [xx, yy, zz] = body.inertia;
     const auto [a, b, c] = math::symmetric_eigenvalues(inertia_about_center(body));
     const double tolerance = kInertiaTolerance * std::max({xx, yy, zz, std::abs(c)});
+    const double radius = std::sqrt(std::abs(c) / body.mass);
+    if (!(radius <= kLargestRadius)) {
+      add(body.name + ".mass", fmt::format("with {:.6g} kg the radius of gyration is {:.3g} m", body.mass, radius),
+          fmt::format("a mass that fits the inertia: a radius of at most {:g} m", kLargestRadius));
+      return;
+    }
     const std::string point = body.inertia_about == InertiaPoint::body_origin ? " (taken to the centre of mass)" : "";
     if (a < -tolerance) {
       add(body.name + ".inertia",
@@ -411,6 +419,7 @@ class Validator {
 
   const MechanicsDef& given_;
   const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
   Problems& problems_;
   bool references_hold_ = true;
 };

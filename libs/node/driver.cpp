@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/arithmetic_self_test.h"
+#include "core/printable.h"
 #include "core/time.h"
 #include "node/health_report.h"
 
@@ -80,7 +81,8 @@ class HealthThread {
   }
 
   void say_warning(const std::string& text) {
-    std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node_.member().role())).c_str(), text.c_str());
+    std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node_.member().role())).c_str(),
+                 printable(text).c_str());
   }
 
   // each once
@@ -103,7 +105,8 @@ class HealthThread {
 
 void tell_warnings(Node& node) {
   for (const std::string& warning : node.member().take_warnings()) {
-    std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node.member().role())).c_str(), warning.c_str());
+    std::fprintf(stderr, "%s: warning: %s\n", std::string(to_text(node.member().role())).c_str(),
+                 printable(warning).c_str());
   }
 }
 

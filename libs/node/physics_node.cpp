@@ -747,9 +747,57 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
   samples_.for_each_missing(n_, ask);
 }
 
+// The first message that the next step lacks, as long as no other node has told the reason. A free-running node waits
+// for none.
+std::optional<Awaited> PhysicsNode::awaited() noexcept {
+  if (stage_ == Stage::loading) return Awaited{Role::io, Topic::state, n_};
+  const wire::NodeStatus& io = member_.peer(Role::io).status;
+  if (stage_ != Stage::stepping || is_ended_by_fault_ || built_.ports.is_free_running) return std::nullopt;
+  // io waits for somebody, and ends the session when that takes too long
+  if (io.state == NodeState::holding || io.state >= NodeState::ended) return std::nullopt;
+  const StepIndex next = is_follower() ? n_ + samples_.stride() : n_;
+  if (is_withheld(is_follower() ? next - 1 : next)) return std::nullopt;
+  if (!is_follower() && ticks_.find(n_) == nullptr) {
+    // a tick that io has not sent has its reason there
+    const Peer& of_ticks = member_.peer(Role::io);
+    const bool was_sent = of_ticks.step_epoch == member_.epoch() && of_ticks.step > n_;
+    return was_sent ? std::optional(Awaited{Role::io, Topic::tick, n_}) : std::nullopt;
+  }
+  std::optional<Awaited> first;
+  samples_.for_each_missing(next, [&](Role role, Topic topic, StepIndex step) {
+    const Peer& partner = member_.peer(role);
+    // one that holds has told its own reason
+    if (!first && !partner.is_lost && partner.status.state != NodeState::holding) first = Awaited{role, topic, step};
+  });
+  return first;
+}
+
+// io decides first; a node that io does not hear of ends by itself a little later.
+void PhysicsNode::look_for_stall(std::int64_t now_ns) {
+  const bool was_named = stall_.is_named();
+  const std::uint64_t asked = health().resends_asked;
+  stall_.look(awaited(), asked, now_ns);
+  if (was_named && !stall_.is_named() && member_.state() == NodeState::holding && !member_.silent_peer()) {
+    member_.set_state(n_ > 0 ? NodeState::running : NodeState::ready);
+  }
+  if (stall_.begins(member_, now_ns)) {
+    const std::string text = stall_.text(member_, asked);
+    if (stall_.may_warn()) member_.warn(text);
+    if (stage_ == Stage::stepping) member_.hold(text);
+  }
+  const SimDuration most{built_.stall_timeout.ns + kLostAfter.ns};
+  if (!stall_.is_named() || stall_.waited() < most) return;
+  leave(ExitCode::node_lost,
+        stall_.text(member_, asked) + ", nothing came within " + seconds_text(most) +
+            " (session.stall_timeout and 2 s for io); this node stopped after step " + std::to_string(n_),
+        now_ns);
+}
+
 void PhysicsNode::watch(std::int64_t now_ns) {
   Role about = Role::io;
   const PeerEvent event = member_.watch_peers(now_ns, about);
+  if (stage_ == Stage::leaving) return;
+  look_for_stall(now_ns);
   if (stage_ == Stage::leaving) return;
   const Peer& io = member_.peer(Role::io);
   if (io.status.state == NodeState::fault) {

@@ -24,6 +24,7 @@
 #include "node/node.h"
 #include "node/resend_clock.h"
 #include "node/sample_exchange.h"
+#include "node/stall_watch.h"
 #include "node/step_ring.h"
 
 namespace slew::node {
@@ -36,8 +37,9 @@ struct BuiltSubsystem {
   std::vector<std::uint32_t> published_variables;  // indices into Subsystem::variables(), ascending
   PortTraffic ports;
   FlexibleTraffic flexible;
-  StepIndex exchange_unit = 1;  // steps after which all nodes have exchanged
-  SimDuration start_grace;      // steps of this time after the first are not judged
+  StepIndex exchange_unit = 1;                       // steps after which all nodes have exchanged
+  SimDuration start_grace;                           // steps of this time after the first are not judged
+  SimDuration stall_timeout = milliseconds(10'000);  // longest wait for one message of a node that is heard otherwise
 };
 
 // Builds the subsystem; refuses with the reason (assets that differ, scene that this build cannot run).
@@ -96,6 +98,8 @@ class PhysicsNode final : public Node {
   void publish_directory();
   [[nodiscard]] bool is_withheld(StepIndex tick) const noexcept;
   void ask_for_missing(std::int64_t now_ns);
+  [[nodiscard]] std::optional<Awaited> awaited() noexcept;
+  void look_for_stall(std::int64_t now_ns);
   void watch(std::int64_t now_ns);
   void leave(ExitCode code, const std::string& reason, std::int64_t now_ns);
   void apply_commands(std::span<const wire::Command> commands);
@@ -137,6 +141,7 @@ class PhysicsNode final : public Node {
   bool has_late_end_ = false;
   coupling::Quality quality_ = coupling::Quality::ok;
   ResendClock resend_;
+  StallWatch stall_;
   wire::SampleState said_;  // of the last sample
   CheckpointSender checkpoint_;
   StepIndex save_at_ = kNoStep;  // step whose state io has asked for

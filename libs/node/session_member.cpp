@@ -371,6 +371,8 @@ void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now
   const auto index = static_cast<std::size_t>(health.header.role);
   if (index < wire::kRoles && peers_[index].incarnation == health.header.incarnation) {
     peers_[index].last_heard_ns = now_ns;
+    peers_[index].step = health.header.step;
+    peers_[index].step_epoch = health.header.epoch;
   }
 }
 

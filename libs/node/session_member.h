@@ -63,6 +63,8 @@ struct Peer {
   std::int64_t exit_seen_ns = 0;  // when the process was first seen to be gone; 0: it is there
   bool is_silent = false;         // named once
   bool is_lost = false;           // given up, or gone
+  StepIndex step = kJoinStep;     // the next one to do, as its health says
+  std::uint32_t step_epoch = 0;   // of that
   std::int64_t gone_ns = 0;       // when it was seen to be gone; 0: it is not
 };
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/failure.h"
+#include "core/printable.h"
 #include "core/suggestion.h"
 
 namespace slew::options {
@@ -226,7 +227,7 @@ bool Program::parse(int argc, const char* const* argv, int& exit_code) {
       exit_code = app_->exit(error);
       return false;
     }
-    std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), problem_text(*app_, error).c_str());
+    std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), printable_lines(problem_text(*app_, error)).c_str());
     exit_code = static_cast<int>(ExitCode::bad_input);
     return false;
   }

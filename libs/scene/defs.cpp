@@ -28,6 +28,7 @@ constexpr Range kDelayRange{.min = 1, .max = 64, .min_is_open = false, .max_is_o
 constexpr Range kWaitRange{.min = 0.001, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
 constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
+constexpr Range kStallRange = {.min = 0.5, .max = 3600};
 constexpr Range kRejoinRange{.min = 0, .max = 3600, .min_is_open = false, .max_is_open = false};
 constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-3, .min_is_open = false, .max_is_open = false};
@@ -129,6 +130,12 @@ constexpr Field kSessionFields[] = {
          .range = kRejoinRange,
          .doc = "how long the session is held when a physics node is lost, for another process that takes its place "
                 "and goes on with the state of the last checkpoint; 0: no checkpoints, the session ends"}),
+    field<&SessionDef::stall_timeout>(
+        "stall_timeout",
+        {.dimension = Dimension::time,
+         .range = kStallRange,
+         .doc = "how long a step waits for one message of a node that is heard otherwise; then the session ends with "
+                "exit code 4, or with session.rejoin the node's place is given away"}),
     field<&SessionDef::overrun>(
         "overrun",
         {.choices = kOverrunPolicies,

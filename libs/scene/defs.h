@@ -70,6 +70,9 @@ struct SessionDef {
   double controller_timeout = 0.5;  // s of silence, or out of step, after which a controller's channel goes to neutral
   double rejoin = 0;                // s that a lost physics node's place is held for another process; 0: it is not
 
+  // s, longest wait for one message of a node that is heard otherwise
+  double stall_timeout = 10;
+
   OverrunPolicy overrun = OverrunPolicy::slip;
   std::int64_t overrun_after =
       0;                      // steps in a row that overran, after which hold or stop takes effect; 0: the lag alone

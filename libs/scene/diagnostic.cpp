@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/printable.h"
+
 namespace slew::scene {
 namespace {
 
@@ -19,14 +21,14 @@ std::string join(const std::vector<Diagnostic>& diagnostics, std::size_t omitted
 }  // namespace
 
 std::string Diagnostic::text() const {
-  std::string text = file;
+  std::string text = printable(file);
   if (line > 0) text += ':' + std::to_string(line);
   if (line > 0 && column > 0) text += ':' + std::to_string(column);
   text += ": ";
-  if (!path.empty()) text += path + ": ";
-  text += what;
-  if (!expected.empty()) text += "; expected " + expected;
-  if (!suggestion.empty()) text += "; did you mean '" + suggestion + "'?";
+  if (!path.empty()) text += printable(path) + ": ";
+  text += printable_lines(what);
+  if (!expected.empty()) text += "; expected " + printable(expected);
+  if (!suggestion.empty()) text += "; did you mean '" + printable(suggestion) + "'?";
   return text;
 }
 
@@ -37,7 +39,7 @@ std::string LoadError::first_reason() const {
   const Diagnostic& first = diagnostics_.front();
   std::string text = first.path.empty() ? first.what : first.path + ": " + first.what;
   if (!first.expected.empty()) text += "; expected " + first.expected;
-  return text;
+  return printable_lines(text);
 }
 
 int Report::add_source(std::string label, Lines lines) {

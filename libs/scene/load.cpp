@@ -431,6 +431,39 @@ Scene read_tree(Node root, Surroundings surroundings, const std::string& name, c
   return scene;
 }
 
+std::string line_of(const std::string& text, std::size_t at) {
+  const std::size_t before = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return text.substr(begin, text.find('\n', at) - begin);
+}
+
+[[noreturn]] void refuse_expansion(const Scene& scene, std::string what) {
+  throw LoadError(
+      {{.file = scene.name,
+        .path = "",
+        .what = "the scene as it is sent to the nodes is not read back as the same scene: " + std::move(what),
+        .expected = "the same scene; report it as a fault of this program, with the file",
+        .suggestion = ""}},
+      0);
+}
+
+// Every node reads the expanded text: what this program accepts it must accept there, as the same scene.
+void read_back(const Scene& scene) {
+  std::string again;
+  try {
+    again = load_text(scene.expanded_text, scene.name).expanded_text;
+  } catch (const LoadError& error) {
+    refuse_expansion(scene, error.what());
+  }
+  if (again == scene.expanded_text) return;
+  const auto differs =
+      std::mismatch(again.begin(), again.end(), scene.expanded_text.begin(), scene.expanded_text.end());
+  refuse_expansion(scene, fmt::format("'{}' became '{}'",
+                                      line_of(scene.expanded_text,
+                                              static_cast<std::size_t>(differs.second - scene.expanded_text.begin())),
+                                      line_of(again, static_cast<std::size_t>(differs.first - again.begin()))));
+}
+
 }  // namespace
 
 Scene load_file(const std::string& path, const Overrides& overrides) {
@@ -440,7 +473,9 @@ Scene load_file(const std::string& path, const Overrides& overrides) {
     if (!root) report.fail(kMaxReportedProblems);
     const std::filesystem::path file(path);
     Surroundings surroundings{true, file.parent_path().string()};
-    return read_tree(std::move(*root), std::move(surroundings), file.stem().string(), overrides, report);
+    Scene scene = read_tree(std::move(*root), std::move(surroundings), file.stem().string(), overrides, report);
+    read_back(scene);
+    return scene;
   });
 }
 

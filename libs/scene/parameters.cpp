@@ -11,6 +11,7 @@
 #include "multibody/joint_axes.h"
 #include "multibody/model.h"
 #include "multibody/parameters.h"
+#include "multibody/validate.h"
 #include "scene/field_reader.h"
 #include "scene/sections.h"
 
@@ -146,6 +147,11 @@ ParameterDirectory::ParameterDirectory(const Scene& scene) : session_(scene.sess
   if (is_whole && scene.has_mechanics() && session_.solution == Solution::split) {
     mechanics_ = std::make_shared<const multibody::MechanicsDef>(scene.mechanics);
   }
+  // files of flexible bodies may not be here, and without them no machine can be judged
+  if (scene.has_mechanics() && !scene.has_flexible_bodies()) {
+    whole_mechanics_ =
+        mechanics_ != nullptr ? mechanics_ : std::make_shared<const multibody::MechanicsDef>(scene.mechanics);
+  }
   for (std::size_t i = 0; i < parameters_.size(); ++i) index_.emplace(parameters_[i].path, i);
   for (const ElementRef& element : everything(scene)) {
     for (const Field& field : element.fields) {
@@ -176,6 +182,47 @@ std::string ParameterDirectory::obstacle_of_speed(const ParameterInfo& parameter
   if (!fast) return {};
   const Problem problem = multibody::problem_of(*fast, rule, h);
   return problem.path + ": " + problem.what + "; expected " + problem.expected;
+}
+
+namespace {
+
+// Puts the value into the element's field that the path names. False: it names none.
+bool assign(Scene& scene, std::string_view path, double value) {
+  for (const ElementRef& element : elements(scene)) {
+    if (!path.starts_with(element.name) || path.size() <= element.name.size() || path[element.name.size()] != '.') {
+      continue;
+    }
+    const std::string_view key = path.substr(element.name.size() + 1);
+    for (const Field& field : element.fields) {
+      if (field.type == FieldType::number && field.key == key) {
+        *static_cast<double*>(field.member(element.def)) = value;
+        return true;
+      }
+      if (field.type != FieldType::triple || !key.starts_with(field.key)) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (key.substr(field.key.size()) != kAxes[i]) continue;
+        (*static_cast<Triple*>(field.member(element.def)))[i] = value;
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+// What the loader would say of the machine with this value, at its start.
+std::string ParameterDirectory::obstacle_of_machine(const ParameterInfo& parameter, double value) const {
+  if (whole_mechanics_ == nullptr) return {};
+  Scene changed;
+  changed.session = session_;
+  changed.mechanics = *whole_mechanics_;
+  if (!assign(changed, parameter.path, value)) return {};
+  Problems problems;
+  multibody::validate(changed.mechanics, problems);
+  if (problems.empty()) return {};
+  const Problem& first = problems.front();
+  return first.path + ": " + first.what + "; expected " + first.expected;
 }
 
 Assignment ParameterDirectory::check(std::string_view path, double value, std::optional<SimDuration> over) const {
@@ -212,6 +259,9 @@ Assignment ParameterDirectory::check(std::string_view path, double value, std::o
     const std::string range = range_text(parameter->range, parameter->dimension);
     return refused(fmt::format("{}: {} is out of range; expected {}", name, with_unit(value, parameter->dimension),
                                range.empty() ? "a finite number" : range));
+  }
+  if (const std::string machine = obstacle_of_machine(*parameter, value); !machine.empty()) {
+    return refused(fmt::format("{}: {} is refused: {}", name, with_unit(value, parameter->dimension), machine));
   }
   if (const std::string speed = obstacle_of_speed(*parameter, value); !speed.empty()) {
     return refused(fmt::format("{}: {} is refused: {}", name, with_unit(value, parameter->dimension), speed));

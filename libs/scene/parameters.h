@@ -60,8 +60,9 @@ class ParameterDirectory {
   [[nodiscard]] const ParameterInfo* find(std::string_view path) const;
 
   // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused when unknown (with a suggestion), not live, of a wrong
-  // dimension, out of range, none of the choices, or a mass, spring or damper with which the mechanics' explicit
-  // integrator could not follow what it moves (multibody/element_speeds.h; at the start, the rest as the scene has it).
+  // dimension, out of range, none of the choices, a value with which the loader would refuse the machine, or a mass,
+  // spring or damper with which the mechanics' explicit integrator could not follow what it moves
+  // (multibody/element_speeds.h; at the start, the rest as the scene has it).
   [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {});
   // The same for a value that is already in SI, as it comes over the wire. over: the time that is asked for; without
   // one it is the parameter's own. A choice is made at once, or refused.
@@ -71,10 +72,12 @@ class ParameterDirectory {
   [[nodiscard]] Assignment parse_choice(const ParameterInfo& parameter, std::string_view name,
                                         std::optional<SimDuration> over) const;
 
+  [[nodiscard]] std::string obstacle_of_machine(const ParameterInfo& parameter, double value) const;
   [[nodiscard]] std::string obstacle_of_speed(const ParameterInfo& parameter, double value) const;
 
   SessionDef session_;
   std::shared_ptr<const multibody::MechanicsDef> mechanics_;  // null: no bodies, or nobody integrates in sub-steps
+  std::shared_ptr<const multibody::MechanicsDef> whole_mechanics_;  // null: it cannot be judged
   std::vector<ParameterInfo> parameters_;
   std::map<std::string, std::size_t, std::less<>> index_;
   std::map<std::string, std::string, std::less<>> not_numeric_;  // path of a field that is no parameter: its type

@@ -7,37 +7,15 @@
 #include <utility>
 
 #include "core/input_file.h"
+#include "core/printable.h"
 
 namespace slew::scene {
 namespace {
 
-// Length of the UTF-8 sequence at text[at] (Unicode 15, table 3-7), 0 when it is malformed.
-std::size_t sequence_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
-  };
-  const auto continues = [&](std::size_t i, int low, int high) { return byte(i) >= low && byte(i) <= high; };
-  const int first = byte(at);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return continues(at + 1, 0x80, 0xBF) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {
-    const int low = first == 0xE0 ? 0xA0 : 0x80;
-    const int high = first == 0xED ? 0x9F : 0xBF;
-    return continues(at + 1, low, high) && continues(at + 2, 0x80, 0xBF) ? 3 : 0;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    const int low = first == 0xF0 ? 0x90 : 0x80;
-    const int high = first == 0xF4 ? 0x8F : 0xBF;
-    const bool ok = continues(at + 1, low, high) && continues(at + 2, 0x80, 0xBF) && continues(at + 3, 0x80, 0xBF);
-    return ok ? 4 : 0;
-  }
-  return 0;
-}
-
 // What is wrong with the character at a byte, or nothing.
 std::string character_problem(std::string_view text, std::size_t at) {
   const auto byte = static_cast<std::uint8_t>(text[at]);
-  if (byte == 0) return "NUL byte: this is not a text file";
+  if (byte == 0) return "NUL byte";
   if (byte == 0x7F || (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r')) {
     return fmt::format("control character 0x{:02X}", byte);
   }
@@ -62,6 +40,14 @@ Mark SourceText::mark_at(std::size_t byte) const {
   const auto line = static_cast<std::size_t>(next - line_start.begin());
   const std::size_t start = line_start[line - 1];
   return {source, static_cast<int>(line), 1 + characters(std::string_view(text).substr(start, byte - start))};
+}
+
+std::string text_problem(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); i += sequence_length(text, i)) {
+    std::string problem = character_problem(text, i);
+    if (!problem.empty()) return problem;
+  }
+  return {};
 }
 
 Mark MarkCursor::mark_at(std::size_t byte) {
@@ -95,6 +81,7 @@ std::optional<SourceText> check_source(std::string text, int source, Report& rep
     if (!is_printable) {
       std::string problem = character_problem(result.text, i);
       if (!problem.empty()) {
+        if (c == '\0') problem += ": this is not a text file";
         report.add(result.mark_at(i), "", {std::move(problem), "UTF-8 text", ""});
         return std::nullopt;
       }

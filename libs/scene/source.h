@@ -43,4 +43,7 @@ class MarkCursor {
 [[nodiscard]] std::optional<SourceText> check_source(std::string text, int source, Report& report,
                                                      std::size_t most = kMaxFileBytes);
 
+// What is wrong with a text whose escapes are resolved, by the same rules; empty: nothing.
+[[nodiscard]] std::string text_problem(std::string_view text);
+
 }  // namespace slew::scene

@@ -12,6 +12,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/printable.h"
+
 namespace slew::scene {
 namespace {
 
@@ -76,6 +78,10 @@ class TreeBuilder final : public YAML::EventHandler {
     if ((first == '"' || first == '\'') && closing_quote(source_.text, at) == std::string_view::npos) {
       report_.add(place(mark), "", {"this quote is not closed", std::string("a second ") + first, ""});
       throw StopReading();
+    }
+    // an escape may stand for what the source itself must not hold
+    if (std::string problem = text_problem(value); !problem.empty()) {
+      report_.add(place(mark), "", {std::move(problem) + " after its escapes are resolved", "UTF-8 text", ""});
     }
     Node node;
     node.kind = Node::Kind::scalar;
@@ -274,7 +280,7 @@ std::string describe(const Node& node) {
     case Node::Kind::scalar:
       break;
   }
-  return fmt::format("'{}'", shortened(node.text));
+  return fmt::format("'{}'", printable(shortened(node.text)));
 }
 
 std::optional<Node> parse_yaml(const SourceText& source, Report& report) {

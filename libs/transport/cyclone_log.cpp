@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "core/printable.h"
 #include "core/time.h"
 
 namespace slew::transport {
@@ -58,10 +59,10 @@ void CycloneLog::write(const char* message, std::size_t size) {
   }
   last_printed_ns_ = now;
   if (suppressed_ > 0) {
-    std::fprintf(stderr, "slewring: DDS: %s (and %llu more messages)\n", last_line_.c_str(),
+    std::fprintf(stderr, "slewring: DDS: %s (and %llu more messages)\n", printable(last_line_).c_str(),
                  static_cast<unsigned long long>(suppressed_));
   } else {
-    std::fprintf(stderr, "slewring: DDS: %s\n", last_line_.c_str());
+    std::fprintf(stderr, "slewring: DDS: %s\n", printable(last_line_).c_str());
   }
   suppressed_ = 0;
 }

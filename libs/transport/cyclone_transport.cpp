@@ -10,6 +10,7 @@
 #include <climits>
 #include <utility>
 
+#include "core/printable.h"
 #include "transport/cyclone_qos.h"
 #include "transport/cyclone_sertype.h"
 
@@ -111,7 +112,8 @@ void on_data_available(dds_entity_t, void* bell) {
 }
 
 [[nodiscard]] bool is_session_name(const std::string& name) {
-  return !name.empty() && name.size() <= wire::kMaxNameLength && name.find_first_of("*?[]") == std::string::npos;
+  return !name.empty() && name.size() <= wire::kMaxNameLength && name.find_first_of("*?[]") == std::string::npos &&
+         is_printable(name);
 }
 
 }  // namespace
@@ -130,9 +132,10 @@ Status CycloneTransport::open(std::shared_ptr<CycloneDomain> domain, const Cyclo
                               std::unique_ptr<CycloneTransport>& transport) {
   const bool is_pure_reader = options.writes.is_empty();
   if (!is_session_name(options.session) && !(is_pure_reader && options.session == kAnySession)) {
-    return Status::error(ExitCode::bad_input,
-                         fmt::format("'{}' is no session name; expected 1 to {} characters without * ? [ ]",
-                                     options.session, wire::kMaxNameLength));
+    return Status::error(
+        ExitCode::bad_input,
+        fmt::format("'{}' is no session name; expected 1 to {} characters without * ? [ ] and control characters",
+                    printable(options.session), wire::kMaxNameLength));
   }
   std::unique_ptr<CycloneTransport> opened(new CycloneTransport(std::move(domain), options));
   if (Status status = opened->create(); !status.is_ok()) return status;

@@ -22,7 +22,7 @@ class ElementBuilder {
     for (const RopeDef& def : def_.ropes) add_rope(def);
     for (const TyreDummyDef& def : def_.tyre_dummies) add_tyre(def);
     for (const PartDummyDef& def : def_.part_dummies) {
-      add_mass(def, find_body(def_, def.carried_by), pose_in(poses_[at(find_body(def_, def.relative_to))], def));
+      add_mass(def, number_of_(def.carried_by), pose_in(poses_[at(number_of_(def.relative_to))], def));
     }
     for (const ConstraintDummyDef& def : def_.constraint_dummies) add_constraint_dummy(def);
   }
@@ -36,7 +36,7 @@ class ElementBuilder {
 
   template <typename Def>
   void add_load(const Def& def, LoadKind kind, double constant, const Table& table) {
-    const int body = find_body(def_, def.body);
+    const int body = number_of_(def.body);
     PointLoad load{.name = def.name,
                    .kind = kind,
                    .axes = def.axes,
@@ -52,7 +52,7 @@ class ElementBuilder {
   }
 
   [[nodiscard]] FramePair frames_of(const ConnectorFrames& def) const {
-    const int body1 = find_body(def_, def.body1), body2 = find_body(def_, def.body2);
+    const int body1 = number_of_(def.body1), body2 = number_of_(def.body2);
     return {.link1 = body_at(body1).link,
             .link2 = body_at(body2).link,
             .body1 = body1,
@@ -115,7 +115,7 @@ class ElementBuilder {
               .spring_curve = math::monotone_cubic(def.spring_table, math::Ends::not_falling),
               .damper_curve = math::monotone_cubic(def.damper_table, math::Ends::not_falling)};
     for (std::size_t k = 0; k < def.points.size(); ++k) {
-      const int body = find_body(def_, def.bodies[k]);
+      const int body = number_of_(def.bodies[k]);
       rope.points.push_back({body_at(body).link, body, in_link(body, def.points[k])});
     }
     model_.elements.ropes.push_back(std::move(rope));
@@ -128,7 +128,7 @@ class ElementBuilder {
   }
 
   void add_tyre(const TyreDummyDef& def) {
-    const int number = find_body(def_, def.relative_to);
+    const int number = number_of_(def.relative_to);
     const Body& body = body_at(number);
     model_.elements.tyres.push_back({.name = def.name,
                                      .link = body.link,
@@ -152,7 +152,7 @@ class ElementBuilder {
   void add_constraint_dummy(const ConstraintDummyDef& def) {
     const auto joint = std::find_if(def_.joints.begin(), def_.joints.end(),
                                     [&](const JointDef& candidate) { return candidate.name == def.relative_to; });
-    const int body1 = find_body(def_, joint->body1), body2 = find_body(def_, joint->body2);
+    const int body1 = number_of_(joint->body1), body2 = number_of_(joint->body2);
     const JointFrames frames = joint_frames(*joint, poses_[at(body1)], poses_[at(body2)]);
     const bool is_first = def.index == 1;
     add_mass(def, is_first ? body1 : body2, pose_in(is_first ? frames.frame1 : frames.frame2, def));
@@ -181,6 +181,7 @@ class ElementBuilder {
   }
 
   const MechanicsDef& def_;
+  BodyNumbers number_of_{def_};
   std::span<const Pose> poses_;
   Model& model_;
 };

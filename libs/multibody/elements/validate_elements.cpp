@@ -42,7 +42,7 @@ class ElementValidator {
   }
 
   bool check_body(const std::string& owner, std::string_view key, const std::string& body) {
-    if (find_body(m_, body) != kNoBody) return true;
+    if (number_of_(body) != kNoBody) return true;
     names_hold_ = false;
     add(fmt::format("{}.{}", owner, key), fmt::format("there is no body '{}'", body), "the name of a body, or Ground");
     return false;
@@ -157,6 +157,7 @@ class ElementValidator {
   }
 
   const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
   Problems& problems_;
   bool names_hold_ = true;
 };

@@ -37,7 +37,7 @@ class StartValidator {
     problems_.push_back({std::move(path), std::move(what), std::move(expected), {}});
   }
   [[nodiscard]] const Pose& pose_of(const std::string& body) const {
-    return poses_[static_cast<std::size_t>(find_body(m_, body))];
+    return poses_[static_cast<std::size_t>(number_of_(body))];
   }
 
   // deflection of the frames at the start, without rest length
@@ -98,6 +98,7 @@ class StartValidator {
   }
 
   const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
   std::span<const Pose> poses_;
   Problems& problems_;
 };

@@ -57,8 +57,8 @@ class MotionRules {
   void check_start(const MotionDef& motion, std::span<const Pose> poses) {
     const JointDef& joint = *joint_of(m_, motion);
     const auto number = static_cast<std::size_t>(driven_coordinate(motion, joint.type));
-    const Pose& body1 = poses[static_cast<std::size_t>(find_body(m_, joint.body1))];
-    const Pose& body2 = poses[static_cast<std::size_t>(find_body(m_, joint.body2))];
+    const Pose& body1 = poses[static_cast<std::size_t>(number_of_(joint.body1))];
+    const Pose& body2 = poses[static_cast<std::size_t>(number_of_(joint.body2))];
     const double pose = start_coordinates(joint.type, joint_frames(joint, body1, body2))[number];
     const MotionValue begin = evaluate(motion_law(motion, pose), 0);
     const bool is_angle = motion.kind == MotionKind::rotation;
@@ -112,6 +112,7 @@ class MotionRules {
   }
 
   const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
   Problems& problems_;
 };
 

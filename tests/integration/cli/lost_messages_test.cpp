@@ -227,6 +227,54 @@ TEST_F(LostMessages, OfATickAreAGapAndNoOtherBuildsFault) {
   EXPECT_EQ(replayed.err, "slewring: gap: tick 300 of epoch 0 is missing, tick 301 follows\n");
 }
 
+TEST_F(LostMessages, BehindAStrayEndAreCountedAndNotCalledEqual) {
+  ASSERT_NO_FATAL_FAILURE(record_pendulums());
+  ASSERT_EQ(slewring({"replay", whole_, "--verify"}).code, 0);
+  for (const StepIndex at : {1, 300, 999}) {
+    lossy_ = (work_.path() / ("end_" + std::to_string(at) + ".mcap")).string();
+    copy_changed(whole_, lossy_, [at](Content& content) {
+      const auto found = std::find_if(content.messages.begin(), content.messages.end(), [at](const Message& message) {
+        return message.topic == "tick" && message.stamp.step == at;
+      });
+      ASSERT_NE(found, content.messages.end());
+      Message end = *found;
+      wire::Tick tick;
+      ASSERT_TRUE(transport::decode(end.payload, tick));
+      tick.flags |= static_cast<std::uint32_t>(wire::TickFlag::end);
+      ASSERT_TRUE(transport::encode(tick, end.payload));
+      content.messages.insert(found, std::move(end));
+    });
+    const std::string left = std::to_string(1000 - at);
+    const CommandResult replayed = slewring({"replay", lossy_, "--verify"});
+    EXPECT_EQ(replayed.code, 3) << replayed.out << replayed.err;
+    EXPECT_NE(replayed.out.find("not reached: " + left + " step"), std::string::npos) << replayed.out;
+    EXPECT_NE(replayed.out.find("from tick " + std::to_string(at) + " of epoch 0 on"), std::string::npos)
+        << replayed.out;
+    EXPECT_EQ(replayed.out.find("equal bit for bit"), std::string::npos);
+    const json result = json::parse(slewring({"replay", lossy_, "--verify", "--json"}).out);
+    EXPECT_FALSE(result["equal"].get<bool>());
+    EXPECT_EQ(result["unreached_steps"], 1000 - at);
+    EXPECT_EQ(result["unreached_hashes"], 1000 - at);
+    EXPECT_EQ(json::parse(slewring({"info", lossy_, "--json"}).out)["ticks_behind_end"], 1000 - at);
+  }
+}
+
+// every cut of the ticks' end leaves hashes behind that nothing is compared with
+TEST_F(LostMessages, OfTheLastTicksLeaveHashesThatAreNotCalledEqual) {
+  ASSERT_NO_FATAL_FAILURE(record_pendulums());
+  lossy_ = (work_.path() / "short.mcap").string();
+  copy_changed(whole_, lossy_, [](Content& content) {
+    EXPECT_EQ(
+        std::erase_if(content.messages,
+                      [](const Message& message) { return message.topic == "tick" && message.stamp.step >= 990; }),
+        11u);  // ten ticks and the END
+  });
+  const CommandResult replayed = slewring({"replay", lossy_, "--verify"});
+  EXPECT_EQ(replayed.code, 3) << replayed.out;
+  EXPECT_NE(replayed.out.find("not reached: 0 steps, 10 hashes, from the sample of step 991"), std::string::npos)
+      << replayed.out;
+}
+
 TEST_F(LostMessages, AndTheirOrderDoNotMoveColumns) {
   whole_ = record(scene_file("truck_crane.yaml"));
   const std::string turned = (work_.path() / "turned.mcap").string();

@@ -141,5 +141,83 @@ TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
       count, lost_, doubled_, late_, overtaken_, stalls_, cuts_, restarts_, still_ran_);
 }
 
+// Whatever is dropped for good: within the time in which a node may wait there is a tick or a sentence, and at the end
+// either all steps are done or every node that could not go on says why.
+class DropSeeds : public FaultSeeds {
+ protected:
+  static constexpr std::int64_t kSilence = 1'000 * kMs;       // between a tick and the sentence that it waits
+  static constexpr std::int64_t kOverWithin = 120'000 * kMs;  // JOIN, INIT, stall and linger, one after the other
+
+  void try_drop(std::uint64_t seed) {
+    const std::size_t which = seed % machines().size();
+    const scene::Scene scene = scene_of(machines()[which]);
+    const std::int64_t begin_ns = VirtualClock().now_ns;
+    const FaultPlan plan =
+        FaultPlan::drawn_for_good(seed, VirtualSession::roles_of(scene), begin_ns, begin_ns + kOverWithin);
+    const std::string again =
+        fmt::format("{}: {}\n  {}", machines()[which].file, plan.text(), seed_text(static_cast<std::uint32_t>(seed)));
+    SCOPED_TRACE(again);
+    std::printf("%s\n", again.c_str());
+    std::fflush(stdout);
+    VirtualSession session(scene, folder_.path().string(), plan);
+    StepIndex tick = session.next_tick();
+    std::int64_t ticked_ns = session.now_ns();
+    while (!session.is_finished() && session.now_ns() < begin_ns + kOverWithin) {
+      session.run_until(session.now_ns() + 10 * kMs);
+      const bool is_ticking = tick > 0 && session.next_tick() < kSteps;
+      if (session.next_tick() != tick || !is_ticking || !session.sentence().empty()) ticked_ns = session.now_ns();
+      tick = session.next_tick();
+      ASSERT_LT(session.now_ns() - ticked_ns, kSilence) << "neither a tick nor a sentence; " << session.text();
+    }
+    EXPECT_TRUE(session.is_finished()) << session.text();
+    EXPECT_EQ(session.unnamed_end(), "") << session.text();
+    // what was computed has the bits of a clean run; a mutated message may be a lawful one with other content
+    if (plan.mutation == 0) {
+      EXPECT_EQ(session.auditor().contradiction(), "") << session.text();
+      const Auditor::Chain& expected = clean(which);
+      for (const auto& [key, hash] : session.auditor().chain()) {
+        const auto found = expected.find(key);
+        const bool differs = found != expected.end() && found->second != hash;
+        ASSERT_FALSE(differs) << "step " << key.second;
+      }
+    }
+    if (session.next_tick() < kSteps) ++stopped_;
+    dropped_ += session.count().dropped;
+    mutated_ += session.count().mutated;
+  }
+
+  std::uint64_t dropped_ = 0, mutated_ = 0, stopped_ = 0;
+};
+
+TEST_F(DropSeeds, EndInProgressOrInANamedStop) {
+  const std::vector<std::uint32_t> drawn = seeds({{5000, kSeeds}}, 30);
+  for (const std::uint32_t seed : drawn) {
+    try_drop(seed);
+    if (HasFailure()) return;
+  }
+  if (drawn.size() == 1) return;
+  EXPECT_GT(dropped_, 100 * drawn.size());
+  EXPECT_GT(mutated_, drawn.size());
+  EXPECT_GT(stopped_, drawn.size() / 4);
+  fmt::print("{} seeds: {} dropped, {} mutated, {} sessions stopped\n", drawn.size(), dropped_, mutated_, stopped_);
+}
+
+// The instance that was seen: the hydraulics' samples never come again from some step on, all else does.
+TEST_F(DropSeeds, ATopicThatStopsIsNamedWithRoleAndStepAndEndsTheSessionWithCode4) {
+  const scene::Scene scene = scene_of(machines()[0]);
+  FaultPlan plan;
+  Drop drop;
+  drop.topic = wire::Topic::actuators;
+  drop.begin_ns = VirtualClock().now_ns + 100 * kMs;
+  plan.drops.push_back(drop);
+  VirtualSession session(scene, folder_.path().string(), plan);
+  session.run_until(drop.begin_ns + 600 * kMs);
+  EXPECT_NE(session.text().find("io holding"), std::string::npos) << session.text();
+  session.run_until(session.now_ns() + 14'000 * kMs);
+  EXPECT_TRUE(session.is_finished()) << session.text();
+  EXPECT_NE(session.text().find("code 4 waits for actuators of step "), std::string::npos) << session.text();
+  EXPECT_NE(session.text().find("which is heard otherwise"), std::string::npos) << session.text();
+}
+
 }  // namespace fault_seeds_test
 }  // namespace slew::testing

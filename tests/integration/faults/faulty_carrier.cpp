@@ -85,6 +85,40 @@ FaultPlan FaultPlan::drawn(std::uint64_t seed, const std::vector<Role>& roles, s
   return plan;
 }
 
+FaultPlan FaultPlan::drawn_for_good(std::uint64_t seed, const std::vector<Role>& roles, std::int64_t begin_ns,
+                                    std::int64_t end_ns) {
+  constexpr Topic kTopics[] = {Topic::session,   Topic::node_status, Topic::health,  Topic::tick,
+                               Topic::mechanism, Topic::actuators,   Topic::elastic, Topic::flexible,
+                               Topic::resend,    Topic::variables,   Topic::state,   Topic::checkpoint};
+  std::mt19937_64 random(seed);
+  FaultPlan plan;
+  plan.seed = seed;
+  plan.end_ns = end_ns;
+  const auto role = [&] { return roles[static_cast<std::size_t>(between(random, 0, std::ssize(roles)))]; };
+  Drop drop;
+  // from the session's first instant, which is in JOIN, or from some step on
+  drop.begin_ns = share(random) < 0.3 ? begin_ns : begin_ns + between(random, 0, 400 * kMs);
+  const double kind = share(random);
+  if (kind < 0.5) drop.topic = kTopics[between(random, 0, std::ssize(kTopics))];
+  if (kind >= 0.5 && kind < 0.7) {
+    drop.least_bytes = static_cast<std::size_t>(between(random, 60, 700));
+    drop.most_bytes = drop.least_bytes + static_cast<std::size_t>(between(random, 10, 200));
+  }
+  // in one direction, from one, to one, or to all
+  if (kind >= 0.7 || share(random) < 0.6) drop.to = role();
+  if (kind >= 0.7 || share(random) < 0.3) drop.from = role();
+  plan.drops.push_back(drop);
+  if (seed % 3 == 2) plan.mutation = 0.05 * share(random);
+  return plan;
+}
+
+bool FaultPlan::is_dropped(Topic topic, Role from, Role to, std::size_t bytes, std::int64_t now_ns) const noexcept {
+  return std::any_of(drops.begin(), drops.end(), [&](const Drop& drop) {
+    return now_ns >= drop.begin_ns && (!drop.topic || drop.topic == topic) && (!drop.from || drop.from == from) &&
+           (!drop.to || drop.to == to) && bytes >= drop.least_bytes && bytes <= drop.most_bytes;
+  });
+}
+
 bool FaultPlan::is_stalled(Role role, std::int64_t now_ns) const noexcept {
   return std::any_of(stalls.begin(), stalls.end(), [&](const Stall& stall) {
     return stall.role == role && stall.begin_ns <= now_ns && now_ns < stall.end_ns;
@@ -116,6 +150,13 @@ std::string FaultPlan::text() const {
     return fmt::format("{} ms long, to {} ms before the end of faults", (until_ns - begin_ns) / kMs,
                        (end_ns - until_ns) / kMs);
   };
+  for (const Drop& drop : drops) {
+    text += fmt::format("; {} from {} to {} of {} to {} bytes never arrives",
+                        drop.topic ? node::to_text(*drop.topic) : "everything",
+                        drop.from ? node::to_text(*drop.from) : "all", drop.to ? node::to_text(*drop.to) : "all",
+                        drop.least_bytes, drop.most_bytes);
+  }
+  if (mutation > 0) text += fmt::format("; {:.3f} mutated", mutation);
   for (const Partition& cut : partitions) {
     text += fmt::format("; {} does not reach {}, {}", node::to_text(cut.from), node::to_text(cut.to),
                         interval(cut.begin_ns, cut.end_ns));
@@ -158,6 +199,12 @@ void FaultyCarrier::deliver(const transport::Received& message) {
   wire::Header header;
   const bool has_sender = transport::decode_header(message.bytes, header);
   const bool is_over = now_ns >= plan_.end_ns;
+  if (has_sender && header.role != self_ &&
+      plan_.is_dropped(message.topic, header.role, self_, message.bytes.size(), now_ns)) {
+    ++count_.dropped;
+    return;
+  }
+  if (!is_over && plan_.mutation > 0 && happens(plan_.mutation)) return deliver_mutated(message);
   const std::int64_t cut_ns = has_sender && !is_over ? plan_.cut_until(header.role, self_, now_ns) : 0;
   if (is_dialogue(message.topic, self_)) {
     std::int64_t& last_ns = last_said_[{header.role, message.topic}];
@@ -189,6 +236,21 @@ void FaultyCarrier::deliver(const transport::Received& message) {
     last_ns = std::max(last_ns, at_ns);
     put(message, at_ns);
   }
+}
+
+// What a damaged or hostile datagram does: the message with some bytes changed, or cut, in front of it or in its place.
+void FaultyCarrier::deliver_mutated(const transport::Received& message) {
+  ++count_.mutated;
+  Pending changed{message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}};
+  if (share(random_) < 0.2) {
+    changed.bytes.resize(static_cast<std::size_t>(between(random_, 0, std::ssize(changed.bytes))));
+  }
+  for (std::int64_t i = between(random_, 1, 9); i > 0 && !changed.bytes.empty(); --i) {
+    const auto at = static_cast<std::size_t>(between(random_, 0, std::ssize(changed.bytes)));
+    changed.bytes[at] = static_cast<std::byte>(random_() & 0xFF);
+  }
+  pending_.emplace(clock_.now_ns, std::move(changed));
+  if (share(random_) < 0.5) put(message, clock_.now_ns);
 }
 
 // with the faults the delays end

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -48,8 +49,19 @@ struct Kill {
   std::int64_t at_ns = 0;
 };
 
+// Messages that never arrive from a time on, as behind a filter or in a reader that was led astray: those of one topic,
+// of one size or in one direction, whatever else arrives. Any topic, also one that a reliable carrier would repeat.
+struct Drop {
+  std::optional<wire::Topic> topic;
+  std::optional<wire::Role> from, to;
+  std::size_t least_bytes = 0, most_bytes = static_cast<std::size_t>(-1);
+  std::int64_t begin_ns = 0;
+};
+
 struct FaultPlan {
   std::uint64_t seed = 0;
+  std::vector<Drop> drops;
+  double mutation = 0;  // chance that a message, its header apart or not, has some bytes changed, is cut or comes twice
   MessageFaults messages;
   std::vector<Partition> partitions;
   std::vector<Stall> stalls;
@@ -62,6 +74,12 @@ struct FaultPlan {
   static FaultPlan drawn(std::uint64_t seed, const std::vector<wire::Role>& roles, std::int64_t begin_ns, Kills kills);
 
   [[nodiscard]] bool is_stalled(wire::Role role, std::int64_t now_ns) const noexcept;
+  // One topic, one size or one direction is dropped for good, drawn from a seed; in every third one messages are
+  // mutated too.
+  static FaultPlan drawn_for_good(std::uint64_t seed, const std::vector<wire::Role>& roles, std::int64_t begin_ns,
+                                  std::int64_t end_ns);
+  [[nodiscard]] bool is_dropped(wire::Topic topic, wire::Role from, wire::Role to, std::size_t bytes,
+                                std::int64_t now_ns) const noexcept;
   // End of the partition that is in the way now; 0: none is.
   [[nodiscard]] std::int64_t cut_until(wire::Role from, wire::Role to, std::int64_t now_ns) const noexcept;
   // All partitions that the role is part of, one after the other.
@@ -71,7 +89,7 @@ struct FaultPlan {
 
 // What was done to messages.
 struct FaultCount {
-  std::uint64_t lost = 0, doubled = 0, late = 0;
+  std::uint64_t lost = 0, doubled = 0, late = 0, dropped = 0, mutated = 0;
   std::uint64_t overtaken = 0;  // by one of its own writer and topic that was sent behind it
 };
 
@@ -101,6 +119,7 @@ class FaultyCarrier final : public transport::Transport {
 
   void fetch();
   void deliver(const transport::Received& message);
+  void deliver_mutated(const transport::Received& message);
   [[nodiscard]] std::int64_t due_ns(std::int64_t delay_ns) const noexcept;
   void put(const transport::Received& message, std::int64_t due_ns);
   [[nodiscard]] bool happens(double chance);

@@ -228,6 +228,26 @@ bool VirtualSession::has_ended_well() const {
          });
 }
 
+std::string VirtualSession::unnamed_end() const {
+  for (const Place& place : places_) {
+    const bool is_named = place.is_dead || place.node->member().exit_code() == ExitCode::ok ||
+                          place.node->member().exit_code() == ExitCode::losses ||
+                          !place.node->member().reason().empty();
+    if (!is_named) return std::string(node::to_text(place.role));
+  }
+  return "";
+}
+
+std::string VirtualSession::sentence() const {
+  for (const Place& place : places_) {
+    if (place.is_dead) continue;
+    const node::SessionMember& member = place.node->member();
+    const bool says = member.state() == wire::NodeState::holding || member.state() == wire::NodeState::fault;
+    if (says && !member.reason().empty()) return member.reason();
+  }
+  return "";
+}
+
 std::uint64_t VirtualSession::resends() const {
   std::uint64_t asked = 0;
   for (const Place& place : places_) {

@@ -66,6 +66,10 @@ class VirtualSession {
   [[nodiscard]] bool is_settled() const;
   // By role: its state, step and reason.
   [[nodiscard]] std::string text() const;
+  // Every node that ended otherwise than in order has a sentence for it; empty: the first that has none, by name.
+  [[nodiscard]] std::string unnamed_end() const;
+  // A sentence of the session as it is now: a state that waits or ended and says why; empty: nobody says a word.
+  [[nodiscard]] std::string sentence() const;
   // Every node with code ok; a recorder that was cut off for longer than it waits at the end may have losses.
   [[nodiscard]] bool has_ended_well() const;
   [[nodiscard]] std::string recording() const { return recorder_->recording().string(); }

@@ -1,11 +1,15 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "build_paths.h"
 #include "scene/canonical.h"
 #include "scene/scene.h"
 #include "scene/sections.h"
+#include "scene/source.h"
 #include "scene_text.h"
 #include "temporary_folder.h"
 
@@ -28,6 +32,70 @@ TEST(Load, TextsSurviveTheRoundTrip) {
   const Scene once = load_text(scene, "test");
   EXPECT_EQ(once.plots.at(0).title, title);
   EXPECT_EQ(load_text(once.expanded_text, "test").plots.at(0).title, title);
+}
+
+// what an escape stands for is judged as if it stood in the file
+TEST(Load, AnEscapeThatStandsForAControlCharacterOrNoTextIsRefusedAtItsPlace) {
+  const auto with_title = [](const std::string& title) {
+    return kPendulum + "plots:\n  Swing: {title: \"a" + title + "b\", variables: [Rod.position.x]}\n";
+  };
+  for (const char* escape : {"\\0", "\\a", "\\b", "\\e", "\\f", "\\v", "\\_", "\\x00", "\\x01", "\\x07", "\\x1b",
+                             "\\x7f", "\\u0000", "\\u001b", "\\U0000007f"}) {
+    const std::string problem = problems_of(with_title(escape));
+    EXPECT_NE(problem.find("test:6:18: "), std::string::npos) << escape << ": " << problem;
+    EXPECT_NE(problem.find("after its escapes are resolved; expected UTF-8 text"), std::string::npos) << escape;
+  }
+  EXPECT_NE(problems_of("scene: \"a\\0b\"\n" + kPendulum).find("NUL byte"), std::string::npos);
+  for (const char* escape : {"\\t", "\\n", "\\r", "\\\\", "\\\"", "\\/", "\\ ", "\\u00e4", "\\U0001F69C", "\\x41"}) {
+    const std::string text = with_title(escape);
+    ASSERT_EQ(problems_of(text), "") << escape;
+    const Scene once = load_text(text, "test");
+    EXPECT_EQ(load_text(once.expanded_text, "test").expanded_text, once.expanded_text) << escape;
+  }
+}
+
+// expand(load(expand(x))) = expand(x): load_file() compares for every scene, and refuses what is not the same
+TEST(Load, EveryAcceptedSceneReadsBackFromItsExpansion) {
+  int accepted = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SLEWRING_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Scene scene = load_file(entry.path().string());
+    EXPECT_EQ(load_text(scene.expanded_text, scene.name).expanded_text, scene.expanded_text) << entry.path();
+    ++accepted;
+  }
+  EXPECT_GE(accepted, 5);
+}
+
+// a bound of the solver that the circuit's build would otherwise meet as an internal error
+TEST(Load, ACircuitOfMoreUnknownsThanItsSolverTakesIsRefusedByName) {
+  const auto chain = [](int volumes, const std::string& solver) {
+    std::string text = "hydraulics: {solver: " + solver + "}\nvolumes:\n";
+    for (int i = 0; i < volumes; ++i) text += fmt::format("  V{}: {{rigid_volume: 1 l}}\n", i);
+    text += "components:\n";
+    for (int i = 1; i < volumes; ++i) {
+      text += fmt::format("  O{0}: {{type: orifice, port_1: V{1}, port_2: V{0}, diameter: 1 mm}}\n", i, i - 1);
+    }
+    return problems_of(text);
+  };
+  EXPECT_EQ(chain(200, "rodas3"), "");
+  for (const auto& [volumes, solver] :
+       {std::pair(201, "rodas3"), {500, "implicit_euler"}, {5000, "rodas3"}, {1001, "rk4"}}) {
+    const std::string problem = chain(volumes, solver);
+    EXPECT_NE(problem.find(fmt::format("the circuit has {} unknowns", volumes)), std::string::npos) << problem;
+    EXPECT_NE(problem.find("with this hydraulics.solver"), std::string::npos) << problem;
+  }
+}
+
+TEST(Load, ALineOfAnyLengthIsCountedOnceForAllItsMarks) {
+  std::string line;
+  for (int i = 0; i < 1000; ++i) line += "\xC3\xA4 x";
+  Report report;
+  const std::optional<SourceText> source = check_source("a\n" + line + "\nb", report.add_source("s"), report);
+  ASSERT_TRUE(source);
+  MarkReader marks(*source);
+  for (std::size_t i = 0; i < source->text.size(); i += 7) EXPECT_EQ(marks.at(i), source->mark_at(i)) << i;
+  // and backwards
+  for (std::size_t i = source->text.size(); i > 13; i -= 13) EXPECT_EQ(marks.at(i), source->mark_at(i)) << i;
 }
 
 TEST(Load, WordsThatYamlTakesForSomethingElseAreQuoted) {

@@ -1,5 +1,6 @@
 #include "scene/parameters.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -45,6 +46,18 @@ TEST_F(Parameters, AnAssignmentGivesThePathTheSiValueAndTheRamp) {
   EXPECT_EQ(assignment.path, "Rod.mass");
   EXPECT_EQ(assignment.value, 1500.0);
   EXPECT_EQ(assignment.over, milliseconds(1000));
+}
+
+// a value in its own range may still make a machine that the loader refuses
+TEST_F(Parameters, AValueWithWhichTheLoaderWouldRefuseTheMachineIsRefusedWithItsSentence) {
+  for (const double mass : {4.9e-324, 1e-300, 1e-200, 1e-100, 1e-13}) {
+    const std::string live = directory.check("Rod.mass", mass).status.text;
+    EXPECT_NE(live.find("is refused: Rod.mass: with "), std::string::npos) << mass << ": " << live;
+    EXPECT_NE(live.find("the radius of gyration is"), std::string::npos) << live;
+    const std::string loaded = problems_of(kPendulum, {"Rod.mass=" + fmt::format("{}", mass)});
+    EXPECT_NE(loaded.find("the radius of gyration is"), std::string::npos) << mass << ": " << loaded;
+  }
+  EXPECT_EQ(directory.check("Rod.mass", 1e-3).status.text, "");
 }
 
 TEST_F(Parameters, AnAssignmentIsRefusedWithAReason) {
