@@ -198,8 +198,12 @@ std::string DirectSession::failure() const {
       return std::string(subsystem->failure_text());
     }
   }
-  if (mechanics_report_.has_failed()) return std::string(mechanics_->offender_name(mechanics_report_.offender));
-  if (hydraulics_report_.has_failed()) return std::string(hydraulics_->offender_name(hydraulics_report_.offender));
+  const auto name = [](const coupling::Subsystem& subsystem, const StepReport& report) {
+    const std::string_view offender = subsystem.offender_name(report.offender);
+    return std::string(offender.empty() ? "the state" : offender) + " is not finite";
+  };
+  if (mechanics_report_.has_failed()) return name(*mechanics_, mechanics_report_);
+  if (hydraulics_report_.has_failed()) return name(*hydraulics_, hydraulics_report_);
   return "";
 }
 

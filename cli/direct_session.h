@@ -59,7 +59,7 @@ class DirectSession {
   // What the role's part of the last step reported, and how long it took [ns of the wall clock].
   [[nodiscard]] const StepReport& report(wire::Role role) const noexcept;
   [[nodiscard]] std::int64_t step_time_ns(wire::Role role) const noexcept;
-  // Why the last step failed; empty when it did not.
+  // Why the last step failed, as "Arm is not finite" or the subsystem's own text; empty when it did not.
   [[nodiscard]] std::string failure() const;
 
  private:

@@ -161,7 +161,9 @@ class Part : public coupling::Subsystem {
   std::span<const ElementVariable> variables() const noexcept override { return shown_.variables(); }
   void read_variables(std::span<double> values) const noexcept override { shown_.read_variables(values); }
   std::string_view offender_name(std::int32_t index) const noexcept override { return shown_.offender_name(index); }
-  std::string_view failure_text() const noexcept override { return whole_->failure(); }
+  std::string_view failure_text() const noexcept override {
+    return whole_->failure().empty() ? shown_.failure_text() : whole_->failure();
+  }
 
  protected:
   virtual StepReport show(StepIndex n, const PartnerSamples& partners, std::span<const double> controls,

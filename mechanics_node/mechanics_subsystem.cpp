@@ -58,7 +58,8 @@ MechanicsSubsystem::MechanicsSubsystem(const scene::Scene& scene, Motion motion)
       ramps_(multibody::parameter_count(model_)),
       heavier_(model_),
       reading_workspace_(model_),
-      reactions_(model_.joints.size()) {
+      reactions_(model_.joints.size()),
+      divergence_(model_) {
   for (const scene::PortDef& port : scene.ports) {
     ports_.push_back({port.name, port.offset, port.ratio, coupling::LineForceLaw(port.line_force)});
     port_ratios_.push_back(port.ratio);
@@ -107,6 +108,7 @@ void MechanicsSubsystem::reset() {
   a_free_trends_.clear();
   ramps_.clear();
   levels_.reset();
+  divergence_.reset();
   has_failed_ = false;
   failure_ = StepReport{};
   for (Port& port : ports_) port.z = port.F = port.friction = port.stop = 0;
@@ -213,20 +215,17 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
     state_.time = static_cast<double>(n) * H_.seconds() + (i + 1) * h;
   }
   if (!multibody::is_finite(state_)) {
-    has_failed_ = true;
     report.raise(StepFlag::non_finite);
     report.offender = first_not_finite();
-    failure_ = report;
-    multibody::copy_state(last_good_, state_);
-    // variables are the last good ones as well
-    is_evaluated_ = false;
-    evaluate();
-    multibody::observe(model_, state_, workspace_);
-    sample = published_;
-    return report;
+    return end_with(report, sample);
+  }
+  evaluate();
+  divergence_.count_step(!report.has(StepFlag::not_converged));
+  if (divergence_.ends_run(model_, state_, workspace_, h)) {
+    report.raise(StepFlag::ended);
+    return end_with(report, sample);
   }
   multibody::copy_state(state_, last_good_);
-  evaluate();
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     const double x = ports_[i].offset + ports_[i].ratio * workspace_.row_x[i];
     out.v_mean[i] = (x - begin[i]) / H_.seconds();
@@ -237,20 +236,40 @@ StepReport MechanicsSubsystem::step(StepIndex n, const coupling::PartnerSamples&
   return report;
 }
 
+StepReport MechanicsSubsystem::end_with(const StepReport& report, coupling::OwnSample& sample) noexcept {
+  has_failed_ = true;
+  failure_ = report;
+  multibody::copy_state(last_good_, state_);
+  // variables are the last good ones as well, whatever the formulation integrates beside them
+  multibody::evaluate(model_, state_, workspace_);
+  is_evaluated_ = true;
+  multibody::observe(model_, state_, workspace_);
+  sample = published_;
+  return report;
+}
+
 StepReport MechanicsSubsystem::follow(StepIndex n, const FollowedStep& step, std::span<const double> controls,
                                       coupling::OwnSample& sample) noexcept {
+  if (has_failed_) {
+    sample = published_;
+    return failure_;
+  }
   apply_ramps(n);
   put_signals(controls);
   coupling::MechanismSample& out = sample.mechanism;
   coupling::resize(out, ports_.size());
   const PortPositions begin = port_positions();
   multibody::copy_state(step.state, state_);
-  multibody::copy_state(state_, last_good_);
   is_evaluated_ = false;
   a_free_trends_.clear();
   for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].z = ports_[i].F = step.F[i];
   evaluate();
   StepReport report;
+  if (divergence_.ends_run(model_, state_, workspace_, H_.seconds())) {
+    report.raise(StepFlag::ended);
+    return end_with(report, sample);
+  }
+  multibody::copy_state(state_, last_good_);
   const PortPositions end = port_positions();
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     out.work[i] = step.work[i];
@@ -483,6 +502,7 @@ std::uint64_t MechanicsSubsystem::state_hash() const noexcept {
   }
   for (const char is_active : row_is_active_) hash.add(is_active);
   for (const OperatedLoad& operated : operated_) hash.add(model_.elements.loads[operated.load].signal);
+  divergence_.add_to(hash);
   hash.add(has_failed_);
   return hash.digest();
 }

@@ -21,6 +21,7 @@
 #include "coupling/port_levels.h"
 #include "coupling/subsystem.h"
 #include "coupling/trends.h"
+#include "mechanics_node/divergence.h"
 #include "mechanics_node/modal_exchange.h"
 #include "multibody/dynamics.h"
 #include "multibody/formulation.h"
@@ -63,6 +64,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
   void read_variables(std::span<double> values) const noexcept override;
   [[nodiscard]] std::string_view offender_name(std::int32_t index) const noexcept override;
+  [[nodiscard]] std::string_view failure_text() const noexcept override { return divergence_.text(); }
 
   [[nodiscard]] const multibody::Model& model() const noexcept { return model_; }
   [[nodiscard]] const multibody::State& state() const noexcept { return state_; }
@@ -89,6 +91,8 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   void evaluate() noexcept;
   void apply_ramps(StepIndex n) noexcept;
   void raise_flags(StepReport& report) const noexcept;
+  // The run ends with this report: everything goes back to the last good state.
+  StepReport end_with(const StepReport& report, coupling::OwnSample& sample) noexcept;
   bool select_rows(double h) noexcept;
   void put_signals(std::span<const double> controls) noexcept;
   void note_age(StepIndex n, const coupling::PartnerSamples& partners, StepReport& report) noexcept;
@@ -217,6 +221,7 @@ class MechanicsSubsystem final : public coupling::Subsystem {
   mutable multibody::Model heavier_;
   mutable multibody::Workspace reading_workspace_;           // scratch of read_variables()
   mutable std::vector<multibody::JointReaction> reactions_;  // by joint of the scene
+  DivergenceWatch divergence_;
   bool has_failed_ = false;
   StepReport failure_;
   coupling::OwnSample published_;

@@ -46,6 +46,7 @@ void MechanicsSubsystem::visit(Self& self, Bytes& bytes) {
   }
   for (auto& is_active : self.row_is_active_) bytes.flag(is_active);
   bytes.numbers(self.row_force_);
+  DivergenceWatch::visit(self.divergence_, bytes);
   bytes.flag(self.has_failed_);
   visit_report(bytes, self.failure_);
   visit_sample(self.published_.mechanism, self.ports_.size(), bytes);

@@ -169,7 +169,7 @@ class Comparer {
     work_.finish(work);
     if (!run.failure.empty()) {
       throw Failure(ExitCode::diverged,
-                    fmt::format("the reference ({}, sub-steps of {}) fails at {:.6g} s: {} is not finite; nothing can "
+                    fmt::format("the reference ({}, sub-steps of {}) fails at {:.6g} s: {}; nothing can "
                                 "be compared; try another --reference or an earlier --until",
                                 configuration.formulation, step_text(step), run.failed_at, run.failure));
     }

@@ -40,7 +40,7 @@ struct Difference {
 struct ComparedRow {
   Configuration configuration{};
   std::string refusal{};  // why it cannot run; empty: it ran
-  std::string failure{};  // what became infinite or not a number; empty: nothing did
+  std::string failure{};  // how its run ended early; empty: it did not
   double failed_at = 0;
   multibody::JointGap gap{};
   std::string open_joint{};               // the most open one

@@ -28,7 +28,7 @@ std::string formulation_and_integrator(const Configuration& configuration) {
 // "yes", or why not
 std::string verdict(const ComparedRow& row) {
   if (!row.has_run()) return "cannot run: " + row.refusal;
-  if (!row.failure.empty()) return fmt::format("no: {} is not finite at {:.4g} s", row.failure, row.failed_at);
+  if (!row.failure.empty()) return fmt::format("no: at {:.4g} s {}", row.failed_at, row.failure);
   if (row.parted_at) return fmt::format("no: away from the reference from {:.4g} s on", *row.parted_at);
   return "yes";
 }

@@ -172,7 +172,6 @@ Observation observe_run(const scene::Scene& scene, std::span<const std::string> 
     }
     if (report.has_failed() || played.session().report(Role::hydraulics).has_failed()) {
       run.failure = played.session().failure();
-      if (run.failure.empty()) run.failure = "the state";
       run.failed_at = played.time().seconds();
       break;
     }

@@ -27,7 +27,7 @@ struct Observation {
   StepIndex steps = 0;                // done
   std::int64_t iterations = 0;        // of the mechanics' port problem, all steps
   std::int64_t not_converged = 0;     // steps of either side
-  std::string failure;                // what is not finite; empty: everything was
+  std::string failure;                // how it ended early; empty: it did not
   double failed_at = 0;               // s
   StateHashes state_hashes;           // at the end
   bool is_interrupted = false;

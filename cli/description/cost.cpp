@@ -101,8 +101,7 @@ class Measurement {
         keep_fastest(times_.mechanics, i, played.session().step_time_ns(Role::mechanics));
         keep_fastest(times_.hydraulics, i, played.session().step_time_ns(Role::hydraulics));
         if (const std::string failure = played.session().failure(); !failure.empty()) {
-          throw Failure(ExitCode::diverged,
-                        fmt::format("the run ended at {} s: {} is not finite", played.time().seconds(), failure));
+          throw Failure(ExitCode::diverged, fmt::format("the run ended at {} s: {}", played.time().seconds(), failure));
         }
       }
     }

@@ -21,8 +21,8 @@ void play_to(PlayedScene& played, double at) {
   while (played.time().ns < duration_of_seconds(at).ns) {
     played.advance();
     if (const std::string failure = played.session().failure(); !failure.empty()) {
-      throw Failure(ExitCode::diverged, fmt::format("the run ended at {} s, before {} s: {} is not finite",
-                                                    played.time().seconds(), at, failure));
+      throw Failure(ExitCode::diverged,
+                    fmt::format("the run ended at {} s, before {} s: {}", played.time().seconds(), at, failure));
     }
   }
 }

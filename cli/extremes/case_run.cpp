@@ -251,9 +251,11 @@ class Stepper {
     m.at_limit += count(StepFlag::limit_hit);
     m.too_late += count(StepFlag::late_input);
     m.creates_energy += count(StepFlag::coupling_creates_energy);
-    if (count(StepFlag::non_finite) != 0) {
+    // the mechanics ends what has diverged, the hydraulics what its coupling's alarm ends
+    const bool has_diverged =
+        session_.subsystem(Role::mechanics) != nullptr && session_.report(Role::mechanics).has(StepFlag::ended);
+    if (count(StepFlag::non_finite) != 0 || has_diverged) {
       m.failure = session_.failure();
-      if (m.failure.empty()) m.failure = "the state";
       m.ended_at = static_cast<double>(k + 1) * H_.seconds();
       return;
     }

@@ -31,7 +31,7 @@ namespace slew::cli {
 struct Measures {
   std::string refusal;     // why it was not run: the scene, its start or a live change was refused by name
   std::string alarm;       // why the session ended itself, by session.coupling_alarm; empty: it did not
-  std::string failure;     // what became not finite; empty: nothing
+  std::string failure;     // how it diverged; empty: it did not
   double ended_at = 0;     // s, by the alarm or the failure
   std::int64_t steps = 0;  // done
   double H = 0;            // s, communication step

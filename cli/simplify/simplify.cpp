@@ -140,8 +140,8 @@ class Simplifier {
     base_run_ = observe_run(*base_, names_, until_, sample_, part("the scene as it is"));
     if (is_stopped_) return;
     if (!base_run_.failure.empty()) {
-      throw Failure(ExitCode::diverged, fmt::format("the scene as it is ends at {} s: {} is not finite",
-                                                    base_run_.failed_at, base_run_.failure));
+      throw Failure(ExitCode::diverged,
+                    fmt::format("the scene as it is ends at {} s: {}", base_run_.failed_at, base_run_.failure));
     }
     for (std::size_t i = 0; i < names_.size(); ++i) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -215,7 +215,7 @@ class Simplifier {
     }
     if (is_stopped_) return;
     if (!run.failure.empty()) {
-      trial.refusal = fmt::format("its run ends at {:.6g} s: {} is not finite", run.failed_at, run.failure);
+      trial.refusal = fmt::format("its run ends at {:.6g} s: {}", run.failed_at, run.failure);
       return;
     }
     for (std::size_t i = 0; i < names_.size(); ++i) {

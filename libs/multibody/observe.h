@@ -67,6 +67,11 @@ std::size_t read_contact_variables(const Model& model, const Workspace& ws, std:
 // Whether two neighbours of a segmented body are turned by more than kLargestBend against each other.
 [[nodiscard]] bool is_bent_far(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
 
+// Largest deflection of a flexible part at coordinates q, and of a segmented body against its root after a motion in
+// ws, over the body's length [1].
+[[nodiscard]] double deflection_share(const Model& model, std::size_t part, std::span<const double> q) noexcept;
+[[nodiscard]] double deflection_share(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept;
+
 // What every joint transmits, as "Joint.reaction_force.x" and "Joint.reaction_moment.x": six for each joint of the
 // scene, in the order and form of JointReaction; then "Gear.torque_1" and "Gear.force_2" (or "Gear.torque_2" ...), the
 // forces of a gear's row on the coordinates of its joints; then "Motion.torque" or "Motion.force", and "Motion.power",

@@ -74,10 +74,18 @@ struct Values : VariableSink {
 
 }  // namespace
 
-bool is_bent_far(const Model& model, std::size_t part, std::span<const double> q) noexcept {
+double deflection_share(const Model& model, std::size_t part, std::span<const double> q) noexcept {
   const FlexiblePart& flexible = model.parts[part];
-  const LargestDeflection largest = largest_deflection(*flexible.source, flexible.watched, modes_of(flexible, q));
-  return largest.size > kSmallDeflection * flexible.length;
+  const double size = largest_deflection(*flexible.source, flexible.watched, modes_of(flexible, q)).size;
+  return size > 0 ? size / flexible.length : 0;
+}
+
+double deflection_share(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept {
+  return largest_deflection(model, part, ws).size / part.length;
+}
+
+bool is_bent_far(const Model& model, std::size_t part, std::span<const double> q) noexcept {
+  return deflection_share(model, part, q) > kSmallDeflection;
 }
 
 bool is_bent_far(const Model& model, const SegmentedPart& part, const Workspace& ws) noexcept {

@@ -82,6 +82,7 @@ void add_segments(const MechanicsDef& mechanics, Model& model) {
                                       .K = chain.connectors[k].K,
                                       .damping_time = beta});
     }
+    for (const SegmentConnector& connector : chain.connectors) part.length += connector.length;
     part.is_free = is_free(model, part);
     model.segmented.push_back(std::move(part));
   }

@@ -21,6 +21,7 @@ struct SegmentedPart {
   std::string name;                            // of the body
   std::vector<int> bodies{};                   // Model::bodies, by lump
   std::size_t first_beam = 0;                  // ElementSet::beams, one for each connector
+  double length = 0;                           // m, of all connectors
   bool is_free = false;                        // no joint holds a lump but the root: its start can be looked for
   SegmentStart start = SegmentStart::at_rest;  // as the scene wants it
   std::shared_ptr<const SegmentChain> source{};

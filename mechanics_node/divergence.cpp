@@ -1,0 +1,106 @@
+#include "mechanics_node/divergence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "multibody/flexible/deflection.h"
+#include "multibody/formulation.h"
+#include "multibody/observe.h"
+
+namespace slew::mechanics {
+namespace {
+
+constexpr double kOpen = 1e-6;  // m or rad: what a joint of a sound run stays below in every formulation but `penalty`
+constexpr const char* kRemedy =
+    "the motion is not the mechanism's any more. Use a shorter session.step or mechanics.max_substep, or another "
+    "mechanics.integrator or formulation";
+
+struct BentBody {
+  std::string_view name;
+  double share = 0;  // of its length
+};
+
+BentBody most_bent(const multibody::Model& model, const multibody::State& state,
+                   const multibody::Workspace& ws) noexcept {
+  BentBody most;
+  const auto look = [&most](const std::string& name, double share) {
+    if (share > most.share) most = {name, share};
+  };
+  for (std::size_t part = 0; part < model.parts.size(); ++part) {
+    look(model.parts[part].name, multibody::deflection_share(model, part, state.q));
+  }
+  for (const multibody::SegmentedPart& part : model.segmented) {
+    look(part.name, multibody::deflection_share(model, part, ws));
+  }
+  return most;
+}
+
+struct FastBody {
+  std::string_view name;
+  double speed = 0;  // m/s or rad/s
+};
+
+template <typename Speed>
+FastBody fastest(const multibody::Model& model, const multibody::Workspace& ws, Speed speed_of) noexcept {
+  FastBody found;
+  for (std::size_t i = 1; i < model.bodies.size(); ++i) {
+    const double speed = norm(speed_of(ws.motion[at(model.bodies[i].link)]));
+    if (found.name.empty() || speed > found.speed) found = {model.bodies[i].name, speed};
+  }
+  return found;
+}
+
+}  // namespace
+
+void DivergenceWatch::count_step(bool has_converged) noexcept {
+  unconverged_ = std::clamp(unconverged_ + (has_converged ? -1 : 1), 0, kMostUnconverged);
+}
+
+template <typename... Values>
+void DivergenceWatch::write(const char* form, const Values&... values) noexcept {
+  const auto written = fmt::format_to_n(text_.data(), text_.size(), fmt::runtime(form), values...);
+  text_length_ = std::min(written.size, text_.size());
+}
+
+bool DivergenceWatch::name_bent_body(const multibody::Model& model, const multibody::State& state,
+                                     const multibody::Workspace& ws) noexcept {
+  const BentBody bent = most_bent(model, state, ws);
+  if (!(bent.share > multibody::kLostDeflection)) return false;
+  write("{}: bent by {:.3g} times its length, further than a body can be; {}, fewer modes, or type: segmented",
+        bent.name, bent.share, kRemedy);
+  return true;
+}
+
+void DivergenceWatch::name_suspect(const multibody::Model& model, const multibody::State& state,
+                                   const multibody::Workspace& ws, double h) noexcept {
+  constexpr const char* kOften = "of late more steps did not converge than did";
+  if (const BentBody bent = most_bent(model, state, ws); bent.share > multibody::kSmallDeflection) {
+    return write("{}: {}, and it is bent by {:.2g} of its length: {}", bent.name, kOften, bent.share, kRemedy);
+  }
+  const FastBody turning = fastest(model, ws, [](const multibody::LinkMotion& m) { return m.w; });
+  if (turning.speed * h > multibody::kLargestTurn) {
+    return write("{}: {}, and it turns by {:.2g} rad in a sub-step: {}", turning.name, kOften, turning.speed * h,
+                 kRemedy);
+  }
+  if (const multibody::JointGap gap = gauge_.measure(ws); gap.joint >= 0 && gap.position > kOpen) {
+    const multibody::Joint& joint = model.joints[at(gap.joint)];
+    const int body = joint.body2 > 0 ? joint.body2 : joint.body1;
+    return write("{}: {}, and its joint '{}' is open by {:.2g} m or rad: {}", model.bodies[at(body)].name, kOften,
+                 joint.name, gap.position, kRemedy);
+  }
+  const FastBody moving = fastest(model, ws, [](const multibody::LinkMotion& m) { return m.v; });
+  write("{}: {}, and it is the fastest body with {:.3g} m/s: {}", moving.name, kOften, moving.speed, kRemedy);
+}
+
+bool DivergenceWatch::ends_run(const multibody::Model& model, const multibody::State& state,
+                               const multibody::Workspace& ws, double h) noexcept {
+  if (name_bent_body(model, state, ws)) return true;
+  if (unconverged_ < kMostUnconverged) return false;
+  name_suspect(model, state, ws, h);
+  return true;
+}
+
+}  // namespace slew::mechanics

@@ -1,0 +1,65 @@
+// Ends a run whose motion is the mechanism's no longer while its numbers are finite still.
+//
+// Two rules, judged after every step:
+//   - The excess of steps that did not converge over those that did reaches kMostUnconverged: more than half of the
+//     steps. The count leaks, one by one, down to zero, so that single steps never add up to an end.
+//   - A flexible body is bent by more than kLostDeflection of its length (multibody/flexible/deflection.h).
+// Not covered: motion that is finite, small and converged, and wrong.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "core/state_hash.h"
+#include "multibody/joint_gauge.h"
+#include "multibody/model.h"
+#include "multibody/state.h"
+
+namespace slew::mechanics {
+
+// More than a hit, a stop or a whip of a sound run takes: no step of the repository's scenes fails to converge at
+// steps of 0.5 to 5 ms.
+inline constexpr int kMostUnconverged = 20;  // steps
+
+class DivergenceWatch {
+ public:
+  // Allocates.
+  explicit DivergenceWatch(const multibody::Model& model) : gauge_(model) {}
+
+  void reset() noexcept { unconverged_ = 0, text_length_ = 0; }
+  void count_step(bool has_converged) noexcept;
+
+  // For the motion in ws, as Dynamics::observe() leaves it, and sub-steps of h [s]. True: the run ends, text() says
+  // with which body and why. Neither allocates.
+  [[nodiscard]] bool ends_run(const multibody::Model& model, const multibody::State& state,
+                              const multibody::Workspace& ws, double h) noexcept;
+  [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), text_length_}; }
+
+  // Nothing while no step of late has failed to converge: what a sound run leaves in the hash is its motion.
+  void add_to(StateHash& hash) const noexcept {
+    if (unconverged_ != 0) hash.add(unconverged_);
+  }
+  template <typename Self, typename Bytes>
+  static void visit(Self& self, Bytes& bytes) {
+    bytes.count(self.unconverged_, kMostUnconverged);
+    bytes.count(self.text_length_, self.text_.size());
+    bytes.numbers(std::span(self.text_).first(self.text_length_));
+  }
+
+ private:
+  [[nodiscard]] bool name_bent_body(const multibody::Model& model, const multibody::State& state,
+                                    const multibody::Workspace& ws) noexcept;
+  void name_suspect(const multibody::Model& model, const multibody::State& state, const multibody::Workspace& ws,
+                    double h) noexcept;
+  template <typename... Values>
+  void write(const char* form, const Values&... values) noexcept;
+
+  multibody::JointGauge gauge_;
+  int unconverged_ = 0;  // excess, at most kMostUnconverged
+  std::array<char, 512> text_{};
+  std::size_t text_length_ = 0;
+};
+
+}  // namespace slew::mechanics
