@@ -88,7 +88,7 @@ struct FieldOptions {
   double ramp = 0;                  // s: a live change is spread over this time by default
   std::string_view reference = {};  // kind of element the text must name: "body", "force", "component or force", ...
   std::span<const std::string_view> choices = {};
-  bool has_jumps = false;  // of a table: two points may have one argument
+  bool has_jumps = false;                // of a table: two points may have one argument
   std::span<const ReadBy> read_by = {};  // all of these; empty: always
   std::string_view doc = {};
 };

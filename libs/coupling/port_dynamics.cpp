@@ -29,7 +29,6 @@ constexpr double kNarrow = 1e-3;  // of the step that leads out of it
 // speeds are converged below this fraction of the speed scale: well under any physical resolution, above round-off
 constexpr double kRelativeTolerance = 1e-12;
 constexpr double kAbsoluteTolerance = 1e-15;
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // parts of micro-steps in a solve; beyond, what is left of a micro-step goes in one
 constexpr int kMostTries = 512;

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -108,6 +109,7 @@ class PortDynamics {
   [[nodiscard]] std::span<const double> impulse() const noexcept { return {impulse_.data(), rows_}; }  // of z [N s]
 
  private:
+  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   // Alexander (1977), SIAM J. Numer. Anal. 14, 1006: gamma = 1 - 1/sqrt(2)
   static constexpr double kGamma = 0.29289321881345247560;
   // A part of a solve: where it begins, its length, times of its stages.

@@ -1,14 +1,11 @@
 // Micro-steps of the port problem in which a stop begins or ends to push, or throws back.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "coupling/port_dynamics.h"
 
 namespace slew::coupling {
 namespace {
-
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // Parts of a micro-step about a stop. The way into a spring and out of it in one part leaves (omega part)^2 / 2 of the
 // speed out: kTouch is a thousandth.

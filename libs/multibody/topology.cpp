@@ -82,7 +82,8 @@ std::vector<bool> choose_tree(const MechanicsDef& mechanics, const JointEnds& en
       const JointDef& joint = mechanics.joints[j];
       const auto [body1, body2] = ends[j];
       const bool is_of_tree = has_coordinates(joint.type) || joint.type == JointType::node;
-      if (body1 == kNoBody || body2 == kNoBody || !is_of_tree || is_barred[j] || class_of(driven, geared, joint) != choice) {
+      if (body1 == kNoBody || body2 == kNoBody || !is_of_tree || is_barred[j] ||
+          class_of(driven, geared, joint) != choice) {
         continue;
       }
       is_in_tree[j] = groups.connect(body1, body2);

@@ -28,7 +28,7 @@ constexpr Range kDelayRange{.min = 1, .max = 64, .min_is_open = false, .max_is_o
 constexpr Range kWaitRange{.min = 0.001, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
 constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
-constexpr Range kStallRange = {.min = 0.5, .max = 3600};
+constexpr Range kStallRange{.min = 0.5, .max = 3600, .min_is_open = false, .max_is_open = false};
 constexpr Range kRejoinRange{.min = 0, .max = 3600, .min_is_open = false, .max_is_open = false};
 constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-3, .min_is_open = false, .max_is_open = false};

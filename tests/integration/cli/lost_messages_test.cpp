@@ -238,6 +238,7 @@ TEST_F(LostMessages, BehindAStrayEndAreCountedAndNotCalledEqual) {
       });
       ASSERT_NE(found, content.messages.end());
       Message end = *found;
+      end.stamp.step = at - 1;  // in front of the tick of its step
       wire::Tick tick;
       ASSERT_TRUE(transport::decode(end.payload, tick));
       tick.flags |= static_cast<std::uint32_t>(wire::TickFlag::end);

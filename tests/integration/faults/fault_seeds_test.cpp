@@ -176,9 +176,11 @@ class DropSeeds : public FaultSeeds {
       EXPECT_EQ(session.auditor().contradiction(), "") << session.text();
       const Auditor::Chain& expected = clean(which);
       for (const auto& [key, hash] : session.auditor().chain()) {
+        // the last tick of a session that ends early says END, where the clean one has inputs
+        if (key.first == wire::Topic::tick && key.second >= session.next_tick()) continue;
         const auto found = expected.find(key);
         const bool differs = found != expected.end() && found->second != hash;
-        ASSERT_FALSE(differs) << "step " << key.second;
+        ASSERT_FALSE(differs) << node::to_text(key.first) << " of step " << key.second;
       }
     }
     if (session.next_tick() < kSteps) ++stopped_;
@@ -196,7 +198,7 @@ TEST_F(DropSeeds, EndInProgressOrInANamedStop) {
     if (HasFailure()) return;
   }
   if (drawn.size() == 1) return;
-  EXPECT_GT(dropped_, 100 * drawn.size());
+  EXPECT_GT(dropped_, 20 * drawn.size());
   EXPECT_GT(mutated_, drawn.size());
   EXPECT_GT(stopped_, drawn.size() / 4);
   fmt::print("{} seeds: {} dropped, {} mutated, {} sessions stopped\n", drawn.size(), dropped_, mutated_, stopped_);

@@ -362,6 +362,12 @@ TEST_F(Io, HoldsUntilTheLastSilentNodeIsBack) {
   EXPECT_NE(node->member().reason().find("hydraulics"), std::string::npos) << node->member().reason();
   played.say_status(Role::hydraulics, NodeState::running, 1);
   poll(kMs);
+  // heard again, but the sample of step 1 has not come all the while
+  EXPECT_EQ(node->member().state(), NodeState::holding);
+  EXPECT_NE(node->member().reason().find("waits for mechanism of step 1"), std::string::npos)
+      << node->member().reason();
+  say_samples(1);
+  poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::running);
   EXPECT_EQ(node->member().reason(), "");
 }

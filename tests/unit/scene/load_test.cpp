@@ -86,18 +86,6 @@ TEST(Load, ACircuitOfMoreUnknownsThanItsSolverTakesIsRefusedByName) {
   }
 }
 
-TEST(Load, ALineOfAnyLengthIsCountedOnceForAllItsMarks) {
-  std::string line;
-  for (int i = 0; i < 1000; ++i) line += "\xC3\xA4 x";
-  Report report;
-  const std::optional<SourceText> source = check_source("a\n" + line + "\nb", report.add_source("s"), report);
-  ASSERT_TRUE(source);
-  MarkReader marks(*source);
-  for (std::size_t i = 0; i < source->text.size(); i += 7) EXPECT_EQ(marks.at(i), source->mark_at(i)) << i;
-  // and backwards
-  for (std::size_t i = source->text.size(); i > 13; i -= 13) EXPECT_EQ(marks.at(i), source->mark_at(i)) << i;
-}
-
 TEST(Load, WordsThatYamlTakesForSomethingElseAreQuoted) {
   for (const char* word : {"yes", "No", "true", "null", "~", "", "010", "1.5", "a: b", "-", "x y"}) {
     EXPECT_EQ(yaml_text(word).front(), '"') << word;
