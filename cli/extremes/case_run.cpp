@@ -7,15 +7,14 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <numbers>
+#include <span>
 
 #include "cli/coupling_check.h"
 #include "cli/direct_session.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/json.h"
-#include "hydraulics/components/double_acting_cylinder.h"
-#include "hydraulics/components/slew_cylinder.h"
+#include "hydraulics/circuit.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "multibody/joint_gauge.h"
@@ -56,12 +55,14 @@ class Ceiling {
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {
       if (volume.fixed) take(tank_, volume.initial_pressure);
     }
-    for (const auto& component : scene.hydraulics.components) {
-      if (const auto* linear = dynamic_cast<const hydraulics::DoubleActingCylinderDef*>(component.get())) {
-        add_area(linear->common.piston_diameter, linear->rod_diameter);
-      } else if (const auto* slew = dynamic_cast<const hydraulics::SlewCylinderDef*>(component.get())) {
-        add_area(slew->common.piston_diameter, 0);
-      }
+  }
+
+  // What turns pressure into force at the ports, in their order.
+  void set_actuators(std::span<const hydraulics::Actuator> actuators) {
+    for (const hydraulics::Actuator& actuator : actuators) {
+      const auto [smaller, larger] = std::minmax(actuator.area_a, actuator.area_b);
+      ratio_ = std::max(ratio_, larger / smaller);
+      area_.push_back(smaller);
     }
     holding_.assign(area_.size(), 0);
     stopping_.assign(area_.size(), 0);
@@ -89,12 +90,6 @@ class Ceiling {
   }
 
  private:
-  void add_area(double piston, double rod) {
-    const double bore = piston * piston, ring = bore - rod * rod;
-    ratio_ = std::max(ratio_, bore / ring);
-    area_.push_back(0.25 * std::numbers::pi * ring);
-  }
-
   template <typename Take>
   void for_each_port(const coupling::MechanismSample& mechanism, Take&& take) {
     for (std::size_t i = 0; i < std::min(area_.size(), mechanism.v.size()); ++i) {
@@ -163,6 +158,7 @@ class Stepper {
     }
     hydraulics_ = dynamic_cast<const hydraulic_node::HydraulicsSubsystem*>(session_.subsystem(Role::hydraulics));
     if (hydraulics_ == nullptr) return;
+    ceiling_.set_actuators(hydraulics_->circuit().actuators());
     values_.resize(hydraulics_->variables().size());
     const auto variables = hydraulics_->variables();
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "build_paths.h"
+#include "cli/extremes/case_run.h"
 #include "cli/extremes/cases.h"
 #include "cli/extremes/extremes.h"
 #include "cli/extremes/judge.h"
@@ -146,6 +147,22 @@ TEST(ExtremeCases, CraneHasThemAllWithItsOwnNames) {
   for (const ExtremeCase& one : cases) {
     // the times of late cases are whole steps
     EXPECT_EQ(one.begin_ns % scene.session.step_duration().ns, 0) << one.name;
+  }
+}
+
+// A load that is put on swings to twice what holds it, whatever kind of cylinder holds it.
+TEST(ExtremeCases, CylindersOfEveryKindBoundThePressuresByWhatTheyHold) {
+  for (const char* file : {"single_cylinder.yaml", "two_dof_crane.yaml", "tipper.yaml"}) {
+    const auto ceiling_with = [&](const char* gravity) {
+      cli_support::SceneOptions options;
+      options.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + file;
+      options.overrides = {gravity, "hydraulics.start=table13"};
+      const CaseOutcome outcome = run_case(options, "full_range_every_step");
+      EXPECT_TRUE(outcome.measures.ceiling) << outcome.measures.refusal;
+      return outcome.measures.ceiling.value_or(0);
+    };
+    EXPECT_GT(ceiling_with("mechanics.gravity=[0, -20, 0]"), 1.05 * ceiling_with("mechanics.gravity=[0, -5, 0]"))
+        << file;
   }
 }
 
