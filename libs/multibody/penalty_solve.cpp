@@ -25,6 +25,8 @@ constexpr double kStalled = 0.5;
 // Rows that come near to depending on each other leave the direction that they are about to give free to more rounds
 // than there are: what is left is a share of its acceleration. More than that is a matrix that does not fit.
 constexpr double kSettled = 1e-3;
+// m/s2, rad/s2: of a mechanism at rest nothing but rounding is left, and is no measure of itself
+constexpr double kAtRest = 1e-14;
 
 Vec3 vector_at(const double* x) noexcept {
   return {x[0], x[1], x[2]};
@@ -196,7 +198,7 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
   const bool is_exact = body.formulation == Formulation::augmented;
   std::fill(x.begin(), x.end(), 0.0);
   std::fill(multipliers.begin(), multipliers.end(), 0.0);
-  double before = 0, whole = 0, share = 0;
+  double before = 0, whole = kAtRest, share = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     // what is left of the equation of motion; of a plain penalty the multipliers are those of x alone
     std::copy(force.begin(), force.end(), pws.correction.begin());
@@ -211,7 +213,7 @@ bool solve(const Model& model, const PenaltyModel& body, const Workspace& ws, Pe
     // forces that nearly balance leave less than their rounding
     const double size = fixed_max_abs(pws.correction);
     whole = std::max(whole, fixed_max_abs(x));
-    share = whole > 0 ? size / whole : 0;
+    share = size / whole;
     if (share <= kRounding || (share <= kSmall && size > kStalled * before)) break;
     before = size;
   }
