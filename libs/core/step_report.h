@@ -17,8 +17,8 @@ enum class StepFlag : std::uint32_t {
   cavitating = 1u << 8,
   relief_open = 1u << 9,
   large_deflection = 1u << 10,  // a flexible body is bent beyond what its theory is good for
-  ended = 1u << 11,          // a rule ends the session (session.coupling_alarm, mechanics_node/divergence.h): latched
-  beyond_oil_law = 1u << 12  // a pressure is above what the oil's law is good for
+  ended = 1u << 11,             // a rule ends the session (coupling alarm, diverging mechanics): latched
+  beyond_oil_law = 1u << 12     // a pressure is above what the oil's law is good for
 };
 
 struct StepReport {

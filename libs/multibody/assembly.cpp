@@ -30,6 +30,16 @@ constexpr double kSlide = 0.02;     // of the mechanism's size
 // speeds that do not fit their loop by more than this are reported
 constexpr double kAssembledSpeed = 1e-6;
 
+// What a unit of a mode turns a node by, or moves it by of the body's length, at most. A slender body's mode of torsion
+// turns its tip by hundreds of radians a unit.
+double largest_turn(const FlexiblePart& part, std::size_t mode) {
+  double largest = 0;
+  for (const ModalNode& node : part.source->nodes) {
+    largest = std::max({largest, norm(node.turn[mode]), norm(node.shift[mode]) / part.length});
+  }
+  return largest > 0 ? largest : 1;
+}
+
 // Works on the model's rows as they are; made anew when they change.
 class Assembler {
  public:
@@ -86,6 +96,9 @@ class Assembler {
       const auto u = at(link.u);
       if (link.joint == LinkJoint::spherical) ws_.delta_alpha[i] = {step[u], step[u + 1], step[u + 2]};
       if (link.joint == LinkJoint::floating) ws_.delta_alpha[i] = {step[u + 3], step[u + 4], step[u + 5]};
+    }
+    for (const FlexiblePart& part : model_.parts) {
+      for (std::size_t mode = 0; mode < part.modes; ++mode) step[at(part.u) + mode] /= largest_turn(part, mode);
     }
     displace(model_, ws_, step, state_.q);
   }
