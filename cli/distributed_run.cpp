@@ -108,7 +108,9 @@ class Supervisor {
   // values are needed for the status line, and for the summary of a run that is not recorded here
   [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier() const {
     const bool shows_values = !options_.is_quiet && !options_.is_json;
-    if (shows_values || keyboard_ || !is_ours(Role::recorder)) {
+    // what the samples report is in the recording when there is one: each reader costs the writers time
+    if (!is_ours(Role::recorder)) return cli_support::open_observer_with_samples(options_.session);
+    if (shows_values || keyboard_) {
       return cli_support::open_carrier(Role::observer, options_.session);
     }
     return cli_support::open_observer_without_values(options_.session);
@@ -511,6 +513,7 @@ class Supervisor {
     outcome.recording = recording_;
     if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
     outcome.view = observer_->view();
+    outcome.begin = begin_;
     outcome.steps = std::max<StepIndex>(0, outcome.view.step() - begin_);
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();

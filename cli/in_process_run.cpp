@@ -41,7 +41,7 @@ class InProcessRun {
     nodes_.push_back(io_.get());
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
-    observer_ = std::make_unique<Observer>(cli_support::open_carrier(Role::observer, bus_), options.session.session);
+    observer_ = std::make_unique<Observer>(cli_support::open_observer_with_samples(bus_), options.session.session);
     if (options.scene.input == "keyboard") keyboard_.emplace(session.scene);
   }
 
@@ -112,6 +112,7 @@ class InProcessRun {
     if (interrupt_code() != 0) outcome.code = static_cast<ExitCode>(interrupt_code());
     if (recorder_ != nullptr) outcome.recording = recorder_->recording().string();
     outcome.has_begun = true;
+    outcome.begin = begin_;
     outcome.steps = std::max<StepIndex>(0, io_->next_step() - begin_);
     outcome.wall_time = clock_.running();
     outcome.paused_time = clock_.paused();

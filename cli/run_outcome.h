@@ -61,6 +61,7 @@ struct RunOutcome {
   SessionView view;                   // as seen while it ran
   double wall_time = 0;               // s, from the first tick to the last, without pauses
   double paused_time = 0;             // s
+  StepIndex begin = 0;                // step that the session began with
   StepIndex steps = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/display.h"
+#include "cli/flag_counter.h"
 #include "cli/flag_report.h"
 #include "cli/plotting/svg_plot.h"
 #include "cli/recorded.h"
@@ -191,12 +192,32 @@ Json session_json(const RunReport& report) {
   return json;
 }
 
+// What the samples reported while the session ran; empty when they were not read.
+void report_flags(const RunOutcome& outcome, const scene::Scene& scene, RunReport& report) {
+  const FlagCounter& flags = outcome.view.flags();
+  for (std::string& flagged : flags.sentences(scene.session.step_duration(), volume_names(scene))) {
+    report.notes.push_back(std::move(flagged));
+  }
+  const std::uint64_t missed = flags.missed(outcome.begin);
+  if (missed > 0) {
+    report.notes.push_back(
+        fmt::format("{} did not reach this program, and what they reported is not counted; record the session and "
+                    "look with 'slewring info'",
+                    counted(missed, "sample", "samples")));
+  }
+}
+
 // What the recording says beside numbers, and the scene's plots and files beside it.
 void explain(const recording::Reader& reader, const SessionView& recorded, const scene::Scene& scene,
-             const std::string& assets, RunReport& report) {
+             const std::string& assets, const RunOutcome& outcome, RunReport& report) {
   for (std::string& stalled : explain_stalls(reader, scene)) report.notes.push_back(std::move(stalled));
   report_left_out(recorded, report);
-  for (std::string& flagged : explain_flags(reader)) report.notes.push_back(std::move(flagged));
+  const FlagCounter& flags = outcome.view.flags();
+  if (flags.has_samples() && flags.missed(outcome.begin) == 0) {
+    report_flags(outcome, scene, report);
+  } else {
+    for (std::string& flagged : explain_flags(reader)) report.notes.push_back(std::move(flagged));
+  }
   keep_assets(scene, assets, report.recording);
   ScenePlots read = read_plots(scene, reader);
   for (std::string& left_out : read.left_out) report.notes.push_back(std::move(left_out));
@@ -227,7 +248,8 @@ void compare_steps(const TickSpan& span, const NodeView& io, RunReport& report) 
 }
 
 // The recording has every message; an observer may have missed some.
-void report_recorded(const scene::Scene& scene, const std::string& assets, const SessionView& seen, RunReport& report) {
+void report_recorded(const scene::Scene& scene, const std::string& assets, const RunOutcome& outcome,
+                     RunReport& report) {
   const auto reader = open_recording(report.recording);
   const SessionView recorded = view_recording(*reader, Values::all);
   report_variables(recorded, scene, report);
@@ -242,14 +264,14 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
       report.paused_time = span.paused_time;
     }
   }
-  if (!is_short) compare_steps(span, seen.node(Role::io), report);
+  if (!is_short) compare_steps(span, outcome.view.node(Role::io), report);
   if (span.steps == 0) return;
   if (is_short) {
     report.notes.push_back(
         fmt::format("the recording ends after {}, and what is said of variables and losses is of it alone",
                     duration_text(static_cast<double>(span.steps) * report.step)));
   }
-  explain(*reader, recorded, scene, assets, report);
+  explain(*reader, recorded, scene, assets, outcome, report);
 }
 
 }  // namespace
@@ -273,9 +295,10 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
   if (outcome.recording.empty()) {
     report_variables(outcome.view, scene, report);
     report_left_out(outcome.view, report);
+    report_flags(outcome, scene, report);
   } else {
     try {
-      report_recorded(scene, assets, outcome.view, report);
+      report_recorded(scene, assets, outcome, report);
     } catch (const Failure& failure) {
       // of a session that failed before its first step there is nothing to read, and that is no further failure
       if (report.steps > 0 || report.code == ExitCode::ok) report.messages.emplace_back(failure.what());

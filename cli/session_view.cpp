@@ -24,6 +24,12 @@ NodeView* SessionView::node_of(const wire::Header& header) {
   return transport::is_given_up(*session_, header) ? nullptr : &nodes_[index];
 }
 
+template <typename Sample>
+void SessionView::take_sample(std::span<const std::byte> bytes, Sample& sample) {
+  if (!transport::decode(bytes, sample) || node_of(sample.header) == nullptr) return;
+  flags_.take(sample.header, sample.state);
+}
+
 void SessionView::take(Topic topic, std::span<const std::byte> bytes) {
   // topics arrive in any order; those that are said only once must wait for the session they belong to
   const bool is_said_once =
@@ -43,6 +49,10 @@ void SessionView::take(Topic topic, std::span<const std::byte> bytes) {
       return take_directory(bytes);
     case Topic::variables:
       return take_block(bytes);
+    case Topic::mechanism:
+      return take_sample(bytes, mechanism_);
+    case Topic::actuators:
+      return take_sample(bytes, actuators_);
     case Topic::controller_lease:
       return take_lease(bytes);
     default:
@@ -100,6 +110,7 @@ void SessionView::look_at(std::optional<wire::SessionDescription> session) {
   has_told_ = {};
   index_.clear();
   leases_.clear();
+  flags_ = {};
   step_ = kJoinStep;
   if (!session_) return;
   name_ = session_->name;

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/flag_counter.h"
 #include "transport/transport.h"
 #include "transport/wire.h"
 
@@ -75,6 +76,9 @@ class SessionView {
   // io_node's last answer to this controller about a channel; null before.
   [[nodiscard]] const wire::ControllerLease* lease(const std::string& controller, const std::string& channel) const;
 
+  // What the physics samples reported, as far as the carrier reads their topics.
+  [[nodiscard]] const FlagCounter& flags() const noexcept { return flags_; }
+
   // Every node that offers variables has told all their names.
   [[nodiscard]] bool has_whole_directory() const noexcept;
 
@@ -86,6 +90,8 @@ class SessionView {
   void take_health(std::span<const std::byte> bytes);
   void take_directory(std::span<const std::byte> bytes);
   void take_block(std::span<const std::byte> bytes);
+  template <typename Sample>
+  void take_sample(std::span<const std::byte> bytes, Sample& sample);
   [[nodiscard]] NodeView* node_of(const wire::Header& header);
 
   struct Early {
@@ -105,6 +111,9 @@ class SessionView {
   std::map<std::pair<std::string, std::string>, wire::ControllerLease> leases_;
   StepIndex step_ = kJoinStep;
   wire::VariableBlock block_;
+  FlagCounter flags_;
+  wire::MechanismMessage mechanism_;
+  wire::ActuatorMessage actuators_;
 };
 
 }  // namespace slew::cli

@@ -93,6 +93,12 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role r
   return carrier;
 }
 
+TopicSet with_samples(TopicSet topics) {
+  topics.insert(Topic::mechanism);
+  topics.insert(Topic::actuators);
+  return topics;
+}
+
 }  // namespace
 
 std::unique_ptr<transport::Transport> open_carrier(Role role, const SessionOptions& options) {
@@ -108,6 +114,17 @@ std::unique_ptr<transport::Transport> open_observer_without_values(const Session
                "observer",
                topics_written(Role::observer),
                {Topic::session, Topic::node_status, Topic::control_reply, Topic::health}});
+}
+
+std::unique_ptr<transport::Transport> open_observer_with_samples(const SessionOptions& options) {
+  return open(options, Role::observer,
+              {options.session, "observer", topics_written(Role::observer), with_samples(topics_read(Role::observer))});
+}
+
+std::unique_ptr<transport::Transport> open_observer_with_samples(transport::InProcessBus& bus) {
+  return std::make_unique<transport::InProcessEndpoint>(
+      bus, transport::InProcessOptions{"observer", topics_written(Role::observer),
+                                       with_samples(topics_read(Role::observer))});
 }
 
 std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options) {

@@ -22,6 +22,10 @@ namespace slew::cli_support {
 // writers time.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options);
 
+// An observer that reads the samples of mechanics and hydraulics too: for a run that counts what they report.
+[[nodiscard]] std::unique_ptr<transport::Transport> open_observer_with_samples(const SessionOptions& options);
+[[nodiscard]] std::unique_ptr<transport::Transport> open_observer_with_samples(transport::InProcessBus& bus);
+
 // An observer that writes nothing: for keys that let somebody look on and no more.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options);
 

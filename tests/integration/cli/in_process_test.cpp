@@ -93,6 +93,29 @@ TEST_F(InProcess, APlotOfAVariableThatIsNotThereIsNamedAndTheRunIsGoodAllTheSame
   EXPECT_EQ(slewring({"check", "rod.yaml"}).code, 2);
 }
 
+// a pump against a closed line: its pressure leaves the range of the oil's law
+TEST_F(InProcess, WhatStepsReportIsToldAlikeWithAndWithoutARecordingInOneProcessAndInMany) {
+  std::ofstream(work_.path() / "closed.yaml")
+      << "volumes:\n  Vol_P: {rigid_volume: 1 l}\n  Vol_T: {initial_pressure: 1 bar, fixed: true}\n"
+         "components:\n  Pump: {type: ls_pump, port_a: Vol_P, port_b: Vol_T, speed: 1500 rpm, displacement: 28 cc/rev, "
+         "standby_pressure: 10000 bar, time_constant: 1 ms}\n"
+         "session: {duration: 0.5 s, pace: free}\n";
+  const auto notes = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", "closed.yaml", "--input", "none", "--json"});
+    const CommandResult result = slewring(more);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return nlohmann::json::parse(result.out).at("notes");
+  };
+  const nlohmann::json recorded = notes({"--in-process"});
+  ASSERT_FALSE(recorded.empty());
+  EXPECT_NE(recorded.dump().find("Vol_P: a pressure was beyond what the oil's law is good for"), std::string::npos)
+      << recorded;
+  EXPECT_EQ(notes({"--in-process", "--no-record"}), recorded);
+  const CommandResult info = slewring({"info", work_.recording().string(), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(info.out).at("notes"), recorded);
+  EXPECT_EQ(notes({"--no-record", "--session", "flags_unrecorded"}), recorded);
+}
+
 TEST_F(InProcess, TheLastLineIsThePathOfTheRecording) {
   const CommandResult result =
       slewring({"run", scene_file("first_steps.yaml"), "--in-process", "--pace", "free", "--duration", "0.1"});
