@@ -29,7 +29,7 @@ TEST(FlagCounter, ARepeatedSampleIsCountedOnce) {
       flags.sentences(milliseconds(1), {"Tank", "Line"}),
       std::vector<std::string>{
           "hydraulics: Line: a pressure was beyond what the oil's law is good for (1000 bar) in 4 steps, first at "
-          "0 s; limit it: a relief valve on the line, a lower load or setting"});
+          "0; limit it: a relief valve on the line, a lower load or setting"});
 }
 
 TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
