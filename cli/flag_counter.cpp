@@ -27,7 +27,7 @@ constexpr std::array<Meaning, FlagCounter::kFlags> kMeanings = {{
     {StepFlag::late_input, "a sample was later than the copy of the partner's model is good for",
      "look for load on the machine or the network, or choose session.mode: lockstep"},
     {StepFlag::coupling_creates_energy, "the coupling created energy, so the run may be unstable",
-     "choose session.coupling: two or a smaller step"},
+     "choose a smaller session.step, or level two for a port that has another"},
     {StepFlag::cavitating, "a volume cavitated", "look at the pressures near zero"},
     {StepFlag::beyond_oil_law, "a pressure was beyond what the oil's law is good for (1000 bar)",
      "limit it: a relief valve on the line, a lower load or setting"},

@@ -292,10 +292,12 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(n, *partners.mechanism, partners.mechanism_age, taken);
   StepReport report = integrator_->step(H_.seconds(), reduced_);
   report.flags |= taken.flags;
-  if (indicator_.creates_energy()) report.raise(StepFlag::coupling_creates_energy);
-  if (const std::optional<std::size_t> port = ends_on_alarm_ ? maker_of_energy() : std::nullopt) {
-    report.raise(StepFlag::ended);
-    end_at(*port);
+  if (const std::optional<std::size_t> port = first_alarm()) {
+    report.raise(StepFlag::coupling_creates_energy);
+    if (ends_on_alarm_ && is_kept_in_balance(*port)) {
+      report.raise(StepFlag::ended);
+      end_at(*port);
+    }
   }
   if (report.has_failed()) {
     failure_ = report;
@@ -307,30 +309,35 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   return report;
 }
 
-// Only of levels that are meant not to: hold makes energy on any machine that swings, and a line of level tlm has work
-// under way, which the indicator takes for made.
+// Levels whose two sides foresee each other: hold makes energy on any machine that swings, and a line of level tlm has
+// work under way, which the indicator takes for made; both are flagged by the net energy and never end a session.
 bool HydraulicsSubsystem::is_kept_in_balance(std::size_t port) const noexcept {
   return levels_[port] == coupling::Level::linear || levels_[port] == coupling::Level::two;
 }
 
-std::optional<std::size_t> HydraulicsSubsystem::maker_of_energy() const noexcept {
+// A port that ends the session comes before one that is only flagged.
+std::optional<std::size_t> HydraulicsSubsystem::first_alarm() const noexcept {
+  std::optional<std::size_t> flagged;
   for (std::size_t i = 0; i < m_; ++i) {
-    if (indicator_.port(i).creates_energy && is_kept_in_balance(i)) return i;
+    if (is_kept_in_balance(i)) {
+      if (indicator_.diverges(i)) return i;
+    } else if (!flagged && indicator_.port(i).creates_energy) {
+      flagged = i;
+    }
   }
-  return std::nullopt;
+  return flagged;
 }
 
 void HydraulicsSubsystem::end_at(std::size_t port) noexcept {
-  const coupling::PortDefects& defects = indicator_.port(port);
   const char* const remedy = levels_[port] != coupling::Level::two ? "a shorter session.step or coupling: two"
                              : is_free_running_                    ? "a shorter session.step or session.mode: lockstep"
                                                                    : "a shorter session.step";
   const auto written = fmt::format_to_n(
       failure_text_.data(), failure_text_.size(),
-      "{}: the coupling has made energy for {:g} s, {:.2g} % of the work of the last second, and the machine swings on "
-      "its oil by {:.2g} from one exchange to the next; use {}, or session.coupling_alarm: warn to go on with red "
-      "lamps",
-      port_names_[port], coupling::kNetAlarmAfter.seconds(), -1e2 * defects.net, indicator_.omega_H(), remedy);
+      "{}: the coupling diverges: over the last second the works of both sides have differed by {:.2g} % of the work "
+      "done, not by one jump alone, and the machine swings on its oil by {:.2g} from one exchange to the next; use {}, "
+      "or session.coupling_alarm: warn to go on with red lamps",
+      port_names_[port], 1e2 * indicator_.port(port).eta, indicator_.omega_H(), remedy);
   failure_text_length_ = std::min(written.size, failure_text_.size());
 }
 

@@ -7,7 +7,7 @@
 // level tlm F is what the lines do to the piston (hydraulics/line_chambers.h), as in the mechanics.
 //
 // Also follows the coupling's error per port (coupling/indicator.h), since it is where both samples of a step meet, and
-// ends a session whose coupling makes energy (session.coupling_alarm).
+// ends a session whose coupling diverges (session.coupling_alarm).
 #pragma once
 
 #include <array>
@@ -126,7 +126,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
   [[nodiscard]] Status check_coupling(const coupling::MechanismSample& mechanism) const;
   [[nodiscard]] bool is_kept_in_balance(std::size_t port) const noexcept;
-  [[nodiscard]] std::optional<std::size_t> maker_of_energy() const noexcept;
+  [[nodiscard]] std::optional<std::size_t> first_alarm() const noexcept;
   void end_at(std::size_t port) noexcept;
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,

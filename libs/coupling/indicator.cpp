@@ -135,6 +135,19 @@ bool Indicator::creates_energy() const noexcept {
   return std::any_of(defects_.begin(), defects_.end(), [](const PortDefects& d) { return d.creates_energy; });
 }
 
+bool Indicator::diverges(std::size_t port) const noexcept {
+  if (defects_[port].eta > kDivergesAtOnce) return true;
+  std::size_t diverging = 0;
+  for (std::size_t i = 0; i < kBuckets; ++i) {
+    const Bucket& bucket = window_[port][i];
+    if (i == current_ || !(bucket.stiffness > 0)) continue;
+    const double force = std::max(bucket.force, kLeastForce);
+    const double scale = std::max(bucket.work, force * force / (2 * bucket.stiffness));
+    if (bucket.residual > kDivergesAbove * scale) ++diverging;
+  }
+  return diverging >= kDivergingBuckets;
+}
+
 namespace {
 
 // m x m, row-major, on the stack of who needs it

@@ -11,6 +11,13 @@
 // eta times 10 to 30 is the relative force error (study). Lamps: green below 1e-4, amber below 1e-3, red above;
 // net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window,
 // at least 1 N.
+//
+// One jump of a valve is one exchange whose work the mechanics could not foresee: it may be large in eta and net for
+// the whole window and does no more. A coupling that diverges fails exchange after exchange. So a port diverges when
+//   sum |dE*| > 0.1 max(sum |W_mech|, F^2 / (2 K))                                                  (7)
+// within half of the window's buckets or more, each with its own work and its own largest |F|: a swing that grows
+// within the window does not hide the buckets before it; and at once when eta > 4, more than any jump of a sound run
+// leaves.
 #pragma once
 
 #include <array>
@@ -31,6 +38,10 @@ enum class Lamp : std::uint8_t { green, amber, red };
 inline constexpr double kGreenBelow = 1e-4;
 inline constexpr double kAmberBelow = 1e-3;
 inline constexpr double kNetAlarm = -3e-3;
+// docs/coupling-alarm.md: sound runs reach 0.08 in half of their buckets
+inline constexpr double kDivergesAbove = 0.1;
+// and an eta of 1; runs that are wrong by 3 % of the force range reach 3
+inline constexpr double kDivergesAtOnce = 4;
 inline constexpr SimDuration kIndicatorWindow = {1'000'000'000};
 inline constexpr SimDuration kNetAlarmAfter = {200'000'000};
 
@@ -64,6 +75,8 @@ class Indicator {
   [[nodiscard]] const PortDefects& port(std::size_t i) const noexcept { return defects_[i]; }
   [[nodiscard]] double omega_H() const noexcept { return omega_H_; }  // of the last update [-]
   [[nodiscard]] bool creates_energy() const noexcept;
+  // (7), by the buckets that are full, or at once by eta. No allocation.
+  [[nodiscard]] bool diverges(std::size_t port) const noexcept;
 
  private:
   // sums over one bucket of the window
@@ -78,6 +91,7 @@ class Indicator {
     }
   };
   static constexpr std::size_t kBuckets = 20;  // of whole steps; the oldest is dropped as a whole
+  static constexpr std::size_t kDivergingBuckets = kBuckets / 2;
 
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);

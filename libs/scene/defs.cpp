@@ -97,7 +97,7 @@ constexpr Field kSessionFields[] = {
         "coupling_alarm",
         {.choices = kCouplingAlarms,
          .doc = "what becomes of a session whose coupling is beyond what it is good for. stop: it ends, with the port, "
-                "when level linear or two has made energy for 0.2 s, and a free-running one whose machine "
+                "when level linear or two diverges, and a free-running one whose machine "
                 "swings too far in a step does not start; warn: it goes on with red lamps and flags"}),
     field<&SessionDef::wait_budget>("wait_budget",
                                     {.dimension = Dimension::time,

@@ -79,11 +79,9 @@ TEST_F(Extremes, WhatTheCouplingCannotFollowIsRefusedAndTheStepThatSuitsIsFound)
   EXPECT_NE(refusal.find("less than two exchanges to a swing"), std::string::npos) << refusal;
   EXPECT_LT(stiff.at("largest_step").get<double>(), stiff.at("step").get<double>());
   const nlohmann::json& lost = row(report, "lost_50").at("result");
-  EXPECT_EQ(lost.at("verdict"), "refused");
-  const std::string alarm = lost.at("alarm");
-  EXPECT_EQ(alarm.rfind("Cyl_Lift: the coupling has made energy for 0.2 s", 0), 0u) << alarm;
-  EXPECT_NE(alarm.find("session.mode: lockstep"), std::string::npos) << alarm;
-  EXPECT_GT(lost.at("ended_at").get<double>(), 0.2);
+  // half of the samples are lost in a row, and the error stays within its bound: no reason to end
+  EXPECT_EQ(lost.at("verdict"), "within");
+  EXPECT_EQ(lost.at("alarm"), "");
 }
 
 TEST_F(Extremes, RunsNothingOfASceneThatIsWrong) {

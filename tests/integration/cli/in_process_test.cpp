@@ -467,13 +467,26 @@ TEST_F(InProcess, AnUnstableHoldIsFlagged) {
   EXPECT_NE(result.out.find("the coupling created energy"), std::string::npos) << result.out;
 }
 
-TEST_F(InProcess, CouplingThatMakesEnergyEndsTheSessionByItsPort) {
-  const CommandResult ended = run_scene("truck_crane.yaml", {"--step", "20ms", "--duration", "12"});
+TEST_F(InProcess, CouplingThatDivergesEndsTheSessionByItsPort) {
+  const std::string excavator = scene_file("../tests/validation/coupling/mini_excavator.yaml");
+  const CommandResult ended =
+      slewring({"run", excavator, "--in-process", "--pace", "free", "--step", "10ms", "--set",
+                "session.coupling=linear", "--set", "Cyl_Boom.cylinder_coefficient=1", "--set",
+                "Cyl_Stick.cylinder_coefficient=1", "--set", "Cyl_Bucket.cylinder_coefficient=1"});
   EXPECT_EQ(ended.code, 5) << ended.out << ended.err;
-  EXPECT_NE(ended.err.find("the coupling has made energy for 0.2 s"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("the coupling diverges"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("coupling: two"), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("session.coupling_alarm: warn"), std::string::npos) << ended.err;
   const CommandResult replayed = slewring({"replay", work_.recording().string(), "--verify"});
   EXPECT_NE(replayed.out.find(" 0 different"), std::string::npos) << replayed.out << replayed.err;
+}
+
+TEST_F(InProcess, AValveThatJumpsEndsNoSessionOfLevelTwo) {
+  for (const char* step : {"2ms", "5ms", "10ms"}) {
+    const CommandResult result = run_scene("two_dof_crane.yaml", {"--step", step});
+    EXPECT_EQ(result.code, 0) << step << result.out << result.err;
+    EXPECT_EQ(result.out.find("created energy"), std::string::npos) << step << result.out;
+  }
 }
 
 TEST_F(InProcess, CtrlCEndsTheSessionInOrder) {

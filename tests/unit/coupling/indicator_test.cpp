@@ -60,6 +60,58 @@ TEST(Indicator, EnergyThatTheCouplingCreatesRaisesTheAlarmAfterItsTime) {
   EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::red);
 }
 
+TEST(Indicator, OneJumpHoweverLargeIsNoDivergence) {
+  Indicator indicator(1, milliseconds(5));
+  Pair pair = one_port();
+  for (int i = 0; i < 600; ++i) {
+    pair.mechanism.work[0] = 1;
+    pair.actuators.work[0] = i == 300 ? -500 : 1;
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+    ASSERT_FALSE(indicator.diverges(0)) << i;
+  }
+}
+
+TEST(Indicator, DisagreementInHalfOfTheLastSecondIsDivergenceOfEitherSign) {
+  for (const double sign : {-1.0, 1.0}) {
+    Indicator indicator(1, milliseconds(1));
+    Pair pair = one_port();
+    pair.mechanism.work[0] = 10;
+    int steps = 0;
+    while (!indicator.diverges(0) && steps < 2000) {
+      pair.actuators.work[0] = 10 + 2 * sign;
+      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+      ++steps;
+    }
+    EXPECT_EQ(steps, 501);  // ten full buckets, seen when the next one begins
+  }
+}
+
+TEST(Indicator, DisagreementBeyondAllThatThePortDidIsDivergenceAtOnce) {
+  Indicator indicator(1, milliseconds(5));
+  Pair pair = one_port();
+  int steps = 0;
+  for (; steps < 20 && !indicator.diverges(0); ++steps) {
+    pair.actuators.work[0] = steps % 2 == 0 ? 30 : -30;  // F^2/2K is 50 J
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+  }
+  EXPECT_EQ(steps, 7);
+}
+
+TEST(Indicator, ASwingThatGrowsTenfoldInEveryBucketIsDivergence) {
+  Indicator indicator(1, milliseconds(5));
+  Pair pair = one_port();
+  double force = 1e3;
+  int buckets = 0;
+  for (; buckets < 20 && !indicator.diverges(0); ++buckets, force *= 10) {
+    for (int i = 0; i < 10; ++i) {
+      pair.actuators.F[0] = pair.mechanism.F_used[0] = force;
+      pair.actuators.work[0] = (i % 2 == 0 ? 0.05 : -0.05) * force * force / 1e8;
+      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+    }
+  }
+  EXPECT_LE(buckets, 11);
+}
+
 TEST(Indicator, CouplingFrequencyUsesTheFullMobility) {
   PortMatrix W;
   for (const double w : {3e-5, -2.9e-5, -2.9e-5, 3e-5}) W.push_back(w);

@@ -1,0 +1,102 @@
+// The alarm of the coupling: it ends what diverges and nothing else. Errors and the alarm's measure over all machines,
+// levels, steps and moving valves: docs/coupling-alarm.md.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "build_paths.h"
+#include "tests/validation/coupling/coupled_run.h"
+
+namespace slew::coupling::test {
+namespace alarm_test {
+
+const std::string kScenes = std::string(SLEWRING_SOURCE_DIR) + "/scenes/";
+const std::string kExcavator = std::string(SLEWRING_SOURCE_DIR) + "/tests/validation/coupling/mini_excavator.yaml";
+const scene::Overrides kSmooth = {"Cyl_Boom.cylinder_coefficient=1", "Cyl_Stick.cylinder_coefficient=1",
+                                  "Cyl_Bucket.cylinder_coefficient=1"};
+
+struct Ended {
+  bool has_failed = false, is_flagged = false;
+  std::string text;
+};
+
+// By the scene's script, or all valves at full stick to and fro `hertz` times a second.
+Ended run(const scene::Scene& scene, double duration, double hertz, Ages ages) {
+  CoupledRun run(scene, std::move(ages));
+  const Status status = run.start();
+  EXPECT_TRUE(status.is_ok()) << status.text;
+  Operator op(scene, kControlGrid);
+  std::vector<double> controls(scene.inputs.size());
+  while (run.time().seconds() < duration - 1e-9 && !run.has_failed()) {
+    const std::span<const double> script = op.controls(run.time());
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+      const double sine = std::sin(2 * std::numbers::pi * hertz * run.time().seconds());
+      controls[i] = hertz > 0 ? scene.inputs[i].scale * sine : script[i];
+    }
+    run.step(controls);
+  }
+  return {run.has_failed(), (run.flags() & static_cast<std::uint32_t>(StepFlag::coupling_creates_energy)) != 0,
+          std::string(run.hydraulics().failure_text())};
+}
+
+scene::Scene load(const std::string& file, double H, Level level, const scene::Overrides& overrides = {}) {
+  scene::Scene scene = scene::load_file(file, overrides);
+  scene.session.step = H;
+  scene.session.coupling = level;
+  return scene;
+}
+
+TEST(CouplingAlarm, IsSilentOnASpoolThatJumps) {
+  for (const Level level : {Level::two, Level::linear}) {
+    for (const double H : {1e-3, 2e-3, 5e-3, 10e-3}) {
+      const scene::Scene scene = load(kScenes + "two_dof_crane.yaml", H, level);
+      const Ended ended = run(scene, 10, 0, exchanges_of(scene));
+      EXPECT_FALSE(ended.has_failed) << H << ended.text;
+      EXPECT_FALSE(ended.is_flagged) << H;
+    }
+  }
+}
+
+TEST(CouplingAlarm, IsSilentOnTheLightPortOfAnExcavator) {
+  for (const double H : {1e-3, 2e-3, 5e-3, 10e-3}) {
+    const scene::Scene scene = load(kExcavator, H, Level::two);
+    const Ended ended = run(scene, 8, 0, exchanges_of(scene));
+    EXPECT_FALSE(ended.has_failed) << H << ended.text;
+    EXPECT_FALSE(ended.is_flagged) << H;
+  }
+}
+
+TEST(CouplingAlarm, IsSilentOnValvesThatAlwaysMove) {
+  for (const double H : {1e-3, 2e-3, 5e-3}) {
+    const scene::Scene scene = load(kExcavator, H, Level::two);
+    const Ended ended = run(scene, 6, 0.8, exchanges_of(scene));
+    EXPECT_FALSE(ended.has_failed) << H << ended.text;
+  }
+}
+
+TEST(CouplingAlarm, EndsLevelLinearBeyondItsLimitAndNamesLevelTwo) {
+  const scene::Scene scene = load(kExcavator, 10e-3, Level::linear, kSmooth);
+  const Ended ended = run(scene, 8, 0, exchanges_of(scene));
+  EXPECT_TRUE(ended.has_failed);
+  EXPECT_NE(ended.text.find("the coupling diverges"), std::string::npos) << ended.text;
+  EXPECT_NE(ended.text.find("coupling: two"), std::string::npos) << ended.text;
+}
+
+TEST(CouplingAlarm, EndsLevelLinearDrivenByItsValve) {
+  const scene::Scene scene = load(kScenes + "single_cylinder.yaml", 20e-3, Level::linear);
+  EXPECT_NE(run(scene, 6, 3, exchanges_of(scene)).text.find("the coupling diverges"), std::string::npos);
+}
+
+TEST(CouplingAlarm, EndsSamplesThatComeTooLateAndNamesNothingThatIsChosen) {
+  scene::Scene scene = load(kScenes + "single_cylinder.yaml", 4e-3, Level::two);
+  scene.session.mode = scene::ExchangeMode::free_running;
+  const Ended ended = run(scene, 6, 0, delayed(7));
+  EXPECT_TRUE(ended.has_failed);
+  EXPECT_NE(ended.text.find("session.mode: lockstep"), std::string::npos) << ended.text;
+  EXPECT_EQ(ended.text.find("coupling: two"), std::string::npos) << ended.text;
+}
+
+}  // namespace alarm_test
+}  // namespace slew::coupling::test
