@@ -17,7 +17,8 @@ std::optional<node::Awaited> IoNode::awaited() const noexcept {
   return node::Awaited{*role, topic, newest_of(*role) + 1};
 }
 
-// Named after 0.3 s; after session.stall_timeout the place is given away, or the session ends.
+// Named after 0.3 s; after session.stall_timeout the place is given away, or the session ends. The recorder may wait
+// for its disk as long as that takes.
 void IoNode::look_for_stall(std::int64_t now_ns) {
   const std::uint64_t asked = health().resends_asked;
   stall_.look(awaited(), asked, now_ns);
@@ -27,8 +28,9 @@ void IoNode::look_for_stall(std::int64_t now_ns) {
   }
   if (!stall_.is_named() || stall_.waited() < config_.stall_timeout) return;
   const Role role = stall_.awaited().role;
+  if (role == Role::recorder) return;
   const std::string text = stall_.text(member_, asked);
-  if (role != Role::recorder && config_.rejoin.ns > 0 && hold_place(role, now_ns)) {
+  if (config_.rejoin.ns > 0 && hold_place(role, now_ns)) {
     member_.warn(text + " for " + node::seconds_text(config_.stall_timeout) + "; its place was given away");
     return;
   }
@@ -36,7 +38,7 @@ void IoNode::look_for_stall(std::int64_t now_ns) {
                text + ", nothing came within " + node::seconds_text(config_.stall_timeout) +
                    " (session.stall_timeout); the session was held after step " + std::to_string(n_) +
                    " and ended, what was recorded up to there is valid; look for a filter or tunnel that drops some "
-                   "datagrams, or a disk that stands still",
+                   "datagrams",
                now_ns);
 }
 
