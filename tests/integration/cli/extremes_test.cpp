@@ -79,7 +79,7 @@ TEST_F(Extremes, WhatTheCouplingCannotFollowIsRefusedAndTheStepThatSuitsIsFound)
   EXPECT_NE(refusal.find("less than two exchanges to a swing"), std::string::npos) << refusal;
   EXPECT_LT(stiff.at("largest_step").get<double>(), stiff.at("step").get<double>());
   const nlohmann::json& lost = row(report, "lost_50").at("result");
-  // half of the samples are lost in a row, and the error stays within its bound: no reason to end
+  // wrong by half of the force range, inside the case's bound, and not growing: the alarm is silent
   EXPECT_EQ(lost.at("verdict"), "within");
   EXPECT_EQ(lost.at("alarm"), "");
 }
