@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/index.h"
 #include "multibody/flexible/deflection.h"
@@ -13,6 +14,8 @@
 namespace slew::mechanics {
 namespace {
 
+constexpr double kHalfTurn = std::numbers::pi;  // rad a sub-step: from there on nothing tells which way a body turns
+constexpr double kFar = 1;                      // m a sub-step, that no body of a machine goes
 constexpr double kOpen = 1e-6;  // m or rad: what a joint of a sound run stays below in every formulation but `penalty`
 constexpr const char* kRemedy =
     "the motion is not the mechanism's any more. Use a shorter session.step or mechanics.max_substep, or another "
@@ -74,33 +77,38 @@ bool DivergenceWatch::name_bent_body(const multibody::Model& model, const multib
   return true;
 }
 
-void DivergenceWatch::name_suspect(const multibody::Model& model, const multibody::State& state,
+bool DivergenceWatch::name_suspect(const multibody::Model& model, const multibody::State& state,
                                    const multibody::Workspace& ws, double h) noexcept {
   constexpr const char* kOften = "of late more steps did not converge than did";
   if (const BentBody bent = most_bent(model, state, ws); bent.share > multibody::kSmallDeflection) {
-    return write("{}: {}, and it is bent by {:.2g} of its length: {}", bent.name, kOften, bent.share, kRemedy);
+    write("{}: {}, and it is bent by {:.2g} of its length: {}", bent.name, kOften, bent.share, kRemedy);
+    return true;
   }
   const FastBody turning = fastest(model, ws, [](const multibody::LinkMotion& m) { return m.w; });
-  if (turning.speed * h > multibody::kLargestTurn) {
-    return write("{}: {}, and it turns by {:.2g} rad in a sub-step: {}", turning.name, kOften, turning.speed * h,
-                 kRemedy);
+  if (turning.speed * h > kHalfTurn) {
+    write("{}: {}, and it turns by {:.2g} rad in a sub-step: {}", turning.name, kOften, turning.speed * h, kRemedy);
+    return true;
   }
   if (const multibody::JointGap gap = gauge_.measure(ws); gap.joint >= 0 && gap.position > kOpen) {
     const multibody::Joint& joint = model.joints[at(gap.joint)];
     const int body = joint.body2 > 0 ? joint.body2 : joint.body1;
-    return write("{}: {}, and its joint '{}' is open by {:.2g} m or rad: {}", model.bodies[at(body)].name, kOften,
-                 joint.name, gap.position, kRemedy);
+    write("{}: {}, and its joint '{}' is open by {:.2g} m or rad: {}", model.bodies[at(body)].name, kOften, joint.name,
+          gap.position, kRemedy);
+    return true;
   }
   const FastBody moving = fastest(model, ws, [](const multibody::LinkMotion& m) { return m.v; });
-  write("{}: {}, and it is the fastest body with {:.3g} m/s: {}", moving.name, kOften, moving.speed, kRemedy);
+  if (!(moving.speed * h <= kFar)) {
+    write("{}: {}, and it is the fastest body with {:.3g} m/s: {}", moving.name, kOften, moving.speed, kRemedy);
+    return true;
+  }
+  return false;
 }
 
 bool DivergenceWatch::ends_run(const multibody::Model& model, const multibody::State& state,
                                const multibody::Workspace& ws, double h) noexcept {
   if (name_bent_body(model, state, ws)) return true;
   if (unconverged_ < kMostUnconverged) return false;
-  name_suspect(model, state, ws, h);
-  return true;
+  return name_suspect(model, state, ws, h);
 }
 
 }  // namespace slew::mechanics
