@@ -155,6 +155,30 @@ TEST_F(AnOnlooker, SeesOfAStartWithKeysNeitherProcessesNorValues) {
   for (const std::string& secret : secrets) EXPECT_TRUE(unkeyed->has_seen(secret)) << secret;
 }
 
+class AHolderOfKeys : public AStranger {};
+
+TEST_F(AHolderOfKeys, SpeaksOnTheTopicsOfItsRoleAlone) {
+  const auto may_write = [&](const std::string& identity, Topic topic) {
+    return open(domain_.number(), store(), identity.c_str(), {topic}, {}) != nullptr;
+  };
+  // END is a tick, or a description that is taken back
+  for (const Topic topic : {Topic::session, Topic::tick, Topic::mechanism, Topic::actuators, Topic::variable_directory,
+                            Topic::variables, Topic::node_status, Topic::health}) {
+    for (const std::string identity : {"controller", "observer", "viewer"}) {
+      EXPECT_FALSE(may_write(identity, topic)) << identity << " " << static_cast<int>(topic);
+    }
+  }
+  for (const Topic topic : {Topic::session, Topic::tick, Topic::mechanism, Topic::variable_directory}) {
+    EXPECT_FALSE(may_write("recorder", topic)) << static_cast<int>(topic);
+  }
+  for (const Topic topic : {Topic::session, Topic::tick, Topic::actuators}) {
+    EXPECT_FALSE(may_write("mechanics", topic)) << static_cast<int>(topic);
+  }
+  EXPECT_TRUE(may_write("io", Topic::tick));
+  EXPECT_TRUE(may_write("mechanics", Topic::variable_directory));
+  EXPECT_TRUE(may_write("controller", Topic::controller_input));
+}
+
 std::string name_of(const ::testing::TestParamInfo<Forgery>& forgery) {
   switch (forgery.param) {
     case Forgery::newer:

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "build_paths.h"
+#include "node/identity.h"
 #include "recording/reader.h"
 #include "tests/support/nightly.h"
 #include "tests/support/temporary_folder.h"
@@ -115,6 +116,28 @@ class FaultSeeds : public ::testing::Test {
   std::uint64_t lost_ = 0, doubled_ = 0, late_ = 0, overtaken_ = 0, stalls_ = 0, cuts_ = 0, restarts_ = 0;
   std::uint64_t still_ran_ = 0;  // sessions that had steps to do when the faults ended
 };
+
+TEST_F(FaultSeeds, ARoleThatHasBeenReadyFor2SecondsYieldsToNoStatus) {
+  const scene::Scene scene =
+      scene::load_file(SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml", {"session.duration=3 s"});
+  const auto run = [&](VirtualSession& session) {
+    session.run_until(session.now_ns() + kEndWithin);
+    EXPECT_TRUE(session.has_ended_well()) << session.text();
+    EXPECT_EQ(session.next_tick(), 3000) << session.text();
+  };
+  VirtualSession undisturbed(scene, folder_.path().string(), {});
+  run(undisturbed);
+  for (const wire::Role role : VirtualSession::roles_of(scene)) {
+    SCOPED_TRACE(node::to_text(role));
+    VirtualSession session(scene, folder_.path().string(), {});
+    session.run_until(session.now_ns() + 2'600 * kMs);
+    ASSERT_GT(session.next_tick(), 2'000);
+    session.claim(role);
+    run(session);
+    EXPECT_EQ(session.auditor().contradiction(), "");
+    EXPECT_TRUE(session.auditor().chain() == undisturbed.auditor().chain());
+  }
+}
 
 // the gate takes every machine twice with deaths and twice without
 TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
