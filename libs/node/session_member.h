@@ -35,6 +35,8 @@ inline constexpr SimDuration kProcessLook = {1'000'000};     // between two look
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
+// what everybody can say again: of the time in which nobody is given up, and of asking for it
+inline constexpr SimDuration kSentTime = {kLostAfter.ns + 500'000'000};
 inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends after its own end, at most
 
 // Messages that were received but not applied, by cause.

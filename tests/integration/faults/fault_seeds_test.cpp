@@ -139,6 +139,32 @@ TEST_F(FaultSeeds, ARoleThatHasBeenReadyFor2SecondsYieldsToNoStatus) {
   }
 }
 
+TEST_F(FaultSeeds, ARecorderThatHearsNothingForLessThan2SecondsMissesNoStepAtAnyStep) {
+  for (const char* step : {"1 ms", "0.5 ms", "0.25 ms"}) {
+    SCOPED_TRACE(step);
+    const scene::Scene scene =
+        scene::load_file(SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml",
+                         {"session.duration=4 s", "session.pace=real", std::string("session.step=") + step});
+    FaultPlan plan;
+    const std::int64_t begin_ns = VirtualClock().now_ns + 1'000 * kMs;
+    plan.end_ns = begin_ns + 1'900 * kMs;
+    for (const wire::Role from : {wire::Role::io, wire::Role::mechanics, wire::Role::hydraulics}) {
+      plan.partitions.push_back({from, wire::Role::recorder, begin_ns, plan.end_ns});
+    }
+    VirtualSession session(scene, folder_.path().string(), plan);
+    session.run_until(begin_ns + kEndWithin);
+    EXPECT_GT(session.count().lost, 5'000u);
+    EXPECT_TRUE(session.is_finished()) << session.text();
+    std::unique_ptr<recording::Reader> reader;
+    ASSERT_EQ(recording::Reader::open(session.recording(), reader).text, "");
+    const recording::TextMap* summary = reader->find_metadata(recording::kSummaryName);
+    ASSERT_NE(summary, nullptr);
+    for (const char* topic : {"tick", "mechanism", "actuators"}) {
+      EXPECT_EQ(summary->at(std::string(topic) + ".lost"), "0") << topic << "; " << session.text();
+    }
+  }
+}
+
 // the gate takes every machine twice with deaths and twice without
 TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {
   const std::vector<std::uint32_t> drawn = seeds({{0, kSeeds}}, 20);
