@@ -93,7 +93,7 @@ ExitCode animate(const Options& options) {
   }
   const TimeRange range = recorded_range(options.from, options.to);
   const auto reader = open_recording(options.recording);
-  const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
+  const scene::Scene scene = scene::load_text(recorded_scene_text(*reader), reader->identity().scene);
   if (scene.mechanics.bodies.empty()) {
     throw Failure(ExitCode::bad_input, "the scene of this recording has no bodies; nothing was written");
   }

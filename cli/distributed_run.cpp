@@ -109,11 +109,23 @@ class Supervisor {
   [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier() const {
     const bool shows_values = !options_.is_quiet && !options_.is_json;
     // what the samples report is in the recording when there is one: each reader costs the writers time
-    if (!is_ours(Role::recorder)) return cli_support::open_observer_with_samples(options_.session);
-    if (shows_values || keyboard_) {
+    if (!is_ours(Role::recorder)) {
+      if (auto carrier = open_with_samples()) return carrier;
+    }
+    if (shows_values || keyboard_ || !is_ours(Role::recorder)) {
       return cli_support::open_carrier(Role::observer, options_.session);
     }
     return cli_support::open_observer_without_values(options_.session);
+  }
+
+  // Null: keys that an earlier version made let an observer read no samples. The report says that none came.
+  [[nodiscard]] std::unique_ptr<transport::Transport> open_with_samples() const {
+    try {
+      return cli_support::open_observer_with_samples(options_.session);
+    } catch (const Failure& failure) {
+      if (options_.session.keys.empty() || failure.code() != ExitCode::bad_input) throw;
+      return nullptr;
+    }
   }
 
   // ---- starting -----------------------------------------------------------------------------------------------

@@ -63,7 +63,7 @@ void check_output(const Options& options) {
 
 // What the operator did, as `run --input` and scripts read it: raw values by input.
 std::string input_text(const recording::Reader& reader, const TimeRange& range) {
-  const scene::Scene scene = scene::load_text(attachment_text(reader, "scene.yaml"), reader.identity().scene);
+  const scene::Scene scene = scene::load_text(recorded_scene_text(reader), reader.identity().scene);
   if (scene.inputs.empty()) {
     throw Failure(ExitCode::bad_input, "the scene of this recording has no inputs; nothing was written");
   }

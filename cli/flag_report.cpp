@@ -30,7 +30,7 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   const SimDuration step = reader.identity().communication_step;
   // the scene is read for the names in the sentences alone
   if (flags.sentences(step, {}).empty()) return {};
-  const scene::Scene scene = scene::load_text(attachment_text(reader, "scene.yaml"), reader.identity().scene);
+  const scene::Scene scene = scene::load_text(recorded_scene_text(reader), reader.identity().scene);
   return flags.sentences(step, volume_names(scene));
 }
 

@@ -99,7 +99,7 @@ ExitCode plot(const Options& options) {
     plotting::part_at_gaps(plot.series);
     return draw({&plot, 1}, look, options.output);
   }
-  const scene::Scene scene = scene::load_text(attachment_text(*reader, "scene.yaml"), reader->identity().scene);
+  const scene::Scene scene = scene::load_text(recorded_scene_text(*reader), reader->identity().scene);
   if (scene.plots.empty()) {
     throw Failure(ExitCode::bad_input,
                   "the scene of this recording has no plots; nothing was written; name the variables to plot");

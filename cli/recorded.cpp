@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "cli/display.h"
@@ -68,6 +69,56 @@ bool was_paused(const std::map<std::uint64_t, bool>& paused_since, std::uint64_t
   return false;
 }
 
+constexpr const char* kSceneFile = "scene.yaml";
+
+struct Attached {
+  std::string text;
+  Status status;
+};
+
+Attached read_attached(const Reader& reader, const std::string& name) {
+  recording::Bytes content;
+  Status status = reader.read_attachment(name, content);
+  return {std::string(recording::as_text(content)), std::move(status)};
+}
+
+// What io said of the session that the recording is of; none: it is not there.
+std::optional<wire::SessionDescription> description_of(const Reader& reader) {
+  recording::MessageFilter filter;
+  filter.topics.emplace_back(node::to_text(Topic::session));
+  std::optional<wire::SessionDescription> found;
+  wire::SessionDescription session;
+  // a damaged part behind the description is none of its business
+  static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
+    const bool is_it = transport::decode(message.payload, session) &&
+                       node::to_text(session.header.session) == reader.identity().session_id &&
+                       !session.scene_text.empty();
+    if (is_it) found = std::move(session);
+    return is_it ? Visit::stop : Visit::go_on;
+  }));
+  return found;
+}
+
+std::vector<scene::Asset> described_manifest(const Reader& reader, const Status& problem) {
+  const std::optional<wire::SessionDescription> session = description_of(reader);
+  if (!session) {
+    if (!problem.is_ok()) throw Failure(problem.code, problem.text);
+    throw Failure(ExitCode::bad_input, "the recording's list of files cannot be read; it is damaged");
+  }
+  std::vector<scene::Asset> assets;
+  for (const wire::Asset& asset : session->assets) assets.push_back({asset.name, asset.size, asset.sha256});
+  return assets;
+}
+
+// The same text is in the recording twice: one that is damaged stops nobody who has the other.
+void warn_of_scene(const Reader& reader) {
+  const Status problem = read_attached(reader, kSceneFile).status;
+  if (problem.is_ok() || !description_of(reader)) return;
+  const std::string what = problem.text.substr(0, problem.text.find(';'));
+  std::fprintf(stderr, "warning: %s; the scene is taken from the session's recorded description, which has the same\n",
+               printable_lines(what).c_str());
+}
+
 }  // namespace
 
 recording::MessageFilter only(std::initializer_list<Topic> topics) {
@@ -77,11 +128,10 @@ recording::MessageFilter only(std::initializer_list<Topic> topics) {
 }
 
 std::vector<scene::Asset> recorded_manifest(const Reader& reader) {
+  const Attached manifest = read_attached(reader, "manifest.json");
+  const Json list = manifest.status.is_ok() ? Json::parse(manifest.text).value_or(Json()) : Json();
+  if (!list.is_array()) return described_manifest(reader, manifest.status);
   std::vector<scene::Asset> assets;
-  const Json list = Json::parse(attachment_text(reader, "manifest.json")).value_or(Json());
-  if (!list.is_array()) {
-    throw Failure(ExitCode::bad_input, "the recording's list of files cannot be read; it is damaged");
-  }
   for (const Json& entry : list.items()) {
     scene::Asset& asset = assets.emplace_back();
     asset.name = entry.text_or("name", "");
@@ -102,11 +152,12 @@ std::unique_ptr<Reader> open_recording(const std::string& path) {
   require(Reader::open(file, reader));
   const std::string damage = reader->damage_text();
   if (!damage.empty()) std::fprintf(stderr, "warning: %s\n", printable_lines(damage).c_str());
+  warn_of_scene(*reader);
   return reader;
 }
 
 scene::Scene recorded_scene(const Reader& reader, const std::string& assets) {
-  const std::string text = attachment_text(reader, "scene.yaml"), name = reader.identity().scene;
+  const std::string text = recorded_scene_text(reader), name = reader.identity().scene;
   scene::Scene plain = scene::load_text(text, name);
   if (!plain.needs_files()) return plain;
   const Status status = scene::check_assets(recorded_manifest(reader), assets);
@@ -317,10 +368,12 @@ std::string behind_end_text(const TickSpan& span) {
       counted(span.behind_end, "tick is", "ticks are"));
 }
 
-std::string attachment_text(const Reader& reader, const std::string& name) {
-  recording::Bytes content;
-  require(reader.read_attachment(name, content));
-  return std::string(recording::as_text(content));
+std::string recorded_scene_text(const Reader& reader) {
+  Attached scene = read_attached(reader, kSceneFile);
+  if (scene.status.is_ok()) return std::move(scene.text);
+  std::optional<wire::SessionDescription> session = description_of(reader);
+  if (!session) throw Failure(scene.status.code, scene.status.text);
+  return std::move(session->scene_text);
 }
 
 }  // namespace slew::cli

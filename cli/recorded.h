@@ -17,8 +17,8 @@
 
 namespace slew::cli {
 
-// Opens a recording; a folder of a run stands for the file in it. Throws Failure. A cut recording is told as a warning
-// on standard error.
+// Opens a recording; a folder of a run stands for the file in it. Throws Failure. A cut recording, and one whose
+// attached scene is not what is read, is told as a warning on standard error.
 [[nodiscard]] std::unique_ptr<recording::Reader> open_recording(const std::string& path);
 
 // Messages of these topics.
@@ -70,7 +70,8 @@ struct TickSpan {
 // recording. Throws Failure, LoadError.
 [[nodiscard]] scene::Scene recorded_scene(const recording::Reader& reader, const std::string& assets);
 
-// Files that belonged to the scene, as the recorder listed them. Throws Failure.
+// Files that belonged to the scene, as the recorder listed them, or as the session's description has them. Throws
+// Failure when neither can be read.
 [[nodiscard]] std::vector<scene::Asset> recorded_manifest(const recording::Reader& reader);
 
 // Folder beside a recording in which the files of its scene are kept: those of flexible bodies, of which a session's
@@ -79,7 +80,8 @@ struct TickSpan {
 // Copies the scene's files there; nothing when it has none. Throws Failure.
 void keep_assets(const scene::Scene& scene, const std::string& folder, const std::string& recording);
 
-// Text of an attachment. Throws Failure.
-[[nodiscard]] std::string attachment_text(const recording::Reader& reader, const std::string& name);
+// The text of the scene that was run: the attached one, or where that is missing or damaged the same text in the
+// session's own description. Throws Failure when neither can be read.
+[[nodiscard]] std::string recorded_scene_text(const recording::Reader& reader);
 
 }  // namespace slew::cli

@@ -198,6 +198,13 @@ void report_flags(const RunOutcome& outcome, const scene::Scene& scene, RunRepor
   for (std::string& flagged : flags.sentences(scene.session.step_duration(), volume_names(scene))) {
     report.notes.push_back(std::move(flagged));
   }
+  const bool has_steps = outcome.view.has_session() && outcome.steps > 0 &&
+                         (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;
+  if (has_steps && !flags.has_samples()) {
+    report.notes.emplace_back(
+        "no sample of the physics reached this program, and what the steps reported is not known; record the session; "
+        "keys that an earlier version made are made anew with 'slewring keys create'");
+  }
   const std::uint64_t missed = flags.missed(outcome.begin);
   if (missed > 0) {
     report.notes.push_back(

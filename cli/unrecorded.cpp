@@ -66,7 +66,7 @@ std::string recorded_patterns_text(const scene::Scene& scene) {
 
 std::string why_missing(const recording::Reader& reader, std::span<const std::string> patterns,
                         std::span<const std::string> names) {
-  const scene::Scene scene = scene::load_text(attachment_text(reader, "scene.yaml"), reader.identity().scene);
+  const scene::Scene scene = scene::load_text(recorded_scene_text(reader), reader.identity().scene);
   const std::vector<std::string> left_out = unrecorded(scene, patterns);
   if (!left_out.empty()) {
     return fmt::format("{} {} not in this recording, whose scene records {} only (recording.variables)",

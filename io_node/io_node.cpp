@@ -44,6 +44,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       script_raw_(config_.channels.size(), kSaysNothing) {
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
+  sent_.set_depth(node::sent_depth(node::kSentTime, config_.step));
   if (transport::encode(tick_, buffer_)) sent_.reserve(buffer_.size());
   description_.name = config_.session_name;
   description_.scene_name = config_.scene_name;

@@ -188,8 +188,7 @@ void IoNode::receive_resend(std::span<const std::byte> bytes, std::int64_t now_n
   // a node that missed a reset asks with the old epoch: it gets the tick that started the new one
   const bool is_late_epoch = request.header.epoch < member_.epoch();
   const StepIndex first = is_late_epoch ? kJoinStep : request.header.step;
-  const StepIndex last =
-      is_late_epoch ? kJoinStep : std::min(request.last_step, first + static_cast<StepIndex>(sent_.depth()));
+  const StepIndex last = is_late_epoch ? kJoinStep : std::min(request.last_step, first + node::kMostAnswers - 1);
   for (StepIndex step = first; step <= last; ++step) {
     const std::span<const std::byte> sent = sent_.find(step);
     if (sent.empty()) continue;

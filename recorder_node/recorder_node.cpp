@@ -243,8 +243,7 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
   if (is_of_flexible_bodies) return record_block(message, header, {message.topic, header.role, 0}, streams);
   TopicCounts& counts = counts_[static_cast<std::size_t>(message.topic)];
   StepStream& stream =
-      streams.steps.try_emplace({message.topic, header.role}, StepStream{StreamGaps(kStreamDepth, streams.begin), {}})
-          .first->second;
+      streams.steps.try_emplace({message.topic, header.role}, make_stream(streams.begin)).first->second;
   const StepIndex expected = stream.gaps.next();
   switch (stream.gaps.arrived(header.step)) {
     case StreamGaps::Arrival::duplicate:
@@ -260,6 +259,10 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
   write(message, header.epoch, header.step, static_cast<std::uint32_t>(header.role));
 }
 
+StepStream RecorderNode::make_stream(StepIndex begin) const {
+  return {StreamGaps(stream_depth({member_.session().step_ns}), begin), {}};
+}
+
 // what must be complete: the ticks and the samples of every role that takes part, and the states they begin with.
 // from: step of these states; -1: the epoch begins with INIT
 void RecorderNode::begin_streams(StepIndex from) {
@@ -271,7 +274,7 @@ void RecorderNode::begin_streams(StepIndex from) {
   for (const auto& [topic, role] : {std::pair(Topic::tick, Role::io), std::pair(Topic::mechanism, Role::mechanics),
                                     std::pair(Topic::actuators, Role::hydraulics)}) {
     if (!member_.requires_role(role)) continue;
-    streams_.steps.try_emplace({topic, role}, StepStream{StreamGaps(kStreamDepth, streams_.begin), {}});
+    streams_.steps.try_emplace({topic, role}, make_stream(streams_.begin));
   }
 }
 

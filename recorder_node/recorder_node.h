@@ -9,6 +9,7 @@
 // each such gap is marked in the file (Metadata "slewring.gap"), and the messages are counted as lost.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -64,7 +65,11 @@ struct StepStream {
   node::ResendClock resend;
 };
 
-inline constexpr std::size_t kStreamDepth = 4096;  // steps ahead of a gap that are remembered
+// Steps ahead of a gap that are remembered: more than everybody can say again.
+[[nodiscard]] constexpr std::size_t stream_depth(SimDuration step) noexcept {
+  constexpr std::size_t kLeast = 4096;
+  return std::max(kLeast, 2 * node::sent_depth(node::kSentTime, step));
+}
 // messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
 inline constexpr std::size_t kMaxEarly = 256;
 
@@ -141,6 +146,7 @@ class RecorderNode final : public node::Node {
   void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
   void start_epoch(const wire::Header& init);
   void begin_streams(StepIndex from);
+  [[nodiscard]] StepStream make_stream(StepIndex begin) const;
   [[nodiscard]] StepIndex complete_up_to() const noexcept;
   [[nodiscard]] StepIndex final_step(wire::Role writer, StepIndex newest) const noexcept;
   [[nodiscard]] StepIndex last_block(const BlockSource& source, StepIndex newest) const noexcept;

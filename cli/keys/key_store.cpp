@@ -36,7 +36,7 @@ struct Allowed {
 std::optional<Allowed> allowed_to(const std::string& role) {
   if (role == kViewer) return Allowed{{}, cli_support::topics_read(Role::observer)};
   for (const Role one : kAllRoles) {
-    if (node::to_text(one) == role) return Allowed{cli_support::topics_written(one), cli_support::topics_read(one)};
+    if (node::to_text(one) == role) return Allowed{cli_support::topics_written(one), cli_support::topics_readable(one)};
   }
   return std::nullopt;
 }

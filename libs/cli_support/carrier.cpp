@@ -79,6 +79,15 @@ TopicSet topics_read(Role role) noexcept {
   return {};
 }
 
+TopicSet topics_readable(Role role) noexcept {
+  TopicSet topics = topics_read(role);
+  if (role == Role::observer) {
+    topics.insert(Topic::mechanism);
+    topics.insert(Topic::actuators);
+  }
+  return topics;
+}
+
 namespace {
 
 // Whose keys a role of this process has: who only reads is an observer.
@@ -91,12 +100,6 @@ std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role r
   std::unique_ptr<transport::CycloneTransport> carrier;
   require(transport::CycloneTransport::open(network, endpoint, carrier));
   return carrier;
-}
-
-TopicSet with_samples(TopicSet topics) {
-  topics.insert(Topic::mechanism);
-  topics.insert(Topic::actuators);
-  return topics;
 }
 
 }  // namespace
@@ -118,13 +121,12 @@ std::unique_ptr<transport::Transport> open_observer_without_values(const Session
 
 std::unique_ptr<transport::Transport> open_observer_with_samples(const SessionOptions& options) {
   return open(options, Role::observer,
-              {options.session, "observer", topics_written(Role::observer), with_samples(topics_read(Role::observer))});
+              {options.session, "observer", topics_written(Role::observer), topics_readable(Role::observer)});
 }
 
 std::unique_ptr<transport::Transport> open_observer_with_samples(transport::InProcessBus& bus) {
   return std::make_unique<transport::InProcessEndpoint>(
-      bus, transport::InProcessOptions{"observer", topics_written(Role::observer),
-                                       with_samples(topics_read(Role::observer))});
+      bus, transport::InProcessOptions{"observer", topics_written(Role::observer), topics_readable(Role::observer)});
 }
 
 std::unique_ptr<transport::Transport> open_viewer(const SessionOptions& options) {

@@ -62,6 +62,7 @@ void SampleExchange::configure(const SessionMember& member, const PortTraffic& p
   if (own_ == Role::hydraulics && member.requires_role(Role::mechanics)) mechanism_.need(ports.every);
   actuators_.takes_late = mechanism_.takes_late = ports.is_free_running;
   if (own_ == Role::flex) flexible_.need(flexible_every_);
+  for (Outbox& outbox : outboxes_) outbox.sent.set_depth(sent_depth(kSentTime, {member.session().step_ns}));
 }
 
 void SampleExchange::clear() noexcept {
@@ -162,8 +163,7 @@ std::size_t SampleExchange::answer(SessionMember& member, const wire::ResendRequ
   std::size_t answers = 0;
   for (const Outbox& outbox : outboxes_) {
     if (request.topic != static_cast<std::uint8_t>(outbox.topic)) continue;
-    const StepIndex last =
-        std::min(request.last_step, request.header.step + static_cast<StepIndex>(outbox.sent.depth()));
+    const StepIndex last = std::min(request.last_step, request.header.step + kMostAnswers - 1);
     for (StepIndex step = request.header.step; step <= last; ++step) {
       const std::span<const std::byte> sent = outbox.sent.find(step);
       if (sent.empty()) continue;

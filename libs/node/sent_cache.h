@@ -1,24 +1,45 @@
 // The encoded step messages a node has sent, kept for those that missed one. Repeating one is idempotent.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/time.h"
 #include "node/step_ring.h"
 
 namespace slew::node {
 
-// A recorder that was stopped for 200 ms at several kHz asks for about this many steps back.
+// Messages that are kept at least.
 inline constexpr std::size_t kSentDepth = 1024;
+// Answered to one request at most: what is asked for after a long silence must not make the answerer late. Who misses
+// more asks again when these have come.
+inline constexpr StepIndex kMostAnswers = 128;
+// Of one cache at most, where steps are short and messages long.
+inline constexpr std::size_t kSentBytes = std::size_t{64} << 20;
+
+// Messages of so much time: who may be silent for it without being given up finds all that it has missed.
+[[nodiscard]] constexpr std::size_t sent_depth(SimDuration time, SimDuration step) noexcept {
+  const std::int64_t steps = step.ns > 0 ? (time.ns + step.ns - 1) / step.ns : 0;
+  return std::max(kSentDepth, static_cast<std::size_t>(steps));
+}
 
 class SentCache {
  public:
   explicit SentCache(std::size_t depth = kSentDepth) : ring_(depth) {}
 
+  // How far back it goes. Pre-condition: nothing is kept yet.
+  void set_depth(std::size_t depth) {
+    ring_ = StepRing<std::vector<std::byte>>(depth);
+    reserved_ = 0;
+  }
   // Room for messages of this size in all places, so that no step needs memory of its own.
   void reserve(std::size_t bytes) {
     if (bytes <= reserved_) return;
+    const std::size_t most = std::max(kSentDepth, kSentBytes / bytes);
+    if (reserved_ == 0 && depth() > most) set_depth(most);
     reserved_ = bytes;
     ring_.for_each([bytes](std::vector<std::byte>& slot) { slot.reserve(bytes); });
   }

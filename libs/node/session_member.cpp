@@ -44,6 +44,15 @@ std::uint32_t incarnation_of(const Identity& identity) {
 
 constexpr std::size_t kMaxEarlyStatuses = 64;
 
+bool is_ready_state(NodeState state) {
+  return state >= NodeState::ready && state < NodeState::ended;
+}
+
+// Nobody takes this role by words any more.
+bool has_settled(std::int64_t ready_ns, std::int64_t now_ns) {
+  return ready_ns != 0 && now_ns - ready_ns > kSettled.ns;
+}
+
 // the topic by which a role is missed
 Topic main_topic(Role role) {
   switch (role) {
@@ -307,7 +316,7 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
   }
   const auto index = static_cast<std::size_t>(status.header.role);
   if (index >= wire::kRoles) return Status::ok();
-  if (status.header.role == role_) return on_own_role(status);
+  if (status.header.role == role_) return on_own_role(status, now_ns);
   Peer& peer = peers_[index];
   if (is_given_up(status.header.role, status.header.incarnation)) {
     ++refusals_.unexpected_writer;
@@ -315,7 +324,8 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
   }
   if (peer.is_known && peer.incarnation != status.header.incarnation) {
     // a second process of the role takes over only from one that goes behind it
-    if (peer.is_lost || !goes_first(status, peer.status)) {
+    const bool is_settled = has_settled(peer.ready_ns, now_ns) && !is_over(peer.status.state);
+    if (peer.is_lost || is_settled || !goes_first(status, peer.status)) {
       if (may_be_replaced(status.header.role)) rivals_[index] = status;
       ++refusals_.unexpected_writer;
       return Status::ok();
@@ -330,16 +340,33 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
   peer.incarnation = status.header.incarnation;
   peer.status = status;
   peer.last_heard_ns = now_ns;
+  if (peer.ready_ns == 0 && is_ready_state(status.state)) peer.ready_ns = now_ns;
   return Status::ok();
 }
 
+bool SessionMember::is_ready() const noexcept {
+  return is_ready_state(status_.state);
+}
+
+void SessionMember::tell_of_claim(const wire::NodeStatus& status) {
+  if (std::exchange(has_told_of_claim_, true)) return;
+  warn("process " + std::to_string(status.pid) + " on " + machine_of(status.host) + ", started " +
+       time_text(status.started_ns) + ", says that it has the role " + std::string(to_text(role_)) + " of session '" +
+       session_.name + "'; this process keeps it and the other one is not heard; stop it, or look who sends that");
+}
+
 // another process that says it has this role
-Status SessionMember::on_own_role(const wire::NodeStatus& status) {
+Status SessionMember::on_own_role(const wire::NodeStatus& status, std::int64_t now_ns) {
   if (status.header.incarnation == incarnation_ || is_over(status.state)) return Status::ok();
   if (is_given_up(role_, status.header.incarnation)) return Status::ok();
   wire::NodeStatus own = status_;
   own.header.incarnation = incarnation_;
   if (!goes_first(status, own)) return Status::ok();
+  if (has_settled(ready_ns_, now_ns)) {
+    ++refusals_.unexpected_writer;
+    tell_of_claim(status);
+    return Status::ok();
+  }
   return Status::error(ExitCode::bad_input,
                        "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
                            "' is held by process " + std::to_string(status.pid) + " on " + machine_of(status.host) +
@@ -434,6 +461,7 @@ PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noe
 }
 
 PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
+  if (ready_ns_ == 0 && is_ready()) ready_ns_ = now_ns;
   excuse_peers(now_ns);
   const bool looks_for_processes = now_ns - processes_ns_ >= kProcessLook.ns;
   if (looks_for_processes) processes_ns_ = now_ns;

@@ -28,12 +28,15 @@ inline constexpr SimDuration kNoTimeout = {100LL * 365 * 86400 * 1'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
 inline constexpr SimDuration kSilentAfter = {300'000'000};   // named, everybody holds
 inline constexpr SimDuration kLostAfter = {2'000'000'000};   // given up
+inline constexpr SimDuration kSettled = {2'000'000'000};     // after READY: who claims the role from then on comes late
 inline constexpr SimDuration kStoodStill = {1'000'000'000};  // between two looks: nobody's silence but one's own
 inline constexpr SimDuration kLastWords = {20'000'000};      // on their way when a process is seen to be gone
 inline constexpr SimDuration kProcessLook = {1'000'000};     // between two looks whether processes are there
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
+// what everybody can say again: of the time in which nobody is given up, and of asking for it
+inline constexpr SimDuration kSentTime = {kLostAfter.ns + 500'000'000};
 inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends after its own end, at most
 
 // Messages that were received but not applied, by cause.
@@ -61,6 +64,7 @@ struct Peer {
   std::int64_t excused_ns = -1;    // what last_heard_ns became by that, until something is heard
   ProcessWatch process;
   std::int64_t exit_seen_ns = 0;  // when the process was first seen to be gone; 0: it is there
+  std::int64_t ready_ns = 0;      // when it was first heard to be ready; 0: it was not
   bool is_silent = false;         // named once
   bool is_lost = false;           // given up, or gone
   StepIndex step = kJoinStep;     // the next one to do, as its health says
@@ -156,7 +160,8 @@ class SessionMember {
 
   // ---- others
   // Takes a NodeStatus or Health message. Returns a refusal when another process holds this role. Of several processes
-  // of one role the first holds it; what the others say is not heard.
+  // of one role the first holds it; what the others say is not heard. Of two that started together the first is agreed
+  // on until kSettled after READY; whatever is said later, who has the role then keeps it.
   Status on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns);
   void on_health(std::span<const std::byte> bytes, std::int64_t now_ns);
   [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
@@ -206,7 +211,9 @@ class SessionMember {
   void excuse_peers(std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_writer(const wire::Header& header, wire::Topic topic) const noexcept;
   [[nodiscard]] std::string found_writers(wire::Topic topic);
-  [[nodiscard]] Status on_own_role(const wire::NodeStatus& status);
+  [[nodiscard]] Status on_own_role(const wire::NodeStatus& status, std::int64_t now_ns);
+  void tell_of_claim(const wire::NodeStatus& status);
+  [[nodiscard]] bool is_ready() const noexcept;
   void compare_builds(const wire::NodeStatus& status);
   [[nodiscard]] bool must_read(wire::Role reader, wire::Topic topic) const noexcept;
   [[nodiscard]] bool has_heard_me(wire::Role reader, wire::Topic topic) const noexcept;
@@ -234,6 +241,8 @@ class SessionMember {
   Refusals refusals_;
   Status send_failure_;
   std::int64_t next_probe_ns_ = 0;
+  std::int64_t ready_ns_ = 0;  // when this process was first seen to be ready; 0: it was not
+  bool has_told_of_claim_ = false;
   std::int64_t processes_ns_ = 0;    // when their processes were looked for last
   std::int64_t watched_ns_ = 0;      // when the peers were looked at last
   std::int64_t stood_still_ns_ = 0;  // from one look to the next, when the others had time to give this process up

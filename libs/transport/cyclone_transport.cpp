@@ -80,6 +80,15 @@ constexpr std::int64_t kClockStep = 20'000'000;  // it was set back when it is b
   return topic == wire::Topic::variables || topic == wire::Topic::controller_input;
 }
 
+// Cyclone tells everybody in the domain the name and number of each process, before any key is agreed on. Properties
+// that a participant brings along itself take their place, and these are not sent.
+[[nodiscard]] Qos participant_qos(bool is_secured) {
+  Qos qos(dds_create_qos());
+  if (!is_secured) return qos;
+  for (const char* told : {"__ProcessName", "__Pid", "__Hostname"}) dds_qset_prop(qos.get(), told, "");
+  return qos;
+}
+
 // "role:host:pid", told to others with every writer
 [[nodiscard]] std::string own_user_data(const std::string& role) {
   char host[HOST_NAME_MAX + 1] = "";
@@ -144,7 +153,8 @@ Status CycloneTransport::open(std::shared_ptr<CycloneDomain> domain, const Cyclo
 }
 
 Status CycloneTransport::create() {
-  participant_ = dds_create_participant(domain_->number(), nullptr, nullptr);
+  const Qos described = participant_qos(domain_->is_secured());
+  participant_ = dds_create_participant(domain_->number(), described.get(), nullptr);
   if (participant_ < 0 && domain_->is_secured()) {
     return Status::error(
         ExitCode::bad_input,

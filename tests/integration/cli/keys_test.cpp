@@ -307,6 +307,41 @@ TEST_F(Keys, SessionWithKeysGivesTheBitsOfOneWithout) {
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
 }
 
+// The observer of a run that is not recorded reads the samples; stores of before did not let it.
+TEST_F(Keys, WhatStepsReportIsToldWithoutARecordingOrSaidToBeUnknown) {
+  std::ofstream(folder() / "closed.yaml")
+      << "volumes:\n  Vol_P: {rigid_volume: 1 l}\n  Vol_T: {initial_pressure: 1 bar, fixed: true}\n"
+         "components:\n  Pump: {type: ls_pump, port_a: Vol_P, port_b: Vol_T, speed: 1500 rpm, displacement: 28 cc/rev, "
+         "standby_pressure: 10000 bar, time_constant: 1 ms}\n"
+         "session: {duration: 0.5 s, pace: free}\n";
+  ASSERT_EQ(keys({"create", "plant"}).code, 0);
+  const auto notes = [&] {
+    const CommandResult result =
+        run("slewring",
+            {"run", "closed.yaml", "--input", "none", "--keys", "plant", "--domain", domain(), "--no-record", "--json"},
+            folder());
+    EXPECT_EQ(result.code, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false)["notes"].dump();
+  };
+  EXPECT_NE(notes().find("Vol_P: a pressure was beyond what the oil's law is good for"), std::string::npos) << notes();
+  const fs::path observer = folder() / "plant/observer";
+  std::string narrower = text_of(observer / "permissions.xml");
+  for (const std::string topic : {"slewring/mechanism", "slewring/actuators"}) {
+    const std::size_t at = narrower.find("<topic>" + topic + "</topic>");
+    ASSERT_NE(at, std::string::npos) << narrower;
+    narrower.erase(at, topic.size() + 15);
+  }
+  std::ofstream(observer / "permissions.xml", std::ios::binary) << narrower;
+  const CommandResult made =
+      run("/usr/bin/openssl",
+          {"smime", "-sign", "-in", (observer / "permissions.xml").string(), "-text", "-out",
+           (observer / "permissions.p7s").string(), "-signer", (folder() / "plant/permissions_ca.pem").string(),
+           "-inkey", (folder() / "plant/permissions_ca.key").string()},
+          folder());
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(notes().find("what the steps reported is not known"), std::string::npos) << notes();
+}
+
 // CVE-2023-24011: Cyclone 0.10.2 takes permissions that any certificate of the authority has signed
 TEST_F(Keys, HoldersCannotGrantThemselvesMore) {
   ASSERT_EQ(keys({"create", "plant"}).code, 0);

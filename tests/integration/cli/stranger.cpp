@@ -166,6 +166,10 @@ void Stranger::listen() {
 
 void Stranger::remember(const Bytes& packet, std::uint16_t port) {
   if (packet.size() < kHeader || std::memcmp(packet.data(), "RTPS", 4) != 0) return;
+  {
+    const std::lock_guard lock(mutex_);
+    seen_.append(packet.begin(), packet.end());
+  }
   for_each_submessage(packet, [&](std::uint8_t id, std::size_t, std::size_t body, std::size_t end) {
     if (id == Submessage::acknack && end >= body + 8 && is_of_program(packet[body + 7])) {
       const std::lock_guard lock(mutex_);
@@ -183,6 +187,11 @@ void Stranger::remember(const Bytes& packet, std::uint16_t port) {
 bool Stranger::has_heard(std::size_t samples) const {
   const std::lock_guard lock(mutex_);
   return samples_.size() >= samples && !reader_.empty();
+}
+
+bool Stranger::has_seen(std::string_view text) const {
+  const std::lock_guard lock(mutex_);
+  return seen_.find(text) != std::string::npos;
 }
 
 void Stranger::forge(Forgery kind, std::uint32_t count) const {

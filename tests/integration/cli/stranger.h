@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -32,6 +33,8 @@ class Stranger {
 
   // So many samples of a program, and who has answered one.
   [[nodiscard]] bool has_heard(std::size_t samples) const;
+  // This text was in a packet as it is.
+  [[nodiscard]] bool has_seen(std::string_view text) const;
   // Sends forged packets in the name of the last sample's writer, to the last reader, up to `count` numbers ahead.
   void forge(Forgery kind, std::uint32_t count) const;
 
@@ -53,7 +56,8 @@ class Stranger {
   std::atomic<bool> is_over_{false};
   mutable std::mutex mutex_;
   std::vector<Sample> samples_;
-  Bytes reader_;  // prefix and id of the last one that has answered
+  std::string seen_;  // bytes of all packets
+  Bytes reader_;      // prefix and id of the last one that has answered
   std::thread listener_;
 };
 

@@ -1,7 +1,10 @@
 // What somebody without keys can do to those who have them by sending packets in their names: nothing.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -35,12 +38,12 @@ std::unique_ptr<CycloneTransport> open(std::uint32_t domain, const std::string& 
 }
 
 // writes 0, 1, 2, ... until it is ended
-bool write_numbers(std::uint32_t domain, const std::string& store) {
+bool write_numbers(std::uint32_t domain, const std::string& store, const std::string& channel = "Input") {
   const auto transport = open(domain, store, "controller", {Topic::controller_input}, {});
   if (transport == nullptr) return false;
   transport::ByteBuffer bytes;
   for (std::uint64_t number = 0;; ++number) {
-    wire::ControllerInput input{"s", "controller", "Input", wire::ControllerAction::write, 0, number, -1};
+    wire::ControllerInput input{"s", "controller", channel, wire::ControllerAction::write, 0, number, -1};
     if (!transport::encode(input, bytes) || !transport->publish(Topic::controller_input, bytes).is_ok()) return false;
     sleep_until_monotonic(monotonic_ns() + kPause);
   }
@@ -116,6 +119,64 @@ TEST_P(UnsignedStrangerWith, WouldBeHeardIfNothingWereSigned) {
   const std::vector<std::uint64_t> numbers = read_numbers(GetParam(), kEnough);
   if (!skip_reason_.empty()) GTEST_SKIP() << "packets cannot be overheard here: " << skip_reason_;
   EXPECT_FALSE(numbers.size() == kEnough && are_in_order(numbers));
+}
+
+// From when two processes meet until samples go between them; `keys`: the store, or none.
+std::unique_ptr<Stranger> overhear_a_start(std::uint32_t domain, const std::string& keys, const std::string& word) {
+  auto stranger = std::make_unique<Stranger>(domain);
+  if (!stranger->problem().empty()) return stranger;
+  ChildProcess writer([&] { return write_numbers(domain, keys, word); });
+  const auto reader = open(domain, keys, "io", {}, {Topic::controller_input});
+  EXPECT_NE(reader, nullptr);
+  transport::Received message;
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(next(*reader, message));
+  // the last of them may still be on their way to who listens
+  EXPECT_TRUE(wait_until([&] { return stranger->has_heard(20); }));
+  return stranger;
+}
+
+class AnOnlooker : public AStranger {};
+
+TEST_F(AnOnlooker, SeesOfAStartWithKeysNeitherProcessesNorValues) {
+  const std::string word = "a_value_that_is_sent";
+  const std::vector<std::string> secrets = {"test_cli_programs", "__ProcessName", "__Hostname", "__Pid", word};
+  const auto keyed = overhear_a_start(domain_.number(), store(), word);
+  if (!keyed->problem().empty()) GTEST_SKIP() << "packets cannot be overheard here: " << keyed->problem();
+  for (const std::string& secret : secrets) EXPECT_FALSE(keyed->has_seen(secret)) << secret;
+  // what docs/security.md says is seen all the same
+  std::array<char, 256> host{};
+  ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+  for (const std::string& seen : {host.data() + std::string("/"), std::string("slewring/controller_input")}) {
+    EXPECT_TRUE(keyed->has_seen(seen)) << seen;
+  }
+  // or it would show nothing
+  const TestDomain plain;
+  const auto unkeyed = overhear_a_start(plain.number(), "", word);
+  for (const std::string& secret : secrets) EXPECT_TRUE(unkeyed->has_seen(secret)) << secret;
+}
+
+class AHolderOfKeys : public AStranger {};
+
+TEST_F(AHolderOfKeys, SpeaksOnTheTopicsOfItsRoleAlone) {
+  const auto may_write = [&](const std::string& identity, Topic topic) {
+    return open(domain_.number(), store(), identity.c_str(), {topic}, {}) != nullptr;
+  };
+  // END is a tick, or a description that is taken back
+  for (const Topic topic : {Topic::session, Topic::tick, Topic::mechanism, Topic::actuators, Topic::variable_directory,
+                            Topic::variables, Topic::node_status, Topic::health}) {
+    for (const std::string identity : {"controller", "observer", "viewer"}) {
+      EXPECT_FALSE(may_write(identity, topic)) << identity << " " << static_cast<int>(topic);
+    }
+  }
+  for (const Topic topic : {Topic::session, Topic::tick, Topic::mechanism, Topic::variable_directory}) {
+    EXPECT_FALSE(may_write("recorder", topic)) << static_cast<int>(topic);
+  }
+  for (const Topic topic : {Topic::session, Topic::tick, Topic::actuators}) {
+    EXPECT_FALSE(may_write("mechanics", topic)) << static_cast<int>(topic);
+  }
+  EXPECT_TRUE(may_write("io", Topic::tick));
+  EXPECT_TRUE(may_write("mechanics", Topic::variable_directory));
+  EXPECT_TRUE(may_write("controller", Topic::controller_input));
 }
 
 std::string name_of(const ::testing::TestParamInfo<Forgery>& forgery) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "build_paths.h"
+#include "node/identity.h"
 #include "recording/reader.h"
 #include "tests/support/nightly.h"
 #include "tests/support/temporary_folder.h"
@@ -115,6 +116,54 @@ class FaultSeeds : public ::testing::Test {
   std::uint64_t lost_ = 0, doubled_ = 0, late_ = 0, overtaken_ = 0, stalls_ = 0, cuts_ = 0, restarts_ = 0;
   std::uint64_t still_ran_ = 0;  // sessions that had steps to do when the faults ended
 };
+
+TEST_F(FaultSeeds, ARoleThatHasBeenReadyFor2SecondsYieldsToNoStatus) {
+  const scene::Scene scene =
+      scene::load_file(SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml", {"session.duration=3 s"});
+  const auto run = [&](VirtualSession& session) {
+    session.run_until(session.now_ns() + kEndWithin);
+    EXPECT_TRUE(session.has_ended_well()) << session.text();
+    EXPECT_EQ(session.next_tick(), 3000) << session.text();
+  };
+  VirtualSession undisturbed(scene, folder_.path().string(), {});
+  run(undisturbed);
+  for (const wire::Role role : VirtualSession::roles_of(scene)) {
+    SCOPED_TRACE(node::to_text(role));
+    VirtualSession session(scene, folder_.path().string(), {});
+    session.run_until(session.now_ns() + 2'600 * kMs);
+    ASSERT_GT(session.next_tick(), 2'000);
+    session.claim(role);
+    run(session);
+    EXPECT_EQ(session.auditor().contradiction(), "");
+    EXPECT_TRUE(session.auditor().chain() == undisturbed.auditor().chain());
+  }
+}
+
+TEST_F(FaultSeeds, ARecorderThatHearsNothingForLessThan2SecondsMissesNoStepAtAnyStep) {
+  for (const char* step : {"1 ms", "0.5 ms", "0.25 ms"}) {
+    SCOPED_TRACE(step);
+    const scene::Scene scene =
+        scene::load_file(SLEWRING_SOURCE_DIR "/scenes/single_cylinder.yaml",
+                         {"session.duration=4 s", "session.pace=real", std::string("session.step=") + step});
+    FaultPlan plan;
+    const std::int64_t begin_ns = VirtualClock().now_ns + 1'000 * kMs;
+    plan.end_ns = begin_ns + 1'900 * kMs;
+    for (const wire::Role from : {wire::Role::io, wire::Role::mechanics, wire::Role::hydraulics}) {
+      plan.partitions.push_back({from, wire::Role::recorder, begin_ns, plan.end_ns});
+    }
+    VirtualSession session(scene, folder_.path().string(), plan);
+    session.run_until(begin_ns + kEndWithin);
+    EXPECT_GT(session.count().lost, 5'000u);
+    EXPECT_TRUE(session.is_finished()) << session.text();
+    std::unique_ptr<recording::Reader> reader;
+    ASSERT_EQ(recording::Reader::open(session.recording(), reader).text, "");
+    const recording::TextMap* summary = reader->find_metadata(recording::kSummaryName);
+    ASSERT_NE(summary, nullptr);
+    for (const char* topic : {"tick", "mechanism", "actuators"}) {
+      EXPECT_EQ(summary->at(std::string(topic) + ".lost"), "0") << topic << "; " << session.text();
+    }
+  }
+}
 
 // the gate takes every machine twice with deaths and twice without
 TEST_F(FaultSeeds, AllComeToTheBitsOfACleanRun) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "build_paths.h"
 #include "cli_support/carrier.h"
@@ -175,6 +176,21 @@ void VirtualSession::kill_and_replace() {
       ++restarts_;
     }
   }
+}
+
+void VirtualSession::claim(Role role) {
+  wire::NodeStatus status;
+  status.header = io_->member().header(wire::Phase::running, io_->next_step());
+  status.header.role = role;
+  status.header.incarnation = 0x5eed0001u;
+  status.state = wire::NodeState::running;
+  status.host = "elsewhere";
+  status.pid = 4;
+  status.started_ns = 0;
+  status.recorded_step = wire::kMaxStep;
+  std::vector<std::byte> bytes;
+  const bool is_sent = transport::encode(status, bytes) && impostor_.publish(Topic::node_status, bytes).is_ok();
+  if (!is_sent) std::abort();
 }
 
 bool VirtualSession::is_settled() const {

@@ -54,6 +54,9 @@ class VirtualSession {
   void run_until(std::int64_t virtual_ns);
   [[nodiscard]] bool is_finished() const;
 
+  // Somebody tells all that another process has had this role from the begin of time on, and is as far as anybody.
+  void claim(wire::Role role);
+
   [[nodiscard]] std::int64_t now_ns() const noexcept { return clock_.now_ns; }
   [[nodiscard]] StepIndex next_tick() const noexcept { return io_->next_step(); }
   [[nodiscard]] const Auditor& auditor() const noexcept { return auditor_; }
@@ -96,6 +99,7 @@ class VirtualSession {
   FaultCount count_;
   transport::InProcessBus bus_;
   Auditor auditor_;
+  transport::InProcessEndpoint impostor_{bus_, {"impostor", {wire::Topic::node_status}, {}}};
   std::vector<Place> places_;
   io::IoNode* io_ = nullptr;
   recorder::RecorderNode* recorder_ = nullptr;

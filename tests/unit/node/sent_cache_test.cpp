@@ -32,5 +32,19 @@ TEST(SentCache, FindsWhatItKeptAtItsFullLength) {
   for (StepIndex step = 2; step < 6; ++step) EXPECT_EQ(sent.find(step).size(), static_cast<std::size_t>(10 + step));
 }
 
+TEST(SentCache, GoesAsFarBackAsATimeWithin64MiB) {
+  EXPECT_EQ(sent_depth(milliseconds(2500), milliseconds(1)), 2500u);
+  EXPECT_EQ(sent_depth(milliseconds(2500), {200'000}), 12'500u);
+  EXPECT_EQ(sent_depth(milliseconds(2500), {300'001}), 8334u);
+  EXPECT_EQ(sent_depth(milliseconds(2500), milliseconds(20)), kSentDepth);
+  SentCache sent;
+  sent.set_depth(sent_depth(milliseconds(2500), {10'000}));
+  EXPECT_EQ(sent.depth(), 250'000u);
+  const std::vector<std::byte> long_ones(4096);
+  sent.keep(0, long_ones);
+  EXPECT_EQ(sent.depth(), kSentBytes / long_ones.size());
+  EXPECT_EQ(sent.find(0).size(), long_ones.size());
+}
+
 }  // namespace sent_cache_test
 }  // namespace slew::node

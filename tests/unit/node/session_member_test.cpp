@@ -150,6 +150,42 @@ TEST_F(Member, GivesWayToNobodyWhoHasRecordedNothingWhileItHas) {
   EXPECT_EQ(hear(earlier).code, ExitCode::bad_input);
 }
 
+TEST_F(Member, ThatHasBeenReadyFor2SecondsKeepsItsRoleWhateverASecondOneSays) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  member.set_state(NodeState::ready);
+  watch(kMs);
+  NodeStatus forged = status_of(Role::mechanics, 5);
+  forged.started_ns = 0;
+  forged.recorded_step = 7;
+  EXPECT_TRUE(hear(forged, kSettled.ns + 2 * kMs).is_ok());
+  EXPECT_TRUE(hear(forged, kSettled.ns + 3 * kMs).is_ok());
+  EXPECT_EQ(member.refusals().unexpected_writer, 2u);
+  const std::vector<std::string> warnings = member.take_warnings();
+  ASSERT_EQ(warnings.size(), 1u) << "once";
+  EXPECT_NE(warnings.front().find("process 1005 on elsewhere, started 1970-01-01"), std::string::npos)
+      << warnings.front();
+  EXPECT_NE(warnings.front().find("says that it has the role mechanics of session 's'"), std::string::npos)
+      << warnings.front();
+}
+
+TEST_F(Member, KeepsTheHolderOfARoleThatHasBeenReadyFor2SecondsUntilItEnds) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  NodeStatus holder = status_of(Role::hydraulics, 6, NodeState::ready);
+  ASSERT_TRUE(hear(holder, kMs).is_ok());
+  NodeStatus forged = status_of(Role::hydraulics, 5, NodeState::running);
+  forged.started_ns = 0;
+  EXPECT_TRUE(hear(forged, kSettled.ns + 2 * kMs).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 6u);
+  holder.state = NodeState::initialising;  // a reset changes nothing
+  ASSERT_TRUE(hear(holder, kSettled.ns + 3 * kMs).is_ok());
+  EXPECT_TRUE(hear(forged, kSettled.ns + 4 * kMs).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 6u);
+  holder.state = NodeState::fault;
+  ASSERT_TRUE(hear(holder, kSettled.ns + 5 * kMs).is_ok());
+  EXPECT_TRUE(hear(forged, kSettled.ns + 6 * kMs).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 5u);
+}
+
 TEST_F(Member, DoesNotHearASecondProcessOfAnotherRole) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 5)).is_ok());
