@@ -10,15 +10,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <numbers>
 #include <random>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "benchmarks/measured_page.h"
 #include "build_paths.h"
 #include "tests/validation/coupling/coupled_run.h"
 
@@ -296,18 +295,6 @@ std::string text_of(const Study& result) {
     text += "\n";
   }
   return text + result.tables;
-}
-
-bool replace_measured(const std::string& path, const std::string& text) {
-  const std::string begin = "<!-- measured: begin -->\n", end = "<!-- measured: end -->";
-  std::stringstream old;
-  old << std::ifstream(path, std::ios::binary).rdbuf();
-  const std::string page = old.str();
-  const std::size_t from = page.find(begin), to = page.find(end);
-  if (from == std::string::npos || to == std::string::npos || to < from) return false;
-  std::ofstream out(path, std::ios::binary);
-  out << page.substr(0, from + begin.size()) << text << page.substr(to);
-  return out.good();
 }
 
 int run(const std::string& results) {

@@ -13,12 +13,12 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "benchmarks/coupling_figures.h"
+#include "benchmarks/measured_page.h"
 #include "build_paths.h"
 #include "cli/plotting/svg_plot.h"
 #include "tests/validation/coupling/coupled_run.h"
@@ -368,16 +368,6 @@ bool write(const std::filesystem::path& path, const std::string& text) {
   std::ofstream out(path, std::ios::binary);
   out << text;
   return out.good();
-}
-
-bool replace_measured(const std::filesystem::path& path, const std::string& text) {
-  const std::string begin = "<!-- measured: begin -->\n", end = "<!-- measured: end -->";
-  std::stringstream old;
-  old << std::ifstream(path, std::ios::binary).rdbuf();
-  const std::string page = old.str();
-  const std::size_t from = page.find(begin), to = page.find(end);
-  if (from == std::string::npos || to == std::string::npos || to < from) return false;
-  return write(path, page.substr(0, from + begin.size()) + text + page.substr(to));
 }
 
 int run(const std::filesystem::path& results, const std::filesystem::path& figures) {
