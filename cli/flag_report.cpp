@@ -1,10 +1,12 @@
 #include "cli/flag_report.h"
 
+#include <fmt/format.h>
+
+#include "cli/display.h"
 #include "cli/flag_counter.h"
 #include "cli/recorded.h"
 #include "core/failure.h"
 #include "node/identity.h"
-#include "scene/scene.h"
 #include "transport/codec.h"
 #include "transport/wire.h"
 
@@ -32,6 +34,26 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   if (flags.sentences(step, {}).empty()) return {};
   const scene::Scene scene = scene::load_text(recorded_scene_text(reader), reader.identity().scene);
   return flags.sentences(step, volume_names(scene));
+}
+
+std::vector<std::string> explain_flags(const RunOutcome& outcome, const scene::Scene& scene) {
+  using wire::Role;
+  const FlagCounter& flags = outcome.view.flags();
+  std::vector<std::string> sentences = flags.sentences(scene.session.step_duration(), volume_names(scene));
+  const bool has_steps = outcome.view.has_session() && outcome.steps > 0 &&
+                         (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;
+  if (has_steps && !flags.has_samples()) {
+    sentences.emplace_back(
+        "no sample of the physics arrived here, so that the flags of the steps are not known; record the session; keys "
+        "of an earlier version are made anew with 'slewring keys create'");
+  }
+  if (const std::uint64_t missed = flags.missed(outcome.begin); missed > 0) {
+    sentences.push_back(
+        fmt::format("{} did not arrive here, and their flags are not counted; record the session and look with "
+                    "'slewring info'",
+                    counted(missed, "sample", "samples")));
+  }
+  return sentences;
 }
 
 }  // namespace slew::cli

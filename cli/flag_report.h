@@ -1,11 +1,13 @@
-// What the steps of a recording said of themselves (core/step_report.h): a sentence for each flag that a user should
-// know of, with the first step that raised it.
+// What the steps of a recording, or of a session while it ran, reported (core/step_report.h): a sentence for each flag
+// that a user should know of, with the first step that raised it.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "cli/run_outcome.h"
 #include "recording/reader.h"
+#include "scene/scene.h"
 
 namespace slew::cli {
 
@@ -14,5 +16,7 @@ namespace slew::cli {
 // What happens in sound runs too, end stops and open relief valves, is left out. Of a free-running session also how
 // often its nodes went on without a sample. Throws Failure when the recording cannot be read.
 [[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);
+// The same of the samples that were read while the session ran, and how many did not arrive.
+[[nodiscard]] std::vector<std::string> explain_flags(const RunOutcome& outcome, const scene::Scene& scene);
 
 }  // namespace slew::cli

@@ -192,38 +192,15 @@ Json session_json(const RunReport& report) {
   return json;
 }
 
-// What the samples reported while the session ran; empty when they were not read.
-void report_flags(const RunOutcome& outcome, const scene::Scene& scene, RunReport& report) {
-  const FlagCounter& flags = outcome.view.flags();
-  for (std::string& flagged : flags.sentences(scene.session.step_duration(), volume_names(scene))) {
-    report.notes.push_back(std::move(flagged));
-  }
-  const bool has_steps = outcome.view.has_session() && outcome.steps > 0 &&
-                         (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;
-  if (has_steps && !flags.has_samples()) {
-    report.notes.emplace_back(
-        "no sample of the physics reached this program, and what the steps reported is not known; record the session; "
-        "keys that an earlier version made are made anew with 'slewring keys create'");
-  }
-  const std::uint64_t missed = flags.missed(outcome.begin);
-  if (missed > 0) {
-    report.notes.push_back(
-        fmt::format("{} did not reach this program, and what they reported is not counted; record the session and "
-                    "look with 'slewring info'",
-                    counted(missed, "sample", "samples")));
-  }
-}
-
 // What the recording says beside numbers, and the scene's plots and files beside it.
 void explain(const recording::Reader& reader, const SessionView& recorded, const scene::Scene& scene,
              const std::string& assets, const RunOutcome& outcome, RunReport& report) {
   for (std::string& stalled : explain_stalls(reader, scene)) report.notes.push_back(std::move(stalled));
   report_left_out(recorded, report);
   const FlagCounter& flags = outcome.view.flags();
-  if (flags.has_samples() && flags.missed(outcome.begin) == 0) {
-    report_flags(outcome, scene, report);
-  } else {
-    for (std::string& flagged : explain_flags(reader)) report.notes.push_back(std::move(flagged));
+  const bool are_counted = flags.has_samples() && flags.missed(outcome.begin) == 0;
+  for (std::string& flagged : are_counted ? explain_flags(outcome, scene) : explain_flags(reader)) {
+    report.notes.push_back(std::move(flagged));
   }
   keep_assets(scene, assets, report.recording);
   ScenePlots read = read_plots(scene, reader);
@@ -302,7 +279,7 @@ RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, cons
   if (outcome.recording.empty()) {
     report_variables(outcome.view, scene, report);
     report_left_out(outcome.view, report);
-    report_flags(outcome, scene, report);
+    for (std::string& flagged : explain_flags(outcome, scene)) report.notes.push_back(std::move(flagged));
   } else {
     try {
       report_recorded(scene, assets, outcome, report);
