@@ -118,7 +118,7 @@ class Supervisor {
     return cli_support::open_observer_without_values(options_.session);
   }
 
-  // Null: keys that an earlier version made let an observer read no samples. The report says that none came.
+  // Null with keys of an earlier version, which give an observer no right to samples; the report has a note then.
   [[nodiscard]] std::unique_ptr<transport::Transport> open_with_samples() const {
     try {
       return cli_support::open_observer_with_samples(options_.session);

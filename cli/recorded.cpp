@@ -82,7 +82,7 @@ Attached read_attached(const Reader& reader, const std::string& name) {
   return {std::string(recording::as_text(content)), std::move(status)};
 }
 
-// What io said of the session that the recording is of; none: it is not there.
+// The recorded description of the recording's own session; none: it is not there.
 std::optional<wire::SessionDescription> description_of(const Reader& reader) {
   recording::MessageFilter filter;
   filter.topics.emplace_back(node::to_text(Topic::session));
@@ -110,7 +110,7 @@ std::vector<scene::Asset> described_manifest(const Reader& reader, const Status&
   return assets;
 }
 
-// The same text is in the recording twice: one that is damaged stops nobody who has the other.
+// The same text is in the recording twice: damage of one is no obstacle.
 void warn_of_scene(const Reader& reader) {
   const Status problem = read_attached(reader, kSceneFile).status;
   if (problem.is_ok() || !description_of(reader)) return;

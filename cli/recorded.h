@@ -17,8 +17,8 @@
 
 namespace slew::cli {
 
-// Opens a recording; a folder of a run stands for the file in it. Throws Failure. A cut recording, and one whose
-// attached scene is not what is read, is told as a warning on standard error.
+// Opens a recording; a folder of a run stands for the file in it. Throws Failure. A warning on
+// standard error for a cut recording, and for one whose attached scene is not what is read.
 [[nodiscard]] std::unique_ptr<recording::Reader> open_recording(const std::string& path);
 
 // Messages of these topics.

@@ -48,7 +48,7 @@ bool is_ready_state(NodeState state) {
   return state >= NodeState::ready && state < NodeState::ended;
 }
 
-// Nobody takes this role by words any more.
+// From here on no status of another process changes who has the role.
 bool has_settled(std::int64_t ready_ns, std::int64_t now_ns) {
   return ready_ns != 0 && now_ns - ready_ns > kSettled.ns;
 }

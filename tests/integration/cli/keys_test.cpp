@@ -339,7 +339,7 @@ TEST_F(Keys, WhatStepsReportIsToldWithoutARecordingOrSaidToBeUnknown) {
            "-inkey", (folder() / "plant/permissions_ca.key").string()},
           folder());
   ASSERT_EQ(made.code, 0) << made.err;
-  EXPECT_NE(notes().find("what the steps reported is not known"), std::string::npos) << notes();
+  EXPECT_NE(notes().find("the flags of the steps are not known"), std::string::npos) << notes();
 }
 
 // CVE-2023-24011: Cyclone 0.10.2 takes permissions that any certificate of the authority has signed
