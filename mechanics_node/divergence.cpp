@@ -8,7 +8,6 @@
 
 #include "core/index.h"
 #include "multibody/flexible/deflection.h"
-#include "multibody/formulation.h"
 #include "multibody/observe.h"
 
 namespace slew::mechanics {

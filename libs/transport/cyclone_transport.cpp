@@ -80,12 +80,12 @@ constexpr std::int64_t kClockStep = 20'000'000;  // it was set back when it is b
   return topic == wire::Topic::variables || topic == wire::Topic::controller_input;
 }
 
-// Cyclone tells everybody in the domain the name and number of each process, before any key is agreed on. Properties
-// that a participant brings along itself take their place, and these are not sent.
+// Cyclone announces name and number of each process in the whole domain, before any key is agreed on. Properties that a
+// participant has of its own replace them, and empty ones are not sent.
 [[nodiscard]] Qos participant_qos(bool is_secured) {
   Qos qos(dds_create_qos());
   if (!is_secured) return qos;
-  for (const char* told : {"__ProcessName", "__Pid", "__Hostname"}) dds_qset_prop(qos.get(), told, "");
+  for (const char* property : {"__ProcessName", "__Pid", "__Hostname"}) dds_qset_prop(qos.get(), property, "");
   return qos;
 }
 
