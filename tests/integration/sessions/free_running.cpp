@@ -35,7 +35,7 @@ RecordedSession run_with_a_partner_that_stands_still() {
 
 LossyRun run_over_a_lossy_cable(std::int64_t seconds) {
   NamespacePair cable;
-  if (!cable.problem().empty()) return {"network namespaces are not possible here: " + cable.problem(), {}};
+  if (!cable.problem().empty()) return {"network namespaces are not possible here: " + cable.problem(), {}, 0};
   Session session(
       {"--pace", "real", "--duration", std::to_string(seconds) + "s", "--set", "session.mode=free_running"});
   for (const Role role : kAllNodes) {
@@ -46,17 +46,18 @@ LossyRun run_over_a_lossy_cable(std::int64_t seconds) {
     if (std::string_view(SLEWRING_SANITIZER).empty()) arguments.emplace_back("--rt");
     session.run_under(role, here.command(), arguments);
   }
-  if (!cable.lose(1)) return {"packets cannot be lost here: " + cable.problem(), {}};
+  if (!cable.lose(1)) return {"packets cannot be lost here: " + cable.problem(), {}, 0};
   session.start_all();
   EXPECT_EQ(session.wait_all(1'000'000'000 * (seconds + 60)), all_ok()) << session.said();
-  LossyRun run{"", session.recorded()};
+  EXPECT_GT(cable.lost(cable.left()), 0u) << "nothing was lost: the test shows nothing";
+  EXPECT_GT(cable.lost(cable.right()), 0u) << "nothing was lost: the test shows nothing";
+  LossyRun run{"", session.recorded(), 0};
   EXPECT_EQ(run.recorded.problem, "");
-  const std::int64_t late =
+  run.late =
       count(run.recorded.mechanisms, Quality::extrapolated) + count(run.recorded.actuators, Quality::extrapolated);
-  ::testing::Test::RecordProperty("late", std::to_string(late));
+  ::testing::Test::RecordProperty("late", std::to_string(run.late));
   ::testing::Test::RecordProperty("degraded", std::to_string(count(run.recorded.mechanisms, Quality::degraded)));
   ::testing::Test::RecordProperty("eta", std::to_string(largest_eta(run.recorded)));
-  EXPECT_GT(late, 0) << "nothing was lost: the test shows nothing";
   EXPECT_GE(largest_eta(run.recorded), 0);
   return run;
 }

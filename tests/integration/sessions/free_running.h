@@ -23,10 +23,12 @@ template <typename Messages>
 // 3 s, in which the hydraulics stands still for 20 ms at least.
 [[nodiscard]] RecordedSession run_with_a_partner_that_stands_still();
 
-// problem: why it is not possible here.
+// problem: why it is not possible here. late: samples that a node did not wait for; most lost datagrams are sent again
+// in time, so that a run of seconds may have none.
 struct LossyRun {
   std::string problem;
   RecordedSession recorded;
+  std::int64_t late;
 };
 
 // On both sides of a cable that loses 1 % of the datagrams. The nodes are scheduled FIFO, so that other programs cost
