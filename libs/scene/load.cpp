@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/suggestion.h"
-#include "hydraulics/components/four_way_valve.h"
 #include "multibody/element_speeds.h"
 #include "multibody/model.h"
 #include "multibody/validate.h"
@@ -27,6 +26,7 @@
 #include "scene/source.h"
 #include "scene/table_file.h"
 #include "scene/units.h"
+#include "scene/without_effect.h"
 #include "scene/yaml_tree.h"
 
 namespace slew::scene {
@@ -68,6 +68,9 @@ class SceneReader {
       read_script(script->value, script->mark, surroundings_, names_, scene_, context_);
     }
     check_content();
+    if (report_.is_clean() && !lacks_files()) {
+      check_problems([&](Problems&, Problems& warnings) { find_without_effect(scene_, warnings); });
+    }
     if (report_.is_clean()) add_assets_of_tables();
     return std::move(scene_);
   }
@@ -317,39 +320,13 @@ class SceneReader {
     read_section("inputs");
     resolve_references();
     if (report_.size() > problems) return;
-    check_problems([&](Problems& errors, Problems& warnings) {
+    check_problems([&](Problems& errors, Problems&) {
       validate(scene_.inputs, errors);
       for (const InputDef& input : scene_.inputs) {
         check_primitive(input, errors);
         check_controller(input, errors);
-        check_effect(input, warnings);
       }
     });
-  }
-
-  // An input that moves nothing: what it is multiplied by is zero.
-  void check_effect(const InputDef& input, Problems& warnings) const {
-    const auto warn = [&](std::string_view key, std::string what, std::string expected) {
-      warnings.push_back({input.name + "." + std::string(key), std::move(what), std::move(expected), ""});
-    };
-    if (input.scale == 0) warn("scale", "the input has no effect: its scale is 0", "another scale");
-    const auto is_zero = [](const Table& table) {
-      return std::all_of(table.begin(), table.end(), [](const auto& point) { return point[1] == 0; });
-    };
-    const auto check_load = [&](const auto& load, double value, const Table& table, std::string_view key) {
-      if (load.name != input.primitive || value != 0 || !is_zero(table)) return;
-      warn("primitive",
-           fmt::format("the input has no effect: it is multiplied by the {0} of '{1}', which is 0", key, load.name),
-           fmt::format("a {0} other than 0 or a {0}_table, which the input scales", key));
-    };
-    for (const auto& load : scene_.mechanics.point_forces) check_load(load, load.force, load.force_table, "force");
-    for (const auto& load : scene_.mechanics.point_torques) check_load(load, load.torque, load.torque_table, "torque");
-    for (const auto& component : scene_.hydraulics.components) {
-      const auto* valve = dynamic_cast<const hydraulics::FourWayValveDef*>(component.get());
-      if (valve == nullptr || valve->name != input.primitive || valve->opening_gain != 0) continue;
-      warn("primitive", fmt::format("the input has no effect: the opening_gain of '{}' is 0", valve->name),
-           "an opening_gain other than 0");
-    }
   }
 
   void check_controller(const InputDef& input, Problems& errors) const {

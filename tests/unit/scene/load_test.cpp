@@ -230,6 +230,40 @@ TEST(Load, TheTextOfASessionStatesEveryKeyAndIsReadWithoutAWord) {
   EXPECT_EQ(all_of(again.warnings), "");
 }
 
+TEST(Load, WhatChangesNothingIsToldAsAWarning) {
+  const std::string rod = "bodies:\n  Rod: {mass: 1 kg, inertia: [1, 1, 1]}\n";
+  const auto warnings = [&](const std::string& rest) { return all_of(load_text(rod + rest, "test").warnings); };
+  const auto joint = [](const std::string& type, const std::string& keys) {
+    return "joints:\n  J: {type: " + type + ", body2: Rod" + keys + "}\n";
+  };
+  const std::string hinge = joint("revolute", "");
+  EXPECT_EQ(warnings(hinge), "");
+
+  EXPECT_NE(warnings(joint("revolute", ", friction_speed: 2 rad/s")).find("J.friction_speed: it has no effect"),
+            std::string::npos);
+  EXPECT_NE(warnings(joint("cylindrical", ", friction_speed_angle: 2 rad/s, coulomb_friction: 1 N"))
+                .find("J.friction_speed_angle: it has no effect: coulomb_friction_angle is 0"),
+            std::string::npos);
+  EXPECT_EQ(warnings(joint("cylindrical", ", friction_speed_angle: 2 rad/s, coulomb_friction_angle: 1 Nm")), "");
+
+  EXPECT_NE(warnings(hinge + "mechanics: {contact_substep: 10 us}\n").find("the scene has no contacts"),
+            std::string::npos);
+  EXPECT_NE(warnings(hinge + "session: {exchange_every: 2}\n").find("session.exchange_every: it has no effect"),
+            std::string::npos);
+  EXPECT_NE(warnings(hinge + "hydraulics: {entrained_air: 2 %}\n").find("hydraulics.entrained_air: it has no effect"),
+            std::string::npos);
+  EXPECT_NE(warnings(hinge + "curves:\n  Unused: {points: [[0, 0], [1, 1]]}\n").find("Unused: nothing refers to"),
+            std::string::npos);
+
+  const auto force = [&](const std::string& keys) { return warnings(hinge + "forces:\n  F: {" + keys + "}\n"); };
+  const std::string spring = "type: translational, body1: Ground, body2: Rod, point2: [1 m, 0, 0]";
+  EXPECT_NE(force(spring + ", free_length: 1 m").find("F: it has no effect: without stiffness and damping"),
+            std::string::npos);
+  EXPECT_EQ(force(spring + ", free_length: 1 m, damping_constant: 1 Ns/m"), "");
+  EXPECT_NE(force("type: point_force, body: Rod").find("F: it has no effect: its force is 0"), std::string::npos);
+  EXPECT_EQ(force("type: point_force, body: Rod, force: 1 N"), "");
+}
+
 TEST(Load, AnInputWithoutEffectIsToldAsAWarning) {
   const std::string body =
       "bodies:\n  Rod: {mass: 1 kg, inertia: [1, 1, 1]}\njoints:\n  Hinge: {type: revolute, body2: Rod}\n";

@@ -1,0 +1,13 @@
+// What a scene says that changes nothing: legal, and probably a mistake.
+#pragma once
+
+#include "core/problem.h"
+#include "scene/scene.h"
+
+namespace slew::scene {
+
+// Warnings about inputs, loads, springs, curves and keys without effect. Pre-condition: all names are resolved, the
+// tables of files read.
+void find_without_effect(Scene& scene, Problems& warnings);
+
+}  // namespace slew::scene
