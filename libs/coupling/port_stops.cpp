@@ -51,6 +51,8 @@ void PortDynamics::take_in_parts(const Span& span, const RowLaws& laws, PortStep
         is_last = false;
         continue;
       }
+      // a spring that is still too stiff for the part throws back less than was put into it
+      report.has_converged &= !is_tried || length <= allowed_;
       take_euler(part, laws, report);
     }
     done += length;

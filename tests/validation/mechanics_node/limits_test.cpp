@@ -69,6 +69,23 @@ TEST_P(Limits, ThrowBackAsTheClosedForm) {
   }
 }
 
+// a spring that is too stiff for the shortest part of a step throws back less than it was given, and says so
+TEST_P(Limits, ThatAreTooStiffToBeFollowedAreFlagged) {
+  for (const double k : {1e12, 1e14, 1e15, 1e17, 1e19}) {
+    SCOPED_TRACE(k);
+    MechanicsAlone m(scene::load_text(scene_of(GetParam(), k, 0, 0.0123), "limit"));
+    bool is_flagged = false;
+    for (int n = 0; n < 150; ++n) {
+      m.step();
+      is_flagged = is_flagged || m.report.has(StepFlag::not_converged);
+    }
+    const double back = m.value("R.velocity") / kSpeed;
+    EXPECT_LE(back, 1.003);
+    EXPECT_TRUE(is_flagged || back >= 0.98) << back;
+    EXPECT_TRUE(k >= 1e15 || !is_flagged);
+  }
+}
+
 // c h/m from 1e-2 to 1e6 and a spring that holds nothing: v = v_0 exp(-c t/m) behind the limit, never back
 TEST_P(Limits, ThatOnlyDampNeverThrowBack) {
   for (const double per_step : {1e-2, 0.1, 1.0, 10.0, 1e3, 1e4, 1e6}) {
