@@ -39,8 +39,8 @@ ErrorWish parse(const std::string& text) {
 
 class Simplifier {
  public:
-  Simplifier(const SimplifyWish& wish, const SimplifyProgress& progress)
-      : wish_(wish), progress_(progress), base_(load({})) {
+  Simplifier(const SimplifyWish& wish, const SimplifyProgress& progress, const SimplifyCost& cost)
+      : wish_(wish), progress_(progress), cost_(cost), base_(load({})) {
     if (!base_->has_mechanics()) {
       throw Failure(ExitCode::bad_input, "the scene has no bodies; there is nothing here to simplify");
     }
@@ -158,6 +158,7 @@ class Simplifier {
   }
 
   double cost_of(const scene::Scene& scene, const Observation& run, const std::string& doing) {
+    if (cost_) return cost_(scene, run.steps);
     return time_runs(scene, run.steps, wish_.repeats, run.state_hashes, part(doing)).whole;
   }
 
@@ -277,6 +278,7 @@ class Simplifier {
 
   const SimplifyWish& wish_;
   const SimplifyProgress& progress_;
+  const SimplifyCost& cost_;
   std::optional<scene::Scene> base_;
   SimDuration sample_, until_;
   std::vector<std::string> names_;
@@ -307,8 +309,8 @@ bool holds(const std::vector<Watched>& watched, const Trial& trial) {
   return true;
 }
 
-Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress) {
-  return Simplifier(wish, progress).run();
+Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress, const SimplifyCost& cost) {
+  return Simplifier(wish, progress, cost).run();
 }
 
 }  // namespace slew::cli

@@ -65,8 +65,13 @@ struct Simplification {
 // Told what is under way and which share of all is done; false ends it.
 using SimplifyProgress = std::function<bool(std::string_view doing, double share)>;
 
-// Throws LoadError for a scene that is wrong, Failure for a wish that cannot be met or a base that fails.
-[[nodiscard]] Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress);
+// What so many steps of a scene cost, us per simulated ms.
+using SimplifyCost = std::function<double(const scene::Scene& scene, StepIndex steps)>;
+
+// cost: where it is not to be measured. Throws LoadError for a scene that is wrong, Failure for a wish that cannot be
+// met or a base that fails.
+[[nodiscard]] Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progress,
+                                      const SimplifyCost& cost = {});
 
 // width [characters]: of the lines of a table; 0: no limit.
 [[nodiscard]] std::string report_text(const Simplification& result, std::size_t width = 0);
