@@ -1,5 +1,5 @@
-// The alarm of the coupling and eta, beside the errors against the monolith: machines, kinds of control, levels, steps
-// and late samples, each run to its end.
+// The alarm of the coupling and its lamps, beside the errors against the monolith: machines, kinds of control, levels,
+// steps and late samples, each run to its end.
 //
 //   coupling_alarm RESULTS.md
 //
@@ -11,10 +11,12 @@
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/measured_page.h"
@@ -47,7 +49,16 @@ struct Variant {
   StepIndex late = 0;  // steps
 };
 
+// Of one port.
+struct PortOutcome {
+  Level level;
+  double rms = 0;  // force error over any second, share of the force range
+  double x = 0;    // largest stroke error, share of the stroke range
+  double eta = 0;  // largest
+};
+
 struct Outcome {
+  std::vector<PortOutcome> ports;
   double rms = 0;           // force error over any second, share of the port's force range, worst port
   double x = 0;             // largest stroke error, share of the port's stroke range, worst port
   double eta = 0, net = 0;  // largest, lowest
@@ -60,10 +71,12 @@ enum Class : std::size_t { sound, poor, diverged };
 constexpr std::string_view kClassNames[] = {"sound", "poor", "diverged"};
 constexpr std::string_view kKinds[] = {"script", "sine", "fast", "jumps", "chatter"};
 
+constexpr double kDiverged = 0.5;  // force error, share of its range
+
 // sound: within 3 % of the force range over any second and 1 % of the stroke's; diverged: beyond half of the force
 // range
 Class class_of(const Outcome& outcome) {
-  if (outcome.has_failed || !(outcome.rms < 0.5)) return diverged;
+  if (outcome.has_failed || !(outcome.rms < kDiverged)) return diverged;
   return outcome.rms < 0.03 && outcome.x < 0.01 ? sound : poor;
 }
 
@@ -97,6 +110,10 @@ std::vector<Variant> variants() {
   for (const double H : {1e-3, 2e-3, 5e-3, 10e-3, 20e-3}) {
     list.push_back({Level::two, "two", H});
     list.push_back({Level::linear, "linear", H});
+  }
+  for (const double H : {1e-3, 2e-3, 5e-3, 10e-3, 20e-3}) {
+    list.push_back({Level::hold, "hold", H});
+    list.push_back({Level::tlm, "tlm", H});
   }
   for (const double H : {1e-3, 5e-3}) {
     for (const StepIndex late : {1, 3, 6}) list.push_back({Level::two, "two", H, late});
@@ -189,20 +206,26 @@ Outcome outcome_of(scene::Scene& scene, const Variant& variant, const Signals& s
   Outcome outcome;
   if (!run.start().is_ok()) return outcome;
   std::vector<SecondOf> errors(traces.size(), SecondOf(variant.H));
+  outcome.ports.assign(traces.size(), {variant.level});
   const auto steps = static_cast<StepIndex>(std::llround(duration / variant.H));
   for (StepIndex n = 0; n < steps && !run.has_failed(); ++n) {
     run.step(at(signals, run.time()));
     const auto k = static_cast<std::size_t>(run.time().ns / kTraceGrid.ns);
     for (std::size_t i = 0; i < traces.size(); ++i) {
       const coupling::PortDefects& defects = run.indicator().port(i);
-      outcome.eta = std::max(outcome.eta, defects.eta);
+      PortOutcome& port = outcome.ports[i];
+      port.eta = std::max(port.eta, defects.eta);
+      port.x = std::max(port.x, std::fabs(run.mechanism().x[i] - traces[i].x[k]) / range_of(traces[i].x));
+      port.rms = std::max(port.rms, errors[i].add((run.actuators().F[i] - traces[i].F[k]) / range_of(traces[i].F)));
       outcome.net = std::min(outcome.net, defects.net);
       outcome.old_alarm = outcome.old_alarm || defects.creates_energy;
       if (outcome.ends_at < 0 && run.indicator().diverges(i)) outcome.ends_at = run.time().seconds();
-      outcome.x = std::max(outcome.x, std::fabs(run.mechanism().x[i] - traces[i].x[k]) / range_of(traces[i].x));
-      outcome.rms =
-          std::max(outcome.rms, errors[i].add((run.actuators().F[i] - traces[i].F[k]) / range_of(traces[i].F)));
     }
+  }
+  for (const PortOutcome& port : outcome.ports) {
+    outcome.eta = std::max(outcome.eta, port.eta);
+    outcome.x = std::max(outcome.x, port.x);
+    outcome.rms = std::max(outcome.rms, port.rms);
   }
   outcome.has_failed = run.has_failed();
   return outcome;
@@ -240,7 +263,13 @@ struct Study {
   std::array<Counts, std::size(kKinds)> by_kind{};
   Counts all;
   std::vector<std::string> wrong;  // false alarms and missed divergences
+  std::vector<PortOutcome> lamps;  // of runs in lockstep
 };
+
+// hold and tlm have no alarm that ends a session
+bool is_tabled(const Variant& variant) {
+  return coupling::is_balanced(variant.level);
+}
 
 void study(const Machine& machine, const std::vector<Variant>& list, Study& result) {
   scene::Overrides overrides = machine.overrides;
@@ -260,6 +289,10 @@ void study(const Machine& machine, const std::vector<Variant>& list, Study& resu
         continue;
       }
       const Outcome outcome = outcome_of(scene, list[v], signals, traces, machine.duration);
+      if (list[v].late == 0 && !outcome.has_failed) {
+        result.lamps.insert(result.lamps.end(), outcome.ports.begin(), outcome.ports.end());
+      }
+      if (!is_tabled(list[v])) continue;
       rows[v] += "| " + cell_of(outcome) + " ";
       result.by_kind[kind].add(outcome);
       result.all.add(outcome);
@@ -275,8 +308,60 @@ void study(const Machine& machine, const std::vector<Variant>& list, Study& resu
   result.tables += fmt::format("### {}\n\n| run ", machine.name);
   for (const std::string_view kind : kKinds) result.tables += fmt::format("| {} ", kind);
   result.tables += "|\n|---|---|---|---|---|---|\n";
-  for (const std::string& row : rows) result.tables += row + "|\n";
+  for (std::size_t v = 0; v < list.size(); ++v) {
+    if (is_tabled(list[v])) result.tables += rows[v] + "|\n";
+  }
   result.tables += "\n";
+}
+
+// share: of the values that lie below; "-" of few values
+std::string quantile(std::vector<double> values, double share) {
+  if (values.size() < 5) return "-";
+  std::sort(values.begin(), values.end());
+  return fmt::format("{:.1e}", values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]);
+}
+
+struct LampRow {
+  std::string_view name;
+  double least, most;  // of eta
+};
+constexpr LampRow kLampRows[] = {{"green", -1, coupling::kGreenBelow},
+                                 {"amber", coupling::kGreenBelow, coupling::kAmberBelow},
+                                 {"red", coupling::kAmberBelow, std::numeric_limits<double>::infinity()}};
+
+// Errors of the ports behind each lamp, and over eta of those that are neither green nor diverged.
+std::string lamps_of(const std::vector<PortOutcome>& ports) {
+  std::string text =
+      "\n### What the lamps stand for\n\n| level | lamp | ports | force: half below | 95 of 100 below | stroke: half "
+      "below "
+      "| 95 of 100 below |\n|---|---|---|---|---|---|---|\n";
+  std::string factors =
+      "\n| level | force / eta: half below | 95 of 100 below | stroke / eta: half below | 95 of 100 below |"
+      "\n|---|---|---|---|---|\n";
+  for (const auto& [name, levels] :
+       {std::pair{"two, linear", std::pair{Level::linear, Level::two}},
+        std::pair{"hold", std::pair{Level::hold, Level::hold}}, std::pair{"tlm", std::pair{Level::tlm, Level::tlm}}}) {
+    std::vector<double> force_over_eta, stroke_over_eta;
+    for (const LampRow& lamp : kLampRows) {
+      std::vector<double> force, stroke;
+      for (const PortOutcome& port : ports) {
+        const bool is_meant = port.level == levels.first || port.level == levels.second;
+        if (!is_meant || !(port.eta >= lamp.least) || !(port.eta < lamp.most)) continue;
+        force.push_back(port.rms);
+        stroke.push_back(port.x);
+        // what has diverged is in no relation to anything
+        if (port.eta < coupling::kGreenBelow || !(port.rms < kDiverged)) continue;
+        force_over_eta.push_back(port.rms / port.eta);
+        stroke_over_eta.push_back(port.x / port.eta);
+      }
+      text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", name, lamp.name, force.size(), quantile(force, 0.5),
+                          quantile(force, 0.95), quantile(stroke, 0.5), quantile(stroke, 0.95));
+    }
+    factors +=
+        fmt::format("| {} | {} | {} | {} | {} |\n", name, quantile(force_over_eta, 0.5), quantile(force_over_eta, 0.95),
+                    quantile(stroke_over_eta, 0.5), quantile(stroke_over_eta, 0.95));
+  }
+  return text + factors;
 }
 
 std::string text_of(const Study& result) {
@@ -294,7 +379,7 @@ std::string text_of(const Study& result) {
     for (const std::string& row : result.wrong) text += row;
     text += "\n";
   }
-  return text + result.tables;
+  return lamps_of(result.lamps) + text + result.tables;
 }
 
 int run(const std::string& results) {

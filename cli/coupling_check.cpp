@@ -59,12 +59,6 @@ std::size_t fastest(const Ports& ports) {
   return found;
 }
 
-// Rounded down to two digits.
-std::string safe_step(double seconds) {
-  const double digit = std::pow(10, std::floor(std::log10(seconds)) - 1);
-  return duration_text(std::floor(seconds / digit * (1 + 1e-12)) * digit);
-}
-
 std::string swinging(const Ports& ports, Level level, const std::string& name,
                      const coupling::ActuatorSample& actuators, double H) {
   const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
@@ -76,7 +70,7 @@ std::string swinging(const Ports& ports, Level level, const std::string& name,
                                                    : fmt::format(" (twice the damping ratio {:.2g}{})", zeta,
                                                                  leak > 0 ? " of its leaks" : ", assumed");
   const double safe = H * limit / omega_H;
-  std::string remedy = safe < scene::kMinStep ? "" : "session.step " + safe_step(safe) + " or less";
+  std::string remedy = safe < scene::kMinStep ? "" : "session.step " + duration_below(safe) + " or less";
   if (level != Level::two) remedy += (remedy.empty() ? "" : ", or ") + std::string("coupling 'two'");
   return fmt::format(
       "{}: omega_H, the angle that the machine swings on its oil from one exchange to the next in {}, is {:.2g}; level "
@@ -94,7 +88,7 @@ std::string heavy_line(const Ports& ports, const scene::Scene& scene, double H) 
       "will "
       "be too slow and too damped: use session.step {} or less, or coupling 'two'",
       scene.ports[ports.port[i]].name, mass, 100 * share, duration_text(H),
-      safe_step(H * std::sqrt(kLargestParasiticMass / share)));
+      duration_below(H * std::sqrt(kLargestParasiticMass / share)));
 }
 
 // free-running sides have samples that are a step old, or older
@@ -102,7 +96,7 @@ std::string running_late(const Ports& ports, const std::string& name, double H) 
   const double omega_H = coupling::coupling_frequency(ports.W, ports.K, H);
   if (!(omega_H > coupling::kMostLate)) return {};
   const double safe = H * coupling::kMostLate / omega_H;
-  const std::string step = safe < scene::kMinStep ? "" : "session.step " + safe_step(safe) + " or less, or ";
+  const std::string step = safe < scene::kMinStep ? "" : "session.step " + duration_below(safe) + " or less, or ";
   return fmt::format(
       "{}: free_running works with samples that are a step or more late, and the machine swings by omega_H {:.2g} on "
       "its oil "

@@ -94,6 +94,11 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.4g} s", seconds);
 }
 
+std::string duration_below(double seconds) {
+  const double digit = std::pow(10, std::floor(std::log10(seconds)) - 1);
+  return duration_text(std::floor(seconds / digit * (1 + 1e-12)) * digit);
+}
+
 std::size_t output_width() {
   winsize size{};
   const bool is_terminal = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;

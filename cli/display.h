@@ -34,6 +34,8 @@ struct DisplayUnit {
 
 // "1.9 us", "12 ms", "3.2 s".
 [[nodiscard]] std::string duration_text(double seconds);
+// Rounded down to two digits.
+[[nodiscard]] std::string duration_below(double seconds);
 
 // Characters of a line where standard output is a terminal; 0 elsewhere: a line may have any length.
 [[nodiscard]] std::size_t output_width();

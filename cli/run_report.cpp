@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cli/coupling_lamp.h"
 #include "cli/display.h"
 #include "cli/flag_counter.h"
 #include "cli/flag_report.h"
@@ -13,13 +14,11 @@
 #include "cli/recorded.h"
 #include "cli/scene_plots.h"
 #include "cli/stall_report.h"
-#include "cli/status_line.h"
 #include "cli/text_output.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
 #include "core/report_table.h"
-#include "coupling/indicator.h"
 #include "io_node/session_clock.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
@@ -32,13 +31,6 @@ using wire::Role;
 
 constexpr double kShortestPause = 0.01;  // s, below it nobody has paused
 
-std::string lamp_of(double eta, double net) {
-  coupling::PortDefects defects;
-  defects.eta = eta;
-  defects.net = net;
-  return std::string(lamp_text(coupling::lamp_of(defects)));
-}
-
 void report_nodes(const SessionView& view, RunReport& report) {
   for (const Role role : wire::kNodeRoles) {
     if (!view.has_session() || (view.session().required_roles & bit(role)) == 0) continue;
@@ -50,12 +42,14 @@ void report_nodes(const SessionView& view, RunReport& report) {
 }
 
 void report_variables(const SessionView& view, const scene::Scene& scene, RunReport& report) {
-  for (const scene::PortDef& port : scene.ports) {
+  for (std::size_t i = 0; i < scene.ports.size(); ++i) {
+    const scene::PortDef& port = scene.ports[i];
     const VariableView* eta = view.find(port.name + ".coupling_eta");
     const VariableView* net = view.find(port.name + ".coupling_net");
     if (eta == nullptr || eta->step < 0) continue;
     const double lowest = net != nullptr && net->step >= 0 ? net->min : 0;
-    report.ports.push_back({port.name, eta->max, lowest, lamp_of(eta->max, lowest)});
+    report.ports.push_back(
+        {port.name, eta->max, lowest, std::string(lamp_text(lamp_of(eta->max))), explain_lamp(eta->max, i, scene)});
   }
   if (const VariableView* omega = view.find("hydraulics.omega_H"); omega != nullptr && omega->step >= 0) {
     report.omega_H = omega->max;
@@ -325,8 +319,9 @@ void print(const RunReport& report) {
   }
   if (!report.lost.empty()) rows.add({"lost", report.lost});
   for (const PortReport& port : report.ports) {
-    rows.add({"coupling", fmt::format("{} {}: residual {} at most, net {} at least", port.name, port.lamp,
-                                      percent(port.eta), percent(port.net))});
+    rows.add({"coupling",
+              fmt::format("{} {}: residual {} at most, net {} at least{}{}", port.name, port.lamp, percent(port.eta),
+                          percent(port.net), port.meaning.empty() ? "" : "; ", port.meaning)});
   }
   for (const VariableReport& variable : report.variables) {
     rows.add({"range",
@@ -355,6 +350,7 @@ std::string to_json_text(const RunReport& report) {
   Json ports = Json::object();
   for (const PortReport& port : report.ports) {
     ports[port.name] = {{"eta_max", number(port.eta)}, {"net_min", number(port.net)}, {"lamp", port.lamp}};
+    if (!port.meaning.empty()) ports[port.name]["meaning"] = port.meaning;
   }
   Json variables = Json::object();
   for (const VariableReport& variable : report.variables) {

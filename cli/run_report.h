@@ -23,6 +23,7 @@ struct PortReport {
   double eta = 0;  // largest energy residual
   double net = 0;  // lowest net energy
   std::string lamp;
+  std::string meaning;  // of a lamp that is not green
 };
 
 struct VariableReport {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cli/coupling_lamp.h"
 #include "cli/display.h"
 #include "core/printable.h"
-#include "coupling/indicator.h"
 #include "node/identity.h"
 #include "scene/names.h"
 
@@ -42,18 +42,6 @@ std::string node_text(const SessionView& view, Role role) {
 }
 
 }  // namespace
-
-std::string_view lamp_text(coupling::Lamp lamp) {
-  switch (lamp) {
-    case coupling::Lamp::green:
-      return "green";
-    case coupling::Lamp::amber:
-      return "amber";
-    case coupling::Lamp::red:
-      return "red";
-  }
-  return "";
-}
 
 bool StatusLine::is_due(std::int64_t now_ns) const noexcept {
   return mode_ != Mode::off && now_ns >= next_ns_;
@@ -124,16 +112,16 @@ std::string StatusText::nodes_text(const SessionView& view) {
 
 std::string StatusText::coupling_text(const SessionView& view) const {
   std::string lamps;
+  double worst = 0;
   for (const std::string& port : ports_) {
     const VariableView* eta = view.find(port + ".coupling_eta");
-    const VariableView* net = view.find(port + ".coupling_net");
     if (eta == nullptr || eta->step < 0) continue;
-    coupling::PortDefects defects;
-    defects.eta = eta->value;
-    defects.net = net != nullptr ? net->value : 0;
-    lamps += fmt::format("{}{}", lamps.empty() ? "" : "/", lamp_text(coupling::lamp_of(defects)));
+    worst = std::max(worst, eta->value);
+    lamps += fmt::format("{}{}", lamps.empty() ? "" : "/", lamp_text(lamp_of(eta->value)));
   }
-  return lamps.empty() ? "" : "  coupling " + lamps;
+  if (lamps.empty()) return "";
+  const std::string error = usual_force_error(worst);
+  return "  coupling " + lamps + (error.empty() ? "" : ", force off by about " + error);
 }
 
 std::string StatusText::variables_text(const SessionView& view) const {

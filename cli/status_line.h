@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "cli/session_view.h"
-#include "coupling/indicator.h"
 #include "scene/scene.h"
 
 namespace slew::cli {
@@ -34,9 +33,6 @@ class StatusLine {
 
 // Terminal when standard output is one, else lines; off when nothing but the result may be printed.
 [[nodiscard]] StatusLine::Mode status_mode(bool is_quiet);
-
-// "green", "amber" or "red".
-[[nodiscard]] std::string_view lamp_text(coupling::Lamp lamp);
 
 // Session time, real-time factor, nodes, plotted variables, coupling lamps, from what an observer knows.
 class StatusText {

@@ -187,7 +187,7 @@ Status HydraulicsSubsystem::check_coupling(const coupling::MechanismSample& mech
   const double H = H_.seconds() * static_cast<double>(exchange_every_);
   coupling::PortArray K = published_.K;
   for (std::size_t i = 0; i < m_; ++i) {
-    if (!is_kept_in_balance(i)) K[i] = 0;
+    if (!coupling::is_balanced(levels_[i])) K[i] = 0;
   }
   const double omega_H = coupling::coupling_frequency(mechanism.W, K, H);
   const double limit = is_free_running_ ? coupling::kMostLate : coupling::kMostSampled;
@@ -220,7 +220,7 @@ void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismS
   const bool has_news = n - age != used_step_;
   used_step_ = n - age;
   if (has_news && age == 0) {
-    indicator_.update(mechanism, published_, stiffness_);
+    indicator_.update(mechanism, published_, stiffness_, levels_);
     integrator_->align(mechanism.x.span(), mechanism.v.span());
   } else if (has_news) {
     take_late(used_step_, mechanism);
@@ -260,7 +260,7 @@ void HydraulicsSubsystem::take_late(StepIndex step, const coupling::MechanismSam
   for (std::size_t i = 0; i < m_; ++i) {
     own.x_ref[i] = mechanism.x[i] - (mechanism.v_mean[i] * H_.seconds() - said.way[i]);
   }
-  indicator_.update(mechanism, own, stiffness_);
+  indicator_.update(mechanism, own, stiffness_, levels_);
 }
 
 void HydraulicsSubsystem::keep_begin(StepIndex n) noexcept {
@@ -294,7 +294,7 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
   report.flags |= taken.flags;
   if (const std::optional<std::size_t> port = first_alarm()) {
     report.raise(StepFlag::coupling_creates_energy);
-    if (ends_on_alarm_ && is_kept_in_balance(*port)) {
+    if (ends_on_alarm_ && coupling::is_balanced(levels_[*port])) {
       report.raise(StepFlag::ended);
       end_at(*port);
     }
@@ -310,16 +310,11 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
 }
 
 // Levels whose two sides foresee each other: hold makes energy on any machine that swings, and a line of level tlm has
-// work under way, which the indicator takes for made; both are flagged by the net energy and never end a session.
-bool HydraulicsSubsystem::is_kept_in_balance(std::size_t port) const noexcept {
-  return levels_[port] == coupling::Level::linear || levels_[port] == coupling::Level::two;
-}
-
 // A port that ends the session comes before one that is only flagged.
 std::optional<std::size_t> HydraulicsSubsystem::first_alarm() const noexcept {
   std::optional<std::size_t> flagged;
   for (std::size_t i = 0; i < m_; ++i) {
-    if (is_kept_in_balance(i)) {
+    if (coupling::is_balanced(levels_[i])) {
       if (indicator_.diverges(i)) return i;
     } else if (!flagged && indicator_.port(i).creates_energy) {
       flagged = i;
@@ -337,7 +332,7 @@ void HydraulicsSubsystem::end_at(std::size_t port) noexcept {
       "{}: the coupling diverges: over the last second the works of both sides have differed by {:.2g} % of the work "
       "done, not by one jump alone, and the machine swings on its oil by {:.2g} from one exchange to the next; use {}, "
       "or session.coupling_alarm: warn to go on with red lamps",
-      port_names_[port], 1e2 * indicator_.port(port).eta, indicator_.omega_H(), remedy);
+      port_names_[port], 1e2 * indicator_.own_residual(port), indicator_.omega_H(), remedy);
   failure_text_length_ = std::min(written.size, failure_text_.size());
 }
 
@@ -353,7 +348,7 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
                                        const coupling::PartnerSamples& partners, std::span<const double> controls,
                                        coupling::OwnSample& sample) noexcept {
   take_tick(n, controls);
-  if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_, stiffness_);
+  if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_, stiffness_, levels_);
   std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
   circuit_->set_vapour_capacities(step.vapour);
   integrator_->refresh();

@@ -125,7 +125,6 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] Status check_pressures(std::span<const double> F) const;
   [[nodiscard]] Status check_stability(const coupling::MechanismSample* mechanism);
   [[nodiscard]] Status check_coupling(const coupling::MechanismSample& mechanism) const;
-  [[nodiscard]] bool is_kept_in_balance(std::size_t port) const noexcept;
   [[nodiscard]] std::optional<std::size_t> first_alarm() const noexcept;
   void end_at(std::size_t port) noexcept;
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;

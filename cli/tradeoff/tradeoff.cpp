@@ -10,11 +10,11 @@
 #include <map>
 #include <set>
 
+#include "cli/coupling_lamp.h"
 #include "cli/direct_session.h"
 #include "cli/tradeoff/answer.h"
 #include "cli_support/name_pattern.h"
 #include "core/failure.h"
-#include "coupling/indicator.h"
 #include "mechanics_node/payload.h"
 #include "multibody/model.h"
 #include "node/identity.h"
@@ -428,7 +428,7 @@ std::string verdict(const TradeoffRow& row) {
   if (!row.result.refusal.empty()) return "refused: " + row.result.refusal;
   if (!row.result.failure.empty()) return fmt::format("no: {} at {:.4g} s", row.result.failure, row.result.failed_at);
   if (row.parts_from_reference) return "no: farther from the reference than that moves";
-  if (row.result.net && *row.result.net < coupling::kNetAlarm) return "yes, but the coupling creates energy";
+  if (row.result.eta && lamp_of(*row.result.eta) == coupling::Lamp::red) return "yes, but the coupling's lamp is red";
   return "yes";
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace slew::coupling {
 namespace {
@@ -13,6 +14,13 @@ constexpr int kSquarings = 4;
 
 // N: a port that carries less is idle, and the rounding of its energies is no error of the coupling
 constexpr double kLeastForce = 1;
+
+// (5), own
+template <typename Bucket>
+double scale_of(const Bucket& sum) {
+  const double force = std::max(sum.force, kLeastForce);
+  return std::max(sum.work, sum.stiffness > 0 ? force * force / (2 * sum.stiffness) : 0.0);
+}
 
 // rounded up, so that buckets of few steps do not shorten the window
 std::int64_t steps_per_bucket(std::int64_t bucket_ns, SimDuration step) {
@@ -34,12 +42,14 @@ Indicator::Indicator(std::size_t ports, SimDuration communication_step)
       alarm_after_steps_(std::max<std::int64_t>(1, kNetAlarmAfter.ns / communication_step.ns)),
       window_(ports),
       others_(ports),
+      largest_(ports),
       steps_below_alarm_(ports, 0),
       defects_(ports) {}
 
 void Indicator::reset() noexcept {
   for (auto& buckets : window_) buckets.fill(Bucket{});
   for (Bucket& others : others_) others = Bucket{};
+  for (auto& largest : largest_) largest.fill(0);
   for (std::int64_t& steps : steps_below_alarm_) steps = 0;
   for (PortDefects& defects : defects_) defects = PortDefects{};
   steps_in_bucket_ = 0;
@@ -61,30 +71,54 @@ void Indicator::start_bucket() noexcept {
 
 void Indicator::add_others(std::size_t port) noexcept {
   Bucket sum;
+  std::array<double, kLeftOut>& largest = largest_[port];
+  largest.fill(0);
   for (std::size_t i = 0; i < kBuckets; ++i) {
-    if (i != current_) sum.add(window_[port][i]);
+    if (i == current_) continue;
+    sum.add(window_[port][i]);
+    double next = window_[port][i].residual;
+    for (double& kept : largest) {
+      if (next > kept) std::swap(next, kept);
+    }
   }
   others_[port] = sum;
 }
 
-void Indicator::evaluate_window(std::size_t port) noexcept {
-  // window sums and the scale of (5)
+Indicator::Bucket Indicator::window_sum(std::size_t port) const noexcept {
   Bucket sum = others_[port];
   sum.add(window_[port][current_]);
-  const double force = std::max(sum.force, kLeastForce);
-  const double spring = sum.stiffness > 0 ? force * force / (2 * sum.stiffness) : 0.0;
-  const double scale = std::max(sum.work, spring);
+  return sum;
+}
+
+// sum of all residuals less the kLeftOut largest
+double Indicator::without_largest(std::size_t port, double sum) const noexcept {
+  double least = window_[port][current_].residual;
+  sum -= least;
+  for (const double residual : largest_[port]) {
+    sum -= residual;
+    least = std::min(least, residual);
+  }
+  // rounding may leave less than nothing; NaN stays
+  const double kept = sum + least;
+  return kept < 0 ? 0 : kept;
+}
+
+void Indicator::evaluate(std::size_t port, Level level, double machine_scale) noexcept {
+  const Bucket sum = window_sum(port);
+  const double own = scale_of(sum), scale = is_balanced(level) ? machine_scale : own;
+  const double residual = is_balanced(level) ? without_largest(port, sum.residual) : sum.residual;
   PortDefects& defects = defects_[port];
-  defects.eta = scale > 0 ? sum.residual / scale : 0.0;
-  defects.net = scale > 0 ? sum.net / scale : 0.0;
+  defects.eta = scale > 0 ? residual / scale : 0.0;
+  defects.net = own > 0 ? sum.net / own : 0.0;
   // the alarm needs the net sum below its level for a while
   steps_below_alarm_[port] = defects.net < kNetAlarm ? steps_below_alarm_[port] + 1 : 0;
   defects.creates_energy = steps_below_alarm_[port] >= alarm_after_steps_;
 }
 
 void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& actuators,
-                       const PortArray& stiffness) noexcept {
+                       const PortArray& stiffness, const PortLevels& levels) noexcept {
   start_bucket();
+  double machine_scale = 0;
   for (std::size_t i = 0; i < ports_; ++i) {
     PortDefects& defects = defects_[i];
     const double K = actuators.K[i];
@@ -99,8 +133,9 @@ void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& a
     bucket.work += std::fabs(mechanism.work[i]);
     bucket.force = std::max(bucket.force, std::fabs(actuators.F[i]));
     bucket.stiffness = std::max(bucket.stiffness, stiffness[i]);
-    evaluate_window(i);
+    machine_scale = std::max(machine_scale, scale_of(window_sum(i)));
   }
+  for (std::size_t i = 0; i < ports_; ++i) evaluate(i, levels[i], machine_scale);
   omega_H_ = coupling_frequency(mechanism.W, stiffness, H_);
 }
 
@@ -129,21 +164,26 @@ void Indicator::save(StateWriter& bytes) const {
 
 void Indicator::load(StateReader& bytes) noexcept {
   visit(*this, bytes);
+  for (std::size_t port = 0; port < ports_; ++port) add_others(port);
 }
 
 bool Indicator::creates_energy() const noexcept {
   return std::any_of(defects_.begin(), defects_.end(), [](const PortDefects& d) { return d.creates_energy; });
 }
 
+double Indicator::own_residual(std::size_t port) const noexcept {
+  const Bucket sum = window_sum(port);
+  const double own = scale_of(sum);
+  return own > 0 ? sum.residual / own : 0.0;
+}
+
 bool Indicator::diverges(std::size_t port) const noexcept {
-  if (defects_[port].eta > kDivergesAtOnce) return true;
+  if (own_residual(port) > kDivergesAtOnce) return true;
   std::size_t diverging = 0;
   for (std::size_t i = 0; i < kBuckets; ++i) {
     const Bucket& bucket = window_[port][i];
     if (i == current_ || !(bucket.stiffness > 0)) continue;
-    const double force = std::max(bucket.force, kLeastForce);
-    const double scale = std::max(bucket.work, force * force / (2 * bucket.stiffness));
-    if (bucket.residual > kDivergesAbove * scale) ++diverging;
+    if (bucket.residual > kDivergesAbove * scale_of(bucket)) ++diverging;
   }
   return diverging >= kDivergingBuckets;
 }

@@ -5,19 +5,23 @@
 //   e_F = (F_n - K e_x) - F_used      hydraulics' force, moved to the true x, less mechanics' copy (2)
 //   dE  = W_hyd - W_mech              work of F over the finished step as each side saw it         (3)
 //   dE* = dE + F_n e_x - K e_x^2 / 2  after the work of the volume correction                      (4)
-//   eta = sum |dE*| / max(sum |W_mech|, F^2 / (2 K)),  net = sum dE* / the same scale, over 1 s    (5)
+//   own = max(sum |W_mech|, F^2 / (2 K)),  net = sum dE* / own, over 1 s                            (5)
+//   eta = sum |dE*| / own                            level hold and tlm
+//         sum |dE*| less its 3 largest 50 ms / largest own of all ports      linear and two        (5')
 //   omega_H = H sqrt(largest eigenvalue of W K)                                                    (6)
 //
-// eta times 10 to 30 is the relative force error (study). Lamps: green below 1e-4, amber below 1e-3, red above;
+// Lamps: green below 5e-4, amber below 5e-3, red above (docs/coupling-alarm.md: what errors they stand for);
 // net < -3e-3 for 0.2 s: the coupling creates energy. The scale F^2 / (2 K) uses the largest |F| of the window,
 // at least 1 N.
+//
+// A light port is as wrong as its share of the machine's energy: of its own it has little to compare with.
 //
 // One jump of a valve is one exchange whose work the mechanics could not foresee: it may be large in eta and net for
 // the whole window and does no more. A coupling that diverges fails exchange after exchange. So a port diverges when
 //   sum |dE*| > 0.1 max(sum |W_mech|, F^2 / (2 K))                                                  (7)
 // within half of the window's buckets or more, each with its own work and its own largest |F|: a swing that grows
-// within the window does not hide the buckets before it; and at once when eta > 4, more than any jump of a sound run
-// leaves.
+// within the window does not hide the buckets before it; and at once when sum |dE*| > 4 own, more than any jump of a
+// sound run leaves.
 #pragma once
 
 #include <array>
@@ -29,18 +33,23 @@
 #include "core/state_bytes.h"
 #include "core/time.h"
 #include "coupling/level.h"
+#include "coupling/port_levels.h"
 #include "coupling/samples.h"
 
 namespace slew::coupling {
 
 enum class Lamp : std::uint8_t { green, amber, red };
 
-inline constexpr double kGreenBelow = 1e-4;
-inline constexpr double kAmberBelow = 1e-3;
+inline constexpr double kGreenBelow = 5e-4;
+inline constexpr double kAmberBelow = 5e-3;
+// docs/coupling-alarm.md, of eta above kGreenBelow: error of the force over its range in the mean square of any second,
+// and of the stroke over its range: half of all runs are below the first, 95 of 100 below the second.
+inline constexpr double kUsualForceError = 4, kLargeForceError = 25;
+inline constexpr double kUsualStrokeError = 1.3, kLargeStrokeError = 12;
 inline constexpr double kNetAlarm = -3e-3;
 // docs/coupling-alarm.md: sound runs reach 0.08 in half of their buckets
 inline constexpr double kDivergesAbove = 0.1;
-// and an eta of 1; runs that are wrong by 3 % of the force range reach 3
+// and all of their sum |dE*| over own 1; runs that are wrong by 3 % of the force range reach 3
 inline constexpr double kDivergesAtOnce = 4;
 inline constexpr SimDuration kIndicatorWindow = {1'000'000'000};
 inline constexpr SimDuration kNetAlarmAfter = {200'000'000};
@@ -65,7 +74,8 @@ class Indicator {
 
   // Both samples of the same step n >= 0; stiffness: of the oil columns [N/m], also of ports whose sample has none
   // because their spring is not inside the step (level tlm). No allocation.
-  void update(const MechanismSample& mechanism, const ActuatorSample& actuators, const PortArray& stiffness) noexcept;
+  void update(const MechanismSample& mechanism, const ActuatorSample& actuators, const PortArray& stiffness,
+              const PortLevels& levels) noexcept;
   void reset() noexcept;
 
   // The window and what was shown last.
@@ -75,7 +85,9 @@ class Indicator {
   [[nodiscard]] const PortDefects& port(std::size_t i) const noexcept { return defects_[i]; }
   [[nodiscard]] double omega_H() const noexcept { return omega_H_; }  // of the last update [-]
   [[nodiscard]] bool creates_energy() const noexcept;
-  // (7), by the buckets that are full, or at once by eta. No allocation.
+  // sum |dE*| of the window over the port's own scale [-]
+  [[nodiscard]] double own_residual(std::size_t port) const noexcept;
+  // (7), by the buckets that are full, or at once by own_residual. No allocation.
   [[nodiscard]] bool diverges(std::size_t port) const noexcept;
 
  private:
@@ -92,12 +104,16 @@ class Indicator {
   };
   static constexpr std::size_t kBuckets = 20;  // of whole steps; the oldest is dropped as a whole
   static constexpr std::size_t kDivergingBuckets = kBuckets / 2;
+  // buckets that one jump of a valve each may have, without a word about what is between them
+  static constexpr std::size_t kLeftOut = 3;
 
   template <typename Self, typename Bytes>
   static void visit(Self& self, Bytes& bytes);
   void start_bucket() noexcept;
   void add_others(std::size_t port) noexcept;
-  void evaluate_window(std::size_t port) noexcept;
+  [[nodiscard]] Bucket window_sum(std::size_t port) const noexcept;
+  [[nodiscard]] double without_largest(std::size_t port, double sum) const noexcept;
+  void evaluate(std::size_t port, Level level, double machine_scale) noexcept;
 
   std::size_t ports_;
   double H_;
@@ -105,9 +121,10 @@ class Indicator {
   std::int64_t steps_in_bucket_ = 0;
   std::size_t current_ = 0;
   std::int64_t alarm_after_steps_;
-  std::vector<std::array<Bucket, kBuckets>> window_;  // by port
-  std::vector<Bucket> others_;                        // by port, of the window without the current bucket
-  std::vector<std::int64_t> steps_below_alarm_;       // by port
+  std::vector<std::array<Bucket, kBuckets>> window_;   // by port
+  std::vector<Bucket> others_;                         // by port, of the window without the current bucket
+  std::vector<std::array<double, kLeftOut>> largest_;  // by port, residuals of others_, falling
+  std::vector<std::int64_t> steps_below_alarm_;        // by port
   std::vector<PortDefects> defects_;
   double omega_H_ = 0;
 };

@@ -13,6 +13,11 @@ enum class Level : std::uint8_t {
 };
 inline constexpr int kLevels = 4;
 
+// Levels whose two sides foresee each other.
+[[nodiscard]] constexpr bool is_balanced(Level level) noexcept {
+  return level == Level::linear || level == Level::two;
+}
+
 // What a port says about its level: one of its own, or the session's.
 enum class PortLevel : std::uint8_t { session, hold, linear, two, tlm };
 

@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace slew::coupling {
 namespace indicator_test {
+
+const PortLevels kTwo(Level::two, {{"Port"}});
 
 struct Pair {
   MechanismSample mechanism;
@@ -26,7 +31,7 @@ TEST(Indicator, PerfectAgreementIsGreen) {
   Indicator indicator(1, milliseconds(1));
   Pair pair = one_port();
   pair.mechanism.work[0] = pair.actuators.work[0] = 1.0;
-  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
   EXPECT_EQ(indicator.port(0).eta, 0.0);
   EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::green);
 }
@@ -40,7 +45,7 @@ TEST(Indicator, VolumeCorrectionIsNotAnError) {
   pair.mechanism.F_used[0] = 1e5 - 1e8 * e_x;
   pair.mechanism.work[0] = 10;
   pair.actuators.work[0] = 10 - (1e5 * e_x - 0.5 * 1e8 * e_x * e_x);
-  indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+  indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
   EXPECT_NEAR(indicator.port(0).e_x, e_x, 1e-18);
   EXPECT_NEAR(indicator.port(0).e_F, 0, 1e-9);
   EXPECT_NEAR(indicator.port(0).dE_star, 0, 1e-12);
@@ -53,7 +58,7 @@ TEST(Indicator, EnergyThatTheCouplingCreatesRaisesTheAlarmAfterItsTime) {
   pair.actuators.work[0] = 10 - 0.5;
   int steps = 0;
   while (!indicator.creates_energy() && steps < 1000) {
-    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
     ++steps;
   }
   EXPECT_EQ(steps, 200);
@@ -66,7 +71,7 @@ TEST(Indicator, OneJumpHoweverLargeIsNoDivergence) {
   for (int i = 0; i < 600; ++i) {
     pair.mechanism.work[0] = 1;
     pair.actuators.work[0] = i == 300 ? -500 : 1;
-    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
     ASSERT_FALSE(indicator.diverges(0)) << i;
   }
 }
@@ -79,7 +84,7 @@ TEST(Indicator, DisagreementInHalfOfTheLastSecondIsDivergenceOfEitherSign) {
     int steps = 0;
     while (!indicator.diverges(0) && steps < 2000) {
       pair.actuators.work[0] = 10 + 2 * sign;
-      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
       ++steps;
     }
     EXPECT_EQ(steps, 501);  // ten full buckets, seen when the next one begins
@@ -92,7 +97,7 @@ TEST(Indicator, DisagreementBeyondAllThatThePortDidIsDivergenceAtOnce) {
   int steps = 0;
   for (; steps < 20 && !indicator.diverges(0); ++steps) {
     pair.actuators.work[0] = steps % 2 == 0 ? 30 : -30;  // F^2/2K is 50 J
-    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
   }
   EXPECT_EQ(steps, 7);
 }
@@ -106,7 +111,7 @@ TEST(Indicator, ASwingThatGrowsTenfoldInEveryBucketIsDivergence) {
     for (int i = 0; i < 10; ++i) {
       pair.actuators.F[0] = pair.mechanism.F_used[0] = force;
       pair.actuators.work[0] = (i % 2 == 0 ? 0.05 : -0.05) * force * force / 1e8;
-      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
     }
   }
   EXPECT_LE(buckets, 11);
@@ -154,7 +159,7 @@ TEST(Indicator, AnIdlePortIsGreen) {
   pair.actuators.F[0] = 1e-11;
   pair.mechanism.F_used[0] = 1.1e-11;
   pair.actuators.work[0] = 3e-31;
-  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+  for (int i = 0; i < 2000; ++i) indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
   EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::green);
 }
 
@@ -165,17 +170,86 @@ TEST(Indicator, ForgetsAnErrorAfterItsWindow) {
     Pair pair = one_port();
     pair.mechanism.work[0] = 10;
     pair.actuators.work[0] = 10 + 0.5;
-    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
     pair.actuators.work[0] = 10;
     int steps = 1;
-    while (indicator.port(0).eta > 0 && steps < 100000) {
-      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K);
+    while (indicator.own_residual(0) > 0 && steps < 100000) {
+      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
       ++steps;
     }
     // the step that forgets it begins the bucket after its window
     const double window = (steps - 1) * step;
     EXPECT_GE(window, 1.0 - 1e-9) << step;
     EXPECT_LE(window, 1.2 + 1e-9) << step;
+  }
+}
+
+// A heavy port and one with a hundredth of its force and work; the light one's sides differ by 1e-3 of its own work.
+TEST(Indicator, ALightPortIsJudgedByTheMachineAndAHeldOneByItself) {
+  for (const PortLevel level : {PortLevel::two, PortLevel::hold}) {
+    const PortLevels levels(Level::two, {{"Heavy"}, {"Light", level}});
+    Indicator indicator(2, milliseconds(1));
+    MechanismSample mechanism;
+    ActuatorSample actuators;
+    resize(mechanism, 2);
+    resize(actuators, 2);
+    const PortArray stiffness{1e8, 1e8};
+    actuators.F[0] = mechanism.F_used[0] = 1e5, actuators.F[1] = mechanism.F_used[1] = 1e3;
+    actuators.K = stiffness;
+    mechanism.work[0] = actuators.work[0] = 10, mechanism.work[1] = 0.1, actuators.work[1] = 0.1001;
+    for (int i = 0; i < 2000; ++i) indicator.update(mechanism, actuators, stiffness, levels);
+    EXPECT_NEAR(indicator.own_residual(1), 1e-3, 1e-9);
+    // of 20 buckets 17 count
+    EXPECT_NEAR(indicator.port(1).eta, level == PortLevel::two ? 1e-5 * 17 / 20 : 1e-3,
+                level == PortLevel::two ? 1e-6 : 1e-9);
+    EXPECT_EQ(lamp_of(indicator.port(1)), level == PortLevel::two ? Lamp::green : Lamp::amber);
+  }
+}
+
+TEST(Indicator, ThreeJumpsInASecondLeaveTheLampAndFourDoNot) {
+  for (const int jumps : {3, 4}) {
+    Indicator indicator(1, milliseconds(1));
+    Pair pair = one_port();
+    pair.mechanism.work[0] = 1;
+    double most = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const bool is_jump = i >= 1000 && i < 2000 && i % 150 == 0 && i < 1000 + 150 * jumps;
+      pair.actuators.work[0] = is_jump ? 101 : 1;
+      indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
+      most = std::max(most, indicator.port(0).eta);
+    }
+    EXPECT_NEAR(most, jumps == 3 ? 0 : 0.1, 0.01) << jumps;
+  }
+}
+
+TEST(Indicator, OfNoNumberIsRed) {
+  Indicator indicator(1, milliseconds(1));
+  Pair pair = one_port();
+  pair.actuators.work[0] = std::nan("");
+  indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
+  EXPECT_EQ(lamp_of(indicator.port(0)), Lamp::red);
+}
+
+TEST(Indicator, GoesOnFromItsSavedStateWithTheSameNumbers) {
+  Indicator first(1, milliseconds(5)), second(1, milliseconds(5));
+  Pair pair = one_port();
+  const auto update = [&](Indicator& indicator, int i) {
+    pair.mechanism.work[0] = 1;
+    pair.actuators.work[0] = 1 + 0.01 * ((i * 7919) % 13);
+    indicator.update(pair.mechanism, pair.actuators, pair.actuators.K, kTwo);
+  };
+  for (int i = 0; i < 333; ++i) update(first, i);
+  std::vector<std::byte> bytes;
+  const StateFormat format{};
+  StateWriter writer(bytes, format);
+  first.save(writer);
+  writer.finish();
+  StateReader reader(bytes, format);
+  second.load(reader);
+  for (int i = 333; i < 700; ++i) {
+    update(first, i);
+    update(second, i);
+    ASSERT_EQ(first.port(0).eta, second.port(0).eta) << i;
   }
 }
 

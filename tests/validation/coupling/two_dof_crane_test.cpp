@@ -217,6 +217,7 @@ SplitError split(double H, ForceOf force_of) {
 
   Rods rods;
   Indicator indicator(1, SimDuration{std::llround(H * 1e9)});
+  const PortLevels levels(Level::hold, {{"Cyl"}});
   MechanismSample mechanism;
   ActuatorSample actuators;
   resize(mechanism, 1), resize(actuators, 1);
@@ -247,7 +248,7 @@ SplitError split(double H, ForceOf force_of) {
     // the hydraulics takes the position over as it is: no work of a volume correction
     actuators.F[0] = F, actuators.K[0] = a.K, actuators.x_ref[0] = mechanism.x[0], actuators.v_ref[0] = v;
     actuators.work[0] = oil_work;
-    indicator.update(mechanism, actuators, actuators.K);
+    indicator.update(mechanism, actuators, actuators.K, levels);
     excess += indicator.port(0).dE;
     error.excess = std::max(error.excess, std::fabs(excess));
     error.creates_energy = error.creates_energy || (t > 7.5 && indicator.creates_energy());
