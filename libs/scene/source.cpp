@@ -50,20 +50,6 @@ std::string text_problem(std::string_view text) {
   return {};
 }
 
-Mark MarkCursor::mark_at(std::size_t byte) {
-  const bool is_behind = last_.line > 0 && byte >= last_byte_;
-  const auto next_line = static_cast<std::size_t>(last_.line);
-  const bool is_same_line =
-      is_behind && (next_line == source_.line_start.size() || byte < source_.line_start[next_line]);
-  if (is_same_line) {
-    last_.column += characters(std::string_view(source_.text).substr(last_byte_, byte - last_byte_));
-  } else {
-    last_ = source_.mark_at(byte);
-  }
-  last_byte_ = byte;
-  return last_;
-}
-
 std::optional<SourceText> check_source(std::string text, int source, Report& report, std::size_t most) {
   if (text.size() > most) {
     report.add({source, 0, 0}, "", {"is " + megabytes(text.size()) + " large", "at most " + megabytes(most), ""});

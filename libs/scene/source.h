@@ -23,18 +23,6 @@ struct SourceText {
   [[nodiscard]] Mark mark_at(std::size_t byte) const;
 };
 
-// Marks of bytes that are asked for mostly in rising order: a line of a million values is walked once.
-class MarkCursor {
- public:
-  explicit MarkCursor(const SourceText& source) : source_(source) {}
-  [[nodiscard]] Mark mark_at(std::size_t byte);
-
- private:
-  const SourceText& source_;
-  std::size_t last_byte_ = 0;
-  Mark last_;
-};
-
 // Reads a regular file of at most `most` bytes; a problem goes to the report and nothing is returned.
 [[nodiscard]] std::optional<SourceText> read_source(const std::string& path, int source, Report& report,
                                                     std::size_t most = kMaxFileBytes);

@@ -1,24 +1,18 @@
 #include "scene/yaml_tree.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/exceptions.h>
-#include <yaml-cpp/mark.h>
-#include <yaml-cpp/parser.h>
+#include <yaml.h>
 
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <sstream>
+#include <new>
 #include <utility>
 
 #include "core/printable.h"
 
 namespace slew::scene {
 namespace {
-
-// leaves yaml-cpp after a problem that makes the rest meaningless; never leaves this file
-struct StopReading {};
 
 constexpr std::size_t kLongestQuote = 40;
 
@@ -30,99 +24,74 @@ std::string shortened(const std::string& text) {
   return text.substr(0, end) + "...";
 }
 
-// Position of the byte behind the closing quote of the scalar that opens at `open`; npos when there is none.
-std::size_t closing_quote(std::string_view text, std::size_t open) {
-  const char quote = text[open];
-  for (std::size_t i = open + 1; i < text.size(); ++i) {
-    if (quote == '"' && text[i] == '\\') {
-      ++i;
-    } else if (text[i] == quote) {
-      if (quote == '\'' && i + 1 < text.size() && text[i + 1] == '\'') {
-        ++i;
-      } else {
-        return i + 1;
-      }
-    }
-  }
-  return std::string_view::npos;
+// Line breaks of YAML 1.1 that are no line breaks to anybody else.
+constexpr std::string_view kOddBreaks[] = {"\xC2\x85", "\xE2\x80\xA8", "\xE2\x80\xA9"};
+
+bool is_null(std::string_view plain) {
+  return plain.empty() || plain == "~" || plain == "null" || plain == "Null" || plain == "NULL";
 }
 
-class TreeBuilder final : public YAML::EventHandler {
+// Builds the tree event by event. Each step is false after a problem that makes the rest meaningless.
+class TreeBuilder {
  public:
-  TreeBuilder(const SourceText& source, Report& report) : source_(source), report_(report), marks_(source) {}
+  TreeBuilder(const SourceText& source, Report& report) : source_(source), report_(report) {}
 
-  void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++documents_ < 2) return;
-    report_.add(place(mark), "", {"a second document begins here", "one document in a file", ""});
-    throw StopReading();
-  }
-  void OnDocumentEnd() override {}
-
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    refuse_anchor(mark, anchor);
-    Node node;
-    node.mark = place(mark);
-    accept(std::move(node));
-  }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    refuse_alias(place(mark));
-    throw StopReading();
-  }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                const std::string& value) override {
-    refuse_anchor(mark, anchor);
-    const auto at = static_cast<std::size_t>(std::max(mark.pos, 0));
-    const char first = at < source_.text.size() ? source_.text[at] : '\0';
-    const bool has_tag = tag != "?" && (tag != "!" || first == '!');
-    if (has_tag) refuse_tag(mark);
-    if ((first == '"' || first == '\'') && closing_quote(source_.text, at) == std::string_view::npos) {
-      report_.add(place(mark), "", {"this quote is not closed", std::string("a second ") + first, ""});
-      throw StopReading();
+  bool take(const yaml_event_t& event) {
+    const yaml_mark_t& mark = event.start_mark;
+    switch (event.type) {
+      case YAML_DOCUMENT_START_EVENT:
+        if (++documents_ < 2) return true;
+        report_.add(place(mark), "", {"a second document begins here", "one document in a file", ""});
+        return false;
+      case YAML_ALIAS_EVENT:
+        report_.add(place(mark), "",
+                    {"aliases are not part of scene files", "the value itself (or `include:` to share parts)", ""});
+        return false;
+      case YAML_SCALAR_EVENT:
+        take_scalar(event);
+        return true;
+      case YAML_SEQUENCE_START_EVENT:
+        refuse_decoration(mark, event.data.sequence_start.anchor, event.data.sequence_start.tag);
+        return open(Node::Kind::sequence, mark, event.data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE);
+      case YAML_MAPPING_START_EVENT:
+        refuse_decoration(mark, event.data.mapping_start.anchor, event.data.mapping_start.tag);
+        return open(Node::Kind::map, mark, event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE);
+      case YAML_SEQUENCE_END_EVENT:
+      case YAML_MAPPING_END_EVENT:
+        close();
+        return true;
+      default:
+        return true;
     }
-    // an escape may stand for what the source itself must not hold
-    if (std::string problem = text_problem(value); !problem.empty()) {
-      report_.add(place(mark), "", {std::move(problem) + " after its escapes are resolved", "UTF-8 text", ""});
-    }
-    Node node;
-    node.kind = Node::Kind::scalar;
-    node.is_quoted = tag != "?" && !has_tag;
-    node.text = value;
-    node.mark = place(mark);
-    accept(std::move(node));
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value) override {
-    open(Node::Kind::sequence, mark, tag, anchor);
-  }
-  void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                  YAML::EmitterStyle::value) override {
-    open(Node::Kind::map, mark, tag, anchor);
-  }
-  void OnMapEnd() override { close(); }
 
   [[nodiscard]] std::optional<Node>& root() { return root_; }
 
-  void syntax_error(const YAML::Exception& error) {
-    if (error.msg == "the referenced anchor is not defined") {
-      refuse_alias(place(error.mark));
+  void syntax_error(const yaml_parser_t& parser) {
+    if (parser.error == YAML_READER_ERROR) {
+      const std::size_t byte = std::min(parser.problem_offset, source_.text.size());
+      report_.add(source_.mark_at(byte), "", {std::string("not valid YAML: ") + parser.problem, "UTF-8 text", ""});
       return;
     }
-    // a bracket that was never closed is best shown where it opened
-    if (error.msg.find("flow not found") != std::string::npos && !open_.empty()) {
-      const Node& inner = open_.back().node;
-      const bool is_list = inner.kind == Node::Kind::sequence;
-      report_.add(inner.mark, "",
-                  {std::string("this '") + (is_list ? '[' : '{') + "' is not closed",
-                   std::string("'") + (is_list ? ']' : '}') + "' or ','", ""});
-      return;
+    const std::string_view context = parser.context == nullptr ? "" : parser.context;
+    const std::size_t at = byte_of(parser.problem_mark);
+    const char found = at < source_.text.size() ? source_.text[at] : '\0';
+    const std::string begin = "not valid YAML: ";
+    if (const std::optional<Mark> tab = tab_in_indentation(parser.problem_mark)) {
+      report_.add(*tab, "", {begin + "the line is indented with a tab", "spaces", ""});
+    } else if (context == "while scanning a quoted scalar" || context == "while parsing a quoted scalar") {
+      explain_quote(parser, found == '\0');
+    } else if (!open_.empty() && open_.back().is_in_brackets && context.starts_with("while parsing a flow")) {
+      explain_brackets(place(parser.problem_mark), found);
+    } else {
+      report_.add(place(parser.problem_mark), "", explain(parser, place(parser.context_mark)));
     }
-    report_.add(place(error.mark), "", explain(error));
   }
 
  private:
   struct Open {
     Node node;
+    bool is_in_brackets = false;
     bool has_key = false;      // map: a key waits for its value
     bool drops_value = false;  // the key was refused
     std::string key;
@@ -130,60 +99,113 @@ class TreeBuilder final : public YAML::EventHandler {
     std::map<std::string, Mark, std::less<>> seen;
   };
 
-  [[nodiscard]] Mark place(const YAML::Mark& mark) {
-    if (mark.is_null()) return {source_.source, 0, 0};
-    return marks_.mark_at(std::min(static_cast<std::size_t>(std::max(mark.pos, 0)), source_.text.size()));
+  [[nodiscard]] Mark place(const yaml_mark_t& mark) const {
+    return {source_.source, static_cast<int>(mark.line) + 1, static_cast<int>(mark.column) + 1};
   }
-  // yaml-cpp's messages in the words of somebody who writes a scene
-  [[nodiscard]] Complaint explain(const YAML::Exception& error) {
-    const std::string begin = "not valid YAML: ";
-    if (line_begins_with_tab(place(error.mark))) return {begin + "the line is indented with a tab", "spaces", ""};
-    if (error.msg == "illegal flow end" && !open_.empty()) {
-      const Node& inner = open_.back().node;
-      const char bracket = inner.kind == Node::Kind::sequence ? '[' : '{';
-      return {fmt::format("{}this bracket does not fit the '{}' in line {}", begin, bracket, inner.mark.line),
-              bracket == '[' ? "']'" : "'}'", ""};
+  // of what stands at a mark, which counts characters
+  [[nodiscard]] std::size_t byte_of(const yaml_mark_t& mark) const {
+    if (mark.line >= source_.line_start.size()) return source_.text.size();
+    std::size_t at = source_.line_start[mark.line];
+    for (std::size_t passed = 0; at < source_.text.size(); ++at) {
+      const bool begins_character = (static_cast<unsigned char>(source_.text[at]) & 0xC0) != 0x80;
+      if (begins_character && passed++ == mark.column) break;
     }
-    if (error.msg == "illegal map value") {
+    return at;
+  }
+  // the parser's messages in the words of somebody who writes a scene
+
+  // what was never closed is best shown where it opened
+  void explain_quote(const yaml_parser_t& parser, bool is_at_end) {
+    const Mark opened = place(parser.context_mark);
+    if (is_at_end) {
+      const char quote = source_.text[byte_of(parser.context_mark)];
+      report_.add(opened, "", {"this quote is not closed", std::string("a second ") + quote, ""});
+    } else {
+      report_.add(opened, "", {std::string("not valid YAML: ") + parser.problem, "UTF-8 text", ""});
+    }
+  }
+  void explain_brackets(const Mark& mark, char found) {
+    const Node& inner = open_.back().node;
+    const bool is_list = inner.kind == Node::Kind::sequence;
+    const char bracket = is_list ? '[' : '{';
+    const std::string closing = is_list ? "']'" : "'}'";
+    if (found == '\0') {
+      report_.add(inner.mark, "", {fmt::format("this '{}' is not closed", bracket), closing + " or ','", ""});
+    } else if (found == ']' || found == '}') {
+      report_.add(
+          mark, "",
+          {fmt::format("not valid YAML: this bracket does not fit the '{}' in line {}", bracket, inner.mark.line),
+           closing, ""});
+    } else {
+      report_.add(mark, "",
+                  {fmt::format("not valid YAML: the '{}' in line {} goes on here", bracket, inner.mark.line),
+                   closing + " or ','", ""});
+    }
+  }
+  [[nodiscard]] static Complaint explain(const yaml_parser_t& parser, const Mark& opened) {
+    const std::string begin = "not valid YAML: ", problem = parser.problem;
+    if (problem == "mapping values are not allowed in this context" || problem == "could not find expected ':'") {
       return {begin + "no key can stand here", "one 'key: value' in a line; a ':' may be missing in the line before",
               ""};
     }
-    return {begin + error.msg, "", ""};
+    if (problem == "did not find expected key") {
+      return {fmt::format("{}this is no key of the map in line {}", begin, opened.line),
+              "'key: value', indented like the other keys", ""};
+    }
+    return {begin + problem, "", ""};
   }
-  [[nodiscard]] bool line_begins_with_tab(const Mark& mark) const {
-    if (mark.line < 1) return false;
-    std::size_t i = source_.line_start[static_cast<std::size_t>(mark.line) - 1];
-    while (i < source_.text.size() && source_.text[i] == ' ') ++i;
-    return i < source_.text.size() && source_.text[i] == '\t';
+  // of the line of a mark
+  [[nodiscard]] std::optional<Mark> tab_in_indentation(const yaml_mark_t& mark) const {
+    if (mark.line >= source_.line_start.size()) return std::nullopt;
+    const std::size_t tab = source_.text.find_first_not_of(' ', source_.line_start[mark.line]);
+    if (tab == std::string::npos || source_.text[tab] != '\t') return std::nullopt;
+    return source_.mark_at(tab);
   }
-  void refuse_alias(const Mark& mark) {
-    report_.add(mark, "",
-                {"aliases are not part of scene files", "the value itself (or `include:` to share parts)", ""});
-  }
-  void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
-    if (anchor == 0) return;
-    report_.add(place(mark), "",
-                {"anchors are not part of scene files", "the value itself (or `include:` to share parts)", ""});
-  }
-  void refuse_tag(const YAML::Mark& mark) {
-    report_.add(place(mark), "", {"tags are not part of scene files", "the value without a '!'", ""});
+  void refuse_decoration(const yaml_mark_t& mark, const yaml_char_t* anchor, const yaml_char_t* tag) {
+    if (anchor != nullptr) {
+      report_.add(place(mark), "",
+                  {"anchors are not part of scene files", "the value itself (or `include:` to share parts)", ""});
+    }
+    if (tag != nullptr) {
+      report_.add(place(mark), "", {"tags are not part of scene files", "the value without a '!'", ""});
+    }
   }
 
-  void open(Node::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
-    refuse_anchor(mark, anchor);
-    if (!tag.empty() && tag != "?") refuse_tag(mark);
+  void take_scalar(const yaml_event_t& event) {
+    const auto& scalar = event.data.scalar;
+    refuse_decoration(event.start_mark, scalar.anchor, scalar.tag);
+    Node node;
+    node.mark = place(event.start_mark);
+    node.text.assign(reinterpret_cast<const char*>(scalar.value), scalar.length);
+    node.is_quoted = scalar.style != YAML_PLAIN_SCALAR_STYLE;
+    if (!node.is_quoted && is_null(node.text)) {
+      node.text.clear();
+      accept(std::move(node));
+      return;
+    }
+    node.kind = Node::Kind::scalar;
+    // an escape may stand for what the source itself must not hold
+    if (std::string problem = text_problem(node.text); !problem.empty()) {
+      report_.add(node.mark, "", {std::move(problem) + " after its escapes are resolved", "UTF-8 text", ""});
+    }
+    accept(std::move(node));
+  }
+
+  bool open(Node::Kind kind, const yaml_mark_t& mark, bool is_in_brackets) {
     if (!open_.empty() && open_.back().node.kind == Node::Kind::map && !open_.back().has_key) {
       report_.add(place(mark), "", {"a list or map cannot be a key (is a bracket not closed?)", "a word", ""});
-      throw StopReading();
+      return false;
     }
     if (open_.size() >= static_cast<std::size_t>(kMaxDepth)) {
       report_.add(place(mark), "", {"nested too deeply", "at most " + std::to_string(kMaxDepth) + " levels", ""});
-      throw StopReading();
+      return false;
     }
     Open level;
     level.node.kind = kind;
     level.node.mark = place(mark);
+    level.is_in_brackets = is_in_brackets;
     open_.push_back(std::move(level));
+    return true;
   }
   void close() {
     Node node = std::move(open_.back().node);
@@ -230,26 +252,56 @@ class TreeBuilder final : public YAML::EventHandler {
 
   const SourceText& source_;
   Report& report_;
-  MarkCursor marks_;
   int documents_ = 0;
   std::vector<Open> open_;
   std::optional<Node> root_;
 };
 
-std::optional<Node> read_document(const SourceText& source, Report& report) {
-  std::istringstream stream(source.text);
-  TreeBuilder builder(source, report);
-  const std::size_t problems = report.size();
-  try {
-    YAML::Parser parser(stream);
-    while (parser.HandleNextDocument(builder)) {
+class Parser {
+ public:
+  explicit Parser(const std::string& text) {
+    if (yaml_parser_initialize(&parser_) == 0) throw std::bad_alloc();
+    yaml_parser_set_input_string(&parser_, reinterpret_cast<const unsigned char*>(text.data()), text.size());
+    yaml_parser_set_encoding(&parser_, YAML_UTF8_ENCODING);
+  }
+  ~Parser() { yaml_parser_delete(&parser_); }
+  Parser(const Parser&) = delete;
+  Parser& operator=(const Parser&) = delete;
+
+  enum class End { none, of_text, syntax_error, refused };
+  // One event more.
+  End advance(TreeBuilder& builder) {
+    struct Event : yaml_event_t {
+      ~Event() { yaml_event_delete(this); }
+    } event;
+    if (yaml_parser_parse(&parser_, &event) == 0) {
+      if (parser_.error == YAML_MEMORY_ERROR) throw std::bad_alloc();
+      return End::syntax_error;
     }
-  } catch (const StopReading&) {
-    return std::nullopt;
-  } catch (const YAML::Exception& error) {
-    builder.syntax_error(error);
+    if (event.type == YAML_STREAM_END_EVENT) return End::of_text;
+    return builder.take(event) ? End::none : End::refused;
+  }
+  [[nodiscard]] const yaml_parser_t& state() const { return parser_; }
+
+ private:
+  yaml_parser_t parser_;
+};
+
+std::optional<Node> read_document(const SourceText& source, Report& report) {
+  for (const std::string_view odd : kOddBreaks) {
+    const std::size_t at = source.text.find(odd);
+    if (at == std::string::npos) continue;
+    report.add(source.mark_at(at), "",
+               {"a line break that no editor shows (U+0085, U+2028 or U+2029)", "a line feed", ""});
     return std::nullopt;
   }
+  Parser parser(source.text);
+  TreeBuilder builder(source, report);
+  const std::size_t problems = report.size();
+  Parser::End end = Parser::End::none;
+  while (end == Parser::End::none) end = parser.advance(builder);
+  if (end == Parser::End::syntax_error) builder.syntax_error(parser.state());
+  if (end != Parser::End::of_text) return std::nullopt;
   if (!builder.root() && report.size() == problems) {
     report.add({source.source, 1, 1}, "", {"the file is empty", "a scene", ""});
   }

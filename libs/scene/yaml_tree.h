@@ -1,6 +1,6 @@
 // A YAML document as a tree of our own, with the place of every key and value.
 //
-// Stricter than yaml-cpp, whose event stream it is built from: one document, a map at its root, no anchors, aliases
+// Stricter than libyaml, whose events it is built from: one document, a map at its root, no anchors, aliases
 // or tags, keys are words, duplicate keys are found, quotes must be closed, at most kMaxDepth levels.
 #pragma once
 

@@ -135,16 +135,5 @@ TEST_F(TableFiles, ATrackOfItsOwnFileIsTakenLikeAnyOther) {
   EXPECT_EQ(ScriptPlayer(plain).value(0, {0}), 0.0);  // nothing to play, and no fault
 }
 
-TEST_F(TableFiles, TheMarkOfAValueInALongLineIsCountedInCharacters) {
-  std::string line = "script: {inputs: {Ä: [";
-  for (int i = 0; i < 3000; ++i) line += fmt::format("[{}, 0], ", i);
-  Report report;
-  const auto source = check_source(line, report.add_source("line"), report);
-  ASSERT_TRUE(source.has_value());
-  MarkCursor cursor(*source);
-  for (std::size_t byte = 0; byte < line.size(); byte += 13) EXPECT_EQ(cursor.mark_at(byte), source->mark_at(byte));
-  EXPECT_EQ(cursor.mark_at(5), source->mark_at(5));  // going back as well
-}
-
 }  // namespace table_file_test
 }  // namespace slew::scene

@@ -42,6 +42,38 @@ TEST(YamlTree, ColumnsCountCharactersNotBytes) {
   EXPECT_EQ(parsed.root->entries.at(0).value.mark, (Mark{0, 1, 8}));
 }
 
+TEST(YamlTree, ThePlaceOfAValueInALongLineIsCountedInCharacters) {
+  std::string line = "{\xC3\x84: [";
+  for (int i = 0; i < 3000; ++i) line += "[" + std::to_string(i) + ", 0], ";
+  const Parsed parsed = parse(line + "]}");
+  ASSERT_TRUE(parsed.root) << parsed.problems;
+  const Node& list = parsed.root->entries.at(0).value;
+  EXPECT_EQ(list.items.at(2999).mark, (Mark{0, 1, static_cast<int>(line.find("[2999,"))}));
+}
+
+TEST(YamlTree, LineBreaksThatNoEditorShowsAreRefused) {
+  EXPECT_TRUE(parse("a: b\xE2\x80\xA8"
+                    "c\n")
+                  .problems.starts_with("f:1:5: a line break that no editor shows"));
+}
+
+TEST(YamlTree, SyntaxErrorsSayWhatIsMissingAndWhere) {
+  EXPECT_EQ(parse("a: \"b\nc: 1\n").problems, "f:1:4: this quote is not closed; expected a second \"");
+  EXPECT_EQ(parse("a: [1, 2}\n").problems,
+            "f:1:9: not valid YAML: this bracket does not fit the '[' in line 1; expected ']'");
+  EXPECT_EQ(parse("a: {b: 1\nc: 2}\nd: 3\n").problems,
+            "f:2:2: not valid YAML: the '{' in line 1 goes on here; expected '}' or ','");
+  EXPECT_EQ(
+      parse("a: b: 1\n").problems,
+      "f:1:5: not valid YAML: no key can stand here; expected one 'key: value' in a line; a ':' may be missing in "
+      "the line before");
+  EXPECT_EQ(parse("a:\n\tb: 1\n").problems, "f:2:1: not valid YAML: the line is indented with a tab; expected spaces");
+  EXPECT_EQ(
+      parse("a:\n    b: 1\n  c: 2\n").problems,
+      "f:3:3: not valid YAML: this is no key of the map in line 1; expected 'key: value', indented like the other "
+      "keys");
+}
+
 TEST(YamlTree, WindowsLineEndsAndAByteOrderMarkAreNoMatter) {
   const Parsed parsed = parse(
       "\xEF\xBB\xBF"
@@ -92,8 +124,7 @@ TEST(YamlTree, BytesThatAreNotUtf8AreRefusedWithTheirPlace) {
 }
 
 TEST(YamlTree, BracketsWithoutEndAreRefusedAtOnce) {
-  EXPECT_EQ(parse("a: " + std::string(100000, '[')).problems,
-            "f:1:5: a list or map cannot be a key (is a bracket not closed?); expected a word");
+  EXPECT_EQ(parse("a: " + std::string(100000, '[')).problems, "f:1:19: nested too deeply; expected at most 16 levels");
   EXPECT_EQ(parse("a: " + std::string(20, '[') + std::string(20, ']')).problems,
             "f:1:19: nested too deeply; expected at most 16 levels");
   EXPECT_EQ(parse("a: [1,\n").problems, "f:1:4: this '[' is not closed; expected ']' or ','");
