@@ -64,7 +64,7 @@ class Builder {
     for (const std::string& row : rows) add_row(def_, row, model_);
     mark_used_elements(model_);
     model_.contact = build_contacts(def_, model_);
-    for (std::size_t link = 1; link < model_.links.size(); ++link) lump_link(model_, static_cast<int>(link));
+    lump_links(model_);
     for (Cut& cut : model_.cuts) add_supports(model_, cut);
     // loops would be open by what their bodies sag
     const bool has_loops = model_.has_closing_rows();

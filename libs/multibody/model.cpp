@@ -54,24 +54,39 @@ void mark_used_elements(Model& model) noexcept {
   }
 }
 
+namespace {
+
+void lump_nothing(Link& link) noexcept {
+  link.mass = 0;
+  link.h_L = Vec3();
+  link.I_L = Mat3();
+}
+
+void lump_part(const LumpedMass& part, Link& link) noexcept {
+  link.mass += part.mass;
+  link.h_L += part.c_L * part.mass;
+  // inertia scales with the mass; then from the part's centre to the link's origin
+  const double share = part.reference_mass > 0 ? part.mass / part.reference_mass : 0;
+  const Mat3 c = math::skew(part.c_L);
+  link.I_L += part.I_c * share;
+  link.I_L -= (c * c) * part.mass;
+}
+
+}  // namespace
+
 void lump_link(Model& model, int link) noexcept {
-  double mass = 0;
-  Vec3 h;
-  Mat3 I;
-  for (const LumpedMass& part : model.lumped) {
-    if (part.link != link) continue;
-    mass += part.mass;
-    h += part.c_L * part.mass;
-    // inertia scales with the mass; then from the part's centre to the link's origin
-    const double share = part.reference_mass > 0 ? part.mass / part.reference_mass : 0;
-    const Mat3 c = math::skew(part.c_L);
-    I += part.I_c * share;
-    I -= (c * c) * part.mass;
-  }
   Link& lumped = model.links[static_cast<std::size_t>(link)];
-  lumped.mass = mass;
-  lumped.h_L = h;
-  lumped.I_L = I;
+  lump_nothing(lumped);
+  for (const LumpedMass& part : model.lumped) {
+    if (part.link == link) lump_part(part, lumped);
+  }
+}
+
+void lump_links(Model& model) noexcept {
+  for (std::size_t link = 1; link < model.links.size(); ++link) lump_nothing(model.links[link]);
+  for (const LumpedMass& part : model.lumped) {
+    if (part.link > 0) lump_part(part, model.links[static_cast<std::size_t>(part.link)]);
+  }
 }
 
 }  // namespace slew::multibody

@@ -323,5 +323,7 @@ void mark_used_elements(Model& model) noexcept;
 
 // Mass properties of a link from what is lumped into it. Does not allocate.
 void lump_link(Model& model, int link) noexcept;
+// Of all links.
+void lump_links(Model& model) noexcept;
 
 }  // namespace slew::multibody

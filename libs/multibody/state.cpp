@@ -142,7 +142,7 @@ void save(const Model& model, const State& state, StateWriter& bytes) {
 void load(Model& model, State& state, StateReader& bytes) {
   visit(model, state, bytes);
   if (!bytes.is_sound()) return;
-  for (std::size_t link = 1; link < model.links.size(); ++link) lump_link(model, static_cast<int>(link));
+  lump_links(model);
   mark_used_elements(model);
   for (FlexiblePart& part : model.parts) part.is_diagonal = has_diagonal_law(part);
 }
