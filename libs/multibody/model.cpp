@@ -63,13 +63,15 @@ void lump_nothing(Link& link) noexcept {
 }
 
 void lump_part(const LumpedMass& part, Link& link) noexcept {
-  link.mass += part.mass;
-  link.h_L += part.c_L * part.mass;
   // inertia scales with the mass; then from the part's centre to the link's origin
   const double share = part.reference_mass > 0 ? part.mass / part.reference_mass : 0;
   const Mat3 c = math::skew(part.c_L);
-  link.I_L += part.I_c * share;
-  link.I_L -= (c * c) * part.mass;
+  Mat3 I = link.I_L;
+  I += part.I_c * share;
+  I -= (c * c) * part.mass;
+  link.I_L = I;
+  link.h_L += part.c_L * part.mass;
+  link.mass += part.mass;
 }
 
 }  // namespace
