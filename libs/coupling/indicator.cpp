@@ -115,8 +115,8 @@ void Indicator::evaluate(std::size_t port, Level level, double machine_scale) no
   defects.creates_energy = steps_below_alarm_[port] >= alarm_after_steps_;
 }
 
-void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& actuators,
-                       const PortArray& stiffness, const PortLevels& levels) noexcept {
+void Indicator::update(const MechanismSample& mechanism, const ActuatorSample& actuators, const PortArray& stiffness,
+                       const PortLevels& levels) noexcept {
   start_bucket();
   double machine_scale = 0;
   for (std::size_t i = 0; i < ports_; ++i) {

@@ -4,9 +4,9 @@
 #include <yaml.h>
 
 #include <algorithm>
-#include <functional>
-#include <map>
+#include <cstddef>
 #include <new>
+#include <unordered_map>
 #include <utility>
 
 #include "core/printable.h"
@@ -15,6 +15,8 @@ namespace slew::scene {
 namespace {
 
 constexpr std::size_t kLongestQuote = 40;
+// of a map in which a key is looked for one by one
+constexpr std::size_t kFewEntries = 16;
 
 std::string shortened(const std::string& text) {
   if (text.size() <= kLongestQuote) return text;
@@ -93,10 +95,9 @@ class TreeBuilder {
     Node node;
     bool is_in_brackets = false;
     bool has_key = false;      // map: a key waits for its value
-    bool drops_value = false;  // the key was refused
+    bool drops_value = false;  // there is no key
     std::string key;
     Mark key_mark;
-    std::map<std::string, Mark, std::less<>> seen;
   };
 
   [[nodiscard]] Mark place(const yaml_mark_t& mark) const {
@@ -210,6 +211,7 @@ class TreeBuilder {
   void close() {
     Node node = std::move(open_.back().node);
     open_.pop_back();
+    if (node.kind == Node::Kind::map) drop_duplicates(node);
     accept(std::move(node));
   }
 
@@ -241,13 +243,34 @@ class TreeBuilder {
     if (node.kind != Node::Kind::scalar || node.text.empty()) {
       report_.add(node.mark, "", {"the key is missing before ':'", "a word", ""});
       level.drops_value = true;
-      return;
     }
-    const auto [first, is_new] = level.seen.emplace(node.text, node.mark);
-    if (!is_new) {
-      level.node.duplicates.push_back({node.text, node.mark, first->second});
-      level.drops_value = true;
+  }
+
+  // a key keeps its first value
+  static void drop_duplicates(Node& map) {
+    std::unordered_map<std::string_view, Mark> seen;
+    const bool is_large = map.entries.size() > kFewEntries;
+    const auto first_mark = [&](std::size_t i) {
+      const Node::Entry& entry = map.entries[i];
+      if (is_large) return seen.emplace(entry.key, entry.mark).first->second;
+      std::size_t first = 0;
+      while (map.entries[first].key != entry.key) ++first;
+      return map.entries[first].mark;
+    };
+    std::vector<bool> is_dropped(map.entries.size());
+    for (std::size_t i = 0; i < map.entries.size(); ++i) {
+      const Node::Entry& entry = map.entries[i];
+      const Mark first = first_mark(i);
+      if (first == entry.mark) continue;
+      map.duplicates.push_back({entry.key, entry.mark, first});
+      is_dropped[i] = true;
     }
+    if (map.duplicates.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < is_dropped.size(); ++i) {
+      if (!is_dropped[i]) std::swap(map.entries[kept++], map.entries[i]);
+    }
+    map.entries.erase(map.entries.begin() + static_cast<std::ptrdiff_t>(kept), map.entries.end());
   }
 
   const SourceText& source_;

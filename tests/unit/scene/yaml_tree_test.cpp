@@ -101,6 +101,22 @@ TEST(YamlTree, ADuplicateKeyKeepsTheFirstValueAndTellsBothPlaces) {
   EXPECT_EQ(parsed.root->duplicates[0].first, (Mark{0, 1, 1}));
 }
 
+TEST(YamlTree, DuplicatesAreFoundInLargeMapsAsInSmallOnes) {
+  for (const int keys : {3, 1000}) {
+    std::string text;
+    for (int i = 0; i < 2 * keys; ++i) text += "k" + std::to_string(i % keys) + ": " + std::to_string(i) + "\n";
+    const Parsed parsed = parse(text);
+    ASSERT_TRUE(parsed.root);
+    ASSERT_EQ(parsed.root->entries.size(), static_cast<std::size_t>(keys));
+    ASSERT_EQ(parsed.root->duplicates.size(), static_cast<std::size_t>(keys));
+    for (int i = 0; i < keys; ++i) {
+      EXPECT_EQ(parsed.root->entries[static_cast<std::size_t>(i)].value.text, std::to_string(i));
+      EXPECT_EQ(parsed.root->duplicates[static_cast<std::size_t>(i)].first, (Mark{0, i + 1, 1}));
+      EXPECT_EQ(parsed.root->duplicates[static_cast<std::size_t>(i)].mark, (Mark{0, keys + i + 1, 1}));
+    }
+  }
+}
+
 TEST(YamlTree, EscapedQuotesDoNotCloseAScalar) {
   const Parsed parsed = parse("a: \"x \\\" y\"\nb: 'it''s'\n");
   ASSERT_TRUE(parsed.root) << parsed.problems;
