@@ -415,15 +415,19 @@ void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
   // what was sent behind the last look's clock reading counts too
   const std::int64_t sending_ns = sending_ns_ + std::exchange(sent_before_ns_, sending_ns_);
   sending_ns_ = 0;
-  if (gap_ns <= kStoodStill.ns) return;
+  if (gap_ns <= kUsualLook.ns) return;
   if (gap_ns > kLostAfter.ns) {
     stood_still_ns_ = gap_ns;
     stood_until_ns_ = now_ns;
     stood_sending_ = sending_ns > gap_ns / 2;
   }
+  // a long gap is excused once, since somebody may be gone behind it; short ones each, since they leave a part to count
+  const bool is_long = gap_ns > kStoodStill.ns;
   for (Peer& peer : peers_) {
-    if (peer.last_heard_ns == peer.excused_ns) continue;
-    peer.last_heard_ns = peer.excused_ns = std::min(now_ns, peer.last_heard_ns + gap_ns);
+    if (is_long && peer.last_heard_ns == peer.excused_ns) continue;
+    const bool was_excused = peer.last_heard_ns == peer.excused_ns;
+    peer.last_heard_ns = std::min(now_ns, peer.last_heard_ns + gap_ns - (is_long ? 0 : kUsualLook.ns));
+    if (is_long || was_excused) peer.excused_ns = peer.last_heard_ns;
   }
 }
 

@@ -26,10 +26,12 @@ inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
 // of nodes that run in turns in one thread: none of them can be missing, and the machine may take its time
 inline constexpr SimDuration kNoTimeout = {100LL * 365 * 86400 * 1'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
-inline constexpr SimDuration kSilentAfter = {300'000'000};   // named, everybody holds
-inline constexpr SimDuration kLostAfter = {2'000'000'000};   // given up
-inline constexpr SimDuration kSettled = {2'000'000'000};     // after READY: who claims the role from then on comes late
-inline constexpr SimDuration kStoodStill = {1'000'000'000};  // between two looks: nobody's silence but one's own
+inline constexpr SimDuration kSilentAfter = {300'000'000};  // named, everybody holds
+inline constexpr SimDuration kLostAfter = {2'000'000'000};  // given up
+inline constexpr SimDuration kSettled = {2'000'000'000};    // after READY: who claims the role from then on comes late
+// between two looks: what goes beyond is the silence of the process that looks and nobody else's
+inline constexpr SimDuration kUsualLook = {100'000'000};
+inline constexpr SimDuration kStoodStill = {1'000'000'000};  // between two looks: the others may have given one up
 inline constexpr SimDuration kLastWords = {20'000'000};      // on their way when a process is seen to be gone
 inline constexpr SimDuration kProcessLook = {1'000'000};     // between two looks whether processes are there
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
