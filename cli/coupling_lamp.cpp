@@ -15,7 +15,7 @@ using coupling::Level;
 
 // of the range; an error beyond it is no figure any more
 std::string share_of_range(double error) {
-  return error < 1 ? fmt::format("{:.2g} %", 1e2 * error) : "more than its range";
+  return error < 1 ? fmt::format("{:.2g} %", 1e2 * error) : "100 % or more";
 }
 
 std::string remedy(double eta, Level level, const scene::SessionDef& session) {
