@@ -11,6 +11,7 @@
 // constructor.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -43,32 +44,35 @@ class Semidefinite {
   void solve(std::span<const int> rows, std::span<double> b) const noexcept;
 
  private:
-  // Columns [begin, end) of a row before its diagonal; entry (row, begin) is at value, the others follow.
+  // Columns [begin, end) of a row before its diagonal: entry (row, j) is at offset + j.
   struct Run {
-    int begin = 0, end = 0;
-    int value = 0;
+    std::size_t begin = 0, end = 0, offset = 0;
   };
-  // The first run of a row, nearly always the only one, and where the others are.
   struct Row {
-    Run first{};
-    int more = 0, more_end = 0;  // of runs_
-    int diagonal = 0;            // its entry
+    std::size_t run = 0, run_end = 0;  // of runs_
+    std::size_t diagonal = 0;          // its entry
   };
-  template <typename Visit>
-  void for_each_run(const Row& row, Visit&& visit) const noexcept {
-    visit(row.first);
-    for (int i = row.more; i < row.more_end; ++i) visit(runs_[static_cast<std::size_t>(i)]);
+  // Which columns the rows have: where it is all, two loops do not pay for what many leave out.
+  enum class Columns { all, some };
+  template <Columns kColumns, typename Visit>
+  void for_each_run(std::size_t row, Visit&& visit) const noexcept {
+    const Row& own = rows_[row];
+    if constexpr (kColumns == Columns::all) {
+      visit(Run{0, row, own.diagonal - row});
+    } else {
+      for (std::size_t i = own.run; i < own.run_end; ++i) visit(runs_[i]);
+    }
   }
-  void add_row(const std::vector<int>& columns, int& entries);
+  template <Columns kColumns>
   [[nodiscard]] double eliminate(std::size_t k, std::span<const double> a) noexcept;
-  [[nodiscard]] double eliminate_dense(std::size_t k, std::span<const double> a) noexcept;
-  void solve_dense(std::span<double> b) const noexcept;
-  void forward(std::size_t row, std::span<double> b) const noexcept;
-  void backward(std::size_t row, std::span<double> b) const noexcept;
+  template <Columns kColumns>
+  void factorize_rows(std::span<const double> a, std::span<const double> reference, double tolerance) noexcept;
+  template <Columns kColumns, typename Rows>
+  void solve_rows(const Rows& rows, std::span<double> b) const noexcept;
 
+  Columns columns_ = Columns::all;
   std::vector<Row> rows_;
-  std::vector<Run> runs_;
-  bool is_dense_ = true;       // two loops are: they do not pay for what many leave out
+  std::vector<Run> runs_;      // of rows that have some columns
   std::vector<double> lower_;  // L below its diagonal, by entry()
   std::vector<double> pivot_;  // 1 / D
   std::vector<double> row_;    // of the row under way: L D, then zero again

@@ -9,6 +9,7 @@
 #include "multibody/dynamics.h"
 #include "multibody/formulation.h"
 #include "multibody/loops.h"
+#include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/multibody/loop_defs.h"
 #include "tests/validation/multibody/mechanism.h"
@@ -29,7 +30,7 @@ struct Graph {
   std::vector<std::string> rows;
 };
 
-// Trees of links on balls and hinges; rods with balls at both ends between links of any two of them, and gears.
+// Trees of links on balls and hinges; rods with balls at both ends between links of any two of them.
 class RandomGraph {
  public:
   explicit RandomGraph(std::uint32_t seed) : random_(seed) {
@@ -112,32 +113,99 @@ double difference(std::span<const double> a, std::span<const double> b) {
   return largest / scale;
 }
 
+// what is not stored is zero, and the solution is the dense one, bit by bit
+void expect_only_zeros_left_out(const Mechanism& mechanism) {
+  const LoopWorkspace& loops = mechanism.ws.loops;
+  const std::size_t rows = loops.rows.size(), speeds = mechanism.state.u.size();
+  std::vector<double> W(rows * rows);
+  for (std::size_t k = 0; k < rows; ++k) {
+    for (std::size_t l = 0; l <= k; ++l) {
+      double& sum = W[k * rows + l];
+      for (std::size_t j = 0; j < speeds; ++j) sum += loops.residual[k * speeds + j] * loops.rate[l * speeds + j];
+      const int entry = loops.factor.entry(static_cast<int>(k), static_cast<int>(l));
+      ASSERT_EQ(entry < 0 ? 0.0 : loops.W[static_cast<std::size_t>(entry)], sum) << k << ", " << l;
+    }
+  }
+  math::Semidefinite dense(static_cast<int>(rows));
+  dense.factorize(W, mechanism.model.cut_reference, kDependent);
+  EXPECT_EQ(loops.factor.rank(), dense.rank());
+  EXPECT_EQ(loops.factor.smallest_pivot(), dense.smallest_pivot());
+  std::vector<double> x(rows), y;
+  for (std::size_t k = 0; k < rows; ++k) x[k] = std::sin(1.0 + static_cast<double>(k));
+  y = x;
+  loops.factor.solve(x);
+  dense.solve(y);
+  EXPECT_EQ(x, y);
+}
+
+// what a port's unit force makes of the closed mechanism, with all rows and speeds
+void expect_ports_reduced_by_all_rows(const Mechanism& mechanism) {
+  const Model& model = mechanism.model;
+  Workspace ws(mechanism.model);
+  State state = mechanism.state;
+  evaluate(model, state, ws);
+  const std::size_t speeds = state.u.size();
+  for (std::size_t port = 0; port < model.rows.size(); ++port) {
+    // the loops stay closed under it
+    for (std::size_t k = 0; k < ws.loops.rows.size(); ++k) {
+      if (ws.loops.factor.is_redundant(static_cast<int>(k))) continue;
+      double opening = 0, scale = 0;
+      for (std::size_t j = 0; j < speeds; ++j) {
+        const double part = ws.loops.residual[k * speeds + j] * ws.row_rate[port * speeds + j];
+        opening += part;
+        scale += std::fabs(part);
+      }
+      EXPECT_LE(std::fabs(opening), kTolerance * std::max(scale, 1e-6)) << port << ", " << k;
+    }
+    for (std::size_t other = 0; other <= port; ++other) {
+      double w = 0;
+      for (std::size_t j = 0; j < speeds; ++j)
+        w += ws.row_residual[port * speeds + j] * ws.row_rate[other * speeds + j];
+      EXPECT_EQ(ws.row_W[port * model.rows.size() + other], w) << port << ", " << other;
+    }
+  }
+}
+
 TEST(LoopGraph, LeavesOutZerosAlone) {
   for_each_seed(kSeeds, [](std::uint32_t seed) {
     const Moving moving(seed);
-    const LoopWorkspace& loops = moving.mechanism.ws.loops;
-    const std::size_t rows = loops.rows.size(), speeds = moving.mechanism.state.u.size();
-    std::vector<double> W(rows * rows);
-    for (std::size_t k = 0; k < rows; ++k) {
-      for (std::size_t l = 0; l <= k; ++l) {
-        double& sum = W[k * rows + l];
-        for (std::size_t j = 0; j < speeds; ++j) sum += loops.residual[k * speeds + j] * loops.rate[l * speeds + j];
-        const int entry = loops.factor.entry(static_cast<int>(k), static_cast<int>(l));
-        ASSERT_EQ(entry < 0 ? 0.0 : loops.W[static_cast<std::size_t>(entry)], sum) << k << ", " << l;
-      }
-    }
-    // and the solution is the dense one, bit by bit
-    math::Semidefinite dense(static_cast<int>(rows));
-    dense.factorize(W, moving.mechanism.model.cut_reference, kDependent);
-    EXPECT_EQ(loops.factor.rank(), dense.rank());
-    EXPECT_EQ(loops.factor.smallest_pivot(), dense.smallest_pivot());
-    std::vector<double> x(rows), y;
-    for (std::size_t k = 0; k < rows; ++k) x[k] = std::sin(1.0 + static_cast<double>(k));
-    y = x;
-    loops.factor.solve(x);
-    dense.solve(y);
-    EXPECT_EQ(x, y);
+    expect_only_zeros_left_out(moving.mechanism);
+    expect_ports_reduced_by_all_rows(moving.mechanism);
   });
+}
+
+// trees of every joint, with gears, flexible bodies, and dummies at their nodes
+TEST(LoopGraph, LeavesOutZerosAloneBesideGearsAndFlexibleBodies) {
+  int flexible = 0, geared = 0;
+  for_each_seed(seeds({{1, 40}, {kFirstWithModes, 40}, {kFirstWithNodeDummies, 40}}), [&](std::uint32_t seed) {
+    RandomTree tree = random_tree(seed, with_modes_of(seed, {.bodies = 3 + static_cast<int>(seed) % 8}));
+    std::mt19937 random(seed);
+    const auto body = [&] { return tree.def.bodies[random() % tree.def.bodies.size()].name; };
+    for (int i = 0; i < 3; ++i) {
+      JointDef rod{.name = "Rod" + std::to_string(i), .type = JointType::spherical_spherical};
+      rod.body1 = body();
+      rod.body2 = body();
+      rod.point1 = {0.3, 0.1 * i, -0.2};
+      if (rod.body1 != rod.body2) tree.def.joints.push_back(rod);
+    }
+    const JointDef* before = nullptr;
+    for (const JointDef& joint : tree.def.joints) {
+      if (joint.type != JointType::revolute) continue;
+      if (before != nullptr && random() % 2 == 0) {
+        tree.def.gears.push_back({.name = "Gear_" + joint.name, .joint1 = before->name, .joint2 = joint.name});
+      }
+      before = &joint;
+    }
+    for (JointDef& joint : tree.def.joints) joint.initial_velocity = kNotGiven;
+    Mechanism mechanism(tree.def, tree.rows);
+    flexible += mechanism.model.parts.empty() ? 0 : 1;
+    geared += mechanism.model.gears.empty() ? 0 : 1;
+    evaluate(mechanism.model, mechanism.state, mechanism.ws);
+    expect_only_zeros_left_out(mechanism);
+    expect_ports_reduced_by_all_rows(mechanism);
+  });
+  EXPECT_GT(flexible, 0);
+  EXPECT_GT(geared, 0);
 }
 
 TEST(LoopGraph, MovesAsInBodyCoordinates) {
