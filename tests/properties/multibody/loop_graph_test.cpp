@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "multibody/body_coordinates.h"
 #include "multibody/dynamics.h"
 #include "multibody/formulation.h"
 #include "multibody/loops.h"
+#include "multibody/topology.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/multibody/loop_defs.h"
@@ -264,6 +266,41 @@ TEST(LoopGraph, OfFourBarsInARowHasAsManyEntriesALoop) {
   const int first = entries(5), second = entries(6), added = second - first;
   EXPECT_EQ(entries(12), first + 7 * added);
   EXPECT_EQ(entries(20), first + 15 * added);
+}
+
+// the four-bars loop by loop: every pin to Ground but the first is the last joint of a loop
+MechanicsDef listed_by_loops(int loops) {
+  MechanicsDef def = four_bars(loops);
+  const std::vector<JointDef> joints = std::exchange(def.joints, {});
+  const auto take = [&](int joint) { def.joints.push_back(joints[static_cast<std::size_t>(joint)]); };
+  take(0);
+  for (int i = 0; i < loops; ++i) {
+    take(loops + 1 + 2 * i);
+    take(loops + 2 + 2 * i);
+    take(i + 1);
+  }
+  return def;
+}
+
+TEST(LoopGraph, OfManyLoopsDoesNotLeadThroughAllOfThemWhateverTheFilesOrder) {
+  Mechanism by_kind(four_bars(20)), by_loops(listed_by_loops(20));
+  EXPECT_EQ(by_loops.ws.loops.factor.entry_count(), by_kind.ws.loops.factor.entry_count());
+  for (Mechanism* mechanism : {&by_kind, &by_loops}) mechanism->run(0.2, 1e-3);
+  for (const char* body : {"Rod0", "Rod20", "Coupler11"}) {
+    const math::Vec3 p(by_kind.pose(body).position), other(by_loops.pose(body).position);
+    EXPECT_LT(norm(p - other), 1e-9) << body;
+  }
+}
+
+// a few loops are cut where the file says
+TEST(LoopGraph, OfFewLoopsHasTheTreeOfTheFile) {
+  Problems problems;
+  const MechanicsDef def = listed_by_loops(4);
+  std::vector<std::string> cuts;
+  for (const int joint : cut_joints(def, find_tree(def, problems))) {
+    cuts.push_back(def.joints[static_cast<std::size_t>(joint)].name);
+  }
+  EXPECT_EQ(cuts, (std::vector<std::string>{"Pin1", "Pin2", "Pin3", "Pin4"}));
 }
 
 TEST(LoopGraph, OfLoopsBesideEachOtherHasThoseOfEachAlone) {
