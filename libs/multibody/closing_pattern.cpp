@@ -93,11 +93,11 @@ ClosingPattern::ClosingPattern(const Model& model) {
   for (const Cut& cut : model.cuts) add(cut.first_row, cut.rows.size(), cut.first_support, cut.support_end);
   int row = model.cut_row_count();
   for (const Gear& gear : model.gears) add(row++, 1, gear.first_support, gear.support_end);
-  find_meetings();
+  find_blocks();
   find_ports(model, [&](int link) { return machines.of(link); });
 }
 
-void ClosingPattern::find_meetings() {
+void ClosingPattern::find_blocks() {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (int k = 0; k < groups[g].row_count; ++k) coupled.emplace_back();
     for (std::size_t o = 0; o <= g; ++o) {
@@ -106,7 +106,7 @@ void ClosingPattern::find_meetings() {
       const std::vector<std::size_t>&one = groups[g].speeds, &two = groups[o].speeds;
       std::set_intersection(one.begin(), one.end(), two.begin(), two.end(), std::back_inserter(both));
       if (both.empty() && o != g) continue;
-      meetings.push_back({static_cast<int>(g), static_cast<int>(o), std::move(both), {}});
+      blocks.push_back({static_cast<int>(g), static_cast<int>(o), std::move(both), {}});
       for (int k = groups[g].first_row; k < groups[g].first_row + groups[g].row_count; ++k) {
         const int end = std::min(k, groups[o].first_row + groups[o].row_count);
         for (int l = groups[o].first_row; l < end; ++l) coupled[at(k)].push_back(l);
@@ -135,7 +135,7 @@ void ClosingPattern::find_ports(const Model& model, MachineOf machine_of) {
   }
 }
 
-bool ClosingPattern::do_meet(std::size_t port, std::size_t other) const noexcept {
+bool ClosingPattern::are_coupled(std::size_t port, std::size_t other) const noexcept {
   for (const int machine : ports[port].machines) {
     for (const int same : ports[other].machines) {
       if (machine == same) return true;

@@ -160,15 +160,14 @@ void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcep
                    {loops.rate.data() + first * speeds, count * speeds});
   }
   pass_gears_back(model, ws);
-  for (const ClosingMeeting& meeting : loops.pattern.meetings) {
-    const ClosingGroup &group = loops.pattern.groups[at(meeting.group)],
-                       &other = loops.pattern.groups[at(meeting.other)];
+  for (const ClosingBlock& block : loops.pattern.blocks) {
+    const ClosingGroup &group = loops.pattern.groups[at(block.group)], &other = loops.pattern.groups[at(block.other)];
     const double* residual = loops.residual.data() + at(group.first_row) * speeds;
     for (int i = 0; i < group.row_count; ++i, residual += speeds) {
-      const int before = meeting.group == meeting.other ? i + 1 : other.row_count;
+      const int before = block.group == block.other ? i + 1 : other.row_count;
       const double* rate = loops.rate.data() + at(other.first_row) * speeds;
-      double* W = loops.W.data() + meeting.entries[at(i)];
-      for (int l = 0; l < before; ++l, rate += speeds) *W++ = product_over(meeting.speeds, residual, rate);
+      double* W = loops.W.data() + block.entries[at(i)];
+      for (int l = 0; l < before; ++l, rate += speeds) *W++ = product_over(block.speeds, residual, rate);
     }
   }
   loops.factor.factorize(loops.W, model.cut_reference, tolerance);

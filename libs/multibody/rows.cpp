@@ -236,7 +236,7 @@ void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexce
     for (std::size_t l = 0; l <= k; ++l) {
       const double* rate = ws.row_rate.data() + l * dof;
       double w = 0;
-      const bool is_carried = ws.loops.pattern.ports.empty() || ws.loops.pattern.do_meet(k, l);
+      const bool is_carried = ws.loops.pattern.ports.empty() || ws.loops.pattern.are_coupled(k, l);
       if (is_carried && ws.row_is_active[k] != 0 && ws.row_is_active[l] != 0) {
         for (std::size_t j = 0; j < dof; ++j) w += residual[j] * rate[j];
       }

@@ -48,11 +48,11 @@ Workspace::Workspace(const Model& model)
   loops.pattern = ClosingPattern(model);
   loops.factor = math::Semidefinite(loops.pattern.coupled);
   loops.W.assign(static_cast<std::size_t>(loops.factor.entry_count()), 0.0);
-  for (ClosingMeeting& meeting : loops.pattern.meetings) {
-    const ClosingGroup &group = loops.pattern.groups[static_cast<std::size_t>(meeting.group)],
-                       &other = loops.pattern.groups[static_cast<std::size_t>(meeting.other)];
+  for (ClosingBlock& block : loops.pattern.blocks) {
+    const ClosingGroup &group = loops.pattern.groups[static_cast<std::size_t>(block.group)],
+                       &other = loops.pattern.groups[static_cast<std::size_t>(block.other)];
     for (int k = 0; k < group.row_count; ++k) {
-      meeting.entries.push_back(loops.factor.entry(group.first_row + k, other.first_row));
+      block.entries.push_back(loops.factor.entry(group.first_row + k, other.first_row));
     }
   }
   std::size_t redundant = 0;

@@ -326,7 +326,7 @@ TEST(LoopGraph, OfLoopsBesideEachOtherHasThoseOfEachAlone) {
   };
   const Mechanism one(beside(1)), many(beside(9));
   EXPECT_EQ(many.ws.loops.factor.entry_count(), 9 * one.ws.loops.factor.entry_count());
-  EXPECT_EQ(many.ws.loops.pattern.meetings.size(), 9 * one.ws.loops.pattern.meetings.size());
+  EXPECT_EQ(many.ws.loops.pattern.blocks.size(), 9 * one.ws.loops.pattern.blocks.size());
 }
 
 }  // namespace loop_graph_test
