@@ -114,11 +114,11 @@ class Assembler {
           const bool is_alike = is_angle(cut.rows[i].form) == is_angle(cut.rows[k].form);
           const std::size_t other = at(cut.first_row) + k;
           double& largest = result[at(cut.first_row) + i];
-          if (is_alike) largest = std::max(largest, ws_.loops.W[other * rows + other]);
+          if (is_alike) largest = std::max(largest, ws_.loops.mobility(other));
         }
       }
     }
-    for (auto k = at(model_.cut_row_count()); k < rows; ++k) result[k] = ws_.loops.W[k * rows + k];
+    for (auto k = at(model_.cut_row_count()); k < rows; ++k) result[k] = ws_.loops.mobility(k);
     return result;
   }
 

@@ -242,14 +242,33 @@ void accept_contacts(const Model& model, double h, State& state, Workspace& ws) 
   contacts.is_lost = find_passed(elements, contacts) || contacts.is_lost;
   state.contacts.follow(contacts.before, elements.model, contacts.poses, contacts.set);
   const std::span<const ContactPoint> points = contacts.set.points();
+  contacts.is_hit = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ContactPair& pair = elements.model.pairs()[points[i].pair];
-    static_cast<void>(carry(pair, touch_of(elements, ws, points[i]), state.contacts.states()[i]));
+    const Touch touch = touch_of(elements, ws, points[i]);
+    RememberedContact& remembered = state.contacts.states()[i];
+    const double start_rate = remembered.normal.impact_speed == 0 ? touch.start_rate() : 0;
+    contacts.is_hit = contacts.is_hit || std::max(touch.rate(), start_rate) > pair.normal.smallest_impact_speed;
+    static_cast<void>(carry(pair, touch, remembered));
   }
 }
 
-int contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept {
-  if (model.contact == nullptr) return 1;
+namespace {
+
+// what contacts that answer fast make of a number of parts that is enough otherwise
+ContactParts stiff_parts(const Model& model, double parts, double needed, StepKind kind, Workspace& ws) noexcept {
+  if (kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
+    const int count = static_cast<int>(std::ceil(parts));
+    return {count, true, static_cast<int>(std::ceil(std::min(needed, kMostStiffParts) / count))};
+  }
+  ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);
+  return {.count = static_cast<int>(std::ceil(std::max(parts, std::min(needed, kMostStiffParts))))};
+}
+
+}  // namespace
+
+ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept {
+  if (model.contact == nullptr) return {};
   const ContactElements& elements = *model.contact;
   ContactWorkspace& contacts = *ws.contact;
   look_ahead(h, contacts);
@@ -266,21 +285,23 @@ int contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) no
       met_rate = std::max(met_rate, impact_rate(model, ws, pair, meeting, h));
     }
   }
-  if (!contacts.is_near) return 1;
+  if (!contacts.is_near) return {};
   parts = std::clamp(parts, 1.0, kMostParts);
-  if (kind != StepKind::implicit) {
-    const double needed = h * std::max(contact_rate(model, ws), met_rate) / reach_of(kind);
-    contacts.is_lost = contacts.is_lost || !(needed <= kMostStiffParts);
-    parts = std::max(parts, std::min(needed, kMostStiffParts));
-  }
-  return static_cast<int>(std::ceil(parts));
+  if (kind == StepKind::implicit) return {.count = static_cast<int>(std::ceil(parts))};
+  // what is about to be hit is resolved
+  if (met_rate > 0 && kind == StepKind::settling) kind = StepKind::explicit_rule;
+  return stiff_parts(model, parts, h * std::max(contact_rate(model, ws), met_rate) / reach_of(kind), kind, ws);
 }
 
-int contact_parts_again(const Model& model, double h, int parts, StepKind kind, Workspace& ws) noexcept {
-  if (kind == StepKind::implicit) return 1;
+ContactParts contact_parts_again(const Model& model, double h, int parts, StepKind kind, Workspace& ws) noexcept {
+  if (kind == StepKind::implicit) return {};
   const double needed = h * contact_rate(model, ws) / reach_of(kind);
+  if (kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
+    return {.is_settling = true};
+  }
   ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);
-  return static_cast<int>(std::ceil(std::max(1.0, std::min(needed, kMostStiffParts) / parts * (1 - kContactRounding))));
+  const double finer = std::max(1.0, std::min(needed, kMostStiffParts) / parts * (1 - kContactRounding));
+  return {.count = static_cast<int>(std::ceil(finer))};
 }
 
 }  // namespace slew::multibody

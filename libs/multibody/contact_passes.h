@@ -29,12 +29,13 @@ void update_contacts(const Model& model, Workspace& ws) noexcept;
 void apply_contacts(const Model& model, Workspace& ws) noexcept;
 
 // After a sub-step of h [s], with the motion of the new state in ws: the memory of the state becomes that of the end.
-// Shapes that went through each other unseen set ws.contact->is_lost.
+// Shapes that went through each other unseen set ws.contact->is_lost, a blow ws.contact->is_hit.
 void accept_contacts(const Model& model, double h, State& state, Workspace& ws) noexcept;
 
-// How a sub-step treats contacts: by a rule that has to resolve them, by corrections without their slopes
-// (`augmented`), or with their slopes inside the iteration.
-enum class StepKind { explicit_rule, corrected, implicit };
+// How a sub-step treats contacts: by a rule that has to resolve them, by such a rule with an implicit one at hand for
+// what rests or is pressed (formulation.h), by corrections without their slopes (`augmented`), or with their slopes
+// inside the iteration.
+enum class StepKind { explicit_rule, settling, corrected, implicit };
 
 // At most so many parts of a sub-step for contacts that answer fast.
 inline constexpr double kMostStiffParts = 1024;
@@ -44,14 +45,25 @@ inline constexpr double kMostStiffParts = 1024;
   return kind == StepKind::corrected ? 1.0 : 1.5;
 }
 
+// An implicit part costs as much as 1.2 to 3.3 of Runge-Kutta's, least where finding the contacts costs most.
+inline constexpr double kWorthSettling = 2;
+
+struct ContactParts {
+  int count = 1;
+  bool is_settling = false;  // by the implicit rule; what it leaves to the other one
+  int pieces = 1;            // is resolved in at least so many pieces of each part
+};
+
 // In how many equal parts a sub-step of h [s] from here should go, after an evaluation at its start: one when nothing
 // touches and the present speeds lead into nothing within h; there is then no search until the next start. Contacts
 // that touch are resolved as fast as they answer (contact_rate.h); those too fast for the shortest part set
-// ws.contact->is_lost.
-[[nodiscard]] int contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept;
+// ws.contact->is_lost. `settling`: where nothing hits anything and that would take kWorthSettling times as many parts
+// as contact_substep, the implicit rule takes over, which need not resolve how fast a load is damped.
+[[nodiscard]] ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept;
 
 // The same for one of `parts` of the sub-step, of what has come to touch on the way.
-[[nodiscard]] int contact_parts_again(const Model& model, double h, int parts, StepKind kind, Workspace& ws) noexcept;
+[[nodiscard]] ContactParts contact_parts_again(const Model& model, double h, int parts, StepKind kind,
+                                               Workspace& ws) noexcept;
 
 // What the force of one contact point loses by a small motion of shape A against shape B, after update_contacts() at an
 // instant after the start: position and rate of the weights, ways beginning at the start.

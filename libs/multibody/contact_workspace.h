@@ -54,7 +54,9 @@ struct ContactWorkspace {
   std::size_t force_count = 0;
   std::vector<ContactRates> rates;  // by link, up to the last one with a shape
   double time = 0;                  // s, since the start of the sub-step
-  bool is_near = true;   // something touches or may touch within the sub-step; false: no search until its end
+  bool is_near = true;  // something touches or may touch within the sub-step; false: no search until its end
+  bool is_hit = false;  // in the last accepted sub-step something touched or went deeper faster than the slowest impact
+                        // that its law knows
   bool is_lost = false;  // since this was last cleared, shapes went through each other unseen, or contacts answered
                          // faster than the shortest part
 };

@@ -125,6 +125,10 @@ Dynamics::Dynamics(Formulation formulation, const Model& model, const State& sta
       held_ = std::make_unique<HeldBodies>(formulation, model, start);
       break;
   }
+  if (model.contact == nullptr || held_ != nullptr || is_implicit(rule.integrator)) return;
+  rule.integrator = Integrator::sdirk2;
+  settling_ = std::make_unique<Stages>(model, rule, bodies_ == nullptr ? joint : body);
+  if (!settling_->matrix) settling_->matrix.emplace(model, settling_->model);
 }
 
 Dynamics::~Dynamics() = default;
@@ -143,28 +147,89 @@ void Dynamics::evaluate(const Model& model, State& state, Workspace& ws) noexcep
 
 StepKind Dynamics::contact_step() const noexcept {
   if (stages_ != nullptr && is_implicit(stages_->rule.integrator)) return StepKind::implicit;
+  if (settling_ != nullptr) return StepKind::settling;
   return held_ != nullptr && held_->model.formulation == Formulation::augmented ? StepKind::corrected
                                                                                 : StepKind::explicit_rule;
 }
 
+// One of the parts into which contacts divide a sub-step of h.
+struct Dynamics::PartOfStep {
+  double h;
+  ContactParts parts;
+  int index;
+  ContactParts pieces;
+  std::span<const double> mean, slope;
+
+  // means of the rows' forces, which go on along their lines, over a piece of it
+  void put_forces(int count, int piece, std::span<double> forces) const noexcept {
+    const double later = (index * count + piece + 0.5) * (h / parts.count / count) - 0.5 * h;
+    for (std::size_t k = 0; k < mean.size(); ++k) forces[k] = mean[k] + later * slope[k];
+  }
+};
+
 bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                        std::span<const double> slope) noexcept {
-  const int parts = contact_parts(model, h, contact_step(), ws);
-  if (parts == 1) return advance_part(model, state, ws, h, mean, slope) && is_right(model, state, ws);
-  // the rows' forces go on along their lines
+  const ContactParts parts = multibody::contact_parts(model, h, contact_step(), ws);
+  contact_parts_ = 1;
+  settling_parts_ = 0;
+  if (parts.count == 1 && !parts.is_settling) {
+    return advance_part(model, state, ws, h, mean, slope) && is_right(model, state, ws);
+  }
+  contact_parts_ = 0;
   bool is_sound = true;
-  for (int i = 0; i < parts; ++i) {
+  for (int i = 0; i < parts.count; ++i) {
     if (i > 0) evaluate(model, state, ws);
-    const int finer = i > 0 ? contact_parts_again(model, h, parts, contact_step(), ws) : 1;
-    const double part = h / parts / finer;
-    for (int j = 0; j < finer; ++j) {
-      if (j > 0) evaluate(model, state, ws);
-      const double later = (i * finer + j + 0.5) * part - 0.5 * h;
-      for (std::size_t k = 0; k < mean.size(); ++k) ws.row_part[k] = mean[k] + later * slope[k];
-      is_sound = advance_part(model, state, ws, part, ws.row_part, slope) && is_sound;
-    }
+    const ContactParts pieces = i > 0 ? contact_parts_again(model, h, parts.count, contact_step(), ws)
+                                      : ContactParts{.is_settling = parts.is_settling};
+    is_sound = advance_contacts(model, state, ws, {h, parts, i, pieces, mean, slope}) && is_sound;
   }
   return is_right(model, state, ws) && is_sound;
+}
+
+// after evaluate() at the start of the part
+bool Dynamics::advance_contacts(const Model& model, State& state, Workspace& ws, const PartOfStep& part) noexcept {
+  const double length = part.h / part.parts.count;
+  ContactParts pieces = part.pieces;
+  if (pieces.is_settling) {
+    part.put_forces(1, 0, ws.row_part);
+    ++contact_parts_;
+    ++settling_parts_;
+    if (settle_part(model, state, ws, length, ws.row_part, part.slope)) return true;
+    pieces = contact_parts_again(model, part.h, part.parts.count, StepKind::explicit_rule, ws);
+  }
+  pieces.count = std::max(pieces.count, part.parts.pieces);
+  bool is_sound = true;
+  for (int j = 0; j < pieces.count; ++j) {
+    if (j > 0) evaluate(model, state, ws);
+    part.put_forces(pieces.count, j, ws.row_part);
+    is_sound = advance_part(model, state, ws, length / pieces.count, ws.row_part, part.slope) && is_sound;
+    ++contact_parts_;
+  }
+  return is_sound;
+}
+
+// One part by the implicit rule; false: back at its start, evaluated.
+bool Dynamics::settle_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                           std::span<const double> slope) noexcept {
+  Stages& s = *settling_;
+  BodyState* const bodies = bodies_ == nullptr ? nullptr : &bodies_->state;
+  const bool was_lost = ws.contact->is_lost, is_fine_enough = is_resolved(ws, h);
+  s.keep(state, bodies);
+  bool is_sound = is_fine_enough && is_regular_;
+  if (bodies != nullptr) {
+    is_sound = multibody::evaluate(model, s.model, *bodies, state, ws, *s.matrix) && is_sound;
+  } else {
+    // nothing is carried from part to part
+    s.matrix->ldl.set_smallest_pivot(model.has_closing_rows() ? ws.loops.factor.smallest_pivot() : 1.0);
+  }
+  is_sound =
+      is_sound && multibody::advance(model, s.model, s.rule, {state, bodies}, ws, *s.matrix, s.ws, h, mean, slope);
+  // a corner that comes down beside what rests is a blow
+  if (is_sound && !ws.contact->is_hit && is_finite(state)) return true;
+  ws.contact->is_lost = was_lost;
+  s.go_back(state, bodies);
+  evaluate(model, state, ws);
+  return false;
 }
 
 bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,

@@ -33,11 +33,14 @@ class Dynamics {
   Dynamics& operator=(Dynamics&&) noexcept;
 
   // evaluate() and advance() of dynamics.h, with the integrator of the rule. While shapes touch, or are about to,
-  // advance() goes in parts of MechanicsDef::contact_substep at most. An implicit iteration that does not settle is
-  // tried again from the start in 2, 4 and 8 parts; one that runs away even then is held where it was. False: a
-  // matrix was singular, an iteration did not settle in the end, the joints could not be closed, a body turned by more
-  // than kLargestTurn in a sub-step, shapes went through each other between two instants, contacts are stiffer than the
-  // shortest part resolves, a table of prescribed motion that refuses to be left has ended, or the state is not finite.
+  // advance() goes in parts of MechanicsDef::contact_substep at most. Under rk4 and semi-implicit Euler in `recursive`
+  // and `lagrange`, contacts at rest or under load that are damped far faster than such a part are taken by sdirk2, and
+  // by the rule itself in shorter parts where that does not settle or something is hit. An implicit iteration that does
+  // not settle is tried again from the start in 2, 4 and 8 parts; one that runs away even then is held where it was.
+  // False: a matrix was singular, an iteration did not settle in the end, the joints could not be closed, a body turned
+  // by more than kLargestTurn in a sub-step, shapes went through each other between two instants, contacts are stiffer
+  // than the shortest part resolves, a table of prescribed motion that refuses to be left has ended, or the state is
+  // not finite.
   void evaluate(const Model& model, State& state, Workspace& ws) noexcept;
   [[nodiscard]] bool advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
                              std::span<const double> slope) noexcept;
@@ -49,6 +52,9 @@ class Dynamics {
   // that did not settle at once.
   [[nodiscard]] int iterations() const noexcept;
   [[nodiscard]] int parts() const noexcept;
+  // In how many parts the last advance() went because of contacts, and how many of them by the implicit rule.
+  [[nodiscard]] int contact_parts() const noexcept { return contact_parts_; }
+  [[nodiscard]] int settling_parts() const noexcept { return settling_parts_; }
 
   // Raw bits of what is integrated beside the State.
   void add_to_hash(StateHash& hash) const noexcept;
@@ -64,6 +70,10 @@ class Dynamics {
   [[nodiscard]] StepKind contact_step() const noexcept;
   [[nodiscard]] bool advance_part(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
+  [[nodiscard]] bool settle_part(const Model& model, State& state, Workspace& ws, double h,
+                                 std::span<const double> mean, std::span<const double> slope) noexcept;
+  struct PartOfStep;
+  [[nodiscard]] bool advance_contacts(const Model& model, State& state, Workspace& ws, const PartOfStep& part) noexcept;
   [[nodiscard]] bool take_substep(const Model& model, State& state, Workspace& ws, double h,
                                   std::span<const double> mean, std::span<const double> slope) noexcept;
   [[nodiscard]] bool advance_by_rule(const Model& model, State& state, Workspace& ws, double h,
@@ -75,8 +85,10 @@ class Dynamics {
   std::unique_ptr<Bodies> bodies_;    // lagrange
   std::unique_ptr<HeldBodies> held_;  // augmented, penalty
   std::unique_ptr<Stages> stages_;    // integrators beside rk4, but for the next
-  bool is_euler_ = false;             // semi-implicit Euler in joint coordinates, which needs nothing of its own
-  bool is_regular_ = true;            // of the last evaluation
+  std::unique_ptr<Stages> settling_;  // for contacts at rest under an explicit rule; carries nothing
+  int contact_parts_ = 1, settling_parts_ = 0;
+  bool is_euler_ = false;   // semi-implicit Euler in joint coordinates, which needs nothing of its own
+  bool is_regular_ = true;  // of the last evaluation
 };
 
 }  // namespace slew::multibody

@@ -18,20 +18,20 @@ constexpr int kMostClosingCorrections = 40;  // Newton with one matrix: an error
 constexpr int kPolish = 2;                   // more of them near a singular position, where (1) divides by little
 constexpr int kRenewal = 8;                  // corrections after which the matrix is made again
 
-double product(const double* a, const double* b, std::size_t size) noexcept {
-  double sum = 0;
-  for (std::size_t j = 0; j < size; ++j) sum += a[j] * b[j];
-  return sum;
+// sum += the group's rows of `by_row` (rows x speeds) times their forces
+void add_rows(const ClosingGroup& group, const std::vector<double>& by_row, const std::vector<double>& forces,
+              std::span<double> sum) noexcept {
+  const double* row = by_row.data() + at(group.first_row) * sum.size();
+  const double* force = forces.data() + group.first_row;
+  for (int i = 0; i < group.row_count; ++i, row += sum.size(), ++force) {
+    const double f = *force;
+    for (const std::size_t j : group.speeds) sum[j] += row[j] * f;
+  }
 }
 
 // residual += sum of the rows' residuals times their forces
 void add_rows(const LoopWorkspace& loops, std::span<double> residual) noexcept {
-  const std::size_t speeds = residual.size();
-  for (std::size_t k = 0; k < loops.multipliers.size(); ++k) {
-    const double* row = loops.residual.data() + k * speeds;
-    const double force = loops.multipliers[k];
-    for (std::size_t j = 0; j < speeds; ++j) residual[j] += row[j] * force;
-  }
+  for (const ClosingGroup& group : loops.pattern.groups) add_rows(group, loops.residual, loops.multipliers, residual);
 }
 
 // loops.step = M^-1 J^T W^-1 of what loops.multipliers hold
@@ -150,7 +150,7 @@ void for_each_known(const Model& model, const Workspace& ws, Visit visit) noexce
 
 void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcept {
   LoopWorkspace& loops = ws.loops;
-  const std::size_t rows = loops.rows.size(), speeds = ws.udot.size();
+  const std::size_t speeds = ws.udot.size();
   for (const Cut& cut : model.cuts) {
     const std::span<const int> supports(model.supports.data() + cut.first_support,
                                         model.supports.data() + cut.support_end);
@@ -160,9 +160,14 @@ void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcep
                    {loops.rate.data() + first * speeds, count * speeds});
   }
   pass_gears_back(model, ws);
-  for (std::size_t k = 0; k < rows; ++k) {
-    for (std::size_t l = 0; l <= k; ++l) {
-      loops.W[k * rows + l] = product(loops.residual.data() + k * speeds, loops.rate.data() + l * speeds, speeds);
+  for (const ClosingBlock& block : loops.pattern.blocks) {
+    const ClosingGroup &group = loops.pattern.groups[at(block.group)], &other = loops.pattern.groups[at(block.other)];
+    const double* residual = loops.residual.data() + at(group.first_row) * speeds;
+    for (int i = 0; i < group.row_count; ++i, residual += speeds) {
+      const int before = block.group == block.other ? i + 1 : other.row_count;
+      const double* rate = loops.rate.data() + at(other.first_row) * speeds;
+      double* W = loops.W.data() + block.entries[at(i)];
+      for (int l = 0; l < before; ++l, rate += speeds) *W++ = product_over(block.speeds, residual, rate);
     }
   }
   loops.factor.factorize(loops.W, model.cut_reference, tolerance);
@@ -171,25 +176,31 @@ void factorize_cuts(const Model& model, Workspace& ws, double tolerance) noexcep
 void close_loops(const Model& model, Workspace& ws) noexcept {
   LoopWorkspace& loops = ws.loops;
   const std::size_t speeds = ws.udot.size();
-  for_each_known(model, ws, [&](std::size_t k, double known) {
-    loops.multipliers[k] = -(known + product(loops.rate.data() + k * speeds, ws.residual.data(), speeds));
-  });
+  for_each_known(model, ws, [&](std::size_t k, double known) { loops.multipliers[k] = known; });
+  for (const ClosingGroup& group : loops.pattern.groups) {
+    const double* rate = loops.rate.data() + at(group.first_row) * speeds;
+    double* force = loops.multipliers.data() + group.first_row;
+    for (int i = 0; i < group.row_count; ++i, rate += speeds, ++force) {
+      *force = -(*force + product_over(group.speeds, rate, ws.residual.data()));
+    }
+  }
   loops.factor.solve(loops.multipliers);
   add_rows(loops, ws.residual);
 }
 
-void reduce_row(const Model&, Workspace& ws, std::span<double> residual, std::span<double> rate) noexcept {
+void reduce_row(std::size_t port, Workspace& ws, std::span<double> residual, std::span<double> rate) noexcept {
   LoopWorkspace& loops = ws.loops;
   const std::size_t speeds = residual.size();
-  for (std::size_t k = 0; k < loops.rows.size(); ++k) {
-    loops.multipliers[k] = -product(loops.residual.data() + k * speeds, rate.data(), speeds);
+  const ClosingPattern::Port& reached = loops.pattern.ports[port];
+  for (const int g : reached.groups) {
+    const ClosingGroup& group = loops.pattern.groups[at(g)];
+    for (std::size_t k = at(group.first_row); k < at(group.first_row + group.row_count); ++k) {
+      loops.multipliers[k] = -product_over(group.speeds, loops.residual.data() + k * speeds, rate.data());
+    }
   }
-  loops.factor.solve(loops.multipliers);
-  add_rows(loops, residual);
-  for (std::size_t k = 0; k < loops.rows.size(); ++k) {
-    const double* row = loops.rate.data() + k * speeds;
-    for (std::size_t j = 0; j < speeds; ++j) rate[j] += row[j] * loops.multipliers[k];
-  }
+  loops.factor.solve(reached.rows, loops.multipliers);
+  for (const int g : reached.groups) add_rows(loops.pattern.groups[at(g)], loops.residual, loops.multipliers, residual);
+  for (const int g : reached.groups) add_rows(loops.pattern.groups[at(g)], loops.rate, loops.multipliers, rate);
 }
 
 bool project(const Model& model, std::span<double> q, std::span<double> u, Workspace& ws) noexcept {

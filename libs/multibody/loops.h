@@ -1,8 +1,10 @@
 // Joints that are cut, and gears: their forces in the recursion, and the way back onto them. Internal to the library.
 //
 //   u' = u'_0 + M^-1 J^T f,   J u' + b = 0   ->   W f = -(b + J u'_0),   W = J M^-1 J^T                (1)
-// M and u'_0 are the tree's, so that W comes from one back-solve a row, as those of ports do (rows.h). (1) keeps g'' at
-// zero only; after a step the coordinates and speeds go to the nearest ones with g = 0 and J u = 0 in the metric of M,
+// M and u'_0 are the tree's, so that W comes from one back-solve a row, as those of ports do (rows.h). Rows that push
+// no link together have no entry in W (closing_pattern.h), so that loops beside each other cost as much as each by
+// itself. (1) keeps g'' at zero only; after a step the coordinates and speeds go to the nearest ones with g = 0 and J u
+// = 0 in the metric of M,
 //   delta = -M^-1 J^T W^-1 g,   and the same with J u                                                   (2)
 // Rows that become dependent in a singular position, or vanish there, are left out while they are (math::Semidefinite
 // with the rows' mobilities elsewhere for reference). Near it (1) divides what a stage of the integrator violates by
@@ -34,8 +36,8 @@ void factorize_cuts(const Model& model, Workspace& ws, double tolerance = kDepen
 // Between factorize() and solve_forward(): adds to ws.residual what (1) asks for.
 void close_loops(const Model& model, Workspace& ws) noexcept;
 
-// Takes what the cuts carry out of a port's row: its residual and rate.
-void reduce_row(const Model& model, Workspace& ws, std::span<double> residual, std::span<double> rate) noexcept;
+// Takes what the cuts carry out of a port's row: its residual and rate. port: of Model::rows.
+void reduce_row(std::size_t port, Workspace& ws, std::span<double> residual, std::span<double> rate) noexcept;
 
 // Motion and factors of the tree and of the cuts for these coordinates; no forces.
 void renew_matrix(const Model& model, std::span<const double> q, std::span<const double> u, Workspace& ws) noexcept;

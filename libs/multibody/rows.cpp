@@ -158,7 +158,7 @@ void evaluate_row(const Model& model, const State& state, std::size_t k, Workspa
   std::fill(residual.begin(), residual.end(), 0.0);
   std::fill(rate.begin(), rate.end(), 0.0);
   solve_backward(model, ws, supports, J, residual, rate);
-  reduce_row(model, ws, residual, rate);
+  reduce_row(k, ws, residual, rate);
 }
 
 }  // namespace
@@ -236,7 +236,8 @@ void evaluate_rows(const Model& model, const State& state, Workspace& ws) noexce
     for (std::size_t l = 0; l <= k; ++l) {
       const double* rate = ws.row_rate.data() + l * dof;
       double w = 0;
-      if (ws.row_is_active[k] != 0 && ws.row_is_active[l] != 0) {
+      const bool is_carried = ws.loops.pattern.ports.empty() || ws.loops.pattern.are_coupled(k, l);
+      if (is_carried && ws.row_is_active[k] != 0 && ws.row_is_active[l] != 0) {
         for (std::size_t j = 0; j < dof; ++j) w += residual[j] * rate[j];
       }
       ws.row_W[k * rows + l] = ws.row_W[l * rows + k] = w;

@@ -39,14 +39,22 @@ Workspace::Workspace(const Model& model)
   const auto cut_rows = static_cast<std::size_t>(model.closing_row_count());
   loops.rows.resize(cut_rows);
   for (auto* by_row : {&loops.residual, &loops.rate}) by_row->assign(cut_rows * nu, 0.0);
-  loops.W.assign(cut_rows * cut_rows, 0.0);
   loops.multipliers.assign(cut_rows, 0.0);
   loops.step.assign(nu, 0.0);
   loops.gear_tau.assign(nu, 0.0);
   gear_force.assign(model.gears.size(), 0.0);
   loops.shown_q.assign(nq, 0.0);
   loops.shown_u.assign(nu, 0.0);
-  loops.factor = math::Semidefinite(static_cast<int>(cut_rows));
+  loops.pattern = ClosingPattern(model);
+  loops.factor = math::Semidefinite(loops.pattern.coupled);
+  loops.W.assign(static_cast<std::size_t>(loops.factor.entry_count()), 0.0);
+  for (ClosingBlock& block : loops.pattern.blocks) {
+    const ClosingGroup &group = loops.pattern.groups[static_cast<std::size_t>(block.group)],
+                       &other = loops.pattern.groups[static_cast<std::size_t>(block.other)];
+    for (int k = 0; k < group.row_count; ++k) {
+      block.entries.push_back(loops.factor.entry(group.first_row + k, other.first_row));
+    }
+  }
   std::size_t redundant = 0;
   for (const Cut& cut : model.cuts) redundant += cut.redundant.size();
   unit_force.resize(redundant * model.joints.size());

@@ -9,6 +9,7 @@
 #include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "math/semidefinite.h"
+#include "multibody/closing_pattern.h"
 #include "multibody/contact_workspace.h"
 #include "multibody/flexible/flexible_part.h"
 #include "multibody/link_motion.h"
@@ -84,9 +85,14 @@ struct JointReaction {
 
 // Rows of all cut joints, then of gears, filled by close_loops().
 struct LoopWorkspace {
+  [[nodiscard]] double mobility(std::size_t row) const noexcept {
+    return W[static_cast<std::size_t>(factor.entry(static_cast<int>(row), static_cast<int>(row)))];
+  }
+
+  ClosingPattern pattern;
   std::vector<RowValue> rows;
-  std::vector<double> residual, rate;  // rows x speeds, of solve_backward()
-  std::vector<double> W;               // rows x rows
+  std::vector<double> residual, rate;  // rows x speeds, of solve_backward(); zero but on the speeds of the row's group
+  std::vector<double> W;               // by factor.entry()
   std::vector<double> multipliers;     // by row: the force that closes it, -lambda [N or N m]
   std::vector<double> step;            // by u
   std::vector<double> gear_tau;        // by u, zero but while a gear's row is passed back

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numeric>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,10 @@
 
 namespace slew::multibody {
 namespace {
+
+// From so many cuts on the tree is looked for that leads to them on short ways, and taken where those of the file's
+// order are longer by so much: every body on a way couples the cut to all others behind it (closing_pattern.h).
+constexpr std::size_t kManyCuts = 5, kLongWays = 2;
 
 // a flexible body with modes, at a node of which the joint is
 bool rides_on_modes(const MechanicsDef& mechanics, const JointDef& joint) noexcept {
@@ -69,8 +74,44 @@ int class_of(const std::set<std::string_view>& driven, const std::set<std::strin
   return needs_coordinates(joint) || driven.contains(joint.name) ? 2 : 3;
 }
 
-// is_barred, by joint: must be cut
-std::vector<bool> choose_tree(const MechanicsDef& mechanics, const JointEnds& ends,
+bool may_be_in_tree(const JointDef& joint) noexcept {
+  return has_coordinates(joint.type) || joint.type == JointType::node;
+}
+
+// Joints within a class by how many of them lead from Ground to them, then in the order of the file.
+std::vector<std::size_t> nearest_first(const MechanicsDef& mechanics, const JointEnds& ends) {
+  std::vector<std::vector<int>> joined(mechanics.bodies.size() + 1);
+  for (std::size_t j = 0; j < ends.size(); ++j) {
+    const auto [body1, body2] = ends[j];
+    const JointDef& joint = mechanics.joints[j];
+    if (body1 == kNoBody || body2 == kNoBody || !may_be_in_tree(joint) || joint.type == JointType::floating) continue;
+    joined[at(body1)].push_back(body2);
+    joined[at(body2)].push_back(body1);
+  }
+  const std::size_t far = joined.size();
+  std::vector<std::size_t> distance(joined.size(), far);
+  distance[kGround] = 0;
+  std::vector<int> frontier = {kGround};
+  for (std::size_t next = 0; next < frontier.size(); ++next) {
+    for (const int other : joined[at(frontier[next])]) {
+      if (distance[at(other)] < far) continue;
+      distance[at(other)] = distance[at(frontier[next])] + 1;
+      frontier.push_back(other);
+    }
+  }
+  const auto distance_of = [&](std::size_t j) {
+    const auto [body1, body2] = ends[j];
+    return body1 == kNoBody || body2 == kNoBody ? far : std::min(distance[at(body1)], distance[at(body2)]);
+  };
+  std::vector<std::size_t> order(ends.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t j, std::size_t k) { return distance_of(j) < distance_of(k); });
+  return order;
+}
+
+// is_barred, by joint: must be cut; order: within a class
+std::vector<bool> choose_tree(const MechanicsDef& mechanics, const JointEnds& ends, std::span<const std::size_t> order,
                               const std::vector<bool>& is_barred) {
   std::set<std::string_view> driven, geared;
   for (const MotionDef& motion : mechanics.motions) driven.insert(motion.joint);
@@ -78,11 +119,10 @@ std::vector<bool> choose_tree(const MechanicsDef& mechanics, const JointEnds& en
   std::vector<bool> is_in_tree(mechanics.joints.size(), false);
   Groups groups(mechanics.bodies.size() + 1);
   for (int choice = 0; choice < 5; ++choice) {
-    for (std::size_t j = 0; j < mechanics.joints.size(); ++j) {
+    for (const std::size_t j : order) {
       const JointDef& joint = mechanics.joints[j];
       const auto [body1, body2] = ends[j];
-      const bool is_of_tree = has_coordinates(joint.type) || joint.type == JointType::node;
-      if (body1 == kNoBody || body2 == kNoBody || !is_of_tree || is_barred[j] ||
+      if (body1 == kNoBody || body2 == kNoBody || !may_be_in_tree(joint) || is_barred[j] ||
           class_of(driven, geared, joint) != choice) {
         continue;
       }
@@ -181,8 +221,9 @@ std::vector<std::vector<int>> joints_by_body(const MechanicsDef& mechanics, cons
 }
 
 std::vector<TreeEdge> walk_tree(const MechanicsDef& mechanics, const JointEnds& ends,
-                                const std::vector<bool>& is_barred, std::vector<bool>& is_reached) {
-  const std::vector<bool> is_in_tree = choose_tree(mechanics, ends, is_barred);
+                                std::span<const std::size_t> order, const std::vector<bool>& is_barred,
+                                std::vector<bool>& is_reached) {
+  const std::vector<bool> is_in_tree = choose_tree(mechanics, ends, order, is_barred);
   const std::vector<std::vector<int>> joints = joints_by_body(mechanics, ends, is_in_tree);
   std::vector<TreeEdge> tree;
   is_reached.assign(mechanics.bodies.size() + 1, false);
@@ -227,16 +268,43 @@ int entry_at_a_node(const MechanicsDef& mechanics, const std::vector<TreeEdge>& 
   return kNoJoint;
 }
 
+std::vector<TreeEdge> spanning_tree(const MechanicsDef& mechanics, const JointEnds& ends,
+                                    std::span<const std::size_t> order, std::vector<bool>& is_reached) {
+  std::vector<bool> is_barred(mechanics.joints.size(), false);
+  std::vector<TreeEdge> tree = walk_tree(mechanics, ends, order, is_barred, is_reached);
+  for (int entry = entry_at_a_node(mechanics, tree); entry != kNoJoint; entry = entry_at_a_node(mechanics, tree)) {
+    is_barred[at(entry)] = true;
+    tree = walk_tree(mechanics, ends, order, is_barred, is_reached);
+  }
+  return tree;
+}
+
+// bodies between the cut joints and Ground, summed over the cuts
+std::size_t ways_of_cuts(const MechanicsDef& mechanics, const JointEnds& ends, const std::vector<TreeEdge>& tree) {
+  std::vector<std::size_t> depth(mechanics.bodies.size() + 1, 0);
+  for (const TreeEdge& edge : tree) depth[at(edge.child)] = depth[at(edge.parent)] + 1;
+  std::size_t ways = 0;
+  for (const int cut : cut_joints(mechanics, tree)) {
+    const auto [body1, body2] = ends[at(cut)];
+    if (body1 != kNoBody && body2 != kNoBody) ways += depth[at(body1)] + depth[at(body2)];
+  }
+  return ways;
+}
+
 }  // namespace
 
 std::vector<TreeEdge> find_tree(const MechanicsDef& mechanics, Problems& problems) {
   check_floating(mechanics, problems);
-  std::vector<bool> is_barred(mechanics.joints.size(), false), is_reached;
+  std::vector<bool> is_reached;
   const JointEnds ends = ends_of_joints(mechanics);
-  std::vector<TreeEdge> tree = walk_tree(mechanics, ends, is_barred, is_reached);
-  for (int entry = entry_at_a_node(mechanics, tree); entry != kNoJoint; entry = entry_at_a_node(mechanics, tree)) {
-    is_barred[at(entry)] = true;
-    tree = walk_tree(mechanics, ends, is_barred, is_reached);
+  std::vector<std::size_t> order(ends.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<TreeEdge> tree = spanning_tree(mechanics, ends, order, is_reached);
+  if (mechanics.joints.size() >= tree.size() + kManyCuts) {
+    std::vector<TreeEdge> nearest = spanning_tree(mechanics, ends, nearest_first(mechanics, ends), is_reached);
+    if (ways_of_cuts(mechanics, ends, tree) > kLongWays * ways_of_cuts(mechanics, ends, nearest)) {
+      tree = std::move(nearest);
+    }
   }
   report_unreached(mechanics, ends, is_reached, problems);
   return tree;

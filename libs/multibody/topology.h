@@ -1,10 +1,11 @@
 // How the bodies hang together: a tree of joints rooted in Ground, the joints that are cut, and the poses at the start.
 //
 // Joints with coordinates (fixed, revolute, prismatic, spherical, universal, cylindrical, floating) span the tree. Of a
-// loop the joint that the scene lists last is cut and closed by constraints, with two exceptions: a fixed joint is
-// never cut while another one is there to cut, and a joint with limits, friction, prescribed motion or an initial
-// velocity before one without. The other joints have no coordinates and are always cut. A body that only cut joints
-// connect to the rest is free in the tree.
+// loop the joint that the scene lists last is cut and closed by constraints, with three exceptions: a fixed joint is
+// never cut while another one is there to cut, a joint with limits, friction, prescribed motion or an initial velocity
+// not before one without, and of five loops and more the joint farthest from Ground is, where that makes the ways from
+// Ground to the cut joints half as long. The other joints have no coordinates and are always cut. A body that only cut
+// joints connect to the rest is free in the tree.
 //
 // Bodies are numbered 0 for Ground, i + 1 for MechanicsDef::bodies[i].
 #pragma once

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "multibody/assembly.h"
+#include "multibody/field_tables.h"
 #include "multibody/gears/gear.h"
 #include "multibody/start_pose.h"
 

@@ -1,6 +1,6 @@
 // Calls the forward dynamics of a mechanism often enough that an instruction counter sees nothing else.
 //
-//   counted_dynamics crane | crane_loops | chain10
+//   counted_dynamics crane | crane_loops | chain10 | loops10 | loops40
 //
 // Prints the number of calls. count_instructions.cmake counts what they execute.
 #include <cstdio>
@@ -12,6 +12,7 @@
 #include "tests/support/chain_def.h"
 #include "tests/validation/multibody/crane_def.h"
 #include "tests/validation/multibody/cylinder_bodies.h"
+#include "tests/validation/multibody/loop_defs.h"
 
 namespace {
 
@@ -29,10 +30,13 @@ int main(int count, char** arguments) {
   const std::map<std::string, std::function<MechanicsDef()>> mechanisms = {
       {"crane", [] { return testing::crane_def({.dummies = testing::Dummies::without}); }},
       {"crane_loops", crane_loops_def},
-      {"chain10", [] { return testing::chain_def(10); }}};
+      {"chain10", [] { return testing::chain_def(10); }},
+      // four-bars in a row: as many instructions each
+      {"loops10", [] { return testing::four_bars(10); }},
+      {"loops40", [] { return testing::four_bars(40); }}};
   const auto chosen = mechanisms.find(count == 2 ? arguments[1] : "");
   if (chosen == mechanisms.end()) {
-    std::fputs("counted_dynamics: expected one of crane, crane_loops, chain10\n", stderr);
+    std::fputs("counted_dynamics: expected one of crane, crane_loops, chain10, loops10, loops40\n", stderr);
     return 2;
   }
   const Model model = build_model(chosen->second());
