@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -58,20 +57,25 @@ Machine crane() {
   return {load("two_dof_crane.yaml", {}), 0.0, 0.2};
 }
 
-// F on the grid, of a signal that is straight over each piece or held from its beginning
+// What is compared on the grid.
+enum class Compared { F, x };  // N, m
+
+// On the grid, of a signal that is straight over each piece or held from its beginning
 enum class Signal { moves, is_held };
-std::vector<double> reference_forces(const Machine& machine, double frequency, std::int64_t piece_ns, Signal kind) {
+std::vector<double> reference_values(const Machine& machine, double frequency, std::int64_t piece_ns, Signal kind,
+                                     Compared compared) {
   monolith::Monolith reference(machine.scene, {});
   require_ok(reference.start());
   const double scale = machine.scene.inputs[0].scale;
-  std::vector<double> F;
+  std::vector<double> values;
   for (std::int64_t t = 0; t < kDuration.ns; t += piece_ns) {
     const std::vector<double> begin{scale * machine.raw(frequency, SimTime{t}.seconds())};
     const std::vector<double> end{scale * machine.raw(frequency, SimTime{t + piece_ns}.seconds())};
     require_ok(reference.advance_to({t + piece_ns}, begin, kind == Signal::moves ? end : begin));
-    if ((t + piece_ns) % kGrid.ns == 0) F.push_back(reference.ports()[0].F);
+    const monolith::PortState& port = reference.ports()[0];
+    if ((t + piece_ns) % kGrid.ns == 0) values.push_back(compared == Compared::F ? port.F : port.x);
   }
-  return F;
+  return values;
 }
 
 // The same signal as the scene's script, in points that lines join or that hold until the next.
@@ -85,8 +89,8 @@ void set_script(Machine& machine, double frequency, std::int64_t piece_ns, scene
   machine.scene.script.tracks = {track};
 }
 
-// Largest difference on the grid [N].
-double force_error(Machine& machine, double H, Level level, const std::vector<double>& reference) {
+// Largest difference on the grid.
+double error_of(Machine& machine, double H, Level level, const std::vector<double>& reference, Compared compared) {
   machine.scene.session.step = H;
   machine.scene.session.coupling = level;
   const SimDuration step = machine.scene.session.step_duration();
@@ -102,7 +106,9 @@ double force_error(Machine& machine, double H, Level level, const std::vector<do
     gate.advance(n, script, 0);
     run.step(std::vector<double>{gate.control(0)});
     if (run.has_failed()) throw std::runtime_error("the coupled run failed");
-    if (run.time().ns % kGrid.ns == 0) error = std::max(error, std::fabs(run.actuators().F[0] - reference[k++]));
+    if (run.time().ns % kGrid.ns != 0) continue;
+    const double value = compared == Compared::F ? run.actuators().F[0] : run.mechanism().x[0];
+    error = std::max(error, std::fabs(value - reference[k++]));
   }
   return error;
 }
@@ -117,51 +123,81 @@ std::vector<double> orders(const std::vector<double>& errors) {
 constexpr double kSteps[] = {4e-3, 2e-3, 1e-3};  // s
 
 std::vector<double> errors_to_moving(Machine& machine, Level level, double frequency,
-                                     scene::ScriptInterpolation interpolation) {
-  const std::vector<double> moving = reference_forces(machine, frequency, kPieceNs, Signal::moves);
+                                     scene::ScriptInterpolation interpolation, Compared compared) {
+  const std::vector<double> moving = reference_values(machine, frequency, kPieceNs, Signal::moves, compared);
   set_script(machine, frequency, kPieceNs, interpolation);
   std::vector<double> errors;
-  for (const double H : kSteps) errors.push_back(force_error(machine, H, level, moving));
+  for (const double H : kSteps) errors.push_back(error_of(machine, H, level, moving, compared));
   return errors;
 }
 
 // both sides of the comparison hold the same values over the same steps
-std::vector<double> errors_to_held(Machine& machine, Level level, double frequency) {
+std::vector<double> errors_to_held(Machine& machine, Level level, double frequency, Compared compared) {
   std::vector<double> errors;
   for (const double H : kSteps) {
     const std::int64_t step_ns = duration_of_seconds(H).ns;
-    const std::vector<double> held = reference_forces(machine, frequency, step_ns, Signal::is_held);
+    const std::vector<double> held = reference_values(machine, frequency, step_ns, Signal::is_held, compared);
     set_script(machine, frequency, step_ns, scene::ScriptInterpolation::step);
-    errors.push_back(force_error(machine, H, level, held));
+    errors.push_back(error_of(machine, H, level, held, compared));
   }
   return errors;
 }
 
-TEST(SmoothInputs, DISABLED_study) {
-  for (const bool is_crane : {false, true}) {
-    Machine machine = is_crane ? crane() : boom();
-    for (const double frequency : {1.0, 5.0}) {
-      const std::vector<double> reference = reference_forces(machine, frequency, kPieceNs, Signal::moves);
-      const auto [low, high] = std::minmax_element(reference.begin(), reference.end());
-      std::printf("%s %g Hz range %.4g N\n", is_crane ? "crane" : "boom", frequency, *high - *low);
-      for (const Level level : {Level::hold, Level::linear, Level::two, Level::tlm}) {
-        for (int kind = 0; kind < 3; ++kind) {
-          try {
-            const std::vector<double> e =
-                kind == 0   ? errors_to_held(machine, level, frequency)
-                : kind == 1 ? errors_to_moving(machine, level, frequency, scene::ScriptInterpolation::step)
-                            : errors_to_moving(machine, level, frequency, scene::ScriptInterpolation::linear);
-            std::printf("  level %d %s: %10.4g %10.4g %10.4g  orders %5.2f %5.2f\n", static_cast<int>(level),
-                        kind == 0 ? "held  " : kind == 1 ? "begin " : "mean  ", e[0], e[1], e[2], orders(e)[0],
-                        orders(e)[1]);
-          } catch (const std::exception& error) {
-            std::printf("  level %d %d: %s\n", static_cast<int>(level), kind, error.what());
-          }
-          std::fflush(stdout);
-        }
-      }
-    }
+constexpr scene::ScriptInterpolation kLines = scene::ScriptInterpolation::linear;
+constexpr scene::ScriptInterpolation kHeld = scene::ScriptInterpolation::step;
+
+void expect_orders(const std::vector<double>& errors, double order, double within, double frequency) {
+  for (const double found : orders(errors)) EXPECT_NEAR(found, order, within) << frequency << " Hz";
+}
+
+// ---- a valve with a spool -------------------------------------------------------------------------------------
+
+TEST(SmoothInputs, exchange_of_level_two_is_of_second_order_while_the_valve_moves) {
+  Machine machine = boom();
+  for (const double f : {1.0, 5.0}) expect_orders(errors_to_held(machine, Level::two, f, Compared::F), 2, 0.3, f);
+}
+
+TEST(SmoothInputs, script_of_lines_is_followed_to_second_order_by_levels_linear_and_two) {
+  Machine machine = boom();
+  for (const double frequency : {1.0, 5.0}) {
+    const std::vector<double> two = errors_to_moving(machine, Level::two, frequency, kLines, Compared::F);
+    expect_orders(two, 2, 0.3, frequency);
+    EXPECT_LT(two.back(), 30) << frequency;  // N of 36 and 62 kN
+    expect_orders(errors_to_moving(machine, Level::linear, frequency, kLines, Compared::F), 2, 0.2, frequency);
+    expect_orders(errors_to_moving(machine, Level::two, frequency, kLines, Compared::x), 2, 0.3, frequency);
   }
+}
+
+TEST(SmoothInputs, values_held_from_the_begin_of_a_step_are_late_and_make_level_two_first_order) {
+  Machine machine = boom();
+  for (const double frequency : {1.0, 5.0}) {
+    expect_orders(errors_to_moving(machine, Level::two, frequency, kHeld, Compared::F), 1, 0.2, frequency);
+  }
+}
+
+TEST(SmoothInputs, level_hold_is_of_first_order_all_the_same) {
+  Machine machine = boom();
+  for (const scene::ScriptInterpolation interpolation : {kLines, kHeld}) {
+    expect_orders(errors_to_moving(machine, Level::hold, 5, interpolation, Compared::F), 1.1, 0.3, 5);
+  }
+}
+
+// ---- a valve that opens at once -------------------------------------------------------------------------------
+
+TEST(SmoothInputs, piston_behind_a_valve_without_spool_is_followed_to_second_order_by_level_two) {
+  Machine machine = crane();
+  for (const double frequency : {1.0, 5.0}) {
+    const std::vector<double> errors = errors_to_moving(machine, Level::two, frequency, kLines, Compared::x);
+    expect_orders(errors, 2, 0.3, frequency);
+    EXPECT_LT(errors.back(), 1e-6) << frequency;  // m of 9.4 and 1.9 mm; F_dot under the signal that was: 2e-5
+  }
+}
+
+TEST(SmoothInputs, exchange_of_level_two_is_of_second_order_without_a_spool_too) {
+  Machine machine = crane();
+  const std::vector<double> errors = errors_to_held(machine, Level::two, 5, Compared::F);
+  expect_orders(errors, 2, 0.3, 5);
+  EXPECT_LT(errors.back(), 2);  // N of 6.6 kN; F_dot under the signal that was: 13
 }
 
 }  // namespace smooth_inputs_test
