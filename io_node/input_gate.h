@@ -2,10 +2,10 @@
 //
 // A raw value passes, in this order: finite (a NaN or infinity is rejected and counted), range (-1..1 analog, 0..1
 // digital; what is outside is held at the bound and counted), dead zone (|raw| below it is cut to 0, nothing is
-// rescaled), operator ramp and rate limit (the slower one), scale. The control value of a tick is the mean of the result
-// over its step, since it is held over the step: the value at the begin would be late by half a step. A controller's
-// value is held over the step; the script's signal is a course of straight pieces, of which a digital channel takes the
-// value at the begin.
+// rescaled), operator ramp and rate limit (the slower one), scale. The control value of a tick is the mean of the
+// result over its step, since it is held over the step: the value at the begin would be late by half a step. A
+// controller's value is held over the step; the script's signal is a course of straight pieces, of which a digital
+// channel takes the value at the begin.
 //
 // Who may move a channel is a lease: the first controller that asks holds it until it releases it or falls silent. It
 // is a process of a name: another one of that name is refused while the first is there. A silent holder's channel goes

@@ -18,7 +18,6 @@ using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
 
-
 // A gate that can look for the processes behind controllers.
 GateConfig seeing(GateConfig gate, transport::Transport& transport) {
   gate.see_writer = [&transport](std::uint64_t writer) {

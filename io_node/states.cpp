@@ -134,7 +134,10 @@ Status IoNode::load_own(const node::Checkpoint& checkpoint) {
 }
 
 TickFollower::TickFollower(const IoConfig& config)
-    : config_(config), parameters_(config.parameters, config.step), controls_(config.channels.size()), before_(controls_.size()) {
+    : config_(config),
+      parameters_(config.parameters, config.step),
+      controls_(config.channels.size()),
+      before_(controls_.size()) {
   static_cast<void>(begin(nullptr));
 }
 

@@ -21,8 +21,8 @@ class ScriptPlayer {
   // Raw value -1..1 of the input with this index in Scene::inputs. Real-time safe.
   [[nodiscard]] double value(std::size_t input, SimTime t) const noexcept;
 
-  // The signal in [from, to) as straight pieces, in the place of what `course` held; with interpolation step one piece at
-  // value(from). Allocates while `course` grows.
+  // The signal in [from, to) as straight pieces, in the place of what `course` held; with interpolation step one piece
+  // at value(from). Allocates while `course` grows.
   void read_course(std::size_t input, SimTime from, SimTime to, SignalCourse& course) const;
 
   // Parameter changes that begin in [from, to). Real-time safe.

@@ -28,8 +28,10 @@ Table held_as_ticks(const Table& points, SimDuration step) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i > 0) {
       const bool is_next_tick = duration_of_seconds(points[i][0] - points[i - 1][0]).ns <= step.ns;
-      const bool is_jump = points[i][0] == points[i - 1][0] || (i + 1 < points.size() && points[i + 1][0] == points[i][0]);
-      if (is_next_tick && !is_jump && points[i][1] != points[i - 1][1]) held.push_back({points[i][0], points[i - 1][1]});
+      const bool is_jump =
+          points[i][0] == points[i - 1][0] || (i + 1 < points.size() && points[i + 1][0] == points[i][0]);
+      if (is_next_tick && !is_jump && points[i][1] != points[i - 1][1])
+        held.push_back({points[i][0], points[i - 1][1]});
     }
     held.push_back(points[i]);
   }

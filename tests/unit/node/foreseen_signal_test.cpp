@@ -68,7 +68,7 @@ TEST(ForeseenSignal, OfARampAddsWhatTheValveDoesToTheForcesRate) {
   const double dQ_A = k * (std::sqrt(p_P - p_A) + std::sqrt(p_A - p_T));
   const double dQ_B = -k * (std::sqrt(p_P - p_B) + std::sqrt(p_B - p_T));
   const double G = A * (dQ_A / C_A - dQ_B / C_B);
-  RecordProperty("G_N_per_s", std::to_string(G));
+  EXPECT_NEAR(G, 8.8e7, 1e6);  // N/s
   EXPECT_NEAR(found / G, 1, 1e-4);
 }
 
@@ -81,10 +81,10 @@ TEST(ForeseenSignal, OfAJumpATurnAndASignalAtRestIsTheSignalThatWas) {
     const double F_dot = circuit.F_dot();
     EXPECT_EQ(F_dot, circuit.F_dot_as_it_was()) << signals.back();
   }
-  // twice the change before at most
+  // twice the change before at most, with G as above
   Circuit jump(scene);
   for (const double signal : {0.01, 0.11}) jump.step(signal);
-  EXPECT_NEAR(jump.F_dot() - jump.F_dot_as_it_was(), 4.5e7 * 0.02, 0.1 * 4.5e7 * 0.02);
+  EXPECT_NEAR(jump.F_dot() - jump.F_dot_as_it_was(), 8.8e7 * 0.02, 0.02 * 8.8e7 * 0.02);
 }
 
 TEST(ForeseenSignal, IsPartOfTheSavedState) {

@@ -91,7 +91,8 @@ TEST(Script, ItsCourseOverATimeIsStraightBetweenPointsAndJumps) {
 }
 
 TEST(Script, MeansOfItsCourseAddUpToTheAreaBelowIt) {
-  const ScriptPlayer script = player("script:\n  inputs:\n    Stick: [[0, -1], [0.0101 s, 0.7], [0.0101 s, 0.2], [0.05 s, 1]]\n");
+  const ScriptPlayer script =
+      player("script:\n  inputs:\n    Stick: [[0, -1], [0.0101 s, 0.7], [0.0101 s, 0.2], [0.05 s, 1]]\n");
   const double area = 0.0101 * (0.7 - 1) / 2 + 0.0399 * 1.2 / 2 + 0.05;  // until 0.1 s
   for (const std::int64_t step_ns : {1'000'000, 2'500'000, 20'000'000, 100'000'000}) {
     double sum = 0;
