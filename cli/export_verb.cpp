@@ -1,6 +1,9 @@
 // `slewring export REC`: a recording's variables as a table, or as structs for MATLAB.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -78,14 +81,23 @@ std::string input_text(const recording::Reader& reader, const TimeRange& range) 
   }
   std::string text = "time";
   for (const scene::InputDef& input : scene.inputs) text += "," + input.name;
+  const auto add_row = [&](double at, std::size_t i) {
+    text += fmt::format("\n{}", at);
+    for (const plotting::Series& curve : curves) text += fmt::format(",{}", curve.values[i]);
+  };
+  const std::int64_t step_ns = reader.identity().communication_step.ns;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (i > 0 && time[i] <= time[i - 1]) {
       throw Failure(ExitCode::bad_input,
                     "the session was reset on the way, so its input is no one table over time; "
                     "nothing was written; record it without a reset");
     }
-    text += fmt::format("\n{}", time[i]);
-    for (const plotting::Series& curve : curves) text += fmt::format(",{}", curve.values[i]);
+    add_row(time[i], i);
+    // a tick holds its values over its step; from there a line leads to the next one that was recorded
+    const auto changes = [i](const plotting::Series& curve) { return curve.values[i] != curve.values[i + 1]; };
+    if (i + 1 == time.size() || std::none_of(curves.begin(), curves.end(), changes)) continue;
+    const std::int64_t end_ns = std::llround(time[i] * 1e9) + step_ns, next_ns = std::llround(time[i + 1] * 1e9);
+    add_row(end_ns < next_ns ? static_cast<double>(end_ns) / 1e9 : time[i + 1], i);
   }
   return text + "\n";
 }
@@ -146,7 +158,7 @@ void add_export(options::Command& program) {
   options::Option input =
       verb.flag("--input", options->is_input,
                 "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, "
-                "straight lines between");
+                "each value held for a step, straight lines between");
   csv.excludes(mat);
   input.excludes(mat);
   verb.option("--from", options->from, "leave out what lies before, such as '2.5 s'").value_name("TIME");

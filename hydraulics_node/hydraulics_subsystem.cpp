@@ -95,6 +95,8 @@ void HydraulicsSubsystem::reset() {
   integrator_.reset();
   circuit_ = std::make_unique<hydraulics::Circuit>(scene_.hydraulics);
   integrator_ = std::make_unique<hydraulics::CircuitIntegrator>(*circuit_, scene_.hydraulics);
+  signal_trends_ = coupling::Trends(circuit_->flow_controls().size());
+  signals_.resize(circuit_->flow_controls().size());
   indicator_.reset();
   ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
   levels_.reset();
@@ -338,10 +340,34 @@ void HydraulicsSubsystem::end_at(std::size_t port) noexcept {
 
 // parameters on their way, and the controls of the step
 void HydraulicsSubsystem::take_tick(StepIndex n, std::span<const double> controls) noexcept {
+  for (std::size_t k = 0; k < signals_.size(); ++k) {
+    const auto control = static_cast<std::size_t>(circuit_->flow_controls()[k]);
+    static_cast<void>(signal_trends_.begin(k, circuit_->control_signals()[control]));
+  }
   ramps_.apply(n, [this](int parameter, double value) { circuit_->set_parameter(parameter, value); });
   for (std::size_t i = 0; i < std::min(controls.size(), control_of_channel_.size()); ++i) {
     if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
   }
+  for (std::size_t k = 0; k < signals_.size(); ++k) {
+    signal_trends_.end(k, circuit_->control_signals()[static_cast<std::size_t>(circuit_->flow_controls()[k])]);
+  }
+}
+
+// F_dot is for the coming step, whose signals are not there yet: they go on changing as they did, by the limiter of
+// trends.h, so that a jump is not continued.
+void HydraulicsSubsystem::foresee_signals() noexcept {
+  bool is_any_moving = false;
+  const std::span<const int> controls = circuit_->flow_controls();
+  for (std::size_t k = 0; k < signals_.size(); ++k) {
+    signals_[k] = circuit_->control_signals()[static_cast<std::size_t>(controls[k])];
+    const double change = signal_trends_.begin(k, signals_[k]);
+    if (change == 0) continue;
+    circuit_->set_control(controls[k], signals_[k] + change);
+    is_any_moving = true;
+  }
+  if (!is_any_moving) return;
+  integrator_->refresh_force_rates();
+  for (std::size_t k = 0; k < signals_.size(); ++k) circuit_->set_control(controls[k], signals_[k]);
 }
 
 StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
@@ -366,6 +392,7 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
 // adds_up: work and impulse go on from the sample before, since there was no exchange in between
 void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept {
   if (sample.F.size() != m_) coupling::resize(sample, m_);
+  foresee_signals();
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
   for (std::size_t i = 0; i < m_; ++i) {
     const hydraulics::ActuatorLinearisation& a = actuators[i];
@@ -407,6 +434,10 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   ramps_.add_to(hash);
   if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step brings another
   levels_.add_to(hash);
+  signal_trends_.add_to(hash);
+  for (const int control : circuit_->flow_controls()) {
+    hash.add(circuit_->control_signals()[static_cast<std::size_t>(control)]);
+  }
   hash.add(failure_.has_failed());
   return hash.digest();
 }

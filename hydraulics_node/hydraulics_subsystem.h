@@ -22,6 +22,7 @@
 #include "coupling/parameter_ramps.h"
 #include "coupling/port_levels.h"
 #include "coupling/subsystem.h"
+#include "coupling/trends.h"
 #include "hydraulics/circuit.h"
 #include "hydraulics/circuit_integrator.h"
 #include "scene/scene.h"
@@ -128,6 +129,7 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   [[nodiscard]] std::optional<std::size_t> first_alarm() const noexcept;
   void end_at(std::size_t port) noexcept;
   void take_tick(StepIndex n, std::span<const double> controls) noexcept;
+  void foresee_signals() noexcept;
   void take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                       StepReport& report) noexcept;
   void take_late(StepIndex step, const coupling::MechanismSample& mechanism) noexcept;
@@ -151,6 +153,8 @@ class HydraulicsSubsystem final : public coupling::Subsystem {
   StepIndex partner_age_ = 0;  // of that sample in the last step
   std::vector<std::string> port_names_;
   std::vector<int> control_of_channel_;  // -1: the channel is not for this circuit
+  coupling::Trends signal_trends_{0};    // of Circuit::flow_controls(), from tick to tick
+  std::vector<double> signals_;          // the same, while others are in their place
   ReducedMechanics reduced_;
   coupling::Indicator indicator_;
   coupling::ParameterRamps ramps_{0};  // sized with the circuit

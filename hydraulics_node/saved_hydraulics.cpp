@@ -26,6 +26,7 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
     self.ramps_.load(bytes, [&](int handle) { return handle >= 0 && handle < parameters; });
     self.levels_.load(bytes);
     self.reduced_.load(bytes);
+    self.signal_trends_.load(bytes);
     self.indicator_.load(bytes);
     if (self.is_free_running_) self.past_.load(bytes);
   } else {
@@ -33,6 +34,7 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
     self.ramps_.save(bytes);
     self.levels_.save(bytes);
     self.reduced_.save(bytes);
+    self.signal_trends_.save(bytes);
     self.indicator_.save(bytes);
     if (self.is_free_running_) self.past_.save(bytes);
   }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io_node/input_shape.h"
+
 namespace slew::io {
 namespace {
-
-constexpr double kFullSwing = 2;  // of a raw value, from -1 to 1
 
 std::string milliseconds_text(SimDuration time) {
   return std::to_string(time.ns / 1'000'000) + " ms";
@@ -354,7 +354,7 @@ void InputGate::advance_sampled(std::size_t index, StepIndex n, std::int64_t now
   channel.age = static_cast<std::uint32_t>(std::max<StepIndex>(0, n - channel.written_step));
 }
 
-void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns) {
+void InputGate::advance(StepIndex n, std::span<const SignalCourse> script, std::int64_t now_ns) {
   next_step_ = n + 1;
   latest_ns_ = now_ns;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -370,27 +370,55 @@ void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::in
     }
     if (!channel.holder.empty() && is_through(channel, n)) set_free(i, n);
     // source
-    double raw = channel.config.neutral;
+    raw_.clear();
     if (!channel.holder.empty()) {
       is_lockstep ? advance_lockstep(i, n, now_ns) : advance_sampled(i, n, now_ns);
-      raw = channel.controller_raw;
+      raw_.push_back({1, channel.controller_raw, channel.controller_raw});
     } else {
       channel.age = 0;
       channel.based_on = kJoinStep;
-      if (i < script_raw.size() && std::isfinite(script_raw[i])) {
-        raw = accepted(channel, script_raw[i]);
-      } else if (i < script_raw.size()) {
-        ++rejected_not_finite_;
+      if (i >= script.size() || !accept_script(channel, script[i])) {
+        raw_.assign({{1, channel.config.neutral, channel.config.neutral}});
       }
     }
-    channel.raw = raw;
-    // dead zone cuts, ramp limits the rate, scale makes it a control value
-    const double wanted = std::fabs(raw) < channel.config.dead_zone ? 0.0 : raw;
-    double most = channel.config.ramp > 0 ? H_ / channel.config.ramp : kFullSwing;
-    if (channel.config.rate_limit > 0) most = std::min(most, H_ * channel.config.rate_limit);
-    channel.ramped += std::clamp(wanted - channel.ramped, -most, most);
-    channel.control = channel.config.scale * channel.ramped;
+    shape(channel);
   }
+}
+
+void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns) {
+  held_.resize(script_raw.size());
+  for (std::size_t i = 0; i < held_.size(); ++i) held_[i].assign({{1, script_raw[i], script_raw[i]}});
+  advance(n, std::span<const SignalCourse>(held_), now_ns);
+}
+
+// Into raw_. False where the script has no value, or none that is finite, which is counted.
+bool InputGate::accept_script(Channel& channel, std::span<const SignalPiece> course) noexcept {
+  for (const SignalPiece& piece : course) {
+    if (std::isfinite(piece.begin) && std::isfinite(piece.end)) continue;
+    ++rejected_not_finite_;
+    return false;
+  }
+  for (const SignalPiece& piece : course) {
+    const double begin = accepted(channel, piece.begin);
+    if (channel.config.is_digital) {
+      raw_.push_back({1, begin, begin});
+      break;
+    }
+    raw_.push_back({piece.share, begin, piece.end == piece.begin ? begin : accepted(channel, piece.end)});
+  }
+  return !course.empty();
+}
+
+// dead zone cuts, ramp limits the rate, scale makes it a control value
+void InputGate::shape(Channel& channel) noexcept {
+  const ChannelConfig& config = channel.config;
+  double most = kAnyChange;
+  if (config.ramp > 0) most = H_ / config.ramp;
+  if (config.rate_limit > 0) most = std::min(most, H_ * config.rate_limit);
+  const ShapedStep step = shape_step(raw_, config.dead_zone, most, channel.ramped);
+  channel.raw = step.raw_mean;
+  channel.ramped = step.end;
+  channel.control = config.scale * step.mean;
 }
 
 void InputGate::excuse(SimDuration standstill, std::int64_t now_ns) noexcept {

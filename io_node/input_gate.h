@@ -2,7 +2,10 @@
 //
 // A raw value passes, in this order: finite (a NaN or infinity is rejected and counted), range (-1..1 analog, 0..1
 // digital; what is outside is held at the bound and counted), dead zone (|raw| below it is cut to 0, nothing is
-// rescaled), operator ramp and rate limit (the slower one), scale. The result is the control value of the tick.
+// rescaled), operator ramp and rate limit (the slower one), scale. The control value of a tick is the mean of the
+// result over its step, since it is held over the step: the value at the begin would be late by half a step. A
+// controller's value is held over the step; the script's signal is a course of straight pieces, of which a digital
+// channel takes the value at the begin.
 //
 // Who may move a channel is a lease: the first controller that asks holds it until it releases it or falls silent. It
 // is a process of a name: another one of that name is refused while the first is there. A silent holder's channel goes
@@ -30,6 +33,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/signal.h"
 #include "core/state_bytes.h"
 #include "core/state_hash.h"
 #include "core/time.h"
@@ -117,7 +121,9 @@ class InputGate {
   [[nodiscard]] int vacant() const noexcept;
   // How long the tick of step n may be held back for values that have not come; 0: it need not wait.
   [[nodiscard]] SimDuration awaited(StepIndex n) const noexcept;
-  // Values for the tick of step n. script_raw: the scripted source's raw values, used on channels without a holder.
+  // Values for the tick of step n. script: the scripted source's raw signals over the step, used on channels without a
+  // holder; of an empty one, and of a channel beyond their end: neutral. The second form: raw values that are held.
+  void advance(StepIndex n, std::span<const SignalCourse> script, std::int64_t now_ns);
   void advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns);
   // Time in which the session stood still for another reason: no controller is blamed for its silence.
   void excuse(SimDuration standstill, std::int64_t now_ns) noexcept;
@@ -172,9 +178,9 @@ class InputGate {
     StepIndex out_since = kJoinStep;   // tick that fell out of step
     std::int64_t out_since_ns = 0;
     StepIndex based_on = kJoinStep;
-    double raw = 0;     // after range, before dead zone
-    double ramped = 0;  // after dead zone and ramp
-    double control = 0;
+    double raw = 0;      // after range, before dead zone; mean of the step
+    double ramped = 0;   // after dead zone and ramp, at the end of the step
+    double control = 0;  // mean of the step
     std::uint32_t age = 0;
   };
 
@@ -202,7 +208,12 @@ class InputGate {
   void advance_lockstep(std::size_t channel, StepIndex n, std::int64_t now_ns);
   void fall_out_of_step(std::size_t channel, StepIndex n, std::int64_t now_ns);
 
+  [[nodiscard]] bool accept_script(Channel& channel, std::span<const SignalPiece> course) noexcept;
+  void shape(Channel& channel) noexcept;
+
   std::vector<Channel> channels_;
+  SignalCourse raw_;                // of one channel over the step, after range
+  std::vector<SignalCourse> held_;  // of values that the script holds
   std::vector<Notice> notices_;
   std::array<Told, 16> told_;  // the last ones: who is not among them is told at once
   std::int64_t latest_ns_ = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/check.h"
@@ -18,8 +17,6 @@ using wire::Role;
 using wire::Topic;
 
 constexpr Topic kOwnTopics[] = {Topic::tick, Topic::variables};
-
-constexpr double kSaysNothing = std::numeric_limits<double>::quiet_NaN();
 
 // A gate that can look for the processes behind controllers.
 GateConfig seeing(GateConfig gate, transport::Transport& transport) {
@@ -41,7 +38,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       shedding_(config_.shed, (config_.required_roles & bit(Role::flex)) != 0 ? View::flex : View::none),
       input_ns_(config_.channels.size()),
       tick_ns_(static_cast<std::size_t>(kLoopMemory)),
-      script_raw_(config_.channels.size(), kSaysNothing) {
+      script_(config_.channels.size()) {
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
   sent_.set_depth(node::sent_depth(node::kSentTime, config_.step));
@@ -475,23 +472,19 @@ void IoNode::ask_for_missing(std::int64_t now_ns) {
 void IoNode::issue_tick(std::int64_t now_ns) {
   // inputs of this step
   const SimTime t = start_of(n_, config_.step);
-  std::fill(script_raw_.begin(), script_raw_.end(), kSaysNothing);
+  for (SignalCourse& raw : script_) raw.clear();
   tick_.commands.clear();
   if (config_.source != nullptr) {
-    config_.source->values(t, script_raw_);
+    config_.source->courses(t, t + config_.step, script_);
     script_changes_.clear();
     config_.source->changes(t, t + config_.step, script_changes_);
     waiting_commands_.insert(waiting_commands_.end(), script_changes_.begin(), script_changes_.end());
-  }
-  for (double& raw : script_raw_) {
-    const auto channel = static_cast<std::size_t>(&raw - script_raw_.data());
-    if (std::isnan(raw)) raw = gate_.config(channel).neutral;
   }
   const std::int64_t waited_ns = controllers_wait_ns_ == 0 ? 0 : now_ns - controllers_wait_ns_;
   const SimDuration standstill{now_ns - last_tick_ns_ - waited_ns};
   if (standstill > kStandstill) gate_.excuse(standstill, now_ns);
   controllers_wait_ns_ = 0;
-  gate_.advance(n_, script_raw_, now_ns);
+  gate_.advance(n_, script_, now_ns);
   tell_notices();
   // commands of this step; what does not fit waits for the next tick
   while (!waiting_commands_.empty() && tick_.commands.size() < wire::kMaxCommandsPerTick) {

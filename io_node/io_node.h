@@ -38,8 +38,8 @@ namespace slew::io {
 class InputSource {
  public:
   virtual ~InputSource() = default;
-  // Raw value of each channel at t; NaN where the source says nothing about a channel.
-  virtual void values(SimTime t, std::span<double> raw) = 0;
+  // Raw signal of each channel over [from, to); empty where the source says nothing about a channel.
+  virtual void courses(SimTime from, SimTime to, std::span<SignalCourse> raw) = 0;
   // Parameter changes due in [from, to).
   virtual void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) = 0;
 };
@@ -275,7 +275,7 @@ class IoNode final : public node::Node {
   node::ResendClock resend_;
   node::StallWatch stall_;
   std::int64_t fault_seen_ns_ = 0;
-  std::vector<double> script_raw_;
+  std::vector<SignalCourse> script_;  // raw, by channel
   std::vector<wire::Command> script_changes_;
   wire::Tick tick_;
   wire::VariableBlock block_;

@@ -11,8 +11,8 @@ static_assert(scene::kMaxExpandedBytes <= wire::kMaxSceneBytes);
 static_assert(static_cast<int>(Shed::view) == static_cast<int>(scene::ShedLoad::view));
 static_assert(static_cast<int>(Shed::variables) == static_cast<int>(scene::ShedLoad::variables));
 
-void ScriptSource::values(SimTime t, std::span<double> raw) {
-  for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = player_.value(i, t);
+void ScriptSource::courses(SimTime from, SimTime to, std::span<SignalCourse> raw) {
+  for (std::size_t i = 0; i < raw.size(); ++i) player_.read_course(i, from, to, raw[i]);
 }
 
 void ScriptSource::changes(SimTime from, SimTime to, std::vector<wire::Command>& due) {

@@ -14,7 +14,7 @@ namespace slew::io {
 class ScriptSource final : public InputSource {
  public:
   explicit ScriptSource(const scene::Scene& scene) : player_(scene) {}
-  void values(SimTime t, std::span<double> raw) override;
+  void courses(SimTime from, SimTime to, std::span<SignalCourse> raw) override;
   void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) override;
 
  private:

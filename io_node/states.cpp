@@ -134,7 +134,10 @@ Status IoNode::load_own(const node::Checkpoint& checkpoint) {
 }
 
 TickFollower::TickFollower(const IoConfig& config)
-    : config_(config), parameters_(config.parameters, config.step), controls_(config.channels.size()) {
+    : config_(config),
+      parameters_(config.parameters, config.step),
+      controls_(config.channels.size()),
+      before_(controls_.size()) {
   static_cast<void>(begin(nullptr));
 }
 
@@ -148,13 +151,14 @@ Status TickFollower::begin(const node::Checkpoint* own) {
     parameters_.load(bytes);
     if (!bytes.is_sound()) status = bytes.finish("io");
   }
-  for (std::size_t i = 0; i < controls_.size(); ++i) controls_[i] = gate.control(i);
+  for (std::size_t i = 0; i < controls_.size(); ++i) controls_[i] = before_[i] = gate.control(i);
   return status;
 }
 
 void TickFollower::take(const wire::Tick& tick) {
   for (const wire::Command& command : tick.commands) parameters_.begin(command, tick.header.step);
   parameters_.advance(tick.header.step);
+  std::swap(controls_, before_);
   for (std::size_t i = 0; i < controls_.size() && i < tick.controls.size(); ++i) controls_[i] = tick.controls[i];
 }
 
@@ -165,9 +169,11 @@ node::Checkpoint TickFollower::state(StepIndex step) const {
   hash.add(step);
   StateWriter bytes(checkpoint.bytes, own_format(config_));
   for (std::size_t i = 0; i < controls_.size(); ++i) {
-    const double scale = config_.channels[i].scale;
-    const double ramped = scale == 0 ? config_.channels[i].neutral : controls_[i] / scale;
-    for (const double value : {ramped, ramped, controls_[i]}) {
+    const double scale = config_.channels[i].scale, neutral = config_.channels[i].neutral;
+    const double raw = scale == 0 ? neutral : controls_[i] / scale;
+    const double before = scale == 0 ? neutral : before_[i] / scale;
+    const double ramped = std::clamp(raw + 0.5 * (raw - before), -1.0, 1.0);
+    for (const double value : {raw, ramped, controls_[i]}) {
       bytes.number(value);
       hash.add(value);
     }

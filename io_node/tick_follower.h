@@ -1,7 +1,9 @@
 // What io_node's own state has become after the ticks of a recording, so that a session can go on behind them.
 //
-// The live parameters are those of io_node to the bit. Of the channels the ticks tell the control value alone: raw
-// value and ramp are taken as control / scale, so that the ramp goes on where it was, to the last bits.
+// The live parameters are those of io_node to the bit. Of the channels the ticks tell the control value alone, the mean
+// over a step: the raw value is taken as control / scale, and where the ramp stood at the end of the step as if the
+// last change went on for half a step. In a ramp and at rest that is so, to the last bits; where one of them ends
+// within the last step, it is off by a third of what the ramp does in a step at most.
 #pragma once
 
 #include <vector>
@@ -26,7 +28,7 @@ class TickFollower {
  private:
   const IoConfig& config_;
   LiveParameters parameters_;
-  std::vector<double> controls_;
+  std::vector<double> controls_, before_;  // of the last two ticks
 };
 
 }  // namespace slew::io

@@ -12,7 +12,7 @@ PlayedScene::PlayedScene(const scene::Scene& scene)
       H_(config_.step),
       gate_(config_.channels, config_.gate, H_),
       session_(scene),
-      raw_(gate_.size()),
+      script_(gate_.size()),
       controls_(gate_.size()) {
   set_floating_point_mode();
   require(session_.start());
@@ -21,13 +21,12 @@ PlayedScene::PlayedScene(const scene::Scene& scene)
 void PlayedScene::advance() {
   const SimTime t = time();
   commands_.clear();
-  for (std::size_t i = 0; i < raw_.size(); ++i) raw_[i] = gate_.config(i).neutral;
   if (config_.source != nullptr) {
-    config_.source->values(t, raw_);
+    config_.source->courses(t, t + H_, script_);
     config_.source->changes(t, t + H_, commands_);
   }
   // nobody but the script moves a channel, so that the wall clock is never asked
-  gate_.advance(n_, raw_, 0);
+  gate_.advance(n_, script_, 0);
   for (std::size_t i = 0; i < controls_.size(); ++i) controls_[i] = gate_.control(i);
   session_.step(n_, commands_, controls_);
   ++n_;

@@ -39,7 +39,8 @@ class PlayedScene {
   io::InputGate gate_;
   DirectSession session_;
   StepIndex n_ = 0;
-  std::vector<double> raw_, controls_;
+  std::vector<SignalCourse> script_;  // raw, by channel
+  std::vector<double> controls_;
   std::vector<wire::Command> commands_;
 };
 

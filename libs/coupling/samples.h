@@ -43,7 +43,7 @@ struct MechanismSample {
 //   F' = F_dot - K (v - v_ref) - lambda (F - F_n),  line contribution -D (v - v_ref).
 struct ActuatorSample {
   PortArray F;               // pressure force pA AA - pB AB [N]
-  PortArray F_dot;           // [N/s]
+  PortArray F_dot;           // under the signals that the coming tick is expected to have [N/s]
   PortArray K;               // oil-column stiffness, >= 0 [N/m]
   PortArray lambda;          // leakage of the spring, >= 0 [1/s]
   PortArray D;               // feed-through damping, >= 0 [N s/m]

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/state_bytes.h"
+#include "core/state_hash.h"
 
 namespace slew::coupling {
 
@@ -30,6 +31,12 @@ class Trends {
   // Between sub-steps.
   void save(StateWriter& bytes) const { visit(last_, bytes); }
   void load(StateReader& bytes) noexcept { visit(last_, bytes); }
+  void add_to(StateHash& hash) const noexcept {
+    for (const Last& last : last_) {
+      hash.add(last.change);
+      hash.add(last.before);
+    }
+  }
 
  private:
   struct Last {

@@ -41,6 +41,7 @@ Circuit::Circuit(const HydraulicsDef& def)
   actuators_ = builder.actuators();
   states_ = builder.states();
   control_name_ = builder.controls();
+  flow_controls_ = builder.flow_controls();
   supply_ = builder.supply();
   reliefs_ = builder.reliefs();
   add_contents(builder);

@@ -99,6 +99,8 @@ class Circuit {
   [[nodiscard]] int find_control(std::string_view component) const noexcept;  // -1: none
   [[nodiscard]] std::span<const std::string> controls() const noexcept { return control_name_; }
   [[nodiscard]] std::span<const double> control_signals() const noexcept { return control_; }
+  // Those that move flows at once, not by a state such as a spool.
+  [[nodiscard]] std::span<const int> flow_controls() const noexcept { return flow_controls_; }
   void set_control(int control, double signal) noexcept { control_[static_cast<std::size_t>(control)] = signal; }
   void set_line_force(int actuator, double F) noexcept { line_force_[static_cast<std::size_t>(actuator)] = F; }
 
@@ -298,6 +300,7 @@ class Circuit {
 
   std::vector<double> control_;
   std::vector<std::string> control_name_;
+  std::vector<int> flow_controls_;
   std::vector<double> line_force_;
   std::vector<ElementVariable> variables_;
   std::vector<LiveParameter> parameters_;

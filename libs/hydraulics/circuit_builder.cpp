@@ -32,7 +32,8 @@ StateIndex CircuitBuilder::add_state(const ComponentState& state) {
   return state_count() - 1;
 }
 
-int CircuitBuilder::add_control(std::string_view component) {
+int CircuitBuilder::add_control(std::string_view component, SignalMoves moves) {
+  if (moves == SignalMoves::flows) flow_controls_.push_back(static_cast<int>(controls_.size()));
   controls_.emplace_back(component);
   return static_cast<int>(controls_.size()) - 1;
 }

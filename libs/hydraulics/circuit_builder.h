@@ -51,6 +51,9 @@ struct Relief {
   double fully_open = 0;  // Pa above the outlet
 };
 
+// What a component's control signal moves: flows at once, or a state that flows follow.
+enum class SignalMoves { flows, a_state };
+
 struct ComponentState {
   double initial = 0;
   double scale = 1;  // typical size, for the error measure
@@ -64,7 +67,7 @@ class CircuitBuilder {
   [[nodiscard]] const HydraulicsDef& def() const noexcept { return def_; }
   [[nodiscard]] StateIndex volume(std::string_view name) const;
   [[nodiscard]] StateIndex add_state(const ComponentState& state);
-  [[nodiscard]] int add_control(std::string_view component);
+  [[nodiscard]] int add_control(std::string_view component, SignalMoves moves);
   // Number of the component's own load-sensing pressure; of another component's.
   [[nodiscard]] LsIndex ls_index(std::string_view component) const;
   void add_content(const Content& content) { contents_.push_back(content); }
@@ -84,6 +87,8 @@ class CircuitBuilder {
   [[nodiscard]] const std::vector<Actuator>& actuators() const noexcept { return actuators_; }
   [[nodiscard]] const std::vector<ComponentState>& states() const noexcept { return states_; }
   [[nodiscard]] const std::vector<std::string>& controls() const noexcept { return controls_; }
+  // Controls whose signal moves flows at once.
+  [[nodiscard]] const std::vector<int>& flow_controls() const noexcept { return flow_controls_; }
   [[nodiscard]] const std::vector<std::string>& ls_names() const noexcept { return ls_names_; }
   [[nodiscard]] const std::vector<StateIndex>& supply() const noexcept { return supply_; }
   [[nodiscard]] const std::vector<Relief>& reliefs() const noexcept { return reliefs_; }
@@ -95,6 +100,7 @@ class CircuitBuilder {
   std::vector<Actuator> actuators_;
   std::vector<ComponentState> states_;
   std::vector<std::string> controls_;
+  std::vector<int> flow_controls_;
   std::vector<std::string> ls_names_;
   std::vector<StateIndex> supply_;
   std::vector<Relief> reliefs_;

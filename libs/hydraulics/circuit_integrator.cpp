@@ -399,6 +399,14 @@ void CircuitIntegrator::refresh() noexcept {
   publish();
 }
 
+void CircuitIntegrator::refresh_force_rates() noexcept {
+  circuit_.rates(y_.data(), f_.data());
+  for (std::size_t j = 0; j < m_; ++j) {
+    if (circuit_.is_line(static_cast<int>(j))) continue;
+    published_[j].F_dot = pressure_force(circuit_.actuators()[j], y_.data(), f_.data()).rate;
+  }
+}
+
 // (2), from y_, its rates f_, outflow_ and C_
 void CircuitIntegrator::publish() noexcept {
   for (std::size_t j = 0; j < m_; ++j) {

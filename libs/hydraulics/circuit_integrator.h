@@ -87,6 +87,8 @@ class CircuitIntegrator final : private math::StiffSystem {
   [[nodiscard]] std::span<LineChamber> mutable_lines() noexcept { return circuit_.mutable_lines(); }
   // Works out actuators() from the state.
   void refresh() noexcept;
+  // F_dot alone, under the control signals as they are now.
+  void refresh_force_rates() noexcept;
   [[nodiscard]] double step_size() const noexcept { return solver_->step_size(); }
   void set_step_size(double h) noexcept { solver_->set_step_size(h); }
   [[nodiscard]] std::span<const StateIndex> quasi_static() const noexcept { return quasi_static_; }  // volumes

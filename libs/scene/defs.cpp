@@ -217,7 +217,9 @@ constexpr Field kInputFields[] = {
 
 constexpr Field kScriptFields[] = {
     field<&ScriptDef::interpolation>(
-        "interpolation", {.choices = kInterpolations, .doc = "between two points: a line, or the earlier value held"}),
+        "interpolation",
+        {.choices = kInterpolations,
+         .doc = "between two points: a line, of which a step gets the mean, or the earlier value held"}),
 };
 
 constexpr Field kScriptTrackFields[] = {

@@ -18,17 +18,43 @@ ScriptPlayer::ScriptPlayer(const Scene& scene)
   }
 }
 
+ScriptPlayer::Points::const_iterator ScriptPlayer::first_behind(SimTime t, const Points& points) noexcept {
+  return std::upper_bound(points.begin(), points.end(), t.ns,
+                          [](std::int64_t time, const Point& point) { return time < point.time_ns; });
+}
+
 double ScriptPlayer::value(std::size_t input, SimTime t) const noexcept {
   if (input >= tracks_.size() || tracks_[input].empty()) return 0;
-  const std::vector<Point>& points = tracks_[input];
-  const auto next = std::upper_bound(points.begin(), points.end(), t.ns,
-                                     [](std::int64_t time, const Point& point) { return time < point.time_ns; });
+  const Points& points = tracks_[input];
+  const auto next = first_behind(t, points);
   if (next == points.begin()) return next->value;
   const Point& before = *(next - 1);
   if (next == points.end() || before.time_ns == t.ns || interpolation_ == ScriptInterpolation::step)
     return before.value;
   const double share = static_cast<double>(t.ns - before.time_ns) / static_cast<double>(next->time_ns - before.time_ns);
   return before.value + (next->value - before.value) * share;
+}
+
+void ScriptPlayer::read_course(std::size_t input, SimTime from, SimTime to, SignalCourse& course) const {
+  course.clear();
+  double begin = value(input, from);
+  const auto add_until = [&, length = static_cast<double>(to.ns - from.ns)](std::int64_t time_ns, double end) {
+    if (time_ns > from.ns) course.push_back({static_cast<double>(time_ns - from.ns) / length, begin, end});
+    from.ns = time_ns;
+  };
+  if (interpolation_ == ScriptInterpolation::step || input >= tracks_.size() || tracks_[input].empty()) {
+    add_until(to.ns, begin);
+    return;
+  }
+  const Points& points = tracks_[input];
+  auto next = first_behind(from, points);
+  for (; next != points.end() && next->time_ns < to.ns; ++next) {
+    add_until(next->time_ns, next->value);
+    begin = next->value;
+  }
+  // a jump at `to` belongs to what follows
+  const bool ends_at_point = next != points.end() && next->time_ns == to.ns;
+  add_until(to.ns, ends_at_point ? next->value : value(input, to));
 }
 
 std::span<const ScriptChange> ScriptPlayer::changes(SimTime from, SimTime to) const noexcept {

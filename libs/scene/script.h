@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/signal.h"
 #include "core/time.h"
 #include "scene/scene.h"
 
@@ -20,6 +21,10 @@ class ScriptPlayer {
   // Raw value -1..1 of the input with this index in Scene::inputs. Real-time safe.
   [[nodiscard]] double value(std::size_t input, SimTime t) const noexcept;
 
+  // The signal in [from, to) as straight pieces, in the place of what `course` held; with interpolation step one piece
+  // at value(from). Allocates while `course` grows.
+  void read_course(std::size_t input, SimTime from, SimTime to, SignalCourse& course) const;
+
   // Parameter changes that begin in [from, to). Real-time safe.
   [[nodiscard]] std::span<const ScriptChange> changes(SimTime from, SimTime to) const noexcept;
 
@@ -31,8 +36,10 @@ class ScriptPlayer {
     std::int64_t time_ns;
     double value;
   };
+  using Points = std::vector<Point>;
+  [[nodiscard]] static Points::const_iterator first_behind(SimTime t, const Points& points) noexcept;
   ScriptInterpolation interpolation_;
-  std::vector<std::vector<Point>> tracks_;  // by input
+  std::vector<Points> tracks_;  // by input
   std::vector<ScriptChange> changes_;
   std::vector<std::int64_t> change_ns_;
   SimTime end_;

@@ -21,6 +21,23 @@ constexpr std::string_view kScriptKeys[] = {"file", "columns", "sha256", "inputs
 constexpr std::string_view kRawSuffix = ".raw";  // of an input's variable, as `slewring export` writes it
 constexpr std::string_view kChangeKeys[] = {"value"};
 
+// Values of a record that are no further apart than a step, as ticks held them: each until the next. Of values further
+// apart nothing is known in between, a line leads from one to the next.
+Table held_as_ticks(const Table& points, SimDuration step) {
+  Table held;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0) {
+      const bool is_next_tick = duration_of_seconds(points[i][0] - points[i - 1][0]).ns <= step.ns;
+      const bool is_jump =
+          points[i][0] == points[i - 1][0] || (i + 1 < points.size() && points[i + 1][0] == points[i][0]);
+      if (is_next_tick && !is_jump && points[i][1] != points[i - 1][1])
+        held.push_back({points[i][0], points[i - 1][1]});
+    }
+    held.push_back(points[i]);
+  }
+  return held;
+}
+
 class ScriptReader {
  public:
   ScriptReader(const Surroundings& surroundings, const NameTable& names, Scene& scene, const ReadContext& context)
@@ -219,6 +236,7 @@ class ScriptReader {
       if (std::any_of(tracks.begin(), tracks.end(), [&](const ScriptTrack& t) { return t.input == input; }))
         context_.report.add(head.mark, "", {"two columns are for '" + input + "'", "one of them", ""});
       file.columns.push_back(head.name);
+      if (head.name.ends_with(kRawSuffix)) column.points = held_as_ticks(column.points, scene_.session.step_duration());
       add_track({.input = input, .points = std::move(column.points)}, head.mark);
     }
     if (late.empty()) return;

@@ -42,7 +42,7 @@ class FourWayValve final : public HydraulicComponent {
         a_(builder.volume(def.port_a)),
         b_(builder.volume(def.port_b)),
         t_(builder.volume(def.port_t)),
-        control_(builder.add_control(def.name)),
+        control_(builder.add_control(def.name, SignalMoves::flows)),
         transition_(builder.def().orifice_transition),
         root_2_rho_(std::sqrt(2 / builder.def().oil_density)) {
     apply_parameters();

@@ -135,7 +135,7 @@ class L90lsValve final : public HydraulicComponent {
         t_(builder.volume(def.port_t)),
         port_{builder.volume(def.port_a), builder.volume(def.port_b)},
         spool_(builder.add_state({.initial = 0, .scale = 1})),
-        control_(builder.add_control(def.name)),
+        control_(builder.add_control(def.name, SignalMoves::a_state)),
         ls_(builder.ls_index(def.name)),
         transition_(builder.def().orifice_transition) {
     apply_parameters();

@@ -43,8 +43,11 @@ TEST(InputGate, DeadZoneCutsAndScaleHasItsSign) {
 TEST(InputGate, RampTakesItsTimeForAFullStroke) {
   InputGate gate = crane_gate(0.5);
   for (StepIndex n = 0; n < 250; ++n) gate.advance(n, std::vector<double>{0, 1}, 0);
-  EXPECT_NEAR(gate.control(1), 250, 1e-9);
+  // the mean over the step that ends half way
+  EXPECT_NEAR(gate.control(1), 249.5, 1e-9);
   for (StepIndex n = 250; n < 500; ++n) gate.advance(n, std::vector<double>{0, 1}, 0);
+  EXPECT_NEAR(gate.control(1), 499.5, 1e-9);
+  gate.advance(500, std::vector<double>{0, 1}, 0);
   EXPECT_NEAR(gate.control(1), 500, 1e-9);
 }
 
@@ -56,7 +59,32 @@ TEST(InputGate, RateLimitHoldsWhereTheRampIsFaster) {
   channel.rate_limit = 2;
   InputGate gate({channel}, GateConfig{}, milliseconds(1));
   for (StepIndex n = 0; n < 250; ++n) gate.advance(n, std::vector<double>{1}, 0);
-  EXPECT_NEAR(gate.control(0), 250, 1e-9);
+  EXPECT_NEAR(gate.control(0), 249.5, 1e-9);
+}
+
+TEST(InputGate, TheScriptsSignalGivesItsMeanOverTheStepAndAControllersValueIsHeld) {
+  ChannelConfig button = channel("Button", 1, 0);
+  button.is_digital = true;
+  InputGate gate({channel("Input_Slew", -500, 0), channel("Input_Lift", 500, 0), button}, GateConfig{},
+                 milliseconds(1));
+  const std::vector<SignalCourse> script = {
+      {{0.25, 0.4, 0.8}, {0.75, -1, -0.6}}, {{1, 0.3, 0.5}}, {{0.5, 1, 1}, {0.5, 0, 0}}};
+  gate.advance(0, script, 0);
+  EXPECT_DOUBLE_EQ(gate.raw(0), -0.45);
+  EXPECT_DOUBLE_EQ(gate.control(0), 225);
+  EXPECT_DOUBLE_EQ(gate.raw(1), 0.4);
+  EXPECT_DOUBLE_EQ(gate.control(1), 200);
+  EXPECT_EQ(gate.control(2), 1) << "a button is pressed or not, as at the begin of the step";
+  ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
+  EXPECT_TRUE(gate.write(1, "pid", 0.9, 0, 0));
+  gate.advance(1, script, 0);
+  EXPECT_EQ(gate.raw(1), 0.9);
+  EXPECT_EQ(gate.control(1), 450);
+  // nothing from the script: neutral
+  gate.advance(2, std::vector<SignalCourse>{{}}, 0);
+  EXPECT_EQ(gate.control(0), 0);
+  EXPECT_EQ(gate.control(2), 0);
+  EXPECT_EQ(gate.rejected_not_finite(), 0u);
 }
 
 TEST(InputGate, NanAndOutOfRangeAreCountedAndNeverPassOn) {

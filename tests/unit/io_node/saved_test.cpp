@@ -23,7 +23,10 @@ using wire::Topic;
 // moves the stick to and fro, so that the ramp is never at rest
 class Swinging final : public InputSource {
  public:
-  void values(SimTime t, std::span<double> raw) override { raw[0] = (t.ns / (70 * kMs)) % 2 == 0 ? 1.0 : -0.5; }
+  void courses(SimTime from, SimTime, std::span<SignalCourse> raw) override {
+    const double value = (from.ns / (70 * kMs)) % 2 == 0 ? 1.0 : -0.5;
+    raw[0].assign({{1, value, value}});
+  }
   void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) override {
     const std::int64_t at = 95 * kMs;
     if (from.ns <= at && at < to.ns) due.push_back({0, "Bag.mass", 1500, 40 * kMs});

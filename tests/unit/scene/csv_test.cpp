@@ -93,6 +93,14 @@ TEST_F(Csv, ASecondRowAtOneTimeIsAJump) {
   EXPECT_EQ(load_text(scene.expanded_text, "scene").script.tracks[0].points, scene.script.tracks[0].points);
 }
 
+TEST_F(Csv, RecordedValuesOneStepApartAreHeldAsTicksHeldThem) {
+  EXPECT_EQ(stick("time,Stick.raw\n0,0\n0.001,0.5\n0.002,0.5\n0.003,1\n0.5,-1\n"),
+            (Table{{0, 0}, {0.001, 0}, {0.001, 0.5}, {0.002, 0.5}, {0.003, 0.5}, {0.003, 1}, {0.5, -1}}));
+  // not what somebody wrote, and no jump that is there already
+  EXPECT_EQ(stick("time,Stick\n0,0\n0.001,0.5\n"), (Table{{0, 0}, {0.001, 0.5}}));
+  EXPECT_EQ(stick("time,Stick.raw\n0,0\n0.001,0.5\n0.001,1\n"), (Table{{0, 0}, {0.001, 0.5}, {0.001, 1}}));
+}
+
 TEST_F(Csv, AnEmptyCellIsNoPointOfItsColumn) {
   const Scene scene = load("time,Stick,Lever\n0,0,\n0.5,1,1\n1,,0\n2,-0.25,\n");
   ASSERT_EQ(scene.script.tracks.size(), 2u);

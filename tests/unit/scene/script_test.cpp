@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 #include "scene_text.h"
@@ -58,6 +60,56 @@ TEST(Script, AnInputWithoutTrackIsNeutral) {
   const ScriptPlayer script = player("script:\n  inputs:\n    Stick: [[0, 1]]\n");
   EXPECT_EQ(script.value(1, at(1)), 0.0);
   EXPECT_EQ(script.value(7, at(1)), 0.0);
+}
+
+SignalCourse course(const ScriptPlayer& script, SimTime from, SimTime to) {
+  SignalCourse pieces{{1, 7, 7}};  // what it held before is gone
+  script.read_course(0, from, to, pieces);
+  return pieces;
+}
+
+void expect_pieces(const SignalCourse& pieces, const std::vector<std::array<double, 3>>& expected) {
+  ASSERT_EQ(pieces.size(), expected.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    EXPECT_DOUBLE_EQ(pieces[i].share, expected[i][0]) << i;
+    EXPECT_DOUBLE_EQ(pieces[i].begin, expected[i][1]) << i;
+    EXPECT_DOUBLE_EQ(pieces[i].end, expected[i][2]) << i;
+  }
+}
+
+TEST(Script, ItsCourseOverATimeIsStraightBetweenPointsAndJumps) {
+  const ScriptPlayer script =
+      player("script:\n  inputs:\n    Stick: [[1 s, 0.5], [1.5 s, -0.5], [1.5 s, 0.25], [2 s, 1]]\n");
+  expect_pieces(course(script, at(0.5), at(1)), {{1, 0.5, 0.5}});
+  expect_pieces(course(script, at(0.75), at(1.25)), {{0.5, 0.5, 0.5}, {0.5, 0.5, 0}});
+  expect_pieces(course(script, at(1.1), at(1.2)), {{1, 0.3, 0.1}});
+  expect_pieces(course(script, at(1.25), at(1.5)), {{1, 0, -0.5}});
+  expect_pieces(course(script, at(1.5), at(1.75)), {{1, 0.25, 0.625}});
+  expect_pieces(course(script, at(1), at(2)), {{0.5, 0.5, -0.5}, {0.5, 0.25, 1}});
+  expect_pieces(course(script, at(1.75), at(2.25)), {{0.5, 0.625, 1}, {0.5, 1, 1}});
+  expect_pieces(course(script, at(3), at(4)), {{1, 1, 1}});
+}
+
+TEST(Script, MeansOfItsCourseAddUpToTheAreaBelowIt) {
+  const ScriptPlayer script =
+      player("script:\n  inputs:\n    Stick: [[0, -1], [0.0101 s, 0.7], [0.0101 s, 0.2], [0.05 s, 1]]\n");
+  const double area = 0.0101 * (0.7 - 1) / 2 + 0.0399 * 1.2 / 2 + 0.05;  // until 0.1 s
+  for (const std::int64_t step_ns : {1'000'000, 2'500'000, 20'000'000, 100'000'000}) {
+    double sum = 0;
+    for (std::int64_t t = 0; t < 100'000'000; t += step_ns) {
+      SignalMean mean;
+      for (const SignalPiece& piece : course(script, {t}, {t + step_ns})) mean.add(piece.share, piece.begin, piece.end);
+      sum += mean.value() * 1e-9 * static_cast<double>(step_ns);
+    }
+    EXPECT_NEAR(sum, area, 1e-15) << step_ns;
+  }
+}
+
+TEST(Script, AHeldScriptIsHeldOverATimeFromItsBegin) {
+  const ScriptPlayer script = player("script:\n  interpolation: step\n  inputs:\n    Stick: [[0, 0], [1 s, 1]]\n");
+  expect_pieces(course(script, at(0.9), at(1.1)), {{1, 0, 0}});
+  expect_pieces(course(script, at(1), at(1.1)), {{1, 1, 1}});
+  expect_pieces(course(player("script:\n  inputs:\n    Button: [[0, 1]]\n"), at(0), at(1)), {{1, 0, 0}});
 }
 
 TEST(Script, ADigitalInputTakesZeroAndOneOnly) {

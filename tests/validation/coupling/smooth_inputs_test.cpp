@@ -1,5 +1,7 @@
-// A valve whose signal moves all the time, 0.5 + 0.3 sin(2 pi f t) of its range, on the boom with one cylinder and
-// friction, against the monolith (docs/models/coupling_levels.md, "An input that moves within a step").
+// A valve whose signal moves all the time, as a script of straight lines through the scene's input, against the
+// monolith under the same lines (docs/models/coupling_levels.md, "An input that moves within a step"). Two machines:
+// the boom on one cylinder with friction, whose valve has a spool with states, and the crane with two degrees of
+// freedom, whose valve opens at once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +13,8 @@
 #include <vector>
 
 #include "build_paths.h"
+#include "io_node/input_gate.h"
+#include "io_node/scene_config.h"
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
@@ -21,50 +25,90 @@ constexpr SimDuration kGrid = milliseconds(16);
 constexpr std::int64_t kPieceNs = 250'000;  // of the signal that moves
 constexpr double kOpening = 0.2;            // s, from neutral: no jump at the start
 
-double signal(const scene::Scene& scene, double frequency, double t) {
-  const double opened = t < kOpening ? 0.5 - 0.5 * std::cos(std::numbers::pi * t / kOpening) : 1.0;
-  return scene.inputs[0].scale * opened * (0.5 + 0.3 * std::sin(2 * std::numbers::pi * frequency * t));
-}
-
-// with the integrators' own errors out of the way
-scene::Scene load() {
-  return scene::load_file(
-      std::string(SLEWRING_SOURCE_DIR) + "/scenes/single_cylinder.yaml",
-      {"Cyl_Lift.friction_curve=Spline_CylinderFriction", "Cyl_Lift.cylinder_coefficient=0.9",
-       "Cyl_Lift.seal_friction=1 kN", "hydraulics.relative_tolerance=1e-6", "mechanics.max_substep=0.25 ms"});
-}
-
 void require_ok(const Status& status) {
   if (!status.is_ok()) throw std::runtime_error(status.text);
 }
 
-// F on the grid, of a signal that is straight over each piece or held from its beginning
-enum class Signal { moves, is_held };
-std::vector<double> reference_forces(const scene::Scene& scene, double frequency, std::int64_t piece_ns, Signal kind) {
-  monolith::Monolith reference(scene, {});
-  require_ok(reference.start());
-  std::vector<double> F;
-  for (std::int64_t t = 0; t < kDuration.ns; t += piece_ns) {
-    const std::vector<double> begin{signal(scene, frequency, SimTime{t}.seconds())};
-    const std::vector<double> end{signal(scene, frequency, SimTime{t + piece_ns}.seconds())};
-    require_ok(reference.advance_to({t + piece_ns}, begin, kind == Signal::moves ? end : begin));
-    if ((t + piece_ns) % kGrid.ns == 0) F.push_back(reference.ports()[0].F);
+struct Machine {
+  scene::Scene scene;
+  double mean, swing;  // of the raw value
+
+  [[nodiscard]] double raw(double frequency, double t) const {
+    const double opened = t < kOpening ? 0.5 - 0.5 * std::cos(std::numbers::pi * t / kOpening) : 1.0;
+    return opened * (mean + swing * std::sin(2 * std::numbers::pi * frequency * t));
   }
-  return F;
+};
+
+// with the integrators' own errors out of the way
+const scene::Overrides kTight = {"hydraulics.relative_tolerance=1e-6", "mechanics.max_substep=0.25 ms"};
+
+scene::Scene load(const std::string& name, scene::Overrides overrides) {
+  overrides.insert(overrides.end(), kTight.begin(), kTight.end());
+  return scene::load_file(std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + name, overrides);
 }
 
-// Largest difference on the grid [N], of a run whose steps get the signal at `share` of their length.
-double force_error(scene::Scene& scene, double H, Level level, double frequency, double share,
-                   const std::vector<double>& reference) {
-  scene.session.step = H;
-  scene.session.coupling = level;
-  CoupledRun run(scene);
+Machine boom() {
+  return {load("single_cylinder.yaml", {"Cyl_Lift.friction_curve=Spline_CylinderFriction",
+                                        "Cyl_Lift.cylinder_coefficient=0.9", "Cyl_Lift.seal_friction=1 kN"}),
+          0.5, 0.3};
+}
+
+Machine crane() {
+  return {load("two_dof_crane.yaml", {}), 0.0, 0.2};
+}
+
+// What is compared on the grid.
+enum class Compared { F, x };  // N, m
+
+// On the grid, of a signal that is straight over each piece or held from its beginning
+enum class Signal { moves, is_held };
+std::vector<double> reference_values(const Machine& machine, double frequency, std::int64_t piece_ns, Signal kind,
+                                     Compared compared) {
+  monolith::Monolith reference(machine.scene, {});
+  require_ok(reference.start());
+  const double scale = machine.scene.inputs[0].scale;
+  std::vector<double> values;
+  for (std::int64_t t = 0; t < kDuration.ns; t += piece_ns) {
+    const std::vector<double> begin{scale * machine.raw(frequency, SimTime{t}.seconds())};
+    const std::vector<double> end{scale * machine.raw(frequency, SimTime{t + piece_ns}.seconds())};
+    require_ok(reference.advance_to({t + piece_ns}, begin, kind == Signal::moves ? end : begin));
+    const monolith::PortState& port = reference.ports()[0];
+    if ((t + piece_ns) % kGrid.ns == 0) values.push_back(compared == Compared::F ? port.F : port.x);
+  }
+  return values;
+}
+
+// The same signal as the scene's script, in points that lines join or that hold until the next.
+void set_script(Machine& machine, double frequency, std::int64_t piece_ns, scene::ScriptInterpolation interpolation) {
+  scene::ScriptTrack track{.input = machine.scene.inputs[0].name, .points = {}};
+  for (std::int64_t t = 0; t <= kDuration.ns; t += piece_ns) {
+    track.points.push_back({SimTime{t}.seconds(), machine.raw(frequency, SimTime{t}.seconds())});
+  }
+  machine.scene.script = {};
+  machine.scene.script.interpolation = interpolation;
+  machine.scene.script.tracks = {track};
+}
+
+// Largest difference on the grid.
+double error_of(Machine& machine, double H, Level level, const std::vector<double>& reference, Compared compared) {
+  machine.scene.session.step = H;
+  machine.scene.session.coupling = level;
+  const SimDuration step = machine.scene.session.step_duration();
+  const io::IoConfig config = io::make_config(machine.scene, {.session_name = "s", .recording = io::Recording::none});
+  io::InputGate gate(config.channels, config.gate, step);
+  std::vector<SignalCourse> script(gate.size());
+  CoupledRun run(machine.scene);
   require_ok(run.start());
   double error = 0;
-  for (std::size_t k = 0; k < reference.size();) {
-    run.step(std::vector<double>{signal(scene, frequency, run.time().seconds() + share * H)});
+  StepIndex n = 0;
+  for (std::size_t k = 0; k < reference.size(); ++n) {
+    config.source->courses(run.time(), run.time() + step, script);
+    gate.advance(n, script, 0);
+    run.step(std::vector<double>{gate.control(0)});
     if (run.has_failed()) throw std::runtime_error("the coupled run failed");
-    if (run.time().ns % kGrid.ns == 0) error = std::max(error, std::fabs(run.actuators().F[0] - reference[k++]));
+    if (run.time().ns % kGrid.ns != 0) continue;
+    const double value = compared == Compared::F ? run.actuators().F[0] : run.mechanism().x[0];
+    error = std::max(error, std::fabs(value - reference[k++]));
   }
   return error;
 }
@@ -77,56 +121,83 @@ std::vector<double> orders(const std::vector<double>& errors) {
 }
 
 constexpr double kSteps[] = {4e-3, 2e-3, 1e-3};  // s
-constexpr double kAtBegin = 0, kInMiddle = 0.5;
 
-std::vector<double> errors_to_moving(Level level, double frequency, double share) {
-  scene::Scene scene = load();
-  const std::vector<double> moving = reference_forces(scene, frequency, kPieceNs, Signal::moves);
+std::vector<double> errors_to_moving(Machine& machine, Level level, double frequency,
+                                     scene::ScriptInterpolation interpolation, Compared compared) {
+  const std::vector<double> moving = reference_values(machine, frequency, kPieceNs, Signal::moves, compared);
+  set_script(machine, frequency, kPieceNs, interpolation);
   std::vector<double> errors;
-  for (const double H : kSteps) errors.push_back(force_error(scene, H, level, frequency, share, moving));
+  for (const double H : kSteps) errors.push_back(error_of(machine, H, level, moving, compared));
   return errors;
 }
 
 // both sides of the comparison hold the same values over the same steps
-std::vector<double> errors_to_held(Level level, double frequency) {
-  scene::Scene scene = load();
+std::vector<double> errors_to_held(Machine& machine, Level level, double frequency, Compared compared) {
   std::vector<double> errors;
   for (const double H : kSteps) {
-    const std::vector<double> held = reference_forces(scene, frequency, duration_of_seconds(H).ns, Signal::is_held);
-    errors.push_back(force_error(scene, H, level, frequency, kAtBegin, held));
+    const std::int64_t step_ns = duration_of_seconds(H).ns;
+    const std::vector<double> held = reference_values(machine, frequency, step_ns, Signal::is_held, compared);
+    set_script(machine, frequency, step_ns, scene::ScriptInterpolation::step);
+    errors.push_back(error_of(machine, H, level, held, compared));
   }
   return errors;
 }
 
+constexpr scene::ScriptInterpolation kLines = scene::ScriptInterpolation::linear;
+constexpr scene::ScriptInterpolation kHeld = scene::ScriptInterpolation::step;
+
+void expect_orders(const std::vector<double>& errors, double order, double within, double frequency) {
+  for (const double found : orders(errors)) EXPECT_NEAR(found, order, within) << frequency << " Hz";
+}
+
+// ---- a valve with a spool -------------------------------------------------------------------------------------
+
 TEST(SmoothInputs, exchange_of_level_two_is_of_second_order_while_the_valve_moves) {
+  Machine machine = boom();
+  for (const double f : {1.0, 5.0}) expect_orders(errors_to_held(machine, Level::two, f, Compared::F), 2, 0.3, f);
+}
+
+TEST(SmoothInputs, script_of_lines_is_followed_to_second_order_by_levels_linear_and_two) {
+  Machine machine = boom();
   for (const double frequency : {1.0, 5.0}) {
-    for (const double order : orders(errors_to_held(Level::two, frequency))) EXPECT_NEAR(order, 2, 0.3) << frequency;
+    const std::vector<double> two = errors_to_moving(machine, Level::two, frequency, kLines, Compared::F);
+    expect_orders(two, 2, 0.3, frequency);
+    EXPECT_LT(two.back(), 30) << frequency;  // N of 36 and 62 kN
+    expect_orders(errors_to_moving(machine, Level::linear, frequency, kLines, Compared::F), 2, 0.2, frequency);
+    expect_orders(errors_to_moving(machine, Level::two, frequency, kLines, Compared::x), 2, 0.3, frequency);
   }
 }
 
-TEST(SmoothInputs, value_held_from_the_begin_of_a_step_makes_level_two_first_order) {
+TEST(SmoothInputs, values_held_from_the_begin_of_a_step_are_late_and_make_level_two_first_order) {
+  Machine machine = boom();
   for (const double frequency : {1.0, 5.0}) {
-    for (const double order : orders(errors_to_moving(Level::two, frequency, kAtBegin))) {
-      EXPECT_NEAR(order, 1, 0.2) << frequency;
-    }
+    expect_orders(errors_to_moving(machine, Level::two, frequency, kHeld, Compared::F), 1, 0.2, frequency);
   }
 }
 
-TEST(SmoothInputs, value_of_the_steps_middle_keeps_the_second_order_of_level_two) {
-  for (const double frequency : {1.0, 5.0}) {
-    const std::vector<double> errors = errors_to_moving(Level::two, frequency, kInMiddle);
-    for (const double order : orders(errors)) EXPECT_NEAR(order, 2, 0.3) << frequency;
-    EXPECT_LT(errors.back(), 30) << frequency;  // N of 36 and 62 kN
+TEST(SmoothInputs, level_hold_is_of_first_order_all_the_same) {
+  Machine machine = boom();
+  for (const scene::ScriptInterpolation interpolation : {kLines, kHeld}) {
+    expect_orders(errors_to_moving(machine, Level::hold, 5, interpolation, Compared::F), 1.1, 0.3, 5);
   }
 }
 
-TEST(SmoothInputs, level_hold_is_of_first_order_whichever_value_it_gets) {
-  for (const double share : {kAtBegin, kInMiddle}) {
-    for (const double order : orders(errors_to_moving(Level::hold, 5, share))) {
-      EXPECT_GT(order, 0.8) << share;
-      EXPECT_LT(order, 1.4) << share;
-    }
+// ---- a valve that opens at once -------------------------------------------------------------------------------
+
+TEST(SmoothInputs, piston_behind_a_valve_without_spool_is_followed_to_second_order_by_level_two) {
+  Machine machine = crane();
+  for (const double frequency : {1.0, 5.0}) {
+    const std::vector<double> errors = errors_to_moving(machine, Level::two, frequency, kLines, Compared::x);
+    expect_orders(errors, 2, 0.3, frequency);
+    EXPECT_LT(errors.back(), 1e-6) << frequency;  // m of 9.4 and 1.9 mm; F_dot under the signal that was: 2e-5
   }
+}
+
+TEST(SmoothInputs, exchange_of_level_two_is_of_second_order_without_a_spool_too) {
+  Machine machine = crane();
+  const std::vector<double> errors = errors_to_held(machine, Level::two, 5, Compared::F);
+  expect_orders(errors, 2, 0.3, 5);
+  EXPECT_LT(errors.back(), 2);  // N of 6.6 kN; F_dot under the signal that was: 13
 }
 
 }  // namespace smooth_inputs_test
