@@ -229,8 +229,9 @@ void assemble(FeModel& model, int n) {
     for (int j = 0; j < kElementFreedoms; ++j) {
       for (int i = 0; i < kElementFreedoms; ++i) {
         const int row = at[static_cast<std::size_t>(i)], column = at[static_cast<std::size_t>(j)];
-        // zeros would cost the factors of K fill and digits
-        if (row >= 0 && column >= 0 && block(i, j) != 0) to.emplace_back(row, column, block(i, j));
+        // what has no entries of K is not to be coupled in its factors
+        const bool is_apart = (i >= kNodalFreedoms || j >= kNodalFreedoms) && block(i, j) == 0;
+        if (row >= 0 && column >= 0 && !is_apart) to.emplace_back(row, column, block(i, j));
       }
     }
   };
