@@ -15,7 +15,7 @@
 // which rows become dependent, a direction is held by alpha phi^2 alone, less than its own mass m within sqrt(m/alpha).
 // So a step goes in parts p that are halved until every stage has the matrix of the first one but for a share c, and
 // what the rows show is closed faster than the position comes:
-//   |ln(d_stage/d_first)| <= c,   omega_p = max(omega, C/p) where p < h                                  (9)
+//   |ln(d_stage/d_first)| <= c,   omega_p = max(omega, C/p) where p is a small share of h                (9)
 // d: root of the determinant of each node's block in the factors. A step that (9) is not met in, or that leaves joints
 // open by more than kHeldByPenalty, is reported.
 //

@@ -13,8 +13,10 @@ namespace {
 // c and omega times part of (9): measured on A02 with 1 to 40 loops. Larger ones lose energy in a flat position, the
 // second by how fast a row closes, both by what the Runge-Kutta method leaves open.
 constexpr double kMostChange = 0.1, kPartFrequency = 0.2;
-// Whole steps: a chain that whips changes by a quarter, without any such position.
+// Of whole steps: the whip of A11's chain is more than 0.4, without any such position.
 constexpr double kMostChangeOfAStep = 0.4;
+// Parts of a step that are shorter than this share close faster; that whip needs none.
+constexpr int kClosingParts = 32;
 // smallest part of a step, and how many are halved before the rest goes unresolved
 constexpr int kSmallestParts = 65536, kMostHalvings = 512;
 
@@ -55,7 +57,7 @@ bool take_part(const Model& model, const PenaltyModel& body, BodyState& state, S
 // before another part of so many smallest ones
 bool begin_part(const Model& model, const PenaltyModel& body, const BodyState& state, State& joints, Workspace& ws,
                 PenaltyWorkspace& pws, double h, int part) noexcept {
-  const double least = part < kSmallestParts ? kPartFrequency * kSmallestParts / (part * h) : 0;
+  const double least = part <= kSmallestParts / kClosingParts ? kPartFrequency * kSmallestParts / (part * h) : 0;
   pws.frequency = std::max(model.penalty.frequency, least);
   return evaluate(model, body, state, joints, ws, pws);
 }
