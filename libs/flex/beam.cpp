@@ -161,6 +161,7 @@ BeamElement build_element(const BeamDef& def, const BeamElementDef& from, int id
   for (int i = 0; i < 6; ++i) {
     out.freedoms[static_cast<std::size_t>(i)] = 6 * static_cast<int>(out.node1) + i;
     out.freedoms[static_cast<std::size_t>(6 + i)] = 6 * static_cast<int>(out.node2) + i;
+    out.freedoms[static_cast<std::size_t>(kNodalFreedoms + i)] = -1;
   }
   out.start = Vec3(def.nodes[out.node1].position);
   const Vec3 along = Vec3(def.nodes[out.node2].position) - out.start;
@@ -191,8 +192,8 @@ void add_consistent(std::vector<MassSample>& samples, const BeamElement& e, Rota
 }
 
 // displacement of a point at `offset` from the node whose freedoms begin at `first`: u + r x offset
-Matrix3x12 carried(int first, Vec3 offset, bool is_offset) {
-  Matrix3x12 N = Matrix3x12::Zero();
+Matrix3xElement carried(int first, Vec3 offset, bool is_offset) {
+  Matrix3xElement N = Matrix3xElement::Zero();
   const Mat3 turning = math::skew(-offset);
   for (int a = 0; a < 3; ++a) {
     if (!is_offset) N(a, first + a) = 1;
@@ -212,20 +213,32 @@ void add_lumped(std::vector<MassSample>& samples, const BeamElement& e) {
   }
 }
 
-// M = sum w N^T N, K element by element
-void assemble(FeModel& model) {
-  const int n = 6 * static_cast<int>(model.nodes.size());
+// rows behind `first`; returns the next free one
+int number_internal(BeamElement& element, RotaryInertia rotary, int first) {
+  const std::array<bool, 6> has = internal_freedoms(element, rotary);
+  for (std::size_t i = 0; i < has.size(); ++i) {
+    if (has[i]) element.freedoms[kNodalFreedoms + i] = first++;
+  }
+  return first;
+}
+
+// M = sum w N^T N, K element by element, of n freedoms
+void assemble(FeModel& model, int n) {
   std::vector<Eigen::Triplet<double>> mass, stiffness;
-  const auto add = [](std::vector<Eigen::Triplet<double>>& to, const std::array<int, 12>& at, const Matrix12& block) {
-    for (int j = 0; j < 12; ++j) {
-      for (int i = 0; i < 12; ++i)
-        to.emplace_back(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(j)], block(i, j));
+  const auto add = [](std::vector<Eigen::Triplet<double>>& to, const ElementFreedoms& at, const ElementMatrix& block) {
+    for (int j = 0; j < kElementFreedoms; ++j) {
+      for (int i = 0; i < kElementFreedoms; ++i) {
+        const int row = at[static_cast<std::size_t>(i)], column = at[static_cast<std::size_t>(j)];
+        // what has no entries of K is not to be coupled in its factors
+        const bool is_apart = (i >= kNodalFreedoms || j >= kNodalFreedoms) && block(i, j) == 0;
+        if (row >= 0 && column >= 0 && !is_apart) to.emplace_back(row, column, block(i, j));
+      }
     }
   };
   for (const MassSample& sample : model.samples) {
-    Matrix12 block;
-    for (int j = 0; j < 12; ++j) {
-      for (int i = 0; i < 12; ++i) block(i, j) = sample.weight * sample.N.col(i).dot(sample.N.col(j));
+    ElementMatrix block;
+    for (int j = 0; j < kElementFreedoms; ++j) {
+      for (int i = 0; i < kElementFreedoms; ++i) block(i, j) = sample.weight * sample.N.col(i).dot(sample.N.col(j));
     }
     add(mass, sample.freedoms, block);
   }
@@ -262,17 +275,20 @@ FeModel build_beam(const BeamDef& def) {
     index[def.nodes[i].id] = i;
     model.nodes.push_back({def.nodes[i].id, Vec3(def.nodes[i].position), 6 * static_cast<int>(i), 6});
   }
+  int freedoms = 6 * static_cast<int>(model.nodes.size());
   for (const BeamElementDef& element : elements_of(def)) {
     model.elements.push_back(build_element(def, element, static_cast<int>(model.elements.size()) + 1, index));
-    if (def.mass == MassKind::consistent)
+    if (def.mass == MassKind::consistent) {
+      freedoms = number_internal(model.elements.back(), def.rotary_inertia, freedoms);
       add_consistent(model.samples, model.elements.back(), def.rotary_inertia);
-    else
+    } else {
       add_lumped(model.samples, model.elements.back());
+    }
   }
   model.axes = model.elements.front().axes;
   model.made_of = fmt::format("beam of {} nodes and {} elements, {} mass", model.nodes.size(), model.elements.size(),
                               def.mass == MassKind::consistent ? "consistent" : "lumped");
-  assemble(model);
+  assemble(model, freedoms);
   return model;
 }
 

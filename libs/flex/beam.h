@@ -3,8 +3,9 @@
 // Nodes lie anywhere; straight elements join them, in the order of the nodes unless they are listed. Each element has
 // its own section, material and direction of the section's y axis. Mass: consistent with the shape functions
 // (beam_element.h), by four Gauss points an element, which are exact for it; or lumped, half of an element at each of
-// its nodes with the section's second moments. Lumped mass has no moment of the element's own length: second moments of
-// the solid then are too large by rho A l^3/6 an element along the beam. Card: docs/models/flex_beam_elements.md.
+// its nodes with the section's second moments, without internal freedoms. Lumped mass has no moment of the element's
+// own length: second moments of the solid then are too large by rho A l^3/6 an element along the beam. Card:
+// docs/models/flex_beam_elements.md.
 #pragma once
 
 #include <array>
@@ -48,7 +49,9 @@ struct BeamDef {
   std::vector<BeamElementDef> elements;  // empty: a chain through the nodes of the first section and material
   Triple y_axis = {0, 1, 0};             // where it lies along an element, the body's z is taken instead
   MassKind mass = MassKind::consistent;
-  RotaryInertia rotary_inertia = RotaryInertia::with;  // none: mass consistent only, for comparison with Euler's beam
+  // none: mass consistent only, for comparison with Euler's beam. It leaves the sections' inertia out of the bending;
+  // the mass integrals of a reduced body (integrals.h) stay those of the solid.
+  RotaryInertia rotary_inertia = RotaryInertia::with;
 };
 
 // Nodes with the ids 1 to count at equal distances on a line [m, body frame]. Pre-condition: count >= 2.

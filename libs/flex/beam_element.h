@@ -7,11 +7,15 @@
 //             + [3 xi^2 - 2 xi^3 + phi xi] v2         + l [-xi^2 + xi^3 - phi/2 (xi-xi^2)] rz2               (2)
 //   (1+phi) rz = 6/l (xi^2-xi) v1 + [1 - 4 xi + 3 xi^2 + phi (1-xi)] rz1
 //              + 6/l (xi-xi^2) v2 + [-2 xi + 3 xi^2 + phi xi] rz2                                             (3)
-// with phi_y; in the x-z plane the same of w and -ry with phi_z; ux and rx are linear. A point (y, z) of a section
-// moves by
+// with phi_y; in the x-z plane the same of w and -ry with phi_z; ux and rx are linear. Six internal freedoms add
+// 4 xi (1-xi) times themselves to ux, v, w, rx, ry, rz: without them shear, stretch and twist are constant along the
+// element, and its frequencies of second order only. The planes' four are there with shear deformation. A point (y, z)
+// of a section moves by
 //   (ux - y rz + z ry,  v - z rx,  w + y rx)                                                                  (4)
-// K is the integral of E A ux'^2 + G J rx'^2 + E Izz rz'^2 + E Iyy ry'^2 + k G A gamma^2: thesis eq. 29 at the far end.
+// K is the integral of E A ux'^2 + G J rx'^2 + E Izz rz'^2 + E Iyy ry'^2 + k G A gamma^2: thesis eq. 29 at the far end,
+// and diagonal in the internal freedoms, since the other fields need no load inside.
 // Source: Przemieniecki 1968, ch. 5 and 11; the flexible-body tutorial thesis (2017), eq. 29, signs and phi corrected.
+// Deviation: the internal freedoms.
 // Not covered: warping, sections whose shear centre is not the centroid, taper inside one element.
 // Card: docs/models/flex_beam_elements.md.
 #pragma once
@@ -25,21 +29,23 @@
 
 namespace slew::flex {
 
-using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
-using Matrix12 = Eigen::Matrix<double, 12, 12>;
-using Row12 = Eigen::Matrix<double, 1, 12>;
+inline constexpr int kNodalFreedoms = 12, kElementFreedoms = 18;  // nodal: in body axes; internal: in local axes
+using Matrix3xElement = Eigen::Matrix<double, 3, kElementFreedoms>;
+using ElementMatrix = Eigen::Matrix<double, kElementFreedoms, kElementFreedoms>;
+using ElementRow = Eigen::Matrix<double, 1, kElementFreedoms>;
+using ElementFreedoms = std::array<int, kElementFreedoms>;
 
 struct BeamElement {
   int id = 0;  // counted from 1
   std::size_t node1 = 0, node2 = 0;
-  std::array<int, 12> freedoms{};  // rows of the model: six of node 1, six of node 2
-  math::Vec3 start;                // of node 1 [m]
-  math::Mat3 axes;                 // columns: local x, y, z
-  double length = 0;               // l [m]
-  double youngs_modulus = 0;       // E [Pa]
-  double shear_modulus = 0;        // G [Pa]
-  double density = 0;              // rho [kg/m3]
-  double phi_y = 0, phi_z = 0;     // (1)
+  ElementFreedoms freedoms{};   // rows of the model: six of node 1, six of node 2, internal; -1: none
+  math::Vec3 start;             // of node 1 [m]
+  math::Mat3 axes;              // columns: local x, y, z
+  double length = 0;            // l [m]
+  double youngs_modulus = 0;    // E [Pa]
+  double shear_modulus = 0;     // G [Pa]
+  double density = 0;           // rho [kg/m3]
+  double phi_y = 0, phi_z = 0;  // (1)
   Section section;
 };
 
@@ -49,23 +55,26 @@ struct BeamElement {
 
 // N(P) = axis + y per_y + z per_z: displacement in body axes per freedom of the element.
 struct ElementField {
-  Matrix3x12 axis, per_y, per_z;
+  Matrix3xElement axis, per_y, per_z;
 };
 
 // Whether sections that turn in bending move their points along the beam: rotary inertia.
 enum class RotaryInertia : int { with, none };
 
+// Which of the six internal freedoms the element has.
+[[nodiscard]] std::array<bool, 6> internal_freedoms(const BeamElement& element, RotaryInertia rotary) noexcept;
+
 [[nodiscard]] ElementField field_at(const BeamElement& element, double xi, RotaryInertia rotary = RotaryInertia::with);
 // d(axis)/dx across the element's axis: (0, v', w') turned into body axes [1 per freedom].
-[[nodiscard]] Matrix3x12 slope_at(const BeamElement& element, double xi);
+[[nodiscard]] Matrix3xElement slope_at(const BeamElement& element, double xi);
 
 // Strain of the axis ux' [1], rate of twist rx', curvatures ry' and rz' [1/m] per freedom.
 struct ElementStrain {
-  Row12 stretch, twist, bend_y, bend_z;
+  ElementRow stretch, twist, bend_y, bend_z;
 };
 [[nodiscard]] ElementStrain strain_at(const BeamElement& element, double xi);
 
-// In body axes, symmetric to the bit.
-[[nodiscard]] Matrix12 stiffness_of(const BeamElement& element);
+// Symmetric to the bit.
+[[nodiscard]] ElementMatrix stiffness_of(const BeamElement& element);
 
 }  // namespace slew::flex

@@ -1,7 +1,8 @@
 // A linear finite element model: nodes, mass and stiffness, and what is known beyond the two matrices.
 //
 // All vectors and freedoms are in the axes of the body frame. A node has three translations, or these and three
-// rotations; its rows follow each other: ux uy uz [rx ry rz].
+// rotations; its rows follow each other: ux uy uz [rx ry rz]. The internal freedoms of beam elements (beam_element.h)
+// come behind those of the nodes; rigid motions leave them zero.
 // Where the mass sits is known of our beams as samples: M = sum w N^T N, and every integral of rho over the solid is a
 // sum over the same samples, so that all of them are consistent with M. Of imported matrices only M is known.
 #pragma once
@@ -28,11 +29,11 @@ struct FeNode {
 
 // A share of the mass at a place of the reference configuration, or the second moment of a section about its axis.
 struct MassSample {
-  double weight = 0;               // w: kg, > 0; of an offset kg m2
-  bool is_offset = false;          // true: position and N are per metre away from the axis, and linear integrals vanish
-  math::Vec3 position;             // m; of an offset a unit vector
-  std::array<int, 12> freedoms;    // rows of the model that move it, -1: none
-  Eigen::Matrix<double, 3, 12> N;  // displacement of the place per freedom
+  double weight = 0;         // w: kg, > 0; of an offset kg m2
+  bool is_offset = false;    // true: position and N are per metre away from the axis, and linear integrals vanish
+  math::Vec3 position;       // m; of an offset a unit vector
+  ElementFreedoms freedoms;  // rows of the model that move it, -1: none
+  Matrix3xElement N;         // displacement of the place per freedom
 };
 
 struct FeModel {

@@ -31,9 +31,10 @@ constexpr Field kBodyFields[] = {
                           "its direction the body's z is taken"}),
     field<&FlexibleBodyDef::mass_matrix>(
         "mass_matrix", {.choices = kMassMatrices, .doc = "consistent with the deflections, or lumped at the nodes"}),
-    field<&FlexibleBodyDef::rotary_inertia>(
-        "rotary_inertia",
-        {.choices = kRotaryInertias, .doc = "of the sections; none for comparison with Euler's beam"}),
+    field<&FlexibleBodyDef::rotary_inertia>("rotary_inertia",
+                                            {.choices = kRotaryInertias,
+                                             .doc = "of the sections in bending; none for comparison with Euler's "
+                                                    "beam: the frame keeps the inertia of the solid"}),
 };
 
 constexpr Field kMaterialFields[] = {

@@ -233,14 +233,14 @@ Problems check_reduction(const FlexibleBodyDef& def, const FeModel& model) {
     interfaces.insert(model.nodes.back().id);
     if (!is_clamped) interfaces.insert(model.nodes.front().id);
   }
-  int inside = 0;
+  int inside = model.freedoms();
   for (const FeNode& node : model.nodes) {
     if (clamped.contains(node.id) && interfaces.contains(node.id))
       problems.push_back({reduction.interface_nodes.empty() ? "reduction.clamped_nodes" : "reduction.interface_nodes",
                           fmt::format("node {} is clamped and an interface", node.id),
                           "interfaces that move",
                           {}});
-    if (!clamped.contains(node.id) && !interfaces.contains(node.id)) inside += node.freedoms;
+    if (clamped.contains(node.id) || interfaces.contains(node.id)) inside -= node.freedoms;
   }
   if (reduction.stiffening == GeometricStiffening::straight_beam) {
     const std::string obstacle = obstacle_to_foreshortening(model, is_clamped ? clamped.size() : 0);

@@ -91,13 +91,15 @@ Chain chain_of(const FeModel& model) {
 
 // t_k . t_l of all pairs at a point of an element
 void slope_products(const BeamElement& e, double xi, const MatrixXd& Phi, std::vector<double>& out) {
-  const Matrix3x12 S = slope_at(e, xi);
+  const Matrix3xElement S = slope_at(e, xi);
   const auto m = static_cast<std::size_t>(Phi.cols());
   std::vector<Vec3> t(m);
   for (std::size_t k = 0; k < m; ++k) {
     double sum[3] = {};
-    for (int j = 0; j < 12; ++j) {
-      const double d = Phi(e.freedoms[static_cast<std::size_t>(j)], static_cast<Index>(k));
+    for (int j = 0; j < kElementFreedoms; ++j) {
+      const int freedom = e.freedoms[static_cast<std::size_t>(j)];
+      if (freedom < 0) continue;
+      const double d = Phi(freedom, static_cast<Index>(k));
       for (int a = 0; a < 3; ++a) sum[a] += S(a, j) * d;
     }
     t[k] = Vec3(sum[0], sum[1], sum[2]);

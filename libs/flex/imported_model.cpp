@@ -301,6 +301,14 @@ FeModel import_model(const ImportDef& def) {
 }
 
 void export_model(const FeModel& model, const ImportDef& files) {
+  int of_nodes = 0;
+  for (const FeNode& node : model.nodes) of_nodes += node.freedoms;
+  if (of_nodes != model.freedoms()) {
+    throw InputError(
+        fmt::format("{}: {} freedoms are inside elements, and the files hold those of nodes alone; expected "
+                    "a model without them; take mass_matrix: lumped",
+                    model.name, model.freedoms() - of_nodes));
+  }
   write_matrix_market(files.mass, model.M, model.name + ": mass, kg, kg m, kg m2");
   write_matrix_market(files.stiffness, model.K, model.name + ": stiffness, N/m, N, N m");
   std::string table = "# " + model.name + ": nodes in the order of the matrices' rows, m\nid x y z freedoms\n";

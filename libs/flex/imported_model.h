@@ -33,7 +33,8 @@ struct ImportDef {
 [[nodiscard]] FeModel model_of_matrices(const std::string& name, std::vector<FeNode> nodes, const SparseMatrix& M,
                                         const SparseMatrix& K, ModelUnits units = ModelUnits::m_kg_s);
 
-// The three files of a model, as import_model() reads them. Throws InputError when one cannot be written.
+// The three files of a model, as import_model() reads them. Throws InputError when one cannot be written, or when the
+// model has freedoms besides those of its nodes.
 void export_model(const FeModel& model, const ImportDef& files);
 
 }  // namespace slew::flex

@@ -15,7 +15,7 @@ namespace {
 
 Vec3 moved(const MassSample& sample, const MatrixXd& Phi, Index mode) {
   double u[3] = {0, 0, 0};
-  for (int j = 0; j < 12; ++j) {
+  for (int j = 0; j < kElementFreedoms; ++j) {
     const int row = sample.freedoms[static_cast<std::size_t>(j)];
     if (row < 0) continue;
     for (int a = 0; a < 3; ++a) u[a] += sample.N(a, j) * Phi(row, mode);

@@ -10,9 +10,12 @@ using Eigen::MatrixXd;
 
 namespace {
 
-double times_mode(const Row12& row, const BeamElement& element, const MatrixXd& Phi, Index mode) {
+double times_mode(const ElementRow& row, const BeamElement& element, const MatrixXd& Phi, Index mode) {
   double sum = 0;
-  for (int j = 0; j < 12; ++j) sum += row(j) * Phi(element.freedoms[static_cast<std::size_t>(j)], mode);
+  for (int j = 0; j < kElementFreedoms; ++j) {
+    const int freedom = element.freedoms[static_cast<std::size_t>(j)];
+    if (freedom >= 0) sum += row(j) * Phi(freedom, mode);
+  }
   return sum;
 }
 

@@ -275,6 +275,13 @@ bool BlockLdl::factorize_definite(int node) noexcept {
   return factorize_cholesky(C, size);
 }
 
+double BlockLdl::root_of_determinant(int node) const noexcept {
+  const int size = nodes_[at(node)].size;
+  double product = 1;
+  for (int i = 0; i < size; ++i) product *= inverse_[at(first_value_[at(node)] + i * size + i)];
+  return product;
+}
+
 // Inverse over the independent rows, zero in the others: the largest pivot, by what was put into its row, first.
 void BlockLdl::invert_closing(int node, double tolerance) noexcept {
   const int size = nodes_[at(node)].size, row = first_row_[at(node)];

@@ -70,6 +70,8 @@ class BlockLdl {
   // As a factorisation of another time left it, for who goes by the last one.
   void set_smallest_pivot(double pivot) noexcept { smallest_pivot_ = pivot; }
   [[nodiscard]] int redundant_rows() const noexcept { return redundant_rows_; }
+  // Of a definite node: root of the determinant of what is left of its block when it is eliminated.
+  [[nodiscard]] double root_of_determinant(int node) const noexcept;
 
   // K x = b in place; b by first_row().
   void solve(std::span<double> b) const noexcept;

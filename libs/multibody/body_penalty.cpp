@@ -120,6 +120,7 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
   factored_modal = modal;
   for (auto* by_row : {&target, &free_multipliers, &multipliers, &no_target, &rates}) by_row->resize(row_count);
   for (auto* by_u : {&force, &correction, &free, &udot, &end_udot, &displacement}) by_u->resize(speeds);
+  if (body.formulation == Formulation::penalty) determinants.resize(body.pattern.nodes.size());
   responses.resize(model.rows.size() * speeds);
   response_multipliers.resize(model.rows.size() * row_count);
   qdot.resize(7 * links + modes);
@@ -129,6 +130,8 @@ PenaltyWorkspace::PenaltyWorkspace(const Model& model, const PenaltyModel& body)
   }
   stage_joints = {model.start_q, model.start_u};
   row_force.resize(model.rows.size());
+  part_mean.resize(model.rows.size());
+  frequency = model.penalty.frequency;
 }
 
 Drift drift(const PenaltyWorkspace& pws) noexcept {

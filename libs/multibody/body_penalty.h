@@ -11,7 +11,13 @@
 // penalty: a constraint is a mass alpha with a spring and a damper of its own,
 //   A u' = Q - G^T alpha (b + 2 xi omega g' + omega^2 g)                                               (2)
 // integrated by the fourth-order Runge-Kutta method; nothing is put back onto the joints. Under a force F along a row
-// its g goes to F / (alpha omega^2), and u' is wrong by a share of the order 1/f.
+// its g goes to F / (alpha omega^2), and u' is wrong by a share of the order 1/f. At a distance phi from a position in
+// which rows become dependent, a direction is held by alpha phi^2 alone, less than its own mass m within sqrt(m/alpha).
+// So a step goes in parts p that are halved until every stage has the matrix of the first one but for a share c, and
+// what the rows show is closed faster than the position comes:
+//   |ln(d_stage/d_first)| <= c,   omega_p = max(omega, C/p) where p is a small share of h                (9)
+// d: root of the determinant of each node's block in the factors. A step that (9) is not met in, or that leaves joints
+// open by more than kHeldByPenalty, is reported.
 //
 // augmented: the same matrix solves for exact multipliers, since what a penalty misses is added to them and solved for
 // again. Accelerations:
@@ -84,6 +90,12 @@ struct PenaltyWorkspace {
   State stage_joints;
   std::vector<double> row_force;
   int iterations = 0;  // of Newton's method in the last step
+
+  // penalty
+  std::vector<double> determinants;  // d_first of (9), by node
+  double change = 0;                 // left side of (9), the largest of the last part
+  double frequency = 0;              // rad/s, omega_p
+  std::vector<double> part_mean;     // of the rows' forces
 };
 
 // m: the largest distance of a joint's point from the origin of a moving link that it is fixed to, or radius of
@@ -106,13 +118,14 @@ void accelerations(const Model& model, PenaltyWorkspace& pws, std::span<const do
                    std::span<double> udot) noexcept;
 
 // One step of h [s] after evaluate(), with the rows' forces as advance() of dynamics.h takes them. The motion in ws is
-// then that of the new state. False when a matrix was singular, Newton's method did not settle, or the joints of
-// `augmented` did not come to kHeld.
+// then that of the new state. False when a matrix was singular, Newton's method did not settle, (9) was not met, or the
+// joints did not come to kHeld, those of `penalty` to kHeldByPenalty.
 [[nodiscard]] bool advance(const Model& model, const PenaltyModel& body, BodyState& state, State& joints, Workspace& ws,
                            PenaltyWorkspace& pws, double h, std::span<const double> mean,
                            std::span<const double> slope) noexcept;
 
 inline constexpr double kHeld = 1e-8;  // m, 1; per second; of the mechanism's size and speed where these exceed 1
+inline constexpr double kHeldByPenalty = 1e-5;  // m, 1; of the mechanism's size where it exceeds 1
 
 // After evaluate() or advance(): the largest g and g' of all rows.
 [[nodiscard]] Drift drift(const PenaltyWorkspace& pws) noexcept;

@@ -52,6 +52,9 @@ bool show_on_joints(const StageContext& at) noexcept {
   }
   at.ws.q_stage = at.moving.joints.q;
   at.ws.u_stage = at.moving.joints.u;
+  // stiffness makes the stage's pivots smaller than those of the mass alone, by which project() renews its matrix; the
+  // one that is there has factors of the start and inertias of the stage
+  renew_matrix(at.model, at.ws.q_stage, at.ws.u_stage, at.ws);
   return project(at.model, at.ws.q_stage, at.ws.u_stage, at.ws);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 // what (2) or (3) asks of G u', with the sign of b
 void put_target(const Model& model, const PenaltyModel& body, PenaltyWorkspace& pws) noexcept {
-  const double omega = model.penalty.frequency, xi = model.penalty.damping;
+  const double omega = pws.frequency, xi = model.penalty.damping;
   for (std::size_t row = 0; row < pws.rows.size(); ++row) {
     const RowValue& value = pws.rows[row];
     pws.target[row] = value.bias;

@@ -1,6 +1,7 @@
 // Beams that the tests of libs/flex share, and short ways to their figures.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -47,6 +48,17 @@ inline ReductionDef with_modes(int count, Attachment attachment = Attachment::cl
   def.modes.attachment = attachment;
   def.modes.fixed_interface_modes = count;
   return def;
+}
+
+// The same with its internal freedoms held: elements of two nodes, as other codes export them.
+inline FeModel at_nodes(FeModel model) {
+  const int rows = 6 * static_cast<int>(model.nodes.size());
+  model.M = SparseMatrix(model.M.topLeftCorner(rows, rows));
+  model.K = SparseMatrix(model.K.topLeftCorner(rows, rows));
+  const auto hold = [](ElementFreedoms& freedoms) { std::fill(freedoms.begin() + kNodalFreedoms, freedoms.end(), -1); };
+  for (BeamElement& element : model.elements) hold(element.freedoms);
+  for (MassSample& sample : model.samples) hold(sample.freedoms);
+  return model;
 }
 
 // text of the error that the call throws; empty when it throws none

@@ -67,7 +67,7 @@ TEST(BrokenFiles, FlexibleFilesAreReadOrRefused) {
 TEST(BrokenFiles, MatricesAndTablesAreReadOrRefused) {
   const TemporaryFolder folder("flex_broken_import");
   const ImportDef files{"Body", folder.path() / "m.mtx", folder.path() / "k.mtx", folder.path() / "nodes.csv"};
-  export_model(build_beam(jib_boom(3)), files);
+  export_model(at_nodes(build_beam(jib_boom(3))), files);
   std::mt19937_64 random(6);
   int refused = 0, count = 0;
   for (const auto& file : {files.mass, files.stiffness, files.nodes}) {

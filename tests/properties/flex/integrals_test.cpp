@@ -167,7 +167,7 @@ ReducedBody imported(const FeModel& model, std::vector<FeNode> nodes, const Spar
 TEST(Import, ExportedBeamComesBackWithItsFrequencies) {
   for (const int nodes : {20, 200}) {
     const slew::testing::TemporaryFolder folder("flex_round_trip");
-    const FeModel model = build_beam(jib_boom(nodes));
+    const FeModel model = at_nodes(build_beam(jib_boom(nodes)));
     const ImportDef files{"Jib", folder.path() / "m.mtx", folder.path() / "k.mtx", folder.path() / "nodes.csv"};
     export_model(model, files);
     const Reduction a = reduce(model, with_modes(10)), b = reduce(import_model(files), with_modes(10));
@@ -186,7 +186,7 @@ TEST(Import, ExportedBeamComesBackWithItsFrequencies) {
 }
 
 TEST(Import, OrderOfTheNodesChangesNothing) {
-  const FeModel model = build_beam(jib_boom(8));
+  const FeModel model = at_nodes(build_beam(jib_boom(8)));
   const ReducedBody straight_order = imported(model, model.nodes, model.M, model.K);
   std::vector<std::size_t> order = {0, 1, 2, 3, 4, 5, 6, 7};
   std::mt19937_64 random(3);

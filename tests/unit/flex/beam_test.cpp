@@ -23,7 +23,7 @@ BeamDef oblique() {
 TEST(BeamElement, FarEndHasTheStiffnessOfEquation29) {
   SectionDef section{.shape = SectionShape::hollow_rectangle, .width = 0.1, .height = 0.2, .wall = 0.01};
   const FeModel model = build_beam(straight(section, steel(), {0.7, 0, 0}, 2));
-  const Matrix12 K = stiffness_of(model.elements[0]);
+  const ElementMatrix K = stiffness_of(model.elements[0]);
   const BeamElement& e = model.elements[0];
   const double E = 2.1e11, G = E / 2.6, l = 0.7, EIz = E * e.section.second_moment_z,
                EIy = E * e.section.second_moment_y;
@@ -41,21 +41,21 @@ TEST(BeamElement, FarEndHasTheStiffnessOfEquation29) {
   expect(2, 4, 6 * EIy / (l * l * (1 + phi_z)));
 }
 
-// K is the integral of its strains; the shear strain is constant: slope less turn
+// K is the integral of its strains, those of the internal freedoms included; shear: slope less turn
 TEST(BeamElement, StiffnessIsTheEnergyOfTheStrains) {
   const FeModel model = build_beam(oblique());
   const BeamElement& e = model.elements[0];
   const Section& s = e.section;
   const double E = e.youngs_modulus, G = e.shear_modulus;
-  Matrix12 sum = Matrix12::Zero();
+  ElementMatrix sum = ElementMatrix::Zero();
   for (const double xi : {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)}) {
     const double weight = e.length * (xi == 0.5 ? 8.0 : 5.0) / 18;
     const ElementStrain strain = strain_at(e, xi);
     const ElementField field = field_at(e, xi);
     // local components of slope and turn: per_y moves along -x by rz, per_z along x by ry
-    const Matrix3x12 slope = slope_at(e, xi);
-    Row12 gamma_y, gamma_z;
-    for (int j = 0; j < 12; ++j) {
+    const Matrix3xElement slope = slope_at(e, xi);
+    ElementRow gamma_y, gamma_z;
+    for (int j = 0; j < kElementFreedoms; ++j) {
       const Vec3 t(slope(0, j), slope(1, j), slope(2, j));
       const Vec3 y(field.per_y(0, j), field.per_y(1, j), field.per_y(2, j));
       const Vec3 z(field.per_z(0, j), field.per_z(1, j), field.per_z(2, j));
@@ -98,10 +98,10 @@ TEST(BeamElement, SlopeIsTheDerivativeOfTheAxis) {
   const BeamElement& e = model.elements[0];
   const double h = 1e-5;
   for (const double xi : {0.1, 0.5, 0.8}) {
-    const Matrix3x12 difference = (field_at(e, xi + h).axis - field_at(e, xi - h).axis) / (2 * h * e.length);
+    const Matrix3xElement difference = (field_at(e, xi + h).axis - field_at(e, xi - h).axis) / (2 * h * e.length);
     // without its part along the axis
     const Eigen::Vector3d x(e.axes.c[0].x(), e.axes.c[0].y(), e.axes.c[0].z());
-    const Matrix3x12 across = difference - x * (x.transpose() * difference);
+    const Matrix3xElement across = difference - x * (x.transpose() * difference);
     EXPECT_LT((across - slope_at(e, xi)).cwiseAbs().maxCoeff(), 1e-9);
   }
 }

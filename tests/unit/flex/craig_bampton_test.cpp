@@ -46,10 +46,10 @@ TEST(CraigBampton, ModesDiagonaliseBothMatrices) {
 
 TEST(CraigBampton, AllModesOfTheInsideGiveTheWholeModel) {
   const FeModel model = build_beam(crooked());
-  const CraigBampton cb = craig_bampton(model, {.fixed_interface_modes = 30});
-  const std::vector<double> full = full_frequencies(model, cb.held, 36, 0);
-  ASSERT_EQ(cb.omega.size(), 36u);
-  for (std::size_t k = 0; k < 36; ++k) EXPECT_NEAR(cb.omega[k] / full[k], 1, 1e-9) << k;
+  const CraigBampton cb = craig_bampton(model, {.fixed_interface_modes = 66});
+  const std::vector<double> full = full_frequencies(model, cb.held, 72, 0);
+  ASSERT_EQ(cb.omega.size(), 72u);
+  for (std::size_t k = 0; k < 72; ++k) EXPECT_NEAR(cb.omega[k] / full[k], 1, 1e-9) << k;
 }
 
 TEST(CraigBampton, ClampedFreedomsDoNotMove) {
@@ -58,7 +58,7 @@ TEST(CraigBampton, ClampedFreedomsDoNotMove) {
       craig_bampton(model, {.clamped_nodes = {3}, .interface_nodes = {1, 7}, .fixed_interface_modes = 3});
   EXPECT_EQ(cb.omega.size(), 15u);
   EXPECT_EQ(cb.boundary.size(), 12u);
-  EXPECT_EQ(cb.interior.size(), 24u);
+  EXPECT_EQ(cb.interior.size(), 60u);
   for (int a = 0; a < 6; ++a) EXPECT_EQ(cb.Phi.row(12 + a).cwiseAbs().maxCoeff(), 0);
 }
 
@@ -135,7 +135,7 @@ TEST(CraigBampton, SameBitsWhateverWasAllocatedBefore) {
 }
 
 TEST(CraigBampton, OneElementWithoutAnInsideIsReducedToItself) {
-  const FeModel model = build_beam(straight(square(0.1), steel(), {1, 0, 0}, 2));
+  const FeModel model = at_nodes(build_beam(straight(square(0.1), steel(), {1, 0, 0}, 2)));
   const CraigBampton cb = craig_bampton(model, {.fixed_interface_modes = 0});
   EXPECT_EQ(cb.omega.size(), 6u);
   const std::vector<double> full = full_frequencies(model, cb.held, 6, 0);
@@ -149,10 +149,10 @@ TEST(CraigBampton, WrongDefinitionsAreNamed) {
             "Beam.clamped_nodes: there is no node 12; expected one of its 7 nodes, 1 to 7");
   EXPECT_EQ(text({.interface_nodes = {4, 4}}), "Beam.interface_nodes: node 4 is named twice; expected it once");
   EXPECT_EQ(text({.interface_nodes = {1}}), "Beam.interface_nodes: node 1 is clamped; expected a node that moves");
-  EXPECT_EQ(text({.fixed_interface_modes = 31}),
-            "Beam.fixed_interface_modes: 31 is out of range; expected 0 to 30, the freedoms inside");
+  EXPECT_EQ(text({.fixed_interface_modes = 67}),
+            "Beam.fixed_interface_modes: 67 is out of range; expected 0 to 66, the freedoms inside");
   EXPECT_EQ(text({.fixed_interface_modes = -1}),
-            "Beam.fixed_interface_modes: -1 is out of range; expected 0 to 30, the freedoms inside");
+            "Beam.fixed_interface_modes: -1 is out of range; expected 0 to 66, the freedoms inside");
   EXPECT_EQ(text({.attachment = Attachment::free, .clamped_nodes = {1}}),
             "Beam.clamped_nodes: a free body has none; expected no nodes; or clamp it");
   EXPECT_NE(text({.attachment = Attachment::free, .interface_nodes = {4}, .fixed_interface_modes = 0})

@@ -71,7 +71,7 @@ TEST(FiniteSegments, ConnectorsOfAUniformBeamHaveItsStiffness) {
 
 // one connector over all of a tapered beam: the stiffness that the finite elements have between their ends
 TEST(FiniteSegments, OneConnectorIsTheBeamBetweenItsEnds) {
-  const FeModel model = build_beam(tapered());
+  const FeModel model = at_nodes(build_beam(tapered()));
   const FiniteSegments segments = cut(tapered(), 1);
   ASSERT_EQ(segments.connectors.size(), 1U);
   const SegmentConnector& c = segments.connectors[0];

@@ -40,7 +40,7 @@ TEST_F(MatrixMarket, SymmetricAndGeneralFilesAreRead) {
 }
 
 TEST_F(MatrixMarket, WrittenMatrixComesBackToTheBit) {
-  const FeModel model = build_beam(jib_boom(5));
+  const FeModel model = at_nodes(build_beam(jib_boom(5)));
   write_matrix_market(folder_.path() / "k.mtx", model.K, "stiffness");
   const SparseMatrix back = read_matrix_market(folder_.path() / "k.mtx");
   EXPECT_EQ((back - model.K).norm(), 0);
@@ -77,7 +77,7 @@ TEST_F(MatrixMarket, FaultsAreNamedWithTheirLine) {
 
 class Import : public ::testing::Test {
  protected:
-  Import() : model_(build_beam(straight(square(0.1), steel(), {1.5, 1, 0.5}, 6))) {}
+  Import() : model_(at_nodes(build_beam(straight(square(0.1), steel(), {1.5, 1, 0.5}, 6)))) {}
 
   std::string error(const SparseMatrix& M, const SparseMatrix& K, std::vector<FeNode> nodes) {
     return error_of([&] { (void)model_of_matrices("Body", std::move(nodes), M, K); });
@@ -242,7 +242,7 @@ const NamedUnits kOthers[] = {{ModelUnits::mm_t_s, 1e-3, 1e3, 1},
 
 class Units : public ::testing::Test {
  protected:
-  Units() : line_(build_beam(straight(square(0.1), steel(), {3, 0, 0}, 13))) {}
+  Units() : line_(at_nodes(build_beam(straight(square(0.1), steel(), {3, 0, 0}, 13)))) {}
   FeModel line_;
 };
 
@@ -284,7 +284,7 @@ TEST_F(Units, OfMassAloneAreFoundByTheDensityAlongTheLine) {
 TEST_F(Units, OfThinTubesAndOfOtherDirectionsAreTakenAsTheyAre) {
   const Triple ends[] = {{3, 0, 0}, {0, -40, 0}, {1, 1, 0.5}};
   for (const Triple& end : ends) {
-    const FeModel beam = build_beam(straight(square(0.02), steel(), end, 6));
+    const FeModel beam = at_nodes(build_beam(straight(square(0.02), steel(), end, 6)));
     EXPECT_EQ(error_of([&] { (void)model_of_matrices("Boom", beam.nodes, beam.M, beam.K); }), "");
   }
 }

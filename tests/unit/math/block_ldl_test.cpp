@@ -234,6 +234,22 @@ TEST(BlockLdl, LosesTheRatioOfStiffAndSoftInADefiniteMatrixNotItsSquare) {
   expect_solved(system, 1e-4);
 }
 
+// of two: what is eliminated first as it is, the other less what the first carries
+TEST(BlockLdl, HasTheDeterminantsOfADefiniteMatrix) {
+  System system(BlockPattern{{{1, BlockKind::definite}, {2, BlockKind::definite}}, {{1, 0}}});
+  Matrix first(1, 1), other(2, 2), between(2, 1);
+  first(0, 0) = 4;
+  other(0, 0) = 5, other(0, 1) = other(1, 0) = 1, other(1, 1) = 3;
+  between(0, 0) = 2;
+  system.add(0, 0, first);
+  system.add(1, 1, other);
+  system.add(1, 0, between);
+  ASSERT_TRUE(system.ldl().factorize(kTolerance));
+  // 5 - 2 2/4 = 4, so 4 3 - 1
+  EXPECT_NEAR(system.ldl().root_of_determinant(0), 2, 1e-14);
+  EXPECT_NEAR(system.ldl().root_of_determinant(1), std::sqrt(11), 1e-14);
+}
+
 TEST(BlockLdl, SaysThatADefiniteNodeIsNot) {
   System system = sprung(2, 10);
   system.add(1, 1, -1e3 * Matrix::identity(6));

@@ -173,7 +173,7 @@ TEST(FlexibleModel, TheReductionIsRead) {
 
 TEST(FlexibleModel, MatricesAreImportedFromTheFolderOfTheDescription) {
   const TemporaryFolder folder;
-  const flex::FeModel model = flex::build_beam(flex::testing::jib_boom(5));
+  const flex::FeModel model = flex::testing::at_nodes(flex::build_beam(flex::testing::jib_boom(5)));
   flex::export_model(model, {"boom", folder.path() + "/M.mtx", folder.path() + "/K.mtx", folder.path() + "/nodes.txt"});
   const std::string path = folder.write(
       "boom.yaml", kNames +
@@ -290,8 +290,8 @@ TEST(FlexibleModel, FaultsAreToldWithPlaceExpectationAndSuggestion) {
        "f:6:30: reduction.interface_nodes: node 3 is named twice; expected each once"},
       {kBeam + "reduction: {clamped_nodes: [4]}\n",
        "f:6:28: reduction.clamped_nodes: node 4 is clamped and an interface; expected interfaces that move"},
-      {kBeam + "reduction: {fixed_interface_modes: 13}\n",
-       "f:6:36: reduction.fixed_interface_modes: 13 is out of range; expected 0 to 12, the freedoms inside"},
+      {kBeam + "reduction: {fixed_interface_modes: 31}\n",
+       "f:6:36: reduction.fixed_interface_modes: 31 is out of range; expected 0 to 30, the freedoms inside"},
       {kBeam + "reduction: {clamped_nodes: [1, 2], fixed_interface_modes: 1, stiffening: straight_beam}\n",
        "f:6:74: reduction.stiffening: it is clamped at several nodes, which keep their distance and pull instead of "
        "shortening; expected one straight chain of beam elements, or none"},

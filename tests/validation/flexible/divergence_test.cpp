@@ -181,6 +181,19 @@ TEST(Divergence, OfStepsThatDoNotConvergeEndsTheRun) {
   }
 }
 
+// m g/(alpha omega^2) is a centimetre
+TEST(Divergence, OfAJointThatAPenaltyLeavesOpenEndsTheRun) {
+  MechanicsDef def = rotor(Formulation::penalty, 0);
+  def.penalty_factor = 1e3;
+  def.penalty_frequency = 1;
+  MechanicsAlone alone(scene_of(def));
+  EXPECT_LT(run_until_end(alone, 200), 200);
+  ASSERT_TRUE(alone.report.has(StepFlag::ended));
+  const std::string text(alone.subsystem.failure_text());
+  EXPECT_EQ(text.rfind("Rotor: of late more steps did not converge than did, and its joint 'Pin' is open by ", 0), 0U)
+      << text;
+}
+
 // flagged, since it turns by more than rules of tumbling bodies resolve, and right on its axis
 TEST(Divergence, IsNoneOfAWheelThatIsFastOnItsAxis) {
   for (const Formulation formulation :

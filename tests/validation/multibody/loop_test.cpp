@@ -43,14 +43,69 @@ class Squeezer : public testing::EveryFormulation {};
 class SliderCrank : public testing::EveryFormulation {};
 
 TEST_P(FourBars, OneFollowsItsBranchThroughTheFlatPositions) {
-  Formulated bars = start(tuned(four_bars(1), 3e6, 60));
+  Formulated bars = start(four_bars(1));
   follow_table(bars, 1, "A02_N1_spatial_redundant.csv", 1e-3);
 }
 
 TEST_P(FourBars, TwoFollowTheirBranchThroughTheFlatPositions) {
-  // three degrees of freedom in each pass, held apart by the penalty alone
-  Formulated bars = start(tuned(four_bars(2), 1e8, 100));
+  Formulated bars = start(four_bars(2));
   follow_table(bars, 2, "A02_N2.csv", 1e-3);
+}
+
+// The first and the last coupler's left ends against theta'' = g S/J sin theta, the parallelogram by hand.
+double error_of(Formulated& bars, int n, double end, double step) {
+  const double k = bars.model.gravity[1] * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n);
+  const auto slope = [k](double theta) { return -k * std::sin(theta); };
+  double theta = 0, rate = 1, error = 0;
+  for (int i = 0; i < std::lround(end / step); ++i) {
+    bars.run(step, step);
+    constexpr int kParts = 4;
+    for (int j = 0; j < kParts; ++j) {
+      const double h = step / kParts, r1 = rate, a1 = slope(theta), r2 = rate + h / 2 * a1,
+                   a2 = slope(theta + h / 2 * r1), r3 = rate + h / 2 * a2, a3 = slope(theta + h / 2 * r2),
+                   r4 = rate + h * a3, a4 = slope(theta + h * r3);
+      theta += h / 6 * (r1 + 2 * r2 + 2 * r3 + r4);
+      rate += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    }
+    for (const int last : {0, n - 1}) {
+      const BodyPose pose = bars.pose("Coupler" + std::to_string(last));
+      error = std::max(
+          {error, std::abs(pose.position[0] - last - std::sin(theta)), std::abs(pose.position[1] - std::cos(theta))});
+    }
+  }
+  return error;
+}
+
+// What a flat position sets free is of the size of one bar, what holds it of all bars' mass: the more loops and the
+// larger the factor, the shorter the passage that steps must resolve.
+TEST(PenaltyFourBars, OfFortyLoopsFollowTheirBranch) {
+  for (const double factor : {1e7, 1e9}) {
+    MechanicsDef def = four_bars(40);
+    def.formulation = Formulation::penalty;
+    def.penalty_factor = factor;
+    Formulated bars(def);
+    expect_figure("A02", "penalty, 1 ms",
+                  {"N=40: pins to 0.9 s, f " + std::to_string(factor), error_of(bars, 40, 0.9, 1e-3), 1e-5});
+  }
+}
+
+TEST(PenaltyFourBars, NeverGetWorseWithALargerFactor) {
+  for (const int n : {1, 2, 5}) {
+    double before = 1;
+    for (const double factor : {1e4, 1e5, 1e6, 1e7, 1e8, 1e9}) {
+      MechanicsDef def = four_bars(n);
+      def.formulation = Formulation::penalty;
+      def.penalty_factor = factor;
+      Formulated bars(def);
+      const double error = error_of(bars, n, 4, 1e-3);
+      expect_figure("A02", "penalty, 1 ms",
+                    {"N=" + std::to_string(n) + ": pins to 4 s, f " + std::to_string(factor), error,
+                     std::max(1e-6, 50 / factor)});
+      // what the step leaves does not fall any more
+      EXPECT_LT(error, before + 1e-6) << n << ", " << factor;
+      before = error;
+    }
+  }
 }
 
 // The crank's torque acts through a row.
