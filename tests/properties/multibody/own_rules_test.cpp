@@ -41,7 +41,8 @@ class OwnRules : public EveryFormulation {
 };
 
 TEST_P(OwnRules, HaveTheirOrderOnAChain) {
-  expect_order("chain of three", chain_def({.links = 3}), 0.5, is(Formulation::augmented) ? 2e-3 : 10e-3);
+  // in 10 ms penalties leave joints open by more than kHeldByPenalty
+  expect_order("chain of three", chain_def({.links = 3}), 0.5, is(Formulation::augmented) ? 2e-3 : 5e-3);
 }
 TEST_P(OwnRules, HaveTheirOrderOnAFourBarThroughTheFlatPosition) {
   expect_order("four_bar", four_bars(1), 1, is(Formulation::augmented) ? 5e-3 : 4e-3);
