@@ -25,6 +25,7 @@ InputGate::InputGate(std::vector<ChannelConfig> channels, GateConfig config, Sim
     }
     channels_.push_back(std::move(state));
   }
+  reserve(1);
   reset();
 }
 

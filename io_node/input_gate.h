@@ -121,6 +121,9 @@ class InputGate {
   [[nodiscard]] int vacant() const noexcept;
   // How long the tick of step n may be held back for values that have not come; 0: it need not wait.
   [[nodiscard]] SimDuration awaited(StepIndex n) const noexcept;
+  // Makes room for courses of so many pieces, so that advance() allocates nothing.
+  void reserve(std::size_t pieces) { raw_.reserve(pieces); }
+
   // Values for the tick of step n. script: the scripted source's raw signals over the step, used on channels without a
   // holder; of an empty one, and of a channel beyond their end: neutral. The second form: raw values that are held.
   void advance(StepIndex n, std::span<const SignalCourse> script, std::int64_t now_ns);

@@ -41,6 +41,11 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       script_(config_.channels.size()) {
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
+  if (config_.source) {
+    const std::size_t pieces = config_.source->most_pieces(config_.step);
+    gate_.reserve(pieces);
+    for (SignalCourse& raw : script_) raw.reserve(pieces);
+  }
   sent_.set_depth(node::sent_depth(node::kSentTime, config_.step));
   if (transport::encode(tick_, buffer_)) sent_.reserve(buffer_.size());
   description_.name = config_.session_name;

@@ -40,6 +40,8 @@ class InputSource {
   virtual ~InputSource() = default;
   // Raw signal of each channel over [from, to); empty where the source says nothing about a channel.
   virtual void courses(SimTime from, SimTime to, std::span<SignalCourse> raw) = 0;
+  // Most pieces of a channel in a step of this length.
+  [[nodiscard]] virtual std::size_t most_pieces(SimDuration length) const noexcept = 0;
   // Parameter changes due in [from, to).
   virtual void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) = 0;
 };

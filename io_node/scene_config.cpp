@@ -15,6 +15,10 @@ void ScriptSource::courses(SimTime from, SimTime to, std::span<SignalCourse> raw
   for (std::size_t i = 0; i < raw.size(); ++i) player_.read_course(i, from, to, raw[i]);
 }
 
+std::size_t ScriptSource::most_pieces(SimDuration length) const noexcept {
+  return player_.most_pieces(length);
+}
+
 void ScriptSource::changes(SimTime from, SimTime to, std::vector<wire::Command>& due) {
   for (const scene::ScriptChange& change : player_.changes(from, to)) {
     wire::Command command;

@@ -15,6 +15,7 @@ class ScriptSource final : public InputSource {
  public:
   explicit ScriptSource(const scene::Scene& scene) : player_(scene) {}
   void courses(SimTime from, SimTime to, std::span<SignalCourse> raw) override;
+  [[nodiscard]] std::size_t most_pieces(SimDuration length) const noexcept override;
   void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) override;
 
  private:

@@ -57,6 +57,20 @@ void ScriptPlayer::read_course(std::size_t input, SimTime from, SimTime to, Sign
   add_until(to.ns, ends_at_point ? next->value : value(input, to));
 }
 
+std::size_t ScriptPlayer::most_pieces(SimDuration length) const noexcept {
+  std::size_t most = 1;
+  if (interpolation_ == ScriptInterpolation::step) return most;
+  for (const Points& points : tracks_) {
+    std::size_t first = 0;
+    for (std::size_t last = 0; last < points.size(); ++last) {
+      while (points[last].time_ns - points[first].time_ns >= length.ns) ++first;
+      // one before each point and one behind the last
+      most = std::max(most, last - first + 2);
+    }
+  }
+  return most;
+}
+
 std::span<const ScriptChange> ScriptPlayer::changes(SimTime from, SimTime to) const noexcept {
   const auto begin = std::lower_bound(change_ns_.begin(), change_ns_.end(), from.ns);
   const auto end = std::lower_bound(begin, change_ns_.end(), to.ns);

@@ -25,6 +25,9 @@ class ScriptPlayer {
   // at value(from). Allocates while `course` grows.
   void read_course(std::size_t input, SimTime from, SimTime to, SignalCourse& course) const;
 
+  // Most pieces that read_course() gives for a step of this length.
+  [[nodiscard]] std::size_t most_pieces(SimDuration length) const noexcept;
+
   // Parameter changes that begin in [from, to). Real-time safe.
   [[nodiscard]] std::span<const ScriptChange> changes(SimTime from, SimTime to) const noexcept;
 

@@ -27,6 +27,7 @@ class Swinging final : public InputSource {
     const double value = (from.ns / (70 * kMs)) % 2 == 0 ? 1.0 : -0.5;
     raw[0].assign({{1, value, value}});
   }
+  [[nodiscard]] std::size_t most_pieces(SimDuration) const noexcept override { return 1; }
   void changes(SimTime from, SimTime to, std::vector<wire::Command>& due) override {
     const std::int64_t at = 95 * kMs;
     if (from.ns <= at && at < to.ns) due.push_back({0, "Bag.mass", 1500, 40 * kMs});

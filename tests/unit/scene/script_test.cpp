@@ -90,6 +90,21 @@ TEST(Script, ItsCourseOverATimeIsStraightBetweenPointsAndJumps) {
   expect_pieces(course(script, at(3), at(4)), {{1, 1, 1}});
 }
 
+TEST(Script, NoCourseHasMorePiecesThanIsSaid) {
+  const ScriptPlayer script = player(
+      "script:\n  inputs:\n    Stick: [[1 s, 0.5], [1.002 s, -0.5], [1.002 s, 0.25], "
+      "[1.003 s, 0], [1.5 s, 1]]\n");
+  for (const std::int64_t length_ms : {1, 2, 3, 4, 1000}) {
+    const std::size_t most = script.most_pieces(milliseconds(length_ms));
+    std::size_t largest = 0;
+    for (std::int64_t from_ns = 0; from_ns < 2'000'000'000; from_ns += 500'000) {
+      largest = std::max(largest, course(script, {from_ns}, SimTime{from_ns} + milliseconds(length_ms)).size());
+    }
+    EXPECT_LE(largest, most) << length_ms;
+    EXPECT_LE(most, 6u) << length_ms;
+  }
+}
+
 TEST(Script, MeansOfItsCourseAddUpToTheAreaBelowIt) {
   const ScriptPlayer script =
       player("script:\n  inputs:\n    Stick: [[0, -1], [0.0101 s, 0.7], [0.0101 s, 0.2], [0.05 s, 1]]\n");
