@@ -1,4 +1,4 @@
-// Pages whose measured part a program writes anew.
+// Pages with a measured part, which a program replaces.
 #pragma once
 
 #include <filesystem>

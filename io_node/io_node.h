@@ -38,7 +38,7 @@ namespace slew::io {
 class InputSource {
  public:
   virtual ~InputSource() = default;
-  // Raw signal of each channel over [from, to); empty where the source says nothing about a channel.
+  // Raw signal of each channel over [from, to); empty for a channel that the source does not drive.
   virtual void courses(SimTime from, SimTime to, std::span<SignalCourse> raw) = 0;
   // Most pieces of a channel in a step of this length.
   [[nodiscard]] virtual std::size_t most_pieces(SimDuration length) const noexcept = 0;

@@ -52,13 +52,13 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
   samples_.for_each_missing(n_, ask);
 }
 
-// The first message that the next step lacks, as long as no other node has told the reason. A free-running node waits
-// for none.
+// The first message that the next step lacks, as long as no other node has published the reason. A free-running node
+// waits for none.
 std::optional<Awaited> PhysicsNode::awaited() noexcept {
   if (stage_ == Stage::loading) return Awaited{Role::io, Topic::state, n_};
   const wire::NodeStatus& io = member_.peer(Role::io).status;
   if (stage_ != Stage::stepping || is_ended_by_fault_ || built_.ports.is_free_running) return std::nullopt;
-  // io waits for somebody, and ends the session when that takes too long
+  // io waits for a node, and ends the session when that takes too long
   if (io.state == NodeState::holding || io.state >= NodeState::ended) return std::nullopt;
   const StepIndex next = is_follower() ? n_ + samples_.stride() : n_;
   if (is_withheld(is_follower() ? next - 1 : next)) return std::nullopt;
@@ -71,7 +71,7 @@ std::optional<Awaited> PhysicsNode::awaited() noexcept {
   std::optional<Awaited> first;
   samples_.for_each_missing(next, [&](Role role, Topic topic, StepIndex step) {
     const Peer& partner = member_.peer(role);
-    // one that holds has told its own reason
+    // a holding node has published its own reason
     if (!first && !partner.is_lost && partner.status.state != NodeState::holding) first = Awaited{role, topic, step};
   });
   return first;

@@ -421,7 +421,7 @@ void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
     stood_until_ns_ = now_ns;
     stood_sending_ = sending_ns > gap_ns / 2;
   }
-  // a long gap is excused once, since somebody may be gone behind it; short ones each, since they leave a part to count
+  // a long gap is excused once, since a peer may have ended in it; each shorter one, since a part of it still counts
   const bool is_long = gap_ns > kStoodStill.ns;
   for (Peer& peer : peers_) {
     if (is_long && peer.last_heard_ns == peer.excused_ns) continue;
