@@ -64,11 +64,11 @@ Tape record(Boom boom) {
   const scene::ScriptPlayer script(crane(boom));
   const io::IoConfig config = io_config(boom);
   io::InputGate gate(config.channels, config.gate, kH);
-  std::vector<double> raw(gate.size());
+  std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   start(mechanics, hydraulics, m, h);
   for (StepIndex n = 0; n < kSteps; ++n) {
-    for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = script.value(i, start_of(n, kH));
+    for (std::size_t i = 0; i < raw.size(); ++i) script.read_course(i, start_of(n, kH), start_of(n, kH) + kH, raw[i]);
     gate.advance(n, raw, 0);
     std::vector<double> controls;
     for (std::size_t i = 0; i < gate.size(); ++i) controls.push_back(gate.control(i));

@@ -113,14 +113,14 @@ Tape record(const scene::Scene& scene, mechanics::MechanicsSubsystem& mechanics)
   const io::IoConfig config = io::make_config(scene, wish);
   const SimDuration H = scene.session.step_duration();
   io::InputGate gate(config.channels, config.gate, H);
-  std::vector<double> raw(gate.size());
+  std::vector<SignalCourse> raw(gate.size());
   coupling::OwnSample m, h;
   static_cast<void>(mechanics.first_sample(m));
   static_cast<void>(hydraulics.start({&m.mechanism, nullptr}, h));
   static_cast<void>(mechanics.start({nullptr, &h.actuators}, m));
   const StepIndex steps = kMilliseconds * milliseconds(1).ns / H.ns;
   for (StepIndex n = 0; n < steps; ++n) {
-    for (std::size_t i = 0; i < raw.size(); ++i) raw[i] = script.value(i, start_of(n, H));
+    for (std::size_t i = 0; i < raw.size(); ++i) script.read_course(i, start_of(n, H), start_of(n, H) + H, raw[i]);
     gate.advance(n, raw, 0);
     std::vector<double> controls;
     for (std::size_t i = 0; i < gate.size(); ++i) controls.push_back(gate.control(i));

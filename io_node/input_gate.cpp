@@ -386,12 +386,6 @@ void InputGate::advance(StepIndex n, std::span<const SignalCourse> script, std::
   }
 }
 
-void InputGate::advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns) {
-  held_.resize(script_raw.size());
-  for (std::size_t i = 0; i < held_.size(); ++i) held_[i].assign({{1, script_raw[i], script_raw[i]}});
-  advance(n, std::span<const SignalCourse>(held_), now_ns);
-}
-
 // Into raw_. False where the script has no value, or none that is finite, which is counted.
 bool InputGate::accept_script(Channel& channel, std::span<const SignalPiece> course) noexcept {
   for (const SignalPiece& piece : course) {

@@ -125,9 +125,8 @@ class InputGate {
   void reserve(std::size_t pieces) { raw_.reserve(pieces); }
 
   // Values for the tick of step n. script: the scripted source's raw signals over the step, used on channels without a
-  // holder; of an empty one, and of a channel beyond their end: neutral. The second form: raw values that are held.
+  // holder; of an empty one, and of a channel beyond their end: neutral.
   void advance(StepIndex n, std::span<const SignalCourse> script, std::int64_t now_ns);
-  void advance(StepIndex n, std::span<const double> script_raw, std::int64_t now_ns);
   // Time in which the session stood still for another reason: no controller is blamed for its silence.
   void excuse(SimDuration standstill, std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_held(std::size_t channel) const noexcept { return !channels_[channel].holder.empty(); }
@@ -215,8 +214,7 @@ class InputGate {
   void shape(Channel& channel) noexcept;
 
   std::vector<Channel> channels_;
-  SignalCourse raw_;                // of one channel over the step, after range
-  std::vector<SignalCourse> held_;  // of values that the script holds
+  SignalCourse raw_;  // of one channel over the step, after range
   std::vector<Notice> notices_;
   std::array<Told, 16> told_;  // the last ones: who is not among them is told at once
   std::int64_t latest_ns_ = 0;

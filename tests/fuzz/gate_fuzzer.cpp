@@ -74,7 +74,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         gate.excuse(SimDuration{static_cast<std::int64_t>(choices.byte()) * kMs}, now_ns);
         break;
       default: {
-        const std::vector<double> script = {choices.usual(), choices.usual(), choices.usual()};
+        std::vector<SignalCourse> script(3);
+        for (SignalCourse& held : script) {
+          const double raw = choices.usual();
+          held = {{1, raw, raw}};
+        }
         fuzz::require(gate.awaited(step).ns >= 0);
         gate.advance(step, script, now_ns);
         ++step;

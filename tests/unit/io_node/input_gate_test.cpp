@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "tests/support/nightly.h"
 
@@ -15,6 +17,13 @@ using testing::rounds;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMs = 1'000'000;
+
+// A script that holds these values over the step.
+std::vector<SignalCourse> held(std::initializer_list<double> raw) {
+  std::vector<SignalCourse> courses;
+  for (const double value : raw) courses.push_back({{1, value, value}});
+  return courses;
+}
 
 ChannelConfig channel(const char* name, double scale, double ramp) {
   ChannelConfig config;
@@ -32,22 +41,22 @@ InputGate crane_gate(double ramp = 0) {
 
 TEST(InputGate, DeadZoneCutsAndScaleHasItsSign) {
   InputGate gate = crane_gate();
-  gate.advance(0, std::vector<double>{0.19, 0.21}, 0);
+  gate.advance(0, held({0.19, 0.21}), 0);
   EXPECT_EQ(gate.control(0), 0.0);
   EXPECT_NEAR(gate.control(1), 105, 1e-12);  // not rescaled
-  gate.advance(1, std::vector<double>{1.0, -1.0}, 0);
+  gate.advance(1, held({1.0, -1.0}), 0);
   EXPECT_EQ(gate.control(0), -500);
   EXPECT_EQ(gate.control(1), -500);
 }
 
 TEST(InputGate, RampTakesItsTimeForAFullStroke) {
   InputGate gate = crane_gate(0.5);
-  for (StepIndex n = 0; n < 250; ++n) gate.advance(n, std::vector<double>{0, 1}, 0);
+  for (StepIndex n = 0; n < 250; ++n) gate.advance(n, held({0, 1}), 0);
   // the mean over the step that ends half way
   EXPECT_NEAR(gate.control(1), 249.5, 1e-9);
-  for (StepIndex n = 250; n < 500; ++n) gate.advance(n, std::vector<double>{0, 1}, 0);
+  for (StepIndex n = 250; n < 500; ++n) gate.advance(n, held({0, 1}), 0);
   EXPECT_NEAR(gate.control(1), 499.5, 1e-9);
-  gate.advance(500, std::vector<double>{0, 1}, 0);
+  gate.advance(500, held({0, 1}), 0);
   EXPECT_NEAR(gate.control(1), 500, 1e-9);
 }
 
@@ -58,7 +67,7 @@ TEST(InputGate, RateLimitHoldsWhereTheRampIsFaster) {
   channel.ramp = 0.1;
   channel.rate_limit = 2;
   InputGate gate({channel}, GateConfig{}, milliseconds(1));
-  for (StepIndex n = 0; n < 250; ++n) gate.advance(n, std::vector<double>{1}, 0);
+  for (StepIndex n = 0; n < 250; ++n) gate.advance(n, held({1}), 0);
   EXPECT_NEAR(gate.control(0), 249.5, 1e-9);
 }
 
@@ -94,10 +103,10 @@ TEST(InputGate, NanAndOutOfRangeAreCountedAndNeverPassOn) {
   EXPECT_FALSE(gate.write(1, "pid", kNan, 1, 0));
   EXPECT_FALSE(gate.write(1, "pid", std::numeric_limits<double>::infinity(), 1, 0));
   EXPECT_EQ(gate.rejected_not_finite(), 2u);
-  gate.advance(1, std::vector<double>{0, 0}, 0);
+  gate.advance(1, held({0, 0}), 0);
   EXPECT_NEAR(gate.control(1), 250, 1e-12);  // the last good value
   EXPECT_TRUE(gate.write(1, "pid", 7, 2, 0));
-  gate.advance(2, std::vector<double>{kNan, 0}, 0);
+  gate.advance(2, held({kNan, 0}), 0);
   EXPECT_EQ(gate.control(1), 500);
   EXPECT_EQ(gate.control(0), 0);
   EXPECT_EQ(gate.clamped(), 1u);
@@ -123,10 +132,10 @@ TEST(InputGate, AskingAgainForAHeldChannelMovesNothing) {
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   gate.write(1, "pid", 0.5, 0, 10 * kMs);
   EXPECT_TRUE(gate.acquire(1, "pid", 150 * kMs).is_granted);
-  gate.advance(0, std::vector<double>{0, 0}, 151 * kMs);
+  gate.advance(0, held({0, 0}), 151 * kMs);
   EXPECT_NEAR(gate.control(1), 250, 1e-12);
   // and is a sign of life
-  gate.advance(1, std::vector<double>{0, 0}, 349 * kMs);
+  gate.advance(1, held({0, 0}), 349 * kMs);
   EXPECT_NEAR(gate.control(1), 250, 1e-12);
   EXPECT_EQ(gate.went_neutral(), 0u);
 }
@@ -135,13 +144,13 @@ TEST(InputGate, SilentControllerGoesToNeutralAndLaterLosesTheChannel) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   gate.write(1, "pid", 1, 0, 0);
-  gate.advance(0, std::vector<double>{0, 0.5}, 199 * kMs);
+  gate.advance(0, held({0, 0.5}), 199 * kMs);
   EXPECT_EQ(gate.control(1), 500);
-  gate.advance(1, std::vector<double>{0, 0.5}, 201 * kMs);
+  gate.advance(1, held({0, 0.5}), 201 * kMs);
   EXPECT_EQ(gate.control(1), 0) << "neutral, not the script: the channel is still held";
   EXPECT_EQ(gate.went_neutral(), 1u);
   EXPECT_EQ(gate.acquire(1, "joystick", 202 * kMs).holder, "pid");
-  gate.advance(2, std::vector<double>{0, 0.5}, 5001 * kMs);
+  gate.advance(2, held({0, 0.5}), 5001 * kMs);
   EXPECT_EQ(gate.control(1), 250);
   EXPECT_TRUE(gate.acquire(1, "joystick", 5002 * kMs).is_granted);
 }
@@ -152,7 +161,7 @@ TEST(InputGate, WhoeverLosesAChannelWithoutReleasingItIsNamedOnce) {
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   ASSERT_TRUE(gate.release(0, "joystick").is_granted);
   EXPECT_TRUE(gate.take_notices().empty());
-  gate.advance(0, std::vector<double>{0, 0}, 5001 * kMs);
+  gate.advance(0, held({0, 0}), 5001 * kMs);
   std::vector<Notice> lost = gate.take_notices();
   ASSERT_EQ(lost.size(), 1u);
   EXPECT_EQ(lost[0].controller, "pid");
@@ -172,7 +181,7 @@ TEST(InputGate, HolderOverridesTheScript) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   gate.write(1, "pid", -1, 3, 0);
-  gate.advance(5, std::vector<double>{1, 1}, 0);
+  gate.advance(5, held({1, 1}), 0);
   EXPECT_EQ(gate.control(0), -500);  // script
   EXPECT_EQ(gate.control(1), -500);  // controller
   EXPECT_EQ(gate.age(1), 2u);
@@ -183,11 +192,11 @@ TEST(InputGate, DigitalInputIsZeroOrOne) {
   horn.name = "Horn";
   horn.is_digital = true;
   InputGate gate({horn}, GateConfig{}, milliseconds(1));
-  gate.advance(0, std::vector<double>{0.4}, 0);
+  gate.advance(0, held({0.4}), 0);
   EXPECT_EQ(gate.control(0), 0);
-  gate.advance(1, std::vector<double>{0.6}, 0);
+  gate.advance(1, held({0.6}), 0);
   EXPECT_EQ(gate.control(0), 1);
-  gate.advance(2, std::vector<double>{-1}, 0);
+  gate.advance(2, held({-1}), 0);
   EXPECT_EQ(gate.control(0), 0);
 }
 
@@ -195,7 +204,7 @@ TEST(InputGate, WhoWritesWithoutHoldingTheChannelIsToldWhoHoldsItOnceASecond) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
   // silent for so long that it loses the channel, and does not hear that
-  gate.advance(0, std::vector<double>{0, 0}, 5001 * kMs);
+  gate.advance(0, held({0, 0}), 5001 * kMs);
   static_cast<void>(gate.take_notices());
   EXPECT_FALSE(gate.write(1, "pid", 1, 1, 5500 * kMs));
   EXPECT_FALSE(gate.answer_to_write(1, "pid", 5500 * kMs)) << "it may be on its way";
@@ -219,7 +228,7 @@ TEST(InputGate, WhoWritesWithoutHoldingTheChannelIsToldWhoHoldsItOnceASecond) {
 TEST(InputGate, AfterAResetWhoGoesOnWritingIsToldThatTheChannelIsFree) {
   InputGate gate = crane_gate();
   ASSERT_TRUE(gate.acquire(1, "pid", 0).is_granted);
-  gate.advance(0, std::vector<double>{0, 0}, kMs);
+  gate.advance(0, held({0, 0}), kMs);
   gate.reset();
   EXPECT_FALSE(gate.answer_to_write(1, "pid", 2 * kMs)) << "what it wrote before it heard of the reset";
   EXPECT_TRUE(gate.answer_to_write(1, "pid", 1500 * kMs).has_value());
@@ -256,7 +265,7 @@ TEST(InputGate, ASecondProcessOfTheHoldersNameIsRefusedAndMovesNothing) {
   EXPECT_TRUE(gate.write(0, "pid", 0.5, 0, 0, kJoinStep, 7));
   EXPECT_FALSE(gate.write(0, "pid", -1, 0, 0, kJoinStep, 8));
   EXPECT_EQ(gate.rejected_no_lease(), 1u);
-  gate.advance(0, std::vector<double>{0}, kMs);
+  gate.advance(0, held({0}), kMs);
   EXPECT_EQ(gate.raw(0), 0.5);
   const std::optional<LeaseAnswer> told = gate.answer_to_write(0, "pid", 2000 * kMs, 8);
   ASSERT_TRUE(told.has_value());
@@ -264,7 +273,7 @@ TEST(InputGate, ASecondProcessOfTheHoldersNameIsRefusedAndMovesNothing) {
   // a carrier that does not know its writers cannot tell them apart
   EXPECT_TRUE(gate.write(0, "pid", 0.6, 0, 0));
   // when the first has fallen silent the second has it
-  gate.advance(1, std::vector<double>{0}, 8000 * kMs);
+  gate.advance(1, held({0}), 8000 * kMs);
   EXPECT_TRUE(gate.acquire(0, "pid", 8000 * kMs, 8).is_granted);
   EXPECT_FALSE(gate.write(0, "pid", -1, 1, 8000 * kMs, kJoinStep, 7));
 }
@@ -280,7 +289,7 @@ TEST(InputGate, AControllerThatIsStartedAgainHasItsChannelAtOnceWhenItsOldProces
   has_left = true;
   EXPECT_FALSE(gate.acquire(0, "joystick", 10 * kMs, 9).is_granted) << "another name waits for the silence";
   EXPECT_TRUE(gate.acquire(0, "pid", 10 * kMs, 8).is_granted);
-  gate.advance(0, std::vector<double>{0}, 11 * kMs);
+  gate.advance(0, held({0}), 11 * kMs);
   EXPECT_EQ(gate.raw(0), 0) << "the new one has said nothing yet";
   EXPECT_TRUE(gate.write(0, "pid", -0.5, 1, 12 * kMs, kJoinStep, 8));
 }
@@ -313,11 +322,11 @@ TEST(InputGate, OnlyTheSupervisorTakesAChannelFromItsHolder) {
   EXPECT_EQ(lost[0].controller, "trainee");
   EXPECT_FALSE(lost[0].has_channel);
   EXPECT_EQ(lost[0].reason, "'instructor' has taken over channel Lever");
-  gate.advance(0, std::vector<double>{0, 0}, 0);
+  gate.advance(0, held({0, 0}), 0);
   EXPECT_EQ(gate.raw(0), 0.5) << "the value stays until the new holder writes";
   EXPECT_FALSE(gate.write(0, "trainee", 1, 0, 0));
   EXPECT_TRUE(gate.write(0, "instructor", -0.5, 0, 0));
-  gate.advance(1, std::vector<double>{0, 0}, 0);
+  gate.advance(1, held({0, 0}), 0);
   EXPECT_EQ(gate.raw(0), -0.5);
 }
 
@@ -334,12 +343,12 @@ TEST(InputGate, OfTwoValuesForOneStepTheFirstCountsSinceTheClockMustNotDecide) {
   lever.exchange = Exchange::lockstep;
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
   ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
-  gate.advance(0, std::vector<double>{0}, 0);
+  gate.advance(0, held({0}), 0);
   EXPECT_GT(gate.awaited(1).ns, 0);
   gate.write(0, "pid", 0.5, 1, 0, 0);
   gate.write(0, "pid", -1, 1, 0, 0);
   EXPECT_EQ(gate.awaited(1).ns, 0);
-  gate.advance(1, std::vector<double>{0}, 0);
+  gate.advance(1, held({0}), 0);
   EXPECT_EQ(gate.raw(0), 0.5);
   EXPECT_EQ(gate.based_on(0), 0);
 }
@@ -384,17 +393,17 @@ TEST(InputGate, AReleaseTakesEffectAfterTheTicksOfItsLastValue) {
   lever.delay = 2;
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
   ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
-  gate.advance(0, std::vector<double>{0.3}, 0);
+  gate.advance(0, held({0.3}), 0);
   gate.write(0, "pid", 0.5, 1, 0, 0);
   gate.write(0, "pid", 0.6, 1, 0, 1);
   EXPECT_TRUE(gate.release(0, "pid", 1).is_granted);
   EXPECT_FALSE(gate.write(0, "pid", 0.7, 1, 0, 1)) << "it has said that this was the last";
   for (StepIndex n = 1; n < 4; ++n) {
     EXPECT_EQ(gate.awaited(n).ns, 0);
-    gate.advance(n, std::vector<double>{0.3}, 0);
+    gate.advance(n, held({0.3}), 0);
     EXPECT_EQ(gate.raw(0), n == 1 ? 0 : n == 2 ? 0.5 : 0.6) << n;
   }
-  gate.advance(4, std::vector<double>{0.3}, 0);
+  gate.advance(4, held({0.3}), 0);
   EXPECT_EQ(gate.raw(0), 0.3) << "the script's";
   EXPECT_TRUE(gate.acquire(0, "other", 0).is_granted);
   // the user is told that nobody answers for it, and nobody else
@@ -411,13 +420,13 @@ TEST(InputGate, AControllerThatLeavesBeforeItHasAnsweredABlockIsNotWaitedFor) {
   lever.exchange = Exchange::lockstep;
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
   ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
-  gate.advance(0, std::vector<double>{0}, 0);
+  gate.advance(0, held({0}), 0);
   // it has answered the block of step 0 and read that of step 1
   gate.write(0, "pid", 0.5, 1, 0, 0);
-  gate.advance(1, std::vector<double>{0}, 0);
+  gate.advance(1, held({0}), 0);
   EXPECT_TRUE(gate.release(0, "pid", 0).is_granted);
   EXPECT_EQ(gate.awaited(2).ns, 0);
-  gate.advance(2, std::vector<double>{0.3}, 0);
+  gate.advance(2, held({0.3}), 0);
   EXPECT_EQ(gate.raw(0), 0.3);
   EXPECT_EQ(gate.fell_out_of_step(), 0u);
 }
@@ -438,12 +447,12 @@ TEST(InputGate, ALockstepChannelOfASavedSessionIsAwaitedAsAtStepZero) {
   ASSERT_TRUE(gate.acquire(0, "pid", 0).is_granted);
   for (StepIndex n = 700; n < 703; ++n) {
     EXPECT_EQ(gate.awaited(n).ns, 0) << "no step of this session is three before tick " << n;
-    gate.advance(n, std::vector<double>{0}, 0);
+    gate.advance(n, held({0}), 0);
   }
   EXPECT_GT(gate.awaited(703).ns, 0);
   EXPECT_TRUE(gate.write(0, "pid", 0.5, 703, 0, 700));
   EXPECT_EQ(gate.awaited(703).ns, 0);
-  gate.advance(703, std::vector<double>{0}, 0);
+  gate.advance(703, held({0}), 0);
   EXPECT_EQ(gate.raw(0), 0.5);
   EXPECT_TRUE(gate.take_notices().empty());
 }
@@ -465,7 +474,7 @@ TEST(InputGate, ALockstepChannelThatIsTakenOverKeepsItsValueUntilTheNewHolderIsI
   lever.exchange = Exchange::lockstep;
   lever.supervisor = "instructor";
   InputGate gate({lever}, GateConfig{}, milliseconds(1));
-  const auto advance = [&gate](StepIndex n) { gate.advance(n, std::vector<double>{0}, n * kMs); };
+  const auto advance = [&gate](StepIndex n) { gate.advance(n, held({0}), n * kMs); };
   ASSERT_TRUE(gate.acquire(0, "trainee", 0).is_granted);
   for (StepIndex n = 0; n < 5; ++n) {
     advance(n);
@@ -532,7 +541,7 @@ TEST(InputGate, WhateverIsSaidNoValueLeavesItsRangeOrComesTooEarly) {
           }
           break;
         default:
-          gate.advance(n, std::vector<double>{0, 0.5, 1}, now_ns);
+          gate.advance(n, held({0, 0.5, 1}), now_ns);
           for (std::size_t i = 0; i < gate.size(); ++i) {
             ASSERT_GE(gate.raw(i), i == 2 ? 0 : -1);
             ASSERT_LE(gate.raw(i), 1);
