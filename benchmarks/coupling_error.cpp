@@ -20,7 +20,7 @@
 #include "benchmarks/coupling_figures.h"
 #include "benchmarks/measured_page.h"
 #include "build_paths.h"
-#include "cli/plotting/svg_plot.h"
+#include "plotting/svg_plot.h"
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::benchmarks {

@@ -6,13 +6,13 @@
 #include <iterator>
 #include <memory>
 
-#include "cli/animation/animation.h"
-#include "cli/recorded.h"
-#include "cli/scene_plots.h"
-#include "cli/text_output.h"
-#include "cli/unrecorded.h"
+#include "analysis/animation/animation.h"
+#include "session/recorded.h"
+#include "analysis/scene_plots.h"
+#include "core/text_output.h"
+#include "session/unrecorded.h"
 #include "cli/verbs.h"
-#include "cli_support/name_pattern.h"
+#include "scene/name_pattern.h"
 #include "core/failure.h"
 
 namespace slew::cli {

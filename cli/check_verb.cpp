@@ -3,13 +3,13 @@
 
 #include <cstdio>
 
-#include "cli/coupling_check.h"
-#include "cli/description/liftable_load.h"
-#include "cli/direct_session.h"
-#include "cli/display.h"
-#include "cli/unrecorded.h"
+#include "analysis/coupling_check.h"
+#include "analysis/description/liftable_load.h"
+#include "session/direct_session.h"
+#include "core/display.h"
+#include "session/unrecorded.h"
 #include "cli/verbs.h"
-#include "cli_support/name_pattern.h"
+#include "scene/name_pattern.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"

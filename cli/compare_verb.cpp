@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <fstream>
 
-#include "cli/comparison/comparison_report.h"
-#include "cli/display.h"
-#include "cli/interrupts.h"
+#include "analysis/comparison/comparison_report.h"
+#include "core/display.h"
+#include "session/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/verbs.h"
 #include "core/failure.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "cli/observer.h"
+#include "session/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "cli/description/cost.h"
-#include "cli/description/eigenvalues.h"
-#include "cli/description/instant.h"
-#include "cli/description/liftable_load.h"
-#include "cli/display.h"
+#include "analysis/description/cost.h"
+#include "analysis/description/eigenvalues.h"
+#include "analysis/description/instant.h"
+#include "analysis/description/liftable_load.h"
+#include "core/display.h"
 #include "cli/verbs.h"
 #include "core/json.h"
 #include "core/printable.h"

@@ -8,10 +8,10 @@
 #include <fstream>
 #include <thread>
 
-#include "cli/child_process.h"
-#include "cli/display.h"
+#include "core/child_process.h"
+#include "core/display.h"
 #include "cli/verbs.h"
-#include "cli_support/carrier.h"
+#include "node/carrier.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/json.h"

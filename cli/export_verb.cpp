@@ -9,10 +9,10 @@
 #include <iostream>
 #include <memory>
 
-#include "cli/plotting/csv_export.h"
-#include "cli/plotting/mat_export.h"
-#include "cli/recorded.h"
-#include "cli/text_output.h"
+#include "plotting/csv_export.h"
+#include "plotting/mat_export.h"
+#include "session/recorded.h"
+#include "core/text_output.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 

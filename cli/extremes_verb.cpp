@@ -3,12 +3,12 @@
 
 #include <cstdio>
 
-#include "cli/display.h"
-#include "cli/extremes/case_run.h"
-#include "cli/extremes/extremes.h"
-#include "cli/interrupts.h"
+#include "core/display.h"
+#include "analysis/extremes/case_run.h"
+#include "analysis/extremes/extremes.h"
+#include "session/interrupts.h"
 #include "cli/progress_line.h"
-#include "cli/sweep/sweep.h"
+#include "analysis/sweep/sweep.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "cli/display.h"
-#include "cli/flag_counter.h"
-#include "cli/recorded.h"
+#include "core/display.h"
+#include "session/flag_counter.h"
+#include "session/recorded.h"
 #include "core/failure.h"
 #include "node/identity.h"
 #include "transport/codec.h"

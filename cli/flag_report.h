@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/run_outcome.h"
+#include "session/run_outcome.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
 

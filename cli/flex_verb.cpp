@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <numeric>
 
-#include "cli/display.h"
+#include "core/display.h"
 #include "cli/flex_report_json.h"
 #include "cli/verbs.h"
 #include "core/failure.h"

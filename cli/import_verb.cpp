@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cli/display.h"
+#include "core/display.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"

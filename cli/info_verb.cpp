@@ -1,10 +1,10 @@
 // `slewring info REC`: what a recording holds.
 #include <fmt/format.h>
 
-#include "cli/display.h"
+#include "core/display.h"
 #include "cli/flag_report.h"
-#include "cli/recorded.h"
-#include "cli/recorded_events.h"
+#include "session/recorded.h"
+#include "session/recorded_events.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"

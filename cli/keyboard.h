@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/observer.h"
+#include "session/observer.h"
 #include "scene/scene.h"
 
 namespace slew::cli {

@@ -1,10 +1,10 @@
 // `slewring keys create|add|revoke|check|export`: who may take part in sessions that leave this machine.
 #include <fmt/format.h>
 
-#include "cli/display.h"
-#include "cli/keys/key_store.h"
+#include "core/display.h"
+#include "keys/key_store.h"
 #include "cli/verbs.h"
-#include "cli_support/session_options.h"
+#include "node/session_options.h"
 #include "core/report_table.h"
 
 namespace slew::cli {

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "cli_support/node_program.h"
+#include "node/node_program.h"
 
 int main(int argc, char** argv) {
   using namespace slew;

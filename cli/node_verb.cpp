@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/child_process.h"
+#include "core/child_process.h"
 #include "cli/verbs.h"
 #include "core/suggestion.h"
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <optional>
 
-#include "cli/display.h"
-#include "cli/observer.h"
+#include "core/display.h"
+#include "session/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"

@@ -7,11 +7,11 @@
 #include <memory>
 #include <set>
 
-#include "cli/plotting/html_plot.h"
-#include "cli/plotting/svg_plot.h"
-#include "cli/recorded.h"
-#include "cli/scene_plots.h"
-#include "cli/text_output.h"
+#include "plotting/html_plot.h"
+#include "plotting/svg_plot.h"
+#include "session/recorded.h"
+#include "analysis/scene_plots.h"
+#include "core/text_output.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"

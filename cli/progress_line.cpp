@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "cli/display.h"
+#include "core/display.h"
 #include "core/printable.h"
 #include "core/time.h"
 

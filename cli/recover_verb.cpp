@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "cli/display.h"
-#include "cli/recorded.h"
-#include "cli/recorded_extent.h"
+#include "core/display.h"
+#include "session/recorded.h"
+#include "session/recorded_extent.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "cli/display.h"
-#include "cli/recorded.h"
-#include "cli/replay.h"
+#include "core/display.h"
+#include "session/recorded.h"
+#include "session/replay.h"
 #include "cli/run_session.h"
 #include "cli/verbs.h"
 #include "core/failure.h"

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cli/coupling_lamp.h"
-#include "cli/display.h"
-#include "cli/flag_counter.h"
+#include "analysis/coupling_lamp.h"
+#include "core/display.h"
+#include "session/flag_counter.h"
 #include "cli/flag_report.h"
-#include "cli/plotting/svg_plot.h"
-#include "cli/recorded.h"
-#include "cli/scene_plots.h"
-#include "cli/stall_report.h"
-#include "cli/text_output.h"
+#include "plotting/svg_plot.h"
+#include "session/recorded.h"
+#include "analysis/scene_plots.h"
+#include "analysis/stall_report.h"
+#include "core/text_output.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"

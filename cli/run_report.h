@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/run_outcome.h"
+#include "session/run_outcome.h"
 #include "scene/scene.h"
 
 namespace slew::cli {

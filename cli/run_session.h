@@ -1,7 +1,7 @@
 // A session from its scene, or from saved states, to its summary: `slewring run`, and what goes on behind a replay.
 #pragma once
 
-#include "cli/run_outcome.h"
+#include "session/run_outcome.h"
 #include "io_node/session_scene.h"
 #include "options/options.h"
 

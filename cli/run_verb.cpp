@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "cli/coupling_check.h"
-#include "cli/distributed_run.h"
-#include "cli/in_process_run.h"
+#include "analysis/coupling_check.h"
+#include "session/distributed_run.h"
+#include "session/in_process_run.h"
 #include "cli/run_report.h"
 #include "cli/run_session.h"
-#include "cli/unrecorded.h"
+#include "session/unrecorded.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"

@@ -1,9 +1,9 @@
 // `slewring sessions`: what runs on this domain.
 #include <fmt/format.h>
 
-#include "cli/display.h"
-#include "cli/session_view.h"
-#include "cli/survey.h"
+#include "core/display.h"
+#include "session/session_view.h"
+#include "session/survey.h"
 #include "cli/verbs.h"
 #include "core/json.h"
 #include "core/report_table.h"

@@ -4,11 +4,11 @@
 
 #include <cstdio>
 
-#include "cli/display.h"
-#include "cli/interrupts.h"
+#include "core/display.h"
+#include "session/interrupts.h"
 #include "cli/progress_line.h"
-#include "cli/simplify/simplify.h"
-#include "cli/tradeoff/overlay.h"
+#include "analysis/simplify/simplify.h"
+#include "analysis/tradeoff/overlay.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"

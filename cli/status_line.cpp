@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "cli/coupling_lamp.h"
-#include "cli/display.h"
+#include "analysis/coupling_lamp.h"
+#include "core/display.h"
 #include "core/printable.h"
 #include "node/identity.h"
 #include "scene/names.h"

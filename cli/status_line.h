@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/session_view.h"
+#include "session/session_view.h"
 #include "scene/scene.h"
 
 namespace slew::cli {

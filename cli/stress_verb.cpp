@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 
-#include "cli/display.h"
-#include "cli/interrupts.h"
+#include "core/display.h"
+#include "session/interrupts.h"
 #include "cli/progress_line.h"
-#include "cli/stress/stress_report.h"
-#include "cli/text_output.h"
+#include "analysis/stress/stress_report.h"
+#include "core/text_output.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <fstream>
 
-#include "cli/display.h"
-#include "cli/interrupts.h"
+#include "core/display.h"
+#include "session/interrupts.h"
 #include "cli/progress_line.h"
-#include "cli/tradeoff/overlay.h"
-#include "cli/tradeoff/tradeoff_report.h"
+#include "analysis/tradeoff/overlay.h"
+#include "analysis/tradeoff/tradeoff_report.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "cli/display.h"
-#include "cli/monolithic_session.h"
-#include "cli/observer.h"
+#include "core/display.h"
+#include "session/monolithic_session.h"
+#include "session/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/report_table.h"

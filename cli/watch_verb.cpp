@@ -3,10 +3,10 @@
 
 #include <cstdio>
 
-#include "cli/display.h"
-#include "cli/observer.h"
+#include "core/display.h"
+#include "session/observer.h"
 #include "cli/verbs.h"
-#include "cli_support/name_pattern.h"
+#include "scene/name_pattern.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"

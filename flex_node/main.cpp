@@ -1,7 +1,7 @@
 // The program flex_node: the flexible bodies of a session's scene as a process of its own.
-#include "cli_support/carrier.h"
-#include "cli_support/node_program.h"
-#include "cli_support/subsystem_factory.h"
+#include "node/carrier.h"
+#include "node/node_program.h"
+#include "node/subsystem_factory.h"
 #include "flex_node/flex_subsystem.h"
 #include "node/physics_node.h"
 

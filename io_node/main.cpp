@@ -1,7 +1,7 @@
 // The program io_node: owner of a session, its clock, its operator input and its commands.
-#include "cli_support/carrier.h"
-#include "cli_support/node_program.h"
-#include "cli_support/scene_options.h"
+#include "node/carrier.h"
+#include "node/node_program.h"
+#include "scene/scene_options.h"
 #include "core/failure.h"
 #include "io_node/session_scene.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "cli_support/scene_options.h"
+#include "scene/scene_options.h"
 #include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "scene/scene.h"

@@ -1,9 +1,9 @@
 // The program mechanics_node: the mechanism of a session's scene as a process of its own.
 #include "mechanics_node/mechanics_subsystem.h"
 
-#include "cli_support/carrier.h"
-#include "cli_support/node_program.h"
-#include "cli_support/subsystem_factory.h"
+#include "node/carrier.h"
+#include "node/node_program.h"
+#include "node/subsystem_factory.h"
 #include "node/physics_node.h"
 
 namespace {

@@ -1,9 +1,9 @@
 // The program recorder_node: writes everything that is said in a session into one recording.
 #include <cstdio>
 
-#include "cli_support/carrier.h"
-#include "cli_support/node_program.h"
-#include "cli_support/subsystem_factory.h"
+#include "node/carrier.h"
+#include "node/node_program.h"
+#include "node/subsystem_factory.h"
 #include "recorder_node/recorder_node.h"
 
 namespace {

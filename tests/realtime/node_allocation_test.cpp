@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli_support/carrier.h"
-#include "cli_support/subsystem_factory.h"
+#include "node/carrier.h"
+#include "node/subsystem_factory.h"
 #include "core/allocation_guard.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"

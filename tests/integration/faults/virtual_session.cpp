@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "build_paths.h"
-#include "cli_support/carrier.h"
-#include "cli_support/subsystem_factory.h"
+#include "node/carrier.h"
+#include "node/subsystem_factory.h"
 #include "core/arithmetic_self_test.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "cli_support/carrier.h"
-#include "cli_support/scene_options.h"
-#include "cli_support/subsystem_factory.h"
+#include "node/carrier.h"
+#include "scene/scene_options.h"
+#include "node/subsystem_factory.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"

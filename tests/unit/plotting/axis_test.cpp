@@ -1,4 +1,4 @@
-#include "cli/plotting/axis.h"
+#include "plotting/axis.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cli/plotting/csv_export.h"
+#include "plotting/csv_export.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "cli/plotting/decimation.h"
+#include "plotting/decimation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cli/plotting/html_plot.h"
+#include "plotting/html_plot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cli/plotting/mat_export.h"
+#include "plotting/mat_export.h"
 
 #include <gtest/gtest.h>
 #include <matio.h>

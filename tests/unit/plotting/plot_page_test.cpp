@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/plotting/html_plot.h"
+#include "plotting/html_plot.h"
 #include "tests/support/played_page.h"
 
 namespace slew::plotting {

@@ -1,5 +1,5 @@
 // Marks over logarithmic axes: where they stand, and what is left out.
-#include "cli/plotting/scatter_svg.h"
+#include "plotting/scatter_svg.h"
 
 #include <gtest/gtest.h>
 

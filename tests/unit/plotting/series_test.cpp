@@ -1,11 +1,11 @@
-#include "cli/plotting/series.h"
+#include "plotting/series.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "cli/plotting/decimation.h"
+#include "plotting/decimation.h"
 
 namespace slew::plotting {
 namespace series_test {

@@ -1,4 +1,4 @@
-#include "cli/plotting/svg_plot.h"
+#include "plotting/svg_plot.h"
 
 #include <gtest/gtest.h>
 

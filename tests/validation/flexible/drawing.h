@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
-#include "cli/plotting/scatter_svg.h"
-#include "cli/plotting/svg_plot.h"
+#include "plotting/scatter_svg.h"
+#include "plotting/svg_plot.h"
 
 namespace slew::testing {
 

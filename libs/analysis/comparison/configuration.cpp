@@ -1,0 +1,178 @@
+#include "analysis/comparison/configuration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/failure.h"
+#include "multibody/field_tables.h"
+#include "multibody/integrators.h"
+#include "scene/units.h"
+
+namespace slew::cli {
+namespace {
+
+constexpr std::string_view kFormulation = "formulation", kIntegrator = "integrator", kSubstep = "max_substep",
+                           kOwnIntegrator = "own";
+constexpr double kSameRatio = 1e-9;    // of a whole number that decimals of a step miss by rounding
+constexpr double kReferenceRatio = 8;  // of the smallest step to the reference's: RK4 is then 4096 times better
+constexpr double kDefaultRatios[] = {1, 0.5, 0.25};  // of the scene's sub-step
+
+const Field* find_field(std::string_view key) {
+  for (const Field& field : multibody::mechanics_fields()) {
+    if (field.key == key) return &field;
+  }
+  return nullptr;
+}
+
+[[noreturn]] void refuse(const std::string& text) {
+  throw Failure(ExitCode::bad_input, text + "; nothing was run");
+}
+
+// the wanted names, in their order, none twice
+std::vector<std::string> select(const char* option, const std::vector<std::string>& wanted,
+                                const std::vector<std::string>& available) {
+  std::vector<std::string> chosen;
+  const auto add = [&chosen](const std::string& name) {
+    if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.push_back(name);
+  };
+  for (const std::string& name : wanted) {
+    if (name == "all") {
+      for (const std::string& each : available) add(each);
+    } else if (std::find(available.begin(), available.end(), name) != available.end()) {
+      add(name);
+    } else {
+      refuse(fmt::format("{}: there is no '{}' in this version; expected all, or some of {}", option, name,
+                         fmt::join(available, ", ")));
+    }
+  }
+  return chosen;
+}
+
+// Integrators of a formulation: what is wanted, with its own rule by its name and with all that it has for "all".
+std::vector<std::string> integrators_for(const std::string& formulation, const std::vector<std::string>& wanted) {
+  const std::vector<std::string> formulations = choices_of(kFormulation);
+  const auto index = std::find(formulations.begin(), formulations.end(), formulation) - formulations.begin();
+  const auto which = static_cast<multibody::Formulation>(index);
+  std::vector<std::string> chosen;
+  const auto add = [&chosen](std::string_view name) {
+    if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.emplace_back(name);
+  };
+  for (const std::string& name : wanted) {
+    if (name == "all") {
+      for (const multibody::Integrator each : multibody::integrators_of(which)) add(multibody::key_of(each));
+    } else {
+      add(name == kOwnIntegrator ? multibody::key_of(multibody::own_integrator(which)) : name);
+    }
+  }
+  return chosen;
+}
+
+bool is_whole(double ratio) {
+  return std::fabs(ratio - std::round(ratio)) <= kSameRatio * ratio && ratio > 0.5;
+}
+
+double read_step(const char* option, const std::string& text) {
+  scene::UnitSystem units;
+  const scene::QuantityResult read = scene::read_quantity(text, scene::Writing::plain, Dimension::time, units);
+  if (!read.value)
+    refuse(fmt::format("{}: '{}' {}; expected a time such as '0.5 ms'", option, text, read.complaint.what));
+  const Range range = find_field(kSubstep)->range;
+  if (!range.contains(*read.value)) {
+    refuse(fmt::format("{}: {} is out of range; expected {} to {}", option, step_text(*read.value),
+                       step_text(range.min), step_text(range.max)));
+  }
+  return *read.value;
+}
+
+std::vector<double> select_steps(const ComparisonWish& wish, const scene::Scene& scene) {
+  const double H = scene.session.step;
+  std::vector<double> steps;
+  const auto add = [&steps](double step) {
+    if (std::find(steps.begin(), steps.end(), step) == steps.end()) steps.push_back(step);
+  };
+  for (const std::string& text : wish.steps) {
+    const double step = read_step("--steps", text);
+    if (!is_whole(H / step) && !is_whole(step / H)) {
+      refuse(fmt::format("--steps: {} neither divides the communication step {} nor is a multiple of it",
+                         step_text(step), step_text(H)));
+    }
+    add(step);
+  }
+  if (!steps.empty()) return steps;
+  // the sub-step that the scene really makes
+  const double whole = H / std::ceil(H / scene.mechanics.max_substep * (1 - kSameRatio));
+  for (const double ratio : kDefaultRatios) {
+    if (find_field(kSubstep)->range.contains(ratio * whole)) add(ratio * whole);
+  }
+  return steps;
+}
+
+}  // namespace
+
+std::vector<std::string> choices_of(std::string_view key) {
+  std::vector<std::string> names;
+  if (const Field* field = find_field(key)) names.assign(field->choices.begin(), field->choices.end());
+  return names;
+}
+
+std::string choice_of(const scene::Scene& scene, std::string_view key) {
+  const Field* field = find_field(key);
+  if (field == nullptr) return {};
+  return std::string(field->choices[static_cast<std::size_t>(field->get_choice(&scene.mechanics))]);
+}
+
+std::vector<Configuration> configurations(const ComparisonWish& wish, const scene::Scene& scene) {
+  const std::vector<std::string> all = {"all"}, scenes_own = {choice_of(scene, kIntegrator)};
+  const auto formulations =
+      select("--formulations", wish.formulations.empty() ? all : wish.formulations, choices_of(kFormulation));
+  const std::vector<std::string>& wanted = wish.integrators.empty() ? scenes_own : wish.integrators;
+  // names that are none are refused here
+  static_cast<void>(select("--integrators", wanted, choices_of(kIntegrator)));
+  std::vector<Configuration> result;
+  for (const std::string& formulation : formulations) {
+    for (const std::string& integrator : integrators_for(formulation, wanted)) {
+      for (const double step : select_steps(wish, scene)) result.push_back({formulation, integrator, step});
+    }
+  }
+  return result;
+}
+
+Configuration default_configuration(double step) {
+  const scene::Scene scene;
+  const std::string formulation = choice_of(scene, kFormulation);
+  return {formulation, integrators_for(formulation, {choice_of(scene, kIntegrator)}).front(), step};
+}
+
+double reference_step(const ComparisonWish& wish, const scene::Scene& scene, double smallest_step) {
+  const double H = scene.session.step;
+  const double wanted =
+      wish.reference_step.empty() ? smallest_step / kReferenceRatio : read_step("--reference", wish.reference_step);
+  const double shortest = find_field(kSubstep)->range.min;
+  const double parts = 2 * std::ceil(H / (2 * std::max(wanted, shortest)) * (1 - kSameRatio));
+  // rounding must not make it shorter than a scene allows
+  return H / parts < shortest ? H / (parts - 2) : H / parts;
+}
+
+Configured load(const ComparisonWish& wish, const scene::Scene& base, const Configuration& configuration) {
+  cli_support::SceneOptions options = wish.scene;
+  const auto set = [&options](std::string_view path, const std::string& value) {
+    options.overrides.push_back(fmt::format("{}={}", path, value));
+  };
+  set("mechanics.formulation", configuration.formulation);
+  set("mechanics.integrator", configuration.integrator);
+  set("mechanics.max_substep", fmt::format("{:.17g}", configuration.step));
+  if (configuration.step > base.session.step) set("session.step", fmt::format("{:.17g}", configuration.step));
+  try {
+    return {cli_support::load_scene(options), ""};
+  } catch (const scene::LoadError& error) {
+    return {std::nullopt, error.first_reason()};
+  }
+}
+
+std::string step_text(double step) {
+  return fmt::format("{:.6g} ms", step * 1e3);
+}
+
+}  // namespace slew::cli

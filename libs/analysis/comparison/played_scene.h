@@ -1,0 +1,47 @@
+// A scene stepped in this process with the input that its script gives: what `slewring run --in-process` computes, bit
+// for bit, without messages and recording.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "session/direct_session.h"
+#include "io_node/input_gate.h"
+#include "io_node/scene_config.h"
+#include "scene/scene.h"
+
+namespace slew::cli {
+
+// Of what all the future follows from; 0 where the scene has nothing of the kind.
+struct StateHashes {
+  std::uint64_t mechanics = 0, hydraulics = 0;
+  bool operator==(const StateHashes&) const = default;
+};
+
+class PlayedScene {
+ public:
+  // The scene must outlive it. Throws Failure when no start state exists.
+  explicit PlayedScene(const scene::Scene& scene);
+
+  // From step() to the next one: controls and parameter changes of this step, then the physics.
+  void advance();
+
+  [[nodiscard]] StepIndex step() const noexcept { return n_; }
+  [[nodiscard]] SimTime time() const noexcept { return start_of(n_, H_); }
+  [[nodiscard]] const DirectSession& session() const noexcept { return session_; }
+  // Of the last advance(), by input channel.
+  [[nodiscard]] std::span<const double> controls() const noexcept { return controls_; }
+  [[nodiscard]] StateHashes state_hashes() const noexcept;
+
+ private:
+  io::IoConfig config_;
+  SimDuration H_;
+  io::InputGate gate_;
+  DirectSession session_;
+  StepIndex n_ = 0;
+  std::vector<SignalCourse> script_;  // raw, by channel
+  std::vector<double> controls_;
+  std::vector<wire::Command> commands_;
+};
+
+}  // namespace slew::cli

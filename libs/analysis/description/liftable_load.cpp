@@ -1,0 +1,297 @@
+#include "analysis/description/liftable_load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/description/instant.h"
+#include "core/display.h"
+#include "core/failure.h"
+#include "core/json.h"
+#include "core/report_table.h"
+#include "coupling/line_force.h"
+#include "hydraulics/circuit.h"
+#include "hydraulics/stall.h"
+#include "mechanics_node/payload.h"
+
+namespace slew::cli {
+namespace {
+
+// a cylinder whose force changes by less with 1 kg carries nothing of it: a hundred thousandth of its weight
+constexpr double kNoShare = 1e-4;  // m/s2
+constexpr double kCreep = 0.05;    // m/s, up to which the largest friction counts: the load has to begin to move
+constexpr int kCreepPoints = 50;
+constexpr double kLowered = 0.01;    // part of a setting
+constexpr double kOfSetting = 0.25;  // effect from which a setting limits
+
+struct Command {
+  std::string input;
+  double stick = 0;
+  hydraulics::HeldControl held;
+};
+
+// every input at full stick, to both sides; the neutral circuit where there is none
+std::vector<Command> commands_of(const scene::Scene& scene, const hydraulics::Circuit& circuit) {
+  std::vector<Command> commands;
+  for (const scene::InputDef& input : scene.inputs) {
+    const int control = circuit.find_control(input.primitive);
+    if (control < 0) continue;
+    for (const double stick : {1.0, -1.0}) {
+      if (stick < 0 && input.type == scene::InputType::digital) continue;
+      commands.push_back({input.name, stick, {control, stick * input.scale}});
+    }
+  }
+  if (commands.empty()) commands.push_back({});
+  return commands;
+}
+
+// largest friction on the way to kCreep [N]
+double friction(const coupling::LineForceLaw& law, double F, double direction) {
+  double largest = 0;
+  // in equal ratios, since breaking away takes a tenth of a millimetre a second
+  for (int k = 0; k <= kCreepPoints; ++k) {
+    const double v = kCreep * std::exp2(-0.25 * k);
+    largest = std::max(largest, std::fabs(law.friction(F, direction * v)));
+  }
+  return largest;
+}
+
+class Finder {
+ public:
+  Finder(scene::Scene& scene, const LiftingPose& pose) : scene_(scene), pose_(pose) {}
+
+  LiftableLoad find(ListedSettings settings) {
+    LiftableLoad result;
+    result.at = pose_.at;
+    for (const std::string& joint : pose_.joints) result.pose += (result.pose.empty() ? "" : ", ") + joint;
+    if (!scene_.has_mechanics() || scene_.ports.empty()) return result;
+    find_static_forces(result);
+    if (result.payload.empty() || !result.refusal.empty()) return result;
+    find_largest_forces(result);
+    choose(result);
+    if (settings == ListedSettings::named && result.has_answer()) {
+      name_settings(result.ports[static_cast<std::size_t>(result.limiting)]);
+    }
+    return result;
+  }
+
+ private:
+  // (1)
+  void find_static_forces(LiftableLoad& result) {
+    PlayedScene played(scene_);
+    play_to(played, pose_.at);
+    const mechanics::MechanicsSubsystem& mechanics = *mechanics_of(played);
+    multibody::Model model = mechanics.model();
+    multibody::State state = mechanics.state();
+    std::fill(state.u.begin(), state.u.end(), 0.0);
+    for (const std::string& joint : pose_.joints) put(joint, model, state);
+    const int payload = mechanics::payload_of(scene_.mechanics, model);
+    if (payload == 0) return;
+    multibody::Workspace ws(model);
+    const std::size_t m = scene_.ports.size();
+    std::vector<double> ratio, F(m), slope(m);
+    for (const scene::PortDef& port : scene_.ports) ratio.push_back(port.ratio);
+    result.payload = model.bodies[static_cast<std::size_t>(payload)].name;
+    result.mass = mechanics::mass_of(model, payload);
+    if (!mechanics::static_line_forces(model, state, ws, ratio, payload, result.mass, F)) {
+      result.refusal = "no forces of the cylinders hold the machine in this pose";
+      return;
+    }
+    for (std::size_t i = 0; i < m; ++i) {
+      const scene::PortDef& port = scene_.ports[i];
+      result.ports.push_back(
+          {.name = port.name, .stroke = port.offset + port.ratio * ws.row_x[i], .static_force = F[i]});
+    }
+    mechanics::payload_slopes(model, state, ws, ratio, payload, result.mass, slope);
+    for (std::size_t i = 0; i < m; ++i) {
+      if (std::fabs(slope[i]) >= kNoShare) result.ports[i].force_per_kg = slope[i];
+    }
+  }
+
+  // "Joint=20 deg"
+  static void put(const std::string& text, const multibody::Model& model, multibody::State& state) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    const int index = equals == std::string::npos ? -1 : multibody::find_joint(model, name);
+    if (index < 0) {
+      throw Failure(ExitCode::bad_input, fmt::format("--pose: '{}' names no joint of the scene; expected Joint=angle, "
+                                                     "such as 'Body_Pillar=20 deg'",
+                                                     text));
+    }
+    if (!model.cuts.empty()) {
+      throw Failure(ExitCode::bad_input,
+                    "--pose: the mechanism has loops, whose joints cannot be put one by one; give the poses of the "
+                    "bodies with --set, or a time of the run with --at");
+    }
+    const multibody::Joint& joint = model.joints[static_cast<std::size_t>(index)];
+    const multibody::Link& link = model.links[static_cast<std::size_t>(joint.link)];
+    const bool turns = link.joint == multibody::LinkJoint::revolute;
+    if (joint.link == 0 || (!turns && link.joint != multibody::LinkJoint::prismatic)) {
+      throw Failure(ExitCode::bad_input, fmt::format("--pose: {} has no single coordinate; expected a revolute or "
+                                                     "prismatic joint that moves",
+                                                     name));
+    }
+    state.q[static_cast<std::size_t>(link.q)] =
+        read_option("--pose", text.substr(equals + 1), turns ? Dimension::angle : Dimension::length);
+  }
+
+  // (2)
+  void find_largest_forces(LiftableLoad& result) {
+    const hydraulics::Circuit circuit(scene_.hydraulics);
+    commands_ = commands_of(scene_, circuit);
+    for (const LiftingPort& port : result.ports) stroke_.push_back(port.stroke);
+    command_of_.assign(result.ports.size(), 0);
+    std::vector<hydraulics::Stall> stalls;
+    for (const Command& command : commands_) {
+      stalls.push_back(hydraulics::find_stall(scene_.hydraulics, stroke_, command.held));
+    }
+    for (std::size_t i = 0; i < result.ports.size(); ++i) {
+      LiftingPort& port = result.ports[i];
+      if (!port.carries()) continue;
+      const double direction = port.force_per_kg > 0 ? 1 : -1;
+      for (std::size_t c = 1; c < stalls.size(); ++c) {
+        if (direction * stalls[c].forces[i] > direction * stalls[command_of_[i]].forces[i]) command_of_[i] = c;
+      }
+      const hydraulics::Stall& best = stalls[command_of_[i]];
+      const hydraulics::Actuator& actuator = circuit.actuators()[i];
+      const int chamber = direction > 0 ? actuator.port_a : actuator.port_b;
+      port.chamber = circuit.volume_name(chamber);
+      port.pressure = best.pressures[static_cast<std::size_t>(chamber)];
+      port.input = commands_[command_of_[i]].input;
+      port.stick = commands_[command_of_[i]].stick;
+      port.is_steady = best.is_steady;
+      const coupling::LineForceLaw law(scene_.ports[i].line_force);
+      const double F = best.forces[i];
+      // friction takes from it, and does not push the other way
+      port.largest_force = F - direction * std::min(std::fabs(F), friction(law, F, direction));
+      const coupling::LineForceDef& ends = law.def();
+      port.is_at_end = direction > 0 ? port.stroke >= ends.stroke_max : port.stroke <= ends.stroke_min;
+    }
+  }
+
+  // (3)
+  static void choose(LiftableLoad& result) {
+    for (std::size_t i = 0; i < result.ports.size(); ++i) {
+      LiftingPort& port = result.ports[i];
+      if (!port.carries()) continue;
+      port.load = result.mass + (port.largest_force - port.static_force) / port.force_per_kg;
+      if (!result.has_answer() || port.load < result.limit().load) result.limiting = static_cast<int>(i);
+    }
+  }
+
+  void name_settings(LiftingPort& port) {
+    const auto at = static_cast<std::size_t>(
+        std::find_if(scene_.ports.begin(), scene_.ports.end(), [&](const auto& one) { return one.name == port.name; }) -
+        scene_.ports.begin());
+    const hydraulics::Circuit circuit(scene_.hydraulics);
+    const auto chamber = static_cast<std::size_t>(circuit.find_volume(port.chamber));
+    for (const auto& component : scene_.hydraulics.components) {
+      const hydraulics::ComponentType* type = hydraulics::find_component_type(component->type_name());
+      for (const Field& field : type->fields) {
+        if (field.type != FieldType::number || field.dimension != Dimension::pressure) continue;
+        double& value = *static_cast<double*>(field.member(component->address()));
+        const double kept = value;
+        value = (1 - kLowered) * kept;
+        const hydraulics::Stall lowered =
+            hydraulics::find_stall(scene_.hydraulics, stroke_, commands_[command_of_[at]].held);
+        value = kept;
+        const double effect = (port.pressure - lowered.pressures[chamber]) / (kLowered * kept);
+        if (effect >= kOfSetting) {
+          port.settings.push_back({component->name + "." + std::string(field.key), kept, effect});
+        }
+      }
+    }
+    std::stable_sort(port.settings.begin(), port.settings.end(),
+                     [](const auto& a, const auto& b) { return a.value * a.effect > b.value * b.effect; });
+  }
+
+  scene::Scene& scene_;
+  const LiftingPose& pose_;
+  std::vector<Command> commands_;
+  std::vector<double> stroke_;
+  std::vector<std::size_t> command_of_;  // by port
+};
+
+std::string settings_text(const LiftingPort& port) {
+  std::string text;
+  for (const LimitingSetting& setting : port.settings) {
+    text += (text.empty() ? "" : " and ") + setting.path + " " + quantity_text(setting.value, "Pa");
+  }
+  return text.empty() ? "no pressure setting limits it" : "limited by " + text;
+}
+
+}  // namespace
+
+LiftableLoad find_liftable(scene::Scene& scene, const LiftingPose& pose, ListedSettings settings) {
+  return Finder(scene, pose).find(settings);
+}
+
+std::string limit_text(const LiftableLoad& load) {
+  const LiftingPort& port = load.limit();
+  return fmt::format("{} kg of {}: {} presses with {} at most, {} in {}", std::round(std::max(0.0, port.load)),
+                     load.payload, port.name, quantity_text(std::fabs(port.largest_force), "N"),
+                     quantity_text(port.pressure, "Pa"), port.chamber);
+}
+
+std::string report_text(const LiftableLoad& load, std::size_t width) {
+  const std::string when = load.pose.empty() ? "at " + duration_text(load.at) : "with " + load.pose;
+  if (!load.refusal.empty()) return fmt::format("liftable load {}: {}\n", when, load.refusal);
+  if (load.payload.empty()) return "liftable load: no cylinder, or no rigid body that moves\n";
+  if (!load.has_answer()) return fmt::format("liftable load {}: no cylinder carries {}\n", when, load.payload);
+  std::string text = fmt::format("largest liftable load {}: {}\n{}; the scene has {}\n\n", when, limit_text(load),
+                                 settings_text(load.limit()), quantity_text(load.mass, "kg"));
+  ReportTable table(
+      {"cylinder", "stroke", "static force", "a kg more", "largest force", "pressure", "loaded by", "load"});
+  for (const LiftingPort& port : load.ports) {
+    if (!port.carries()) {
+      table.add({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"), "none", "-", "-",
+                 "-", "carries nothing of it"});
+      continue;
+    }
+    std::string limit = fmt::format("{:.0f} kg", port.load);
+    if (port.is_at_end) limit += ", but the piston stands at its end";
+    if (!port.is_steady) limit += ", pressure still rising after 30 s";
+    table.add({port.name, quantity_text(port.stroke, "m"), quantity_text(port.static_force, "N"),
+               quantity_text(port.force_per_kg, "N"), quantity_text(port.largest_force, "N"),
+               quantity_text(port.pressure, "Pa"),
+               port.input.empty() ? "always" : fmt::format("{} at {:+g}", port.input, port.stick), limit});
+  }
+  return text + table.text("  ", width);
+}
+
+Json report_json(const LiftableLoad& load) {
+  Json ports = Json::array();
+  for (const LiftingPort& port : load.ports) {
+    Json json = {{"cylinder", port.name},
+                 {"stroke", port.stroke},
+                 {"static_force", port.static_force},
+                 {"static_force_per_kg", port.force_per_kg},
+                 {"carries", port.carries()}};
+    if (port.carries()) {
+      Json settings = Json::array();
+      for (const LimitingSetting& one : port.settings) {
+        settings.push_back({{"setting", one.path}, {"value", one.value}, {"effect", one.effect}});
+      }
+      json.put_all({{"largest_force", port.largest_force},
+                    {"pressure", port.pressure},
+                    {"chamber", port.chamber},
+                    {"input", port.input},
+                    {"stick", port.stick},
+                    {"load", port.load},
+                    {"at_end", port.is_at_end},
+                    {"steady", port.is_steady},
+                    {"settings", settings}});
+    }
+    ports.push_back(json);
+  }
+  Json json = {
+      {"at", load.at}, {"pose", load.pose}, {"payload", load.payload}, {"mass", load.mass}, {"cylinders", ports}};
+  if (load.has_answer()) {
+    json["load"] = load.limit().load;
+    json["limited_by"] = load.limit().name;
+  }
+  return json;
+}
+
+}  // namespace slew::cli

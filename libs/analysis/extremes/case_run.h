@@ -1,0 +1,26 @@
+// One hard case of a scene, run in this process and judged; then the largest communication step that keeps its bounds.
+#pragma once
+
+#include <string>
+
+#include "analysis/extremes/cases.h"
+#include "scene/scene_options.h"
+#include "core/json.h"
+
+namespace slew::cli {
+
+struct CaseOutcome {
+  Measures measures;
+  Judgement judgement;
+  Edge edge;
+};
+
+// Steps that are tried for the edge [s], by bisection: what is stable in one is taken to be stable in shorter ones.
+inline constexpr double kEdgeSteps[] = {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 5e-3, 10e-3, 20e-3};
+
+// Throws Failure when the scene has no such case; what the scene refuses of a case is an outcome.
+[[nodiscard]] CaseOutcome run_case(const cli_support::SceneOptions& scene, const std::string& name);
+
+[[nodiscard]] Json to_json(const CaseOutcome& outcome);
+
+}  // namespace slew::cli

@@ -1,0 +1,59 @@
+// Goes on beside the session of a stress test's cell: follows its response, and pauses it for slices of the yardstick.
+#pragma once
+
+#include <array>
+
+#include "session/observer.h"
+#include "analysis/stress/stress.h"
+
+namespace slew::cli {
+
+// CPU time that the session's processes take for a step.
+class SessionWork {
+ public:
+  // io's health has just said that the session is at this step.
+  void look(const SessionView& view, StepIndex step) noexcept;
+  // Of a role's process, between the first look and the last one; 0: there was one alone.
+  [[nodiscard]] SimDuration of_step(wire::Role role) const noexcept;
+
+ private:
+  struct Looked {
+    StepIndex step = kJoinStep;
+    std::array<std::int64_t, wire::kRoles> cpu_ns{};
+  };
+  Looked first_, last_;
+};
+
+class CellWatch {
+ public:
+  // grace: start of the session that is not judged. cell: gets what is measured, in finish().
+  CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration grace, StressCell& cell);
+
+  // Called some 50 times a second.
+  void look(Observer& observer, std::int64_t now_ns);
+  void finish();
+
+ private:
+  enum class Stage : std::uint8_t { stepping, pausing, measuring, resuming };
+
+  [[nodiscard]] bool is_slice_due(const SessionView& view) const noexcept;
+  [[nodiscard]] SimDuration computing_of(const SessionView& view, wire::Role role) const noexcept;
+  void measure(const SessionView& view);
+  void follow(const SessionView& view);
+  void follow_surroundings(const SessionView& view, std::int64_t now_ns);
+  void ask(Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+  void ask_again(Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+
+  YardstickRules rules_;
+  SessionWork work_;
+  StressCell& cell_;
+  Yardstick yardstick_;
+  SurroundingsWatch around_session_, around_yardstick_;
+  Stage stage_ = Stage::stepping;
+  StepIndex slices_, done_ = 0;
+  StepIndex steps_, first_slice_;
+  StepIndex followed_ = 0;
+  std::int64_t asked_ns_ = 0;
+};
+
+}  // namespace slew::cli

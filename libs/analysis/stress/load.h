@@ -1,0 +1,41 @@
+// Other work for the machine while deadlines are measured: processes of this program under normal scheduling.
+//
+//   none    nothing
+//   cpu     a loop of arithmetic on every processor
+//   mixed   that, and one process each that copies memory (64 MiB, more than the caches hold), writes files with fsync
+//           (4 MiB each) and sends datagrams of 1400 bytes to itself
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/child_process.h"
+#include "core/status.h"
+
+namespace slew::cli {
+
+enum class Load : std::uint8_t { none, cpu, mixed };
+
+[[nodiscard]] std::string to_text(Load load);
+
+// The load lasts as long as the object.
+class LoadProcesses {
+ public:
+  // folder: where the files of a mixed load come and go.
+  LoadProcesses(Load load, const std::string& folder);
+
+  // Error when one of them has ended: with its exit code and last words; what was measured then was measured without
+  // it. Does not block.
+  [[nodiscard]] Status check();
+
+ private:
+  Load load_;
+  std::vector<std::unique_ptr<ChildProcess>> processes_;
+};
+
+// For such a process: works until it is killed; throws Failure when it cannot. kind: cpu, memory, disk, network.
+void work_as(const std::string& kind, const std::string& folder);
+
+}  // namespace slew::cli

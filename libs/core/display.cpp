@@ -1,0 +1,112 @@
+#include "core/display.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <utility>
+
+#include "core/report_table.h"
+
+namespace slew::cli {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+constexpr std::pair<std::string_view, DisplayUnit> kUnits[] = {{"Pa", {1e-5, "bar"}},
+                                                               {"Pa/s", {1e-5, "bar/s"}},
+                                                               {"m3/s", {6e4, "l/min"}},
+                                                               {"m3", {1e3, "l"}},
+                                                               {"rad", {kDegrees, "deg"}},
+                                                               {"rad/s", {kDegrees, "deg/s"}},
+                                                               {"N", {1e-3, "kN"}},
+                                                               {"N m", {1e-3, "kN m"}},
+                                                               {"N/m", {1e-6, "kN/mm"}},
+                                                               {"J", {1e-3, "kJ"}},
+                                                               {"W", {1e-3, "kW"}},
+                                                               {"1", {1, ""}},
+                                                               {"rad/s2", {kDegrees, "deg/s2"}}};
+
+// further units in which people choose values
+constexpr std::pair<std::string_view, DisplayUnit> kUnitsOfData[] = {
+    {"m", {1e3, "mm"}},     {"m2", {1e4, "cm2"}},
+    {"m3", {1e6, "cm3"}},   {"rad/s", {30 / std::numbers::pi, "rpm"}},
+    {"m2/s", {1e6, "cSt"}}, {"m3/rad", {2e6 * std::numbers::pi, "cm3/rev"}}};
+
+// the fewest digits that give the value again, at most six
+std::string few_digits(double value) {
+  constexpr int kMostDigits = 6;
+  constexpr double kSame = 1e-9;  // relative; scaling to another unit costs some 1e-16
+  double rounded = value;
+  for (int digits = 1; digits <= kMostDigits; ++digits) {
+    rounded = std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+    if (std::fabs(rounded - value) <= kSame * std::fabs(value)) break;
+  }
+  return rounded == 0 ? "0" : fmt::format("{}", rounded);
+}
+
+std::string with_unit(std::string text, std::string_view unit) {
+  return unit.empty() ? text : text + ' ' + std::string(unit);
+}
+
+}  // namespace
+
+DisplayUnit display_unit(std::string_view si_unit) {
+  for (const auto& [unit, shown] : kUnits) {
+    if (unit == si_unit) return shown;
+  }
+  return {1, si_unit};
+}
+
+std::string quantity_text(double value, std::string_view si_unit) {
+  const DisplayUnit shown = display_unit(si_unit);
+  std::string text = fmt::format("{:.4g}", value * shown.factor);
+  if (text == "-0") text = "0";
+  return with_unit(std::move(text), shown.unit);
+}
+
+std::string chosen_text(double value, std::string_view si_unit) {
+  if (std::isinf(value)) return "none";
+  const auto in = [&](const DisplayUnit& unit) { return with_unit(few_digits(value * unit.factor), unit.unit); };
+  std::string shortest = in(display_unit(si_unit));
+  const bool is_zero = !(std::fabs(value) > 0);  // short in every unit
+  const auto offer = [&](std::string text) {
+    if (!is_zero && text.size() < shortest.size()) shortest = std::move(text);
+  };
+  offer(in({1, si_unit}));
+  for (const auto& [unit, of_data] : kUnitsOfData) {
+    if (unit == si_unit) offer(in(of_data));
+  }
+  return shortest;
+}
+
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string duration_text(double seconds) {
+  if (!(std::fabs(seconds) > 0)) return "0";
+  if (std::fabs(seconds) < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
+  if (std::fabs(seconds) < 1) return fmt::format("{:.3g} ms", seconds * 1e3);
+  return fmt::format("{:.4g} s", seconds);
+}
+
+std::string duration_below(double seconds) {
+  const double digit = std::pow(10, std::floor(std::log10(seconds)) - 1);
+  return duration_text(std::floor(seconds / digit * (1 + 1e-12)) * digit);
+}
+
+std::size_t output_width() {
+  winsize size{};
+  const bool is_terminal = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  return is_terminal ? size.ws_col : 0;
+}
+
+void print_table(const ReportTable& table) {
+  fmt::print("{}", table.text("", output_width()));
+}
+
+}  // namespace slew::cli

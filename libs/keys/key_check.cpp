@@ -1,0 +1,128 @@
+// What is not in order in a key store or in what was exported of one.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "keys/certificates.h"
+#include "keys/key_files.h"
+#include "keys/key_store.h"
+#include "keys/openssl.h"
+#include "keys/security_documents.h"
+#include "node/carrier.h"
+#include "core/failure.h"
+#include "transport/protection.h"
+
+namespace slew::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string line_of(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  return text;
+}
+
+bool others_may_read(const fs::path& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && (status.st_mode & (S_IRWXG | S_IRWXO)) != 0;
+}
+
+// openssl's own words, on one line
+std::string reason_of(const std::string& said) {
+  const std::size_t from = said.find("error ");
+  std::string line = said.substr(from == std::string::npos ? 0 : from);
+  line = line.substr(0, line.find('\n'));
+  return line;
+}
+
+std::string problem_of_signature(const std::string& document, const std::string& authority) {
+  std::string said;
+  const bool is_good =
+      try_openssl({"smime", "-verify", "-in", document, "-CAfile", authority, "-text", "-out", "/dev/null"}, said);
+  return is_good ? "" : fmt::format("{} is not signed by {}", document, authority);
+}
+
+// Of a signed document: whether it says what is signed today, line ends apart.
+std::string problem_of_governance(const fs::path& document) {
+  std::string text = read_file(document);
+  std::erase(text, '\r');
+  if (text.find(governance_xml()) != std::string::npos) return "";
+  return fmt::format(
+      "{} is that of another version and protects otherwise; 'slewring keys create' makes a store anew, to be exported "
+      "to every machine",
+      document.string());
+}
+
+// As the document writes times, of which the later one is the greater text; empty: it names none.
+std::string permissions_end(const std::string& document) {
+  constexpr std::string_view kBegin = "<not_after>";
+  const std::size_t from = document.find(kBegin);
+  if (from == std::string::npos) return "";
+  return document.substr(from + kBegin.size(), document.find('<', from + 1) - from - kBegin.size());
+}
+
+KeyFinding check_identity(const fs::path& folder, const std::string& name) {
+  KeyFinding finding{name, "", ""};
+  transport::CycloneNetwork network;
+  require(transport::protect(network, {folder.string(), name}));
+  const transport::CycloneSecurity& files = *network.security;
+  std::string said;
+  if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, said)) {
+    finding.problem = fmt::format("the certificate is not good: {}", reason_of(said));
+    return finding;
+  }
+  finding.expires = line_of(run_openssl({"x509", "-in", files.certificate, "-noout", "-enddate"}));
+  finding.expires = finding.expires.substr(finding.expires.find('=') + 1);
+  const std::string of_certificate = run_openssl({"x509", "-in", files.certificate, "-noout", "-pubkey"});
+  const std::string of_key = run_openssl({"pkey", "-in", files.private_key, "-pubout"});
+  if (of_certificate != of_key) {
+    finding.problem = "the private key is not that of the certificate";
+  } else if (others_may_read(files.private_key)) {
+    finding.problem = fmt::format("other users may read the private key; chmod 600 {}", files.private_key);
+  } else {
+    finding.problem = problem_of_signature(files.permissions, files.permissions_authority);
+  }
+  if (!finding.problem.empty()) return finding;
+  const std::string subject = "<subject_name>" + subject_of(files.certificate) + "</subject_name>";
+  const std::string permissions = read_file(files.permissions);
+  if (permissions.find(subject) == std::string::npos) {
+    finding.problem = "the permissions are those of another certificate";
+  } else if (permissions_end(permissions) < utc_now()) {
+    finding.problem = "the permissions have expired";
+  }
+  return finding;
+}
+
+}  // namespace
+
+std::vector<KeyFinding> check_keys(const fs::path& folder) {
+  const fs::path authority = folder / transport::kIdentityAuthority;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (fs::exists(entry.path() / transport::kCertificate)) names.push_back(entry.path().filename().string());
+  }
+  if (!fs::exists(authority) || names.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("{} holds no keys: {} and a folder for each identity are expected",
+                                                   folder.string(), transport::kIdentityAuthority));
+  }
+  std::sort(names.begin(), names.end());
+  KeyFinding whole{"", "", ""};
+  for (const char* key : {transport::kIdentityAuthorityKey, transport::kPermissionsAuthorityKey}) {
+    if (!others_may_read(folder / key)) continue;
+    whole.problem = fmt::format("other users may read an authority's key; chmod 600 {}", (folder / key).string());
+  }
+  if (whole.problem.empty()) {
+    whole.problem = problem_of_signature((folder / transport::kGovernance).string(),
+                                         (folder / transport::kPermissionsAuthority).string());
+  }
+  if (whole.problem.empty()) whole.problem = problem_of_governance(folder / transport::kGovernance);
+  whole.expires = line_of(run_openssl({"x509", "-in", authority.string(), "-noout", "-enddate"}));
+  whole.expires = whole.expires.substr(whole.expires.find('=') + 1);
+  std::vector<KeyFinding> findings = {whole};
+  for (const std::string& name : names) findings.push_back(check_identity(folder, name));
+  return findings;
+}
+
+}  // namespace slew::cli

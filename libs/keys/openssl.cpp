@@ -1,0 +1,45 @@
+#include "keys/openssl.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "core/child_process.h"
+#include "core/failure.h"
+
+namespace slew::cli {
+namespace {
+
+constexpr const char* kOpenssl = "/usr/bin/openssl";
+constexpr int kLookAgain = 20;  // ms
+
+}  // namespace
+
+bool try_openssl(const std::vector<std::string>& arguments, std::string& said) {
+  if (::access(kOpenssl, X_OK) != 0) {
+    throw Failure(ExitCode::resources,
+                  fmt::format("{} is not there; install the package openssl; nothing was changed", kOpenssl));
+  }
+  ChildProcess openssl("openssl", kOpenssl, arguments);
+  said.clear();
+  const auto listen = [&] {
+    for (const std::string& line : openssl.take_lines()) said += line + '\n';
+  };
+  while (!openssl.poll_end()) {
+    pollfd output{openssl.output_fd(), POLLIN, 0};
+    ::poll(&output, 1, kLookAgain);
+    listen();
+  }
+  listen();
+  return openssl.poll_end()->signal == 0 && openssl.poll_end()->exit_code == 0;
+}
+
+std::string run_openssl(const std::vector<std::string>& arguments) {
+  std::string said;
+  if (try_openssl(arguments, said)) return said;
+  throw Failure(ExitCode::failed, fmt::format("openssl {} failed: {}", arguments.front(), said));
+}
+
+}  // namespace slew::cli

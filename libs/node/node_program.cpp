@@ -1,0 +1,108 @@
+#include "node/node_program.h"
+
+#include <cstdio>
+#include <new>
+#include <system_error>
+
+#include "node/metered_carrier.h"
+#include "core/arithmetic_self_test.h"
+#include "core/failure.h"
+#include "core/file_size_limit.h"
+#include "core/printable.h"
+#include "core/real_time_thread.h"
+#include "node/driver.h"
+#include "node/identity.h"
+#include "scene/diagnostic.h"
+
+namespace slew::cli_support {
+namespace {
+
+int report(const std::string& program, const char* text, ExitCode code) noexcept {
+  std::fflush(stdout);
+  try {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), printable_lines(text).c_str());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: out of memory\n", program.c_str());
+  }
+  return static_cast<int>(code);
+}
+
+bool check_processor(const std::string& program) noexcept {
+  const char* missing = nullptr;
+  if (processor_fits(missing)) return true;
+  std::fprintf(stderr,
+               "%s: this processor lacks %s, which this build uses; nothing was started; build with "
+               "-DSLEWRING_MARCH=x86-64-v2 on all machines of a session\n",
+               program.c_str(), missing);
+  return false;
+}
+
+// files, memory and threads, of the process or of the machine
+bool is_of_resources(const std::error_code& code) {
+  return code == std::errc::too_many_files_open || code == std::errc::too_many_files_open_in_system ||
+         code == std::errc::not_enough_memory || code == std::errc::resource_unavailable_try_again;
+}
+
+int guarded(const std::string& program, const std::function<ExitCode()>& body) noexcept {
+  let_writes_fail_at_the_size_limit();
+  try {
+    return static_cast<int>(body());
+  } catch (const Failure& failure) {
+    return report(program, failure.what(), failure.code());
+  } catch (const scene::LoadError& error) {
+    // one line a problem, each beginning with its place in the file
+    std::fflush(stdout);
+    std::fprintf(stderr, "%s\n", printable_lines(error.what()).c_str());
+    return static_cast<int>(ExitCode::bad_input);
+  } catch (const std::bad_alloc&) {
+    return report(program, "out of memory; the program ends; close other programs or use a smaller scene",
+                  ExitCode::resources);
+  } catch (const std::system_error& error) {
+    if (!is_of_resources(error.code())) return report(program, error.what(), ExitCode::failed);
+    std::fflush(stdout);
+    std::fprintf(stderr,
+                 "%s: the system gives this process no more (%s); the program ends; raise the limit (ulimit -n for "
+                 "files, -d and -v for memory, -u for threads) or end other programs\n",
+                 program.c_str(), error.what());
+    return static_cast<int>(ExitCode::resources);
+  } catch (const std::exception& error) {
+    return report(program, error.what(), ExitCode::failed);
+  }
+}
+
+}  // namespace
+
+int run_program(options::Program& program, int argc, const char* const* argv) noexcept {
+  const std::string& name = program.name();
+  if (!check_processor(name)) return static_cast<int>(ExitCode::resources);
+  program.version(name + " " + node::build_id());
+  int exit_code = 0;
+  if (!program.parse(argc, argv, exit_code)) return exit_code;
+  return guarded(name, [&program] { return program.run(); });
+}
+
+void apply_real_time(const NodeOptions& options, const std::string& program) {
+  if (options.cpu >= 0) require(run_on_cpu(options.cpu));
+  if (!options.is_real_time) return;
+  const Status status = make_real_time(options.priority);
+  if (!status.is_ok()) std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), printable_lines(status.text).c_str());
+}
+
+std::optional<ExitCode> run_node(node::Node& node) {
+  node::install_signal_handlers();
+  const ExitCode code = node::run_alone(node, heap_meter());
+  if (node.member().is_withdrawn()) return std::nullopt;
+  const std::string& reason = node.member().reason();
+  // whoever sent this process the signal knows why it ended
+  const bool was_asked_to_end = static_cast<int>(code) == node::stop_requested.load();
+  if (code != ExitCode::ok && !was_asked_to_end && !reason.empty()) throw Failure(code, reason);
+  return code;
+}
+
+ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& run) {
+  while (true) {
+    if (const std::optional<ExitCode> code = run()) return *code;
+  }
+}
+
+}  // namespace slew::cli_support

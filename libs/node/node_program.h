@@ -1,0 +1,32 @@
+// The frame of every main: processor check, command line, signals, and where exceptions end.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "node/session_options.h"
+#include "core/status.h"
+#include "node/node.h"
+#include "options/options.h"
+
+namespace slew::cli_support {
+
+// Checks the processor, adds --version, parses, and runs the program's action: all that a main does. What the action
+// throws becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError: bad_input; no
+// memory, or a processor that this build is not for: resources; anything else: failed. A file at its size limit is a
+// failed write to the action and no signal (core/file_size_limit.h).
+[[nodiscard]] int run_program(options::Program& program, int argc, const char* const* argv) noexcept;
+
+// Processor and real-time scheduling as asked for; refused permission is a warning with the remedy on standard error, a
+// processor that is not there a Failure.
+void apply_real_time(const NodeOptions& options, const std::string& program);
+
+// Runs a node to its end; throws Failure with its reason if it failed. Nothing when its session was withdrawn: the
+// process has then no session yet.
+[[nodiscard]] std::optional<ExitCode> run_node(node::Node& node);
+
+// Makes and runs nodes with `run` until one had a session that was not withdrawn.
+[[nodiscard]] ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& run);
+
+}  // namespace slew::cli_support

@@ -1,0 +1,20 @@
+// Curves over time as a page to look around in: one file that asks for nothing else, panels as in plot_svg, one time
+// axis for all.
+//
+// The wheel and a dragged range zoom, with shift the range is moved, a double click shows all; panels scale to what is
+// seen. Under the pointer each curve tells the value of the last sample that is not later, and that sample's time. A
+// click on a name hides its curve. Columns of a pixel show the least and the largest value, so that nothing is lost in
+// long recordings. Values have seven digits.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "plotting/svg_plot.h"
+
+namespace slew::plotting {
+
+// options.width is not used: the page takes the window's.
+[[nodiscard]] std::string plot_html(std::span<const Plot> plots, const PlotOptions& options);
+
+}  // namespace slew::plotting

@@ -1,0 +1,32 @@
+// Curves as a MAT-file (level 5, compressed) for MATLAB, Octave and scipy.io.
+//
+// One struct for each curve: name (as in the session), unit, time [s], value (columns of equal length). It is called
+// like the curve, made valid for MATLAB: "Cyl_Lift.force" is Cyl_Lift_force. One more struct, `recording`, says where
+// the curves come from.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "plotting/series.h"
+#include "core/status.h"
+
+namespace slew::plotting {
+
+struct MatOrigin {
+  std::string scene, session, session_id, build;
+  double step = 0;  // s
+};
+
+// Names of MATLAB variables, one for each curve and none twice: letters, digits and '_', a letter first, at most 63, no
+// word of the language. What differs only in characters that were replaced gets _2, _3 ...
+[[nodiscard]] std::vector<std::string> mat_names(std::span<const Series> series);
+
+// Writes a new file or replaces one, and reads it back. Errors: storage; bad_input for a curve that is too long for the
+// format.
+[[nodiscard]] Status export_mat(std::span<const Series> series, const MatOrigin& origin,
+                                const std::filesystem::path& path);
+
+}  // namespace slew::plotting

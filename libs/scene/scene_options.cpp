@@ -1,0 +1,181 @@
+#include "scene/scene_options.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "core/failure.h"
+#include "scene/canonical.h"
+#include "scene/script_reader.h"
+
+namespace slew::cli_support {
+namespace {
+
+scene::Node text_node(const std::string& text, const scene::Mark& mark) {
+  scene::Node node;
+  node.kind = scene::Node::Kind::scalar;
+  node.is_quoted = true;
+  node.text = text;
+  node.mark = mark;
+  return node;
+}
+
+// Puts the script of a file in the place of the scene's own; problems are told with their place in that file.
+void replace_script(scene::Scene& scene, const std::string& file) {
+  scene::Report report;
+  const scene::Mark mark{report.add_source("--input " + file, scene::Report::Lines::none), 0, 0};
+  scene::Node section;
+  section.kind = scene::Node::Kind::map;
+  section.mark = mark;
+  section.entries.push_back({"file", mark, text_node(file, mark)});
+
+  // names of the scene's elements, from its canonical text
+  scene::Report own_report;
+  const auto source = scene::check_source(scene.expanded_text, own_report.add_source(scene.name), own_report);
+  const auto root = source ? scene::parse_yaml(*source, own_report) : std::nullopt;
+  if (!root) own_report.fail(scene::kMaxReportedProblems);
+  scene::NameTable names;
+  names.declare_all(*root, own_report);
+
+  scene.script = {};
+  scene::UnitSystem units;
+  scene::PlaceMap places;
+  std::vector<scene::Reference> references;
+  // the command line may name a file anywhere
+  const scene::Surroundings beside{.has_folder = true, .folder = "", .is_confined = false};
+  const scene::ReadContext context{units, report, places, references, &beside};
+  scene::read_script(section, mark, beside, names, scene, context);
+  // a recording keeps both in one folder
+  for (const scene::Asset& asset : scene.assets) {
+    const auto& script = scene.script.file;
+    if (!script || asset.name != script->file || asset.sha256 == script->sha256) continue;
+    report.add(mark, "", {"the scene has another file '" + asset.name + "'", "an input file of another name", ""});
+  }
+  if (!report.is_clean()) report.fail(scene::kMaxReportedProblems);
+}
+
+}  // namespace
+
+void add_scene_options(options::Command& app, SceneOptions& options) {
+  const options::Option file = app.option("scene", options.file, "scene file").value_name("SCENE");
+  const options::Option from =
+      app.option("--from", options.from,
+                 "go on with a saved session ('slewring control save') in the place of a scene; --set then changes "
+                 "live parameters and who moves an input (controller, supervisor)")
+          .value_name("FILE")
+          .group("Scene");
+  app.option("--assets", options.assets, "with --from: folder with the scene's files; without it this one")
+      .value_name("DIR")
+      .group("Scene");
+  app.require_one_of(file, from);
+  app.option("--set", options.overrides, "change a value of the scene; repeat for more")
+      .value_name("PATH=VALUE")
+      .one_value_each()
+      .group("Scene");
+  app.option("--step", options.step, "communication step H, such as '1 ms'").value_name("TIME").group("Scene");
+  app.option("--duration", options.duration, "length of the run, such as '20 s'; 0: until it is stopped")
+      .value_name("TIME")
+      .group("Scene");
+  app.option("--pace", options.pace, "real: by the wall clock; free: as fast as possible")
+      .one_of({"real", "free"})
+      .value_name("PACE")
+      .group("Scene");
+  app.option("--input", options.input, "script (the scene's own), none, keyboard, or a .csv or .yaml file")
+      .value_name("SOURCE")
+      .show_default()
+      .group("Scene");
+  app.flag("--record,!--no-record", options.is_recording, "write a recording (default)").group("Scene");
+}
+
+namespace {
+
+scene::Overrides of_session(const SceneOptions& options) {
+  scene::Overrides overrides;
+  if (!options.step.empty()) overrides.push_back("session.step=" + options.step);
+  if (!options.duration.empty()) overrides.push_back("session.duration=" + options.duration);
+  if (!options.pace.empty()) overrides.push_back("session.pace=" + options.pace);
+  return overrides;
+}
+
+scene::Scene with_input(scene::Scene scene, const SceneOptions& options) {
+  if (options.input == "script") return scene;
+  if (options.has_script()) {
+    replace_script(scene, options.input);
+  } else {
+    scene.script = {};
+  }
+  scene.expanded_text = scene::canonical_text(scene);
+  return scene;
+}
+
+}  // namespace
+
+scene::Scene load_scene(const SceneOptions& options) {
+  scene::Overrides overrides = options.overrides;
+  const scene::Overrides more = of_session(options);
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return with_input(scene::load_file(options.file, overrides), options);
+}
+
+namespace {
+
+// Who moves an input is no part of the state that a session goes on from: io_node's has its value and its ramp alone.
+constexpr std::string_view kOfController[] = {".controller", ".controller_delay", ".controller_wait", ".supervisor"};
+
+bool is_of_controller(const std::string& setting) {
+  const std::string_view path = std::string_view(setting).substr(0, setting.find('='));
+  return std::any_of(std::begin(kOfController), std::end(kOfController),
+                     [path](std::string_view key) { return path.ends_with(key); });
+}
+
+}  // namespace
+
+ContinuedScene continue_scene(const SceneOptions& options, const std::string& scene_text,
+                              const std::string& scene_name) {
+  if (!options.step.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "the step of a saved session is a part of its state; nothing was started; leave --step out");
+  }
+  scene::Overrides overrides = of_session(options);
+  std::copy_if(options.overrides.begin(), options.overrides.end(), std::back_inserter(overrides), is_of_controller);
+  ContinuedScene continued{
+      with_input(scene::load_text(scene_text, scene_name, overrides, options.assets.empty() ? "." : options.assets,
+                                  options.input == "script" ? scene::ScriptFile::read : scene::ScriptFile::left_out),
+                 options),
+      {}};
+  scene::ParameterDirectory directory(continued.scene);
+  for (const std::string& setting : options.overrides) {
+    if (is_of_controller(setting)) continue;
+    scene::Assignment change = directory.parse_assignment(setting);
+    if (!change.status.is_ok()) {
+      throw Failure(ExitCode::bad_input, "--set " + setting + ": " + change.status.text +
+                                             "; a session that goes on takes changes of live parameters, and of the "
+                                             "controller, controller_delay, controller_wait and supervisor of inputs, "
+                                             "only; nothing was started");
+    }
+    continued.changes.push_back(std::move(change));
+  }
+  return continued;
+}
+
+std::vector<std::string> scene_arguments(const SceneOptions& options) {
+  std::vector<std::string> arguments;
+  if (options.from.empty()) arguments.push_back(options.file);
+  const auto add = [&](const char* name, const std::string& value) {
+    if (value.empty()) return;
+    arguments.emplace_back(name);
+    arguments.push_back(value);
+  };
+  add("--from", options.from);
+  add("--assets", options.assets);
+  for (const std::string& setting : options.overrides) add("--set", setting);
+  add("--step", options.step);
+  add("--duration", options.duration);
+  add("--pace", options.pace);
+  add("--input", options.input);
+  if (!options.is_recording) arguments.emplace_back("--no-record");
+  return arguments;
+}
+
+}  // namespace slew::cli_support

@@ -1,0 +1,570 @@
+#include "session/distributed_run.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/child_process.h"
+#include "session/interrupts.h"
+#include "cli/keyboard.h"
+#include "session/observer.h"
+#include "cli/status_line.h"
+#include "node/carrier.h"
+#include "core/failure.h"
+#include "core/real_time_thread.h"
+#include "io_node/scene_config.h"
+#include "node/identity.h"
+#include "node/session_member.h"
+#include "recording/run_directory.h"
+#include "scene/cpu_places.h"
+#include "transport/given_up.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+constexpr int kRoundMs = 20;
+// after io is through, or a node is lost, the others have this long: their own linger and some more
+constexpr std::int64_t kGraceNs = 4'000'000'000;
+constexpr std::int64_t kTermNs = 1'500'000'000;
+// a recorder closes when the disk has confirmed all that waited: 64 MiB of its own and what the system holds back
+constexpr std::int64_t kWritingNs = 600'000'000'000;
+// a node that is killed again and again has a cause that a restart does not remove
+constexpr int kMostRestarts = 3;
+// from a start that failed to the next one
+constexpr std::int64_t kStartAgainNs = 500'000'000;
+
+class Supervisor {
+ public:
+  Supervisor(const RunOptions& options, const io::SessionScene& session)
+      : Supervisor(options, session.scene, session.beginning ? session.beginning->step : 0) {}
+
+  Supervisor(const RunOptions& options, const scene::Scene& scene, StepIndex begin)
+      : options_(options),
+        begin_(begin),
+        status_(status_mode(options.is_quiet || options.is_json)),
+        text_(scene),
+        roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
+        name_(scene.name),
+        rejoin_(duration_of_seconds(scene.session.rejoin)),
+        is_refusal_told_(options.is_refusal_told) {
+    const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
+    require(scene::parse_cpu_places(places, cpus_));
+    for (const scene::CpuPlace& place : cpus_) {
+      const auto role = std::find_if(std::begin(wire::kNodeRoles), std::end(wire::kNodeRoles),
+                                     [&](Role of_place) { return node::to_text(of_place) == place.role; });
+      if (role != std::end(wire::kNodeRoles)) check_place(*role, place);
+    }
+    if (options.scene.input == "keyboard") keyboard_.emplace(scene);
+  }
+
+  RunOutcome run() {
+    count_interrupts();
+    started_wall_ns_ = wall_clock_ns();
+    if (is_ours(Role::io)) start(Role::io);
+    observer_ = std::make_unique<Observer>(open_carrier(), options_.session.session);
+    if (!is_ours(Role::io)) start_others();
+    while (!all_ended()) {
+      wait_for_output();
+      observer_->drain();
+      look_after_children();
+      start_again();
+      start_others_when_io_is_there();
+      obey_interrupts();
+      if (options_.each_round && !options_.each_round(*observer_, monotonic_ns())) end_session();
+      enforce_deadlines();
+      show();
+    }
+    look_after_children();  // last words of the one that ended last
+    observer_->drain();
+    status_.clear();
+    return outcome();
+  }
+
+ private:
+  struct Node {
+    Role role = Role::io;
+    std::unique_ptr<ChildProcess> process;
+    bool is_reported = false;
+    bool is_asked_to_end = false;  // a signal is then no accident, even for one that does not catch it yet
+    int restarts = 0;
+    int given_up_before = 0;  // processes of its role, when it was started
+    bool is_awaited = false;  // it was killed, and is started again, or by somebody else, when io holds its place
+    bool is_replaced_elsewhere = false;  // by a process that was started by hand
+    bool is_killed_as_lost = false;
+    bool is_failure_told = false;
+    bool has_come = false;           // into the place that it was started for
+    std::int64_t not_before_ns = 0;  // of its next start
+  };
+
+  // values are needed for the status line, and for the summary of a run that is not recorded here
+  [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier() const {
+    const bool shows_values = !options_.is_quiet && !options_.is_json;
+    // what the samples report is in the recording when there is one: each reader costs the writers time
+    if (!is_ours(Role::recorder)) {
+      if (auto carrier = open_with_samples()) return carrier;
+    }
+    if (shows_values || keyboard_ || !is_ours(Role::recorder)) {
+      return cli_support::open_carrier(Role::observer, options_.session);
+    }
+    return cli_support::open_observer_without_values(options_.session);
+  }
+
+  // Null with keys of an earlier version, which give an observer no right to samples; the report has a note then.
+  [[nodiscard]] std::unique_ptr<transport::Transport> open_with_samples() const {
+    try {
+      return cli_support::open_observer_with_samples(options_.session);
+    } catch (const Failure& failure) {
+      if (options_.session.keys.empty() || failure.code() != ExitCode::bad_input) throw;
+      return nullptr;
+    }
+  }
+
+  // ---- starting -----------------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool is_ours(Role role) const {
+    const bool is_remote =
+        std::find(options_.remote.begin(), options_.remote.end(), node::to_text(role)) != options_.remote.end();
+    return (roles_ & bit(role)) != 0 && !is_remote;
+  }
+
+  // before anything is started
+  void check_place(Role role, const scene::CpuPlace& place) const {
+    // the list of a scene may name more than this session has
+    if ((roles_ & bit(role)) == 0 && !options_.cpus.empty()) {
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("--cpu {}={}: this session has no {} node; nothing was started; leave it out",
+                                place.role, place.cpu, place.role));
+    }
+    if (is_ours(role)) check_cpu(place);
+  }
+
+  static void check_cpu(const scene::CpuPlace& place) {
+    const std::vector<int> cpus = usable_cpus();
+    if (std::binary_search(cpus.begin(), cpus.end(), place.cpu)) return;
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{}={}: there is no processor {} for this process; there are {}; nothing was started; name one of "
+                    "them in --cpu or session.cpus",
+                    place.role, place.cpu, place.cpu, cpu_list(cpus)));
+  }
+
+  void start(Role role) { nodes_.push_back({role, make(role)}); }
+
+  [[nodiscard]] std::unique_ptr<ChildProcess> make(Role role) const {
+    std::vector<std::string> arguments;
+    if (role == Role::io) arguments = cli_support::scene_arguments(options_.scene);
+    if (role != Role::recorder && options_.join_timeout) {
+      arguments.insert(arguments.end(), {"--join-timeout", fmt::format("{}", *options_.join_timeout)});
+    }
+    arguments.insert(arguments.end(), {"--session", options_.session.session});
+    if (role == Role::mechanics || role == Role::hydraulics || role == Role::flex) {
+      arguments.insert(arguments.end(), {"--assets", options_.assets()});
+    }
+    // nodes of this run follow its own io and no other of its name
+    if (role != Role::io && is_ours(Role::io)) {
+      arguments.insert(arguments.end(), {"--session-id", node::to_text(observer_->view().session().header.session)});
+    }
+    const std::vector<std::string> network = cli_support::network_arguments(options_.session);
+    arguments.insert(arguments.end(), network.begin(), network.end());
+    if (role == Role::recorder)
+      arguments.insert(arguments.end(),
+                       {"--out", options_.runs, "--keep-free", fmt::format("{}", options_.keep_free_mb)});
+    if (options_.is_real_time) arguments.emplace_back("--rt");
+    for (const scene::CpuPlace& place : cpus_) {
+      if (place.role == node::to_text(role)) arguments.insert(arguments.end(), {"--cpu", std::to_string(place.cpu)});
+    }
+    const bool is_physics = role != Role::io && role != Role::recorder;
+    if (is_physics && options_.added_work_us > 0) {
+      arguments.insert(arguments.end(), {"--add-work", fmt::format("{}", options_.added_work_us)});
+    }
+    const std::string name(node::to_text(role));
+    return std::make_unique<ChildProcess>(name, sibling_program(name + "_node"), arguments);
+  }
+
+  void start_others() {
+    are_others_started_ = true;
+    for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
+      if (is_ours(role)) start(role);
+    }
+    if (keyboard_) status_.say(keyboard_->levers().help());
+  }
+
+  // a session of the same name refuses io: then no other node must come near that session
+  void start_others_when_io_is_there() {
+    if (are_others_started_ || nodes_.front().process->poll_end()) return;
+    const NodeView& io = observer_->view().node(Role::io);
+    const bool is_our_io = io.is_known && io.status.pid == static_cast<std::uint32_t>(nodes_.front().process->pid());
+    if (is_our_io && io.status.state < wire::NodeState::ended && interrupts() == 0) start_others();
+  }
+
+  // ---- starting again -----------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool is_place_held(const Node& node) const {
+    const bool is_physics = node.role != Role::io && node.role != Role::recorder;
+    const NodeView& io = observer_->view().node(Role::io);
+    const bool runs =
+        io.is_known && io.status.state >= wire::NodeState::running && !observer_->view().is_over() && interrupts() == 0;
+    return rejoin_.ns > 0 && is_physics && runs && deadline_ns_ == 0;
+  }
+
+  // Processes of the role that io has given up: it holds the place of the last one.
+  [[nodiscard]] int places_given_up(Role role) const {
+    if (!observer_->view().has_session()) return 0;
+    const std::vector<wire::GivenUp>& gone = observer_->view().session().given_up;
+    return static_cast<int>(
+        std::count_if(gone.begin(), gone.end(), [role](const wire::GivenUp& g) { return g.role == role; }));
+  }
+
+  // io has given this very process up: it was silent for too long.
+  [[nodiscard]] bool has_lost_its_place(const Node& node) const {
+    return rejoin_.ns > 0 && places_given_up(node.role) > node.given_up_before;
+  }
+
+  [[nodiscard]] bool is_taken_by_another(const Node& node) const {
+    const NodeView& view = observer_->view().node(node.role);
+    return view.is_known && view.status.state < wire::NodeState::ended &&
+           view.status.pid != static_cast<std::uint32_t>(node.process->pid()) &&
+           !transport::is_given_up(observer_->view().session(), view.status.header);
+  }
+
+  // What was heard of it last; null: nothing.
+  [[nodiscard]] const NodeView* heard_of(const Node& node) const {
+    const NodeView& view = observer_->view().node(node.role);
+    const bool is_it = view.is_known && view.status.pid == static_cast<std::uint32_t>(node.process->pid());
+    return is_it ? &view : nullptr;
+  }
+
+  // io holds a place until who came for it is ready.
+  [[nodiscard]] bool has_come(const Node& node) const {
+    const NodeView* view = heard_of(node);
+    if (view == nullptr) return false;
+    const wire::NodeState state = view->status.state;
+    const bool has_stepped =
+        view->health.header.incarnation == view->status.header.incarnation && view->health.steps_done > 0;
+    return has_stepped || (state >= wire::NodeState::ready && state < wire::NodeState::ended);
+  }
+
+  // io holds the place further for the next one: it has given up this one, or never heard of it.
+  [[nodiscard]] bool is_place_free(const Node& node) const {
+    const bool was_unheard = node.process->poll_end()->signal == 0 && heard_of(node) == nullptr;
+    return has_lost_its_place(node) || was_unheard;
+  }
+
+  void kill_those_given_up() {
+    for (Node& node : nodes_) {
+      if (node.process->poll_end() || node.is_killed_as_lost || !has_lost_its_place(node)) continue;
+      status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                  ") was silent for 2 s and has lost its place; it is killed");
+      node.is_killed_as_lost = true;
+      node.process->send_signal(SIGKILL);
+    }
+  }
+
+  void start_again() {
+    kill_those_given_up();
+    for (Node& node : nodes_) {
+      node.has_come = node.has_come || has_come(node);
+      if (!node.is_awaited) continue;
+      if (observer_->view().is_over() || deadline_ns_ != 0) {
+        node.is_awaited = false;
+        // who asked the session to end did not wait for it
+        if (interrupts() > 0) continue;
+        report_kill(node, "; the others end with code 4 and close the recording; run the session again");
+      } else if (is_place_free(node)) {
+        node.is_replaced_elsewhere = is_taken_by_another(node);
+        if (node.is_replaced_elsewhere) {
+          node.is_awaited = false;
+        } else if (node.restarts < kMostRestarts && monotonic_ns() >= node.not_before_ns) {
+          start_in_its_place(node);
+        }
+      }
+    }
+  }
+
+  // Without a pipe or a process for it the place is held all the same.
+  void start_in_its_place(Node& node) {
+    try {
+      node.process = make(node.role);
+    } catch (const Failure& failure) {
+      node.not_before_ns = monotonic_ns() + kStartAgainNs;
+      if (std::exchange(node.is_failure_told, true)) return;
+      return status_.say(std::string("slewring: ") + failure.what() +
+                         "; the others hold, and it is tried again until one comes or they end");
+    }
+    node.given_up_before = places_given_up(node.role);
+    node.is_awaited = node.is_reported = node.is_killed_as_lost = node.is_failure_told = node.has_come = false;
+    ++node.restarts;
+  }
+
+  // ---- watching -----------------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool all_ended() {
+    return std::all_of(nodes_.begin(), nodes_.end(),
+                       [](const Node& node) { return node.process->poll_end().has_value(); });
+  }
+
+  void wait_for_output() {
+    std::vector<pollfd> requests;
+    for (const Node& node : nodes_) {
+      if (!node.process->poll_end()) requests.push_back({node.process->output_fd(), POLLIN, 0});
+    }
+    ::poll(requests.data(), requests.size(), kRoundMs);
+  }
+
+  void look_after_children() {
+    for (Node& node : nodes_) {
+      const bool has_ended = node.process->poll_end().has_value();
+      for (const std::string& line : node.process->take_lines()) take_line(line);
+      if (has_ended && !node.is_reported) report_end(node);
+    }
+  }
+
+  void take_line(const std::string& line) {
+    constexpr std::string_view kPath = "recording: ";
+    if (line.starts_with(kPath)) {
+      recording_ = line.substr(kPath.size());
+      return;
+    }
+    // every node is refused alike: once is enough
+    constexpr std::string_view kRefused = "; to allow it, run as root, or set 'rtprio 95'";
+    if (line.find(kRefused) != std::string::npos) {
+      if (is_refusal_told_) return;
+      is_refusal_told_ = true;
+    }
+    // what follows from another node's failure is kept apart from the cause
+    const bool is_consequence = line.find("io ended the session") != std::string::npos ||
+                                line.find("because of a fault elsewhere") != std::string::npos;
+    const bool is_warning = line.find("warning") != std::string::npos;
+    if (is_warning || line.find("_node: ") == std::string::npos) return status_.say(line);
+    std::vector<std::string>& kept = is_consequence ? consequences_ : causes_;
+    if (std::find(kept.begin(), kept.end(), line) == kept.end()) kept.push_back(line);
+  }
+
+  void say_kill(const Node& node, const std::string& what_follows) {
+    status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                ") " + node.process->poll_end()->text() + what_follows);
+  }
+
+  [[nodiscard]] std::string what_follows_of(const Node& awaited) const {
+    if (awaited.restarts < kMostRestarts) {
+      return fmt::format("; the others hold, and it is started again with the state of its last checkpoint ({} of {})",
+                         awaited.restarts + 1, kMostRestarts);
+    }
+    return fmt::format(
+        "; it was started again {} times and is not any more; the others hold for {} in case that somebody else starts "
+        "one ('slewring node {} --session {}'), and then end with code 4 and close the recording",
+        kMostRestarts, node::seconds_text(rejoin_), awaited.process->name(), options_.session.session);
+  }
+
+  void report_kill(const Node& node, const std::string& what_follows) {
+    is_node_killed_ = true;
+    say_kill(node, what_follows);
+    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+  }
+
+  void report_end(Node& node) {
+    node.is_reported = true;
+    const ProcessEnd& end = *node.process->poll_end();
+    node.has_come = node.has_come || has_come(node);
+    // whose place io holds further
+    const bool has_not_come = node.restarts > 0 && end.exit_code != 0 && !node.has_come && is_place_held(node);
+    if (has_not_come) node.not_before_ns = monotonic_ns() + kStartAgainNs;
+    if ((end.signal != 0 || has_lost_its_place(node) || has_not_come) && !node.is_asked_to_end) {
+      if (is_place_held(node)) {
+        node.is_awaited = true;
+        return say_kill(node, what_follows_of(node));
+      }
+      report_kill(node,
+                  node.role == Role::recorder
+                      ? "; the others hold and end with code 4; 'slewring recover' makes the recording whole; run "
+                        "the session again"
+                      : "; the others hold, end with code 4 and close the recording; run the session again");
+    }
+    const bool is_wrong = end.signal != 0 || end.exit_code != 0;
+    if (node.role == Role::io || is_wrong) {
+      if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    }
+  }
+
+  // ---- ending -------------------------------------------------------------------------------------------------
+
+  void send(Node& node, int signal) {
+    if (node.process->poll_end()) return;
+    node.is_asked_to_end = true;
+    if (signal == SIGKILL) {
+      const bool has_written = node.role == Role::recorder && is_recorder_awaited_;
+      status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                  (has_written ? ") was killed while it wrote; 'slewring recover' makes the recording whole"
+                               : ") does not end; it was killed"));
+    }
+    node.process->send_signal(signal);
+    node.process->send_signal(SIGCONT);  // one that is stopped takes its signal only then
+  }
+
+  void send_to_all(int signal) {
+    for (Node& node : nodes_) send(node, signal);
+  }
+
+  // The session is over; who does not end by itself is killed, a recorder only when it has had time to write.
+  void kill_the_rest(std::int64_t now_ns) {
+    for (Node& node : nodes_) {
+      if (node.role != Role::recorder || now_ns > asked_ns_ + kWritingNs) {
+        send(node, SIGKILL);
+      } else if (!node.process->poll_end() && !is_recorder_awaited_) {
+        is_recorder_awaited_ = true;
+        status_.say("slewring: the session is over, and the recorder (process " + std::to_string(node.process->pid()) +
+                    ") still writes to a slow disk; Ctrl-C ends it, and what is not written then is lost");
+      }
+    }
+  }
+
+  // A Ctrl-C behind the first signal kills who is left, and so does the first one when only a slow disk is waited for.
+  void obey_interrupts() {
+    const int count = interrupts();
+    if (count == obeyed_) return;
+    const bool is_first = std::exchange(obeyed_, count) == 0;
+    const int meant = ctrl_cs();
+    const bool is_ctrl_c = meant != std::exchange(obeyed_ctrl_cs_, meant);
+    if (is_ctrl_c && (!is_first || is_recorder_awaited_)) return send_to_all(SIGKILL);
+    end_session();
+  }
+
+  void end_session() {
+    if (is_ending_) return;
+    is_ending_ = true;
+    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    if (is_ours(Role::io)) {
+      // io ends the session in order: END, the recorder closes, everybody leaves; its code is in the recording
+      const bool is_ctrl_c = interrupt_code() == static_cast<int>(ExitCode::interrupted);
+      nodes_.front().is_asked_to_end = true;
+      nodes_.front().process->send_signal(is_ctrl_c ? SIGINT : SIGTERM);
+      return;
+    }
+    wire::ControlRequest request;
+    request.action = wire::ControlAction::stop;
+    observer_->send(request);
+  }
+
+  void enforce_deadlines() {
+    if (deadline_ns_ == 0) return;
+    const std::int64_t now_ns = monotonic_ns();
+    if (now_ns > deadline_ns_ + kTermNs) {
+      deadline_ns_ = now_ns;
+      kill_the_rest(now_ns);
+    } else if (now_ns > deadline_ns_ && asked_ns_ == 0) {
+      asked_ns_ = now_ns;
+      send_to_all(SIGTERM);
+    }
+  }
+
+  // ---- showing ------------------------------------------------------------------------------------------------
+
+  void show() {
+    const std::int64_t now_ns = monotonic_ns();
+    const SessionView& view = observer_->view();
+    has_stepped_ = has_stepped_ || view.step() > begin_;
+    if (has_stepped_ && !view.is_over()) clock_.measure(now_ns, view.step(), view.is_paused());
+    if (keyboard_) keyboard_->poll(*observer_, now_ns);
+    text_.measure(view, now_ns);
+    if (status_.is_due(now_ns) && deadline_ns_ == 0) status_.show(text_.text(view), now_ns);
+  }
+
+  // The newest recording of this scene since the start: for a recorder that could not say its path.
+  [[nodiscard]] std::string find_recording() const {
+    std::string newest;
+    std::error_code error;
+    const std::string earliest = recording::run_name(name_, started_wall_ns_);
+    for (const auto& entry : std::filesystem::directory_iterator(options_.runs, error)) {
+      const std::string name = entry.path().filename().string();
+      const std::filesystem::path file = entry.path() / recording::kRecordingFileName;
+      if (name < earliest || !std::filesystem::exists(file, error)) continue;
+      if (name.substr(0, name_.size()) == earliest.substr(0, name_.size()) && file.string() > newest) newest = file;
+    }
+    return newest;
+  }
+
+  [[nodiscard]] ExitCode code() const {
+    if (is_node_killed_) return ExitCode::node_lost;
+    ExitCode of_io = ExitCode::ok, of_others = ExitCode::ok;
+    for (const Node& node : nodes_) {
+      if (node.is_replaced_elsewhere) continue;
+      const ProcessEnd& end = *node.process->poll_end();
+      // one that had to be killed although nobody asked the session to end is a lost one
+      const ExitCode of_killed = interrupt_code() != 0 ? ExitCode::terminated : ExitCode::node_lost;
+      const auto of_node = end.signal != 0 ? of_killed : static_cast<ExitCode>(end.exit_code);
+      if (node.role == Role::io) {
+        of_io = of_node;
+      } else if (of_others == ExitCode::ok && !(node.is_asked_to_end && of_node == ExitCode::terminated)) {
+        of_others = of_node;
+      }
+    }
+    const bool was_asked_to_end = of_io == ExitCode::interrupted || of_io == ExitCode::terminated;
+    if (interrupt_code() != 0 && (of_io == ExitCode::ok || was_asked_to_end)) {
+      return static_cast<ExitCode>(interrupt_code());
+    }
+    // io was asked to end because of another one
+    if (was_asked_to_end && nodes_.front().is_asked_to_end && of_others != ExitCode::ok) return of_others;
+    return of_io != ExitCode::ok ? of_io : of_others;
+  }
+
+  RunOutcome outcome() {
+    RunOutcome outcome;
+    outcome.code = code();
+    outcome.has_begun = are_others_started_ && observer_->view().has_session();
+    // nobody says "io ended it" when io has said why
+    outcome.messages = causes_.empty() && !is_node_killed_ ? consequences_ : causes_;
+    outcome.recording = recording_;
+    if (recording_.empty() && is_ours(Role::recorder) && are_others_started_) outcome.recording = find_recording();
+    outcome.view = observer_->view();
+    outcome.begin = begin_;
+    outcome.steps = std::max<StepIndex>(0, outcome.view.step() - begin_);
+    outcome.wall_time = clock_.running();
+    outcome.paused_time = clock_.paused();
+    outcome.is_refusal_told = is_refusal_told_;
+    return outcome;
+  }
+
+  const RunOptions& options_;
+  StepIndex begin_;  // step that the session goes on from
+  StatusLine status_;
+  StatusText text_;
+  std::uint32_t roles_;
+  std::vector<scene::CpuPlace> cpus_;
+  std::string name_;         // of the scene
+  std::vector<Node> nodes_;  // io first, when it is ours
+  std::unique_ptr<Observer> observer_;
+  std::optional<Keyboard> keyboard_;
+  SimDuration rejoin_;  // time that io holds the place of a physics node that is lost; 0: it does not
+  bool are_others_started_ = false;
+  bool is_node_killed_ = false;
+  bool is_recorder_awaited_ = false;  // it still writes when everybody else has ended
+  bool is_ending_ = false;
+  bool is_refusal_told_;
+  int obeyed_ = 0;  // signals, and of them those by Ctrl-C that were meant
+  int obeyed_ctrl_cs_ = 0;
+  std::int64_t deadline_ns_ = 0;
+  std::int64_t asked_ns_ = 0;  // when those that were left were asked to end
+  std::int64_t started_wall_ns_ = 0;
+  bool has_stepped_ = false;
+  RunClock clock_;
+  std::string recording_;
+  std::vector<std::string> causes_;
+  std::vector<std::string> consequences_;
+};
+
+}  // namespace
+
+RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session) {
+  return Supervisor(options, session).run();
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,156 @@
+#include "session/in_process_run.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "session/interrupts.h"
+#include "cli/keyboard.h"
+#include "session/monolithic_session.h"
+#include "session/observer.h"
+#include "cli/status_line.h"
+#include "node/carrier.h"
+#include "node/subsystem_factory.h"
+#include "core/real_time_thread.h"
+#include "io_node/scene_config.h"
+#include "node/driver.h"
+#include "node/physics_node.h"
+#include "recorder_node/recorder_node.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Role;
+
+class InProcessRun {
+ public:
+  InProcessRun(const RunOptions& options, const io::SessionScene& session)
+      : options_(options),
+        begin_(session.beginning ? session.beginning->step : 0),
+        status_(status_mode(options.is_quiet || options.is_json)),
+        text_(session.scene) {
+    io::SessionWish wish;
+    wish.session_name = options.session.session;
+    wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
+    wish.recording = options.scene.is_recording ? io::Recording::required : io::Recording::none;
+    io::IoConfig config = io::make_config(session, wish);
+    config.name_check = {};  // nobody else is on this bus
+    config.join_timeout = node::kNoTimeout;
+    roles_ = config.required_roles;
+    io_ = std::make_unique<io::IoNode>(endpoint(Role::io), std::move(config));
+    nodes_.push_back(io_.get());
+    for (const Role role : wire::kPhysicsRoles) add_physics(role);
+    if (options.scene.is_recording) add_recorder();
+    observer_ = std::make_unique<Observer>(cli_support::open_observer_with_samples(bus_), options.session.session);
+    if (options.scene.input == "keyboard") keyboard_.emplace(session.scene);
+  }
+
+  RunOutcome run() {
+    if (options_.is_real_time) {
+      const Status status = make_real_time(cli_support::kDefaultPriority);
+      if (!status.is_ok()) status_.say("slewring: warning: " + status.text);
+    }
+    count_interrupts();
+    if (keyboard_) status_.say(keyboard_->levers().help());
+    RunOutcome outcome;
+    outcome.code = node::run_together(nodes_, [this] { each_round(); });
+    status_.clear();
+    observer_->drain();
+    finish(outcome);
+    return outcome;
+  }
+
+ private:
+  transport::Transport& endpoint(Role role) {
+    endpoints_.push_back(cli_support::open_carrier(role, bus_));
+    return *endpoints_.back();
+  }
+
+  void add_physics(Role role) {
+    if ((roles_ & bit(role)) == 0) return;
+    auto node = std::make_unique<node::PhysicsNode>(
+        role, endpoint(role),
+        cli_support::subsystem_factory([this, role](const scene::Scene& own) { return family_.make(role, own); },
+                                       options_.assets()),
+        node::JoinOptions{node::kNoTimeout, node::kNoTimeout, std::nullopt});
+    nodes_.push_back(node.get());
+    physics_.push_back(std::move(node));
+  }
+
+  void add_recorder() {
+    recorder::RecorderConfig config;
+    config.join.session_timeout = node::kNoTimeout;
+    config.runs_directory = options_.runs;
+    config.keep_free = static_cast<std::uint64_t>(options_.keep_free_mb * 1e6);
+    recorder_ = std::make_unique<recorder::RecorderNode>(endpoint(Role::recorder), std::move(config));
+    nodes_.push_back(recorder_.get());
+  }
+
+  void each_round() {
+    const std::int64_t now_ns = monotonic_ns();
+    observer_->drain();
+    has_stepped_ = has_stepped_ || io_->next_step() > begin_;
+    if (has_stepped_ && io_->member().state() < wire::NodeState::ended) {
+      clock_.measure(now_ns, io_->next_step(), io_->is_paused());
+    }
+    if (keyboard_) keyboard_->poll(*observer_, now_ns);
+    text_.measure(observer_->view(), now_ns);
+    if (status_.is_due(now_ns)) status_.show(text_.text(observer_->view()), now_ns);
+  }
+
+  void finish(RunOutcome& outcome) {
+    for (node::Node* node : nodes_) {
+      const ExitCode code = node->member().exit_code();
+      const std::string& reason = node->member().reason();
+      // the node that failed first says why; the others only that it did
+      const bool is_consequence = reason.find("io ended the session") == 0 ||
+                                  reason.find("the session was ended because of a fault elsewhere") == 0;
+      if (code == ExitCode::ok || reason.empty()) continue;
+      outcome.messages.insert(is_consequence ? outcome.messages.end() : outcome.messages.begin(),
+                              std::string(node::to_text(node->member().role())) + ": " + reason);
+    }
+    if (interrupt_code() != 0) outcome.code = static_cast<ExitCode>(interrupt_code());
+    if (recorder_ != nullptr) outcome.recording = recorder_->recording().string();
+    outcome.has_begun = true;
+    outcome.begin = begin_;
+    outcome.steps = std::max<StepIndex>(0, io_->next_step() - begin_);
+    outcome.wall_time = clock_.running();
+    outcome.paused_time = clock_.paused();
+    outcome.view = observer_->view();
+    for (const auto& node : physics_) {
+      const node::HealthState& health = node->health();
+      StepTimes times;
+      times.sum = static_cast<double>(health.step_time_sum_ns.load()) * 1e-9;
+      times.steps = health.steps_done.load();
+      const Role role = node->member().role();
+      times.max =
+          std::max(outcome.view.node(role).times.max, static_cast<double>(health.step_time_max_ns.load()) * 1e-9);
+      outcome.view.set_times(role, times);
+    }
+  }
+
+  const RunOptions& options_;
+  StepIndex begin_;  // step that the session goes on from
+  StatusLine status_;
+  StatusText text_;
+  transport::InProcessBus bus_;
+  std::vector<std::unique_ptr<transport::Transport>> endpoints_;
+  std::uint32_t roles_ = 0;
+  std::unique_ptr<io::IoNode> io_;
+  SubsystemFamily family_;
+  std::vector<std::unique_ptr<node::PhysicsNode>> physics_;
+  std::unique_ptr<recorder::RecorderNode> recorder_;
+  std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
+  std::unique_ptr<Observer> observer_;
+  std::optional<Keyboard> keyboard_;
+  bool has_stepped_ = false;
+  RunClock clock_;
+};
+
+}  // namespace
+
+RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session) {
+  return InProcessRun(options, session).run();
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,12 @@
+// A session in one process, all nodes on one thread: for the debugger, for speed, and as the reference that a
+// distributed run must equal bit for bit.
+#pragma once
+
+#include "session/run_outcome.h"
+#include "io_node/session_scene.h"
+
+namespace slew::cli {
+
+[[nodiscard]] RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session);
+
+}  // namespace slew::cli

@@ -1,0 +1,52 @@
+#include "session/interrupts.h"
+
+#include <atomic>
+#include <csignal>
+
+#include "core/status.h"
+#include "core/time.h"
+#include "node/driver.h"
+
+namespace slew::cli {
+namespace {
+
+// a signal handler can reach nothing else than statics
+std::atomic<int> count{0};
+std::atomic<int> code{0};
+std::atomic<int> meant{0};
+std::atomic<std::int64_t> first_ns{0};
+
+// several threads may be in it at once
+void on_signal(int signal) {
+  const ExitCode wanted = signal == SIGINT ? ExitCode::interrupted : ExitCode::terminated;
+  const std::int64_t now_ns = monotonic_ns();  // clock_gettime is safe here
+  std::int64_t before_ns = 0;
+  const bool is_first = first_ns.compare_exchange_strong(before_ns, now_ns);
+  if (is_first) code.store(static_cast<int>(wanted));
+  if (signal == SIGINT && (is_first || now_ns - before_ns >= kSecondThought.ns)) meant.fetch_add(1);
+  count.fetch_add(1);
+  node::stop_requested.store(static_cast<int>(wanted));
+}
+
+}  // namespace
+
+void count_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+int interrupts() noexcept {
+  return count.load();
+}
+
+int interrupt_code() noexcept {
+  return code.load();
+}
+
+int ctrl_cs() noexcept {
+  return meant.load();
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,71 @@
+#include "session/recorded_events.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "core/failure.h"
+#include "node/identity.h"
+#include "transport/codec.h"
+#include "transport/wire.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Topic;
+using Requests = std::map<std::uint64_t, wire::ControlRequest>;
+using Visit = recording::Reader::Visit;
+
+std::string with_reason(std::string text, const std::string& reason) {
+  return reason.empty() ? text : text + ": " + reason;
+}
+
+// in recordings of protocol version 3 the request alone says it, where it was recorded
+std::string asked(const wire::ControlReply& reply, const Requests& requests) {
+  if (!reply.asked.empty()) return reply.asked;
+  const auto request = requests.find(reply.request);
+  return request == requests.end() ? "request" : node::to_text(request->second);
+}
+
+std::string lease_text(const wire::ControllerLease& lease) {
+  const char* const what = !lease.is_granted ? "does not have" : lease.holder.empty() ? "has released" : "has";
+  return with_reason(fmt::format("controller {} {} channel {}", lease.controller, what, lease.channel), lease.reason);
+}
+
+}  // namespace
+
+std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
+  Requests requests;
+  std::vector<RecordedEvent> events;
+  const auto topic = [](Topic which) { return std::string(node::to_text(which)); };
+  recording::MessageFilter filter;
+  filter.topics = {topic(Topic::control_request)};
+  // a damaged chunk ends the reading; what was in front of it counts
+  static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
+    wire::ControlRequest request;
+    if (transport::decode(message.payload, request)) requests[request.request] = std::move(request);
+    return Visit::go_on;
+  }));
+  filter.topics = {topic(Topic::control_reply), topic(Topic::controller_lease)};
+  std::set<std::uint64_t> answered;  // who has not heard its answer is told it again
+  static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
+    wire::ControlReply reply;
+    wire::ControllerLease lease;
+    if (message.channel->topic == filter.topics[1]) {
+      if (transport::decode(message.payload, lease)) {
+        events.push_back({lease.header.step, lease.header.epoch, lease_text(lease)});
+      }
+    } else if (transport::decode(message.payload, reply)) {
+      if (reply.request != 0 && !answered.insert(reply.request).second) return Visit::go_on;
+      const std::string answer = reply.is_accepted ? " accepted" : " refused";
+      const std::string text =
+          reply.request == 0 ? reply.reason : with_reason(asked(reply, requests) + answer, reply.reason);
+      events.push_back({reply.header.step, reply.header.epoch, text});
+    }
+    return Visit::go_on;
+  }));
+  return events;
+}
+
+}  // namespace slew::cli

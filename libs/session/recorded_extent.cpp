@@ -1,0 +1,137 @@
+#include "session/recorded_extent.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <string>
+
+#include "session/recorded.h"
+#include "core/failure.h"
+#include "node/identity.h"
+#include "transport/codec.h"
+
+namespace slew::cli {
+namespace {
+
+using recording::RecordedMessage;
+using wire::Phase;
+using wire::Topic;
+using Visit = recording::Reader::Visit;
+
+// Numbers that are there, as runs without a gap.
+class Runs {
+ public:
+  void add(StepIndex number) {
+    const auto next = runs_.upper_bound(number);
+    const auto last = next == runs_.begin() ? runs_.end() : std::prev(next);
+    if (last != runs_.end() && number <= last->second) return;
+    const bool continues = last != runs_.end() && number == last->second + 1;
+    const auto run = continues ? last : runs_.emplace_hint(next, number, number);
+    run->second = number;
+    if (next != runs_.end() && next->first == number + 1) {
+      run->second = next->second;
+      runs_.erase(next);
+    }
+  }
+  [[nodiscard]] StepIndex newest() const { return runs_.empty() ? -1 : runs_.rbegin()->second; }
+  // The last one from `first` on without a gap; first - 1: not even that one.
+  [[nodiscard]] StepIndex complete_to(StepIndex first) const {
+    const auto next = runs_.upper_bound(first);
+    return next == runs_.begin() ? first - 1 : std::max(first - 1, std::prev(next)->second);
+  }
+  // Those from `first` up to the newest that are not there.
+  [[nodiscard]] std::uint64_t missing(StepIndex first) const {
+    StepIndex count = 0;
+    for (const auto& [from, to] : runs_) {
+      count += std::max<StepIndex>(0, from - first);
+      first = std::max(first, to + 1);
+    }
+    return static_cast<std::uint64_t>(count);
+  }
+
+ private:
+  std::map<StepIndex, StepIndex> runs_;  // first and last of each
+};
+
+struct Epoch {
+  std::optional<StepIndex> states_at, init_at;
+  std::map<std::string, Runs> streams;  // by topic; samples of flexible bodies by number and not by step
+};
+
+bool is_of(const RecordedMessage& message, Topic topic) {
+  return message.channel->topic == node::to_text(topic);
+}
+
+// Samples of and for flexible bodies come every k-th step from step 0 on.
+bool is_of_flexible_bodies(const std::string& topic) {
+  return topic == node::to_text(Topic::elastic) || topic == node::to_text(Topic::flexible);
+}
+
+// k; 1 when there are none but of step 0.
+StepIndex flexible_every(const recording::Reader& reader) {
+  StepIndex every = 0;
+  wire::Header header;
+  require(reader.for_each(only({Topic::elastic, Topic::flexible}), [&](const RecordedMessage& message) {
+    if (transport::decode_header(message.payload, header) && header.phase == Phase::running) {
+      every = std::gcd(every, header.step);
+    }
+    return Visit::go_on;
+  }));
+  return std::max<StepIndex>(1, every);
+}
+
+void take(const RecordedMessage& message, StepIndex every, Epoch& epoch, const wire::Header& header) {
+  if (is_of(message, Topic::state)) {
+    epoch.states_at = std::min(epoch.states_at.value_or(header.step), header.step);
+  } else if (header.phase == Phase::init) {
+    epoch.init_at = std::max<StepIndex>(0, header.step);
+  } else if (header.phase == Phase::running && header.step >= 0) {
+    const StepIndex unit = is_of_flexible_bodies(message.channel->topic) ? every : 1;
+    epoch.streams[message.channel->topic].add(header.step / unit);
+  }
+}
+
+std::optional<StepIndex> first_step(const Epoch& epoch) {
+  if (epoch.states_at) return epoch.states_at;
+  if (epoch.init_at) return epoch.init_at;
+  // a session of one node has no INIT
+  const bool has_first = std::any_of(epoch.streams.begin(), epoch.streams.end(),
+                                     [](const auto& stream) { return stream.second.complete_to(0) >= 0; });
+  return has_first ? std::optional<StepIndex>(0) : std::nullopt;
+}
+
+}  // namespace
+
+RecordedExtent recorded_extent(const recording::Reader& reader) {
+  const StepIndex every = flexible_every(reader);
+  std::map<std::uint32_t, Epoch> epochs;
+  const auto filter =
+      only({Topic::tick, Topic::mechanism, Topic::actuators, Topic::flexible, Topic::elastic, Topic::state});
+  wire::Header header;
+  require(reader.for_each(filter, [&](const RecordedMessage& message) {
+    if (transport::decode_header(message.payload, header)) take(message, every, epochs[header.epoch], header);
+    return Visit::go_on;
+  }));
+  RecordedExtent extent;
+  for (const auto& [number, epoch] : epochs) {
+    if (epoch.streams.empty()) continue;
+    extent.epoch = number;
+    extent.first_step = first_step(epoch);
+    extent.last_step = -1;
+    const StepIndex first = extent.first_step.value_or(0);
+    std::optional<StepIndex> complete_to;
+    for (const auto& [topic, stream] : epoch.streams) {
+      const StepIndex unit = is_of_flexible_bodies(topic) ? every : 1;
+      const StepIndex from = (first + unit - 1) / unit;
+      const StepIndex complete = (stream.complete_to(from) + 1) * unit - 1;
+      complete_to = std::min(complete_to.value_or(complete), complete);
+      extent.last_step = std::max(extent.last_step, stream.newest() * unit);
+      extent.lost += stream.missing(from);
+    }
+    extent.complete_to = std::max(first - 1, complete_to.value_or(-1));
+  }
+  return extent;
+}
+
+}  // namespace slew::cli

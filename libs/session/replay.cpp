@@ -1,0 +1,387 @@
+#include "session/replay.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "session/direct_session.h"
+#include "session/recorded.h"
+#include "core/arithmetic_self_test.h"
+#include "core/failure.h"
+#include "io_node/scene_config.h"
+#include "io_node/tick_follower.h"
+#include "node/driver.h"
+#include "node/identity.h"
+#include "scene/scene.h"
+#include "transport/codec.h"
+
+namespace slew::cli {
+namespace {
+
+using wire::Phase;
+using wire::Role;
+using wire::Topic;
+using Visit = recording::Reader::Visit;
+
+// ticks that come late in the file wait for the one in front of them; more of them are a gap
+constexpr std::size_t kMostWaiting = 4096;
+
+class Replay {
+ public:
+  Replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets, ReplayEnd* end)
+      : reader_(reader),
+        on_difference_(on_difference),
+        scene_(recorded_scene(reader, assets)),
+        session_(scene_),
+        end_(end) {
+    set_floating_point_mode();
+    if (scene_.session.mode == scene::ExchangeMode::free_running) {
+      throw Failure(ExitCode::bad_input,
+                    "the recording is of a free-running session, in which the clock decided which samples each step "
+                    "used; it cannot be computed again; nothing was compared; record with session.mode: lockstep what "
+                    "is to be verified");
+    }
+    if (scene_.session.step_duration() != reader.identity().communication_step) {
+      throw Failure(ExitCode::bad_input, "the recording's step is not its scene's; it cannot be replayed");
+    }
+  }
+
+  ReplayResult run() {
+    read_states();
+    epoch_ = first_epoch();
+    if (end_ != nullptr) {
+      last_epoch_ = last_epoch();
+      config_ = io::make_config(scene_, {});
+      follower_.emplace(config_);
+    }
+    start_epoch();
+    recording::MessageFilter filter;
+    for (const Topic topic : {Topic::tick, Topic::mechanism, Topic::actuators, Topic::elastic}) {
+      filter.topics.emplace_back(node::to_text(topic));
+    }
+    const Status status = reader_.for_each(filter, [this](const recording::RecordedMessage& message) {
+      take(message);
+      return has_stopped_ || (is_at_end() && is_all_compared()) || node::stop_requested.load() != 0 ? Visit::stop
+                                                                                                    : Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+    if (!has_stopped_ && (end_ == nullptr || is_at_end())) finish_epoch(EpochEnd::recording);
+    if (end_ != nullptr && !has_stopped_) save_end();
+    if (end_ == nullptr && !has_stopped_) count_unreached();
+    if (result_.steps == 0 && end_ == nullptr && result_.problem.empty()) {
+      throw Failure(ExitCode::bad_input, "the recording has no tick 0; there is nothing to replay");
+    }
+    return result_;
+  }
+
+ private:
+  struct Hashes {
+    std::vector<std::uint64_t> computed;  // by step, from the epoch's first
+    std::vector<bool> is_compared;
+  };
+
+  void take(const recording::RecordedMessage& message) {
+    if (message.channel->topic == node::to_text(Topic::tick)) return take_tick(message.payload);
+    if (message.channel->topic == node::to_text(Topic::mechanism)) {
+      if (transport::decode(message.payload, mechanism_)) take_sample(mechanism_.header, mechanism_.state.state_hash);
+    } else if (message.channel->topic == node::to_text(Topic::elastic)) {
+      if (transport::decode(message.payload, elastic_)) take_sample(elastic_.header, elastic_.state.state_hash);
+    } else if (transport::decode(message.payload, actuators_)) {
+      take_sample(actuators_.header, actuators_.state.state_hash);
+    }
+  }
+
+  // ---- states -------------------------------------------------------------------------------------------------
+
+  // Epochs that begin with states have them in the recording.
+  void read_states() {
+    recording::MessageFilter filter;
+    filter.topics.emplace_back(node::to_text(Topic::state));
+    std::map<std::pair<std::uint32_t, Role>, node::CheckpointParts> parts;
+    wire::StatePart part;
+    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+      if (!transport::decode(message.payload, part)) return Visit::go_on;
+      node::CheckpointParts& of_role = parts[{part.header.epoch, part.role}];
+      if (of_role.take(part)) states_[part.header.epoch].push_back({part.role, of_role.checkpoint()});
+      return Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+  }
+
+  // A recording may begin later than its session.
+  [[nodiscard]] std::uint32_t first_epoch() const {
+    std::uint32_t epoch = 0;
+    bool has_tick = false;
+    wire::Header header;
+    recording::MessageFilter filter;
+    filter.topics.emplace_back(node::to_text(Topic::tick));
+    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+      has_tick = transport::decode_header(message.payload, header) && header.phase != Phase::join;
+      if (has_tick) epoch = header.epoch;
+      return has_tick ? Visit::stop : Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+    // an INIT tick is said at the begin of its epoch, not of the first one
+    return has_tick && header.phase == Phase::init && epoch > 0 ? epoch - 1 : epoch;
+  }
+
+  [[nodiscard]] std::uint32_t last_epoch() const {
+    std::uint32_t epoch = 0;
+    wire::Header header;
+    recording::MessageFilter filter;
+    filter.topics.emplace_back(node::to_text(Topic::tick));
+    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+      if (transport::decode_header(message.payload, header)) epoch = std::max(epoch, header.epoch);
+      return Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+    return epoch;
+  }
+
+  // ---- the end ------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool is_at_end() const { return end_ != nullptr && epoch_ == last_epoch_ && next_ >= end_->step; }
+
+  // A sample may stand behind the tick of its step: those of the last steps too are held against what was computed.
+  [[nodiscard]] bool is_all_compared() const {
+    return std::all_of(hashes_.begin(), hashes_.end(), [](const Hashes& of_role) {
+      return std::find(of_role.is_compared.begin(), of_role.is_compared.end(), false) == of_role.is_compared.end();
+    });
+  }
+
+  void save_end() {
+    const double H = scene_.session.step_duration().seconds();
+    if (!is_at_end() || next_ > end_->step) {
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("the recording ends before step {} (t = {:.6g} s) of its last epoch, or that begins "
+                                "later; nothing was saved; say an earlier time with --until",
+                                end_->step, static_cast<double>(end_->step) * H));
+    }
+    if (const Status can = session_.can_save(); !can.is_ok()) throw Failure(can.code, can.text);
+    io::SavedSession& saved = end_->saved;
+    saved.step = next_;
+    saved.build = node::build_id();
+    saved.session_name = reader_.identity().session_name;
+    saved.scene_name = scene_.name;
+    saved.scene_text = scene_.expanded_text;
+    saved.communication_step = scene_.session.step_duration();
+    for (const scene::Asset& asset : recorded_manifest(reader_)) {
+      saved.assets.push_back({asset.name, asset.size, asset.sha256});
+    }
+    saved.states = session_.save(next_);
+    saved.states.push_back({Role::io, follower_->state(next_)});
+  }
+
+  // ---- epochs -------------------------------------------------------------------------------------------------
+
+  void start_epoch() {
+    ++result_.epochs;
+    const auto states = states_.find(epoch_);
+    begin_ = states == states_.end() ? 0 : states->second.front().state.step;
+    next_ = begin_;
+    has_ended_ = false;
+    waiting_ticks_.clear();
+    waiting_samples_.clear();
+    hashes_ = {};
+    const Status status = states == states_.end() ? session_.start() : session_.load(states->second);
+    if (status.is_ok() && follower_) {
+      const node::Checkpoint* own = nullptr;
+      if (states != states_.end()) {
+        for (const io::SavedState& of_role : states->second) {
+          if (of_role.role == Role::io) own = &of_role.state;
+        }
+      }
+      if (const Status followed = follower_->begin(own); !followed.is_ok()) return stop(followed.text);
+    }
+    if (!status.is_ok())
+      return stop((states == states_.end() ? "INIT: " : "the states of step " + std::to_string(begin_) + ": ") +
+                  status.text);
+    init_hash_ = session_.init_hash();
+    keep_hashes();
+  }
+
+  // A reset overtakes the last ticks: what nobody computed any more is not missing.
+  enum class EpochEnd : std::uint8_t { recording, reset };
+
+  void finish_epoch(EpochEnd end) {
+    if (!waiting_ticks_.empty()) {
+      return stop(fmt::format("gap: tick {} of epoch {} is missing, tick {} follows", next_, epoch_,
+                              waiting_ticks_.begin()->first));
+    }
+    for (const Hashes& of_role : hashes_) {
+      std::size_t expected = of_role.is_compared.size();
+      while (end == EpochEnd::reset && expected > 0 && !of_role.is_compared[expected - 1]) --expected;
+      for (std::size_t i = 0; i < expected; ++i) {
+        if (!of_role.is_compared[i]) ++result_.unrecorded;
+      }
+    }
+    // samples whose ticks did not come
+    for (const auto& [key, hash] : waiting_samples_) unreached_samples_.emplace(epoch_, key.first, key.second);
+  }
+
+  void count_unreached() {
+    result_.unreached_steps = unreached_ticks_.size();
+    result_.unreached_hashes = unreached_samples_.size();
+    if (!unreached_ticks_.empty()) {
+      const auto [epoch, step] = *unreached_ticks_.begin();
+      result_.end = fmt::format("tick {} of epoch {}", step, epoch);
+    } else if (!unreached_samples_.empty()) {
+      const auto [epoch, step, role] = *unreached_samples_.begin();
+      result_.end = fmt::format("the sample of step {} of epoch {} from {}", step, epoch, node::to_text(role));
+    }
+  }
+
+  // ---- ticks --------------------------------------------------------------------------------------------------
+
+  void take_tick(std::span<const std::byte> bytes) {
+    if (!transport::decode(bytes, tick_)) return stop("a tick cannot be decoded");
+    const wire::Header& header = tick_.header;
+    if (header.phase == Phase::init && header.epoch == epoch_ + 1) {
+      finish_epoch(EpochEnd::reset);
+      if (has_stopped_) return;
+      epoch_ = header.epoch;
+      session_.reset();
+      return start_epoch();
+    }
+    if (header.phase != Phase::running || is_at_end()) return;
+    const bool is_end = (tick_.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0;
+    if (header.epoch > epoch_ ||
+        (header.epoch == epoch_ && (has_ended_ ? header.step >= end_step_ : header.step < begin_))) {
+      if (!is_end) unreached_ticks_.emplace(header.epoch, header.step);
+      return;
+    }
+    if (header.epoch != epoch_ || header.step < next_ || has_ended_) return;
+    waiting_ticks_.emplace(header.step, tick_);
+    while (!waiting_ticks_.empty() && waiting_ticks_.begin()->first == next_ && !has_stopped_ && !is_at_end()) {
+      const wire::Tick tick = std::move(waiting_ticks_.begin()->second);
+      waiting_ticks_.erase(waiting_ticks_.begin());
+      // the END tick ends the epoch: nothing was computed with it
+      if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) return end_epoch(tick.header.step);
+      step(tick);
+    }
+    if (waiting_ticks_.size() > kMostWaiting) finish_epoch(EpochEnd::recording);
+  }
+
+  // Ticks behind the END, which a session in order has not got, are not reached.
+  void end_epoch(StepIndex step) {
+    has_ended_ = true;
+    end_step_ = step;
+    for (const auto& [behind, tick] : waiting_ticks_) {
+      if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) == 0) unreached_ticks_.emplace(epoch_, behind);
+    }
+    waiting_ticks_.clear();
+  }
+
+  void step(const wire::Tick& tick) {
+    const std::int64_t begin_ns = monotonic_ns();
+    session_.step(next_, tick.commands, tick.controls.span());
+    if (follower_) follower_->take(tick);
+    result_.compute_time += static_cast<double>(monotonic_ns() - begin_ns) * 1e-9;
+    ++next_;
+    ++result_.steps;
+    keep_hashes();
+    // samples that stood in front of their tick in the file
+    while (!waiting_samples_.empty() && waiting_samples_.begin()->first.first <= next_ && !has_stopped_) {
+      const auto [key, hash] = *waiting_samples_.begin();
+      waiting_samples_.erase(waiting_samples_.begin());
+      compare(key.second, key.first, hash);
+    }
+  }
+
+  void keep_hashes() {
+    for (const Role role : wire::kPhysicsRoles) {
+      if (session_.subsystem(role) == nullptr) continue;
+      Hashes& of_role = hashes_[index(role)];
+      of_role.computed.push_back(session_.state_hash(role));
+      // a step that has no sample has nothing to compare
+      const StepIndex at = begin_ + static_cast<StepIndex>(of_role.is_compared.size());
+      of_role.is_compared.push_back(!session_.has_sample(role, at));
+    }
+  }
+
+  // ---- comparing ----------------------------------------------------------------------------------------------
+
+  void take_sample(const wire::Header& header, std::uint64_t hash) {
+    if (header.phase == Phase::running && (header.epoch > epoch_ || (header.epoch == epoch_ && header.step < begin_))) {
+      unreached_samples_.emplace(header.epoch, header.step, header.role);
+      return;
+    }
+    if (header.epoch != epoch_) return;
+    if (header.phase == Phase::init) {
+      if (header.role == Role::mechanics && hash != init_hash_) differ(header.role, kJoinStep);
+      return;
+    }
+    if (header.phase != Phase::running) return;
+    const Hashes& of_role = hashes_[index(header.role)];
+    if (header.step < begin_ + static_cast<StepIndex>(of_role.computed.size()))
+      return compare(header.role, header.step, hash);
+    waiting_samples_.emplace(std::pair(header.step, header.role), hash);
+  }
+
+  void compare(Role role, StepIndex step, std::uint64_t recorded) {
+    Hashes& of_role = hashes_[index(role)];
+    if (step < begin_) return;
+    const auto at = static_cast<std::size_t>(step - begin_);
+    if (at >= of_role.computed.size() || of_role.is_compared[at]) return;
+    of_role.is_compared[at] = true;
+    ++result_.compared;
+    if (of_role.computed[at] != recorded) differ(role, step);
+  }
+
+  void differ(Role role, StepIndex step) {
+    ++result_.different;
+    const std::string text = step < 0
+                                 ? fmt::format("{} differs at INIT", node::to_text(role))
+                                 : fmt::format("{} differs at step {} (t = {:.6g} s){}", node::to_text(role), step,
+                                               static_cast<double>(step) * scene_.session.step_duration().seconds(),
+                                               epoch_ > 0 ? fmt::format(" of epoch {}", epoch_) : "");
+    if (on_difference_ == OnDifference::stop) return stop(text);
+    if (result_.problem.empty()) result_.problem = text;
+  }
+
+  void stop(const std::string& problem) {
+    if (result_.problem.empty()) result_.problem = problem;
+    has_stopped_ = true;
+  }
+
+  static std::size_t index(Role role) { return role == Role::mechanics ? 0 : role == Role::hydraulics ? 1 : 2; }
+
+  const recording::Reader& reader_;
+  OnDifference on_difference_;
+  scene::Scene scene_;
+  DirectSession session_;
+  ReplayResult result_;
+  ReplayEnd* end_;
+  io::IoConfig config_;
+  std::optional<io::TickFollower> follower_;
+  std::map<std::uint32_t, std::vector<io::SavedState>> states_;  // by epoch, of those that begin with them
+  bool has_stopped_ = false;
+  std::uint32_t epoch_ = 0;
+  std::uint32_t last_epoch_ = 0;
+  StepIndex begin_ = 0;  // first step of the epoch
+  StepIndex next_ = 0;   // step that the next tick starts
+  std::uint64_t init_hash_ = 0;
+  std::array<Hashes, std::size(wire::kPhysicsRoles)> hashes_;
+  std::map<StepIndex, wire::Tick> waiting_ticks_;
+  std::map<std::pair<StepIndex, Role>, std::uint64_t> waiting_samples_;
+  bool has_ended_ = false;                                                  // the epoch's END was taken
+  StepIndex end_step_ = 0;                                                  // of that END
+  std::set<std::pair<std::uint32_t, StepIndex>> unreached_ticks_;           // epoch and step
+  std::set<std::tuple<std::uint32_t, StepIndex, Role>> unreached_samples_;  // epoch, step and writer
+  wire::Tick tick_;
+  wire::MechanismMessage mechanism_;
+  wire::ActuatorMessage actuators_;
+  wire::ElasticMessage elastic_;
+};
+
+}  // namespace
+
+ReplayResult replay(const recording::Reader& reader, OnDifference on_difference, const std::string& assets,
+                    ReplayEnd* end) {
+  return Replay(reader, on_difference, assets, end).run();
+}
+
+}  // namespace slew::cli

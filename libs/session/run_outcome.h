@@ -1,0 +1,71 @@
+// What a run was asked to do, and what came of it.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/session_view.h"
+#include "scene/scene_options.h"
+#include "node/session_options.h"
+#include "core/status.h"
+
+namespace slew::cli {
+
+class Observer;
+
+struct RunOptions {
+  cli_support::SceneOptions scene;
+  cli_support::SessionOptions session;
+  std::string runs = "runs";           // folder of the recordings
+  double keep_free_mb = 256;           // room that a recording leaves to others
+  std::vector<std::string> remote;     // roles that somebody else starts
+  std::optional<double> join_timeout;  // s, longest wait for nodes and lockstep controllers; none: the nodes' own
+  bool is_in_process = false;
+  bool is_monolithic = false;
+  std::string rtol;  // of a monolithic run; empty: the scene's
+  bool is_real_time = false;
+  bool is_refusal_told = false;  // that it was refused: not once more
+  std::string cpus;              // "mechanics=1, hydraulics=0"; empty: as the scene says
+  double added_work_us = 0;      // CPU time that every step of a physics node burns beside its own
+  // of a distributed run, some 50 times a second; false asks the session to end
+  std::function<bool(Observer&, std::int64_t now_ns)> each_round;
+  bool is_json = false;
+  bool is_quiet = false;
+
+  // Folder of the scene file: its assets are there.
+  [[nodiscard]] std::string assets() const;
+};
+
+// Wall time of a run, looked at again and again. Time in which a paused session does no step is counted apart.
+class RunClock {
+ public:
+  void measure(std::int64_t now_ns, StepIndex step, bool is_paused) noexcept;
+  [[nodiscard]] double running() const noexcept { return static_cast<double>(running_ns_) * 1e-9; }  // s
+  [[nodiscard]] double paused() const noexcept { return static_cast<double>(paused_ns_) * 1e-9; }    // s
+
+ private:
+  std::int64_t last_ns_ = 0;
+  StepIndex last_step_ = 0;
+  std::int64_t running_ns_ = 0, paused_ns_ = 0;
+};
+
+struct RunOutcome {
+  ExitCode code = ExitCode::ok;
+  bool has_begun = false;             // the session came into being
+  bool is_refusal_told = false;       // of real-time scheduling or locked memory
+  std::vector<std::string> messages;  // why it did not end well, the cause first
+  std::string recording;              // path; empty: none
+  SessionView view;                   // as seen while it ran
+  double wall_time = 0;               // s, from the first tick to the last, without pauses
+  double paused_time = 0;             // s
+  StepIndex begin = 0;                // step that the session began with
+  StepIndex steps = 0;
+};
+
+// Messages "program: reason" without those that only repeat the reason of another, in the order given.
+[[nodiscard]] std::vector<std::string> without_echoes(const std::vector<std::string>& messages);
+
+}  // namespace slew::cli

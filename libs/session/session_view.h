@@ -1,0 +1,119 @@
+// What an observer knows of a session: who takes part, how each node does, the variables' names, values and extremes.
+//
+// Fed with messages, from a live carrier or from a recording. Messages of other sessions are passed over.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "session/flag_counter.h"
+#include "transport/transport.h"
+#include "transport/wire.h"
+
+namespace slew::cli {
+
+// Computing time of a node's steps, from its health messages or measured directly.
+struct StepTimes {
+  double sum = 0;  // s
+  std::uint64_t steps = 0;
+  double max = 0;  // s
+  [[nodiscard]] double mean() const noexcept { return steps > 0 ? sum / static_cast<double>(steps) : 0; }
+};
+
+struct NodeView {
+  bool is_known = false;
+  wire::NodeStatus status;
+  wire::Health health;
+  StepTimes times;
+  std::uint64_t steps_seen = 0;  // Health::steps_done of the last health message
+  // blocks of its variables, and those of them without values: left out under load
+  std::uint64_t blocks = 0, blocks_left_out = 0;
+  std::optional<StepIndex> left_out_since;
+};
+
+struct VariableView {
+  std::string name;
+  std::string unit;
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double min = std::numeric_limits<double>::infinity();
+  double max = -std::numeric_limits<double>::infinity();
+  StepIndex step = kJoinStep;  // of the value
+};
+
+// io_node's status in a pause that somebody asked for; when it holds for a node it gives a reason.
+[[nodiscard]] bool is_pause(const wire::NodeStatus& io) noexcept;
+
+class SessionView {
+ public:
+  // name: of the session to look at; empty takes the first one that is heard.
+  explicit SessionView(std::string name = {}) : name_(std::move(name)) {}
+
+  void take(wire::Topic topic, std::span<const std::byte> bytes);
+
+  [[nodiscard]] bool has_session() const noexcept { return session_.has_value(); }
+  [[nodiscard]] const wire::SessionDescription& session() const noexcept { return *session_; }
+  [[nodiscard]] const NodeView& node(wire::Role role) const noexcept { return nodes_[static_cast<std::size_t>(role)]; }
+  // Step times that were measured directly, in the place of those from health messages.
+  void set_times(wire::Role role, const StepTimes& times) { nodes_[static_cast<std::size_t>(role)].times = times; }
+  // Highest step that a message of the session has named.
+  [[nodiscard]] StepIndex step() const noexcept { return step_; }
+  // Somebody has paused the session: it stands because it was told to, not because it waits for a node.
+  [[nodiscard]] bool is_paused() const noexcept;
+  // io_node has said that the session is over.
+  [[nodiscard]] bool is_over() const noexcept;
+
+  // All variables known so far, by role and index.
+  [[nodiscard]] std::vector<const VariableView*> variables() const;
+  [[nodiscard]] const VariableView* find(std::string_view name) const;
+  // Its values are left out at present: who publishes them is to do less.
+  [[nodiscard]] bool is_left_out(std::string_view name) const;
+  // io_node's last answer to this controller about a channel; null before.
+  [[nodiscard]] const wire::ControllerLease* lease(const std::string& controller, const std::string& channel) const;
+
+  // What the physics samples reported, as far as the carrier reads their topics.
+  [[nodiscard]] const FlagCounter& flags() const noexcept { return flags_; }
+
+  // Every node that offers variables has told all their names.
+  [[nodiscard]] bool has_whole_directory() const noexcept;
+
+ private:
+  void take_session(std::span<const std::byte> bytes);
+  void look_at(std::optional<wire::SessionDescription> session);
+  void take_lease(std::span<const std::byte> bytes);
+  void take_status(std::span<const std::byte> bytes);
+  void take_health(std::span<const std::byte> bytes);
+  void take_directory(std::span<const std::byte> bytes);
+  void take_block(std::span<const std::byte> bytes);
+  template <typename Sample>
+  void take_sample(std::span<const std::byte> bytes, Sample& sample);
+  [[nodiscard]] NodeView* node_of(const wire::Header& header);
+
+  struct Early {
+    wire::Topic topic;
+    std::vector<std::byte> bytes;
+  };
+
+  std::string name_;
+  std::optional<wire::SessionDescription> session_;
+  std::optional<wire::SessionDescription> rival_;  // of the same name; the one to look at when session_ is withdrawn
+  std::vector<Early> early_;                       // kept messages that came before the session was known
+  std::array<NodeView, wire::kRoles> nodes_;
+  std::array<std::vector<VariableView>, wire::kRoles> variables_;
+  std::array<std::uint32_t, wire::kRoles> named_{};  // variables whose name has come
+  std::array<bool, wire::kRoles> has_told_{};        // how many it has
+  std::map<std::string, std::pair<std::size_t, std::size_t>, std::less<>> index_;
+  std::map<std::pair<std::string, std::string>, wire::ControllerLease> leases_;
+  StepIndex step_ = kJoinStep;
+  wire::VariableBlock block_;
+  FlagCounter flags_;
+  wire::MechanismMessage mechanism_;
+  wire::ActuatorMessage actuators_;
+};
+
+}  // namespace slew::cli

@@ -1,0 +1,98 @@
+#include "session/survey.h"
+
+#include <algorithm>
+#include <map>
+
+#include "node/carrier.h"
+#include "core/failure.h"
+#include "node/driver.h"
+#include "transport/codec.h"
+
+namespace slew::cli {
+namespace {
+
+constexpr SimDuration kSurveyTime = milliseconds(700);
+constexpr SimDuration kLongestSurvey = milliseconds(3000);  // on a machine that is busy
+constexpr SimDuration kSurveyWait = milliseconds(20);
+
+using Found = std::map<wire::SessionId, FoundSession>;
+
+void take(const transport::Received& message, Found& found) {
+  switch (message.topic) {
+    case wire::Topic::session: {
+      wire::SessionDescription description;
+      // one in phase JOIN only claims the name
+      if (transport::decode(message.bytes, description) && description.header.phase == wire::Phase::running) {
+        FoundSession& session = found[description.header.session];
+        session.description = std::move(description);
+      }
+      return;
+    }
+    case wire::Topic::node_status: {
+      wire::NodeStatus status;
+      if (!transport::decode(message.bytes, status)) return;
+      const auto role = static_cast<std::size_t>(status.header.role);
+      if (role >= wire::kRoles) return;
+      FoundSession& session = found[status.header.session];
+      session.is_heard[role] = true;
+      session.nodes[role] = std::move(status);
+      return;
+    }
+    case wire::Topic::health: {
+      wire::Health health;
+      if (!transport::decode(message.bytes, health)) return;
+      FoundSession& session = found[health.header.session];
+      session.step = std::max(session.step, health.header.step);
+      return;
+    }
+    default:
+      return;
+  }
+}
+
+bool is_running(const FoundSession& session) {
+  const auto io = static_cast<std::size_t>(wire::Role::io);
+  const bool is_over = session.is_heard[io] && session.nodes[io].state >= wire::NodeState::ended;
+  return !session.description.name.empty() && !is_over;
+}
+
+}  // namespace
+
+std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time,
+                                        SimDuration longest) {
+  const auto carrier = cli_support::open_survey(options);
+  Found found;
+  const std::int64_t begin_ns = monotonic_ns();
+  const auto end_ns = [&] {
+    const bool is_any =
+        std::any_of(found.begin(), found.end(), [](const auto& entry) { return is_running(entry.second); });
+    return begin_ns + (is_any ? time.ns : std::max(time.ns, longest.ns));
+  };
+  while (monotonic_ns() < end_ns() && node::stop_requested.load() == 0) {
+    transport::Received message;
+    while (carrier->take(message)) take(message, found);
+    carrier->wait_until(std::min(end_ns(), monotonic_ns() + kSurveyWait.ns));
+  }
+  std::vector<FoundSession> sessions;
+  for (auto& [id, session] : found) {
+    if (is_running(session)) sessions.push_back(std::move(session));
+  }
+  std::sort(sessions.begin(), sessions.end(),
+            [](const FoundSession& a, const FoundSession& b) { return a.description.name < b.description.name; });
+  return sessions;
+}
+
+std::string only_session(const cli_support::SessionOptions& options) {
+  const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime, kLongestSurvey);
+  if (sessions.size() == 1) return sessions.front().description.name;
+  if (sessions.empty()) {
+    throw Failure(ExitCode::failed,
+                  "no session runs on domain " + std::to_string(options.domain) +
+                      "; start one with 'slewring run SCENE', or name its --domain, --interface, --peer and --keys");
+  }
+  std::string names;
+  for (const FoundSession& session : sessions) names += (names.empty() ? "" : ", ") + session.description.name;
+  throw Failure(ExitCode::bad_input, "several sessions run: " + names + "; name one with --session");
+}
+
+}  // namespace slew::cli

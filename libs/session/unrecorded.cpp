@@ -1,0 +1,78 @@
+#include "session/unrecorded.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "session/recorded.h"
+#include "scene/name_pattern.h"
+#include "io_node/scene_config.h"
+#include "io_node/session_variables.h"
+#include "scene/names.h"
+#include "scene/sections.h"
+
+namespace slew::cli {
+namespace {
+
+std::vector<std::string> always_recorded(const scene::Scene& scene) {
+  std::vector<std::string> inputs, names;
+  for (const scene::InputDef& input : scene.inputs) inputs.push_back(input.name);
+  for (wire::VariableEntry& own : io::own_variables(inputs, io::required_roles(scene, io::Recording::none))) {
+    names.push_back(std::move(own.name));
+  }
+  return names;
+}
+
+bool has_owner(const scene::Scene& scene, std::string_view owner) {
+  auto& mutable_scene = const_cast<scene::Scene&>(scene);  // the tables bind to mutable Defs; nothing here writes
+  const auto fits = [owner](const scene::ElementRef& element) { return scene::fits_pattern(element.name, owner); };
+  const auto sections = scene::single_sections(mutable_scene), elements = scene::elements(mutable_scene);
+  return std::any_of(sections.begin(), sections.end(), fits) || std::any_of(elements.begin(), elements.end(), fits);
+}
+
+bool is_unrecorded(const scene::Scene& scene, const std::string& pattern) {
+  // the stresses of a flexible body's elements are too many to be meant by "*"
+  const bool is_detail = pattern.find(".Element") != std::string::npos;
+  const std::vector<std::string>& recorded = scene.recording.variables;
+  return has_owner(scene, std::string_view(pattern).substr(0, pattern.find('.'))) &&
+         std::none_of(recorded.begin(), recorded.end(), [&](const std::string& kept) {
+           return !(is_detail && kept == "*") && cli_support::can_meet(pattern, kept);
+         });
+}
+
+}  // namespace
+
+std::vector<std::string> unrecorded(const scene::Scene& scene, std::span<const std::string> patterns) {
+  std::vector<std::string> left_out = cli_support::unmatched(patterns, always_recorded(scene));
+  std::erase_if(left_out, [&scene](const std::string& pattern) { return !is_unrecorded(scene, pattern); });
+  return left_out;
+}
+
+std::vector<std::string> unrecorded_plots(const scene::Scene& scene) {
+  std::vector<std::string> sentences;
+  for (const scene::PlotDef& plot : scene.plots) {
+    const std::vector<std::string> left_out = unrecorded(scene, plot.variables);
+    if (left_out.empty()) continue;
+    sentences.push_back(fmt::format("plot {}: {} will not be drawn: the scene records {} only (recording.variables)",
+                                    plot.name, fmt::join(left_out, ", "), recorded_patterns_text(scene)));
+  }
+  return sentences;
+}
+
+std::string recorded_patterns_text(const scene::Scene& scene) {
+  return fmt::format("[{}]", fmt::join(scene.recording.variables, ", "));
+}
+
+std::string why_missing(const recording::Reader& reader, std::span<const std::string> patterns,
+                        std::span<const std::string> names) {
+  const scene::Scene scene = scene::load_text(recorded_scene_text(reader), reader.identity().scene);
+  const std::vector<std::string> left_out = unrecorded(scene, patterns);
+  if (!left_out.empty()) {
+    return fmt::format("{} {} not in this recording, whose scene records {} only (recording.variables)",
+                       fmt::join(left_out, ", "), left_out.size() == 1 ? "is" : "are", recorded_patterns_text(scene));
+  }
+  return cli_support::no_variable_text(patterns.front(), names);
+}
+
+}  // namespace slew::cli

@@ -1,0 +1,138 @@
+// What a stress test says of a cell, against stated bounds and a yardstick.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/stress/stress_report.h"
+
+namespace slew::cli {
+namespace stress_verdict_test {
+
+// of 10000 steps; misses come alone
+wire::Health timing(double missed, double p99, std::uint64_t longest_row = 1) {
+  wire::Health health;
+  health.response.count = health.release_jitter.count = 10000;
+  health.overruns = static_cast<std::uint64_t>(10000 * missed);
+  health.longest_overrun = longest_row;
+  health.response.p99 = p99;
+  return health;
+}
+
+struct Told {
+  std::string verdict;
+  int code;
+};
+
+Told tell(const wire::Health& session, const wire::Health& yardstick, StressBounds bounds = {0.01, 500e-6}) {
+  Stress stress;
+  stress.bounds = bounds;
+  StressCell& cell = stress.cells.emplace_back();
+  cell.nodes[static_cast<std::size_t>(wire::Role::io)] = session;
+  cell.yardstick = yardstick;
+  const auto json = nlohmann::json::parse(report_json(stress));
+  return {json.at("cells").at(0).at("verdict"), json.at("exit_code")};
+}
+
+TEST(StressVerdict, SaysWhichBoundsTheBareLoopsBreakToo) {
+  const wire::Health good = timing(0.005, 400e-6), late = timing(0.02, 400e-6), slow = timing(0.005, 600e-6),
+                     bad = timing(0.02, 600e-6);
+  EXPECT_EQ(tell(good, bad).verdict, "within");
+  EXPECT_EQ(tell(good, bad).code, 0);
+  EXPECT_EQ(tell(bad, bad).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(bad, bad).code, 3);
+  EXPECT_EQ(tell(late, bad).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(bad, good).verdict, "over; the yardstick misses 0.500 %, p99 400 us");
+  EXPECT_EQ(tell(late, slow).verdict, "over; the yardstick misses 0.500 %, p99 600 us") << "each is over another bound";
+  EXPECT_EQ(tell(bad, {}).verdict, "over") << "nothing is told of a yardstick that did not run";
+  EXPECT_EQ(tell(bad, late).verdict, "over, as the yardstick in misses alone");
+  EXPECT_EQ(tell(bad, slow).verdict, "over, as the yardstick at p99 alone");
+}
+
+TEST(StressVerdict, AYardstickThatMissesLessIsNoExcuse) {
+  // 2 % of 10000 beside as many: two standard errors are 0.4 % when misses come alone
+  EXPECT_EQ(tell(timing(0.0239, 0), timing(0.02, 0)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0.0241, 0), timing(0.02, 0)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  EXPECT_EQ(tell(timing(0.0241, 0), timing(0.02, 0)).code, 3);
+  EXPECT_EQ(tell(timing(0.0239, 0), timing(0.02, 0)).code, 3);
+  // 0.8 % when they come four in a row, and never more than half of the yardstick's
+  EXPECT_EQ(tell(timing(0.0279, 0, 100), timing(0.02, 0, 4)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0.0281, 0, 100), timing(0.02, 0, 4)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  EXPECT_EQ(tell(timing(0.0299, 0), timing(0.02, 0, 200)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0.0301, 0), timing(0.02, 0, 200)).verdict, "over; the yardstick misses 2.000 %, p99 0 us");
+  // a tenth at p99
+  EXPECT_EQ(tell(timing(0, 659e-6), timing(0, 600e-6)).verdict, "over, as the yardstick");
+  EXPECT_EQ(tell(timing(0, 661e-6), timing(0, 600e-6)).verdict, "over; the yardstick misses 0.000 %, p99 600 us");
+  EXPECT_EQ(tell(timing(0.5, 660e-6), timing(0.02, 600e-6)).verdict, "over, as the yardstick at p99 alone");
+}
+
+TEST(StressVerdict, StepsThatWereGivenUpAreMissesAndHaveAColumn) {
+  Stress stress;
+  stress.bounds = {0.1, -1};
+  StressCell& cell = stress.cells.emplace_back();
+  cell.steps = 6000;
+  cell.step = 1e-3;
+  cell.response.name = "a cell";
+  cell.response.time = cell.response.values = {1, 2};
+  wire::Health& io = cell.nodes[static_cast<std::size_t>(wire::Role::io)];
+  io.response.count = 8000;
+  io.release_jitter.count = 5600;  // those that were done
+  io.overruns = 2408;
+  const auto json = nlohmann::json::parse(report_json(stress)).at("cells").at(0);
+  EXPECT_EQ(json.at("verdict"), "over");
+  EXPECT_EQ(json.at("session").at("skipped"), 2400);
+  EXPECT_EQ(json.at("session").at("missed_share"), 0.301);
+  const std::string text = report_text(stress);
+  EXPECT_NE(text.find("skipped  missed"), std::string::npos) << text;
+  EXPECT_NE(text.find("8000   2400     2408    30.100"), std::string::npos) << text;
+  EXPECT_NE(report_html(stress).find("a cell: 30.100 % of 8000 steps missed, 2400 of them skipped"), std::string::npos);
+}
+
+TEST(StressVerdict, IsGivenOfWhatIsStatedAlone) {
+  EXPECT_EQ(tell(timing(1, 1), timing(1, 1), {}).verdict, "");
+  EXPECT_EQ(tell(timing(1, 1), timing(1, 1), {}).code, 0);
+  EXPECT_EQ(tell(timing(1, 400e-6), timing(1, 1), {-1, 500e-6}).verdict, "within");
+}
+
+TEST(StressVerdict, NothingMeasuredKeepsNoBound) {
+  EXPECT_EQ(tell({}, {}).verdict, "over");
+  EXPECT_EQ(tell({}, {}).code, 3);
+}
+
+// a cell that ended with this code before its first step, and without a word
+Stress not_begun(ExitCode code) {
+  Stress stress;
+  StressCell& cell = stress.cells.emplace_back();
+  cell.code = code;
+  cell.step = 1e-3;
+  cell.yardstick_loops.resize(4);
+  return stress;
+}
+
+TEST(StressVerdict, NothingIsToldOfACellThatDidNotBegin) {
+  const Stress stress = not_begun(ExitCode::failed);
+  const std::string text = report_text(stress);
+  EXPECT_NE(text.find("failed with code 1"), std::string::npos) << text;
+  EXPECT_EQ(text.find("steps due"), std::string::npos) << text;
+  EXPECT_EQ(text.find("yardstick"), std::string::npos) << text;
+  EXPECT_EQ(text.find("0.000"), std::string::npos) << text;
+  const auto json = nlohmann::json::parse(report_json(stress)).at("cells").at(0);
+  EXPECT_EQ(json.at("exit_code"), 1);
+  EXPECT_EQ(json.at("steps"), 0);
+  for (const char* measured : {"session", "yardstick", "books"}) EXPECT_FALSE(json.contains(measured)) << measured;
+}
+
+TEST(StressVerdict, WhatSomebodyEndedIsInterrupted) {
+  for (const ExitCode code : {ExitCode::interrupted, ExitCode::terminated}) {
+    Stress stress = not_begun(code);
+    const std::string text = report_text(stress);
+    EXPECT_NE(text.find("interrupted"), std::string::npos) << text;
+    EXPECT_EQ(text.find("failed"), std::string::npos) << text;
+    EXPECT_EQ(text.find("steps due"), std::string::npos) << text;
+    // of one that had begun there is something to tell
+    stress.cells.front().steps = 100;
+    EXPECT_NE(report_text(stress).find("steps due"), std::string::npos);
+  }
+}
+
+}  // namespace stress_verdict_test
+}  // namespace slew::cli

@@ -1,0 +1,52 @@
+// Quantities and times as people read them.
+#include "core/display.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace slew::cli {
+namespace display_test {
+
+TEST(Display, ShowsQuantitiesInTheUnitsOfTheWorkshop) {
+  EXPECT_EQ(quantity_text(250e5, "Pa"), "250 bar");
+  EXPECT_EQ(quantity_text(70.0 / 60000, "m3/s"), "70 l/min");
+  EXPECT_EQ(quantity_text(0.5 * 3.14159265358979, "rad"), "90 deg");
+  EXPECT_EQ(quantity_text(349'680, "N"), "349.7 kN");
+  EXPECT_EQ(quantity_text(0.86, "m"), "0.86 m");
+  EXPECT_EQ(quantity_text(1e-4, "1"), "0.0001");
+  EXPECT_EQ(quantity_text(-0.0, "N"), "0 kN");
+}
+
+TEST(Display, WritesAChosenValueAsAPersonWould) {
+  EXPECT_EQ(chosen_text(30 * 3.14159265358979323846 / 180, "rad"), "30 deg");
+  EXPECT_EQ(chosen_text(0.1 / 60000, "m3/s"), "0.1 l/min");
+  EXPECT_EQ(chosen_text(1500 * 3.14159265358979323846 / 30, "rad/s"), "1500 rpm");
+  EXPECT_EQ(chosen_text(500, "kg"), "500 kg");
+  EXPECT_EQ(chosen_text(0.1 + 0.2, "kg"), "0.3 kg");
+  EXPECT_EQ(chosen_text(250e5, "Pa"), "250 bar");
+  EXPECT_EQ(chosen_text(500, "N"), "500 N");
+  EXPECT_EQ(chosen_text(2.1e6, "kg"), "2100000 kg");
+  EXPECT_EQ(chosen_text(-9.80665, "m/s2"), "-9.80665 m/s2");
+  EXPECT_EQ(chosen_text(1.0 / 3, "1"), "0.333333") << "no person writes more digits";
+  EXPECT_EQ(chosen_text(0, "rad"), "0 deg");
+  EXPECT_EQ(chosen_text(0, "rad/s"), "0 deg/s");
+  EXPECT_EQ(chosen_text(-0.0, "1"), "0");
+  EXPECT_EQ(chosen_text(std::numeric_limits<double>::infinity(), "rad"), "none");
+}
+
+TEST(Display, CountsInTheRightNumber) {
+  EXPECT_EQ(counted(0, "body", "bodies"), "0 bodies");
+  EXPECT_EQ(counted(1, "body", "bodies"), "1 body");
+  EXPECT_EQ(counted(2, "body", "bodies"), "2 bodies");
+}
+
+TEST(Display, ShowsTimesInAUnitThatFits) {
+  EXPECT_EQ(duration_text(0), "0");
+  EXPECT_EQ(duration_text(9.53e-6), "9.53 us");
+  EXPECT_EQ(duration_text(0.0125), "12.5 ms");
+  EXPECT_EQ(duration_text(20), "20 s");
+}
+
+}  // namespace display_test
+}  // namespace slew::cli

@@ -1,0 +1,66 @@
+// Choosing variables by names and patterns, and names of sessions.
+#include "scene/name_pattern.h"
+
+#include <gtest/gtest.h>
+
+#include "node/session_options.h"
+#include "core/failure.h"
+
+namespace slew::cli_support {
+namespace name_pattern_test {
+
+const std::vector<std::string> kNames = {"Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke", "Bag.position.y"};
+
+TEST(Choose, KeepsTheOrderOfTheWishesAndGivesNoNameTwice) {
+  const std::vector<std::string> wishes = {"Bag.position.y", "Cyl_*.force", "Cyl_Lift.*"};
+  EXPECT_EQ(choose(wishes, kNames),
+            (std::vector<std::string>{"Bag.position.y", "Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke"}));
+}
+
+TEST(Choose, NamesTheVariableThatWasProbablyMeant) {
+  const std::vector<std::string> wishes = {"Cyl_Lft.force"};
+  try {
+    static_cast<void>(choose(wishes, kNames));
+    FAIL() << "the misspelt name was taken";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_STREQ(failure.what(), "there is no variable 'Cyl_Lft.force'; did you mean 'Cyl_Lift.force'?");
+  }
+}
+
+TEST(Matching, GivesIndicesAscending) {
+  const std::vector<std::string> patterns = {"*.stroke", "Cyl_J*"};
+  EXPECT_EQ(matching(patterns, kNames), (std::vector<std::uint32_t>{1, 2}));
+}
+
+TEST(Patterns, MeetWhereANameMayFitBoth) {
+  EXPECT_TRUE(can_meet("Cyl_*.force", "Cyl_Lift.*"));
+  EXPECT_TRUE(can_meet("*", ""));
+  EXPECT_TRUE(can_meet("*.y", "Bag.*"));
+  EXPECT_TRUE(can_meet("Bag.position.y", "Bag.*.?"));
+  EXPECT_TRUE(can_meet("a*c", "*b*"));
+  EXPECT_FALSE(can_meet("Bag.position.y", "Cyl_*"));
+  EXPECT_FALSE(can_meet("Vol_*.pressure", "Cyl_*"));
+  EXPECT_FALSE(can_meet("*.y", "*.x"));
+  EXPECT_FALSE(can_meet("a?", "a"));
+  EXPECT_FALSE(can_meet("", "?"));
+  const std::vector<std::string> patterns = {"Vol_*", "*.stroke", "Bag.position.x"};
+  EXPECT_EQ(unmatched(patterns, kNames), (std::vector<std::string>{"Vol_*", "Bag.position.x"}));
+}
+
+TEST(SessionName, IsMadeOfASceneNameByReplacingWhatIsNotAllowed) {
+  EXPECT_EQ(session_name_of("truck crane/heavy"), "truck_crane_heavy");
+  EXPECT_EQ(session_name_of(""), "session");
+  EXPECT_TRUE(problem_of_session_name(session_name_of(std::string(200, 'x'))).empty());
+}
+
+TEST(SessionName, RefusesPartitionWildcards) {
+  EXPECT_TRUE(problem_of_session_name("crane-1.test_2").empty());
+  EXPECT_FALSE(problem_of_session_name("*").empty());
+  EXPECT_FALSE(problem_of_session_name("a/b").empty());
+  EXPECT_FALSE(problem_of_session_name("").empty());
+  EXPECT_FALSE(problem_of_session_name(std::string(64, 'x')).empty());
+}
+
+}  // namespace name_pattern_test
+}  // namespace slew::cli_support

@@ -1,0 +1,148 @@
+// Options that change a scene, and input files in the place of its script.
+#include "scene/scene_options.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "build_paths.h"
+#include "core/failure.h"
+#include "io_node/scene_config.h"
+
+namespace slew::cli_support {
+namespace scene_options_test {
+
+class SceneOptionsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("slewring_scene_options_" + std::to_string(getpid()) + "_" +
+                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    options_.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/truck_crane.yaml";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) {
+    const std::filesystem::path path = folder_ / name;
+    std::ofstream(path) << text;
+    return path.string();
+  }
+
+  std::filesystem::path folder_;
+  SceneOptions options_;
+};
+
+TEST_F(SceneOptionsTest, StepDurationAndPaceBecomePartOfTheScene) {
+  options_.step = "2 ms";
+  options_.duration = "3";
+  options_.pace = "free";
+  const scene::Scene scene = load_scene(options_);
+  EXPECT_EQ(scene.session.step_duration(), milliseconds(2));
+  EXPECT_EQ(scene.session.steps(), 1500);
+  EXPECT_EQ(scene.session.pace, scene::Pace::free);
+  // another node reads the same from the session's text
+  const scene::Scene again = scene::load_text(scene.expanded_text, "again");
+  EXPECT_EQ(again.session.step_duration(), milliseconds(2));
+}
+
+TEST_F(SceneOptionsTest, ACsvFileTakesThePlaceOfTheScript) {
+  options_.input = write("input.csv", "time,Input_Jib\n0,0\n1,0.5\n");
+  const scene::Scene scene = load_scene(options_);
+  ASSERT_EQ(scene.script.tracks.size(), 1u);
+  EXPECT_EQ(scene.script.tracks[0].input, "Input_Jib");
+  const scene::Scene again = scene::load_text(scene.expanded_text, "again");
+  EXPECT_EQ(again.script.tracks.size(), 1u);
+}
+
+TEST_F(SceneOptionsTest, AYamlFileTakesThePlaceOfTheScript) {
+  options_.input = write("input.yaml",
+                         "inputs:\n  Input_Lift: [[0 s, 0], [1 s, 1]]\n"
+                         "parameters:\n  - {at: 2 s, set: Bag.mass, value: 1500 kg}\n");
+  const scene::Scene scene = load_scene(options_);
+  ASSERT_EQ(scene.script.tracks.size(), 1u);
+  ASSERT_EQ(scene.script.changes.size(), 1u);
+  EXPECT_EQ(scene.script.changes[0].value, 1500);
+}
+
+TEST_F(SceneOptionsTest, AMistakeInAnInputFileIsToldWithItsPlace) {
+  options_.input = write("input.csv", "time,Input_Lft\n0,0\n1,0.5\n");
+  try {
+    static_cast<void>(load_scene(options_));
+    FAIL() << "the unknown input was taken";
+  } catch (const scene::LoadError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find(options_.input + ":1:6: no input 'Input_Lft'; did you mean 'Input_Lift'?"), std::string::npos)
+        << text;
+  }
+}
+
+TEST_F(SceneOptionsTest, NoneAndKeyboardLeaveNoScript) {
+  for (const char* input : {"none", "keyboard"}) {
+    options_.input = input;
+    const scene::Scene scene = load_scene(options_);
+    EXPECT_TRUE(scene.script.is_empty()) << input;
+    EXPECT_EQ(scene.expanded_text.find("\nscript"), std::string::npos) << input;
+  }
+}
+
+TEST_F(SceneOptionsTest, WhoMovesAnInputMayBeAnotherWhereASessionGoesOn) {
+  options_.overrides = {"Input_Lift.controller=lockstep", "Input_Lift.controller_delay=3"};
+  const scene::Scene saved = load_scene(options_);
+  SceneOptions on;
+  on.overrides = {"Input_Lift.controller=sampled", "Input_Lift.controller_wait=2 s", "Input_Slew.supervisor=boss",
+                  "Bag.mass=750 kg"};
+  const ContinuedScene continued = continue_scene(on, saved.expanded_text, saved.name);
+  const scene::Scene again = scene::load_text(continued.scene.expanded_text, "again");
+  for (const scene::InputDef& input : again.inputs) {
+    EXPECT_EQ(input.controller, scene::ControllerMode::sampled);
+    EXPECT_EQ(input.supervisor, input.name == "Input_Slew" ? "boss" : "");
+    if (input.name != "Input_Lift") continue;
+    EXPECT_EQ(input.controller_delay, 3);
+    EXPECT_EQ(input.controller_wait, 2);
+  }
+  ASSERT_EQ(continued.changes.size(), 1u);
+  EXPECT_EQ(continued.changes[0].path, "Bag.mass");
+  // of the same field a wrong value, and another one of the same input
+  on.overrides = {"Input_Lift.controller=somehow"};
+  EXPECT_THROW(static_cast<void>(continue_scene(on, saved.expanded_text, saved.name)), scene::LoadError);
+  on.overrides = {"Input_Lift.ramp=1 s"};
+  EXPECT_THROW(static_cast<void>(continue_scene(on, saved.expanded_text, saved.name)), Failure);
+}
+
+TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
+  options_.overrides = {"Bag.mass=750 kg"};
+  options_.duration = "5 s";
+  options_.is_recording = false;
+  options::Program program("child", "");
+  SceneOptions parsed;
+  add_scene_options(program, parsed);
+  program.parse(scene_arguments(options_));
+  EXPECT_FALSE(parsed.is_recording);
+  EXPECT_EQ(load_scene(parsed).expanded_text, load_scene(options_).expanded_text);
+}
+
+TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
+  const scene::Scene scene = load_scene(options_);
+  io::SessionWish wish;
+  wish.session_name = "s";
+  const io::IoConfig config = io::make_config(scene, wish);
+  ASSERT_EQ(config.channels.size(), 3u);
+  EXPECT_EQ(config.channels[0].name, "Input_Slew");
+  EXPECT_EQ(config.channels[0].scale, -500);
+  EXPECT_EQ(config.channels[0].dead_zone, 0.2);
+  EXPECT_EQ(config.channels[0].ramp, 0.5);
+  EXPECT_EQ(config.step, milliseconds(1));
+  EXPECT_EQ(config.steps, 20'000);
+  EXPECT_EQ(config.required_roles,
+            bit(wire::Role::io) | bit(wire::Role::mechanics) | bit(wire::Role::hydraulics) | bit(wire::Role::recorder));
+  EXPECT_TRUE(config.judge_parameter("Bag.mass", 1500, -1).is_accepted);
+  EXPECT_FALSE(config.judge_parameter("Bag.mass", -1, -1).is_accepted);
+  EXPECT_FALSE(config.judge_parameter("Bag.mas", 1, -1).is_accepted);
+}
+
+}  // namespace scene_options_test
+}  // namespace slew::cli_support

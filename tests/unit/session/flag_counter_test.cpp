@@ -1,0 +1,45 @@
+// Counts of what samples report.
+#include "session/flag_counter.h"
+
+#include <gtest/gtest.h>
+
+#include "core/step_report.h"
+
+namespace slew::cli {
+namespace flag_counter_test {
+
+void take(FlagCounter& flags, StepIndex step, StepFlag flag, std::uint32_t epoch = 1) {
+  wire::Header header;
+  header.role = wire::Role::hydraulics;
+  header.phase = wire::Phase::running;
+  header.epoch = epoch;
+  header.step = step;
+  wire::SampleState state;
+  state.flags = static_cast<std::uint32_t>(flag);
+  state.offender = 1;
+  state.used_step = step - 1;
+  flags.take(header, state);
+}
+
+TEST(FlagCounter, ARepeatedSampleIsCountedOnce) {
+  FlagCounter flags;
+  for (const StepIndex step : {0, 1, 2, 2, 1, 3}) take(flags, step, StepFlag::beyond_oil_law);
+  EXPECT_EQ(flags.missed(0), 0u);
+  EXPECT_EQ(
+      flags.sentences(milliseconds(1), {"Tank", "Line"}),
+      std::vector<std::string>{
+          "hydraulics: Line: a pressure was beyond what the oil's law is good for (1000 bar) in 4 steps, first at "
+          "0; limit it: a relief valve on the line, a lower load or setting"});
+}
+
+TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
+  FlagCounter flags;
+  for (const StepIndex step : {3, 4, 7}) take(flags, step, StepFlag{});
+  for (const StepIndex step : {0, 1}) take(flags, step, StepFlag{}, 2);
+  EXPECT_EQ(flags.missed(0), 4u);  // 1 and 2, 5 and 6
+  EXPECT_EQ(flags.missed(3), 2u);
+  EXPECT_TRUE(flags.sentences(milliseconds(1), {}).empty());
+}
+
+}  // namespace flag_counter_test
+}  // namespace slew::cli

@@ -1,0 +1,198 @@
+// What becomes of a request that is lost on its way, or whose session ends.
+#include "session/observer.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <memory>
+
+#include "core/failure.h"
+#include "node/driver.h"
+#include "transport/codec.h"
+#include "transport/topics.h"
+
+namespace slew::cli {
+namespace observer_test {
+
+using wire::Role;
+using wire::Topic;
+
+constexpr std::uint64_t kRequest = 7;
+
+wire::Header header() {
+  wire::Header header;
+  header.session = {1, 2, 3};
+  header.role = Role::io;
+  header.phase = wire::Phase::running;
+  return header;
+}
+
+// What an io node says: at first, and when it is asked.
+class PlayedIo final : public transport::Transport {
+ public:
+  PlayedIo() {
+    wire::SessionDescription session;
+    session.header = header();
+    session.name = "crane";
+    say(session, said_);
+    wire::Health health;
+    health.header = header();
+    say(health, said_);
+  }
+
+  template <typename Message>
+  void say_at_first(const Message& message) {
+    say(message, said_);
+  }
+  template <typename Message>
+  void say_when_asked(const Message& message) {
+    say(message, when_asked_);
+  }
+
+  // It does not know this program's writer yet.
+  void lose_requests(int count) { lost_ = count; }
+
+  Status publish(Topic topic, std::span<const std::byte>) noexcept override {
+    EXPECT_EQ(topic, Topic::control_request);
+    if (lost_-- > 0) return Status::ok();
+    said_.insert(said_.end(), when_asked_.begin(), when_asked_.end());
+    when_asked_.clear();
+    return Status::ok();
+  }
+  bool take(transport::Received& message) override {
+    if (said_.empty()) return false;
+    taken_ = std::move(said_.front());
+    said_.pop_front();
+    message = {taken_.topic, taken_.bytes};
+    return true;
+  }
+  void wait_until(std::int64_t) override {}
+  std::vector<std::string> discovered_writers(Topic) override { return {}; }
+  std::vector<std::string> misfits() override { return {}; }
+
+ private:
+  struct Said {
+    Topic topic{};
+    transport::ByteBuffer bytes;
+  };
+
+  template <typename Message>
+  static void say(const Message& message, std::deque<Said>& where) {
+    Said said{transport::kTopicOf<Message>, {}};
+    EXPECT_TRUE(transport::encode(message, said.bytes));
+    where.push_back(std::move(said));
+  }
+
+  std::deque<Said> said_;
+  std::deque<Said> when_asked_;
+  Said taken_;
+  int lost_ = 0;
+};
+
+class Asking : public ::testing::Test {
+ protected:
+  static wire::NodeStatus end() {
+    wire::NodeStatus status;
+    status.header = header();
+    status.state = wire::NodeState::ended;
+    status.reason = "the session reached its end";
+    return status;
+  }
+  static wire::ControlReply accepted() {
+    wire::ControlReply reply;
+    reply.header = header();
+    reply.request = kRequest;
+    reply.is_accepted = true;
+    return reply;
+  }
+
+  // "" when io has answered, else what the user is told
+  std::string ask(std::uint64_t number = kRequest, SimDuration at_most = milliseconds(10'000)) {
+    Observer observer(std::move(io_), "crane");
+    wire::ControlRequest request;
+    request.request = number;
+    try {
+      const wire::ControlReply reply = observer.ask(request, at_most, [this] {
+        ++sent_first_;
+        node::stop_requested.store(signal_);
+      });
+      return reply.is_accepted ? "" : "refused";
+    } catch (const Failure& failure) {
+      code_ = failure.code();
+      return failure.what();
+    }
+  }
+
+  int sent_first_ = 0;
+  int signal_ = 0;                // that comes when the request is sent
+  ExitCode code_ = ExitCode::ok;  // of the failure
+  std::unique_ptr<PlayedIo> io_ = std::make_unique<PlayedIo>();
+};
+
+constexpr const char* kEnded =
+    "session 'crane' ended before it answered: the session reached its end; there is nothing left to be changed; start "
+    "it again";
+
+TEST_F(Asking, IsAnswered) {
+  io_->say_when_asked(accepted());
+  EXPECT_EQ(ask(), "");
+}
+
+TEST_F(Asking, SendsALostRequestAgainWithWhatBelongsToIt) {
+  io_->lose_requests(1);
+  io_->say_when_asked(accepted());
+  EXPECT_EQ(ask(), "");
+  EXPECT_EQ(sent_first_, 2);
+}
+
+TEST_F(Asking, TakesNoEventForTheAnswerToARequestThatHasNoNumberYet) {
+  wire::ControlReply event = accepted();
+  event.request = 0;
+  io_->say_at_first(event);
+  io_->say_when_asked(end());
+  EXPECT_EQ(ask(0), kEnded);
+}
+
+TEST_F(Asking, ASessionThatEndsInsteadOfAnsweringIsToldAtOnce) {
+  io_->say_when_asked(end());
+  EXPECT_EQ(ask(), kEnded);
+  EXPECT_EQ(code_, ExitCode::failed);
+}
+
+TEST_F(Asking, ASessionThatDoesNotAnswerIsTold) {
+  io_->lose_requests(1000);
+  EXPECT_EQ(ask(kRequest, milliseconds(1000)),
+            "session 'crane' has not answered within 1 s; the request may have had an effect; look with 'slewring "
+            "sessions' whether it still runs");
+  EXPECT_EQ(code_, ExitCode::failed);
+}
+
+TEST_F(Asking, ASignalEndsIt) {
+  signal_ = static_cast<int>(ExitCode::interrupted);
+  EXPECT_EQ(ask(), "interrupted; the request may have had an effect");
+  node::stop_requested.store(0);
+  EXPECT_EQ(code_, ExitCode::interrupted);
+}
+
+TEST_F(Asking, ASessionThatHasEndedIsToldAtOnce) {
+  io_->say_at_first(end());
+  EXPECT_EQ(ask(), kEnded);
+}
+
+TEST_F(Asking, TakesAnAnswerThatComesBehindTheEnd) {
+  io_->say_when_asked(end());
+  io_->say_when_asked(accepted());
+  EXPECT_EQ(ask(), "");
+}
+
+TEST_F(Asking, ASessionThatIsWithdrawnIsToldAtOnce) {
+  wire::SessionDescription withdrawn;
+  withdrawn.header = header();
+  withdrawn.header.phase = wire::Phase::ended;
+  withdrawn.name = "crane";
+  io_->say_when_asked(withdrawn);
+  EXPECT_EQ(ask(), "session 'crane' ended before it answered; there is nothing left to be changed; start it again");
+}
+
+}  // namespace observer_test
+}  // namespace slew::cli
