@@ -7,13 +7,13 @@
 #include <memory>
 
 #include "analysis/animation/animation.h"
-#include "session/recorded.h"
 #include "analysis/scene_plots.h"
-#include "core/text_output.h"
-#include "session/unrecorded.h"
 #include "cli/verbs.h"
-#include "scene/name_pattern.h"
 #include "core/failure.h"
+#include "core/text_output.h"
+#include "scene/name_pattern.h"
+#include "session/recorded.h"
+#include "session/unrecorded.h"
 
 namespace slew::cli {
 namespace {
@@ -32,27 +32,27 @@ constexpr const char* kParts[] = {"position.x",    "position.y",    "position.z"
                                   "orientation.x", "orientation.y", "orientation.z"};
 
 void check_poses(const recording::Reader& reader, const scene::Scene& scene, const std::vector<std::string>& names) {
-  const std::vector<std::string> missing = cli_support::unmatched(names, recorded_names(reader));
+  const std::vector<std::string> missing = scene::unmatched(names, session::recorded_names(reader));
   if (missing.empty()) return;
   const std::string more = missing.size() > 1 ? fmt::format(" (and {} more)", missing.size() - 1) : "";
   throw Failure(ExitCode::bad_input,
                 fmt::format("the poses were not recorded: {}{} is not in this recording, whose scene records {} "
                             "(recording.variables); nothing was written; run it again with *.position.* and "
                             "*.orientation.* among them",
-                            missing.front(), more, recorded_patterns_text(scene)));
+                            missing.front(), more, session::recorded_patterns_text(scene)));
 }
 
-Motion read_motion(const recording::Reader& reader, const scene::Scene& scene, const MachineDrawing& machine,
-                   const TimeRange& range) {
+analysis::Motion read_motion(const recording::Reader& reader, const scene::Scene& scene,
+                             const analysis::MachineDrawing& machine, const session::TimeRange& range) {
   std::vector<std::string> names;
   for (std::size_t body = 1; body < machine.bodies.size(); ++body) {
     for (const char* part : kParts) names.push_back(machine.bodies[body].name + "." + part);
   }
   check_poses(reader, scene, names);
-  std::vector<plotting::Series> series = read_series(reader, names, Units::si, range);
+  std::vector<plotting::Series> series = session::read_series(reader, names, session::Units::si, range);
   plotting::keep_common_instants(series);
-  const plotting::PlotOptions heading = plot_heading(reader);
-  Motion motion{heading.title, heading.subtitle, series.front().time, {}, {}};
+  const plotting::PlotOptions heading = analysis::plot_heading(reader);
+  analysis::Motion motion{heading.title, heading.subtitle, series.front().time, {}, {}};
   for (std::size_t k = 1; k < motion.time.size(); ++k) {
     if (plotting::is_gap(series.front(), k)) motion.gaps.push_back({motion.time[k - 1], motion.time[k]});
   }
@@ -75,14 +75,14 @@ std::string ordinal_text(std::size_t n) {
 }
 
 // A page does not bear every instant of a long recording, and says so.
-std::string page_text(const MachineDrawing& machine, const Motion& motion) {
-  const std::size_t n = stride_for(motion, kMostFrames);
-  if (n == 1) return animation_html(machine, motion);
-  Motion thin = every_nth(motion, n);
+std::string page_text(const analysis::MachineDrawing& machine, const analysis::Motion& motion) {
+  const std::size_t n = analysis::stride_for(motion, kMostFrames);
+  if (n == 1) return analysis::animation_html(machine, motion);
+  analysis::Motion thin = analysis::every_nth(motion, n);
   const std::string shown = fmt::format("every {} recorded instant", ordinal_text(n));
   thin.subtitle += ", " + shown;
   std::fprintf(stderr, "slewring: the page shows %s; --from and --to take a part of the recording\n", shown.c_str());
-  return animation_html(machine, thin);
+  return analysis::animation_html(machine, thin);
 }
 
 ExitCode animate(const Options& options) {
@@ -91,14 +91,14 @@ ExitCode animate(const Options& options) {
   if (kind != ".html" && kind != ".svg") {
     throw Failure(ExitCode::bad_input, path + " is neither .html nor .svg; nothing was written; name such a file");
   }
-  const TimeRange range = recorded_range(options.from, options.to);
-  const auto reader = open_recording(options.recording);
-  const scene::Scene scene = scene::load_text(recorded_scene_text(*reader), reader->identity().scene);
+  const session::TimeRange range = session::recorded_range(options.from, options.to);
+  const auto reader = session::open_recording(options.recording);
+  const scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), reader->identity().scene);
   if (scene.mechanics.bodies.empty()) {
     throw Failure(ExitCode::bad_input, "the scene of this recording has no bodies; nothing was written");
   }
-  const MachineDrawing machine = draw_machine(scene.mechanics);
-  const Motion motion = read_motion(*reader, scene, machine, range);
+  const analysis::MachineDrawing machine = analysis::draw_machine(scene.mechanics);
+  const analysis::Motion motion = read_motion(*reader, scene, machine, range);
   if (motion.time.empty()) {
     const double end = static_cast<double>(reader->statistics().end_time) * 1e-9;
     throw Failure(
@@ -107,7 +107,8 @@ ExitCode animate(const Options& options) {
   }
   write_text(path, kind == ".html"
                        ? page_text(machine, motion)
-                       : animation_svg(machine, thinned(motion, static_cast<std::size_t>(options.instants))));
+                       : analysis::animation_svg(
+                             machine, analysis::thinned(motion, static_cast<std::size_t>(options.instants))));
   fmt::print("{}\n", path);
   return ExitCode::ok;
 }

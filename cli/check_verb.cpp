@@ -5,16 +5,16 @@
 
 #include "analysis/coupling_check.h"
 #include "analysis/description/liftable_load.h"
-#include "session/direct_session.h"
-#include "core/display.h"
-#include "session/unrecorded.h"
 #include "cli/verbs.h"
-#include "scene/name_pattern.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
+#include "scene/name_pattern.h"
+#include "session/direct_session.h"
+#include "session/unrecorded.h"
 
 namespace slew::cli {
 namespace {
@@ -42,7 +42,7 @@ Json to_json(const scene::LoadError& error) {
 }
 
 // A name that only the built models can know: what is plotted and recorded must exist.
-void check_variables(const scene::Scene& scene, const DirectSession& session) {
+void check_variables(const scene::Scene& scene, const session::DirectSession& session) {
   std::vector<std::string> names;
   for (const Role role : wire::kPhysicsRoles) {
     if (session.subsystem(role) == nullptr) continue;
@@ -55,7 +55,7 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
   }
   for (const scene::PlotDef& plot : scene.plots) {
     try {
-      static_cast<void>(cli_support::choose(plot.variables, names));
+      static_cast<void>(scene::choose(plot.variables, names));
     } catch (const Failure& failure) {
       throw Failure(failure.code(), "plot " + plot.name + ": " + failure.what());
     }
@@ -64,23 +64,23 @@ void check_variables(const scene::Scene& scene, const DirectSession& session) {
 
 // A payload that the scene's valves do not lift: a physical result, and rarely what was wanted.
 void check_payload(scene::Scene& scene) {
-  const LiftableLoad load = find_liftable(scene, {}, ListedSettings::left_out);
+  const analysis::LiftableLoad load = analysis::find_liftable(scene, {}, analysis::ListedSettings::left_out);
   if (!load.has_answer() || load.mass <= load.limit().load) return;
   scene.warnings.push_back(fmt::format(
       "{}: {} kg cannot be lifted from where the scene begins, but {}; see 'slewring describe {} --liftable'",
-      load.payload, load.mass, limit_text(load), scene.name));
+      load.payload, load.mass, analysis::limit_text(load), scene.name));
 }
 
 ExitCode check(const Options& options) {
   try {
     scene::Scene scene = scene::load_file(options.scene, options.overrides);
-    DirectSession session(scene);
+    session::DirectSession session(scene);
     require(session.start());
     check_variables(scene, session);
     check_payload(scene);
     std::vector<std::string> warnings = scene.warnings;
-    for (std::string& warning : unrecorded_plots(scene)) warnings.push_back(std::move(warning));
-    for (std::string& warning : coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
+    for (std::string& warning : session::unrecorded_plots(scene)) warnings.push_back(std::move(warning));
+    for (std::string& warning : analysis::coupling_warnings(scene, session)) warnings.push_back(std::move(warning));
     if (options.is_json) {
       fmt::print("{}\n", Json({{"ok", true}, {"scene", scene.name}, {"warnings", warnings}}).dump(2));
       return ExitCode::ok;

@@ -5,11 +5,11 @@
 #include <fstream>
 
 #include "analysis/comparison/comparison_report.h"
-#include "core/display.h"
-#include "session/interrupts.h"
 #include "cli/progress_line.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
+#include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostRepeats = 1000;
 
 struct Options {
-  ComparisonWish wish;
+  analysis::ComparisonWish wish;
   std::string picture;  // empty: beside the user, named after the scene
   std::string csv;
   bool is_json = false;
@@ -50,31 +50,32 @@ ExitCode run(const Options& options) {
                   "--input keyboard: every run needs the same input; nothing was run; write it "
                   "into a .csv file");
   }
-  count_interrupts();
-  Comparison comparison;
+  session::count_interrupts();
+  analysis::Comparison comparison;
   {
     ProgressLine line(options.is_quiet);
-    comparison = compare(options.wish, [&line](std::string_view doing, double share) {
+    comparison = analysis::compare(options.wish, [&line](std::string_view doing, double share) {
       line.show(doing, share);
-      return interrupts() == 0;
+      return session::interrupts() == 0;
     });
   }
-  fmt::print("{}", options.is_json ? report_json(comparison) + '\n' : report_text(comparison, output_width()));
+  fmt::print("{}", options.is_json ? analysis::report_json(comparison) + '\n'
+                                   : analysis::report_text(comparison, output_width()));
   std::fflush(stdout);
   if (!comparison.rows.empty()) {
-    if (!options.csv.empty()) write_file(options.csv, report_csv(comparison));
+    if (!options.csv.empty()) write_file(options.csv, analysis::report_csv(comparison));
     const std::string path = options.picture.empty() ? comparison.scene + "_compare.svg" : options.picture;
-    write_file(path, is_html(path) ? report_html(comparison) : report_svg(comparison));
+    write_file(path, is_html(path) ? analysis::report_html(comparison) : analysis::report_svg(comparison));
     if (!options.is_json) {
       if (!options.csv.empty()) fmt::print("{}\n", options.csv);
       fmt::print("{}\n", path);
     }
   }
-  return interrupts() > 0 ? static_cast<ExitCode>(interrupt_code()) : ExitCode::ok;
+  return session::interrupts() > 0 ? static_cast<ExitCode>(session::interrupt_code()) : ExitCode::ok;
 }
 
 void add_what(options::Command& verb, Options& options) {
-  ComparisonWish& wish = options.wish;
+  analysis::ComparisonWish& wish = options.wish;
   verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
   const auto list = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).comma_separated().one_value_each().value_name(type);

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "session/observer.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/json.h"
@@ -15,6 +14,7 @@
 #include "node/identity.h"
 #include "scene/canonical.h"
 #include "scene/scene.h"
+#include "session/observer.h"
 
 namespace slew::cli {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 using wire::ControlAction;
 
 struct Options {
-  cli_support::SessionOptions session;
+  node::SessionOptions session;
   std::int64_t steps = 1;
   std::string file;
   bool may_replace = false;
@@ -44,8 +44,8 @@ constexpr Command kCommands[] = {
 };
 
 // What io_node said to a command, on standard output.
-void tell(const Options& options, const std::string& command, const Observer& observer, const wire::ControlReply& reply,
-          const std::string& more = "") {
+void tell(const Options& options, const std::string& command, const session::Observer& observer,
+          const wire::ControlReply& reply, const std::string& more = "") {
   if (options.is_json) {
     fmt::print("{}\n", Json({{"session", observer.session_name()},
                              {"action", command},
@@ -66,7 +66,7 @@ void tell(const Options& options, const std::string& command, const Observer& ob
 
 ExitCode send(const Options& options, const Command& command) {
   node::install_signal_handlers();
-  const auto observer = find_session(options.session, Access::steer);
+  const auto observer = session::find_session(options.session, session::Access::steer);
   wire::ControlRequest request;
   request.action = command.action;
   request.value = command.action == ControlAction::step ? static_cast<double>(options.steps) : 0;
@@ -96,7 +96,7 @@ ExitCode save(const Options& options) {
                                            ": the file exists already; it was left as it is; choose another name, or "
                                            "replace it with --force");
   }
-  const auto observer = find_session(options.session, Access::steer);
+  const auto observer = session::find_session(options.session, session::Access::steer);
   const std::vector<wire::Role> roles = roles_with_state(observer->view().session());
   wire::ControlRequest request;
   request.action = ControlAction::save;
@@ -179,7 +179,7 @@ ExitCode load(const Options& options) {
   node::install_signal_handlers();
   io::SavedSession saved;
   require(io::read_saved(options.file, saved));
-  const auto observer = find_session(options.session, Access::steer);
+  const auto observer = session::find_session(options.session, session::Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   const auto refuse = [&](const std::string& why) {
     throw Failure(ExitCode::bad_input, options.file + ": refused, nothing was changed: " + why);
@@ -194,7 +194,7 @@ ExitCode load(const Options& options) {
   }
   wire::ControlRequest request;
   request.action = ControlAction::load;
-  request.request = Observer::draw_number();
+  request.request = session::Observer::draw_number();
   const std::vector<wire::Role> roles = roles_with_state(session);
   for (const wire::Role role : roles) {
     if (saved.find(role) == nullptr) refuse("the file has no state of " + std::string(node::to_text(role)));
@@ -211,7 +211,7 @@ void add_save_and_load(options::Command& verb, const std::shared_ptr<Options>& o
   options::Command saving = verb.command("save", "write the session's whole state at the next step into a file");
   saving.option("file", options->file, "file to write").required().value_name("FILE");
   saving.flag("--force", options->may_replace, "replace a file that exists");
-  cli_support::add_session_options(saving, options->session, false);
+  node::add_session_options(saving, options->session, false);
   saving.flag("--json", options->is_json, "for machines");
   saving.footer(
       "The session stands for some milliseconds and goes on. 'slewring run --from FILE' goes on from there.\n\n"
@@ -219,7 +219,7 @@ void add_save_and_load(options::Command& verb, const std::shared_ptr<Options>& o
   saving.action([options] { return save(*options); });
   options::Command loading = verb.command("load", "put the session into the state of a file, saved of the same scene");
   loading.option("file", options->file, "file of 'control save'").required().value_name("FILE");
-  cli_support::add_session_options(loading, options->session, false);
+  node::add_session_options(loading, options->session, false);
   loading.flag("--json", options->is_json, "for machines");
   loading.footer(
       "As after a reset all channels are free: controllers acquire them again. The script goes on at that time.\n\n"
@@ -244,7 +244,7 @@ void add_control(options::Command& program) {
           .value_name("N")
           .show_default();
     }
-    cli_support::add_session_options(part, options->session, false);
+    node::add_session_options(part, options->session, false);
     part.flag("--json", options->is_json, "for machines");
     part.footer(
         fmt::format("Prints accepted(step), or refused with the reason and exit code 2.\n\n"

@@ -9,8 +9,8 @@
 #include "analysis/description/eigenvalues.h"
 #include "analysis/description/instant.h"
 #include "analysis/description/liftable_load.h"
-#include "core/display.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/json.h"
 #include "core/printable.h"
 #include "core/report_table.h"
@@ -290,27 +290,29 @@ ExitCode show_parts(const Options& options) {
   scene::Overrides overrides = options.overrides;
   overrides.emplace_back("session.solution=split");
   scene::Scene scene = scene::load_file(options.scene, overrides);
-  const double at = read_option("--at", options.at, Dimension::time);
+  const double at = analysis::read_option("--at", options.at, Dimension::time);
   Json json = {{"name", scene.name}};
   std::vector<std::string> texts;
   if (options.has_cost) {
     const double whole = scene.session.duration > 0 ? std::min(scene.session.duration, kCostTime) : kCostTime;
-    const double until = options.until.empty() ? whole : read_option("--until", options.until, Dimension::time);
+    const double until =
+        options.until.empty() ? whole : analysis::read_option("--until", options.until, Dimension::time);
     const std::vector<std::string> not_paid = describe(scene).left_out;
-    const CostByPart cost = measure_cost(scene, options.scene, overrides, until);
-    json["cost"] = report_json(cost, not_paid);
-    texts.push_back(report_text(cost, not_paid, output_width()));
+    const analysis::CostByPart cost = analysis::measure_cost(scene, options.scene, overrides, until);
+    json["cost"] = analysis::report_json(cost, not_paid);
+    texts.push_back(analysis::report_text(cost, not_paid, output_width()));
   }
   if (options.has_eigenvalues) {
-    const Eigenvalues eigenvalues =
-        find_eigenvalues(scene, at, options.is_frictionless ? DryFriction::neglected : DryFriction::kept);
-    json["eigenvalues"] = report_json(eigenvalues);
-    texts.push_back(report_text(eigenvalues, options.count, output_width()));
+    const analysis::Eigenvalues eigenvalues = analysis::find_eigenvalues(
+        scene, at, options.is_frictionless ? analysis::DryFriction::neglected : analysis::DryFriction::kept);
+    json["eigenvalues"] = analysis::report_json(eigenvalues);
+    texts.push_back(analysis::report_text(eigenvalues, options.count, output_width()));
   }
   if (options.has_liftable) {
-    const LiftableLoad load = find_liftable(scene, {at, options.pose}, ListedSettings::named);
-    json["liftable"] = report_json(load);
-    texts.push_back(report_text(load, output_width()));
+    const analysis::LiftableLoad load =
+        analysis::find_liftable(scene, {at, options.pose}, analysis::ListedSettings::named);
+    json["liftable"] = analysis::report_json(load);
+    texts.push_back(analysis::report_text(load, output_width()));
   }
   if (options.is_json) {
     fmt::print("{}\n", json.dump(2));

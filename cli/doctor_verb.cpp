@@ -8,14 +8,14 @@
 #include <fstream>
 #include <thread>
 
+#include "cli/verbs.h"
+#include "core/arithmetic_self_test.h"
 #include "core/child_process.h"
 #include "core/display.h"
-#include "cli/verbs.h"
-#include "node/carrier.h"
-#include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/report_table.h"
+#include "node/carrier.h"
 #include "node/identity.h"
 #include "transport/cyclone_domain.h"
 
@@ -31,7 +31,7 @@ struct Finding {
 };
 
 struct Options {
-  cli_support::SessionOptions network;
+  node::SessionOptions network;
   bool is_json = false;
 };
 
@@ -75,12 +75,12 @@ Finding check_pidfd() {
   return {"process watch", Verdict::good, "a lost node on this machine is noticed at once"};
 }
 
-Finding check_network(cli_support::SessionOptions options) {
+Finding check_network(node::SessionOptions options) {
   // a look at the network says nothing there that keys would have to protect
   const bool lacks_keys = options.keys.empty() && transport::leaves_machine(options.interface);
   options.is_insecure_lan = lacks_keys;
   try {
-    static_cast<void>(cli_support::open_survey(options));
+    static_cast<void>(node::open_survey(options));
     const std::string text = fmt::format("interface {}, domain {}", options.interface, options.domain);
     if (!lacks_keys) return {"network", Verdict::good, text};
     return {"network", Verdict::warning, text + "; sessions on it need --keys (slewring keys) or --insecure-lan"};
@@ -154,7 +154,7 @@ ExitCode examine(const Options& options) {
 void add_doctor(options::Command& program) {
   options::Command verb = program.command("doctor", "is this machine fit for a session?");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  cli_support::add_network_options(verb, options->network);
+  node::add_network_options(verb, options->network);
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Exit code 7 when a session cannot run here.\n\nExample:\n  slewring doctor --interface eth0");
   verb.action([options] { return examine(*options); });

@@ -9,12 +9,12 @@
 #include <iostream>
 #include <memory>
 
+#include "cli/verbs.h"
+#include "core/failure.h"
+#include "core/text_output.h"
 #include "plotting/csv_export.h"
 #include "plotting/mat_export.h"
 #include "session/recorded.h"
-#include "core/text_output.h"
-#include "cli/verbs.h"
-#include "core/failure.h"
 
 namespace slew::cli {
 namespace {
@@ -65,14 +65,14 @@ void check_output(const Options& options) {
 }
 
 // What the operator did, as `run --input` and scripts read it: raw values by input.
-std::string input_text(const recording::Reader& reader, const TimeRange& range) {
-  const scene::Scene scene = scene::load_text(recorded_scene_text(reader), reader.identity().scene);
+std::string input_text(const recording::Reader& reader, const session::TimeRange& range) {
+  const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
   if (scene.inputs.empty()) {
     throw Failure(ExitCode::bad_input, "the scene of this recording has no inputs; nothing was written");
   }
   std::vector<std::string> names;
   for (const scene::InputDef& input : scene.inputs) names.push_back(input.name + ".raw");
-  std::vector<plotting::Series> curves = read_series(reader, names, Units::si, range);
+  std::vector<plotting::Series> curves = session::read_series(reader, names, session::Units::si, range);
   plotting::keep_common_instants(curves);
   check_values(reader, curves);
   const std::vector<double>& time = curves.front().time;
@@ -106,8 +106,8 @@ ExitCode export_input(const Options& options, const std::vector<std::string>& wi
   if (!wishes.empty()) {
     throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
   }
-  const auto reader = open_recording(options.recording);
-  const std::string text = input_text(*reader, recorded_range(options.from, options.to));
+  const auto reader = session::open_recording(options.recording);
+  const std::string text = input_text(*reader, session::recorded_range(options.from, options.to));
   if (options.output.empty() || options.output == "-") {
     write_text("-", text);
     return ExitCode::ok;
@@ -123,9 +123,9 @@ ExitCode export_variables(Options options) {
   wishes.insert(wishes.end(), options.only.begin(), options.only.end());
   if (options.is_input) return export_input(options, wishes);
   if (wishes.empty()) wishes = {"*"};
-  const TimeRange range = recorded_range(options.from, options.to);
-  const auto reader = open_recording(options.recording);
-  const std::vector<plotting::Series> curves = read_series(*reader, wishes, Units::si, range);
+  const session::TimeRange range = session::recorded_range(options.from, options.to);
+  const auto reader = session::open_recording(options.recording);
+  const std::vector<plotting::Series> curves = session::read_series(*reader, wishes, session::Units::si, range);
   check_values(*reader, curves);
   if (options.output.empty() || options.output == "-") {
     plotting::write_csv(curves, std::cout);

@@ -3,14 +3,14 @@
 
 #include <cstdio>
 
-#include "core/display.h"
 #include "analysis/extremes/case_run.h"
 #include "analysis/extremes/extremes.h"
-#include "session/interrupts.h"
-#include "cli/progress_line.h"
 #include "analysis/sweep/sweep.h"
+#include "cli/progress_line.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
+#include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
@@ -18,13 +18,13 @@ namespace {
 constexpr int kMostWorkers = 64;
 
 struct Options {
-  ExtremesWish wish;
+  analysis::ExtremesWish wish;
   std::string scene, scenes = "scenes";
   bool is_suite = false, is_json = false, is_quiet = false;
 };
 
 struct CaseOptions {
-  cli_support::SceneOptions scene;
+  scene::SceneOptions scene;
   std::string name, result;
 };
 
@@ -32,19 +32,21 @@ ExitCode run(Options options) {
   if (options.is_suite == !options.scene.empty()) {
     throw Failure(ExitCode::bad_input, "a scene file or --suite is needed, one of both; nothing was run");
   }
-  options.wish.files = options.is_suite ? suite_files(options.scenes) : std::vector<std::string>{options.scene};
-  count_interrupts();
-  Extremes extremes;
+  options.wish.files =
+      options.is_suite ? analysis::suite_files(options.scenes) : std::vector<std::string>{options.scene};
+  session::count_interrupts();
+  analysis::Extremes extremes;
   {
     ProgressLine line(options.is_quiet);
-    extremes = run_extremes(options.wish, [&line](std::string_view doing, double share) {
+    extremes = analysis::run_extremes(options.wish, [&line](std::string_view doing, double share) {
       line.show(doing, share);
-      return interrupts() == 0;
+      return session::interrupts() == 0;
     });
   }
-  fmt::print("{}", options.is_json ? report_json(extremes) + '\n' : report_text(extremes, output_width()));
+  fmt::print(
+      "{}", options.is_json ? analysis::report_json(extremes) + '\n' : analysis::report_text(extremes, output_width()));
   std::fflush(stdout);
-  if (interrupts() > 0) return static_cast<ExitCode>(interrupt_code());
+  if (session::interrupts() > 0) return static_cast<ExitCode>(session::interrupt_code());
   return extremes.is_good() ? ExitCode::ok : ExitCode::failed;
 }
 
@@ -54,7 +56,7 @@ void add_extremes(options::Command& program) {
   options::Command verb =
       program.command("extremes", "hard cases of a scene: within their bounds, and how near the edge");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  ExtremesWish& wish = options->wish;
+  analysis::ExtremesWish& wish = options->wish;
   verb.option("scene", options->scene, "scene file").value_name("SCENE");
   verb.flag("--suite", options->is_suite, "the repository's own machines instead of a scene");
   verb.option("--scenes", options->scenes, "folder of the suite's scenes").value_name("DIR").show_default();
@@ -90,7 +92,7 @@ void add_extremes_case(options::Command& program) {
   verb.option("--set", options->scene.overrides, "change").one_value_each();
   verb.option("--result", options->result, "file to write").required();
   verb.action([options] {
-    write_result(options->result, to_json(run_case(options->scene, options->name)));
+    analysis::write_result(options->result, analysis::to_json(analysis::run_case(options->scene, options->name)));
     return ExitCode::ok;
   });
 }

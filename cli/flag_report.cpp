@@ -3,17 +3,17 @@
 #include <fmt/format.h>
 
 #include "core/display.h"
-#include "session/flag_counter.h"
-#include "session/recorded.h"
 #include "core/failure.h"
 #include "node/identity.h"
+#include "session/flag_counter.h"
+#include "session/recorded.h"
 #include "transport/codec.h"
 #include "transport/wire.h"
 
 namespace slew::cli {
 
 std::vector<std::string> explain_flags(const recording::Reader& reader) {
-  FlagCounter flags;
+  session::FlagCounter flags;
   recording::MessageFilter filter;
   for (const wire::Topic topic : {wire::Topic::mechanism, wire::Topic::actuators}) {
     filter.topics.emplace_back(node::to_text(topic));
@@ -32,14 +32,14 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   const SimDuration step = reader.identity().communication_step;
   // the scene is read for the names in the sentences alone
   if (flags.sentences(step, {}).empty()) return {};
-  const scene::Scene scene = scene::load_text(recorded_scene_text(reader), reader.identity().scene);
-  return flags.sentences(step, volume_names(scene));
+  const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
+  return flags.sentences(step, session::volume_names(scene));
 }
 
-std::vector<std::string> explain_flags(const RunOutcome& outcome, const scene::Scene& scene) {
+std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene) {
   using wire::Role;
-  const FlagCounter& flags = outcome.view.flags();
-  std::vector<std::string> sentences = flags.sentences(scene.session.step_duration(), volume_names(scene));
+  const session::FlagCounter& flags = outcome.view.flags();
+  std::vector<std::string> sentences = flags.sentences(scene.session.step_duration(), session::volume_names(scene));
   const bool has_steps = outcome.view.has_session() && outcome.steps > 0 &&
                          (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;
   if (has_steps && !flags.has_samples()) {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "session/run_outcome.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
+#include "session/run_outcome.h"
 
 namespace slew::cli {
 
@@ -17,6 +17,6 @@ namespace slew::cli {
 // often its nodes went on without a sample. Throws Failure when the recording cannot be read.
 [[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);
 // The same of the samples that were read while the session ran, and how many did not arrive.
-[[nodiscard]] std::vector<std::string> explain_flags(const RunOutcome& outcome, const scene::Scene& scene);
+[[nodiscard]] std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene);
 
 }  // namespace slew::cli

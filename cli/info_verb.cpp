@@ -1,16 +1,16 @@
 // `slewring info REC`: what a recording holds.
 #include <fmt/format.h>
 
-#include "core/display.h"
 #include "cli/flag_report.h"
-#include "session/recorded.h"
-#include "session/recorded_events.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/report_table.h"
 #include "node/identity.h"
 #include "recording/recovery.h"
+#include "session/recorded.h"
+#include "session/recorded_events.h"
 
 namespace slew::cli {
 namespace {
@@ -87,7 +87,7 @@ std::vector<std::string> gaps_of(const recording::Reader& reader) {
 
 Json events_json(const recording::Reader& reader) {
   Json events = Json::array();
-  for (const RecordedEvent& event : recorded_events(reader)) {
+  for (const session::RecordedEvent& event : session::recorded_events(reader)) {
     events.push_back({{"step", event.step}, {"epoch", event.epoch}, {"text", event.text}});
   }
   return events;
@@ -96,10 +96,10 @@ Json events_json(const recording::Reader& reader) {
 // The first ones, unless all are asked for.
 void add_events(const recording::Reader& reader, bool has_all, ReportTable& rows) {
   constexpr std::size_t kShown = 10;
-  const std::vector<RecordedEvent> events = recorded_events(reader);
+  const std::vector<session::RecordedEvent> events = session::recorded_events(reader);
   const std::size_t shown = has_all ? events.size() : std::min(kShown, events.size());
   for (std::size_t i = 0; i < shown; ++i) {
-    const RecordedEvent& event = events[i];
+    const session::RecordedEvent& event = events[i];
     rows.add({"event", fmt::format("step {}{}: {}", event.step,
                                    event.epoch == 0 ? "" : fmt::format(" of epoch {}", event.epoch), event.text)});
   }
@@ -124,7 +124,7 @@ Json to_json(const recording::Reader& reader, double simulated) {
           {"complete", reader.has_all_messages()},
           {"damage", reader.damage_text()},
           {"end", end_of(reader)},
-          {"ticks_behind_end", tick_span(reader).behind_end},
+          {"ticks_behind_end", session::tick_span(reader).behind_end},
           {"gaps", gaps_of(reader)},
           {"notes", explain_flags(reader)},
           {"events", events_json(reader)},
@@ -133,7 +133,7 @@ Json to_json(const recording::Reader& reader, double simulated) {
 
 void print(const recording::Reader& reader, double simulated, bool has_all_events) {
   const recording::SessionIdentity& identity = reader.identity();
-  const TickSpan span = tick_span(reader);
+  const session::TickSpan span = session::tick_span(reader);
   ReportTable rows({"", ""});
   rows.add(
       {"file", fmt::format("{} ({:.2f} MB)", reader.path().string(), static_cast<double>(reader.file_bytes()) * 1e-6)});
@@ -146,7 +146,7 @@ void print(const recording::Reader& reader, double simulated, bool has_all_event
                                   counted(static_cast<std::uint64_t>(span.steps), "step", "steps"),
                                   duration_text(span.wall_time))});
   rows.add({"end", end_of(reader)});
-  if (span.behind_end > 0) rows.add({"end", behind_end_text(span)});
+  if (span.behind_end > 0) rows.add({"end", session::behind_end_text(span)});
   for (const auto& [topic, count] : counts_of(reader)) {
     rows.add(
         {"topic", fmt::format("{}: {}, {} lost", topic, counted(count.recorded, "message", "messages"), count.lost)});
@@ -161,7 +161,7 @@ void print(const recording::Reader& reader, double simulated, bool has_all_event
 }
 
 ExitCode show(const Options& options) {
-  const auto reader = open_recording(options.recording);
+  const auto reader = session::open_recording(options.recording);
   if (options.is_verifying) require(reader->verify());
   const double simulated = static_cast<double>(reader->statistics().end_time) * 1e-9;
   if (options.is_json) {

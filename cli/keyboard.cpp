@@ -91,7 +91,7 @@ Keyboard::~Keyboard() {
   tcsetattr(STDIN_FILENO, TCSANOW, &saved_);
 }
 
-void Keyboard::publish(Observer& observer, std::size_t lever, wire::ControllerAction action) {
+void Keyboard::publish(session::Observer& observer, std::size_t lever, wire::ControllerAction action) {
   wire::ControllerInput input;
   input.session = observer.session_name();
   input.controller = kName;
@@ -103,14 +103,14 @@ void Keyboard::publish(Observer& observer, std::size_t lever, wire::ControllerAc
 }
 
 // asking again for a channel that is held would put it to neutral
-void Keyboard::acquire_missing(Observer& observer) {
+void Keyboard::acquire_missing(session::Observer& observer) {
   for (std::size_t i = 0; i < levers_.size(); ++i) {
     const wire::ControllerLease* lease = observer.view().lease(kName, levers_.channel(i));
     if (lease == nullptr || !lease->is_granted) publish(observer, i, wire::ControllerAction::acquire);
   }
 }
 
-void Keyboard::poll(Observer& observer, std::int64_t now_ns) {
+void Keyboard::poll(session::Observer& observer, std::int64_t now_ns) {
   pollfd request{STDIN_FILENO, POLLIN, 0};
   std::array<char, 64> keys{};
   if (::poll(&request, 1, 0) == 1) {
@@ -126,10 +126,6 @@ void Keyboard::poll(Observer& observer, std::int64_t now_ns) {
     next_write_ns_ = now_ns + kWritePeriodNs;
     for (std::size_t i = 0; i < levers_.size(); ++i) publish(observer, i, wire::ControllerAction::write);
   }
-}
-
-void Keyboard::release(Observer& observer) {
-  for (std::size_t i = 0; i < levers_.size(); ++i) publish(observer, i, wire::ControllerAction::release);
 }
 
 }  // namespace slew::cli

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "session/observer.h"
 #include "scene/scene.h"
+#include "session/observer.h"
 
 namespace slew::cli {
 
@@ -53,13 +53,11 @@ class Keyboard {
 
   [[nodiscard]] const Levers& levers() const noexcept { return levers_; }
   // Reads what was typed and publishes the levers every 50 ms.
-  void poll(Observer& observer, std::int64_t now_ns);
-  // Gives the channels back.
-  void release(Observer& observer);
+  void poll(session::Observer& observer, std::int64_t now_ns);
 
  private:
-  void publish(Observer& observer, std::size_t lever, wire::ControllerAction action);
-  void acquire_missing(Observer& observer);
+  void publish(session::Observer& observer, std::size_t lever, wire::ControllerAction action);
+  void acquire_missing(session::Observer& observer);
 
   Levers levers_;
   termios saved_{};

@@ -1,11 +1,11 @@
 // `slewring keys create|add|revoke|check|export`: who may take part in sessions that leave this machine.
 #include <fmt/format.h>
 
-#include "core/display.h"
-#include "keys/key_store.h"
 #include "cli/verbs.h"
-#include "node/session_options.h"
+#include "core/display.h"
 #include "core/report_table.h"
+#include "keys/key_store.h"
+#include "node/session_options.h"
 
 namespace slew::cli {
 namespace {
@@ -20,7 +20,7 @@ struct Options {
 };
 
 ExitCode create(const Options& options) {
-  const KeyStore store = KeyStore::create(options.store, options.session, options.days);
+  const keys::KeyStore store = keys::KeyStore::create(options.store, options.session, options.days);
   fmt::print("{}: authorities, and keys for {} roles, valid for {} days\n", options.store, store.identities().size(),
              options.days);
   fmt::print("next: slewring keys export {} hydraulics --to DIR, and DIR to the machine that computes the hydraulics\n",
@@ -29,8 +29,9 @@ ExitCode create(const Options& options) {
 }
 
 ExitCode add(const Options& options) {
-  KeyIdentity identity{options.name.empty() ? options.role : options.name, options.role, options.session, options.days};
-  KeyStore store = KeyStore::open(options.store);
+  keys::KeyIdentity identity{options.name.empty() ? options.role : options.name, options.role, options.session,
+                             options.days};
+  keys::KeyStore store = keys::KeyStore::open(options.store);
   store.add(identity);
   fmt::print("{}: keys for '{}' as {}, for sessions '{}'\n", options.store, identity.name, options.role,
              identity.session);
@@ -38,7 +39,7 @@ ExitCode add(const Options& options) {
 }
 
 ExitCode revoke(const Options& options) {
-  KeyStore store = KeyStore::open(options.store);
+  keys::KeyStore store = keys::KeyStore::open(options.store);
   store.revoke(options.name);
   fmt::print(
       "{}: '{}' is revoked: there are new authorities, and the keys of the {} others are new\n"
@@ -48,12 +49,12 @@ ExitCode revoke(const Options& options) {
 }
 
 ExitCode check(const Options& options) {
-  const std::vector<KeyFinding> findings = check_keys(options.store);
+  const std::vector<keys::KeyFinding> findings = keys::check_keys(options.store);
   constexpr std::size_t kNaming = 2;  // verdict, whose
   ReportTable table(
       {{.text = ""}, {.text = "", .json = "what"}, {.text = ""}, {.json = "problem"}, {.json = "expires"}}, kNaming);
   bool is_good = true;
-  for (const KeyFinding& finding : findings) {
+  for (const keys::KeyFinding& finding : findings) {
     const std::string what = finding.identity.empty() ? "authorities" : finding.identity;
     is_good = is_good && finding.problem.empty();
     const std::string text = finding.problem.empty() ? "until " + finding.expires : finding.problem;
@@ -68,7 +69,7 @@ ExitCode check(const Options& options) {
 }
 
 ExitCode export_keys(const Options& options) {
-  KeyStore::open(options.store).export_to(options.to, options.names);
+  keys::KeyStore::open(options.store).export_to(options.to, options.names);
   fmt::print("{}: {} for --keys there; the authorities' own keys stay in {}\n", options.to,
              fmt::join(options.names, ", "), options.store);
   return ExitCode::ok;
@@ -98,7 +99,7 @@ void add_keys(options::Command& program) {
       sub("add", "keys for one more: a second controller, somebody who only looks on, a guest for one session", add,
           "plant_keys --role controller --name joystick --session 'truck_*'");
   adding.option("--role", options->role, "what it may say and hear")
-      .one_of(key_roles())
+      .one_of(keys::key_roles())
       .value_name("ROLE")
       .show_default();
   adding.option("--name", options->name, "its name; without it the role's").value_name("NAME");

@@ -27,5 +27,5 @@ int main(int argc, char** argv) {
         cli::add_node,     cli::add_keys,     cli::add_doctor}) {
     add(program);
   }
-  return cli_support::run_program(program, argc, argv);
+  return node::run_program(program, argc, argv);
 }

@@ -5,9 +5,8 @@
 #include <cstdio>
 #include <optional>
 
-#include "core/display.h"
-#include "session/observer.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
@@ -17,12 +16,13 @@
 #include "scene/field_reader.h"
 #include "scene/names.h"
 #include "scene/parameters.h"
+#include "session/observer.h"
 
 namespace slew::cli {
 namespace {
 
 struct Options {
-  cli_support::SessionOptions session;
+  node::SessionOptions session;
   std::string scene;
   std::vector<std::string> words;  // patterns, a path, or path and value
   std::string over;
@@ -42,7 +42,7 @@ struct Present {
 class Source {
  public:
   explicit Source(const Options& options)
-      : observer_(options.scene.empty() ? find_session(options.session, Access::steer) : nullptr),
+      : observer_(options.scene.empty() ? session::find_session(options.session, session::Access::steer) : nullptr),
         directory_(
             observer_ ? scene::load_text(observer_->view().session().scene_text, observer_->view().session().scene_name)
                       : scene::load_file(options.scene)) {}
@@ -66,7 +66,7 @@ class Source {
   }
 
  private:
-  std::unique_ptr<Observer> observer_;
+  std::unique_ptr<session::Observer> observer_;
   scene::ParameterDirectory directory_;
 };
 
@@ -195,7 +195,7 @@ ExitCode set(const Options& options) {
   const std::optional<SimDuration> asked =
       options.over.empty() ? std::nullopt : std::optional(SimDuration{spread_ns(options.over)});
   node::install_signal_handlers();
-  const auto observer = find_session(options.session, Access::steer);
+  const auto observer = session::find_session(options.session, session::Access::steer);
   const wire::SessionDescription& session = observer->view().session();
   scene::ParameterDirectory directory(scene::load_text(session.scene_text, session.scene_name));
   const scene::Assignment assignment = directory.parse_assignment(text, asked);
@@ -235,7 +235,7 @@ using Do = ExitCode (*)(const Options&);
 options::Command add_part(options::Command& verb, const char* name, const char* doc, Do what,
                           const std::shared_ptr<Options>& options) {
   options::Command part = verb.command(name, doc);
-  cli_support::add_session_options(part, options->session, false);
+  node::add_session_options(part, options->session, false);
   part.flag("--json", options->is_json, "for machines, values in SI");
   part.action([options, what] { return what(*options); });
   return part;

@@ -7,14 +7,14 @@
 #include <memory>
 #include <set>
 
-#include "plotting/html_plot.h"
-#include "plotting/svg_plot.h"
-#include "session/recorded.h"
 #include "analysis/scene_plots.h"
-#include "core/text_output.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"
+#include "core/text_output.h"
+#include "plotting/html_plot.h"
+#include "plotting/svg_plot.h"
+#include "session/recorded.h"
 
 namespace slew::cli {
 namespace {
@@ -46,7 +46,7 @@ std::vector<plotting::Series> read_beside(const Readers& readers, const std::vec
   std::vector<std::vector<plotting::Series>> by_recording;
   for (std::size_t i = 0; i < readers.size(); ++i) {
     try {
-      by_recording.push_back(read_series(*readers[i], variables, Units::display));
+      by_recording.push_back(session::read_series(*readers[i], variables, session::Units::display));
     } catch (const Failure& failure) {
       throw Failure(failure.code(), readers[i]->path().string() + ": " + failure.what());
     }
@@ -78,8 +78,8 @@ ExitCode plot_beside(const Options& options) {
     throw Failure(ExitCode::bad_input, "--with compares variables; nothing was written; name those to plot");
   }
   Readers readers;
-  readers.push_back(open_recording(options.recording));
-  for (const std::string& other : options.others) readers.push_back(open_recording(other));
+  readers.push_back(session::open_recording(options.recording));
+  for (const std::string& other : options.others) readers.push_back(session::open_recording(other));
   plotting::PlotOptions look;
   look.title = options.title;
   for (const std::string& label : labels_of(readers)) {
@@ -91,27 +91,28 @@ ExitCode plot_beside(const Options& options) {
 
 ExitCode plot(const Options& options) {
   if (!options.others.empty()) return plot_beside(options);
-  const auto reader = open_recording(options.recording);
-  plotting::PlotOptions look = plot_heading(*reader);
+  const auto reader = session::open_recording(options.recording);
+  plotting::PlotOptions look = analysis::plot_heading(*reader);
   if (!options.title.empty()) look.title = options.title;
   if (!options.variables.empty()) {
-    plotting::Plot plot{.title = "", .series = read_series(*reader, options.variables, Units::display)};
+    plotting::Plot plot{.title = "",
+                        .series = session::read_series(*reader, options.variables, session::Units::display)};
     plotting::part_at_gaps(plot.series);
     return draw({&plot, 1}, look, options.output);
   }
-  const scene::Scene scene = scene::load_text(recorded_scene_text(*reader), reader->identity().scene);
+  const scene::Scene scene = scene::load_text(session::recorded_scene_text(*reader), reader->identity().scene);
   if (scene.plots.empty()) {
     throw Failure(ExitCode::bad_input,
                   "the scene of this recording has no plots; nothing was written; name the variables to plot");
   }
-  const ScenePlots read = read_plots(scene, *reader);
+  const analysis::ScenePlots read = analysis::read_plots(scene, *reader);
   if (read.plots.empty()) {
     throw Failure(ExitCode::bad_input, fmt::format("{}; nothing was written", fmt::join(read.left_out, "; ")));
   }
   for (const std::string& left_out : read.left_out)
     std::fprintf(stderr, "warning: %s\n", printable_lines(left_out).c_str());
   if (!options.output.empty()) return draw(read.plots, look, options.output);
-  fmt::print("{}\n", write_plots(read.plots, *reader));
+  fmt::print("{}\n", analysis::write_plots(read.plots, *reader));
   return ExitCode::ok;
 }
 

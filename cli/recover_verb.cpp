@@ -4,15 +4,15 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/display.h"
-#include "session/recorded.h"
-#include "session/recorded_extent.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/report_table.h"
 #include "recording/recovery.h"
 #include "recording/run_directory.h"
+#include "session/recorded.h"
+#include "session/recorded_extent.h"
 
 namespace slew::cli {
 namespace {
@@ -33,7 +33,8 @@ std::string lost_text(const recording::LostBytes& lost) {
   return fmt::format("{} from byte {} on: {}", counted(lost.size, "byte", "bytes"), lost.offset, lost.text);
 }
 
-Json to_json(const recording::Recovery& recovery, const std::filesystem::path& target, const RecordedExtent& extent) {
+Json to_json(const recording::Recovery& recovery, const std::filesystem::path& target,
+             const session::RecordedExtent& extent) {
   Json lost = Json::array();
   for (const recording::LostBytes& bytes : recovery.lost) {
     lost.push_back({{"byte", bytes.offset}, {"size", bytes.size}, {"problem", bytes.text}});
@@ -51,7 +52,7 @@ Json to_json(const recording::Recovery& recovery, const std::filesystem::path& t
           {"lost", lost}};
 }
 
-std::string steps_text(const RecordedExtent& extent) {
+std::string steps_text(const session::RecordedExtent& extent) {
   const StepIndex first = extent.first_step.value_or(0);
   const std::string of_epoch = extent.epoch > 0 ? fmt::format(" of epoch {}", extent.epoch) : "";
   if (extent.complete_to < first) {
@@ -61,7 +62,8 @@ std::string steps_text(const RecordedExtent& extent) {
                      extent.complete_to, of_epoch, extent.last_step);
 }
 
-void print(const recording::Recovery& recovery, const std::filesystem::path& target, const RecordedExtent& extent) {
+void print(const recording::Recovery& recovery, const std::filesystem::path& target,
+           const session::RecordedExtent& extent) {
   ReportTable rows({"", ""});
   rows.add({"recovered", target.string()});
   rows.add({"saved",
@@ -101,7 +103,7 @@ ExitCode run(const Options& options) {
     }
     return ExitCode::ok;
   }
-  const RecordedExtent extent = recorded_extent(*open_recording(target.string()));
+  const session::RecordedExtent extent = session::recorded_extent(*session::open_recording(target.string()));
   if (options.is_json) {
     fmt::print("{}\n", to_json(recovery, target, extent).dump(2));
   } else {

@@ -5,16 +5,16 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "core/display.h"
-#include "session/recorded.h"
-#include "session/replay.h"
 #include "cli/run_session.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "session/recorded.h"
+#include "session/replay.h"
 
 namespace slew::cli {
 namespace {
@@ -28,10 +28,10 @@ struct Options {
   std::string saved;  // file for the state there
   bool may_replace = false;
   bool goes_on = false;
-  RunOptions run;
+  session::RunOptions run;
 };
 
-Json to_json(const ReplayResult& result) {
+Json to_json(const session::ReplayResult& result) {
   return {{"steps", result.steps},
           {"epochs", result.epochs},
           {"compared", result.compared},
@@ -64,20 +64,20 @@ class ScratchFile {
 
 // The next step at which all nodes have exchanged.
 StepIndex step_until(const recording::Reader& reader, const std::string& assets, const std::string& until) {
-  const scene::Scene scene = recorded_scene(reader, assets);
+  const scene::Scene scene = session::recorded_scene(reader, assets);
   const auto step_ns = static_cast<std::uint64_t>(scene.session.step_duration().ns);
-  const auto step = static_cast<StepIndex>((recorded_time_ns("--until", until) + step_ns - 1) / step_ns);
+  const auto step = static_cast<StepIndex>((session::recorded_time_ns("--until", until) + step_ns - 1) / step_ns);
   const StepIndex unit = scene.exchange_unit();
   return (step + unit - 1) / unit * unit;
 }
 
 ExitCode run_until(const Options& options) {
   node::install_signal_handlers();
-  const auto reader = open_recording(options.recording);
-  const std::string assets = options.assets.empty() ? recorded_assets(options.recording) : options.assets;
-  ReplayEnd end;
+  const auto reader = session::open_recording(options.recording);
+  const std::string assets = options.assets.empty() ? session::recorded_assets(options.recording) : options.assets;
+  session::ReplayEnd end;
   end.step = step_until(*reader, assets, options.until);
-  const ReplayResult result = replay(*reader, OnDifference::stop, assets, &end);
+  const session::ReplayResult result = session::replay(*reader, session::OnDifference::stop, assets, &end);
   if (const int stop = node::stop_requested.load(); stop != 0) return static_cast<ExitCode>(stop);
   if (!result.is_equal()) {
     throw Failure(ExitCode::failed, result.problem + "; nothing was saved or started" +
@@ -97,7 +97,7 @@ ExitCode run_until(const Options& options) {
   }
   if (!options.goes_on) return ExitCode::ok;
   const ScratchFile scratch;
-  RunOptions run = options.run;
+  session::RunOptions run = options.run;
   run.scene.from = options.saved.empty() ? scratch.path() : options.saved;
   run.scene.assets = assets;
   run.is_json = options.is_json;
@@ -117,9 +117,10 @@ ExitCode run(const Options& options) {
   }
   if (!options.until.empty()) return run_until(options);
   node::install_signal_handlers();
-  const auto reader = open_recording(options.recording);
-  const ReplayResult result = replay(*reader, options.is_verifying ? OnDifference::stop : OnDifference::count,
-                                     options.assets.empty() ? recorded_assets(options.recording) : options.assets);
+  const auto reader = session::open_recording(options.recording);
+  const session::ReplayResult result =
+      session::replay(*reader, options.is_verifying ? session::OnDifference::stop : session::OnDifference::count,
+                      options.assets.empty() ? session::recorded_assets(options.recording) : options.assets);
   if (const int stop = node::stop_requested.load(); stop != 0) return static_cast<ExitCode>(stop);
   if (options.is_json) {
     fmt::print("{}\n", to_json(result).dump(2));
@@ -198,7 +199,7 @@ void add_replay(options::Command& program) {
       .group("Going on");
   verb.flag("--in-process", options->run.is_in_process, "with --then-live: all nodes in this process")
       .group("Going on");
-  cli_support::add_session_options(verb, options->run.session, false);
+  node::add_session_options(verb, options->run.session, false);
   add_running_options(verb, options->run);
   verb.footer(
       "Without --verify differences are counted and told, and the exit code is 0.\n\n"

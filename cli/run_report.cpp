@@ -7,22 +7,22 @@
 #include <filesystem>
 
 #include "analysis/coupling_lamp.h"
-#include "core/display.h"
-#include "session/flag_counter.h"
-#include "cli/flag_report.h"
-#include "plotting/svg_plot.h"
-#include "session/recorded.h"
 #include "analysis/scene_plots.h"
 #include "analysis/stall_report.h"
-#include "core/text_output.h"
+#include "cli/flag_report.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
 #include "core/report_table.h"
+#include "core/text_output.h"
 #include "io_node/session_clock.h"
 #include "node/identity.h"
+#include "plotting/svg_plot.h"
 #include "recording/run_directory.h"
 #include "scene/names.h"
+#include "session/flag_counter.h"
+#include "session/recorded.h"
 
 namespace slew::cli {
 namespace {
@@ -31,30 +31,30 @@ using wire::Role;
 
 constexpr double kShortestPause = 0.01;  // s, below it nobody has paused
 
-void report_nodes(const SessionView& view, RunReport& report) {
+void report_nodes(const session::SessionView& view, RunReport& report) {
   for (const Role role : wire::kNodeRoles) {
     if (!view.has_session() || (view.session().required_roles & bit(role)) == 0) continue;
-    const NodeView& node = view.node(role);
+    const session::NodeView& node = view.node(role);
     report.nodes.push_back({std::string(node::to_text(role)), node.times, node.health.resends_asked,
                             node.health.resends_answered, node.health.refused_messages, node.health});
   }
   report.slip = static_cast<double>(view.node(Role::io).health.slip_ns) * 1e-9;
 }
 
-void report_variables(const SessionView& view, const scene::Scene& scene, RunReport& report) {
+void report_variables(const session::SessionView& view, const scene::Scene& scene, RunReport& report) {
   for (std::size_t i = 0; i < scene.ports.size(); ++i) {
     const scene::PortDef& port = scene.ports[i];
-    const VariableView* eta = view.find(port.name + ".coupling_eta");
-    const VariableView* net = view.find(port.name + ".coupling_net");
+    const session::VariableView* eta = view.find(port.name + ".coupling_eta");
+    const session::VariableView* net = view.find(port.name + ".coupling_net");
     if (eta == nullptr || eta->step < 0) continue;
     const double lowest = net != nullptr && net->step >= 0 ? net->min : 0;
-    report.ports.push_back(
-        {port.name, eta->max, lowest, std::string(lamp_text(lamp_of(eta->max))), explain_lamp(eta->max, i, scene)});
+    report.ports.push_back({port.name, eta->max, lowest, std::string(analysis::lamp_text(analysis::lamp_of(eta->max))),
+                            analysis::explain_lamp(eta->max, i, scene)});
   }
-  if (const VariableView* omega = view.find("hydraulics.omega_H"); omega != nullptr && omega->step >= 0) {
+  if (const session::VariableView* omega = view.find("hydraulics.omega_H"); omega != nullptr && omega->step >= 0) {
     report.omega_H = omega->max;
   }
-  for (const VariableView* variable : view.variables()) {
+  for (const session::VariableView* variable : view.variables()) {
     const bool is_plotted = std::any_of(scene.plots.begin(), scene.plots.end(), [&](const scene::PlotDef& plot) {
       return std::any_of(plot.variables.begin(), plot.variables.end(),
                          [&](const std::string& pattern) { return scene::fits_pattern(variable->name, pattern); });
@@ -66,9 +66,9 @@ void report_variables(const SessionView& view, const scene::Scene& scene, RunRep
 }
 
 // what was left out under load
-void report_left_out(const SessionView& view, RunReport& report) {
+void report_left_out(const session::SessionView& view, RunReport& report) {
   for (const Role role : wire::kPhysicsRoles) {
-    const NodeView& node = view.node(role);
+    const session::NodeView& node = view.node(role);
     if (node.blocks_left_out == 0) continue;
     report.notes.push_back(
         fmt::format("{}: {} of {} of its variables left out (session.shed){}; ranges and values at "
@@ -187,24 +187,24 @@ Json session_json(const RunReport& report) {
 }
 
 // What the recording says beside numbers, and the scene's plots and files beside it.
-void explain(const recording::Reader& reader, const SessionView& recorded, const scene::Scene& scene,
-             const std::string& assets, const RunOutcome& outcome, RunReport& report) {
-  for (std::string& stalled : explain_stalls(reader, scene)) report.notes.push_back(std::move(stalled));
+void explain(const recording::Reader& reader, const session::SessionView& recorded, const scene::Scene& scene,
+             const std::string& assets, const session::RunOutcome& outcome, RunReport& report) {
+  for (std::string& stalled : analysis::explain_stalls(reader, scene)) report.notes.push_back(std::move(stalled));
   report_left_out(recorded, report);
-  const FlagCounter& flags = outcome.view.flags();
+  const session::FlagCounter& flags = outcome.view.flags();
   const bool are_counted = flags.has_samples() && flags.missed(outcome.begin) == 0;
   for (std::string& flagged : are_counted ? explain_flags(outcome, scene) : explain_flags(reader)) {
     report.notes.push_back(std::move(flagged));
   }
-  keep_assets(scene, assets, report.recording);
-  ScenePlots read = read_plots(scene, reader);
+  session::keep_assets(scene, assets, report.recording);
+  analysis::ScenePlots read = analysis::read_plots(scene, reader);
   for (std::string& left_out : read.left_out) report.notes.push_back(std::move(left_out));
-  report.plots = write_plots(read.plots, reader);
+  report.plots = analysis::write_plots(read.plots, reader);
 }
 
 // Steps of the session that the recording has not got, and ticks that it should not have. A session that was in order
 // then ends with losses.
-void compare_steps(const TickSpan& span, const NodeView& io, RunReport& report) {
+void compare_steps(const session::TickSpan& span, const session::NodeView& io, RunReport& report) {
   const bool is_in_order =
       report.code == ExitCode::ok || report.code == ExitCode::interrupted || report.code == ExitCode::terminated;
   if (!is_in_order) return;
@@ -219,20 +219,20 @@ void compare_steps(const TickSpan& span, const NodeView& io, RunReport& report) 
                                 span.next - 1,
                                 counted(static_cast<std::uint64_t>(run_to - span.next), "step is", "steps are")));
   }
-  if (span.behind_end > 0) found.push_back("recording: " + behind_end_text(span));
+  if (span.behind_end > 0) found.push_back("recording: " + session::behind_end_text(span));
   if (found.empty()) return;
   for (std::string& text : found) report.messages.push_back(std::move(text));
   if (report.code == ExitCode::ok) report.code = ExitCode::losses;
 }
 
 // The recording has every message; an observer may have missed some.
-void report_recorded(const scene::Scene& scene, const std::string& assets, const RunOutcome& outcome,
+void report_recorded(const scene::Scene& scene, const std::string& assets, const session::RunOutcome& outcome,
                      RunReport& report) {
-  const auto reader = open_recording(report.recording);
-  const SessionView recorded = view_recording(*reader, Values::all);
+  const auto reader = session::open_recording(report.recording);
+  const session::SessionView recorded = session::view_recording(*reader, session::Values::all);
   report_variables(recorded, scene, report);
   report.lost = losses(*reader);
-  const TickSpan span = tick_span(*reader);
+  const session::TickSpan span = session::tick_span(*reader);
   // a recording that could not go on knows less than what was seen of the session
   const bool is_short = report.code == ExitCode::storage && span.steps < report.steps;
   if (!is_short) {
@@ -254,10 +254,10 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
 
 }  // namespace
 
-RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, const std::string& assets) {
+RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& scene, const std::string& assets) {
   RunReport report;
   report.code = outcome.code;
-  report.messages = without_echoes(outcome.messages);
+  report.messages = session::without_echoes(outcome.messages);
   report.recording = outcome.recording;
   report.scene = scene.name;
   report.step = scene.session.step_duration().seconds();

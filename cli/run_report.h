@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "session/run_outcome.h"
 #include "scene/scene.h"
+#include "session/run_outcome.h"
 
 namespace slew::cli {
 
 struct NodeReport {
   std::string role;
-  StepTimes times;
+  session::StepTimes times;
   std::uint64_t resends_asked = 0;
   std::uint64_t resends_answered = 0;
   std::uint64_t refused_messages = 0;
@@ -54,7 +54,8 @@ struct RunReport {
 
 // Collects the report, from the recording where there is one, and writes the scene's plots and copies of its files
 // beside it. assets: folder of the files.
-[[nodiscard]] RunReport make_report(const RunOutcome& outcome, const scene::Scene& scene, const std::string& assets);
+[[nodiscard]] RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& scene,
+                                    const std::string& assets);
 
 // For people; the path of the recording is the last line. Of a session that failed before its first step: why, and
 // nothing else.

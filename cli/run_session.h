@@ -1,16 +1,16 @@
 // A session from its scene, or from saved states, to its summary: `slewring run`, and what goes on behind a replay.
 #pragma once
 
-#include "session/run_outcome.h"
 #include "io_node/session_scene.h"
 #include "options/options.h"
+#include "session/run_outcome.h"
 
 namespace slew::cli {
 
 // Runs the session, records it, and prints what came of it.
-[[nodiscard]] ExitCode run_session(RunOptions options, const io::SessionScene& session);
+[[nodiscard]] ExitCode run_session(session::RunOptions options, const io::SessionScene& session);
 
 // --out, --keep-free, --join-timeout, --rt, --cpu, --quiet.
-void add_running_options(options::Command& verb, RunOptions& options);
+void add_running_options(options::Command& verb, session::RunOptions& options);
 
 }  // namespace slew::cli

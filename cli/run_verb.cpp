@@ -4,14 +4,15 @@
 #include <algorithm>
 
 #include "analysis/coupling_check.h"
-#include "session/distributed_run.h"
-#include "session/in_process_run.h"
 #include "cli/run_report.h"
 #include "cli/run_session.h"
-#include "session/unrecorded.h"
+#include "cli/terminal_watcher.h"
 #include "cli/verbs.h"
 #include "core/failure.h"
 #include "core/printable.h"
+#include "session/distributed_run.h"
+#include "session/in_process_run.h"
+#include "session/unrecorded.h"
 
 namespace slew::cli {
 
@@ -41,7 +42,7 @@ void check_controllers(const scene::Scene& scene) {
   }
 }
 
-ExitCode run(RunOptions options, const options::Command& verb) {
+ExitCode run(session::RunOptions options, const options::Command& verb) {
   if (options.is_monolithic) options.scene.overrides.emplace_back("session.solution=monolithic");
   if (!options.rtol.empty()) options.scene.overrides.push_back("session.rtol=" + options.rtol);
   if (options.is_monolithic && !options.scene.from.empty()) {
@@ -59,15 +60,15 @@ ExitCode run(RunOptions options, const options::Command& verb) {
 
 }  // namespace
 
-ExitCode run_session(RunOptions options, const io::SessionScene& session) {
+ExitCode run_session(session::RunOptions options, const io::SessionScene& session) {
   const scene::Scene& scene = session.scene;
   for (const std::string& warning : scene.warnings)
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
-  for (const std::string& warning : unrecorded_plots(scene))
+  for (const std::string& warning : session::unrecorded_plots(scene))
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
-  for (const std::string& warning : coupling_warnings(scene))
+  for (const std::string& warning : analysis::coupling_warnings(scene))
     std::fprintf(stderr, "warning: %s\n", printable_lines(warning).c_str());
-  if (options.session.session.empty()) options.session.session = cli_support::session_name_of(scene.name);
+  if (options.session.session.empty()) options.session.session = node::session_name_of(scene.name);
   if (options.is_in_process && !options.remote.empty()) {
     throw Failure(ExitCode::bad_input,
                   "--in-process and --remote exclude each other; nothing was started; leave one out");
@@ -82,10 +83,11 @@ ExitCode run_session(RunOptions options, const io::SessionScene& session) {
                   "--join-timeout waits for other processes, and --in-process has none; nothing was "
                   "started; leave one out");
   }
-  const RunOutcome outcome =
-      options.is_in_process ? run_in_process(options, session) : run_distributed(options, session);
+  options.watcher = std::make_shared<TerminalWatcher>(options, scene);
+  const session::RunOutcome outcome =
+      options.is_in_process ? session::run_in_process(options, session) : session::run_distributed(options, session);
   if (!outcome.has_begun) {
-    for (const std::string& message : without_echoes(outcome.messages))
+    for (const std::string& message : session::without_echoes(outcome.messages))
       std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
     return outcome.code;
   }
@@ -99,7 +101,7 @@ ExitCode run_session(RunOptions options, const io::SessionScene& session) {
   return report.code;
 }
 
-void add_running_options(options::Command& verb, RunOptions& options) {
+void add_running_options(options::Command& verb, session::RunOptions& options) {
   verb.option("--out", options.runs, "folder in which the recording gets a folder of its own")
       .value_name("DIR")
       .show_default();
@@ -110,7 +112,7 @@ void add_running_options(options::Command& verb, RunOptions& options) {
       .show_default();
   verb.option("--join-timeout", options.join_timeout,
               "seconds to wait for all nodes of the session, and for lockstep controllers; without it 10")
-      .between(cli_support::kShortestJoin, cli_support::kLongestJoin)
+      .between(node::kShortestJoin, node::kLongestJoin)
       .value_name("S")
       .group("Session");
   verb.flag("--rt", options.is_real_time, "real-time scheduling and locked memory for the nodes");
@@ -122,9 +124,9 @@ void add_running_options(options::Command& verb, RunOptions& options) {
 
 void add_run(options::Command& program) {
   options::Command verb = program.command("run", "run a scene: start its nodes, drive, record, plot");
-  const auto options = std::make_shared<RunOptions>();  // lives as long as the command line's callbacks
-  cli_support::add_scene_options(verb, options->scene);
-  cli_support::add_session_options(verb, options->session, false);
+  const auto options = std::make_shared<session::RunOptions>();  // lives as long as the command line's callbacks
+  scene::add_scene_options(verb, options->scene);
+  node::add_session_options(verb, options->session, false);
   verb.find("--session").description("name of the session; without it the scene's");
   verb.option("--remote", options->remote, "roles that are started elsewhere, separated by commas")
       .comma_separated()

@@ -1,13 +1,13 @@
 // `slewring sessions`: what runs on this domain.
 #include <fmt/format.h>
 
-#include "core/display.h"
-#include "session/session_view.h"
-#include "session/survey.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/json.h"
 #include "core/report_table.h"
 #include "node/identity.h"
+#include "session/session_view.h"
+#include "session/survey.h"
 
 namespace slew::cli {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 using wire::Role;
 
 struct Options {
-  cli_support::SessionOptions network;
+  node::SessionOptions network;
   double seconds = 1;
   bool is_json = false;
 };
@@ -24,13 +24,13 @@ std::string host_of(const std::string& identity) {
   return identity.substr(0, identity.find('#'));
 }
 
-std::string nodes_text(const FoundSession& session) {
+std::string nodes_text(const session::FoundSession& session) {
   std::string text;
   for (std::size_t role = 0; role < wire::kRoles; ++role) {
     const bool is_required = (session.description.required_roles & (1u << role)) != 0;
     if (!is_required) continue;
     const wire::NodeStatus& status = session.nodes[role];
-    const bool is_paused = static_cast<Role>(role) == Role::io && is_pause(status);
+    const bool is_paused = static_cast<Role>(role) == Role::io && session::is_pause(status);
     const std::string state = is_paused ? "paused" : std::string(node::to_text(status.state));
     text += (text.empty() ? "" : ", ") + std::string(node::to_text(static_cast<Role>(role))) + ' ' +
             (session.is_heard[role] ? state : "not heard");
@@ -38,7 +38,7 @@ std::string nodes_text(const FoundSession& session) {
   return text;
 }
 
-Json to_json(const FoundSession& session) {
+Json to_json(const session::FoundSession& session) {
   Json nodes = Json::array();
   for (std::size_t role = 0; role < wire::kRoles; ++role) {
     if ((session.description.required_roles & (1u << role)) == 0) continue;
@@ -63,10 +63,10 @@ Json to_json(const FoundSession& session) {
 
 ExitCode show(const Options& options) {
   const SimDuration listening{static_cast<std::int64_t>(options.seconds * 1e9)};
-  const std::vector<FoundSession> sessions = find_sessions(options.network, listening, listening);
+  const std::vector<session::FoundSession> sessions = session::find_sessions(options.network, listening, listening);
   if (options.is_json) {
     Json all = Json::array();
-    for (const FoundSession& session : sessions) all.push_back(to_json(session));
+    for (const session::FoundSession& session : sessions) all.push_back(to_json(session));
     fmt::print("{}\n", all.dump(2));
     return ExitCode::ok;
   }
@@ -75,7 +75,7 @@ ExitCode show(const Options& options) {
     return ExitCode::ok;
   }
   ReportTable table({"session", "scene", "time", "pace", "owner", "started", "nodes"});
-  for (const FoundSession& session : sessions) {
+  for (const session::FoundSession& session : sessions) {
     const wire::SessionDescription& description = session.description;
     const double time = static_cast<double>(std::max<StepIndex>(0, session.step) * description.step_ns) * 1e-9;
     table.add({description.name, description.scene_name, fmt::format("{:.2f} s", time),
@@ -92,7 +92,7 @@ ExitCode show(const Options& options) {
 void add_sessions(options::Command& program) {
   options::Command verb = program.command("sessions", "list the sessions that run on a domain");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  cli_support::add_network_options(verb, options->network);
+  node::add_network_options(verb, options->network);
   verb.option("--time", options->seconds, "seconds to listen").between(0.1, 60.0).value_name("S").show_default();
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Example:\n  slewring sessions --interface eth0 --peer 192.168.1.20 --keys plant");

@@ -4,14 +4,14 @@
 
 #include <cstdio>
 
-#include "core/display.h"
-#include "session/interrupts.h"
-#include "cli/progress_line.h"
 #include "analysis/simplify/simplify.h"
 #include "analysis/tradeoff/overlay.h"
+#include "cli/progress_line.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
@@ -19,14 +19,14 @@ namespace {
 constexpr int kMostRepeats = 100;
 
 struct Options {
-  SimplifyWish wish;
+  analysis::SimplifyWish wish;
   std::string overlay;
   bool is_json = false, is_quiet = false;
 };
 
-std::string remark(const Simplification& result) {
+std::string remark(const analysis::Simplification& result) {
   std::string text = "simplify with";
-  for (const Watched& watched : result.watched) {
+  for (const analysis::Watched& watched : result.watched) {
     text += fmt::format(" {} {:.4g} {},", watched.name, watched.tolerance, watched.unit);
   }
   return fmt::format("{} {:.3g} instead of {:.3g} us per simulated ms", text, result.combined.cost, result.base_cost);
@@ -38,30 +38,30 @@ ExitCode run(const Options& options) {
                   "--input keyboard: every run needs the same input; nothing was run; write it into a "
                   ".csv file");
   }
-  const std::string target = overlay_target(options.wish.scene.file, options.overlay, "simplified");
-  count_interrupts();
-  Simplification result;
+  const std::string target = analysis::overlay_target(options.wish.scene.file, options.overlay, "simplified");
+  session::count_interrupts();
+  analysis::Simplification result;
   {
     ProgressLine line(options.is_quiet);
-    result = simplify(options.wish, [&line](std::string_view doing, double share) {
+    result = analysis::simplify(options.wish, [&line](std::string_view doing, double share) {
       line.show(doing, share);
-      return interrupts() == 0;
+      return session::interrupts() == 0;
     });
   }
   if (result.helps()) {
     scene::Overrides settings = options.wish.scene.overrides;
     settings.insert(settings.end(), result.settings.begin(), result.settings.end());
-    write_overlay(options.wish.scene.file, settings, remark(result), target);
+    analysis::write_overlay(options.wish.scene.file, settings, remark(result), target);
   }
   if (options.is_json) {
-    Json json = report_json(result);
+    Json json = analysis::report_json(result);
     if (result.helps()) json["overlay"] = target;
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}", report_text(result, output_width()));
+    fmt::print("{}", analysis::report_text(result, output_width()));
     if (result.helps()) fmt::print("{}\n", target);
   }
-  return interrupts() > 0 ? static_cast<ExitCode>(interrupt_code()) : ExitCode::ok;
+  return session::interrupts() > 0 ? static_cast<ExitCode>(session::interrupt_code()) : ExitCode::ok;
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ void add_simplify(options::Command& program) {
   options::Command verb =
       program.command("simplify", "what of a scene may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  SimplifyWish& wish = options->wish;
+  analysis::SimplifyWish& wish = options->wish;
   verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
   verb.option("--error", wish.errors,
               "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")

@@ -6,20 +6,20 @@
 #include <memory>
 #include <optional>
 
-#include "core/display.h"
-#include "session/interrupts.h"
-#include "cli/progress_line.h"
 #include "analysis/stress/stress_report.h"
-#include "core/text_output.h"
+#include "cli/progress_line.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
+#include "core/text_output.h"
+#include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
 
 struct Options {
-  StressWish wish;
-  StressBounds bounds;
+  analysis::StressWish wish;
+  analysis::StressBounds bounds;
   std::optional<double> max_miss_percent, p99_us;
   std::vector<std::string> schedulings, loads;
   std::string page;
@@ -41,7 +41,7 @@ void leave_out_repeats(std::vector<T>& values) {
 }
 
 void complete(Options& options) {
-  StressWish& wish = options.wish;
+  analysis::StressWish& wish = options.wish;
   const bool all = options.is_matrix;
   if (options.schedulings.empty()) {
     options.schedulings = all ? std::vector<std::string>{"normal", "fifo"}
@@ -57,13 +57,15 @@ void complete(Options& options) {
   leave_out_repeats(options.loads);
   leave_out_repeats(wish.works_us);
   for (const std::string& text : options.schedulings) {
-    wish.schedulings.push_back(text == "fifo" ? Scheduling::fifo : Scheduling::normal);
+    wish.schedulings.push_back(text == "fifo" ? analysis::Scheduling::fifo : analysis::Scheduling::normal);
   }
   for (const std::string& text : options.loads) {
-    wish.loads.push_back(text == "cpu" ? Load::cpu : text == "mixed" ? Load::mixed : Load::none);
+    wish.loads.push_back(text == "cpu"     ? analysis::Load::cpu
+                         : text == "mixed" ? analysis::Load::mixed
+                                           : analysis::Load::none);
   }
   wish.scene.pace = "real";
-  static_cast<void>(cli_support::load_scene(wish.scene));     // what is replaced below is refused as everywhere
+  static_cast<void>(scene::load_scene(wish.scene));           // what is replaced below is refused as everywhere
   wish.scene.overrides.emplace_back("session.overrun=slip");  // a cell goes on to its end
   wish.scene.duration = fmt::format("{} s", wish.seconds);
 }
@@ -71,18 +73,19 @@ void complete(Options& options) {
 ExitCode run(Options options) {
   complete(options);
   if (!options.page.empty()) require_writable(options.page);
-  count_interrupts();
-  Stress stress;
+  session::count_interrupts();
+  analysis::Stress stress;
   {
     ProgressLine line(options.is_quiet);
-    stress = run_stress(options.wish, options.bounds, [&line](std::string_view doing, double share) {
+    stress = analysis::run_stress(options.wish, options.bounds, [&line](std::string_view doing, double share) {
       line.show(doing, share);
-      return interrupts() == 0;
+      return session::interrupts() == 0;
     });
   }
-  fmt::print("{}", options.is_json ? report_json(stress) + '\n' : report_text(stress, output_width()));
+  fmt::print("{}",
+             options.is_json ? analysis::report_json(stress) + '\n' : analysis::report_text(stress, output_width()));
   std::fflush(stdout);
-  for (const StressCell& cell : stress.cells) {
+  for (const analysis::StressCell& cell : stress.cells) {
     if (cell.skipped.empty()) continue;
     std::fprintf(stderr,
                  "slewring: warning: SCHED_FIFO was refused, and cells that need it were not run; run as root, or set "
@@ -90,15 +93,15 @@ ExitCode run(Options options) {
     break;
   }
   if (!options.page.empty()) {
-    write_text(options.page, report_html(stress));
+    write_text(options.page, analysis::report_html(stress));
     if (!options.is_json) fmt::print("{}\n", options.page);
   }
-  if (interrupts() > 0) return static_cast<ExitCode>(interrupt_code());
-  return exit_code_of(stress);
+  if (session::interrupts() > 0) return static_cast<ExitCode>(session::interrupt_code());
+  return analysis::exit_code_of(stress);
 }
 
 void add_what(options::Command& verb, Options& options) {
-  StressWish& wish = options.wish;
+  analysis::StressWish& wish = options.wish;
   verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
   verb.option("--set", wish.scene.overrides, "change a value of the scene; repeat for more")
       .one_value_each()
@@ -166,7 +169,7 @@ void add_stress(options::Command& program) {
   add_what(verb, *options);
   add_cells(verb, *options);
   add_verdict(verb, *options);
-  cli_support::add_network_options(verb, options->wish.session);
+  node::add_network_options(verb, options->wish.session);
   verb.option("--folder", options->wish.folder, "for recordings and files that come and go")
       .value_name("DIR")
       .show_default();
@@ -190,7 +193,7 @@ void add_stress_load(options::Command& program) {
   verb.option("kind", options->kind, "cpu, memory, disk or network").required();
   verb.option("folder", options->folder, "where files come and go").required();
   verb.action([options] {
-    work_as(options->kind, options->folder);
+    analysis::work_as(options->kind, options->folder);
     return ExitCode::ok;
   });
 }

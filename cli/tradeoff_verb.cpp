@@ -4,14 +4,14 @@
 #include <cstdio>
 #include <fstream>
 
-#include "core/display.h"
-#include "session/interrupts.h"
-#include "cli/progress_line.h"
 #include "analysis/tradeoff/overlay.h"
 #include "analysis/tradeoff/tradeoff_report.h"
+#include "cli/progress_line.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
+#include "session/interrupts.h"
 
 namespace slew::cli {
 namespace {
@@ -20,7 +20,7 @@ constexpr int kMostWorkers = 64;
 constexpr int kMostRepeats = 1000;
 
 struct Options {
-  TradeoffWish wish;
+  analysis::TradeoffWish wish;
   std::string budget;
   std::vector<std::string> errors;
   std::string page, csv, overlay;
@@ -42,21 +42,22 @@ void write_file(const std::string& path, const std::string& text) {
 }
 
 // the answer's settings beside the user's own changes
-scene::Overrides overlay_settings(const Options& options, const TradeoffRow& row) {
+scene::Overrides overlay_settings(const Options& options, const analysis::TradeoffRow& row) {
   scene::Overrides overrides = options.wish.scene.overrides;
-  for (std::string& one : overrides_of(row.settings)) overrides.push_back(std::move(one));
+  for (std::string& one : analysis::overrides_of(row.settings)) overrides.push_back(std::move(one));
   return overrides;
 }
 
-std::optional<Answer> answer(const Options& options, const Tradeoff& tradeoff) {
-  Answer answer;
-  if (!options.budget.empty()) answer.question.budget = parse_budget(options.budget);
-  for (const std::string& text : options.errors) answer.question.errors.push_back(parse_error(text, tradeoff));
+std::optional<analysis::Answer> answer(const Options& options, const analysis::Tradeoff& tradeoff) {
+  analysis::Answer answer;
+  if (!options.budget.empty()) answer.question.budget = analysis::parse_budget(options.budget);
+  for (const std::string& text : options.errors)
+    answer.question.errors.push_back(analysis::parse_error(text, tradeoff));
   if (!answer.question.is_asked()) return std::nullopt;
-  answer.row = best_row(tradeoff, answer.question);
+  answer.row = analysis::best_row(tradeoff, answer.question);
   if (answer.row && *answer.row > 0) {
-    write_overlay(tradeoff.file, overlay_settings(options, tradeoff.rows[*answer.row]),
-                  "tradeoff: " + answer_text(tradeoff, answer), options.overlay);
+    analysis::write_overlay(tradeoff.file, overlay_settings(options, tradeoff.rows[*answer.row]),
+                            "tradeoff: " + analysis::answer_text(tradeoff, answer), options.overlay);
     answer.overlay = options.overlay;
   }
   return answer;
@@ -69,31 +70,32 @@ ExitCode run(Options options) {
                   "into a .csv file");
   }
   // refused before anything has run
-  if (!options.budget.empty()) static_cast<void>(parse_budget(options.budget));
-  if (options.has_question()) options.overlay = overlay_target(options.wish.scene.file, options.overlay, "tradeoff");
-  options.wish.size = options.is_full ? GridSize::full : GridSize::modest;
-  count_interrupts();
-  Tradeoff tradeoff;
+  if (!options.budget.empty()) static_cast<void>(analysis::parse_budget(options.budget));
+  if (options.has_question())
+    options.overlay = analysis::overlay_target(options.wish.scene.file, options.overlay, "tradeoff");
+  options.wish.size = options.is_full ? analysis::GridSize::full : analysis::GridSize::modest;
+  session::count_interrupts();
+  analysis::Tradeoff tradeoff;
   {
     ProgressLine line(options.is_quiet);
-    tradeoff = trade_off(options.wish, [&line](std::string_view doing, double share) {
+    tradeoff = analysis::trade_off(options.wish, [&line](std::string_view doing, double share) {
       line.show(doing, share);
-      return interrupts() == 0;
+      return session::interrupts() == 0;
     });
   }
-  const std::optional<Answer> found = tradeoff.done() > 0 ? answer(options, tradeoff) : std::nullopt;
-  fmt::print("{}",
-             options.is_json ? report_json(tradeoff, found) + '\n' : report_text(tradeoff, found, output_width()));
+  const std::optional<analysis::Answer> found = tradeoff.done() > 0 ? answer(options, tradeoff) : std::nullopt;
+  fmt::print("{}", options.is_json ? analysis::report_json(tradeoff, found) + '\n'
+                                   : analysis::report_text(tradeoff, found, output_width()));
   std::fflush(stdout);
   const std::string page = options.page.empty() ? tradeoff.folder + "/tradeoff.html" : options.page;
-  write_file(page, report_html(tradeoff, found));
-  if (!options.csv.empty()) write_file(options.csv, report_csv(tradeoff));
+  write_file(page, analysis::report_html(tradeoff, found));
+  if (!options.csv.empty()) write_file(options.csv, analysis::report_csv(tradeoff));
   if (!options.is_json) {
     if (found && !found->overlay.empty()) fmt::print("{}\n", found->overlay);
     if (!options.csv.empty()) fmt::print("{}\n", options.csv);
     fmt::print("{}\n", page);
   }
-  if (interrupts() > 0) return static_cast<ExitCode>(interrupt_code());
+  if (session::interrupts() > 0) return static_cast<ExitCode>(session::interrupt_code());
   return found && !found->row ? ExitCode::failed : ExitCode::ok;
 }
 
@@ -101,12 +103,12 @@ ExitCode run_row(const RowOptions& options) {
   std::ifstream in(options.job, std::ios::binary);
   const std::optional<Json> job = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
   if (!job) throw Failure(ExitCode::bad_input, options.job + " is no row of a tradeoff");
-  write_result(options.result, to_json(compute(job_from(*job))));
+  analysis::write_result(options.result, analysis::to_json(analysis::compute(analysis::job_from(*job))));
   return ExitCode::ok;
 }
 
 void add_what(options::Command& verb, Options& options) {
-  TradeoffWish& wish = options.wish;
+  analysis::TradeoffWish& wish = options.wish;
   verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
   const auto repeated = [&verb](const char* name, std::vector<std::string>& to, const char* text, const char* type) {
     verb.option(name, to, text).one_value_each().value_name(type);
@@ -145,7 +147,7 @@ void add_answers(options::Command& verb, Options& options) {
 }
 
 void add_how(options::Command& verb, Options& options) {
-  TradeoffWish& wish = options.wish;
+  analysis::TradeoffWish& wish = options.wish;
   verb.option("--folder", wish.folder, "where results are kept; without it runs/tradeoff-SCENE").value_name("DIR");
   verb.flag("--anew", wish.is_anew, "compute also what the folder has already");
   verb.option("--workers", wish.workers, "processes at once").between(1, kMostWorkers).value_name("N").show_default();

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "core/display.h"
-#include "session/monolithic_session.h"
-#include "session/observer.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/report_table.h"
 #include "io_node/input_gate.h"
 #include "scene/names.h"
+#include "session/monolithic_session.h"
+#include "session/observer.h"
 
 namespace slew::cli {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 using wire::Role;
 
 struct Options {
-  cli_support::SessionOptions session;
+  node::SessionOptions session;
   std::string scene;
   std::vector<std::string> patterns;
   bool is_json = false;
@@ -31,7 +31,7 @@ struct Named {
 std::vector<Named> of_scene(const std::string& file) {
   const scene::Scene scene = scene::load_file(file);
   std::vector<Named> all;
-  SubsystemFamily family;
+  session::SubsystemFamily family;
   for (const scene::InputDef& input : scene.inputs) {
     for (const io::ChannelVariable& variable : io::kChannelVariables) {
       all.push_back({input.name + variable.quantity, variable.unit, "io"});
@@ -48,15 +48,16 @@ std::vector<Named> of_scene(const std::string& file) {
   return all;
 }
 
-std::vector<Named> of_session(const cli_support::SessionOptions& options) {
-  const auto observer = find_session(options, Access::look);
+std::vector<Named> of_session(const node::SessionOptions& options) {
+  const auto observer = session::find_session(options, session::Access::look);
   if (!observer->wait_for([&] { return observer->view().has_whole_directory(); }, milliseconds(5000))) {
     throw Failure(ExitCode::failed, "session '" + observer->session_name() +
                                         "' has not named its variables within 5 s; it may still be "
                                         "starting: try again");
   }
   std::vector<Named> all;
-  for (const VariableView* variable : observer->view().variables()) all.push_back({variable->name, variable->unit, ""});
+  for (const session::VariableView* variable : observer->view().variables())
+    all.push_back({variable->name, variable->unit, ""});
   return all;
 }
 
@@ -91,7 +92,7 @@ void add_variables(options::Command& program) {
   verb.option("--only", options->patterns, "only these names, with * and ?; repeat for more")
       .value_name("PATTERN")
       .one_value_each();
-  cli_support::add_session_options(verb, options->session, false);
+  node::add_session_options(verb, options->session, false);
   verb.flag("--json", options->is_json, "for machines");
   verb.footer("Example:\n  slewring variables scenes/truck_crane.yaml --only 'Cyl_*'");
   verb.action([options] { return list(*options); });

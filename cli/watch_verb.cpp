@@ -3,20 +3,20 @@
 
 #include <cstdio>
 
-#include "core/display.h"
-#include "session/observer.h"
 #include "cli/verbs.h"
-#include "scene/name_pattern.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
 #include "node/driver.h"
+#include "scene/name_pattern.h"
+#include "session/observer.h"
 
 namespace slew::cli {
 namespace {
 
 struct Options {
-  cli_support::SessionOptions session;
+  node::SessionOptions session;
   std::vector<std::string> variables;
   double interval = 0.2;  // s
   std::int64_t count = 0;
@@ -25,20 +25,20 @@ struct Options {
 
 constexpr SimDuration kDirectoryTimeout = milliseconds(5000);
 
-std::vector<std::string> chosen_names(Observer& observer, const std::vector<std::string>& patterns) {
+std::vector<std::string> chosen_names(session::Observer& observer, const std::vector<std::string>& patterns) {
   observer.wait_for([&] { return observer.view().has_whole_directory() || observer.view().is_over(); },
                     kDirectoryTimeout);
   std::vector<std::string> names;
-  for (const VariableView* variable : observer.view().variables()) names.push_back(variable->name);
+  for (const session::VariableView* variable : observer.view().variables()) names.push_back(variable->name);
   if (names.empty()) {
     throw Failure(ExitCode::failed, "session '" + observer.session_name() +
                                         "' has not named its variables within 5 s; it may still be "
                                         "starting: try again, or look with 'slewring sessions'");
   }
-  return cli_support::choose(patterns, names);
+  return scene::choose(patterns, names);
 }
 
-void print_line(const SessionView& view, const std::vector<std::string>& names, bool is_json) {
+void print_line(const session::SessionView& view, const std::vector<std::string>& names, bool is_json) {
   StepIndex step = kJoinStep;
   for (const std::string& name : names) step = std::max(step, view.find(name)->step);
   if (step < 0) step = view.step();
@@ -46,7 +46,7 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
   if (is_json) {
     Json line = {{"step", step}, {"time", time}};
     for (const std::string& name : names) {
-      const VariableView& variable = *view.find(name);
+      const session::VariableView& variable = *view.find(name);
       if (view.is_left_out(name)) {
         line["left_out"].push_back(name);
       } else if (variable.step >= 0) {
@@ -58,7 +58,7 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
     std::string line = fmt::format("{:10.3f} s", time);
     const char* const missing = view.is_paused() ? "comes with the next step, after the pause" : "not yet published";
     for (const std::string& name : names) {
-      const VariableView& variable = *view.find(name);
+      const session::VariableView& variable = *view.find(name);
       line += fmt::format("  {} {}", name,
                           view.is_left_out(name) ? "left out (session.shed)"
                           : variable.step >= 0   ? quantity_text(variable.value, variable.unit)
@@ -71,7 +71,7 @@ void print_line(const SessionView& view, const std::vector<std::string>& names, 
 
 ExitCode watch(const Options& options) {
   node::install_signal_handlers();
-  const auto observer = find_session(options.session, Access::look);
+  const auto observer = session::find_session(options.session, session::Access::look);
   const std::vector<std::string> names = chosen_names(*observer, options.variables);
   const SimDuration interval = duration_of_seconds(options.interval);
   for (std::int64_t lines = 0; options.count == 0 || lines < options.count; ++lines) {
@@ -88,7 +88,7 @@ void add_watch(options::Command& program) {
   options::Command verb = program.command("watch", "print variables of a running session as they change");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   verb.option("variables", options->variables, "names, or patterns with * and ?").required().value_name("VAR");
-  cli_support::add_session_options(verb, options->session, false);
+  node::add_session_options(verb, options->session, false);
   verb.option("--every", options->interval, "seconds between two lines")
       .between(0.01, 3600.0)
       .value_name("S")

@@ -3,23 +3,23 @@
 
 #include "node/carrier.h"
 #include "node/node_program.h"
-#include "node/subsystem_factory.h"
 #include "node/physics_node.h"
+#include "node/subsystem_factory.h"
 
 namespace {
 
 using namespace slew;
 
-std::optional<ExitCode> run(const cli_support::NodeOptions& options) {
-  cli_support::apply_real_time(options, "hydraulics_node");
-  const auto carrier = cli_support::open_carrier(wire::Role::hydraulics, options.session);
+std::optional<ExitCode> run(const node::NodeOptions& options) {
+  node::apply_real_time(options, "hydraulics_node");
+  const auto carrier = node::open_carrier(wire::Role::hydraulics, options.session);
   node::PhysicsNode node(
       wire::Role::hydraulics, *carrier,
-      cli_support::subsystem_factory(
+      node::subsystem_factory(
           [](const scene::Scene& scene) { return hydraulic_node::make_hydraulics_subsystem(scene); }, options.assets),
       options.join());
   node.add_work(microseconds(static_cast<std::int64_t>(options.added_work_us)));
-  return cli_support::run_node(node);
+  return node::run_node(node);
 }
 
 }  // namespace
@@ -32,8 +32,8 @@ int main(int argc, char** argv) {
       "Example, on the machine that computes the hydraulics:\n"
       "  hydraulics_node --session truck_crane --interface eth0 --peer 192.168.1.20 "
       "--keys for_crane2");
-  cli_support::NodeOptions options;
-  cli_support::add_physics_node_options(program, options);
-  program.action([&] { return cli_support::run_until_in_session([&] { return run(options); }); });
-  return cli_support::run_program(program, argc, argv);
+  node::NodeOptions options;
+  node::add_physics_node_options(program, options);
+  program.action([&] { return node::run_until_in_session([&] { return run(options); }); });
+  return node::run_program(program, argc, argv);
 }

@@ -1,23 +1,23 @@
 // The program io_node: owner of a session, its clock, its operator input and its commands.
+#include "core/failure.h"
+#include "io_node/session_scene.h"
 #include "node/carrier.h"
 #include "node/node_program.h"
 #include "scene/scene_options.h"
-#include "core/failure.h"
-#include "io_node/session_scene.h"
 
 namespace {
 
 using namespace slew;
 
 struct IoOptions {
-  cli_support::NodeOptions node;
-  cli_support::SceneOptions scene;
+  node::NodeOptions node;
+  scene::SceneOptions scene;
 };
 
 ExitCode run(const IoOptions& options) {
-  cli_support::apply_real_time(options.node, "io_node");
+  node::apply_real_time(options.node, "io_node");
   const io::SessionScene session = io::load_session_scene(options.scene);
-  const auto carrier = cli_support::open_carrier(wire::Role::io, options.node.session);
+  const auto carrier = node::open_carrier(wire::Role::io, options.node.session);
   io::SessionWish wish;
   wish.session_name = options.node.session.session;
   wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
@@ -25,10 +25,10 @@ ExitCode run(const IoOptions& options) {
   io::IoConfig config = io::make_config(session, wish);
   config.join_timeout = options.node.join().join_timeout;
   // on loopback everybody has this host's clock
-  const bool is_on_loopback = options.node.session.interface == cli_support::SessionOptions{}.interface;
+  const bool is_on_loopback = options.node.session.interface == node::SessionOptions{}.interface;
   config.controllers_clock = is_on_loopback ? node::WriterClock::same : node::WriterClock::other;
   io::IoNode node(*carrier, std::move(config));
-  return cli_support::run_node(node).value();  // its own session is nothing that it follows
+  return node::run_node(node).value();  // its own session is nothing that it follows
 }
 
 }  // namespace
@@ -42,10 +42,10 @@ int main(int argc, char** argv) {
       "  io_node scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10 "
       "--keys plant");
   IoOptions options;
-  options.node.priority = cli_support::kIoPriority;
-  cli_support::add_scene_options(program, options.scene);
-  cli_support::add_node_options(program, options.node);
-  cli_support::add_join_timeout(program, options.node);
+  options.node.priority = node::kIoPriority;
+  scene::add_scene_options(program, options.scene);
+  node::add_node_options(program, options.node);
+  node::add_join_timeout(program, options.node);
   program.action([&] { return run(options); });
-  return cli_support::run_program(program, argc, argv);
+  return node::run_program(program, argc, argv);
 }

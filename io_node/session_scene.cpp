@@ -17,11 +17,11 @@ std::string time_text(double seconds) {
 
 }  // namespace
 
-SessionScene load_session_scene(const cli_support::SceneOptions& options) {
-  if (options.from.empty()) return {cli_support::load_scene(options), std::nullopt, {}};
+SessionScene load_session_scene(const scene::SceneOptions& options) {
+  if (options.from.empty()) return {scene::load_scene(options), std::nullopt, {}};
   SavedSession saved;
   require(read_saved(options.from, saved));
-  cli_support::ContinuedScene continued = cli_support::continue_scene(options, saved.scene_text, saved.scene_name);
+  scene::ContinuedScene continued = scene::continue_scene(options, saved.scene_text, saved.scene_name);
   SessionScene session{std::move(continued.scene), Beginning{}, std::move(saved.assets)};
   scene::Scene& scene = session.scene;
   if (scene.session.duration > 0 && saved.step >= scene.session.steps()) {

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "scene/scene_options.h"
 #include "io_node/io_node.h"
 #include "io_node/scene_config.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 
 namespace slew::io {
 
@@ -18,7 +18,7 @@ struct SessionScene {
 };
 
 // Throws Failure or scene::LoadError. A saved session of another build is a warning in the scene.
-[[nodiscard]] SessionScene load_session_scene(const cli_support::SceneOptions& options);
+[[nodiscard]] SessionScene load_session_scene(const scene::SceneOptions& options);
 
 // make_config() and the states.
 [[nodiscard]] IoConfig make_config(const SessionScene& session, const SessionWish& wish);

@@ -10,9 +10,9 @@ namespace {
 
 using namespace slew;
 
-std::optional<ExitCode> run(const cli_support::NodeOptions& options, const std::string& runs, double keep_free_mb) {
-  cli_support::apply_real_time(options, "recorder_node");
-  const auto carrier = cli_support::open_carrier(wire::Role::recorder, options.session);
+std::optional<ExitCode> run(const node::NodeOptions& options, const std::string& runs, double keep_free_mb) {
+  node::apply_real_time(options, "recorder_node");
+  const auto carrier = node::open_carrier(wire::Role::recorder, options.session);
   recorder::RecorderConfig config;
   config.runs_directory = runs;
   config.keep_free = static_cast<std::uint64_t>(keep_free_mb * 1e6);
@@ -25,7 +25,7 @@ std::optional<ExitCode> run(const cli_support::NodeOptions& options, const std::
       if (!node.recording().empty()) std::printf("recording: %s\n", node.recording().c_str());
     }
   } const say_path{node};
-  return cli_support::run_node(node);
+  return node::run_node(node);
 }
 
 }  // namespace
@@ -33,11 +33,11 @@ std::optional<ExitCode> run(const cli_support::NodeOptions& options, const std::
 int main(int argc, char** argv) {
   options::Program program("recorder_node", "Recorder of a Slewring session: one .mcap file in a new folder of --out.");
   program.footer("Example:\n  recorder_node --session truck_crane --out /data/runs");
-  cli_support::NodeOptions options;
-  options.priority = cli_support::kRecorderPriority;
+  node::NodeOptions options;
+  options.priority = node::kRecorderPriority;
   std::string runs = "runs";
-  cli_support::add_node_options(program, options);
-  cli_support::add_finding_options(program, options);
+  node::add_node_options(program, options);
+  node::add_finding_options(program, options);
   program.option("--out", runs, "folder in which the session gets a folder of its own")
       .value_name("DIR")
       .show_default();
@@ -46,6 +46,6 @@ int main(int argc, char** argv) {
       .between(0.0, 1e9)
       .value_name("MB")
       .show_default();
-  program.action([&] { return cli_support::run_until_in_session([&] { return run(options, runs, keep_free_mb); }); });
-  return cli_support::run_program(program, argc, argv);
+  program.action([&] { return node::run_until_in_session([&] { return run(options, runs, keep_free_mb); }); });
+  return node::run_program(program, argc, argv);
 }

@@ -13,7 +13,7 @@
 #include "scene/defs.h"
 #include "scene/ports.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using coupling::Level;
@@ -107,7 +107,7 @@ std::string running_late(const Ports& ports, const std::string& name, double H) 
 
 }  // namespace
 
-std::vector<std::string> coupling_warnings(const scene::Scene& scene, const DirectSession& session) {
+std::vector<std::string> coupling_warnings(const scene::Scene& scene, const session::DirectSession& session) {
   std::vector<std::string> warnings;
   if (scene.ports.empty() || !scene.has_mechanics() || !scene.has_hydraulics()) return warnings;
   const coupling::MechanismSample& mechanism = session.sample(Role::mechanics).mechanism;
@@ -132,9 +132,9 @@ std::vector<std::string> coupling_warnings(const scene::Scene& scene, const Dire
 
 std::vector<std::string> coupling_warnings(const scene::Scene& scene) {
   if (scene.ports.empty()) return {};
-  DirectSession session(scene);
+  session::DirectSession session(scene);
   if (!session.start().is_ok()) return {};
   return coupling_warnings(scene, session);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -4,16 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "session/direct_session.h"
 #include "scene/scene.h"
+#include "session/direct_session.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // One sentence for every level whose ports are beyond its limit at the start state (coupling::omega_limit), with the
 // port that is the fastest, and a step that would suit it. Pre-condition: session is started and of this scene.
-[[nodiscard]] std::vector<std::string> coupling_warnings(const scene::Scene& scene, const DirectSession& session);
+[[nodiscard]] std::vector<std::string> coupling_warnings(const scene::Scene& scene,
+                                                         const session::DirectSession& session);
 
 // The same of a scene that is not started yet; none when it cannot start, which its run tells.
 [[nodiscard]] std::vector<std::string> coupling_warnings(const scene::Scene& scene);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

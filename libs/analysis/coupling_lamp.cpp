@@ -8,7 +8,7 @@
 #include "core/display.h"
 #include "scene/ports.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using coupling::Level;
@@ -72,4 +72,4 @@ std::string explain_lamp(double eta, std::size_t port, const scene::Scene& scene
   return text;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

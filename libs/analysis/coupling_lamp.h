@@ -7,7 +7,7 @@
 #include "coupling/indicator.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // eta: coupling_eta of a port.
 [[nodiscard]] coupling::Lamp lamp_of(double eta) noexcept;
@@ -18,4 +18,4 @@ namespace slew::cli {
 // "force off by about 0.8 %, 6 % in one run of 20; ..."; empty of a green lamp. port: its number in the scene.
 [[nodiscard]] std::string explain_lamp(double eta, std::size_t port, const scene::Scene& scene);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -3,30 +3,31 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "session/recorded.h"
-#include "core/text_output.h"
-#include "session/unrecorded.h"
-#include "scene/name_pattern.h"
 #include "core/failure.h"
+#include "core/text_output.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
+#include "scene/name_pattern.h"
+#include "session/recorded.h"
+#include "session/unrecorded.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader) {
   ScenePlots read;
-  const std::vector<std::string> names = recorded_names(reader);
+  const std::vector<std::string> names = session::recorded_names(reader);
   for (const scene::PlotDef& plot : scene.plots) {
     std::vector<std::string> wanted = plot.variables;
-    const std::vector<std::string> missing = cli_support::unmatched(wanted, names);
+    const std::vector<std::string> missing = scene::unmatched(wanted, names);
     if (!missing.empty()) {
-      read.left_out.push_back("plot " + plot.name + ": not drawn: " + why_missing(reader, missing, names));
+      read.left_out.push_back("plot " + plot.name + ": not drawn: " + session::why_missing(reader, missing, names));
       std::erase_if(wanted, [&missing](const std::string& pattern) {
         return std::find(missing.begin(), missing.end(), pattern) != missing.end();
       });
     }
     if (wanted.empty()) continue;
-    read.plots.push_back({plot.title.empty() ? plot.name : plot.title, read_series(reader, wanted, Units::display)});
+    read.plots.push_back(
+        {plot.title.empty() ? plot.name : plot.title, session::read_series(reader, wanted, session::Units::display)});
     plotting::part_at_gaps(read.plots.back().series);
   }
   return read;
@@ -52,4 +53,4 @@ std::string write_plots(const std::vector<plotting::Plot>& plots, const recordin
   return path.string();
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

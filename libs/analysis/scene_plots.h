@@ -8,7 +8,7 @@
 #include "recording/reader.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // The scene's plots of a recording, without what it does not have.
 struct ScenePlots {
@@ -22,4 +22,4 @@ struct ScenePlots {
 // Writes plots as one picture beside the recording. Returns its path; empty when there are none.
 [[nodiscard]] std::string write_plots(const std::vector<plotting::Plot>& plots, const recording::Reader& reader);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "core/display.h"
-#include "session/recorded.h"
 #include "core/failure.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/l90ls_valve.h"
+#include "session/recorded.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using hydraulics::DoubleActingCylinderDef;
@@ -72,7 +72,7 @@ std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& dr
   const std::vector<std::string> wanted = {drive.valve->name + ".control_signal", name + ".speed", name + ".stroke",
                                            name + ".static_force",
                                            name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
-  std::vector<plotting::Series> curves = read_series(reader, wanted, Units::si);
+  std::vector<plotting::Series> curves = session::read_series(reader, wanted, session::Units::si);
   plotting::keep_common_instants(curves);  // of nodes that did not end together
   const std::size_t size = curves[0].values.size();
   const double sign = drive.direction;
@@ -108,7 +108,7 @@ struct HeldLoad {
 // Value of a variable at a time.
 double value_at(const recording::Reader& reader, const std::string& name, double time) {
   const std::string wanted[] = {name};
-  const plotting::Series curve = read_series(reader, wanted, Units::si).front();
+  const plotting::Series curve = session::read_series(reader, wanted, session::Units::si).front();
   const auto at = std::lower_bound(curve.time.begin(), curve.time.end(), time);
   if (at == curve.time.end()) return curve.values.back();
   return curve.values[static_cast<std::size_t>(at - curve.time.begin())];
@@ -117,7 +117,7 @@ double value_at(const recording::Reader& reader, const std::string& name, double
 // The mechanics states the mass of its last moving body, and every port's static force per kilogram of it.
 std::optional<HeldLoad> find_load(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
                                   double time) {
-  const SessionView view = view_recording(reader, Values::none);
+  const session::SessionView view = session::view_recording(reader, session::Values::none);
   for (const multibody::BodyDef& body : scene.mechanics.bodies) {
     if (view.find(body.name + ".mass") == nullptr) continue;
     return HeldLoad{body.name, value_at(reader, body.name + ".mass", time),
@@ -172,4 +172,4 @@ std::vector<std::string> explain_stalls(const recording::Reader& reader, const s
   return sentences;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -16,9 +16,9 @@
 #include "recording/reader.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // One sentence for each cylinder that stalled. Empty also when the recording lacks the variables it needs.
 [[nodiscard]] std::vector<std::string> explain_stalls(const recording::Reader& reader, const scene::Scene& scene);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

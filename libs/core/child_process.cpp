@@ -14,7 +14,7 @@
 
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew {
 namespace {
 
 constexpr int kNotExecuted = static_cast<int>(ExitCode::resources);
@@ -122,4 +122,4 @@ std::string sibling_program(const std::string& name) {
   return (own.parent_path() / name).string();
 }
 
-}  // namespace slew::cli
+}  // namespace slew

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace slew::cli {
+namespace slew {
 
 // How a process ended: an exit code, or the signal that killed it.
 struct ProcessEnd {
@@ -51,4 +51,4 @@ class ChildProcess {
 // Path of a program of ours beside this one.
 [[nodiscard]] std::string sibling_program(const std::string& name);
 
-}  // namespace slew::cli
+}  // namespace slew

@@ -11,7 +11,7 @@
 
 #include "core/report_table.h"
 
-namespace slew::cli {
+namespace slew {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
@@ -109,4 +109,4 @@ void print_table(const ReportTable& table) {
   fmt::print("{}", table.text("", output_width()));
 }
 
-}  // namespace slew::cli
+}  // namespace slew

@@ -11,7 +11,7 @@ namespace slew {
 class ReportTable;
 }
 
-namespace slew::cli {
+namespace slew {
 
 struct DisplayUnit {
   double factor = 1;  // shown value = SI value * factor
@@ -43,4 +43,4 @@ struct DisplayUnit {
 // To standard output, in lines that fit the terminal.
 void print_table(const ReportTable& table);
 
-}  // namespace slew::cli
+}  // namespace slew

@@ -11,7 +11,7 @@
 
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew {
 namespace {
 
 Status failed(const std::filesystem::path& path, const std::string& reason) {
@@ -82,4 +82,4 @@ void write_text(const std::string& path, const std::string& text) {
   require(replace_file(path, [&text](const std::filesystem::path& part) { return put_text(part, text); }));
 }
 
-}  // namespace slew::cli
+}  // namespace slew

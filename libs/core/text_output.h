@@ -7,7 +7,7 @@
 
 #include "core/status.h"
 
-namespace slew::cli {
+namespace slew {
 
 // Replaces the file by what `write` puts into the path that it is given: one beside it, which takes its name when
 // everything is written, and is removed otherwise. What is there and no file, such as /dev/stdout, is written to as it
@@ -24,4 +24,4 @@ void require_writable(const std::string& path);
 // Replaces a file; "-" is standard output. Throws Failure (storage).
 void write_text(const std::string& path, const std::string& text);
 
-}  // namespace slew::cli
+}  // namespace slew

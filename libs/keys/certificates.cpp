@@ -10,7 +10,7 @@
 #include "keys/key_files.h"
 #include "keys/openssl.h"
 
-namespace slew::cli {
+namespace slew::keys {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,4 +111,4 @@ std::string random_number() {
   return fmt::format("{:08x}{:08x}", random(), random());
 }
 
-}  // namespace slew::cli
+}  // namespace slew::keys

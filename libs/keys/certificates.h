@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace slew::cli {
+namespace slew::keys {
 
 // Since when keys are good and until when: from a day ago on, for the clocks of other machines may be behind.
 struct Validity {
@@ -36,4 +36,4 @@ void sign(const std::filesystem::path& document, const std::filesystem::path& to
 // 1 to 39 hexadecimal digits that nobody has guessed before.
 [[nodiscard]] std::string random_number();
 
-}  // namespace slew::cli
+}  // namespace slew::keys

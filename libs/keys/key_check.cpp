@@ -4,16 +4,16 @@
 
 #include <algorithm>
 
+#include "core/failure.h"
 #include "keys/certificates.h"
 #include "keys/key_files.h"
 #include "keys/key_store.h"
 #include "keys/openssl.h"
 #include "keys/security_documents.h"
 #include "node/carrier.h"
-#include "core/failure.h"
 #include "transport/protection.h"
 
-namespace slew::cli {
+namespace slew::keys {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,4 +125,4 @@ std::vector<KeyFinding> check_keys(const fs::path& folder) {
   return findings;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::keys

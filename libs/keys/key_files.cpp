@@ -10,7 +10,7 @@
 
 #include "core/input_file.h"
 
-namespace slew::cli {
+namespace slew::keys {
 
 namespace fs = std::filesystem;
 
@@ -55,4 +55,4 @@ UniqueFolder::~UniqueFolder() {
   if (!is_kept_) fs::remove_all(path_, ignored);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::keys

@@ -6,7 +6,7 @@
 
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew::keys {
 
 // Of a file or folder, with code 6.
 [[nodiscard]] Failure storage_failure(const std::filesystem::path& path, const std::string& why);
@@ -37,4 +37,4 @@ class UniqueFolder {
   bool is_kept_ = false;
 };
 
-}  // namespace slew::cli
+}  // namespace slew::keys

@@ -6,17 +6,17 @@
 #include <optional>
 #include <set>
 
+#include "core/failure.h"
+#include "core/json.h"
 #include "keys/certificates.h"
 #include "keys/key_files.h"
 #include "keys/security_documents.h"
 #include "node/carrier.h"
-#include "node/session_options.h"
-#include "core/failure.h"
-#include "core/json.h"
 #include "node/identity.h"
+#include "node/session_options.h"
 #include "transport/protection.h"
 
-namespace slew::cli {
+namespace slew::keys {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,9 +34,9 @@ struct Allowed {
 };
 
 std::optional<Allowed> allowed_to(const std::string& role) {
-  if (role == kViewer) return Allowed{{}, cli_support::topics_read(Role::observer)};
+  if (role == kViewer) return Allowed{{}, node::topics_read(Role::observer)};
   for (const Role one : kAllRoles) {
-    if (node::to_text(one) == role) return Allowed{cli_support::topics_written(one), cli_support::topics_readable(one)};
+    if (node::to_text(one) == role) return Allowed{node::topics_written(one), node::topics_readable(one)};
   }
   return std::nullopt;
 }
@@ -48,7 +48,7 @@ bool is_session_pattern(const std::string& text) {
 }
 
 void require_good(const KeyIdentity& identity) {
-  if (const std::string problem = cli_support::problem_of_session_name(identity.name); !problem.empty()) {
+  if (const std::string problem = node::problem_of_session_name(identity.name); !problem.empty()) {
     throw Failure(
         ExitCode::bad_input,
         fmt::format("'{}' is no name of an identity: it has 1 to 63 letters, digits, '_', '-' and '.'; nothing "
@@ -323,4 +323,4 @@ void KeyStore::export_to(const fs::path& folder, const std::vector<std::string>&
   }
 }
 
-}  // namespace slew::cli
+}  // namespace slew::keys

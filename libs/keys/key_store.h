@@ -12,7 +12,7 @@
 #include "keys/certificates.h"
 #include "keys/key_files.h"
 
-namespace slew::cli {
+namespace slew::keys {
 
 // Roles of a session, and "viewer": reads what an observer reads and writes nothing.
 [[nodiscard]] const std::vector<std::string>& key_roles();
@@ -69,4 +69,4 @@ class KeyStore {
 // read. One entry for the folder and one for each identity. Throws Failure when it is none.
 [[nodiscard]] std::vector<KeyFinding> check_keys(const std::filesystem::path& folder);
 
-}  // namespace slew::cli
+}  // namespace slew::keys

@@ -9,7 +9,7 @@
 #include "core/child_process.h"
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew::keys {
 namespace {
 
 constexpr const char* kOpenssl = "/usr/bin/openssl";
@@ -42,4 +42,4 @@ std::string run_openssl(const std::vector<std::string>& arguments) {
   throw Failure(ExitCode::failed, fmt::format("openssl {} failed: {}", arguments.front(), said));
 }
 
-}  // namespace slew::cli
+}  // namespace slew::keys

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace slew::cli {
+namespace slew::keys {
 
 // Standard output and error. Throws Failure: resources when there is no openssl, failed with its last words otherwise.
 std::string run_openssl(const std::vector<std::string>& arguments);
@@ -13,4 +13,4 @@ std::string run_openssl(const std::vector<std::string>& arguments);
 // Whether it ended with code 0; its words are in `said`.
 [[nodiscard]] bool try_openssl(const std::vector<std::string>& arguments, std::string& said);
 
-}  // namespace slew::cli
+}  // namespace slew::keys

@@ -4,7 +4,7 @@
 
 #include "transport/cyclone_domain.h"
 
-namespace slew::cli {
+namespace slew::keys {
 namespace {
 
 using transport::TopicSet;
@@ -69,4 +69,4 @@ std::string permissions_xml(const Grant& grant) {
                      rule("publish", grant.writes, grant.session), rule("subscribe", grant.reads, grant.session));
 }
 
-}  // namespace slew::cli
+}  // namespace slew::keys

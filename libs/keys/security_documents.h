@@ -5,7 +5,7 @@
 
 #include "transport/topics.h"
 
-namespace slew::cli {
+namespace slew::keys {
 
 // Only participants with a certificate of the store take part; discovery and data are encrypted (AES-GCM), and every
 // submessage of readers and writers is signed for each of those that it is for (AES-GMAC): without that, data that were
@@ -24,4 +24,4 @@ struct Grant {
 // All that is not named is denied.
 [[nodiscard]] std::string permissions_xml(const Grant& grant);
 
-}  // namespace slew::cli
+}  // namespace slew::keys

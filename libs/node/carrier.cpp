@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include "node/metered_carrier.h"
 #include "core/failure.h"
 #include "node/identity.h"
+#include "node/metered_carrier.h"
 #include "transport/cyclone_transport.h"
 #include "transport/protection.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 
 using transport::TopicSet;
 using wire::Role;
@@ -148,4 +148,4 @@ bool is_heard(const transport::Transport& carrier, Topic topic) {
   return cyclone == nullptr || cyclone->matched_readers(topic) > 0;
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

@@ -10,7 +10,7 @@
 #include "transport/transport.h"
 #include "transport/wire.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 
 [[nodiscard]] transport::TopicSet topics_written(wire::Role role) noexcept;
 [[nodiscard]] transport::TopicSet topics_read(wire::Role role) noexcept;
@@ -39,4 +39,4 @@ namespace slew::cli_support {
 // True when somebody would hear a message on this topic now. A topic that keeps nothing loses what is said earlier.
 [[nodiscard]] bool is_heard(const transport::Transport& carrier, wire::Topic topic);
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

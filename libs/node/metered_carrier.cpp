@@ -2,7 +2,7 @@
 
 #include "core/allocation_guard.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 namespace {
 
 thread_local std::uint64_t of_carriers = 0;
@@ -44,4 +44,4 @@ node::HeapMeter heap_meter() noexcept {
   return AllocationGuard::kCounts ? &heap_calls : nullptr;
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

@@ -6,7 +6,7 @@
 #include "node/driver.h"
 #include "transport/transport.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 
 class MeteredCarrier final : public transport::Transport {
  public:
@@ -29,4 +29,4 @@ class MeteredCarrier final : public transport::Transport {
 // itself.
 [[nodiscard]] node::HeapMeter heap_meter() noexcept;
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

@@ -4,7 +4,6 @@
 #include <new>
 #include <system_error>
 
-#include "node/metered_carrier.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/file_size_limit.h"
@@ -12,9 +11,10 @@
 #include "core/real_time_thread.h"
 #include "node/driver.h"
 #include "node/identity.h"
+#include "node/metered_carrier.h"
 #include "scene/diagnostic.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 namespace {
 
 int report(const std::string& program, const char* text, ExitCode code) noexcept {
@@ -105,4 +105,4 @@ ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& ru
   }
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

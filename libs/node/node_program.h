@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "node/session_options.h"
 #include "core/status.h"
 #include "node/node.h"
+#include "node/session_options.h"
 #include "options/options.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 
 // Checks the processor, adds --version, parses, and runs the program's action: all that a main does. What the action
 // throws becomes one line on standard error and an exit code. Failure: its own code; a scene's LoadError: bad_input; no
@@ -29,4 +29,4 @@ void apply_real_time(const NodeOptions& options, const std::string& program);
 // Makes and runs nodes with `run` until one had a session that was not withdrawn.
 [[nodiscard]] ExitCode run_until_in_session(const std::function<std::optional<ExitCode>()>& run);
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

@@ -5,7 +5,7 @@
 #include "transport/cyclone_domain.h"
 #include "transport/wire.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 namespace {
 
 bool is_name_character(char c) {
@@ -138,4 +138,4 @@ std::vector<std::string> network_arguments(const SessionOptions& options) {
   return arguments;
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

@@ -8,7 +8,7 @@
 #include "node/session_member.h"
 #include "options/options.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 
 inline constexpr int kIoPriority = 30;  // the clock goes before the nodes that wait for it
 inline constexpr int kDefaultPriority = 20;
@@ -62,4 +62,4 @@ void add_physics_node_options(options::Command& app, NodeOptions& options);
 // A scene's name made into a session's name.
 [[nodiscard]] std::string session_name_of(const std::string& scene);
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

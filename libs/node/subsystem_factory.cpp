@@ -4,10 +4,10 @@
 #include <exception>
 #include <iterator>
 
-#include "scene/name_pattern.h"
 #include "core/failure.h"
+#include "scene/name_pattern.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 
 Status check_session_assets(const wire::SessionDescription& session, const std::string& assets) {
   std::vector<scene::Asset> manifest;
@@ -18,11 +18,11 @@ Status check_session_assets(const wire::SessionDescription& session, const std::
 std::vector<std::uint32_t> published_variables(const scene::Scene& scene, const coupling::Subsystem& subsystem) {
   std::vector<std::string> names, kept;
   for (const ElementVariable& variable : subsystem.variables()) names.push_back(variable.name);
-  std::vector<std::uint32_t> published = matching(scene.recording.variables, names);
+  std::vector<std::uint32_t> published = scene::matching(scene.recording.variables, names);
   // what there is much of has to be asked for by more than "everything"
   std::copy_if(scene.recording.variables.begin(), scene.recording.variables.end(), std::back_inserter(kept),
                [](const std::string& pattern) { return pattern != "*"; });
-  const std::vector<std::uint32_t> asked_for = matching(kept, names);
+  const std::vector<std::uint32_t> asked_for = scene::matching(kept, names);
   std::erase_if(published, [&](std::uint32_t i) {
     return subsystem.variables()[i].is_detail && !std::binary_search(asked_for.begin(), asked_for.end(), i);
   });
@@ -58,4 +58,4 @@ node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets)
   };
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

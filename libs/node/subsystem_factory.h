@@ -10,7 +10,7 @@
 #include "node/physics_node.h"
 #include "scene/scene.h"
 
-namespace slew::cli_support {
+namespace slew::node {
 
 using MakeSubsystem = std::function<std::unique_ptr<coupling::Subsystem>(const scene::Scene&)>;
 
@@ -25,4 +25,4 @@ using MakeSubsystem = std::function<std::unique_ptr<coupling::Subsystem>(const s
 [[nodiscard]] std::vector<std::uint32_t> published_variables(const scene::Scene& scene,
                                                              const coupling::Subsystem& subsystem);
 
-}  // namespace slew::cli_support
+}  // namespace slew::node

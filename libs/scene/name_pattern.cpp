@@ -7,7 +7,7 @@
 #include "core/suggestion.h"
 #include "scene/names.h"
 
-namespace slew::cli_support {
+namespace slew::scene {
 
 std::vector<std::uint32_t> matching(std::span<const std::string> patterns, std::span<const std::string> names) {
   std::vector<std::uint32_t> found;
@@ -69,4 +69,4 @@ std::vector<std::string> choose(std::span<const std::string> patterns, std::span
   return chosen;
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew::scene

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace slew::cli_support {
+namespace slew::scene {
 
 // Indices of the names that at least one pattern fits, ascending.
 [[nodiscard]] std::vector<std::uint32_t> matching(std::span<const std::string> patterns,
@@ -28,4 +28,4 @@ namespace slew::cli_support {
 [[nodiscard]] std::vector<std::string> choose(std::span<const std::string> patterns,
                                               std::span<const std::string> names);
 
-}  // namespace slew::cli_support
+}  // namespace slew::scene

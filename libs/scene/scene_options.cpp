@@ -9,7 +9,7 @@
 #include "scene/canonical.h"
 #include "scene/script_reader.h"
 
-namespace slew::cli_support {
+namespace slew::scene {
 namespace {
 
 scene::Node text_node(const std::string& text, const scene::Mark& mark) {
@@ -178,4 +178,4 @@ std::vector<std::string> scene_arguments(const SceneOptions& options) {
   return arguments;
 }
 
-}  // namespace slew::cli_support
+}  // namespace slew::scene

@@ -8,7 +8,7 @@
 #include "scene/parameters.h"
 #include "scene/scene.h"
 
-namespace slew::cli_support {
+namespace slew::scene {
 
 struct SceneOptions {
   std::string file;
@@ -44,4 +44,4 @@ struct ContinuedScene {
 // The same as command-line arguments, for a child process.
 [[nodiscard]] std::vector<std::string> scene_arguments(const SceneOptions& options);
 
-}  // namespace slew::cli_support
+}  // namespace slew::scene

@@ -5,7 +5,7 @@
 
 #include "node/identity.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 using coupling::PartnerSamples;
 using wire::Role;
@@ -207,4 +207,4 @@ std::string DirectSession::failure() const {
   return "";
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

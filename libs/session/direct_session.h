@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "session/monolithic_session.h"
 #include "coupling/subsystem.h"
 #include "io_node/saved_session.h"
 #include "scene/scene.h"
+#include "session/monolithic_session.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 // How many steps old the newest samples are that mechanics and hydraulics have of each other at step n, below
 // kKeptSamples: lost and late samples. For scenes in mode free_running, whose sides bridge such gaps.
@@ -90,4 +90,4 @@ class DirectSession {
   std::uint64_t init_hash_ = 0;
 };
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -12,21 +12,19 @@
 #include <utility>
 
 #include "core/child_process.h"
-#include "session/interrupts.h"
-#include "cli/keyboard.h"
-#include "session/observer.h"
-#include "cli/status_line.h"
-#include "node/carrier.h"
 #include "core/failure.h"
 #include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
+#include "node/carrier.h"
 #include "node/identity.h"
 #include "node/session_member.h"
 #include "recording/run_directory.h"
 #include "scene/cpu_places.h"
+#include "session/interrupts.h"
+#include "session/observer.h"
 #include "transport/given_up.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 using wire::Role;
@@ -50,8 +48,7 @@ class Supervisor {
   Supervisor(const RunOptions& options, const scene::Scene& scene, StepIndex begin)
       : options_(options),
         begin_(begin),
-        status_(status_mode(options.is_quiet || options.is_json)),
-        text_(scene),
+        watcher_(*options.watcher),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
@@ -63,7 +60,6 @@ class Supervisor {
                                      [&](Role of_place) { return node::to_text(of_place) == place.role; });
       if (role != std::end(wire::kNodeRoles)) check_place(*role, place);
     }
-    if (options.scene.input == "keyboard") keyboard_.emplace(scene);
   }
 
   RunOutcome run() {
@@ -79,13 +75,12 @@ class Supervisor {
       start_again();
       start_others_when_io_is_there();
       obey_interrupts();
-      if (options_.each_round && !options_.each_round(*observer_, monotonic_ns())) end_session();
       enforce_deadlines();
-      show();
+      update_watcher();
     }
     look_after_children();  // last words of the one that ended last
     observer_->drain();
-    status_.clear();
+    watcher_.end();
     return outcome();
   }
 
@@ -105,23 +100,22 @@ class Supervisor {
     std::int64_t not_before_ns = 0;  // of its next start
   };
 
-  // values are needed for the status line, and for the summary of a run that is not recorded here
+  // values are needed by the watcher, and for the summary of a run that is not recorded here
   [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier() const {
-    const bool shows_values = !options_.is_quiet && !options_.is_json;
     // what the samples report is in the recording when there is one: each reader costs the writers time
     if (!is_ours(Role::recorder)) {
       if (auto carrier = open_with_samples()) return carrier;
     }
-    if (shows_values || keyboard_ || !is_ours(Role::recorder)) {
-      return cli_support::open_carrier(Role::observer, options_.session);
+    if (watcher_.reads_values() || !is_ours(Role::recorder)) {
+      return node::open_carrier(Role::observer, options_.session);
     }
-    return cli_support::open_observer_without_values(options_.session);
+    return node::open_observer_without_values(options_.session);
   }
 
   // Null with keys of an earlier version, which give an observer no right to samples; the report has a note then.
   [[nodiscard]] std::unique_ptr<transport::Transport> open_with_samples() const {
     try {
-      return cli_support::open_observer_with_samples(options_.session);
+      return node::open_observer_with_samples(options_.session);
     } catch (const Failure& failure) {
       if (options_.session.keys.empty() || failure.code() != ExitCode::bad_input) throw;
       return nullptr;
@@ -161,7 +155,7 @@ class Supervisor {
 
   [[nodiscard]] std::unique_ptr<ChildProcess> make(Role role) const {
     std::vector<std::string> arguments;
-    if (role == Role::io) arguments = cli_support::scene_arguments(options_.scene);
+    if (role == Role::io) arguments = scene::scene_arguments(options_.scene);
     if (role != Role::recorder && options_.join_timeout) {
       arguments.insert(arguments.end(), {"--join-timeout", fmt::format("{}", *options_.join_timeout)});
     }
@@ -173,7 +167,7 @@ class Supervisor {
     if (role != Role::io && is_ours(Role::io)) {
       arguments.insert(arguments.end(), {"--session-id", node::to_text(observer_->view().session().header.session)});
     }
-    const std::vector<std::string> network = cli_support::network_arguments(options_.session);
+    const std::vector<std::string> network = node::network_arguments(options_.session);
     arguments.insert(arguments.end(), network.begin(), network.end());
     if (role == Role::recorder)
       arguments.insert(arguments.end(),
@@ -195,7 +189,7 @@ class Supervisor {
     for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
       if (is_ours(role)) start(role);
     }
-    if (keyboard_) status_.say(keyboard_->levers().help());
+    watcher_.begin();
   }
 
   // a session of the same name refuses io: then no other node must come near that session
@@ -262,8 +256,9 @@ class Supervisor {
   void kill_those_given_up() {
     for (Node& node : nodes_) {
       if (node.process->poll_end() || node.is_killed_as_lost || !has_lost_its_place(node)) continue;
-      status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
-                  ") was silent for 2 s and has lost its place; it is killed");
+      watcher_.report("slewring: the " + node.process->name() + " node (process " +
+                      std::to_string(node.process->pid()) +
+                      ") was silent for 2 s and has lost its place; it is killed");
       node.is_killed_as_lost = true;
       node.process->send_signal(SIGKILL);
     }
@@ -297,8 +292,8 @@ class Supervisor {
     } catch (const Failure& failure) {
       node.not_before_ns = monotonic_ns() + kStartAgainNs;
       if (std::exchange(node.is_failure_told, true)) return;
-      return status_.say(std::string("slewring: ") + failure.what() +
-                         "; the others hold, and it is tried again until one comes or they end");
+      return watcher_.report(std::string("slewring: ") + failure.what() +
+                             "; the others hold, and it is tried again until one comes or they end");
     }
     node.given_up_before = places_given_up(node.role);
     node.is_awaited = node.is_reported = node.is_killed_as_lost = node.is_failure_told = node.has_come = false;
@@ -344,14 +339,14 @@ class Supervisor {
     const bool is_consequence = line.find("io ended the session") != std::string::npos ||
                                 line.find("because of a fault elsewhere") != std::string::npos;
     const bool is_warning = line.find("warning") != std::string::npos;
-    if (is_warning || line.find("_node: ") == std::string::npos) return status_.say(line);
+    if (is_warning || line.find("_node: ") == std::string::npos) return watcher_.report(line);
     std::vector<std::string>& kept = is_consequence ? consequences_ : causes_;
     if (std::find(kept.begin(), kept.end(), line) == kept.end()) kept.push_back(line);
   }
 
   void say_kill(const Node& node, const std::string& what_follows) {
-    status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
-                ") " + node.process->poll_end()->text() + what_follows);
+    watcher_.report("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
+                    ") " + node.process->poll_end()->text() + what_follows);
   }
 
   [[nodiscard]] std::string what_follows_of(const Node& awaited) const {
@@ -402,9 +397,10 @@ class Supervisor {
     node.is_asked_to_end = true;
     if (signal == SIGKILL) {
       const bool has_written = node.role == Role::recorder && is_recorder_awaited_;
-      status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
-                  (has_written ? ") was killed while it wrote; 'slewring recover' makes the recording whole"
-                               : ") does not end; it was killed"));
+      watcher_.report("slewring: the " + node.process->name() + " node (process " +
+                      std::to_string(node.process->pid()) +
+                      (has_written ? ") was killed while it wrote; 'slewring recover' makes the recording whole"
+                                   : ") does not end; it was killed"));
     }
     node.process->send_signal(signal);
     node.process->send_signal(SIGCONT);  // one that is stopped takes its signal only then
@@ -421,8 +417,9 @@ class Supervisor {
         send(node, SIGKILL);
       } else if (!node.process->poll_end() && !is_recorder_awaited_) {
         is_recorder_awaited_ = true;
-        status_.say("slewring: the session is over, and the recorder (process " + std::to_string(node.process->pid()) +
-                    ") still writes to a slow disk; Ctrl-C ends it, and what is not written then is lost");
+        watcher_.report("slewring: the session is over, and the recorder (process " +
+                        std::to_string(node.process->pid()) +
+                        ") still writes to a slow disk; Ctrl-C ends it, and what is not written then is lost");
       }
     }
   }
@@ -466,16 +463,14 @@ class Supervisor {
     }
   }
 
-  // ---- showing ------------------------------------------------------------------------------------------------
+  // ---- reporting ----------------------------------------------------------------------------------------------
 
-  void show() {
+  void update_watcher() {
     const std::int64_t now_ns = monotonic_ns();
     const SessionView& view = observer_->view();
     has_stepped_ = has_stepped_ || view.step() > begin_;
     if (has_stepped_ && !view.is_over()) clock_.measure(now_ns, view.step(), view.is_paused());
-    if (keyboard_) keyboard_->poll(*observer_, now_ns);
-    text_.measure(view, now_ns);
-    if (status_.is_due(now_ns) && deadline_ns_ == 0) status_.show(text_.text(view), now_ns);
+    if (!watcher_.update(*observer_, now_ns, deadline_ns_ != 0)) end_session();
   }
 
   // The newest recording of this scene since the start: for a recorder that could not say its path.
@@ -535,14 +530,12 @@ class Supervisor {
 
   const RunOptions& options_;
   StepIndex begin_;  // step that the session goes on from
-  StatusLine status_;
-  StatusText text_;
+  RunWatcher& watcher_;
   std::uint32_t roles_;
   std::vector<scene::CpuPlace> cpus_;
   std::string name_;         // of the scene
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
-  std::optional<Keyboard> keyboard_;
   SimDuration rejoin_;  // time that io holds the place of a physics node that is lost; 0: it does not
   bool are_others_started_ = false;
   bool is_node_killed_ = false;
@@ -567,4 +560,4 @@ RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& se
   return Supervisor(options, session).run();
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

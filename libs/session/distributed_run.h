@@ -1,11 +1,11 @@
 // A session as processes: starts the nodes that the scene needs, watches over them, ends them in order.
 #pragma once
 
-#include "session/run_outcome.h"
 #include "io_node/session_scene.h"
+#include "session/run_outcome.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 [[nodiscard]] RunOutcome run_distributed(const RunOptions& options, const io::SessionScene& session);
 
-}  // namespace slew::cli
+}  // namespace slew::session

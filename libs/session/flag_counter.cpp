@@ -10,7 +10,7 @@
 #include "core/step_report.h"
 #include "node/identity.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 struct Meaning {
@@ -117,4 +117,4 @@ std::vector<std::string> volume_names(const scene::Scene& scene) {
   return names;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -12,7 +12,7 @@
 #include "scene/scene.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 // Flags: not converged, sub-step budget, clamp, energy from the coupling, cavitation and pressures beyond the oil's law
 // with the volume's name, deflections that are not small; and steps of a free-running node without a partner's sample.
@@ -53,4 +53,4 @@ class FlagCounter {
 
 [[nodiscard]] std::vector<std::string> volume_names(const scene::Scene& scene);
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
-#include "session/interrupts.h"
-#include "cli/keyboard.h"
-#include "session/monolithic_session.h"
-#include "session/observer.h"
-#include "cli/status_line.h"
-#include "node/carrier.h"
-#include "node/subsystem_factory.h"
 #include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
+#include "node/carrier.h"
 #include "node/driver.h"
 #include "node/physics_node.h"
+#include "node/subsystem_factory.h"
 #include "recorder_node/recorder_node.h"
+#include "session/interrupts.h"
+#include "session/monolithic_session.h"
+#include "session/observer.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 using wire::Role;
@@ -25,10 +22,7 @@ using wire::Role;
 class InProcessRun {
  public:
   InProcessRun(const RunOptions& options, const io::SessionScene& session)
-      : options_(options),
-        begin_(session.beginning ? session.beginning->step : 0),
-        status_(status_mode(options.is_quiet || options.is_json)),
-        text_(session.scene) {
+      : options_(options), begin_(session.beginning ? session.beginning->step : 0) {
     io::SessionWish wish;
     wish.session_name = options.session.session;
     wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
@@ -41,20 +35,19 @@ class InProcessRun {
     nodes_.push_back(io_.get());
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
-    observer_ = std::make_unique<Observer>(cli_support::open_observer_with_samples(bus_), options.session.session);
-    if (options.scene.input == "keyboard") keyboard_.emplace(session.scene);
+    observer_ = std::make_unique<Observer>(node::open_observer_with_samples(bus_), options.session.session);
   }
 
   RunOutcome run() {
     if (options_.is_real_time) {
-      const Status status = make_real_time(cli_support::kDefaultPriority);
-      if (!status.is_ok()) status_.say("slewring: warning: " + status.text);
+      const Status status = make_real_time(node::kDefaultPriority);
+      if (!status.is_ok()) options_.watcher->report("slewring: warning: " + status.text);
     }
     count_interrupts();
-    if (keyboard_) status_.say(keyboard_->levers().help());
+    options_.watcher->begin();
     RunOutcome outcome;
     outcome.code = node::run_together(nodes_, [this] { each_round(); });
-    status_.clear();
+    options_.watcher->end();
     observer_->drain();
     finish(outcome);
     return outcome;
@@ -62,7 +55,7 @@ class InProcessRun {
 
  private:
   transport::Transport& endpoint(Role role) {
-    endpoints_.push_back(cli_support::open_carrier(role, bus_));
+    endpoints_.push_back(node::open_carrier(role, bus_));
     return *endpoints_.back();
   }
 
@@ -70,8 +63,8 @@ class InProcessRun {
     if ((roles_ & bit(role)) == 0) return;
     auto node = std::make_unique<node::PhysicsNode>(
         role, endpoint(role),
-        cli_support::subsystem_factory([this, role](const scene::Scene& own) { return family_.make(role, own); },
-                                       options_.assets()),
+        node::subsystem_factory([this, role](const scene::Scene& own) { return family_.make(role, own); },
+                                options_.assets()),
         node::JoinOptions{node::kNoTimeout, node::kNoTimeout, std::nullopt});
     nodes_.push_back(node.get());
     physics_.push_back(std::move(node));
@@ -93,9 +86,9 @@ class InProcessRun {
     if (has_stepped_ && io_->member().state() < wire::NodeState::ended) {
       clock_.measure(now_ns, io_->next_step(), io_->is_paused());
     }
-    if (keyboard_) keyboard_->poll(*observer_, now_ns);
-    text_.measure(observer_->view(), now_ns);
-    if (status_.is_due(now_ns)) status_.show(text_.text(observer_->view()), now_ns);
+    if (!options_.watcher->update(*observer_, now_ns, false)) {
+      node::stop_requested.store(static_cast<int>(ExitCode::terminated));
+    }
   }
 
   void finish(RunOutcome& outcome) {
@@ -131,8 +124,6 @@ class InProcessRun {
 
   const RunOptions& options_;
   StepIndex begin_;  // step that the session goes on from
-  StatusLine status_;
-  StatusText text_;
   transport::InProcessBus bus_;
   std::vector<std::unique_ptr<transport::Transport>> endpoints_;
   std::uint32_t roles_ = 0;
@@ -142,7 +133,6 @@ class InProcessRun {
   std::unique_ptr<recorder::RecorderNode> recorder_;
   std::vector<node::Node*> nodes_;  // io first: it takes a request to stop
   std::unique_ptr<Observer> observer_;
-  std::optional<Keyboard> keyboard_;
   bool has_stepped_ = false;
   RunClock clock_;
 };
@@ -153,4 +143,4 @@ RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& ses
   return InProcessRun(options, session).run();
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -2,11 +2,11 @@
 // distributed run must equal bit for bit.
 #pragma once
 
-#include "session/run_outcome.h"
 #include "io_node/session_scene.h"
+#include "session/run_outcome.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 [[nodiscard]] RunOutcome run_in_process(const RunOptions& options, const io::SessionScene& session);
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -7,7 +7,7 @@
 #include "core/time.h"
 #include "node/driver.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 // a signal handler can reach nothing else than statics
@@ -49,4 +49,4 @@ int ctrl_cs() noexcept {
   return meant.load();
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -3,7 +3,7 @@
 
 #include "core/time.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 // A terminal that is closed, and programs like timeout(1), send their signals twice: nobody has changed his mind
 // before.
@@ -19,4 +19,4 @@ void count_interrupts();
 // SIGTERM and SIGHUP are none, however often they come.
 [[nodiscard]] int ctrl_cs() noexcept;
 
-}  // namespace slew::cli
+}  // namespace slew::session

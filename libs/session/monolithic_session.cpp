@@ -11,7 +11,7 @@
 #include "mechanics_node/mechanics_subsystem.h"
 #include "monolith/monolith.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 using coupling::OwnSample;
@@ -212,4 +212,4 @@ std::unique_ptr<coupling::Subsystem> SubsystemFamily::make(Role role, const scen
   return std::make_unique<HydraulicsPart>(monolithic_, scene);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 class Monolithic;
 
@@ -27,4 +27,4 @@ class SubsystemFamily {
   std::shared_ptr<Monolithic> monolithic_;  // null until a member of a monolithic scene is made
 };
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -4,13 +4,13 @@
 
 #include <cstdlib>
 
-#include "session/survey.h"
-#include "node/carrier.h"
 #include "core/failure.h"
+#include "node/carrier.h"
 #include "node/driver.h"
+#include "session/survey.h"
 #include "transport/codec.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 using wire::Topic;
 
@@ -100,7 +100,7 @@ bool Observer::wait_until_heard() {
   const auto is_heard = [this] {
     const NodeView& io = view_.node(wire::Role::io);
     return io.health.header.session == view_.session().header.session &&
-           cli_support::is_heard(*carrier_, Topic::control_request) && cli_support::is_heard(*carrier_, Topic::state);
+           node::is_heard(*carrier_, Topic::control_request) && node::is_heard(*carrier_, Topic::state);
   };
   return wait_for([&] { return is_gone() || is_heard(); }, kAnswerTimeout) && !is_gone();
 }
@@ -155,10 +155,10 @@ void Observer::send(const wire::ControllerInput& input) {
   if (transport::encode(input, bytes)) static_cast<void>(carrier_->publish(Topic::controller_input, bytes));
 }
 
-std::unique_ptr<Observer> find_session(cli_support::SessionOptions options, Access access) {
+std::unique_ptr<Observer> find_session(node::SessionOptions options, Access access) {
   if (options.session.empty()) options.session = only_session(options);
-  auto carrier = access == Access::look ? cli_support::open_viewer(options)
-                                        : cli_support::open_carrier(wire::Role::observer, options);
+  auto carrier =
+      access == Access::look ? node::open_viewer(options) : node::open_carrier(wire::Role::observer, options);
   auto observer = std::make_unique<Observer>(std::move(carrier), options.session);
   const bool is_found = observer->wait_for([&] { return observer->view().has_session(); }, kFindTimeout);
   if (is_found) return observer;
@@ -170,4 +170,4 @@ std::unique_ptr<Observer> find_session(cli_support::SessionOptions options, Acce
                                       "--peer and --keys with those of the session");
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "session/session_view.h"
-#include "node/session_options.h"
 #include "core/time.h"
 #include "node/checkpoint.h"
+#include "node/session_options.h"
+#include "session/session_view.h"
 #include "transport/transport.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 // How long a verb waits for a session that should be there, and for an answer of it.
 inline constexpr SimDuration kFindTimeout = milliseconds(3000);
@@ -69,6 +69,6 @@ enum class Access : std::uint8_t { look, steer };
 
 // Opens an observer of the named session, or of the only one that runs on the domain, and waits until it is heard.
 // Throws Failure when there is none, or more than one and no name.
-[[nodiscard]] std::unique_ptr<Observer> find_session(cli_support::SessionOptions options, Access access);
+[[nodiscard]] std::unique_ptr<Observer> find_session(node::SessionOptions options, Access access);
 
-}  // namespace slew::cli
+}  // namespace slew::session

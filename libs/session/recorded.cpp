@@ -14,17 +14,17 @@
 #include <utility>
 
 #include "core/display.h"
-#include "session/unrecorded.h"
-#include "scene/name_pattern.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/printable.h"
 #include "node/identity.h"
 #include "recording/run_directory.h"
+#include "scene/name_pattern.h"
 #include "scene/units.h"
+#include "session/unrecorded.h"
 #include "transport/codec.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 using recording::Reader;
@@ -272,12 +272,12 @@ std::vector<plotting::Series> read_series(const Reader& reader, std::span<const 
                                           const TimeRange& range) {
   const Known known = known_variables(reader);
   const std::vector<std::string> names = names_of(known);
-  if (const std::vector<std::string> missing = cli_support::unmatched(patterns, names); !missing.empty()) {
+  if (const std::vector<std::string> missing = scene::unmatched(patterns, names); !missing.empty()) {
     throw Failure(ExitCode::bad_input, why_missing(reader, missing, names));
   }
   Places places;
   std::vector<plotting::Series> curves;
-  for (const std::string& name : cli_support::choose(patterns, names)) {
+  for (const std::string& name : scene::choose(patterns, names)) {
     const auto& [place, unit] = known.at(name);
     places.emplace(place, curves.size());
     plotting::Series curve;
@@ -376,4 +376,4 @@ std::string recorded_scene_text(const Reader& reader) {
   return std::move(session->scene_text);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

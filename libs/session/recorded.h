@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "plotting/series.h"
-#include "session/session_view.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
+#include "session/session_view.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 // Opens a recording; a folder of a run stands for the file in it. Throws Failure. A warning on
 // standard error for a cut recording, and for one whose attached scene is not what is read.
@@ -84,4 +84,4 @@ void keep_assets(const scene::Scene& scene, const std::string& folder, const std
 // session's own description. Throws Failure when neither can be read.
 [[nodiscard]] std::string recorded_scene_text(const recording::Reader& reader);
 
-}  // namespace slew::cli
+}  // namespace slew::session

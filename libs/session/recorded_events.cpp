@@ -10,7 +10,7 @@
 #include "transport/codec.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 using wire::Topic;
@@ -68,4 +68,4 @@ std::vector<RecordedEvent> recorded_events(const recording::Reader& reader) {
   return events;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -9,7 +9,7 @@
 #include "core/time.h"
 #include "recording/reader.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 struct RecordedEvent {
   StepIndex step = 0;  // from which it holds
@@ -20,4 +20,4 @@ struct RecordedEvent {
 // In the order in which they were said.
 [[nodiscard]] std::vector<RecordedEvent> recorded_events(const recording::Reader& reader);
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -6,12 +6,12 @@
 #include <numeric>
 #include <string>
 
-#include "session/recorded.h"
 #include "core/failure.h"
 #include "node/identity.h"
+#include "session/recorded.h"
 #include "transport/codec.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 using recording::RecordedMessage;
@@ -134,4 +134,4 @@ RecordedExtent recorded_extent(const recording::Reader& reader) {
   return extent;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -7,7 +7,7 @@
 #include "core/time.h"
 #include "recording/reader.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 struct RecordedExtent {
   std::uint32_t epoch = 0;              // the newest
@@ -22,4 +22,4 @@ struct RecordedExtent {
 // Throws Failure.
 [[nodiscard]] RecordedExtent recorded_extent(const recording::Reader& reader);
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -7,8 +7,6 @@
 #include <set>
 #include <vector>
 
-#include "session/direct_session.h"
-#include "session/recorded.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "io_node/scene_config.h"
@@ -16,9 +14,11 @@
 #include "node/driver.h"
 #include "node/identity.h"
 #include "scene/scene.h"
+#include "session/direct_session.h"
+#include "session/recorded.h"
 #include "transport/codec.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 using wire::Phase;
@@ -384,4 +384,4 @@ ReplayResult replay(const recording::Reader& reader, OnDifference on_difference,
   return Replay(reader, on_difference, assets, end).run();
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -15,7 +15,7 @@
 #include "recording/reader.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 enum class OnDifference : std::uint8_t { stop, count };
 
@@ -48,4 +48,4 @@ struct ReplayEnd {
 [[nodiscard]] ReplayResult replay(const recording::Reader& reader, OnDifference on_difference,
                                   const std::string& assets, ReplayEnd* end = nullptr);
 
-}  // namespace slew::cli
+}  // namespace slew::session

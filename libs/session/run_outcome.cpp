@@ -1,8 +1,11 @@
 #include "session/run_outcome.h"
 
+#include <cstdio>
 #include <filesystem>
 
-namespace slew::cli {
+#include "core/printable.h"
+
+namespace slew::session {
 namespace {
 
 // a reason that travels from node to node is cut on the wire, and gets a node's name in front
@@ -14,6 +17,14 @@ std::string_view reason_of(std::string_view message) {
 }
 
 }  // namespace
+
+void RunWatcher::report(const std::string& message) {
+  std::fprintf(stderr, "%s\n", printable_lines(message).c_str());
+}
+
+bool RunWatcher::update(Observer&, std::int64_t, bool) {
+  return true;
+}
 
 std::string RunOptions::assets() const {
   if (!scene.from.empty()) return scene.assets.empty() ? "." : scene.assets;
@@ -43,4 +54,4 @@ std::vector<std::string> without_echoes(const std::vector<std::string>& messages
   return kept;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -2,23 +2,43 @@
 #pragma once
 
 #include <array>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "session/session_view.h"
-#include "scene/scene_options.h"
-#include "node/session_options.h"
 #include "core/status.h"
+#include "node/session_options.h"
+#include "scene/scene_options.h"
+#include "session/session_view.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 class Observer;
 
+// Follows a run while it goes on: a status line, a keyboard, a measurement. This one reports messages alone.
+class RunWatcher {
+ public:
+  RunWatcher() = default;
+  virtual ~RunWatcher() = default;
+  RunWatcher(const RunWatcher&) = delete;
+  RunWatcher& operator=(const RunWatcher&) = delete;
+
+  // Its observer needs the values of variables.
+  [[nodiscard]] virtual bool reads_values() const { return false; }
+  // All nodes are started.
+  virtual void begin() {}
+  // A message of the run or of one of its nodes: a line on standard error.
+  virtual void report(const std::string& message);
+  // Some 50 times a second. False asks the session to end; is_ending: it has been asked.
+  virtual bool update(Observer& observer, std::int64_t now_ns, bool is_ending);
+  // The last node has ended.
+  virtual void end() {}
+};
+
 struct RunOptions {
-  cli_support::SceneOptions scene;
-  cli_support::SessionOptions session;
+  scene::SceneOptions scene;
+  node::SessionOptions session;
   std::string runs = "runs";           // folder of the recordings
   double keep_free_mb = 256;           // room that a recording leaves to others
   std::vector<std::string> remote;     // roles that somebody else starts
@@ -30,8 +50,7 @@ struct RunOptions {
   bool is_refusal_told = false;  // that it was refused: not once more
   std::string cpus;              // "mechanics=1, hydraulics=0"; empty: as the scene says
   double added_work_us = 0;      // CPU time that every step of a physics node burns beside its own
-  // of a distributed run, some 50 times a second; false asks the session to end
-  std::function<bool(Observer&, std::int64_t now_ns)> each_round;
+  std::shared_ptr<RunWatcher> watcher = std::make_shared<RunWatcher>();  // never null
   bool is_json = false;
   bool is_quiet = false;
 
@@ -68,4 +87,4 @@ struct RunOutcome {
 // Messages "program: reason" without those that only repeat the reason of another, in the order given.
 [[nodiscard]] std::vector<std::string> without_echoes(const std::vector<std::string>& messages);
 
-}  // namespace slew::cli
+}  // namespace slew::session

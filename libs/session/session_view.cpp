@@ -6,7 +6,7 @@
 #include "transport/codec.h"
 #include "transport/given_up.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 using wire::Role;
 using wire::Topic;
@@ -221,4 +221,4 @@ bool SessionView::has_whole_directory() const noexcept {
   return true;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

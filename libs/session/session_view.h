@@ -16,7 +16,7 @@
 #include "transport/transport.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 // Computing time of a node's steps, from its health messages or measured directly.
 struct StepTimes {
@@ -116,4 +116,4 @@ class SessionView {
   wire::ActuatorMessage actuators_;
 };
 
-}  // namespace slew::cli
+}  // namespace slew::session

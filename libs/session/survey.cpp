@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <map>
 
-#include "node/carrier.h"
 #include "core/failure.h"
+#include "node/carrier.h"
 #include "node/driver.h"
 #include "transport/codec.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 constexpr SimDuration kSurveyTime = milliseconds(700);
@@ -58,9 +58,8 @@ bool is_running(const FoundSession& session) {
 
 }  // namespace
 
-std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time,
-                                        SimDuration longest) {
-  const auto carrier = cli_support::open_survey(options);
+std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time, SimDuration longest) {
+  const auto carrier = node::open_survey(options);
   Found found;
   const std::int64_t begin_ns = monotonic_ns();
   const auto end_ns = [&] {
@@ -82,7 +81,7 @@ std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& optio
   return sessions;
 }
 
-std::string only_session(const cli_support::SessionOptions& options) {
+std::string only_session(const node::SessionOptions& options) {
   const std::vector<FoundSession> sessions = find_sessions(options, kSurveyTime, kLongestSurvey);
   if (sessions.size() == 1) return sessions.front().description.name;
   if (sessions.empty()) {
@@ -95,4 +94,4 @@ std::string only_session(const cli_support::SessionOptions& options) {
   throw Failure(ExitCode::bad_input, "several sessions run: " + names + "; name one with --session");
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -8,7 +8,7 @@
 #include "node/session_options.h"
 #include "transport/wire.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 struct FoundSession {
   wire::SessionDescription description;
@@ -19,10 +19,10 @@ struct FoundSession {
 
 // All sessions that speak within the time, by name; while there are none, waits on up to the longest time. Those that
 // are over are left out.
-[[nodiscard]] std::vector<FoundSession> find_sessions(const cli_support::SessionOptions& options, SimDuration time,
+[[nodiscard]] std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time,
                                                       SimDuration longest);
 
 // Name of the one session of the domain. Throws Failure when there is none or more than one.
-[[nodiscard]] std::string only_session(const cli_support::SessionOptions& options);
+[[nodiscard]] std::string only_session(const node::SessionOptions& options);
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "session/recorded.h"
-#include "scene/name_pattern.h"
 #include "io_node/scene_config.h"
 #include "io_node/session_variables.h"
+#include "scene/name_pattern.h"
 #include "scene/names.h"
 #include "scene/sections.h"
+#include "session/recorded.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace {
 
 std::vector<std::string> always_recorded(const scene::Scene& scene) {
@@ -37,14 +37,14 @@ bool is_unrecorded(const scene::Scene& scene, const std::string& pattern) {
   const std::vector<std::string>& recorded = scene.recording.variables;
   return has_owner(scene, std::string_view(pattern).substr(0, pattern.find('.'))) &&
          std::none_of(recorded.begin(), recorded.end(), [&](const std::string& kept) {
-           return !(is_detail && kept == "*") && cli_support::can_meet(pattern, kept);
+           return !(is_detail && kept == "*") && scene::can_meet(pattern, kept);
          });
 }
 
 }  // namespace
 
 std::vector<std::string> unrecorded(const scene::Scene& scene, std::span<const std::string> patterns) {
-  std::vector<std::string> left_out = cli_support::unmatched(patterns, always_recorded(scene));
+  std::vector<std::string> left_out = scene::unmatched(patterns, always_recorded(scene));
   std::erase_if(left_out, [&scene](const std::string& pattern) { return !is_unrecorded(scene, pattern); });
   return left_out;
 }
@@ -72,7 +72,7 @@ std::string why_missing(const recording::Reader& reader, std::span<const std::st
     return fmt::format("{} {} not in this recording, whose scene records {} only (recording.variables)",
                        fmt::join(left_out, ", "), left_out.size() == 1 ? "is" : "are", recorded_patterns_text(scene));
   }
-  return cli_support::no_variable_text(patterns.front(), names);
+  return scene::no_variable_text(patterns.front(), names);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -11,7 +11,7 @@
 #include "recording/reader.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::session {
 
 // Those of the names and patterns that belong to the scene and that no pattern of recording.variables can meet.
 [[nodiscard]] std::vector<std::string> unrecorded(const scene::Scene& scene, std::span<const std::string> patterns);
@@ -26,4 +26,4 @@ namespace slew::cli {
 [[nodiscard]] std::string why_missing(const recording::Reader& reader, std::span<const std::string> patterns,
                                       std::span<const std::string> names);
 
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "node/carrier.h"
-#include "node/subsystem_factory.h"
 #include "core/allocation_guard.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
+#include "node/carrier.h"
 #include "node/physics_node.h"
+#include "node/subsystem_factory.h"
 #include "support/crane_pair.h"
 #include "transport/codec.h"
 #include "transport/in_process_bus.h"
@@ -42,8 +42,8 @@ class LockStep {
     io_.emplace(endpoint(Role::io), std::move(config));
     for (const Role role : wire::kPhysicsRoles) {
       if ((roles & bit(role)) == 0) continue;
-      const auto factory = cli_support::subsystem_factory([role](const scene::Scene& s) { return make(role, s); },
-                                                          SLEWRING_SOURCE_DIR "/scenes");
+      const auto factory = node::subsystem_factory([role](const scene::Scene& s) { return make(role, s); },
+                                                   SLEWRING_SOURCE_DIR "/scenes");
       physics_.push_back(std::make_unique<node::PhysicsNode>(role, endpoint(role), factory));
     }
   }
@@ -90,7 +90,7 @@ class LockStep {
 
   static constexpr const char* kSession = "session_of_the_allocation_test";
 
-  transport::Transport& endpoint(Role role) { return *ends_.emplace_back(cli_support::open_carrier(role, bus_)); }
+  transport::Transport& endpoint(Role role) { return *ends_.emplace_back(node::open_carrier(role, bus_)); }
 
   std::int64_t now_ns_ = 1'000'000'000;
   const scene::Scene scene_;

@@ -9,11 +9,11 @@
 #include <string_view>
 #include <utility>
 
+#include "core/escaped.h"
 #include "plotting/html_text.h"
 #include "plotting/svg_text.h"
-#include "core/escaped.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using plotting::colour_of;
@@ -275,4 +275,4 @@ std::string animation_svg(const MachineDrawing& machine, const Motion& motion) {
   return out + "</svg>\n";
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

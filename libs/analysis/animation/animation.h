@@ -10,7 +10,7 @@
 #include "math/rotation.h"
 #include "math/vector3.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct Pose {
   math::Vec3 position{};           // m, in Ground
@@ -42,4 +42,4 @@ struct Motion {
 // All instants of the motion over each other, the last one darkest. Pre-condition: at least one.
 [[nodiscard]] std::string animation_svg(const MachineDrawing& machine, const Motion& motion);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -9,7 +9,7 @@
 #include "math/rotation.h"
 #include "math/vector3.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using contact::ShapeType;
@@ -220,4 +220,4 @@ MachineDrawing draw_machine(const multibody::MechanicsDef& mechanics) {
   return drawing;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

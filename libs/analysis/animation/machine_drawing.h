@@ -13,7 +13,7 @@
 #include "math/vector3.h"
 #include "multibody/defs.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 using Polyline = std::vector<Triple>;  // m, in the body's frame
 
@@ -42,4 +42,4 @@ struct MachineDrawing {
 // Up is against gravity, y without gravity; to the right is x, or z where x is upright.
 [[nodiscard]] MachineDrawing draw_machine(const multibody::MechanicsDef& mechanics);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "session/direct_session.h"
-#include "scene/name_pattern.h"
 #include "core/failure.h"
+#include "scene/name_pattern.h"
+#include "session/direct_session.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -44,7 +44,7 @@ class Work {
 class Comparer {
  public:
   Comparer(const ComparisonWish& wish, const Progress& progress)
-      : wish_(wish), work_(progress), base_(cli_support::load_scene(wish.scene)) {
+      : wish_(wish), work_(progress), base_(scene::load_scene(wish.scene)) {
     if (!base_.has_mechanics()) {
       throw Failure(ExitCode::bad_input, "the scene has no bodies; there are no formulations to compare");
     }
@@ -112,7 +112,7 @@ class Comparer {
   }
 
   void choose_variables() {
-    const DirectSession session(base_);
+    const session::DirectSession session(base_);
     std::vector<std::string> names;
     std::vector<std::string> units;
     for (const Role role : wire::kPhysicsRoles) {
@@ -123,7 +123,7 @@ class Comparer {
       }
     }
     const std::vector<std::string> bodies(std::begin(kDefaultVariables), std::end(kDefaultVariables));
-    result_.variables = cli_support::choose(wish_.variables.empty() ? bodies : wish_.variables, names);
+    result_.variables = scene::choose(wish_.variables.empty() ? bodies : wish_.variables, names);
     for (std::size_t column = 0; column < result_.variables.size(); ++column) {
       const auto at = std::find(names.begin(), names.end(), result_.variables[column]) - names.begin();
       const std::string& unit = units[static_cast<std::size_t>(at)];
@@ -307,4 +307,4 @@ Comparison compare(const ComparisonWish& wish, const Progress& progress) {
   return Comparer(wish, progress).compare();
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -21,7 +21,7 @@
 #include "analysis/comparison/configuration.h"
 #include "analysis/comparison/observation.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // The chosen variables of one dimension.
 struct VariableClass {
@@ -83,4 +83,4 @@ using Progress = std::function<bool(std::string_view doing, double share)>;
 // Largest and mean-square difference of one class; samples that one of the two does not have are left out.
 [[nodiscard]] Difference difference(const Observation& run, const Observation& reference, const VariableClass& of);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "core/display.h"
-#include "plotting/scatter_svg.h"
 #include "core/escaped.h"
 #include "core/json.h"
 #include "core/report_table.h"
+#include "plotting/scatter_svg.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 std::string error_number(double value) {
@@ -258,4 +258,4 @@ std::string report_html(const Comparison& comparison) {
       table_of(comparison).html(), escaped(remarks(comparison)));
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

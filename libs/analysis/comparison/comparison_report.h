@@ -6,7 +6,7 @@
 
 #include "analysis/comparison/comparison.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // What was run, against what, then the table; a line at the end for each thing that deserves one. width [characters]:
 // of the lines of a table; 0: no limit.
@@ -22,4 +22,4 @@ namespace slew::cli {
 [[nodiscard]] std::string report_svg(const Comparison& comparison);
 [[nodiscard]] std::string report_html(const Comparison& comparison);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -10,7 +10,7 @@
 #include "multibody/integrators.h"
 #include "scene/units.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr std::string_view kFormulation = "formulation", kIntegrator = "integrator", kSubstep = "max_substep",
@@ -156,7 +156,7 @@ double reference_step(const ComparisonWish& wish, const scene::Scene& scene, dou
 }
 
 Configured load(const ComparisonWish& wish, const scene::Scene& base, const Configuration& configuration) {
-  cli_support::SceneOptions options = wish.scene;
+  scene::SceneOptions options = wish.scene;
   const auto set = [&options](std::string_view path, const std::string& value) {
     options.overrides.push_back(fmt::format("{}={}", path, value));
   };
@@ -165,7 +165,7 @@ Configured load(const ComparisonWish& wish, const scene::Scene& base, const Conf
   set("mechanics.max_substep", fmt::format("{:.17g}", configuration.step));
   if (configuration.step > base.session.step) set("session.step", fmt::format("{:.17g}", configuration.step));
   try {
-    return {cli_support::load_scene(options), ""};
+    return {scene::load_scene(options), ""};
   } catch (const scene::LoadError& error) {
     return {std::nullopt, error.first_reason()};
   }
@@ -175,4 +175,4 @@ std::string step_text(double step) {
   return fmt::format("{:.6g} ms", step * 1e3);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

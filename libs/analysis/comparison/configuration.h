@@ -13,10 +13,10 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/scene_options.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct Configuration {
   std::string formulation;
@@ -27,7 +27,7 @@ struct Configuration {
 // What the user asks for; empty lists: all formulations, the scene's integrator, the whole, a half and a quarter of the
 // scene's sub-step.
 struct ComparisonWish {
-  cli_support::SceneOptions scene;  // duration: how long; as the scene says when empty
+  scene::SceneOptions scene;  // duration: how long; as the scene says when empty
   std::vector<std::string> formulations;
   std::vector<std::string> integrators;
   std::vector<std::string> steps;      // quantities
@@ -61,4 +61,4 @@ struct Configured {
 // "0.25 ms"
 [[nodiscard]] std::string step_text(double step);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -10,7 +10,7 @@
 #include "mechanics_node/mechanics_subsystem.h"
 #include "multibody/observe.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -21,7 +21,7 @@ constexpr Role kPhysics[] = {Role::mechanics, Role::hydraulics};
 // Where the chosen variables stand among those of the two subsystems.
 class SampleReader {
  public:
-  SampleReader(const DirectSession& session, std::span<const std::string> names)
+  SampleReader(const session::DirectSession& session, std::span<const std::string> names)
       : session_(session), places_(names.size()) {
     std::size_t found = 0;
     for (const Role role : kPhysics) {
@@ -59,7 +59,7 @@ class SampleReader {
     Role role = Role::mechanics;
     std::size_t index = 0;
   };
-  const DirectSession& session_;
+  const session::DirectSession& session_;
   std::vector<Place> places_;
   std::vector<double> buffer_;
 };
@@ -67,7 +67,7 @@ class SampleReader {
 // Energy and joints, from the poses that the formulation integrates; not of a mechanism that is another's.
 class Mechanism {
  public:
-  explicit Mechanism(const DirectSession& session)
+  explicit Mechanism(const session::DirectSession& session)
       : mechanics_(dynamic_cast<const mechanics::MechanicsSubsystem*>(session.subsystem(Role::mechanics))) {
     if (mechanics_ == nullptr) return;
     gauge_.emplace(mechanics_->model());
@@ -211,4 +211,4 @@ Cost time_runs(const scene::Scene& scene, StepIndex steps, int repeats, const St
   return cost;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -12,7 +12,7 @@
 #include "multibody/joint_gauge.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // Asked with the share of the run that is done, 0 to 1; false ends it.
 using GoesOn = std::function<bool(double share)>;
@@ -55,4 +55,4 @@ struct Cost {
 [[nodiscard]] Cost time_runs(const scene::Scene& scene, StepIndex steps, int repeats, const StateHashes& state_hashes,
                              const GoesOn& goes_on);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

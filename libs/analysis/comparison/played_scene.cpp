@@ -3,7 +3,7 @@
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 using wire::Role;
 
@@ -36,4 +36,4 @@ StateHashes PlayedScene::state_hashes() const noexcept {
   return {session_.state_hash(Role::mechanics), session_.state_hash(Role::hydraulics)};
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "session/direct_session.h"
 #include "io_node/input_gate.h"
 #include "io_node/scene_config.h"
 #include "scene/scene.h"
+#include "session/direct_session.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // Of what all the future follows from; 0 where the scene has nothing of the kind.
 struct StateHashes {
@@ -28,7 +28,7 @@ class PlayedScene {
 
   [[nodiscard]] StepIndex step() const noexcept { return n_; }
   [[nodiscard]] SimTime time() const noexcept { return start_of(n_, H_); }
-  [[nodiscard]] const DirectSession& session() const noexcept { return session_; }
+  [[nodiscard]] const session::DirectSession& session() const noexcept { return session_; }
   // Of the last advance(), by input channel.
   [[nodiscard]] std::span<const double> controls() const noexcept { return controls_; }
   [[nodiscard]] StateHashes state_hashes() const noexcept;
@@ -37,11 +37,11 @@ class PlayedScene {
   io::IoConfig config_;
   SimDuration H_;
   io::InputGate gate_;
-  DirectSession session_;
+  session::DirectSession session_;
   StepIndex n_ = 0;
   std::vector<SignalCourse> script_;  // raw, by channel
   std::vector<double> controls_;
   std::vector<wire::Command> commands_;
 };
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

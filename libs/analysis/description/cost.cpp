@@ -17,7 +17,7 @@
 #include "scene/ports.h"
 #include "transport/codec.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -285,4 +285,4 @@ Json report_json(const CostByPart& cost, std::span<const std::string> not_paid) 
           {"notes", cost.notes}, {"not_paid", std::vector<std::string>(not_paid.begin(), not_paid.end())}};
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

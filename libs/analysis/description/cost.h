@@ -16,7 +16,7 @@
 #include "core/json.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 inline constexpr int kRuns = 3, kCalls = 5;
 
@@ -48,4 +48,4 @@ struct CostByPart {
                                       std::size_t width = 0);
 [[nodiscard]] Json report_json(const CostByPart& cost, std::span<const std::string> not_paid);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -12,7 +12,7 @@
 #include "core/json.h"
 #include "core/report_table.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using monolith::SceneMode;
@@ -199,4 +199,4 @@ Json report_json(const Eigenvalues& found) {
           {"touching", found.touching}};
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -8,7 +8,7 @@
 #include "monolith/linearisation.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 enum class DryFriction { kept, neglected };
 
@@ -29,4 +29,4 @@ struct Eigenvalues {
 [[nodiscard]] std::string report_text(const Eigenvalues& eigenvalues, std::size_t count, std::size_t width = 0);
 [[nodiscard]] Json report_json(const Eigenvalues& eigenvalues);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

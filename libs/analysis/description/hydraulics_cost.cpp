@@ -3,7 +3,7 @@
 #include "analysis/description/timed_call.h"
 #include "hydraulics/circuit.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 // a component takes a few nanoseconds, less than the clock's own reading: so many calls are timed as one
@@ -43,4 +43,4 @@ CircuitCalls time_circuit(const scene::Scene& scene, std::span<const CircuitSamp
   return calls;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,7 +7,7 @@
 
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct CircuitSample {
   std::vector<double> y;         // state of the circuit
@@ -25,4 +25,4 @@ struct CircuitCalls {
 };
 [[nodiscard]] CircuitCalls time_circuit(const scene::Scene& scene, std::span<const CircuitSample> samples);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -5,7 +5,7 @@
 #include "core/failure.h"
 #include "scene/units.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 using wire::Role;
 
@@ -35,4 +35,4 @@ const hydraulic_node::HydraulicsSubsystem* hydraulics_of(const PlayedScene& play
   return dynamic_cast<const hydraulic_node::HydraulicsSubsystem*>(played.session().subsystem(Role::hydraulics));
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

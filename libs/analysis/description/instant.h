@@ -8,7 +8,7 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // "5 s", "20 deg", or a bare number in SI. Throws Failure (bad_input) that begins with the option's name.
 [[nodiscard]] double read_option(const std::string& option, const std::string& text, Dimension dimension);
@@ -20,4 +20,4 @@ void play_to(PlayedScene& played, double at);
 [[nodiscard]] const mechanics::MechanicsSubsystem* mechanics_of(const PlayedScene& played);
 [[nodiscard]] const hydraulic_node::HydraulicsSubsystem* hydraulics_of(const PlayedScene& played);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -15,7 +15,7 @@
 #include "hydraulics/stall.h"
 #include "mechanics_node/payload.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 // a cylinder whose force changes by less with 1 kg carries nothing of it: a hundred thousandth of its weight
@@ -294,4 +294,4 @@ Json report_json(const LiftableLoad& load) {
   return json;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -18,7 +18,7 @@
 #include "multibody/state.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // A pressure of a component that the limit depends on.
 struct LimitingSetting {
@@ -75,4 +75,4 @@ enum class ListedSettings { named, left_out };
 [[nodiscard]] std::string report_text(const LiftableLoad& load, std::size_t width = 0);
 [[nodiscard]] Json report_json(const LiftableLoad& load);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

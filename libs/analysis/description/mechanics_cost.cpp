@@ -6,7 +6,7 @@
 #include "multibody/formulation.h"
 #include "scene/ports.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 // the sampled coordinates in a model that may have fewer modes
@@ -81,4 +81,4 @@ MechanicsCalls time_mechanics(const MechanicsVariant& variant, std::span<const M
   return {calls.evaluate / count, calls.advance / count, calls.observe / count};
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -8,7 +8,7 @@
 #include "mechanics_node/mechanics_subsystem.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // A state of the scene's run, and the forces that act at its rows then.
 struct MechanicsSample {
@@ -32,4 +32,4 @@ struct MechanicsCalls {
 };
 [[nodiscard]] MechanicsCalls time_mechanics(const MechanicsVariant& variant, std::span<const MechanicsSample> samples);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

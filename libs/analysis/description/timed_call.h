@@ -8,7 +8,7 @@
 #include "analysis/description/cost.h"
 #include "core/time.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // ns, the fastest of kCalls calls.
 template <typename Call>
@@ -22,4 +22,4 @@ template <typename Call>
   return static_cast<double>(fastest);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -10,7 +10,6 @@
 #include <span>
 
 #include "analysis/coupling_check.h"
-#include "session/direct_session.h"
 #include "core/arithmetic_self_test.h"
 #include "core/failure.h"
 #include "core/json.h"
@@ -19,8 +18,9 @@
 #include "mechanics_node/mechanics_subsystem.h"
 #include "multibody/joint_gauge.h"
 #include "scene/parameters.h"
+#include "session/direct_session.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -116,7 +116,7 @@ struct Run {
 // What of a case is left out, for the run that it is compared with.
 enum class Strictness : std::uint8_t { whole, compared };
 
-SampleAges ages_of(const ExtremeCase& one) {
+session::SampleAges ages_of(const ExtremeCase& one) {
   if (one.delay > 0) return [delay = one.delay](StepIndex n) { return std::min(n, delay); };
   if (one.lost > 0) {
     return
@@ -147,7 +147,7 @@ class Stepper {
       : case_(one),
         scene_(scene),
         is_whole_(strictness == Strictness::whole),
-        session_(scene, is_whole_ ? ages_of(one) : SampleAges{}),
+        session_(scene, is_whole_ ? ages_of(one) : session::SampleAges{}),
         ceiling_(scene),
         H_(scene.session.step_duration()) {
     if (const auto* mechanics =
@@ -315,7 +315,7 @@ class Stepper {
   const ExtremeCase& case_;
   const scene::Scene& scene_;
   bool is_whole_;
-  DirectSession session_;
+  session::DirectSession session_;
   Ceiling ceiling_;
   SimDuration H_;
   const mechanics::MechanicsSubsystem* mechanics_ = nullptr;
@@ -358,10 +358,10 @@ bool is_same(const Trace& a, const Trace& b) {
 
 class Case {
  public:
-  Case(const cli_support::SceneOptions& options, const std::string& name) : options_(options) {
+  Case(const scene::SceneOptions& options, const std::string& name) : options_(options) {
     options_.overrides.emplace_back("session.solution=split");
     options_.is_recording = false;
-    base_ = cli_support::load_scene(options_);
+    base_ = scene::load_scene(options_);
     const std::vector<ExtremeCase> cases = extreme_cases(base_);
     const auto found =
         std::find_if(cases.begin(), cases.end(), [&](const ExtremeCase& one) { return one.name == name; });
@@ -387,11 +387,11 @@ class Case {
 
  private:
   [[nodiscard]] scene::Scene load(const scene::Overrides& more) const {
-    cli_support::SceneOptions options = options_;
+    scene::SceneOptions options = options_;
     for (const scene::Overrides* part : {&case_.overrides, &more}) {
       options.overrides.insert(options.overrides.end(), part->begin(), part->end());
     }
-    return cli_support::load_scene(options);
+    return scene::load_scene(options);
   }
 
   void prepare() {
@@ -468,7 +468,7 @@ class Case {
   }
 
   [[nodiscard]] static double depth_at_start(const scene::Scene& scene, const std::string& pair) {
-    DirectSession session(scene);
+    session::DirectSession session(scene);
     require(session.start());
     const coupling::Subsystem& mechanics = *session.subsystem(Role::mechanics);
     std::vector<double> values(mechanics.variables().size());
@@ -557,7 +557,7 @@ class Case {
     if (case_.stiffness > 0) m.notes.push_back(fmt::format("K H^2 W reached {:.3g}", m.stiffness.value_or(0)));
   }
 
-  cli_support::SceneOptions options_;
+  scene::SceneOptions options_;
   scene::Scene base_;
   ExtremeCase case_;
   std::vector<std::string> notes_;
@@ -565,7 +565,7 @@ class Case {
 
 }  // namespace
 
-CaseOutcome run_case(const cli_support::SceneOptions& scene, const std::string& name) {
+CaseOutcome run_case(const scene::SceneOptions& scene, const std::string& name) {
   return Case(scene, name).run();
 }
 
@@ -577,4 +577,4 @@ Json to_json(const CaseOutcome& outcome) {
   return json;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

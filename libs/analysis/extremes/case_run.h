@@ -4,10 +4,10 @@
 #include <string>
 
 #include "analysis/extremes/cases.h"
-#include "scene/scene_options.h"
 #include "core/json.h"
+#include "scene/scene_options.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct CaseOutcome {
   Measures measures;
@@ -19,8 +19,8 @@ struct CaseOutcome {
 inline constexpr double kEdgeSteps[] = {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 5e-3, 10e-3, 20e-3};
 
 // Throws Failure when the scene has no such case; what the scene refuses of a case is an outcome.
-[[nodiscard]] CaseOutcome run_case(const cli_support::SceneOptions& scene, const std::string& name);
+[[nodiscard]] CaseOutcome run_case(const scene::SceneOptions& scene, const std::string& name);
 
 [[nodiscard]] Json to_json(const CaseOutcome& outcome);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

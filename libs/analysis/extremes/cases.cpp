@@ -6,12 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "session/direct_session.h"
 #include "hydraulics/components/hose.h"
 #include "hydraulics/components/ls_pump.h"
 #include "scene/parameters.h"
+#include "session/direct_session.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr const char* kOilWithModulus = "hydraulics.oil_law=oil_and_air";  // the law that has the numbers of a case
@@ -32,7 +32,7 @@ class Parts {
  public:
   explicit Parts(const scene::Scene& scene) : scene_(scene), directory_(scene) {
     for (const scene::ParameterInfo& one : directory_.all()) paths_.push_back(one.path);
-    const DirectSession session(scene);
+    const session::DirectSession session(scene);
     const coupling::Subsystem* mechanics = session.subsystem(wire::Role::mechanics);
     if (mechanics == nullptr) return;
     // only the payload shows its mass
@@ -335,4 +335,4 @@ scene::Overrides stiffer_by(const scene::Scene& scene, double factor) {
   return overrides;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -12,7 +12,7 @@
 #include "core/time.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 enum class CaseGroup : std::uint8_t { machine, hydraulics, coupling, numbers };
 
@@ -73,4 +73,4 @@ inline constexpr SimDuration kHold = {10'000'000'000};  // of wall time
 // Oil and walls stiffer by a factor, without air.
 [[nodiscard]] scene::Overrides stiffer_by(const scene::Scene& scene, double factor);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -8,11 +8,11 @@
 #include <set>
 
 #include "analysis/sweep/sweep.h"
-#include "scene/name_pattern.h"
 #include "core/failure.h"
 #include "node/identity.h"
+#include "scene/name_pattern.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr const char* kSuite[] = {"single_cylinder.yaml", "truck_crane.yaml", "truck_crane_flexible.yaml",
@@ -55,11 +55,11 @@ class Examiner {
 
  private:
   void plan(const std::string& file) {
-    cli_support::SceneOptions options;
+    scene::SceneOptions options;
     options.file = file;
     options.overrides = wish_.overrides;
     options.overrides.emplace_back("session.solution=split");
-    const scene::Scene scene = cli_support::load_scene(options);
+    const scene::Scene scene = scene::load_scene(options);
     const std::string text = scene_text(scene);
     for (const ExtremeCase& one : extreme_cases(scene)) {
       result_.rows.push_back({.scene = scene.name,
@@ -81,7 +81,7 @@ class Examiner {
     std::set<std::string> wanted(names.begin(), names.end());
     if (!wish_.only.empty()) {
       const std::vector<std::string> known(wanted.begin(), wanted.end());
-      const std::vector<std::string> chosen = cli_support::choose(wish_.only, known);
+      const std::vector<std::string> chosen = scene::choose(wish_.only, known);
       wanted = {chosen.begin(), chosen.end()};
     }
     std::vector<ExtremesRow> rows;
@@ -143,4 +143,4 @@ Extremes run_extremes(const ExtremesWish& wish, const ExtremesProgress& progress
   return Examiner(wish).run(progress);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

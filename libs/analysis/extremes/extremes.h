@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "analysis/extremes/cases.h"
-#include "scene/scene_options.h"
 #include "core/json.h"
+#include "scene/scene_options.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct ExtremesWish {
   std::vector<std::string> files;  // scenes
@@ -55,4 +55,4 @@ using ExtremesProgress = std::function<bool(std::string_view doing, double share
 [[nodiscard]] std::string report_text(const Extremes& extremes, std::size_t width = 0);
 [[nodiscard]] std::string report_json(const Extremes& extremes);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/display.h"
 #include "analysis/extremes/extremes.h"
+#include "core/display.h"
 #include "core/json.h"
 #include "core/report_table.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 // a number that JSON may have lost because it was not finite
@@ -111,4 +111,4 @@ std::string report_json(const Extremes& extremes) {
       .dump(2);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

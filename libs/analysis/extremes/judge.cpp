@@ -7,7 +7,7 @@
 
 #include "core/json.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr double kBeyond = 1e9;       // share of a bound of 0 that is not kept
@@ -130,4 +130,4 @@ Json to_json(const Measures& m, const Judgement& judgement) {
           {"notes", m.notes}};
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -25,7 +25,7 @@
 
 #include "core/json.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // One run of a case. Values that the scene has nothing of are none.
 struct Measures {
@@ -102,4 +102,4 @@ struct Edge {
 
 [[nodiscard]] Json to_json(const Measures& measures, const Judgement& judgement);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

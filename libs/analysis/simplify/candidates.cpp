@@ -9,7 +9,7 @@
 #include "core/display.h"
 #include "hydraulics/component_def.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr double kCoarser[] = {10, 100};      // tolerances
@@ -129,4 +129,4 @@ std::vector<Candidate> candidates(const scene::Scene& scene, const RunFindings& 
   return Collector(scene).collect(found);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -9,7 +9,7 @@
 
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct Candidate {
   std::string title;  // "contact pair Bag_Truck, which never touched"
@@ -31,4 +31,4 @@ inline constexpr double kStill = 1e-6;  // rad or m
 
 inline constexpr int kStepsPerSample = 10;
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -10,10 +10,10 @@
 #include "analysis/comparison/comparison.h"
 #include "analysis/comparison/observation.h"
 #include "analysis/description/instant.h"
-#include "scene/name_pattern.h"
 #include "core/failure.h"
+#include "scene/name_pattern.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -76,11 +76,11 @@ class Simplifier {
  private:
   // nothing: the scene's rules refuse it, and say why
   std::optional<scene::Scene> load(const scene::Overrides& settings, std::string* refusal = nullptr) {
-    cli_support::SceneOptions options = wish_.scene;
+    scene::SceneOptions options = wish_.scene;
     options.overrides.insert(options.overrides.end(), settings.begin(), settings.end());
     options.overrides.emplace_back("session.solution=split");
     try {
-      return cli_support::load_scene(options);
+      return scene::load_scene(options);
     } catch (const scene::LoadError& error) {
       if (refusal == nullptr) throw;
       const scene::Diagnostic& first = error.diagnostics().front();
@@ -99,7 +99,7 @@ class Simplifier {
 
   // names, dimensions and limits of what must not change
   void watch() {
-    const std::vector<ElementVariable> variables = DirectSession(*base_).variables();
+    const std::vector<ElementVariable> variables = session::DirectSession(*base_).variables();
     std::vector<std::string> names;
     for (const ElementVariable& variable : variables) names.push_back(variable.name);
     for (const std::string& text : wish_.errors) {
@@ -110,11 +110,11 @@ class Simplifier {
       if (!is_whole && wish.name.find('*') == std::string::npos) patterns = {wish.name + ".?"};
       std::vector<std::string> chosen;
       try {
-        chosen = cli_support::choose(patterns, names);
+        chosen = scene::choose(patterns, names);
       } catch (const Failure&) {
         // what was meant is told of the name as it was written
         patterns = {wish.name};
-        chosen = cli_support::choose(patterns, names);
+        chosen = scene::choose(patterns, names);
       }
       for (const std::string& name : chosen) {
         const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -313,4 +313,4 @@ Simplification simplify(const SimplifyWish& wish, const SimplifyProgress& progre
   return Simplifier(wish, progress, cost).run();
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

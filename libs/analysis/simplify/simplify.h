@@ -13,16 +13,16 @@
 #include <vector>
 
 #include "analysis/simplify/candidates.h"
-#include "scene/scene_options.h"
 #include "core/json.h"
+#include "scene/scene_options.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // A saving below this part of the cost is not told from how much a machine's time varies.
 inline constexpr double kLeastSaving = 0.01;
 
 struct SimplifyWish {
-  cli_support::SceneOptions scene;  // duration: how long; as the scene says when empty
+  scene::SceneOptions scene;        // duration: how long; as the scene says when empty
   std::vector<std::string> errors;  // "Bag.position 1mm", "Cyl_Lift.force 1%": of its range in the base
   int repeats = 3;                  // timed runs
 };
@@ -77,4 +77,4 @@ using SimplifyCost = std::function<double(const scene::Scene& scene, StepIndex s
 [[nodiscard]] std::string report_text(const Simplification& result, std::size_t width = 0);
 [[nodiscard]] Json report_json(const Simplification& result);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

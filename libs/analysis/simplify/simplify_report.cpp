@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include "core/display.h"
 #include "analysis/simplify/simplify.h"
+#include "core/display.h"
 #include "core/json.h"
 #include "core/report_table.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 std::string settings_text(const scene::Overrides& settings) {
@@ -91,4 +91,4 @@ Json report_json(const Simplification& result) {
   return json;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

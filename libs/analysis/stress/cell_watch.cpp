@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -33,11 +33,11 @@ StepIndex slices_of(const YardstickRules& rules, StepIndex steps) {
 
 }  // namespace
 
-void SessionWork::look(const SessionView& view, StepIndex step) noexcept {
+void SessionWork::look(const session::SessionView& view, StepIndex step) noexcept {
   Looked& at = first_.step == kJoinStep ? first_ : last_;
   at.step = step;
   for (const Role role : wire::kNodeRoles) {
-    const NodeView& node = view.node(role);
+    const session::NodeView& node = view.node(role);
     at.cpu_ns[static_cast<std::size_t>(role)] = node.is_known ? process_cpu_ns(node.status.pid) : 0;
   }
 }
@@ -56,8 +56,8 @@ CellWatch::CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration g
       first_slice_(std::min((grace.ns + kJudgedFirst.ns) / rules.step.ns, steps - kLeftAfterwards.ns / rules.step.ns)) {
 }
 
-void CellWatch::look(Observer& observer, std::int64_t now_ns) {
-  const SessionView& view = observer.view();
+void CellWatch::look(session::Observer& observer, std::int64_t now_ns) {
+  const session::SessionView& view = observer.view();
   if (!view.has_session() || view.step() <= 0) return;
   follow(view);
   follow_surroundings(view, now_ns);
@@ -100,7 +100,7 @@ void CellWatch::finish() {
   if (!yardstick_.problem().empty()) cell_.books = "yardstick: " + yardstick_.problem();
 }
 
-bool CellWatch::is_slice_due(const SessionView& view) const noexcept {
+bool CellWatch::is_slice_due(const session::SessionView& view) const noexcept {
   if (done_ == slices_ || view.is_over()) return false;
   if (done_ > 0) return view.step() >= steps_ * (done_ + 1) / (slices_ + 1);
   if (view.step() < std::max(first_slice_, steps_ / (slices_ + 1))) return false;
@@ -111,11 +111,11 @@ bool CellWatch::is_slice_due(const SessionView& view) const noexcept {
   });
 }
 
-SimDuration CellWatch::computing_of(const SessionView& view, Role role) const noexcept {
+SimDuration CellWatch::computing_of(const session::SessionView& view, Role role) const noexcept {
   return std::min(work_.of_step(role), duration_of_seconds(view.node(role).health.execution.p50));
 }
 
-void CellWatch::measure(const SessionView& view) {
+void CellWatch::measure(const session::SessionView& view) {
   if (done_ == 0) {
     for (YardstickLoop& loop : rules_.loops) {
       loop.work = work_.of_step(loop.role);
@@ -127,7 +127,7 @@ void CellWatch::measure(const SessionView& view) {
   yardstick_.start(rules_, duration_of_seconds(kYardstickShare * session / static_cast<double>(slices_)));
 }
 
-void CellWatch::follow(const SessionView& view) {
+void CellWatch::follow(const session::SessionView& view) {
   const wire::Health& io = view.node(Role::io).health;
   if (io.header.step <= followed_) return;
   followed_ = io.header.step;
@@ -138,7 +138,7 @@ void CellWatch::follow(const SessionView& view) {
 }
 
 // From the end of the grace on, pauses apart.
-void CellWatch::follow_surroundings(const SessionView& view, std::int64_t now_ns) {
+void CellWatch::follow_surroundings(const session::SessionView& view, std::int64_t now_ns) {
   if (view.is_over()) around_session_.end();
   if (stage_ == Stage::stepping && !view.is_over() && view.node(Role::io).health.response.count > 0) {
     around_session_.look(now_ns);
@@ -146,15 +146,15 @@ void CellWatch::follow_surroundings(const SessionView& view, std::int64_t now_ns
   if (stage_ == Stage::measuring && yardstick_.is_running()) around_yardstick_.look(now_ns);
 }
 
-void CellWatch::ask(Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+void CellWatch::ask(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
   wire::ControlRequest request;
   request.action = action;
   observer.send(request);
   asked_ns_ = now_ns;
 }
 
-void CellWatch::ask_again(Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
+void CellWatch::ask_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns) {
   if (now_ns - asked_ns_ > kAskAgainNs) ask(observer, action, now_ns);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

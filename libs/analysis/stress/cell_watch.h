@@ -3,16 +3,16 @@
 
 #include <array>
 
-#include "session/observer.h"
 #include "analysis/stress/stress.h"
+#include "session/observer.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // CPU time that the session's processes take for a step.
 class SessionWork {
  public:
   // io's health has just said that the session is at this step.
-  void look(const SessionView& view, StepIndex step) noexcept;
+  void look(const session::SessionView& view, StepIndex step) noexcept;
   // Of a role's process, between the first look and the last one; 0: there was one alone.
   [[nodiscard]] SimDuration of_step(wire::Role role) const noexcept;
 
@@ -30,19 +30,19 @@ class CellWatch {
   CellWatch(const YardstickRules& rules, StepIndex steps, SimDuration grace, StressCell& cell);
 
   // Called some 50 times a second.
-  void look(Observer& observer, std::int64_t now_ns);
+  void look(session::Observer& observer, std::int64_t now_ns);
   void finish();
 
  private:
   enum class Stage : std::uint8_t { stepping, pausing, measuring, resuming };
 
-  [[nodiscard]] bool is_slice_due(const SessionView& view) const noexcept;
-  [[nodiscard]] SimDuration computing_of(const SessionView& view, wire::Role role) const noexcept;
-  void measure(const SessionView& view);
-  void follow(const SessionView& view);
-  void follow_surroundings(const SessionView& view, std::int64_t now_ns);
-  void ask(Observer& observer, wire::ControlAction action, std::int64_t now_ns);
-  void ask_again(Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+  [[nodiscard]] bool is_slice_due(const session::SessionView& view) const noexcept;
+  [[nodiscard]] SimDuration computing_of(const session::SessionView& view, wire::Role role) const noexcept;
+  void measure(const session::SessionView& view);
+  void follow(const session::SessionView& view);
+  void follow_surroundings(const session::SessionView& view, std::int64_t now_ns);
+  void ask(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
+  void ask_again(session::Observer& observer, wire::ControlAction action, std::int64_t now_ns);
 
   YardstickRules rules_;
   SessionWork work_;
@@ -56,4 +56,4 @@ class CellWatch {
   std::int64_t asked_ns_ = 0;
 };
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

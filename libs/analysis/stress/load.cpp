@@ -16,7 +16,7 @@
 #include "core/failure.h"
 #include "core/real_time_thread.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr std::size_t kCopied = 64u << 20;
@@ -134,4 +134,4 @@ void work_as(const std::string& kind, const std::string& folder) {
   throw Failure(ExitCode::bad_input, "there is no load '" + kind + "'");
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -14,7 +14,7 @@
 #include "core/child_process.h"
 #include "core/status.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 enum class Load : std::uint8_t { none, cpu, mixed };
 
@@ -38,4 +38,4 @@ class LoadProcesses {
 // For such a process: works until it is killed; throws Failure when it cannot. kind: cpu, memory, disk, network.
 void work_as(const std::string& kind, const std::string& folder);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

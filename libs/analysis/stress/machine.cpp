@@ -9,7 +9,7 @@
 #include "analysis/stress/preemption.h"
 #include "core/real_time_thread.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 double share(std::uint64_t part, std::uint64_t all) noexcept {
@@ -85,4 +85,4 @@ Surroundings SurroundingsWatch::result() const noexcept {
   return around;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct Machine {
   std::string kernel;      // "Linux 6.1.0 #1 SMP PREEMPT_DYNAMIC"
@@ -44,4 +44,4 @@ class SurroundingsWatch {
   std::int64_t looked_ns_ = 0, runnable_ = 0, looks_ = 0;
 };
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,7 +7,7 @@
 
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 PassingFolder::PassingFolder(const std::string& parent)
     : parent_(parent), path_(fmt::format("{}/stress-{}", parent, getpid())) {
@@ -29,4 +29,4 @@ PassingFolder::~PassingFolder() {
   if (is_parent_new_) std::filesystem::remove(parent_, ignored);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

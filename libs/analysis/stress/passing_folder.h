@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // There as long as the object, and gone with all that is in it.
 class PassingFolder {
@@ -22,4 +22,4 @@ class PassingFolder {
   bool is_parent_new_ = false;
 };
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string_view>
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr int kLongestLine = 4096;
@@ -66,4 +66,4 @@ std::string preemption_model(const std::string& release, const std::string& vers
   return "unknown";
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

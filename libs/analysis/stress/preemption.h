@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // The model that this machine's kernel runs with: "none", "voluntary", "full", "lazy", "rt" or, when nothing says so,
 // "unknown". release: the kernel's, "6.1.0-18-amd64"; version: "#1 SMP PREEMPT_DYNAMIC ...", as uname() has them.
@@ -16,4 +16,4 @@ namespace slew::cli {
 [[nodiscard]] std::string preemption_model(const std::string& release, const std::string& version,
                                            const std::filesystem::path& root = "/");
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <thread>
 
-#include "session/distributed_run.h"
-#include "session/interrupts.h"
-#include "session/observer.h"
 #include "analysis/stress/cell_watch.h"
 #include "analysis/stress/passing_folder.h"
 #include "core/failure.h"
@@ -20,25 +19,41 @@
 #include "io_node/session_scene.h"
 #include "node/identity.h"
 #include "scene/cpu_places.h"
+#include "session/distributed_run.h"
+#include "session/interrupts.h"
+#include "session/observer.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
+
+// Measures a cell in each round of its run.
+class CellWatcher final : public session::RunWatcher {
+ public:
+  explicit CellWatcher(std::function<bool(session::Observer&, std::int64_t now_ns)> measure)
+      : measure_(std::move(measure)) {}
+  bool update(session::Observer& observer, std::int64_t now_ns, bool /*is_ending*/) override {
+    return measure_(observer, now_ns);
+  }
+
+ private:
+  std::function<bool(session::Observer&, std::int64_t)> measure_;
+};
 
 bool fifo_is_allowed() {
   bool is_allowed = false;
   std::thread([&is_allowed] {
     sched_param parameters{};
-    parameters.sched_priority = cli_support::kIoPriority;
+    parameters.sched_priority = node::kIoPriority;
     is_allowed = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
   }).join();
   return is_allowed;
 }
 
 int priority_of(Role role) noexcept {
-  if (role == Role::io) return cli_support::kIoPriority;
-  return role == Role::recorder ? cli_support::kRecorderPriority : cli_support::kDefaultPriority;
+  if (role == Role::io) return node::kIoPriority;
+  return role == Role::recorder ? node::kRecorderPriority : node::kDefaultPriority;
 }
 
 // A loop for every node of the session, io's in front; what they burn is not known yet.
@@ -67,8 +82,8 @@ YardstickRules rules_of(const scene::Scene& scene, std::vector<YardstickLoop> lo
   return rules;
 }
 
-RunOptions options_of(const StressWish& wish, const StressCell& cell, const std::string& runs) {
-  RunOptions options;
+session::RunOptions options_of(const StressWish& wish, const StressCell& cell, const std::string& runs) {
+  session::RunOptions options;
   options.scene = wish.scene;
   options.session = wish.session;
   options.runs = runs;
@@ -112,13 +127,13 @@ void fail_early(StepIndex asked, StressCell& cell) {
 }
 
 // What came of the session of so many steps, and of the load beside it.
-void conclude(const RunOutcome& outcome, StepIndex asked, const Status& load, StressCell& cell) {
+void conclude(const session::RunOutcome& outcome, StepIndex asked, const Status& load, StressCell& cell) {
   cell.code = outcome.code;
-  for (const std::string& message : without_echoes(outcome.messages)) {
+  for (const std::string& message : session::without_echoes(outcome.messages)) {
     cell.messages.push_back(in_words_of_stress(message));
   }
   cell.steps = outcome.steps;
-  if (interrupts() > 0) return;
+  if (session::interrupts() > 0) return;
   if (load.is_ok()) {
     if (is_ended_early(cell, asked)) fail_early(asked, cell);
     return;
@@ -133,7 +148,7 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
               bool& is_refusal_told, const std::function<bool(double)>& progress) {
   const scene::Scene& scene = session.scene;
   const std::string runs = folder + "/recordings";
-  RunOptions options = options_of(wish, cell, runs);
+  session::RunOptions options = options_of(wish, cell, runs);
   options.is_refusal_told = is_refusal_told;
   const std::string places = wish.cpus.empty() ? scene.session.cpus : wish.cpus;
   const auto recording = wish.scene.is_recording ? io::Recording::required : io::Recording::none;
@@ -141,15 +156,15 @@ void run_cell(const StressWish& wish, const io::SessionScene& session, const std
   CellWatch watch(rules, scene.session.steps(), duration_of_seconds(scene.session.start_grace), cell);
   Status of_load;
   std::optional<LoadProcesses> load;
-  options.each_round = [&](Observer& observer, std::int64_t now_ns) {
+  options.watcher = std::make_shared<CellWatcher>([&](session::Observer& observer, std::int64_t now_ns) {
     watch.look(observer, now_ns);
     if (of_load.is_ok()) of_load = load->check();
     if (!of_load.is_ok()) return false;
     const auto step = static_cast<double>(std::max<StepIndex>(0, observer.view().step()));
     return progress(step / static_cast<double>(scene.session.steps()));
-  };
+  });
   load.emplace(cell.load, folder);
-  const RunOutcome outcome = run_distributed(options, session);
+  const session::RunOutcome outcome = session::run_distributed(options, session);
   if (of_load.is_ok()) of_load = load->check();
   load.reset();
   is_refusal_told = outcome.is_refusal_told;
@@ -230,7 +245,7 @@ Stress run_stress(const StressWish& wish, const StressBounds& bounds, const Stre
   const scene::Scene& scene = session.scene;
   stress.scene = scene.name;
   if (stress.wish.session.session.empty()) {
-    stress.wish.session.session = cli_support::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
+    stress.wish.session.session = node::session_name_of("stress_" + scene.name + "_" + std::to_string(getpid()));
   }
   if (scene.session.solution == scene::Solution::monolithic) {
     throw Failure(ExitCode::bad_input,
@@ -289,4 +304,4 @@ ExitCode exit_code_of(const Stress& stress) noexcept {
   return code;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -11,21 +11,21 @@
 #include <string_view>
 #include <vector>
 
-#include "plotting/series.h"
-#include "session/run_outcome.h"
 #include "analysis/stress/load.h"
 #include "analysis/stress/machine.h"
 #include "analysis/stress/yardstick.h"
+#include "plotting/series.h"
 #include "scene/scene_options.h"
+#include "session/run_outcome.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 enum class Scheduling : std::uint8_t { normal, fifo };
 [[nodiscard]] std::string_view to_text(Scheduling scheduling);
 
 struct StressWish {
-  cli_support::SceneOptions scene;
-  cli_support::SessionOptions session;
+  scene::SceneOptions scene;
+  node::SessionOptions session;
   std::vector<Scheduling> schedulings;
   std::vector<Load> loads;
   std::vector<double> works_us;  // CPU time added to every step of each physics node
@@ -102,4 +102,4 @@ using StressProgress = std::function<bool(std::string_view doing, double share)>
 // when books do not balance; a session's own code when one failed.
 [[nodiscard]] ExitCode exit_code_of(const Stress& stress) noexcept;
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "core/display.h"
-#include "plotting/html_plot.h"
 #include "core/json.h"
 #include "core/report_table.h"
 #include "node/identity.h"
+#include "plotting/html_plot.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -235,4 +235,4 @@ std::string report_html(const Stress& stress) {
   return plotting::plot_html(plots, options);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -5,7 +5,7 @@
 
 #include "analysis/stress/stress.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // The machine, the table with two rows a cell, the books, the verdict. width [characters]: of the lines of a table; 0:
 // no limit.
@@ -16,4 +16,4 @@ namespace slew::cli {
 // The largest response of every 0.1 s of each cell over its time, as plot_html() draws curves.
 [[nodiscard]] std::string report_html(const Stress& stress);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,7 +7,7 @@
 
 #include "core/real_time_thread.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr std::int32_t kNoMore = -1;  // a round
@@ -125,4 +125,4 @@ wire::Health Yardstick::result() const {
   return health;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -17,7 +17,7 @@
 #include "io_node/session_clock.h"
 #include "node/step_timing.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct YardstickLoop {
   wire::Role role = wire::Role::io;  // whose process it stands for
@@ -75,4 +75,4 @@ class Yardstick {
 // Asks for the CPU time of this thread until so much of it has gone.
 void burn(SimDuration cpu_time) noexcept;
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

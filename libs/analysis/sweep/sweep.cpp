@@ -15,7 +15,7 @@
 #include "core/json.h"
 #include "core/state_hash.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr int kPollMs = 20;  // between two looks at the processes
@@ -162,4 +162,4 @@ std::string key_of(std::span<const std::string> texts) {
   return fmt::format("{:016x}", hash.digest());
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

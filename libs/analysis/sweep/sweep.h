@@ -15,7 +15,7 @@
 
 #include "core/json.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct SweepTask {
   std::string key;                     // letters, digits, '-', '_': name of its result's file
@@ -59,4 +59,4 @@ void write_result(const std::string& file, const Json& value);
 // A key from all texts that a result follows from: 16 hexadecimal digits.
 [[nodiscard]] std::string key_of(std::span<const std::string> texts);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -10,7 +10,7 @@
 #include "scene/names.h"
 #include "scene/units.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 bool meets(const Tradeoff& tradeoff, const TradeoffRow& row, const ErrorBound& bound) {
@@ -140,4 +140,4 @@ std::optional<std::size_t> best_row(const Tradeoff& tradeoff, const Question& qu
   return best;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,7 +7,7 @@
 
 #include "analysis/tradeoff/tradeoff.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // Stable rows that no other stable row beats: none has a lower median cost and at most their worst error, or a lower
 // error and at most their cost.
@@ -41,4 +41,4 @@ struct Question {
 // cheapest one. None: no stable row does.
 [[nodiscard]] std::optional<std::size_t> best_row(const Tradeoff& tradeoff, const Question& question);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

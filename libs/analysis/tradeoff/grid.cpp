@@ -9,7 +9,7 @@
 #include "core/failure.h"
 #include "scene/sections.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr std::string_view kStep = "session.step", kCoupling = "session.coupling",
@@ -163,4 +163,4 @@ std::string text_of(const Settings& settings) {
   return text;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

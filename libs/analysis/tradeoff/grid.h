@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "scene/scene_options.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct Axis {
   std::string path;
@@ -44,4 +44,4 @@ enum class GridSize { modest, full };
 // "step 2ms, coupling hold"; "as it is" of none
 [[nodiscard]] std::string text_of(const Settings& settings);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

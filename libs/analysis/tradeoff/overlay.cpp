@@ -13,7 +13,7 @@
 #include "scene/setting.h"
 #include "scene/yaml_tree.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using scene::Node;
@@ -147,4 +147,4 @@ void write_overlay(const std::string& file, const scene::Overrides& settings, co
   }
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,7 +7,7 @@
 #include "analysis/tradeoff/grid.h"
 #include "scene/scene.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 // remark: the verb that writes it and why, for the first line.
 //
@@ -24,4 +24,4 @@ namespace slew::cli {
 void write_overlay(const std::string& file, const scene::Overrides& settings, const std::string& remark,
                    const std::string& target);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

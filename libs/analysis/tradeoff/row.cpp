@@ -12,7 +12,7 @@
 #include "core/failure.h"
 #include "core/json.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 using wire::Role;
@@ -46,7 +46,7 @@ std::vector<double> read_samples(const std::string& file, std::size_t variables)
   return values;
 }
 
-std::vector<std::string> names_in(const DirectSession& session) {
+std::vector<std::string> names_in(const session::DirectSession& session) {
   std::vector<std::string> names;
   for (const Role role : {Role::mechanics, Role::hydraulics}) {
     if (session.subsystem(role) == nullptr) continue;
@@ -84,7 +84,7 @@ std::vector<std::int64_t> time_steps(const scene::Scene& scene, StepIndex steps,
 class RowRun {
  public:
   RowRun(const RowJob& job, const scene::Scene& scene) : job_(job), scene_(scene) {
-    const std::vector<std::string> there = names_in(DirectSession(scene));
+    const std::vector<std::string> there = names_in(session::DirectSession(scene));
     const auto has = [&](const std::string& name) {
       return std::find(there.begin(), there.end(), name) != there.end();
     };
@@ -216,7 +216,7 @@ StepCost cost_of(std::vector<std::int64_t> step_ns, SimDuration H) {
 
 RowResult compute(const RowJob& job) {
   try {
-    const scene::Scene scene = cli_support::load_scene(job.scene);
+    const scene::Scene scene = scene::load_scene(job.scene);
     return RowRun(job, scene).run();
   } catch (const scene::LoadError& error) {
     return {.refusal = error.first_reason()};
@@ -301,4 +301,4 @@ RowResult result_from(const Json& json) {
   return result;
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -13,15 +13,15 @@
 #include <vector>
 
 #include "analysis/comparison/observation.h"
-#include "scene/scene_options.h"
 #include "core/json.h"
+#include "scene/scene_options.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 enum class RunKind { row, reference };
 
 struct RowJob {
-  cli_support::SceneOptions scene;     // with the row's settings
+  scene::SceneOptions scene;           // with the row's settings
   std::vector<std::string> variables;  // names
   RunKind kind = RunKind::row;
   double row_step = 0;     // s, communication step of the row, also of the row that a reference is for
@@ -71,4 +71,4 @@ struct RowResult {
 // Median, mean and largest of the steps' times [ns], as a cost for steps of H.
 [[nodiscard]] StepCost cost_of(std::vector<std::int64_t> step_ns, SimDuration H);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -11,15 +11,15 @@
 #include <set>
 
 #include "analysis/coupling_lamp.h"
-#include "session/direct_session.h"
 #include "analysis/tradeoff/answer.h"
-#include "scene/name_pattern.h"
 #include "core/failure.h"
 #include "mechanics_node/payload.h"
 #include "multibody/model.h"
 #include "node/identity.h"
+#include "scene/name_pattern.h"
+#include "session/direct_session.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 constexpr double kReferenceTolerance = 1e-9, kLooserTolerance = 1e-8;
@@ -48,7 +48,7 @@ class Trader {
     // how wrong a setting is beyond its limit is what is measured
     options_.overrides.emplace_back("session.coupling_alarm=warn");
     options_.is_recording = false;
-    base_ = cli_support::load_scene(options_);
+    base_ = scene::load_scene(options_);
     if (!(base_.session.duration > 0)) {
       throw Failure(ExitCode::bad_input,
                     "the scene runs until it is stopped; nothing was run; say with --until how long to run it");
@@ -95,7 +95,7 @@ class Trader {
   }
 
   void choose_variables() {
-    const std::vector<ElementVariable> variables = DirectSession(base_).variables();
+    const std::vector<ElementVariable> variables = session::DirectSession(base_).variables();
     std::vector<std::string> names;
     for (const ElementVariable& variable : variables) names.push_back(variable.name);
     std::vector<std::string> patterns = wish_.variables;
@@ -110,7 +110,7 @@ class Trader {
       const bool is_vector = std::find(names.begin(), names.end(), pattern + ".x") != names.end();
       if (is_vector) pattern += ".?";
     }
-    for (const std::string& name : cli_support::choose(patterns, names)) {
+    for (const std::string& name : scene::choose(patterns, names)) {
       const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
       result_.variables.push_back({.name = name,
                                    .unit = std::string(info(variables[at].dimension).si_unit),
@@ -120,8 +120,8 @@ class Trader {
     }
   }
 
-  [[nodiscard]] cli_support::SceneOptions options_with(const scene::Overrides& overrides) const {
-    cli_support::SceneOptions options = options_;
+  [[nodiscard]] scene::SceneOptions options_with(const scene::Overrides& overrides) const {
+    scene::SceneOptions options = options_;
     options.overrides.insert(options.overrides.end(), overrides.begin(), overrides.end());
     return options;
   }
@@ -149,7 +149,7 @@ class Trader {
       Planned planned;
       TradeoffRow row{.settings = settings, .result = {}};
       try {
-        const scene::Scene scene = cli_support::load_scene(options_with(overrides_of(settings)));
+        const scene::Scene scene = scene::load_scene(options_with(overrides_of(settings)));
         planned = {scene.session.step, text_of_scene(scene), true};
         if (!seen.insert(planned.text).second) continue;
       } catch (const scene::LoadError& error) {
@@ -245,7 +245,7 @@ class Trader {
       RowJob job = job_for(reference.overrides, H);
       job.kind = RunKind::reference;
       job.time_limit = kReferenceLimit;
-      const scene::Scene scene = cli_support::load_scene(job.scene);
+      const scene::Scene scene = scene::load_scene(job.scene);
       tasks.push_back(
           task_of(job, fmt::format("reference, step {} ms", H * 1e3), kReferenceWeight, text_of_scene(scene)));
       reference.samples = job.samples;
@@ -274,7 +274,7 @@ class Trader {
       const auto [known, is_new] = refusals.try_emplace(H);
       if (is_new) {
         try {
-          static_cast<void>(cli_support::load_scene(options_with(monolithic(H, kReferenceTolerance))));
+          static_cast<void>(scene::load_scene(options_with(monolithic(H, kReferenceTolerance))));
           steps.push_back(H);
         } catch (const scene::LoadError& error) {
           known->second = error.first_reason();
@@ -354,7 +354,7 @@ class Trader {
       job.samples = references_.at(H).samples;
       job.repeats = 1;
       job.time_limit = kReferenceLimit;
-      const scene::Scene scene = cli_support::load_scene(job.scene);
+      const scene::Scene scene = scene::load_scene(job.scene);
       tasks.push_back(task_of(job, "error of the reference", kReferenceWeight, text_of_scene(scene)));
     }
     const std::vector<SweepResult> results = run_sweep(tasks, sweep_options(), part(rows_from_, 1));
@@ -385,7 +385,7 @@ class Trader {
 
   const TradeoffWish& wish_;
   const TradeoffProgress& progress_;
-  cli_support::SceneOptions options_;
+  scene::SceneOptions options_;
   scene::Scene base_;
   std::vector<std::string> names_;
   std::vector<Planned> planned_;            // beside result_.rows
@@ -432,4 +432,4 @@ std::string verdict(const TradeoffRow& row) {
   return "yes";
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

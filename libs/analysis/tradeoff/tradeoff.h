@@ -16,10 +16,10 @@
 #include "analysis/tradeoff/row.h"
 #include "core/dimension.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct TradeoffWish {
-  cli_support::SceneOptions scene;     // duration: how long; as the scene says when empty
+  scene::SceneOptions scene;           // duration: how long; as the scene says when empty
   std::vector<std::string> axes;       // texts; empty: those of the scene
   std::vector<std::string> variables;  // patterns; empty: forces of the actuators and the place of the payload
   GridSize size = GridSize::modest;
@@ -78,4 +78,4 @@ enum class ErrorKind { largest, rms };
 // "yes", or why not.
 [[nodiscard]] std::string verdict(const TradeoffRow& row);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "core/display.h"
-#include "plotting/html_text.h"
 #include "core/escaped.h"
 #include "core/json.h"
 #include "core/report_table.h"
+#include "plotting/html_text.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace {
 
 std::string share(std::optional<double> value) {
@@ -287,4 +287,4 @@ std::string report_html(const Tradeoff& tradeoff, const std::optional<Answer>& a
       kTradeoffScript);
 }
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

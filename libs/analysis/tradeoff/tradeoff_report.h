@@ -7,7 +7,7 @@
 #include "analysis/tradeoff/answer.h"
 #include "analysis/tradeoff/tradeoff.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 
 struct Answer {
   Question question;
@@ -29,4 +29,4 @@ struct Answer {
 // One line: what was asked and which settings meet it.
 [[nodiscard]] std::string answer_text(const Tradeoff& tradeoff, const Answer& answer);
 
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -6,14 +6,14 @@
 #include <cstdlib>
 
 #include "build_paths.h"
-#include "node/carrier.h"
-#include "node/subsystem_factory.h"
 #include "core/arithmetic_self_test.h"
 #include "flex_node/flex_subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
+#include "node/carrier.h"
 #include "node/identity.h"
+#include "node/subsystem_factory.h"
 
 namespace slew::testing {
 namespace {
@@ -24,7 +24,7 @@ using wire::Topic;
 constexpr std::int64_t kRound = kMs / 4;
 constexpr int kMostPolls = 10'000;  // at one instant: a node that never comes to rest is a failure of its own
 
-cli_support::MakeSubsystem maker_of(Role role) {
+node::MakeSubsystem maker_of(Role role) {
   if (role == Role::mechanics) return mechanics::make_mechanics_subsystem;
   if (role == Role::flex) return flexible::make_flex_subsystem;
   return hydraulic_node::make_hydraulics_subsystem;
@@ -135,7 +135,7 @@ std::vector<Role> VirtualSession::roles_of(const scene::Scene& scene) {
 FaultyCarrier& VirtualSession::place_for(Role role) {
   Place& place = places_.emplace_back();
   place.role = role;
-  place.endpoint = cli_support::open_carrier(role, bus_);
+  place.endpoint = node::open_carrier(role, bus_);
   place.carrier = std::make_unique<FaultyCarrier>(*place.endpoint, role, clock_, plan_, count_);
   return *place.carrier;
 }
@@ -147,7 +147,7 @@ void VirtualSession::add_physics(Role role) {
 
 std::unique_ptr<node::Node> VirtualSession::make_physics(const Place& place) {
   return std::make_unique<node::PhysicsNode>(
-      place.role, *place.carrier, cli_support::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
+      place.role, *place.carrier, node::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
 }
 
 // A process that has died says nothing more; the one that a supervisor starts in its place hears what is kept.
@@ -168,7 +168,7 @@ void VirtualSession::kill_and_replace() {
       place.endpoint.reset();
       died_[place.role] = auditor_.given_up(place.role);
     } else if (auditor_.given_up(place.role) > died_[place.role]) {
-      place.endpoint = cli_support::open_carrier(place.role, bus_);
+      place.endpoint = node::open_carrier(place.role, bus_);
       place.carrier = std::make_unique<FaultyCarrier>(*place.endpoint, place.role, clock_, plan_, count_);
       place.node = make_physics(place);
       place.health = std::make_unique<node::HealthReport>(*place.node);

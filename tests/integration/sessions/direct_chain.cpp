@@ -4,16 +4,16 @@
 #include <memory>
 #include <stdexcept>
 
-#include "node/carrier.h"
-#include "scene/scene_options.h"
-#include "node/subsystem_factory.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
+#include "node/carrier.h"
 #include "node/driver.h"
 #include "node/physics_node.h"
+#include "node/subsystem_factory.h"
 #include "program.h"
 #include "recorder_node/recorder_node.h"
+#include "scene/scene_options.h"
 #include "transport/in_process_bus.h"
 
 namespace slew::testing {
@@ -71,14 +71,14 @@ class Pair {
 
 }  // namespace
 
-scene::Scene load_scene(const std::string& file, const std::string& duration,
-                        const std::vector<std::string>& overrides) {
-  cli_support::SceneOptions options;
+scene::Scene scene::load_scene(const std::string& file, const std::string& duration,
+                               const std::vector<std::string>& overrides) {
+  scene::SceneOptions options;
   options.file = file;
   options.duration = duration;
   options.pace = "free";
   options.overrides = overrides;
-  return cli_support::load_scene(options);
+  return scene::load_scene(options);
 }
 
 HashChain chain_of_ticks(const scene::Scene& scene, const std::map<StepIndex, wire::Tick>& ticks) {
@@ -99,13 +99,13 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
   std::array<std::unique_ptr<transport::Transport>, 4> ends;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     constexpr std::array<Role, 4> kRoles = {Role::io, Role::mechanics, Role::hydraulics, Role::recorder};
-    ends[i] = cli_support::open_carrier(kRoles[i], bus);
+    ends[i] = node::open_carrier(kRoles[i], bus);
   }
   io::IoConfig config = io::make_config(scene, {"in_process", io::Operator::script, io::Recording::required});
   config.name_check = {};
   io::IoNode io(*ends[0], std::move(config));
   const auto physics = [](Role role) {
-    return cli_support::subsystem_factory([role](const scene::Scene& s) { return make_subsystem(role, s); }, ".");
+    return node::subsystem_factory([role](const scene::Scene& s) { return make_subsystem(role, s); }, ".");
   };
   node::PhysicsNode mechanics(Role::mechanics, *ends[1], physics(Role::mechanics));
   node::PhysicsNode hydraulics(Role::hydraulics, *ends[2], physics(Role::hydraulics));
@@ -121,7 +121,8 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
 
 HashChain undisturbed_chain(const std::string& scene_file, StepIndex steps) {
   const ScratchFolder folder;
-  return run_in_one_process(load_scene(scene_file, std::to_string(steps) + " ms"), folder.path() / "runs").chain();
+  return run_in_one_process(scene::load_scene(scene_file, std::to_string(steps) + " ms"), folder.path() / "runs")
+      .chain();
 }
 
 HashChain physics_only(HashChain chain) {

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "build_paths.h"
 #include "analysis/animation/machine_drawing.h"
+#include "build_paths.h"
 #include "math/rotation.h"
 #include "scene/scene.h"
 #include "tests/support/played_page.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace animation_test {
 
 multibody::MechanicsDef arm() {
@@ -273,4 +273,4 @@ TEST_F(AnimationPage, PlaysInTimeAndSaysWhereNothingWasRecorded) {
 }
 
 }  // namespace animation_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

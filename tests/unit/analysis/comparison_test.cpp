@@ -11,11 +11,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "build_paths.h"
 #include "analysis/comparison/comparison_report.h"
+#include "build_paths.h"
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace comparison_test {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -374,4 +374,4 @@ TEST(ComparisonReport, JsonHoldsEveryRowAndTheReference) {
 }
 
 }  // namespace comparison_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,7 +7,7 @@
 
 #include "build_paths.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace cost_test {
 
 const std::string kScenes = SLEWRING_SOURCE_DIR "/scenes/";
@@ -51,4 +51,4 @@ TEST(CostByPart, HasNoLineForWhatItDoesNot) {
 }
 
 }  // namespace cost_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -8,7 +8,7 @@
 #include "build_paths.h"
 #include "coupling/indicator.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace coupling_check_test {
 
 std::vector<std::string> warnings(const std::string& file, const scene::Overrides& overrides) {
@@ -68,7 +68,7 @@ TEST(CouplingCheck, FreeRunningIsToldOfTheStepThatItsLateSamplesBear) {
 
 std::string refusal(const std::string& file, const scene::Overrides& overrides) {
   const scene::Scene scene = scene::load_file(SLEWRING_SOURCE_DIR "/scenes/" + file, overrides);
-  return DirectSession(scene).start().text;
+  return session::DirectSession(scene).start().text;
 }
 
 TEST(CouplingCheck, WhatNoExchangeCanFollowDoesNotStart) {
@@ -101,4 +101,4 @@ TEST(OmegaLimit, GrowsFromHoldToTlm) {
 }
 
 }  // namespace coupling_check_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -7,7 +7,7 @@
 
 #include "build_paths.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace coupling_lamp_test {
 
 scene::Scene boom(const scene::Overrides& overrides) {
@@ -39,4 +39,4 @@ TEST(CouplingLamp, AnErrorBeyondTheRangeIsNoFigure) {
 }
 
 }  // namespace coupling_lamp_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -4,13 +4,13 @@
 #include <limits>
 #include <set>
 
-#include "build_paths.h"
 #include "analysis/extremes/case_run.h"
 #include "analysis/extremes/cases.h"
 #include "analysis/extremes/extremes.h"
 #include "analysis/extremes/judge.h"
+#include "build_paths.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace extremes_test {
 
 Measures good_run() {
@@ -154,7 +154,7 @@ TEST(ExtremeCases, CraneHasThemAllWithItsOwnNames) {
 TEST(ExtremeCases, CylindersOfEveryKindBoundThePressuresByWhatTheyHold) {
   for (const char* file : {"single_cylinder.yaml", "two_dof_crane.yaml", "tipper.yaml"}) {
     const auto ceiling_with = [&](const char* gravity) {
-      cli_support::SceneOptions options;
+      scene::SceneOptions options;
       options.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/" + file;
       options.overrides = {gravity, "hydraulics.start=table13"};
       const CaseOutcome outcome = run_case(options, "full_range_every_step");
@@ -198,4 +198,4 @@ TEST(Extremes, UnfinishedAndDivergedRowsAreNotGood) {
 }
 
 }  // namespace extremes_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <string>
 
-#include "build_paths.h"
 #include "analysis/description/instant.h"
+#include "build_paths.h"
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace liftable_load_test {
 
 scene::Scene load(const std::string& name, const scene::Overrides& overrides = {}) {
@@ -110,4 +110,4 @@ TEST(LiftableLoad, ASceneWithoutCylindersHasNone) {
 }
 
 }  // namespace liftable_load_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

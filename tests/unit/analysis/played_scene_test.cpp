@@ -8,7 +8,7 @@
 
 #include "build_paths.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace played_scene_test {
 
 using wire::Role;
@@ -85,4 +85,4 @@ TEST(PlayedScene, ParameterChangesOfTheScriptAreCarriedOut) {
 }
 
 }  // namespace played_scene_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

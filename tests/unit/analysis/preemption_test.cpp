@@ -8,7 +8,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace preemption_test {
 
 class Preemption : public ::testing::Test {
@@ -51,4 +51,4 @@ TEST_F(Preemption, IsReadFromTheKernelThenItsCommandLineThenItsConfiguration) {
 }
 
 }  // namespace preemption_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -10,7 +10,7 @@
 #include "multibody/model.h"
 #include "multibody/observe.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace simplify_test {
 
 const std::string kScenes = SLEWRING_SOURCE_DIR "/scenes/";
@@ -165,4 +165,4 @@ TEST(Simplify, GivesNoVerdictOnWhatItWasInterruptedIn) {
 }
 
 }  // namespace simplify_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

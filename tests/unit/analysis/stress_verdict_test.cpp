@@ -5,7 +5,7 @@
 
 #include "analysis/stress/stress_report.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace stress_verdict_test {
 
 // of 10000 steps; misses come alone
@@ -135,4 +135,4 @@ TEST(StressVerdict, WhatSomebodyEndedIsInterrupted) {
 }
 
 }  // namespace stress_verdict_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

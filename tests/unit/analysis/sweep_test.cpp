@@ -8,7 +8,7 @@
 #include <fstream>
 #include <set>
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace sweep_test {
 
 // A shell stands for the program: its script gets "--result FILE" as $1 and $2.
@@ -111,4 +111,4 @@ TEST_F(SweepTest, KeysDifferWithEveryTextAndItsEnds) {
 }
 
 }  // namespace sweep_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

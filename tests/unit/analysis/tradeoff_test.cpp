@@ -8,12 +8,12 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "build_paths.h"
 #include "analysis/tradeoff/overlay.h"
 #include "analysis/tradeoff/tradeoff_report.h"
+#include "build_paths.h"
 #include "core/failure.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace tradeoff_test {
 
 const std::string kScenes = std::string(SLEWRING_SOURCE_DIR) + "/scenes/";
@@ -254,4 +254,4 @@ TEST_F(Overlay, LiesBesideItsScene) {
 }
 
 }  // namespace tradeoff_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

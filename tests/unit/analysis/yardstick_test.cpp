@@ -5,7 +5,7 @@
 
 #include "analysis/stress/stress.h"
 
-namespace slew::cli {
+namespace slew::analysis {
 namespace yardstick_test {
 
 constexpr SimDuration kStep{100'000};
@@ -46,4 +46,4 @@ TEST(Yardstick, StepsThatItGivesUpAreMisses) {
 }
 
 }  // namespace yardstick_test
-}  // namespace slew::cli
+}  // namespace slew::analysis

@@ -13,7 +13,7 @@
 #include "core/status.h"
 #include "core/time.h"
 
-namespace slew::cli {
+namespace slew {
 namespace child_process_test {
 
 constexpr std::int64_t kDeadlineNs = 20'000'000'000;
@@ -68,4 +68,4 @@ TEST(ChildProcess, SaysWhyAProgramCannotBeStarted) {
 }
 
 }  // namespace child_process_test
-}  // namespace slew::cli
+}  // namespace slew

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace slew::cli {
+namespace slew {
 namespace display_test {
 
 TEST(Display, ShowsQuantitiesInTheUnitsOfTheWorkshop) {
@@ -49,4 +49,4 @@ TEST(Display, ShowsTimesInAUnitThatFits) {
 }
 
 }  // namespace display_test
-}  // namespace slew::cli
+}  // namespace slew

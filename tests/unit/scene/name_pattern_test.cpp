@@ -1,12 +1,11 @@
-// Choosing variables by names and patterns, and names of sessions.
+// Choosing variables by names and patterns.
 #include "scene/name_pattern.h"
 
 #include <gtest/gtest.h>
 
-#include "node/session_options.h"
 #include "core/failure.h"
 
-namespace slew::cli_support {
+namespace slew::scene {
 namespace name_pattern_test {
 
 const std::vector<std::string> kNames = {"Cyl_Lift.force", "Cyl_Jib.force", "Cyl_Lift.stroke", "Bag.position.y"};
@@ -48,19 +47,5 @@ TEST(Patterns, MeetWhereANameMayFitBoth) {
   EXPECT_EQ(unmatched(patterns, kNames), (std::vector<std::string>{"Vol_*", "Bag.position.x"}));
 }
 
-TEST(SessionName, IsMadeOfASceneNameByReplacingWhatIsNotAllowed) {
-  EXPECT_EQ(session_name_of("truck crane/heavy"), "truck_crane_heavy");
-  EXPECT_EQ(session_name_of(""), "session");
-  EXPECT_TRUE(problem_of_session_name(session_name_of(std::string(200, 'x'))).empty());
-}
-
-TEST(SessionName, RefusesPartitionWildcards) {
-  EXPECT_TRUE(problem_of_session_name("crane-1.test_2").empty());
-  EXPECT_FALSE(problem_of_session_name("*").empty());
-  EXPECT_FALSE(problem_of_session_name("a/b").empty());
-  EXPECT_FALSE(problem_of_session_name("").empty());
-  EXPECT_FALSE(problem_of_session_name(std::string(64, 'x')).empty());
-}
-
 }  // namespace name_pattern_test
-}  // namespace slew::cli_support
+}  // namespace slew::scene

@@ -5,7 +5,7 @@
 
 #include "core/step_report.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace flag_counter_test {
 
 void take(FlagCounter& flags, StepIndex step, StepFlag flag, std::uint32_t epoch = 1) {
@@ -42,4 +42,4 @@ TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
 }
 
 }  // namespace flag_counter_test
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -11,7 +11,7 @@
 #include "transport/codec.h"
 #include "transport/topics.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace observer_test {
 
 using wire::Role;
@@ -195,4 +195,4 @@ TEST_F(Asking, ASessionThatIsWithdrawnIsToldAtOnce) {
 }
 
 }  // namespace observer_test
-}  // namespace slew::cli
+}  // namespace slew::session

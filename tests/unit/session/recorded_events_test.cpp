@@ -13,7 +13,7 @@
 #include "transport/codec.h"
 #include "transport/topics.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace recorded_events_test {
 
 using wire::Topic;
@@ -112,4 +112,4 @@ TEST_F(Events, NobodyAskedForAreToldInTheirOwnWords) {
 }
 
 }  // namespace recorded_events_test
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -7,14 +7,14 @@
 #include <memory>
 #include <vector>
 
-#include "session/recorded.h"
 #include "node/identity.h"
 #include "recording/writer.h"
+#include "session/recorded.h"
 #include "tests/support/temporary_folder.h"
 #include "transport/codec.h"
 #include "transport/topics.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace recorded_extent_test {
 
 using wire::Phase;
@@ -181,4 +181,4 @@ TEST_F(Extent, HoldsTheSamplesOfFlexibleBodiesOfEveryStep) {
 }
 
 }  // namespace recorded_extent_test
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace slew::cli {
+namespace slew::session {
 namespace run_outcome_test {
 
 using Messages = std::vector<std::string>;
@@ -47,4 +47,4 @@ TEST(RunOptions, AssetsAreBesideTheScene) {
 }
 
 }  // namespace run_outcome_test
-}  // namespace slew::cli
+}  // namespace slew::session

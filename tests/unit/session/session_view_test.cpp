@@ -6,7 +6,7 @@
 #include "transport/codec.h"
 #include "transport/topics.h"
 
-namespace slew::cli {
+namespace slew::session {
 namespace session_view_test {
 
 using wire::Role;
@@ -228,4 +228,4 @@ TEST_F(SessionViewTest, RubbishIsPassedOver) {
 }
 
 }  // namespace session_view_test
-}  // namespace slew::cli
+}  // namespace slew::session

@@ -12,7 +12,7 @@
 #include "core/failure.h"
 #include "io_node/scene_config.h"
 
-namespace slew::cli_support {
+namespace slew::session {
 namespace scene_options_test {
 
 class SceneOptionsTest : public ::testing::Test {
@@ -33,14 +33,14 @@ class SceneOptionsTest : public ::testing::Test {
   }
 
   std::filesystem::path folder_;
-  SceneOptions options_;
+  scene::SceneOptions options_;
 };
 
 TEST_F(SceneOptionsTest, StepDurationAndPaceBecomePartOfTheScene) {
   options_.step = "2 ms";
   options_.duration = "3";
   options_.pace = "free";
-  const scene::Scene scene = load_scene(options_);
+  const scene::Scene scene = scene::load_scene(options_);
   EXPECT_EQ(scene.session.step_duration(), milliseconds(2));
   EXPECT_EQ(scene.session.steps(), 1500);
   EXPECT_EQ(scene.session.pace, scene::Pace::free);
@@ -51,7 +51,7 @@ TEST_F(SceneOptionsTest, StepDurationAndPaceBecomePartOfTheScene) {
 
 TEST_F(SceneOptionsTest, ACsvFileTakesThePlaceOfTheScript) {
   options_.input = write("input.csv", "time,Input_Jib\n0,0\n1,0.5\n");
-  const scene::Scene scene = load_scene(options_);
+  const scene::Scene scene = scene::load_scene(options_);
   ASSERT_EQ(scene.script.tracks.size(), 1u);
   EXPECT_EQ(scene.script.tracks[0].input, "Input_Jib");
   const scene::Scene again = scene::load_text(scene.expanded_text, "again");
@@ -62,7 +62,7 @@ TEST_F(SceneOptionsTest, AYamlFileTakesThePlaceOfTheScript) {
   options_.input = write("input.yaml",
                          "inputs:\n  Input_Lift: [[0 s, 0], [1 s, 1]]\n"
                          "parameters:\n  - {at: 2 s, set: Bag.mass, value: 1500 kg}\n");
-  const scene::Scene scene = load_scene(options_);
+  const scene::Scene scene = scene::load_scene(options_);
   ASSERT_EQ(scene.script.tracks.size(), 1u);
   ASSERT_EQ(scene.script.changes.size(), 1u);
   EXPECT_EQ(scene.script.changes[0].value, 1500);
@@ -71,7 +71,7 @@ TEST_F(SceneOptionsTest, AYamlFileTakesThePlaceOfTheScript) {
 TEST_F(SceneOptionsTest, AMistakeInAnInputFileIsToldWithItsPlace) {
   options_.input = write("input.csv", "time,Input_Lft\n0,0\n1,0.5\n");
   try {
-    static_cast<void>(load_scene(options_));
+    static_cast<void>(scene::load_scene(options_));
     FAIL() << "the unknown input was taken";
   } catch (const scene::LoadError& error) {
     const std::string text = error.what();
@@ -83,7 +83,7 @@ TEST_F(SceneOptionsTest, AMistakeInAnInputFileIsToldWithItsPlace) {
 TEST_F(SceneOptionsTest, NoneAndKeyboardLeaveNoScript) {
   for (const char* input : {"none", "keyboard"}) {
     options_.input = input;
-    const scene::Scene scene = load_scene(options_);
+    const scene::Scene scene = scene::load_scene(options_);
     EXPECT_TRUE(scene.script.is_empty()) << input;
     EXPECT_EQ(scene.expanded_text.find("\nscript"), std::string::npos) << input;
   }
@@ -91,7 +91,7 @@ TEST_F(SceneOptionsTest, NoneAndKeyboardLeaveNoScript) {
 
 TEST_F(SceneOptionsTest, WhoMovesAnInputMayBeAnotherWhereASessionGoesOn) {
   options_.overrides = {"Input_Lift.controller=lockstep", "Input_Lift.controller_delay=3"};
-  const scene::Scene saved = load_scene(options_);
+  const scene::Scene saved = scene::load_scene(options_);
   SceneOptions on;
   on.overrides = {"Input_Lift.controller=sampled", "Input_Lift.controller_wait=2 s", "Input_Slew.supervisor=boss",
                   "Bag.mass=750 kg"};
@@ -122,11 +122,11 @@ TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
   add_scene_options(program, parsed);
   program.parse(scene_arguments(options_));
   EXPECT_FALSE(parsed.is_recording);
-  EXPECT_EQ(load_scene(parsed).expanded_text, load_scene(options_).expanded_text);
+  EXPECT_EQ(scene::load_scene(parsed).expanded_text, load_scene(options_).expanded_text);
 }
 
 TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
-  const scene::Scene scene = load_scene(options_);
+  const scene::Scene scene = scene::load_scene(options_);
   io::SessionWish wish;
   wish.session_name = "s";
   const io::IoConfig config = io::make_config(scene, wish);
@@ -145,4 +145,4 @@ TEST_F(SceneOptionsTest, TheSessionTakesChannelsStepAndRolesFromTheScene) {
 }
 
 }  // namespace scene_options_test
-}  // namespace slew::cli_support
+}  // namespace slew::session
