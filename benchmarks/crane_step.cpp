@@ -17,7 +17,7 @@
 #include "node/physics_node.h"
 #include "scene/scene.h"
 #include "scene/script.h"
-#include "transport/in_process_bus.h"
+#include "transport/in_process/in_process_bus.h"
 
 namespace {
 

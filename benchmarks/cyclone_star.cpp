@@ -23,8 +23,8 @@
 
 #include "core/time.h"
 #include "tests/support/test_domain.h"
-#include "transport/codec.h"
-#include "transport/cyclone_transport.h"
+#include "transport/cdr/codec.h"
+#include "transport/cyclone/cyclone_transport.h"
 
 namespace {
 

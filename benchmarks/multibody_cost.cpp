@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "benchmarks/peers/models.h"
-#include "multibody/dynamics.h"
-#include "multibody/observe.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/model/observe.h"
 #include "tests/support/chain_def.h"
 #include "tests/validation/multibody/crane_def.h"
 

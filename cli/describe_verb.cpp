@@ -15,8 +15,8 @@
 #include "core/printable.h"
 #include "core/report_table.h"
 #include "hydraulics/circuit.h"
-#include "multibody/model.h"
-#include "multibody/observe.h"
+#include "multibody/model/model.h"
+#include "multibody/model/observe.h"
 #include "scene/ports.h"
 #include "scene/scene.h"
 

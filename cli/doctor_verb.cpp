@@ -17,7 +17,7 @@
 #include "core/report_table.h"
 #include "node/carrier.h"
 #include "node/identity.h"
-#include "transport/cyclone_domain.h"
+#include "transport/cyclone/cyclone_domain.h"
 
 namespace slew::cli {
 namespace {

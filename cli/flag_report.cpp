@@ -7,7 +7,7 @@
 #include "node/identity.h"
 #include "session/flag_counter.h"
 #include "session/recorded.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/wire.h"
 
 namespace slew::cli {

@@ -8,7 +8,7 @@
 
 #include "core/index.h"
 #include "multibody/flexible/deflection.h"
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 
 namespace slew::mechanics {
 namespace {

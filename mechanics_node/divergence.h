@@ -16,9 +16,9 @@
 #include <string_view>
 
 #include "core/state_hash.h"
-#include "multibody/joint_gauge.h"
-#include "multibody/model.h"
-#include "multibody/state.h"
+#include "multibody/joints/joint_gauge.h"
+#include "multibody/model/model.h"
+#include "multibody/model/state.h"
 
 namespace slew::mechanics {
 

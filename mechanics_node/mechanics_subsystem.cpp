@@ -11,9 +11,9 @@
 #include "mechanics_node/parameter_handle.h"
 #include "mechanics_node/payload.h"
 #include "mechanics_node/row_laws.h"
-#include "multibody/joint_law.h"
-#include "multibody/parameters.h"
-#include "multibody/rows.h"
+#include "multibody/constraints/rows.h"
+#include "multibody/joints/joint_law.h"
+#include "multibody/model/parameters.h"
 #include "scene/ports.h"
 
 namespace slew::mechanics {

@@ -23,10 +23,10 @@
 #include "coupling/trends.h"
 #include "mechanics_node/divergence.h"
 #include "mechanics_node/modal_exchange.h"
-#include "multibody/dynamics.h"
-#include "multibody/formulation.h"
-#include "multibody/observe.h"
-#include "multibody/step_rows.h"
+#include "multibody/constraints/step_rows.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/formulation.h"
+#include "multibody/model/observe.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics {

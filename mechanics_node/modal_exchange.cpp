@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 
 namespace slew::mechanics {
 

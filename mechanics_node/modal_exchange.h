@@ -8,8 +8,8 @@
 #include "core/state_hash.h"
 #include "core/status.h"
 #include "coupling/samples.h"
-#include "multibody/dynamics.h"
 #include "multibody/flexible/elastic_law.h"
+#include "multibody/formulations/dynamics.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics {

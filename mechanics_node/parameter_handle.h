@@ -1,7 +1,7 @@
 // A multibody parameter as the one number that coupling::ParameterRamps keeps.
 #pragma once
 
-#include "multibody/parameters.h"
+#include "multibody/model/parameters.h"
 
 namespace slew::mechanics {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "coupling/static_forces.h"
-#include "multibody/parameters.h"
+#include "multibody/model/parameters.h"
 
 namespace slew::mechanics {
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "coupling/samples.h"
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 
 namespace slew::mechanics {
 

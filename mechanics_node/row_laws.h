@@ -3,8 +3,8 @@
 #pragma once
 
 #include "mechanics_node/mechanics_subsystem.h"
-#include "multibody/joint_law.h"
-#include "multibody/rows.h"
+#include "multibody/constraints/rows.h"
+#include "multibody/joints/joint_law.h"
 
 namespace slew::mechanics {
 

@@ -10,8 +10,8 @@
 
 #include "math/stop.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "multibody/joint_law.h"
-#include "multibody/rows.h"
+#include "multibody/constraints/rows.h"
+#include "multibody/joints/joint_law.h"
 
 namespace slew::mechanics {
 namespace {

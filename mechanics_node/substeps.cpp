@@ -5,8 +5,8 @@
 
 #include "mechanics_node/mechanics_subsystem.h"
 #include "mechanics_node/row_laws.h"
-#include "multibody/joint_law.h"
-#include "multibody/rows.h"
+#include "multibody/constraints/rows.h"
+#include "multibody/joints/joint_law.h"
 
 namespace slew::mechanics {
 namespace {

@@ -6,8 +6,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "multibody/dynamics.h"
-#include "multibody/loops.h"
+#include "multibody/constraints/loops.h"
+#include "multibody/formulations/dynamics.h"
 #include "tests/support/chain_def.h"
 #include "tests/validation/multibody/crane_def.h"
 #include "tests/validation/multibody/cylinder_bodies.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "benchmarks/peers/peer.h"
-#include "multibody/formulation.h"
+#include "multibody/formulations/formulation.h"
 
 namespace slew::peers {
 

@@ -17,7 +17,7 @@
 #include <stdexcept>
 
 #include "benchmarks/peers/models.h"
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/printable.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/given_up.h"
 #include "transport/protection.h"
 

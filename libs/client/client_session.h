@@ -16,7 +16,7 @@
 
 #include "core/status.h"
 #include "core/time.h"
-#include "transport/cyclone_transport.h"
+#include "transport/cyclone/cyclone_transport.h"
 #include "transport/wire.h"
 
 namespace slew::client {

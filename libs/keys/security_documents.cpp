@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "transport/cyclone_domain.h"
+#include "transport/cyclone/cyclone_domain.h"
 
 namespace slew::keys {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "core/check.h"
 #include "monolith/dae_solver.h"
-#include "multibody/body_attitude.h"
-#include "multibody/body_passes.h"
-#include "multibody/passes.h"
-#include "multibody/rows.h"
+#include "multibody/constraints/rows.h"
+#include "multibody/formulations/body_attitude.h"
+#include "multibody/formulations/body_passes.h"
+#include "multibody/formulations/passes.h"
 
 namespace slew::monolith {
 namespace {

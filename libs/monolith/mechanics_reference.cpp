@@ -6,10 +6,10 @@
 
 #include "core/check.h"
 #include "monolith/body_reference.h"
-#include "multibody/dynamics.h"
-#include "multibody/loops.h"
-#include "multibody/passes.h"
-#include "multibody/rows.h"
+#include "multibody/constraints/loops.h"
+#include "multibody/constraints/rows.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/passes.h"
 
 namespace slew::monolith {
 namespace {

@@ -16,9 +16,9 @@
 
 #include "core/status.h"
 #include "monolith/stiff_solver.h"
-#include "multibody/defs.h"
-#include "multibody/model.h"
-#include "multibody/state.h"
+#include "multibody/model/defs.h"
+#include "multibody/model/model.h"
+#include "multibody/model/state.h"
 
 namespace slew::monolith {
 

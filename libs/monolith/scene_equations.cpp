@@ -5,10 +5,10 @@
 
 #include "core/check.h"
 #include "coupling/static_forces.h"
-#include "multibody/loops.h"
-#include "multibody/parameters.h"
-#include "multibody/passes.h"
-#include "multibody/rows.h"
+#include "multibody/constraints/loops.h"
+#include "multibody/constraints/rows.h"
+#include "multibody/formulations/passes.h"
+#include "multibody/model/parameters.h"
 #include "scene/ports.h"
 
 namespace slew::monolith {

@@ -30,8 +30,8 @@
 #include "coupling/line_force.h"
 #include "coupling/port_levels.h"
 #include "hydraulics/circuit.h"
-#include "multibody/dynamics.h"
-#include "multibody/observe.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/model/observe.h"
 #include "scene/scene.h"
 
 namespace slew::monolith {

@@ -5,7 +5,7 @@
 #include "core/failure.h"
 #include "node/identity.h"
 #include "node/metered_carrier.h"
-#include "transport/cyclone_transport.h"
+#include "transport/cyclone/cyclone_transport.h"
 #include "transport/protection.h"
 
 namespace slew::node {

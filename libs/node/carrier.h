@@ -5,7 +5,7 @@
 #include <string>
 
 #include "node/session_options.h"
-#include "transport/in_process_bus.h"
+#include "transport/in_process/in_process_bus.h"
 #include "transport/topics.h"
 #include "transport/transport.h"
 #include "transport/wire.h"

@@ -16,7 +16,7 @@
 #include "core/status.h"
 #include "node/identity.h"
 #include "node/sent_cache.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/transport.h"
 #include "transport/wire.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "transport/cyclone_domain.h"
+#include "transport/cyclone/cyclone_domain.h"
 #include "transport/wire.h"
 
 namespace slew::node {

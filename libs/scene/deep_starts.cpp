@@ -1,6 +1,6 @@
 #include "scene/deep_starts.h"
 
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
 
 namespace slew::scene {
 

@@ -19,7 +19,7 @@
 #include "flex/input_error.h"
 #include "multibody/flexible/deflection.h"
 #include "multibody/flexible/elastic_law.h"
-#include "multibody/integrators.h"
+#include "multibody/formulations/integrators.h"
 #include "scene/assets.h"
 #include "scene/modal_body.h"
 #include "scene/segment_chain.h"

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/suggestion.h"
-#include "multibody/element_speeds.h"
-#include "multibody/model.h"
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
+#include "multibody/forces/element_speeds.h"
+#include "multibody/model/model.h"
 #include "scene/assets.h"
 #include "scene/canonical.h"
 #include "scene/expand.h"

@@ -6,7 +6,7 @@
 
 #include "contact/contact_def.h"
 #include "core/problem.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "scene/expand.h"
 
 namespace slew::scene {

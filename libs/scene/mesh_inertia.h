@@ -19,7 +19,7 @@
 
 #include "contact/mesh_file/mesh_file.h"
 #include "core/field.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "scene/expand.h"
 #include "scene/field_reader.h"
 #include "scene/scene.h"

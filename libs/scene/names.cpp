@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/suggestion.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "scene/defs.h"
 #include "scene/sections.h"
 

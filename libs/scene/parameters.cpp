@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "core/suggestion.h"
-#include "multibody/element_speeds.h"
-#include "multibody/joint_axes.h"
-#include "multibody/model.h"
-#include "multibody/parameters.h"
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
+#include "multibody/forces/element_speeds.h"
+#include "multibody/joints/joint_axes.h"
+#include "multibody/model/model.h"
+#include "multibody/model/parameters.h"
 #include "scene/field_reader.h"
 #include "scene/sections.h"
 

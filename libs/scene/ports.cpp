@@ -11,7 +11,7 @@
 #include "hydraulics/components/double_rod_cylinder.h"
 #include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/curve.h"
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 
 namespace slew::scene {
 namespace {

@@ -17,7 +17,7 @@
 #include "core/status.h"
 #include "coupling/line_force.h"
 #include "hydraulics/hydraulics_def.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "scene/defs.h"
 #include "scene/diagnostic.h"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "multibody/field_tables.h"
-#include "multibody/gears/gear_fields.h"
-#include "multibody/joint_fields.h"
+#include "multibody/constraints/gear_fields.h"
+#include "multibody/joints/joint_fields.h"
+#include "multibody/model/field_tables.h"
 #include "multibody/motions/motion_fields.h"
 
 namespace slew::scene {

@@ -8,7 +8,7 @@
 #include "node/carrier.h"
 #include "node/driver.h"
 #include "session/survey.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::session {
 

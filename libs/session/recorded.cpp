@@ -22,7 +22,7 @@
 #include "scene/name_pattern.h"
 #include "scene/units.h"
 #include "session/unrecorded.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::session {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/failure.h"
 #include "node/identity.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/wire.h"
 
 namespace slew::session {

@@ -9,7 +9,7 @@
 #include "core/failure.h"
 #include "node/identity.h"
 #include "session/recorded.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::session {
 namespace {

@@ -16,7 +16,7 @@
 #include "scene/scene.h"
 #include "session/direct_session.h"
 #include "session/recorded.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::session {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/given_up.h"
 
 namespace slew::session {

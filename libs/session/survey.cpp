@@ -6,7 +6,7 @@
 #include "core/failure.h"
 #include "node/carrier.h"
 #include "node/driver.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::session {
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "core/status.h"
-#include "transport/cyclone_domain.h"
+#include "transport/cyclone/cyclone_domain.h"
 
 namespace slew::transport {
 

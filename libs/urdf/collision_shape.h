@@ -9,7 +9,7 @@
 #include <string>
 
 #include "contact/contact_def.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "urdf/placement.h"
 #include "urdf/robot.h"
 

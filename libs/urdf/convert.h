@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "contact/contact_def.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "urdf/collision_shape.h"
 #include "urdf/placement.h"
 #include "urdf/robot.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/index.h"
-#include "multibody/body_inertia.h"
+#include "multibody/model/body_inertia.h"
 
 namespace slew::urdf {
 

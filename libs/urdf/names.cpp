@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "scene/defs.h"
 #include "scene/sections.h"
 #include "urdf/transliteration.h"

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "multibody/topology.h"
+#include "multibody/model/topology.h"
 #include "urdf/robot.h"
 
 namespace slew::urdf {

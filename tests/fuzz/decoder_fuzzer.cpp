@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/fuzz/bytes.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace {
 

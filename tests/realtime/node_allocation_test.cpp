@@ -14,8 +14,8 @@
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
 #include "support/crane_pair.h"
-#include "transport/codec.h"
-#include "transport/in_process_bus.h"
+#include "transport/cdr/codec.h"
+#include "transport/in_process/in_process_bus.h"
 
 namespace slew::testing {
 namespace node_allocation_test {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 
 namespace slew::multibody::testing {
 

@@ -9,8 +9,8 @@
 
 #include "coupling/subsystem.h"
 #include "node/node.h"
-#include "transport/codec.h"
-#include "transport/in_process_bus.h"
+#include "transport/cdr/codec.h"
+#include "transport/in_process/in_process_bus.h"
 #include "transport/wire.h"
 
 namespace slew::testing {

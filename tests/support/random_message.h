@@ -7,7 +7,7 @@
 #include <string>
 #include <type_traits>
 
-#include "transport/codec_fields.h"
+#include "transport/cdr/codec_fields.h"
 
 namespace slew::testing {
 

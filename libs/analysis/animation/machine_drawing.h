@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "math/vector3.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 
 namespace slew::analysis {
 

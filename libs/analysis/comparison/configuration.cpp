@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/failure.h"
-#include "multibody/field_tables.h"
-#include "multibody/integrators.h"
+#include "multibody/formulations/integrators.h"
+#include "multibody/model/field_tables.h"
 #include "scene/units.h"
 
 namespace slew::analysis {

@@ -8,7 +8,7 @@
 
 #include "core/failure.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 
 namespace slew::analysis {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "analysis/comparison/played_scene.h"
 #include "core/time.h"
-#include "multibody/joint_gauge.h"
+#include "multibody/joints/joint_gauge.h"
 #include "scene/scene.h"
 
 namespace slew::analysis {

@@ -15,7 +15,7 @@
 #include "core/json.h"
 #include "core/report_table.h"
 #include "scene/ports.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::analysis {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/json.h"
-#include "multibody/state.h"
+#include "multibody/model/state.h"
 #include "scene/scene.h"
 
 namespace slew::analysis {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "analysis/description/timed_call.h"
-#include "multibody/formulation.h"
+#include "multibody/formulations/formulation.h"
 #include "scene/ports.h"
 
 namespace slew::analysis {

@@ -16,7 +16,7 @@
 #include "hydraulics/circuit.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "multibody/joint_gauge.h"
+#include "multibody/joints/joint_gauge.h"
 #include "scene/parameters.h"
 #include "session/direct_session.h"
 

@@ -14,7 +14,7 @@
 #include "analysis/tradeoff/answer.h"
 #include "core/failure.h"
 #include "mechanics_node/payload.h"
-#include "multibody/model.h"
+#include "multibody/model/model.h"
 #include "node/identity.h"
 #include "scene/name_pattern.h"
 #include "session/direct_session.h"

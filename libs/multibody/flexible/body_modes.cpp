@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/index.h"
-#include "multibody/link_stiffness.h"
+#include "multibody/formulations/link_stiffness.h"
 
 namespace slew::multibody {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "math/block_ldl.h"
-#include "multibody/constraint.h"
-#include "multibody/state.h"
+#include "multibody/constraints/constraint.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody {
 

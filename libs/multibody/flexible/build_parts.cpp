@@ -7,7 +7,7 @@
 #include "multibody/flexible/deflection.h"
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
-#include "multibody/topology.h"
+#include "multibody/model/topology.h"
 
 namespace slew::multibody {
 

@@ -1,8 +1,8 @@
 // The flexible parts and nodes of a model. Internal to the library.
 #pragma once
 
-#include "multibody/defs.h"
-#include "multibody/model.h"
+#include "multibody/model/defs.h"
+#include "multibody/model/model.h"
 
 namespace slew::multibody {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "math/small_cholesky.h"
-#include "multibody/model.h"
+#include "multibody/model/model.h"
 
 namespace slew::multibody {
 namespace {

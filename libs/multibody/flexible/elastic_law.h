@@ -8,8 +8,8 @@
 
 #include "core/problem.h"
 #include "core/status.h"
-#include "multibody/defs.h"
 #include "multibody/flexible/flexible_def.h"
+#include "multibody/model/defs.h"
 
 namespace slew::multibody {
 

@@ -4,7 +4,7 @@
 #include "core/index.h"
 #include "math/small_cholesky.h"
 #include "multibody/flexible/flexible_part.h"
-#include "multibody/state.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody {
 

@@ -2,7 +2,7 @@
 #include <cstddef>
 
 #include "multibody/flexible/flexible_part.h"
-#include "multibody/state.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody {
 

@@ -5,9 +5,9 @@
 #include "core/check.h"
 #include "core/index.h"
 #include "multibody/flexible/node_span.h"
-#include "multibody/joint_directions.h"
-#include "multibody/spatial_block.h"
-#include "multibody/state.h"
+#include "multibody/formulations/spatial_block.h"
+#include "multibody/joints/joint_directions.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody {
 

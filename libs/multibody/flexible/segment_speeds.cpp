@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "multibody/dynamics.h"
-#include "multibody/passes.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/passes.h"
 
 namespace slew::multibody {
 namespace {

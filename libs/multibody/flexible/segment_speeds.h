@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "multibody/model.h"
+#include "multibody/model/model.h"
 
 namespace slew::multibody {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "math/vector3.h"
-#include "multibody/elements/beam.h"
+#include "multibody/forces/beam.h"
 
 namespace slew::multibody {
 

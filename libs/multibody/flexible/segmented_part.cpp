@@ -5,8 +5,8 @@
 
 #include "core/index.h"
 #include "multibody/flexible/expand_nodes.h"
-#include "multibody/observe.h"
-#include "multibody/topology.h"
+#include "multibody/model/observe.h"
+#include "multibody/model/topology.h"
 
 namespace slew::multibody {
 

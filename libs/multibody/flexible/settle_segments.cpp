@@ -6,10 +6,10 @@
 
 #include "core/index.h"
 #include "math/small_solve.h"
-#include "multibody/contact_passes.h"
+#include "multibody/contacts/contact_passes.h"
 #include "multibody/flexible/segmented_part.h"
-#include "multibody/observe.h"
-#include "multibody/passes.h"
+#include "multibody/formulations/passes.h"
+#include "multibody/model/observe.h"
 
 namespace slew::multibody {
 

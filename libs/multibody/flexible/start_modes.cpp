@@ -8,10 +8,10 @@
 
 #include "core/index.h"
 #include "math/small_cholesky.h"
-#include "multibody/elements/point_load.h"
-#include "multibody/observe.h"
-#include "multibody/passes.h"
-#include "multibody/state.h"
+#include "multibody/forces/point_load.h"
+#include "multibody/formulations/passes.h"
+#include "multibody/model/observe.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody {
 namespace {

@@ -1,7 +1,7 @@
 // Modal coordinates at the start. Internal to the library.
 #pragma once
 
-#include "multibody/model.h"
+#include "multibody/model/model.h"
 
 namespace slew::multibody {
 

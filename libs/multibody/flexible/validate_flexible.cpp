@@ -8,14 +8,14 @@
 #include <limits>
 #include <vector>
 
-#include "multibody/dynamics.h"
-#include "multibody/element_speeds.h"
-#include "multibody/field_tables.h"
 #include "multibody/flexible/elastic_law.h"
 #include "multibody/flexible/expand_nodes.h"
 #include "multibody/flexible/segment_speeds.h"
-#include "multibody/integrators.h"
-#include "multibody/passes.h"
+#include "multibody/forces/element_speeds.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/integrators.h"
+#include "multibody/formulations/passes.h"
+#include "multibody/model/field_tables.h"
 
 namespace slew::multibody {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/problem.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 
 namespace slew::multibody {
 

@@ -6,9 +6,9 @@
 
 #include "core/index.h"
 #include "multibody/flexible/expand_nodes.h"
-#include "multibody/joint_directions.h"
-#include "multibody/passes.h"
-#include "multibody/state.h"
+#include "multibody/formulations/passes.h"
+#include "multibody/joints/joint_directions.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody {
 

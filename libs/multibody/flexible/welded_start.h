@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "multibody/assembly.h"
-#include "multibody/topology.h"
+#include "multibody/build/assembly.h"
+#include "multibody/model/topology.h"
 
 namespace slew::multibody {
 

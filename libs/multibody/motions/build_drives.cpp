@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "multibody/constraint.h"
+#include "multibody/constraints/constraint.h"
 
 namespace slew::multibody {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "multibody/model.h"
+#include "multibody/model/model.h"
 
 namespace slew::multibody {
 

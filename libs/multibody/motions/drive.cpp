@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "multibody/state.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "core/index.h"
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 
 namespace slew::multibody {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/element_variable.h"
-#include "multibody/model.h"
+#include "multibody/model/model.h"
 
 namespace slew::multibody {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/field.h"
-#include "multibody/not_given.h"
+#include "multibody/model/not_given.h"
 
 namespace slew::multibody {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "multibody/field_tables.h"
+#include "multibody/model/field_tables.h"
 
 namespace slew::multibody {
 

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <string>
 
-#include "multibody/assembly.h"
-#include "multibody/elements/validate_elements.h"
-#include "multibody/field_tables.h"
+#include "multibody/build/assembly.h"
+#include "multibody/build/start_pose.h"
+#include "multibody/forces/validate_elements.h"
+#include "multibody/model/field_tables.h"
 #include "multibody/motions/build_drives.h"
-#include "multibody/start_pose.h"
 
 namespace slew::multibody {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "core/problem.h"
-#include "multibody/defs.h"
-#include "multibody/topology.h"
+#include "multibody/model/defs.h"
+#include "multibody/model/topology.h"
 
 namespace slew::multibody {
 

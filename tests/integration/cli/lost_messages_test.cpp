@@ -14,7 +14,7 @@
 #include "recording/reader.h"
 #include "recording/writer.h"
 #include "sample_hashes.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/wire.h"
 
 namespace slew::testing {

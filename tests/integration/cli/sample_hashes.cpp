@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "recording/reader.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::testing {
 

@@ -13,8 +13,8 @@
 #include "tests/integration/transport/child_process.h"
 #include "tests/integration/transport/waiting.h"
 #include "tests/support/test_domain.h"
-#include "transport/codec.h"
-#include "transport/cyclone_transport.h"
+#include "transport/cdr/codec.h"
+#include "transport/cyclone/cyclone_transport.h"
 #include "transport/protection.h"
 
 namespace slew::testing {

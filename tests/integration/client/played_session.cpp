@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "transport/codec.h"
-#include "transport/cyclone_transport.h"
+#include "transport/cdr/codec.h"
+#include "transport/cyclone/cyclone_transport.h"
 
 namespace {
 

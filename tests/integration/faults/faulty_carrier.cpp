@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "node/identity.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::testing {
 namespace {

@@ -15,7 +15,7 @@
 #include "node/physics_node.h"
 #include "recorder_node/recorder_node.h"
 #include "scene/scene.h"
-#include "transport/in_process_bus.h"
+#include "transport/in_process/in_process_bus.h"
 
 namespace slew::testing {
 

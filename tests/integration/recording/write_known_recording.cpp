@@ -9,7 +9,7 @@
 
 #include "build_paths.h"
 #include "recording/writer.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/topics.h"
 #include "wire_json.h"
 

@@ -14,7 +14,7 @@
 #include "program.h"
 #include "recorder_node/recorder_node.h"
 #include "scene/scene_options.h"
-#include "transport/in_process_bus.h"
+#include "transport/in_process/in_process_bus.h"
 
 namespace slew::testing {
 

@@ -17,7 +17,7 @@
 #include "program.h"
 #include "recorded_session.h"
 #include "support/test_domain.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/transport.h"
 #include "transport/wire.h"
 

@@ -10,8 +10,8 @@
 #include "tests/integration/transport/same_fields.h"
 #include "tests/support/random_message.h"
 #include "tests/support/test_domain.h"
-#include "transport/codec.h"
-#include "transport/cyclone_domain.h"
+#include "transport/cdr/codec.h"
+#include "transport/cyclone/cyclone_domain.h"
 #include "transport/topics.h"
 
 namespace slew::transport {

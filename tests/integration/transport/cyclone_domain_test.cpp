@@ -1,5 +1,5 @@
 // What a domain does to the program that opens it.
-#include "transport/cyclone_domain.h"
+#include "transport/cyclone/cyclone_domain.h"
 
 #include <gtest/gtest.h>
 #include <net/if.h>

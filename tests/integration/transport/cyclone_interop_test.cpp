@@ -10,8 +10,8 @@
 #include "tests/integration/transport/waiting.h"
 #include "tests/support/random_message.h"
 #include "tests/support/test_domain.h"
-#include "transport/codec.h"
-#include "transport/cyclone_transport.h"
+#include "transport/cdr/codec.h"
+#include "transport/cyclone/cyclone_transport.h"
 
 namespace slew::transport {
 namespace cyclone_interop_test {

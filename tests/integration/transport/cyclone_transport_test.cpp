@@ -1,4 +1,4 @@
-#include "transport/cyclone_transport.h"
+#include "transport/cyclone/cyclone_transport.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include "tests/integration/transport/child_process.h"
 #include "tests/integration/transport/waiting.h"
 #include "tests/support/test_domain.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 namespace slew::transport {
 namespace cyclone_transport_test {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "build_paths.h"
-#include "multibody/loops.h"
+#include "multibody/constraints/loops.h"
 #include "scene/scene.h"
 #include "tests/properties/multibody/random_loops.h"
 #include "tests/validation/multibody/crane_def.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "math/rotation.h"
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 
 namespace slew::multibody::testing {
 

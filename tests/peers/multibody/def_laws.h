@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "tests/peers/multibody/body_motion.h"
 
 namespace slew::multibody::testing {

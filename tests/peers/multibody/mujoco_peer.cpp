@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "multibody/topology.h"
+#include "multibody/model/topology.h"
 #include "tests/peers/multibody/def_laws.h"
 
 namespace slew::multibody::testing {

@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "multibody/topology.h"
+#include "multibody/model/topology.h"
 #include "tests/peers/multibody/simbody_frames.h"
 
 namespace slew::multibody::testing {

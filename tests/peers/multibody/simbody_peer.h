@@ -13,7 +13,7 @@
 #include <memory>
 #include <vector>
 
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 #include "tests/peers/multibody/body_motion.h"
 
 namespace slew::multibody::testing {

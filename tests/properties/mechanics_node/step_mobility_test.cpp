@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "mechanics_node/mechanics_subsystem.h"
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 #include "scene/scene.h"
 
 namespace slew::mechanics {

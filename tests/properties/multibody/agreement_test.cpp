@@ -1,7 +1,7 @@
 // The recursion against the assembled equations of motion (assembled.h) on random trees.
 #include <gtest/gtest.h>
 
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 #include "tests/properties/multibody/assembled.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"

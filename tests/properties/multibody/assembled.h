@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "multibody/defs.h"
 #include "multibody/flexible/expand_nodes.h"
-#include "multibody/model.h"
+#include "multibody/model/defs.h"
+#include "multibody/model/model.h"
 #include "tests/properties/multibody/random_modes.h"
 #include "tests/properties/multibody/reference_space.h"
 #include "tests/support/reference_algebra.h"

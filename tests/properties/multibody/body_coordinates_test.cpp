@@ -1,12 +1,12 @@
 // Body coordinates with multipliers against the recursion in joint coordinates, on random trees.
-#include "multibody/body_coordinates.h"
+#include "multibody/formulations/body_coordinates.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "multibody/dynamics.h"
-#include "multibody/loops.h"
+#include "multibody/constraints/loops.h"
+#include "multibody/formulations/dynamics.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/multibody/mechanism.h"

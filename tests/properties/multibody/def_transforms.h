@@ -1,8 +1,8 @@
 // The same mechanism somewhere else, or written in other units: what physics must not notice.
 #pragma once
 
-#include "multibody/model.h"
-#include "multibody/state.h"
+#include "multibody/model/model.h"
+#include "multibody/model/state.h"
 
 namespace slew::multibody::testing {
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "multibody/elements/element_set.h"
-#include "multibody/formulation.h"
+#include "multibody/forces/element_set.h"
+#include "multibody/formulations/formulation.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/multibody/mechanism.h"
 

@@ -2,8 +2,8 @@
 //   M u' = Q + J^T f,   J u' = 0,   J = e_2 - r e_1 for each gear.
 #include <gtest/gtest.h>
 
-#include "multibody/dynamics.h"
-#include "multibody/gears/gear.h"
+#include "multibody/constraints/gear.h"
+#include "multibody/formulations/dynamics.h"
 #include "tests/properties/multibody/assembled.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"

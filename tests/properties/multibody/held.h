@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "multibody/body_penalty.h"
-#include "multibody/observe.h"
+#include "multibody/formulations/body_penalty.h"
+#include "multibody/model/observe.h"
 
 namespace slew::multibody::testing {
 

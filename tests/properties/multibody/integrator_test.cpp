@@ -1,5 +1,5 @@
 // Integrators: order of convergence, energy, and agreement with each other, in both formulations.
-#include "multibody/integrators.h"
+#include "multibody/formulations/integrators.h"
 
 #include <gtest/gtest.h>
 

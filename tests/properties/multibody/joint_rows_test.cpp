@@ -2,8 +2,8 @@
 // coordinate's speed, or the axis in the speeds of the ball, W is what J M^-1 J^T has there, whatever the formulation.
 #include <gtest/gtest.h>
 
-#include "multibody/formulation.h"
-#include "multibody/joint_axes.h"
+#include "multibody/formulations/formulation.h"
+#include "multibody/joints/joint_axes.h"
 #include "tests/properties/multibody/assembled.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include "multibody/body_coordinates.h"
-#include "multibody/dynamics.h"
-#include "multibody/formulation.h"
-#include "multibody/loops.h"
-#include "multibody/topology.h"
+#include "multibody/constraints/loops.h"
+#include "multibody/formulations/body_coordinates.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/formulation.h"
+#include "multibody/model/topology.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/multibody/loop_defs.h"

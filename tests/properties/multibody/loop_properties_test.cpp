@@ -1,6 +1,6 @@
 // What random trees and loops keep in every formulation: degrees of freedom, momentum, rates that are derivatives, and
 // the same motion under each.
-#include "multibody/constraint.h"
+#include "multibody/constraints/constraint.h"
 #include "tests/properties/multibody/random_motion.h"
 #include "tests/support/nightly.h"
 #include "tests/support/reference_algebra.h"

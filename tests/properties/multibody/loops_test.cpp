@@ -1,15 +1,15 @@
 // Random mechanisms with loops, every joint type among those that close them, against the equations assembled from the
 // Def in long double: M u' + J^T lambda = Q, J u' = -J' u, solved by least squares so that redundant rows do no harm.
-#include "multibody/loops.h"
+#include "multibody/constraints/loops.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "multibody/body_coordinates.h"
-#include "multibody/constraint.h"
-#include "multibody/dynamics.h"
-#include "multibody/topology.h"
+#include "multibody/constraints/constraint.h"
+#include "multibody/formulations/body_coordinates.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/model/topology.h"
 #include "tests/properties/multibody/assembled.h"
 #include "tests/properties/multibody/random_loops.h"
 #include "tests/support/nightly.h"

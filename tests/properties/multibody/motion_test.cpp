@@ -2,8 +2,8 @@
 // put in: M_ff u'_f = Q_f - M_fd p'' for the free speeds, and the drives' forces from the rows that are left.
 #include <gtest/gtest.h>
 
-#include "multibody/dynamics.h"
-#include "multibody/joint_gauge.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/joints/joint_gauge.h"
 #include "multibody/motions/build_drives.h"
 #include "tests/properties/multibody/assembled.h"
 #include "tests/properties/multibody/random_tree.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "multibody/constraint.h"
-#include "multibody/dynamics.h"
+#include "multibody/constraints/constraint.h"
+#include "multibody/formulations/dynamics.h"
 #include "tests/properties/multibody/held.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 #include "tests/properties/multibody/held.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/support/nightly.h"

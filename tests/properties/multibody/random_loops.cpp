@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "multibody/topology.h"
+#include "multibody/model/topology.h"
 #include "tests/validation/multibody/angles.h"
 
 namespace slew::multibody::testing {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "multibody/loops.h"
+#include "multibody/constraints/loops.h"
 #include "tests/properties/multibody/random_loops.h"
 #include "tests/validation/multibody/mechanism.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "math/rotation.h"
-#include "multibody/topology.h"
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
+#include "multibody/model/topology.h"
 
 namespace slew::multibody::testing {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "multibody/defs.h"
-#include "multibody/state.h"
+#include "multibody/model/defs.h"
+#include "multibody/model/state.h"
 #include "tests/properties/multibody/random_modes.h"
 
 namespace slew::multibody::testing {

@@ -1,8 +1,8 @@
 // Reactions of random trees and loops: they do no work through any velocity that the joints allow, they and the weight
 // are what every body's momenta gain, and where rows are redundant they are the smallest ones, against a
 // pseudo-inverse. Redundant rows do not change the motion.
-#include "multibody/constraint.h"
-#include "multibody/joint_gauge.h"
+#include "multibody/constraints/constraint.h"
+#include "multibody/joints/joint_gauge.h"
 #include "tests/properties/multibody/random_motion.h"
 #include "tests/support/nightly.h"
 #include "tests/support/reference_algebra.h"

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 #include "tests/support/chain_def.h"
 #include "tests/validation/multibody/crane_def.h"
 #include "tests/validation/multibody/cylinder_bodies.h"

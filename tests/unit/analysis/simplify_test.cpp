@@ -7,8 +7,8 @@
 
 #include "build_paths.h"
 #include "core/failure.h"
-#include "multibody/model.h"
-#include "multibody/observe.h"
+#include "multibody/model/model.h"
+#include "multibody/model/observe.h"
 
 namespace slew::analysis {
 namespace simplify_test {

@@ -1,5 +1,5 @@
 // Rows of joints: against the motions that a joint allows, finite and exact, and against difference quotients.
-#include "multibody/constraint.h"
+#include "multibody/constraints/constraint.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <set>
 
-#include "multibody/parameters.h"
-#include "multibody/state.h"
+#include "multibody/model/parameters.h"
+#include "multibody/model/state.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {

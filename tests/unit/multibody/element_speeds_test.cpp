@@ -1,5 +1,5 @@
 // Limits of the explicit rules on springs and dampers, against their stability regions (Hairer and Wanner, IV.2).
-#include "multibody/element_speeds.h"
+#include "multibody/forces/element_speeds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // The gauge of open joints: what it shows of motions that are put there by hand.
-#include "multibody/joint_gauge.h"
+#include "multibody/joints/joint_gauge.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "multibody/formulation.h"
-#include "multibody/observe.h"
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
+#include "multibody/formulations/formulation.h"
+#include "multibody/model/observe.h"
 
 namespace slew::multibody {
 namespace joint_gauge_test {

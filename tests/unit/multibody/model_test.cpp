@@ -5,8 +5,8 @@
 #include <set>
 
 #include "core/allocation_guard.h"
-#include "multibody/joint_law.h"
-#include "multibody/parameters.h"
+#include "multibody/joints/joint_law.h"
+#include "multibody/model/parameters.h"
 #include "tests/validation/multibody/crane_def.h"
 #include "tests/validation/multibody/mechanism.h"
 

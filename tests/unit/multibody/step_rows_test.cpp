@@ -1,10 +1,10 @@
 // Rows over a step against dense algebra in joint coordinates: M^-1 K and M^-1 D are there the slopes of the
 // recursion's accelerations, found by differences, where the code under test assembles K and D in body coordinates.
-#include "multibody/step_rows.h"
+#include "multibody/constraints/step_rows.h"
 
 #include <random>
 
-#include "multibody/passes.h"
+#include "multibody/formulations/passes.h"
 #include "tests/properties/multibody/random_modes.h"
 #include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/mechanism.h"

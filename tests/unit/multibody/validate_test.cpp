@@ -1,5 +1,5 @@
 // Every rule of validate(): the path and the first words of the message.
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <memory>
 
-#include "multibody/field_tables.h"
-#include "multibody/integrators.h"
+#include "multibody/formulations/integrators.h"
+#include "multibody/model/field_tables.h"
 #include "tests/validation/multibody/crane_def.h"
 #include "tests/validation/multibody/mechanism.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/time.h"
 #include "node/session_member.h"
-#include "transport/in_process_bus.h"
+#include "transport/in_process/in_process_bus.h"
 
 namespace slew::node {
 namespace session_member_test {

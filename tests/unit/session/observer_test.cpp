@@ -8,7 +8,7 @@
 
 #include "core/failure.h"
 #include "node/driver.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/topics.h"
 
 namespace slew::session {

@@ -10,7 +10,7 @@
 #include "node/identity.h"
 #include "recording/writer.h"
 #include "tests/support/temporary_folder.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/topics.h"
 
 namespace slew::session {

@@ -11,7 +11,7 @@
 #include "recording/writer.h"
 #include "session/recorded.h"
 #include "tests/support/temporary_folder.h"
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/topics.h"
 
 namespace slew::session {

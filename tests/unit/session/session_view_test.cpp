@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 #include "transport/topics.h"
 
 namespace slew::session {

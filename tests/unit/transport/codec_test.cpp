@@ -1,4 +1,4 @@
-#include "transport/codec.h"
+#include "transport/cdr/codec.h"
 
 #include <gtest/gtest.h>
 

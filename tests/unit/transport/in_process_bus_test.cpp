@@ -1,4 +1,4 @@
-#include "transport/in_process_bus.h"
+#include "transport/in_process/in_process_bus.h"
 
 #include <gtest/gtest.h>
 

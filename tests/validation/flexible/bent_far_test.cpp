@@ -1,8 +1,8 @@
 // Loads far beyond what small-deflection theory carries: flagged or refused by name, never silent; and what modes
 // cannot do at all. Figures: docs/extremes.md.
+#include "multibody/build/validate.h"
 #include "multibody/flexible/deflection.h"
-#include "multibody/observe.h"
-#include "multibody/validate.h"
+#include "multibody/model/observe.h"
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {

@@ -1,6 +1,6 @@
 // Compression of a cantilever close to Euler's load: geometric stiffening of the floating frame, segments, and the
 // linear body that knows nothing of it. Reference: slender_beam.h. Figures: docs/extremes.md.
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 #include "tests/validation/flexible/strip.h"
 
 namespace slew::multibody {

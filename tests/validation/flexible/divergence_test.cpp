@@ -9,8 +9,8 @@
 
 #include "mechanics_node/divergence.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "multibody/field_tables.h"
 #include "multibody/flexible/deflection.h"
+#include "multibody/model/field_tables.h"
 #include "tests/support/mechanics_alone.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/flexible/strip.h"

@@ -2,8 +2,8 @@
 // communication step. Explicit rules are refused by name, implicit ones keep the slow motion and the sag. Figures:
 // docs/extremes.md.
 #include "mechanics_node/mechanics_subsystem.h"
+#include "multibody/build/validate.h"
 #include "multibody/flexible/deflection.h"
-#include "multibody/validate.h"
 #include "scene/scene.h"
 #include "tests/validation/flexible/strip.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "scene/modal_body.h"
 #include "tests/support/flex_beams.h"
 

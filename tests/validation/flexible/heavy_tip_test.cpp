@@ -2,7 +2,7 @@
 // segments. The strip is let go straight: w = -w_s (1 - cos(omega t)), 3 E I/(m L^3) = omega^2 = g/w_s to 5e-6.
 #include <span>
 
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
 #include "tests/support/nightly.h"
 #include "tests/validation/flexible/strip.h"
 

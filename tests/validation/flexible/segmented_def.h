@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 #include "scene/segment_chain.h"
 #include "tests/support/flex_beams.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "multibody/flexible/segment_speeds.h"
-#include "multibody/passes.h"
+#include "multibody/formulations/passes.h"
 #include "tests/validation/flexible/segmented_def.h"
 #include "tests/validation/flexible/small_motion.h"
 #include "tests/validation/multibody/csv_table.h"

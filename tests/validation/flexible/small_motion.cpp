@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "multibody/passes.h"
+#include "multibody/formulations/passes.h"
 #include "tests/support/reference_algebra.h"
 #include "tests/validation/multibody/mechanism.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 
 namespace slew::multibody::testing {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "multibody/passes.h"
+#include "multibody/formulations/passes.h"
 #include "tests/validation/flexible/flexible_def.h"
 #include "tests/validation/flexible/segmented_def.h"
 #include "tests/validation/flexible/slender_beam.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "monolith/mechanics_reference.h"
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {

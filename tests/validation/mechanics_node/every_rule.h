@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "multibody/integrators.h"
+#include "multibody/formulations/integrators.h"
 
 namespace slew::testing {
 

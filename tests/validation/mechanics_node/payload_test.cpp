@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <string>
 
-#include "multibody/model.h"
+#include "multibody/model/model.h"
 #include "scene/scene.h"
 
 namespace slew::testing {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "multibody/field_tables.h"
-#include "multibody/integrators.h"
+#include "multibody/formulations/integrators.h"
+#include "multibody/model/field_tables.h"
 #include "support/mechanics_alone.h"
 
 namespace slew::testing {

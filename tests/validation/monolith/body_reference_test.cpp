@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 #include "tests/properties/multibody/random_tree.h"
 #include "tests/validation/multibody/governor_def.h"
 #include "tests/validation/multibody/loop_defs.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "multibody/observe.h"
+#include "multibody/model/observe.h"
 #include "tests/validation/multibody/governor_def.h"
 #include "tests/validation/multibody/loop_defs.h"
 

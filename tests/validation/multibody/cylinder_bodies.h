@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "multibody/defs.h"
-#include "multibody/topology.h"
+#include "multibody/model/defs.h"
+#include "multibody/model/topology.h"
 #include "tests/validation/multibody/angles.h"
 
 namespace slew::multibody::testing {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "multibody/parameters.h"
+#include "multibody/model/parameters.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {

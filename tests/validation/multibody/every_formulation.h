@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "multibody/joint_gauge.h"
+#include "multibody/joints/joint_gauge.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody::testing {

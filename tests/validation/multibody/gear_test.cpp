@@ -7,8 +7,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "multibody/gears/gear.h"
-#include "multibody/integrators.h"
+#include "multibody/constraints/gear.h"
+#include "multibody/formulations/integrators.h"
 #include "tests/validation/multibody/mechanism.h"
 
 namespace slew::multibody {

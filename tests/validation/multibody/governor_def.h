@@ -5,7 +5,7 @@
 #include <string>
 
 #include "math/vector3.h"
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 
 namespace slew::multibody::testing {
 

@@ -3,7 +3,7 @@
 //
 // A body of 10 kg with its centre at (0.3, -0.2, 0.1); statics by hand, 1e-10.
 // Figures: docs/validation/A10_joints.md.
-#include "multibody/loops.h"
+#include "multibody/constraints/loops.h"
 #include "tests/validation/multibody/angles.h"
 #include "tests/validation/multibody/every_formulation.h"
 

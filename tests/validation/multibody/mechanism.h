@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "multibody/dynamics.h"
-#include "multibody/formulation.h"
-#include "multibody/observe.h"
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/formulation.h"
+#include "multibody/model/observe.h"
 
 namespace slew::multibody::testing {
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <tuple>
 
-#include "multibody/joint_gauge.h"
+#include "multibody/joints/joint_gauge.h"
 #include "tests/validation/multibody/choices.h"
 #include "tests/validation/multibody/loop_defs.h"
 #include "tests/validation/multibody/mechanism.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "multibody/defs.h"
+#include "multibody/model/defs.h"
 
 namespace slew::multibody::testing {
 

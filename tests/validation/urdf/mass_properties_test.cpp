@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
 #include "tests/validation/urdf/imported.h"
 
 namespace slew::urdf {

@@ -1,7 +1,7 @@
 // Contact at its limits: each ends finite and bounded, or is named.
 #include <gtest/gtest.h>
 
-#include "multibody/dynamics.h"
+#include "multibody/formulations/dynamics.h"
 #include "scene_cases.h"
 #include "support/nightly.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "multibody/validate.h"
+#include "multibody/build/validate.h"
 #include "scene_cases.h"
 #include "support/nightly.h"
 

@@ -1,0 +1,26 @@
+// Where a joint of the tree wants the frame of its second body at the start. Internal to the library.
+#pragma once
+
+#include <array>
+
+#include "multibody/model/topology.h"
+
+namespace slew::multibody {
+
+// Frame 2 moved to the nearest pose that the joint allows: the point first, then the smallest turn.
+[[nodiscard]] Pose nearest_frame(JointType type, const JointFrames& frames) noexcept;
+
+// Coordinates of a joint at the start, as model.h lists them, unused ones zero: angles in (-pi, pi].
+[[nodiscard]] std::array<double, 2> start_coordinates(JointType type, const JointFrames& frames) noexcept;
+
+// Frame 2 for given coordinates. Pre-condition: the joint has one or two.
+[[nodiscard]] Pose frame_at(JointType type, const Pose& frame1, const std::array<double, 2>& q) noexcept;
+
+// Coordinates of a universal joint, and where they have frame 2.
+struct UniversalStart {
+  double q1 = 0, q2 = 0;  // rad
+  math::Mat3 R;           // R_W2
+};
+[[nodiscard]] UniversalStart universal_start(const JointFrames& frames) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "multibody/build/assembly.h"
+#include "multibody/build/validate.h"
+#include "multibody/flexible/deflection.h"
+#include "multibody/model/body_inertia.h"
+#include "multibody/model/observe.h"
+#include "multibody/model/topology.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+// a body's mass may lie outside of its points, but hardly by more than this
+constexpr double kLargestGyration = 3;
+
+void find_start_deflections(const Model& model, Problems& warnings) {
+  for (const FlexiblePart& part : model.parts) {
+    if (model.has_closing_rows() && !part.is_start_given) {
+      warnings.push_back(
+          {part.name + ".flex_modes",
+           "the body starts undeformed, moves as a rigid one that the joints allow, and swings: in a mechanism with "
+           "loops no rest is looked for",
+           "nothing to do, or damping that ends it", ""});
+    }
+    const std::span<const double> q(model.start_q.data() + part.q, part.modes);
+    const LargestDeflection largest = largest_deflection(*part.source, part.watched, q);
+    const double share = largest.size / part.length;
+    if (!(share > kSmallDeflection)) continue;
+    warnings.push_back(
+        {part.name + ".flex_modes",
+         fmt::format("node {} is {:.3g} m off at the start, {:.0f} % of the body's length: the theory is "
+                     "one of small deflections",
+                     largest.node, largest.size, 100 * share),
+         fmt::format("deflections below {:.0f} %", 100 * kSmallDeflection), ""});
+  }
+}
+
+void find_start_bends(const Model& model, Problems& warnings) {
+  Workspace ws(model);
+  observe(model, start_state(model), ws);
+  for (const SegmentedPart& part : model.segmented) {
+    if (!part.is_free || (model.has_closing_rows() && part.start == SegmentStart::at_rest)) {
+      warnings.push_back({part.name + ".segments",
+                          part.is_free ? "the body starts undeformed, moves as a rigid one that the joints allow, and "
+                                         "swings: in a mechanism with loops no rest is looked for"
+                                       : "the body starts undeformed, moves as a rigid one that the joints allow, and "
+                                         "swings: no rest is looked for where joints hold more of it than its root",
+                          "nothing to do, or damping that ends it", ""});
+    }
+    const LargestBend bend = largest_bend(model, part, ws);
+    if (!(bend.angle > kLargestBend)) continue;
+    warnings.push_back({part.name + ".segments",
+                        fmt::format("segments are turned by {:.3g} rad against each other at the start, at connector "
+                                    "{} of {}: a connector is good for small turns",
+                                    bend.angle, bend.connector + 1, part.source->connectors.size()),
+                        fmt::format("so many segments that none turns by more than {} rad", kLargestBend), ""});
+  }
+}
+
+}  // namespace
+
+void find_start_changes(const MechanicsDef& mechanics, Problems& warnings) {
+  const Model model = build_model(mechanics);
+  Workspace ws(model);
+  State state = start_state(model);
+  for_each_mode(model, [&](std::size_t q, std::size_t) { state.q[q] = 0; });
+  straighten_segments(model, state.q, state.u);
+  observe(model, state, ws);
+  Problems ignored;
+  const std::vector<Pose> wanted = start_poses(mechanics, ignored);
+  for (std::size_t b = 1; b < wanted.size(); ++b) {
+    const BodyPose found = body_pose(model, ws, static_cast<int>(b));
+    const double shift = math::norm(Vec3(found.position) - wanted[b].p);
+    const auto [w, x, y, z] = found.orientation;
+    const double turn = math::rotation_angle(math::rotation_of({w, x, y, z}) * math::transpose(wanted[b].R));
+    if (shift <= kFrameTolerance && turn <= kFrameTolerance) continue;
+    warnings.push_back(
+        {model.bodies[b].name + ".position",
+         fmt::format("the joints were open at the start: this body was moved by {:.3g} m and turned by {:.3g} rad",
+                     shift, turn),
+         "poses that fit the joints", ""});
+  }
+  find_start_deflections(model, warnings);
+  find_start_bends(model, warnings);
+  const Description description = describe(model);
+  for (const CutDescription& cut : description.cuts) {
+    for (const std::string& row : cut.redundant) {
+      warnings.push_back({cut.joint, row + " is redundant: other joints hold it already",
+                          "nothing to do: motion is right, reactions are the smallest that fit", ""});
+    }
+  }
+  for (const std::string& gear : description.idle_gears) {
+    warnings.push_back({gear, "the gear is redundant: joints or other gears hold its ratio already",
+                        "nothing to do: motion is right, this gear carries no force", ""});
+  }
+}
+
+void find_unlikely_inertia(const MechanicsDef& mechanics, Problems& warnings) {
+  const BodyNumbers number_of(mechanics);
+  std::vector<double> extent(mechanics.bodies.size() + 1, 0);
+  const auto see = [&](const std::string& owner, const Triple& point) {
+    const int number = number_of(owner);
+    if (number == kGround || number == kNoBody) return;
+    const BodyDef& body = mechanics.bodies[static_cast<std::size_t>(number) - 1];
+    double& reach = extent[static_cast<std::size_t>(number)];
+    reach = std::max(reach, math::norm(Vec3(point) - Vec3(body.center_of_mass)));
+  };
+  for (const JointDef& joint : mechanics.joints) see(joint.body1, joint.point1), see(joint.body2, joint.point2);
+  for (const TranslationalForceDef& force : mechanics.translational_forces) {
+    see(force.body1, force.point1), see(force.body2, force.point2);
+  }
+  for (std::size_t b = 0; b < mechanics.bodies.size(); ++b) {
+    const BodyDef& body = mechanics.bodies[b];
+    if (body.type != BodyType::rigid) continue;
+    const double largest = math::symmetric_eigenvalues(inertia_about_center(body))[2];
+    const double gyration = std::sqrt(std::max(0.0, largest) / body.mass);
+    // a body whose points all lie in its centre says nothing about its size
+    if (extent[b + 1] == 0 || gyration <= kLargestGyration * extent[b + 1]) continue;
+    warnings.push_back({body.name + ".inertia",
+                        fmt::format("the radius of gyration is {:.3g} m, all points on the body are within {:.3g} m of "
+                                    "its centre of mass",
+                                    gyration, extent[b + 1]),
+                        "the inertia about inertia_about, in kg m2", ""});
+  }
+}
+
+}  // namespace slew::multibody

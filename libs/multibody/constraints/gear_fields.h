@@ -1,0 +1,13 @@
+// Field tables of gears. Internal to the library.
+#pragma once
+
+#include <span>
+
+#include "multibody/model/field_tables.h"
+
+namespace slew::multibody {
+
+// By GearKind.
+[[nodiscard]] std::span<const ElementType> gear_types() noexcept;
+
+}  // namespace slew::multibody

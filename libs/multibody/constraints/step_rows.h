@@ -1,0 +1,63 @@
+// The rows of a mechanism over a whole step H: free acceleration and mobility with the springs and dampers inside.
+//
+// At an instant (dynamics.h) a row answers with the mass that hangs on it rigidly, M^-1. Over a step whatever is soft
+// behind it answers as well: modes, beams between segments, bushings, spring-dampers, tyres, contacts. With the
+// acceleration a constant over the step their forces at its end are those of
+//   u + H a,   q (+) (H u + H^2/2 a)                                                                              (1)
+// so that, with K and D their stiffness and damping and G the joints' rows,
+//   [ M + H D + H^2/2 K  G^T ] [ a  ]   [ Q - H K u + J^T f ]
+//   [ G                  0   ] [ mu ] = [ -b                ]                                                     (2)
+//   x'' = a_free + W f                                                                                            (3)
+// The implicit Euler method has H^2 in the place of H^2/2: there a mode much faster than H comes to rest within the
+// step, and its oil sees half of its compliance. With H^2/2 the displacement H^2/2 a of a stiff spring is f/k.
+// Against each other and against steps of their own: docs/models/coupling_levels.md.
+//
+// M, K, D and G in body coordinates (body_coordinates.h, integrators.h), whatever the formulation: K and D as an
+// implicit step has them, positive semi-definite. In H K u pulls are left out, which turn with the links.
+// Not covered: laws of rows, joint friction and limits among them, which their owner condenses on top; changes of G and
+// of the velocity terms over H; stops and contacts that are reached within it.
+//
+// Cost: one factorisation in body coordinates and one solution a row, as an evaluation of `lagrange`. Nothing but the
+// constructor allocates.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "multibody/formulations/body_coordinates.h"
+
+namespace slew::multibody {
+
+// Shares of (2): position of H^2 K, rate of H D, strain of H K u. Those of (1), or those with which the trapezoidal
+// rule answers a force that is held: (M + H/2 D + H^2/4 K) a = Q - H/2 K u + J^T F, exact for what is linear.
+struct StepShares {
+  double position = 0.5, rate = 1, strain = 1;
+};
+inline constexpr StepShares kTrapezoidalShares{0.25, 0.5, 0.5};
+
+class StepRows {
+ public:
+  // Allocates. evaluate() takes any model of the same mechanism.
+  explicit StepRows(const Model& model);
+
+  // (2) over H [s], for the rows that are active in `at`. False: singular to working precision.
+  [[nodiscard]] bool evaluate(const Model& model, const State& state, const Workspace& at, double H,
+                              StepShares shares = {}) noexcept;
+
+  // After evaluate(), laid out as row_free_accelerations() and row_mobility() of dynamics.h.
+  [[nodiscard]] std::span<const double> free_accelerations() const noexcept { return ws_.row_a_free; }
+  [[nodiscard]] std::span<const double> mobility() const noexcept { return ws_.row_W; }
+
+ private:
+  void subtract_strain(const Model& model, double H) noexcept;
+
+  BodyModel body_;
+  Workspace ws_;
+  BodyWorkspace bws_;
+  std::vector<double> strain_;  // H K u by first_row()
+};
+
+// Whether anything in the mechanism has K or D.
+[[nodiscard]] bool has_springs(const Model& model) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,104 @@
+#include "multibody/constraints/validate_gears.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "multibody/build/assembly.h"
+#include "multibody/build/start_pose.h"
+#include "multibody/constraints/gear.h"
+#include "multibody/model/field_tables.h"
+
+namespace slew::multibody {
+namespace {
+
+class GearRules {
+ public:
+  GearRules(const MechanicsDef& mechanics, Problems& problems) : m_(mechanics), problems_(problems) {}
+
+  bool check(const GearDef& gear) {
+    const bool both = check_joint(gear, "joint1", gear.joint1, 0) & check_joint(gear, "joint2", gear.joint2, 1);
+    if (!both || gear.joint1 != gear.joint2) return both;
+    add(gear.name + ".joint2", fmt::format("both joints are '{}'", gear.joint2), "two different joints");
+    return false;
+  }
+
+  void check_start(const GearDef& gear, std::span<const Pose> poses, const std::vector<TreeEdge>& tree) {
+    bool is_in_tree = true;
+    for (const auto& [key, name] : {std::pair("joint1", &gear.joint1), {"joint2", &gear.joint2}}) {
+      const auto index = static_cast<int>(joint_of(*name) - m_.joints.data());
+      const bool is_there = std::any_of(tree.begin(), tree.end(), [&](const TreeEdge& e) { return e.joint == index; });
+      is_in_tree = is_in_tree && is_there;
+      if (is_there) continue;
+      add(fmt::format("{}.{}", gear.name, key), fmt::format("'{}' closes a loop of geared and fixed joints", *name),
+          "one joint of every loop without a gear");
+    }
+    if (!is_in_tree || !is_given(gear.offset)) return;
+    const double q1 = start_of(gear.joint1, poses), q2 = start_of(gear.joint2, poses);
+    double gap = q2 - gear.ratio * q1 - gear.offset;
+    if (gear.kind == GearKind::gear) gap = std::remainder(gap, 2 * std::numbers::pi);
+    const double tolerance = std::max(m_.assembly_tolerance, kFrameTolerance);
+    if (std::fabs(gap) <= tolerance) return;
+    const char* unit = is_angle(gear.kind, 1) ? "rad" : "m";
+    add(gear.name + ".offset",
+        fmt::format("the poses have '{}' at {:.6g} {}, the gear at {:.6g} {}", gear.joint2, q2, unit, q2 - gap, unit),
+        fmt::format("poses that fit the gear within {} {} (mechanics.assembly_tolerance), or no offset", tolerance,
+                    unit));
+  }
+
+ private:
+  void add(std::string path, std::string what, std::string expected) {
+    problems_.push_back({std::move(path), std::move(what), std::move(expected), {}});
+  }
+
+  [[nodiscard]] const JointDef* joint_of(const std::string& name) const {
+    const auto found =
+        std::find_if(m_.joints.begin(), m_.joints.end(), [&](const JointDef& joint) { return joint.name == name; });
+    return found == m_.joints.end() ? nullptr : &*found;
+  }
+
+  bool check_joint(const GearDef& gear, const char* key, const std::string& name, std::size_t end) {
+    const JointDef* joint = joint_of(name);
+    const std::string path = fmt::format("{}.{}", gear.name, key);
+    if (joint == nullptr) {
+      add(path, fmt::format("there is no joint '{}'", name), "the name of a joint");
+      return false;
+    }
+    const bool needs_angle = is_angle(gear.kind, end);
+    if (joint->type == (needs_angle ? JointType::revolute : JointType::prismatic)) return true;
+    const std::string type(sections()[1].types[static_cast<std::size_t>(joint->type)].name);
+    add(path, fmt::format("the joint '{}' is {}", name, type),
+        needs_angle ? "a revolute joint, which has an angle and nothing else"
+                    : "a prismatic joint, which has a displacement and nothing else");
+    return false;
+  }
+
+  [[nodiscard]] double start_of(const std::string& name, std::span<const Pose> poses) const {
+    const JointDef& joint = *joint_of(name);
+    const Pose& body1 = poses[static_cast<std::size_t>(find_body(m_, joint.body1))];
+    const Pose& body2 = poses[static_cast<std::size_t>(find_body(m_, joint.body2))];
+    return start_coordinate(joint.type, joint_frames(joint, body1, body2));
+  }
+
+  const MechanicsDef& m_;
+  Problems& problems_;
+};
+
+}  // namespace
+
+bool check_gears(const MechanicsDef& mechanics, Problems& problems) {
+  GearRules rules(mechanics, problems);
+  bool is_sound = true;
+  for (const GearDef& gear : mechanics.gears) is_sound = rules.check(gear) && is_sound;
+  return is_sound;
+}
+
+void check_gear_starts(const MechanicsDef& mechanics, std::span<const Pose> poses, const std::vector<TreeEdge>& tree,
+                       Problems& problems) {
+  GearRules rules(mechanics, problems);
+  for (const GearDef& gear : mechanics.gears) rules.check_start(gear, poses, tree);
+}
+
+}  // namespace slew::multibody

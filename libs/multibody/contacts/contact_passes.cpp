@@ -1,0 +1,307 @@
+#include "multibody/contacts/contact_passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "contact/sweep.h"
+#include "core/index.h"
+#include "math/rotation.h"
+#include "multibody/contacts/contact_rate.h"
+
+namespace slew::multibody {
+
+using contact::ContactPair;
+using contact::ContactPoint;
+using contact::RememberedContact;
+using math::Mat3;
+using math::Vec3;
+
+namespace {
+
+// a way that leads into something thin is taken in parts of a quarter of its half thickness, but not in more than this;
+// stiff contacts may ask for more
+constexpr double kPartsPerThickness = 4;
+constexpr double kMostParts = 256;
+// a sub-step that is a multiple but for rounding does not get one part more
+constexpr double kContactRounding = 1e-9;
+
+void place_frames(const ContactElements& elements, const Workspace& ws, std::span<contact::Pose> poses) noexcept {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const ContactFrame& frame = elements.frames[i];
+    const LinkMotion& link = ws.motion[at(frame.link)];
+    poses[i] = {link.p + link.R * frame.p_LB, link.R * frame.R_LB};
+  }
+}
+
+void note_start(const ContactElements& elements, const Workspace& ws, ContactWorkspace& contacts) noexcept {
+  for (std::size_t i = 0; i < contacts.poses.size(); ++i) {
+    const LinkMotion& link = ws.motion[at(elements.frames[i].link)];
+    const Vec3 arm = contacts.poses[i].p_WF - link.p;
+    contacts.start_poses[i] = contacts.poses[i];
+    contacts.start_speeds[i] = {link.v + cross(link.w, arm), link.w};
+  }
+  std::fill(contacts.was_touching.begin(), contacts.was_touching.end(), static_cast<unsigned char>(0));
+  for (const ContactPoint& point : contacts.set.points()) contacts.was_touching[point.pair] = 1;
+}
+
+// A contact point between the material of two frames.
+struct Touch {
+  const ContactElements& elements;
+  const ContactWorkspace& contacts;
+  const Workspace& ws;
+  const ContactPoint& point;
+  std::size_t a, b;  // frames
+
+  [[nodiscard]] Vec3 velocity_of(std::size_t frame) const noexcept {
+    const LinkMotion& link = ws.motion[at(elements.frames[frame].link)];
+    return link.v + cross(link.w, point.p_W - link.p);
+  }
+  // from the frame's origin to the material that is here now, as it stood at the start
+  [[nodiscard]] Vec3 arm_at_start(std::size_t frame) const noexcept {
+    const contact::Pose& pose = contacts.poses[frame];
+    return contacts.start_poses[frame].R_WF * transpose_multiply(pose.R_WF, point.p_W - pose.p_WF);
+  }
+  [[nodiscard]] Vec3 way_of(std::size_t frame) const noexcept {
+    return point.p_W - contacts.start_poses[frame].p_WF - arm_at_start(frame);
+  }
+  [[nodiscard]] Vec3 start_velocity_of(std::size_t frame) const noexcept {
+    return contacts.start_speeds[frame].v_W + cross(contacts.start_speeds[frame].w_W, arm_at_start(frame));
+  }
+  [[nodiscard]] Vec3 velocity() const noexcept { return velocity_of(a) - velocity_of(b); }
+  [[nodiscard]] Vec3 mean_velocity() const noexcept { return (way_of(a) - way_of(b)) * (1 / contacts.time); }
+  // speeds at which the shapes go deeper [m/s]
+  [[nodiscard]] double rate() const noexcept { return -dot(point.n_W, velocity()); }
+  [[nodiscard]] double start_rate() const noexcept {
+    return -dot(point.n_W, start_velocity_of(a) - start_velocity_of(b));
+  }
+};
+
+// (1), (2): what the contact remembers, from the start of the sub-step to now; its normal force
+contact::NormalForce carry(const ContactPair& pair, const Touch& touch, RememberedContact& state) noexcept {
+  const ContactPoint& point = touch.point;
+  const double rate = touch.rate();
+  const bool is_new = state.normal.impact_speed == 0;
+  if (is_new && touch.contacts.time > 0) observe(pair.normal, 0, touch.start_rate(), state.normal);
+  observe(pair.normal, point.depth, rate, state.normal);
+  const contact::NormalForce normal = evaluate(pair.normal, point.share, point.depth, rate, state.normal);
+  if (pair.has_friction && !is_new && touch.contacts.time > 0) {
+    const contact::SlidingContact sliding{point.n_W, touch.mean_velocity(), normal.force, point.share};
+    state.friction.z_W = evaluate(pair.friction, sliding, touch.contacts.time, state.friction).z_W;
+  }
+  return normal;
+}
+
+ContactForce force_at(const ContactPair& pair, const Touch& touch, RememberedContact& state) noexcept {
+  const ContactPoint& point = touch.point;
+  const contact::NormalForce normal = carry(pair, touch, state);
+  ContactForce out{.pair = touch.elements.pair_of_tested[point.pair],
+                   .frame_a = static_cast<int>(touch.a),
+                   .frame_b = static_cast<int>(touch.b),
+                   .p_W = point.p_W,
+                   .n_W = point.n_W,
+                   .normal_W = point.n_W * normal.force,
+                   .friction_W = Vec3(),
+                   .depth = point.depth,
+                   .depth_rate = touch.rate(),
+                   .energy = stored_energy(pair.normal, point.share, point.depth)};
+  if (pair.has_friction) {
+    const contact::SlidingContact sliding{point.n_W, touch.velocity(), normal.force, point.share};
+    out.friction_W = -evaluate(pair.friction, sliding, 0, state.friction).f_W;
+    out.energy += stored_energy(pair.friction, point.share, state.friction);
+  }
+  return out;
+}
+
+Touch touch_of(const ContactElements& elements, const Workspace& ws, const ContactPoint& point) noexcept {
+  const ContactPair& pair = elements.model.pairs()[point.pair];
+  return {
+      elements, *ws.contact, ws, point, elements.model.frame_of(pair.shape_a), elements.model.frame_of(pair.shape_b)};
+}
+
+// pairs that were apart at the start and are apart now, or touch from the other side, but met on the way
+bool find_passed(const ContactElements& elements, ContactWorkspace& contacts) noexcept {
+  const std::span<const ContactPoint> points = contacts.set.points();
+  for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
+    if (contacts.was_touching[pair] != 0) continue;
+    const contact::Meeting meeting = sweep(elements.model, pair, contacts.start_poses, contacts.poses, contacts.set);
+    if (meeting.kind == contact::Meeting::Kind::none) continue;
+    const auto at_end =
+        std::find_if(points.begin(), points.end(), [pair](const ContactPoint& point) { return point.pair == pair; });
+    const bool is_seen =
+        meeting.kind == contact::Meeting::Kind::found && at_end != points.end() && dot(at_end->n_W, meeting.n_W) > 0;
+    if (!is_seen) return true;
+  }
+  return false;
+}
+
+// where the speeds of the start lead within h
+void look_ahead(double h, ContactWorkspace& contacts) noexcept {
+  for (std::size_t i = 0; i < contacts.ahead.size(); ++i) {
+    const contact::Pose& from = contacts.start_poses[i];
+    const ContactWorkspace::FrameSpeed& speed = contacts.start_speeds[i];
+    const Vec3 half = speed.w_W * (0.5 * h);
+    const Mat3 turn = math::rotation_of(math::normalized({1, half[0], half[1], half[2]}));
+    contacts.ahead[i] = {from.p_WF + speed.v_W * h, turn * from.R_WF};
+  }
+}
+
+}  // namespace
+
+ContactWorkspace::ContactWorkspace(const ContactElements& elements)
+    : set(elements.model),
+      before(elements.model),
+      now(elements.model),
+      poses(elements.frames.size()),
+      start_poses(elements.frames.size()),
+      ahead(elements.frames.size()),
+      start_speeds(elements.frames.size()),
+      was_touching(elements.model.pairs().size()),
+      forces(elements.model.pairs().size() * contact::kMaxPointsPerPair) {
+  int last = 0;
+  for (const ContactFrame& frame : elements.frames) last = std::max(last, frame.link);
+  rates.resize(at(last) + 1);
+}
+
+void begin_contacts(const Model& model, const State& state, Workspace& ws) noexcept {
+  if (model.contact == nullptr) return;
+  ws.contact->time = 0;
+  ws.contact->is_near = true;
+  ws.contact->before.assign(state.contacts);
+}
+
+void update_contacts(const Model& model, Workspace& ws) noexcept {
+  if (model.contact == nullptr) return;
+  const ContactElements& elements = *model.contact;
+  ContactWorkspace& contacts = *ws.contact;
+  contacts.force_count = 0;
+  if (!contacts.is_near) return;
+  place_frames(elements, ws, contacts.poses);
+  find_contacts(elements.model, contacts.poses, contacts.set);
+  if (contacts.time == 0) note_start(elements, ws, contacts);
+  const std::span<const ContactPoint> points = contacts.set.points();
+  contacts.force_count = points.size();
+  if (points.empty()) return;
+  contacts.now.follow(contacts.before, elements.model, contacts.poses, contacts.set);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ContactPair& pair = elements.model.pairs()[points[i].pair];
+    contacts.forces[i] = force_at(pair, touch_of(elements, ws, points[i]), contacts.now.states()[i]);
+  }
+}
+
+void apply_contacts(const Model& model, Workspace& ws) noexcept {
+  if (model.contact == nullptr) return;
+  const auto push = [&](int frame, Vec3 point, Vec3 force) {
+    const int link = model.contact->frames[at(frame)].link;
+    ArticulatedInertia& body = ws.inertia[at(link)];
+    body.f -= force;
+    body.n -= cross(point - ws.motion[at(link)].p, force);
+  };
+  for (std::size_t i = 0; i < ws.contact->force_count; ++i) {
+    const ContactForce& force = ws.contact->forces[i];
+    const Vec3 F = force.normal_W + force.friction_W;
+    push(force.frame_a, force.p_W, F);
+    push(force.frame_b, force.p_W, -F);
+  }
+}
+
+ContactSlopes slopes_of_contact(const Model& model, const Workspace& ws, std::size_t index,
+                                ChangeWeights weights) noexcept {
+  const ContactElements& elements = *model.contact;
+  const ContactPoint& point = ws.contact->set.points()[index];
+  const ContactPair& pair = elements.model.pairs()[point.pair];
+  const RememberedContact& state = ws.contact->now.states()[index];
+  const Touch touch = touch_of(elements, ws, point);
+  const contact::NormalForce normal = evaluate(pair.normal, point.share, point.depth, touch.rate(), state.normal);
+  ContactSlopes slopes{.link_a = elements.frames[touch.a].link,
+                       .link_b = elements.frames[touch.b].link,
+                       .n_W = point.n_W,
+                       .along = weights.position * normal.d_depth + weights.rate * normal.d_depth_rate,
+                       .of_share = weights.position * normal.force / point.depth,
+                       .tangential = Mat3()};
+  if (!pair.has_friction) return slopes;
+  contact::SlidingContact sliding{point.n_W, touch.velocity(), normal.force, point.share};
+  slopes.tangential = evaluate(pair.friction, sliding, 0, state.friction).d_velocity * weights.rate;
+  // bristles bend with the mean velocity since the start
+  const double time = ws.contact->time;
+  if (!(time > 0)) return slopes;
+  sliding.v_W = touch.mean_velocity();
+  const Mat3 bending = evaluate(pair.friction, sliding, time, state.friction).d_velocity -
+                       evaluate(pair.friction, sliding, 0, state.friction).d_velocity;
+  slopes.tangential += bending * (weights.position / time);
+  return slopes;
+}
+
+void accept_contacts(const Model& model, double h, State& state, Workspace& ws) noexcept {
+  if (model.contact == nullptr || !ws.contact->is_near) return;
+  const ContactElements& elements = *model.contact;
+  ContactWorkspace& contacts = *ws.contact;
+  contacts.time = h;
+  place_frames(elements, ws, contacts.poses);
+  find_contacts(elements.model, contacts.poses, contacts.set);
+  contacts.is_lost = find_passed(elements, contacts) || contacts.is_lost;
+  state.contacts.follow(contacts.before, elements.model, contacts.poses, contacts.set);
+  const std::span<const ContactPoint> points = contacts.set.points();
+  contacts.is_hit = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ContactPair& pair = elements.model.pairs()[points[i].pair];
+    const Touch touch = touch_of(elements, ws, points[i]);
+    RememberedContact& remembered = state.contacts.states()[i];
+    const double start_rate = remembered.normal.impact_speed == 0 ? touch.start_rate() : 0;
+    contacts.is_hit = contacts.is_hit || std::max(touch.rate(), start_rate) > pair.normal.smallest_impact_speed;
+    static_cast<void>(carry(pair, touch, remembered));
+  }
+}
+
+namespace {
+
+// what contacts that answer fast make of a number of parts that is enough otherwise
+ContactParts stiff_parts(const Model& model, double parts, double needed, StepKind kind, Workspace& ws) noexcept {
+  if (kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
+    const int count = static_cast<int>(std::ceil(parts));
+    return {count, true, static_cast<int>(std::ceil(std::min(needed, kMostStiffParts) / count))};
+  }
+  ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);
+  return {.count = static_cast<int>(std::ceil(std::max(parts, std::min(needed, kMostStiffParts))))};
+}
+
+}  // namespace
+
+ContactParts contact_parts(const Model& model, double h, StepKind kind, Workspace& ws) noexcept {
+  if (model.contact == nullptr) return {};
+  const ContactElements& elements = *model.contact;
+  ContactWorkspace& contacts = *ws.contact;
+  look_ahead(h, contacts);
+  contacts.is_near = !contacts.before.states().empty() || !contacts.set.points().empty();
+  // parts that are short against what they lead through
+  double parts = std::ceil(h / elements.substep * (1 - kContactRounding)), met_rate = 0;
+  for (std::size_t pair = 0; pair < contacts.was_touching.size(); ++pair) {
+    const contact::Meeting meeting = sweep(elements.model, pair, contacts.start_poses, contacts.ahead, contacts.set);
+    if (meeting.kind == contact::Meeting::Kind::none) continue;
+    contacts.is_near = true;
+    parts = std::max(parts, kPartsPerThickness * meeting.travel / elements.model.pairs()[pair].half_thickness);
+    const bool is_new = contacts.was_touching[pair] == 0 && meeting.kind == contact::Meeting::Kind::found;
+    if (is_new && kind != StepKind::implicit) {
+      met_rate = std::max(met_rate, impact_rate(model, ws, pair, meeting, h));
+    }
+  }
+  if (!contacts.is_near) return {};
+  parts = std::clamp(parts, 1.0, kMostParts);
+  if (kind == StepKind::implicit) return {.count = static_cast<int>(std::ceil(parts))};
+  // what is about to be hit is resolved
+  if (met_rate > 0 && kind == StepKind::settling) kind = StepKind::explicit_rule;
+  return stiff_parts(model, parts, h * std::max(contact_rate(model, ws), met_rate) / reach_of(kind), kind, ws);
+}
+
+ContactParts contact_parts_again(const Model& model, double h, int parts, StepKind kind, Workspace& ws) noexcept {
+  if (kind == StepKind::implicit) return {};
+  const double needed = h * contact_rate(model, ws) / reach_of(kind);
+  if (kind == StepKind::settling && needed > kWorthSettling * parts && !has_impact(model, ws)) {
+    return {.is_settling = true};
+  }
+  ws.contact->is_lost = ws.contact->is_lost || !(needed <= kMostStiffParts);
+  const double finer = std::max(1.0, std::min(needed, kMostStiffParts) / parts * (1 - kContactRounding));
+  return {.count = static_cast<int>(std::ceil(finer))};
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,31 @@
+// How fast the contacts of an instant answer: what an explicit step has to resolve. Internal to the library.
+//
+// With slopes k, c of the laws along the directions d of all contact points (normal: spring and damping at the present
+// depth; tangents: bristles), J = [d, r x d] on a link from its centre of mass and the link's own mass M = L L^T,
+//   rate = max over links of  max( |C'|, sqrt |K'| ),   C' = sum of f c (L^-1 J)(L^-1 J)^T,  K' with k          (1)
+// f = 1 against Ground and 2 between two links, | | a bound of the largest eigenvalue: with A the elements' absolute
+// values and y their row sums
+//   |C'| = max of (A y)_i / y_i  (Collatz 1942)                                                                 (2)
+// The rate is an upper bound of the fastest damping rate and of the highest angular frequency of bodies that are free;
+// joints only make bodies heavier, so it is one for a mechanism as well. A point mass has no rotation.
+//
+// What goes deeper answers faster on its way: the normal slopes are those at the deepest point that a free mass gets to
+// from here (contact/normal_law.h, (4)), which for a ball that comes from outside is sqrt(2 k a/m) of its damping.
+#pragma once
+
+#include "contact/sweep.h"
+#include "multibody/model/state.h"
+
+namespace slew::multibody {
+
+// (1) [1/s] for the contacts of the last evaluation; 0 when nothing touches. Real-time safe.
+[[nodiscard]] double contact_rate(const Model& model, Workspace& ws) noexcept;
+
+// The same [1/s] for a pair that does not touch yet and meets on the way of the next h [s]; pair: of those tested.
+[[nodiscard]] double impact_rate(const Model& model, const Workspace& ws, std::size_t pair,
+                                 const contact::Meeting& meeting, double h) noexcept;
+
+// Whether a contact point closes or opens faster than the slowest impact that its law knows.
+[[nodiscard]] bool has_impact(const Model& model, const Workspace& ws) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "contact/find_named.h"
+#include "contact/mesh_check.h"
+#include "multibody/build/validate.h"
+#include "multibody/contacts/contact_conversion.h"
+#include "multibody/contacts/contact_elements.h"
+#include "multibody/contacts/contact_passes.h"
+#include "multibody/formulations/integrators.h"
+#include "multibody/model/model.h"
+#include "multibody/model/observe.h"
+#include "multibody/model/topology.h"
+
+namespace slew::multibody {
+using contact::find_named;
+
+namespace {
+
+// deeper than any load presses shapes that a scene puts onto each other
+constexpr double kDeepStart = 1e-2;  // m
+
+bool is_mesh(const ShapeDef& shape) {
+  return shape.type == contact::ShapeType::convex_mesh || shape.type == contact::ShapeType::triangle_mesh;
+}
+
+class ContactValidator {
+ public:
+  ContactValidator(const MechanicsDef& mechanics, Problems& problems) : m_(mechanics), problems_(problems) {
+    Problems known;  // the tree's problems are told by others
+    carrier_ = merged_into(m_, find_tree(m_, known));
+  }
+
+  void run() {
+    const std::size_t before = problems_.size();
+    for (const ShapeDef& shape : m_.shapes) check_lists(shape);
+    for (const FrictionDef& friction : m_.frictions) contact::check(friction.name, friction.law, problems_);
+    for (const ContactPairDef& pair : m_.contacts) check_names(pair);
+    if (problems_.size() > before) return;
+    Problems found;
+    contact::validate(definition(), found);
+    for (Problem& problem : found) add_translated(std::move(problem));
+  }
+
+ private:
+  void add(const std::string& owner, std::string_view key, std::string what, std::string expected) {
+    problems_.push_back({fmt::format("{}.{}", owner, key), std::move(what), std::move(expected), {}});
+  }
+
+  void check_lists(const ShapeDef& shape) {
+    if (number_of_(shape.body) == kNoBody) {
+      add(shape.name, "body", fmt::format("there is no body '{}'", shape.body), "the name of a body, or Ground");
+    }
+    if (!is_mesh(shape)) return;
+    if (shape.vertices.size() % 3 != 0) {
+      add(shape.name, "vertices", fmt::format("there are {} numbers", shape.vertices.size()),
+          "three numbers for each vertex");
+    }
+    if (shape.triangles.size() % 3 != 0) {
+      add(shape.name, "triangles", fmt::format("there are {} numbers", shape.triangles.size()),
+          "three numbers of vertices for each triangle");
+    }
+  }
+
+  void check_names(const ContactPairDef& pair) {
+    for (const auto& [key, name] : {std::pair("shape_a", &pair.shape_a), std::pair("shape_b", &pair.shape_b)}) {
+      if (find_named(m_.shapes, *name) == nullptr) {
+        add(pair.name, key, fmt::format("there is no shape '{}'", *name), "the name of a shape");
+      }
+    }
+    if (pair.shape_a == pair.shape_b) {
+      add(pair.name, "shape_b", fmt::format("both shapes are '{}'", pair.shape_a), "two different shapes");
+    }
+    if (!pair.friction.empty() && find_named(m_.frictions, pair.friction) == nullptr) {
+      add(pair.name, "friction", fmt::format("there is no friction '{}'", pair.friction), "the name of a friction");
+    }
+  }
+
+  [[nodiscard]] int carrier_of(const ShapeDef& shape) const {
+    return carrier_[static_cast<std::size_t>(number_of_(shape.body))];
+  }
+
+  // everything, but pairs that cannot move against each other only with their law
+  contact::ContactDef definition() {
+    contact::ContactDef def;
+    for (const ShapeDef& shape : m_.shapes) {
+      def.shapes.push_back(contact_shape(shape));
+      if (find_named(def.frames, shape.body) != nullptr) continue;
+      def.frames.push_back({shape.body, carrier_of(shape) == kGround});
+    }
+    for (const ContactPairDef& pair : m_.contacts) {
+      const bool is_tested =
+          carrier_of(*find_named(m_.shapes, pair.shape_a)) != carrier_of(*find_named(m_.shapes, pair.shape_b));
+      if (is_tested) {
+        def.pairs.push_back(contact_pair(m_, pair));
+        def.pairs.back().friction.reset();  // checked under its own name
+      } else {
+        contact::check(pair.name, pair.normal, problems_);
+      }
+    }
+    return def;
+  }
+
+  // keys of libs/contact to those of a scene
+  void add_translated(Problem problem) {
+    const std::size_t dot = problem.path.rfind('.');
+    const std::string owner = problem.path.substr(0, dot), key = problem.path.substr(dot + 1);
+    const ShapeDef* shape = find_named(m_.shapes, owner);
+    if (shape != nullptr && key == "frame") problem.path = owner + ".body";
+    if (shape != nullptr && key == "mesh") problem.path = owner + (shape->file.empty() ? ".triangles" : ".file");
+    if (shape != nullptr && key == "height_field") problem.path = owner + ".heights";
+    problems_.push_back(std::move(problem));
+  }
+
+  const MechanicsDef& m_;
+  BodyNumbers number_of_{m_};
+  Problems& problems_;
+  std::vector<int> carrier_;
+};
+
+void find_deep_starts(const MechanicsDef& m, Problems& warnings) {
+  const Model model = build_model(m);
+  Workspace ws(model);
+  observe(model, start_state(model), ws);
+  std::vector<double> deepest(model.contact->pairs.size(), 0.0);
+  for (std::size_t i = 0; i < ws.contact->force_count; ++i) {
+    const ContactForce& force = ws.contact->forces[i];
+    double& depth = deepest[static_cast<std::size_t>(force.pair)];
+    depth = std::max(depth, force.depth);
+  }
+  for (std::size_t i = 0; i < deepest.size(); ++i) {
+    if (deepest[i] <= kDeepStart) continue;
+    warnings.push_back(
+        {model.contact->pairs[i].name,
+         fmt::format("the shapes start {:.3g} m deep in each other, and push each other out", deepest[i]),
+         "shapes that touch by less than 1 cm at the start", ""});
+  }
+}
+
+// sqrt(k/m) or c/m, for the slowest impact that the law knows
+double rate_of_impact(const Model& model, const contact::ContactPair& pair) {
+  const int links[2] = {model.contact->frames[model.contact->model.frame_of(pair.shape_a)].link,
+                        model.contact->frames[model.contact->model.frame_of(pair.shape_b)].link};
+  const double both = links[0] == 0 || links[1] == 0 ? 1 : 2;
+  double largest = 0, sum = 0;
+  for (const int link : links) {
+    const double mass = link == 0 ? 0 : model.links[static_cast<std::size_t>(link)].mass;
+    if (!(mass > 0)) continue;
+    largest = std::max(largest, both / mass);
+    sum += both / mass;
+  }
+  if (!(sum > 0)) return 0;
+  const contact::NormalForce slopes =
+      slopes_of_impact(pair.normal, 1, 0, pair.normal.smallest_impact_speed, {}, 1 / sum);
+  return std::max(slopes.d_depth_rate * largest, std::sqrt(slopes.d_depth * largest));
+}
+
+}  // namespace
+
+void validate_contacts(const MechanicsDef& mechanics, Problems& problems) {
+  ContactValidator(mechanics, problems).run();
+}
+
+void check_contact_rates(const MechanicsDef& mechanics, double substep, Problems& problems) {
+  if (mechanics.contacts.empty() || is_implicit(step_rule(mechanics).integrator)) return;
+  const StepKind kind = mechanics.formulation == Formulation::augmented ? StepKind::corrected : StepKind::explicit_rule;
+  const double fastest = kMostStiffParts * reach_of(kind) / substep;
+  const Model model = build_model(mechanics);
+  if (model.contact == nullptr) return;
+  const std::span<const contact::ContactPair> pairs = model.contact->model.pairs();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const int tested = model.contact->pair_of_tested[i];
+    const contact::NormalLaw& law = pairs[i].normal;
+    const double rate = rate_of_impact(model, pairs[i]);
+    if (!(rate > fastest)) continue;
+    problems.push_back(
+        {model.contact->pairs[static_cast<std::size_t>(tested)].name + ".spring_constant",
+         fmt::format("an impact is over within {:.2g} s, the shortest part of a sub-step of {:.3g} s is {:.2g} s: the "
+                     "bodies would leave each other faster than they met",
+                     1 / rate, substep, substep / kMostStiffParts),
+         fmt::format("at most {:.2g} N/m, a larger restitution_coefficient, mechanics.max_substep of at most {:.2g} s, "
+                     "or an implicit mechanics.integrator such as trapezoidal",
+                     law.stiffness * std::pow(fastest / rate, law.exponent + 1), substep * fastest / rate),
+         ""});
+  }
+}
+
+void find_unlikely_contacts(const MechanicsDef& mechanics, Problems& warnings) {
+  if (mechanics.contacts.empty()) return;
+  find_deep_starts(mechanics, warnings);
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,64 @@
+// What a search for contacts and their forces leaves behind, and what a sub-step needs to carry contacts along.
+#pragma once
+
+#include <vector>
+
+#include "contact/contact_memory.h"
+#include "multibody/contacts/contact_elements.h"
+
+namespace slew::multibody {
+
+// A contact point and its forces on shape A; B has the opposite ones.
+struct ContactForce {
+  int pair = 0;  // of ContactElements::pairs
+  int frame_a = 0, frame_b = 0;
+  math::Vec3 p_W;         // m
+  math::Vec3 n_W;         // unit, from B to A
+  math::Vec3 normal_W;    // N, on A
+  math::Vec3 friction_W;  // N, on A
+  double depth = 0;       // m
+  double depth_rate = 0;  // m/s
+  double energy = 0;      // J, held by the normal law's spring and by the bristles
+};
+
+// Blocks of a symmetric 6 by 6 matrix: rows and columns of push, rows of turn and columns of push, of turn.
+struct ScaledSlopes {
+  math::Mat3 push, mixed, turn;
+};
+
+// A link as if it were free, and what its contacts add up to, scaled by its mass (contact_rate.h).
+struct ContactRates {
+  bool is_touched = false;   // or nothing else is valid
+  math::Vec3 c_W;            // m, centre of mass
+  double per_root_mass = 0;  // 1/sqrt(kg)
+  math::Mat3 turning;        // from a moment in Ground axes [1/(kg^0.5 m)]
+  ScaledSlopes damping;      // 1/s
+  ScaledSlopes stiffness;    // 1/s^2
+};
+
+struct ContactWorkspace {
+  explicit ContactWorkspace(const ContactElements& elements);
+
+  struct FrameSpeed {
+    math::Vec3 v_W;  // m/s, of the origin
+    math::Vec3 w_W;  // rad/s
+  };
+
+  contact::ContactSet set;
+  contact::ContactMemory before;                         // at the start of the sub-step
+  contact::ContactMemory now;                            // carried to the instant of the search
+  std::vector<contact::Pose> poses, start_poses, ahead;  // by frame: now, at the start, where the start's speeds lead
+  std::vector<FrameSpeed> start_speeds;                  // by frame
+  std::vector<unsigned char> was_touching;               // by pair, at the start: 0 or 1
+  std::vector<ContactForce> forces;                      // of the last search
+  std::size_t force_count = 0;
+  std::vector<ContactRates> rates;  // by link, up to the last one with a shape
+  double time = 0;                  // s, since the start of the sub-step
+  bool is_near = true;  // something touches or may touch within the sub-step; false: no search until its end
+  bool is_hit = false;  // in the last accepted sub-step something touched or went deeper faster than the slowest impact
+                        // that its law knows
+  bool is_lost = false;  // since this was last cleared, shapes went through each other unseen, or contacts answered
+                         // faster than the shortest part
+};
+
+}  // namespace slew::multibody

@@ -1,0 +1,51 @@
+// Whether an explicit integrator follows what springs, dampers, bushings and beams do to the masses they act on.
+//
+// The equations about the start, at rest and linear in displacement x and speed v of the joint coordinates,
+//   x' = v,   v' = A_x x + A_v v                                                                                (1)
+// A as differences of forward dynamics, so that masses, joints and modes are those of the mechanism, and the
+// integrator's own map of one sub-step h,
+//   rk4                  z_1 = sum_{k=0..4} (h A)^k / k! z_0,   z = (x, v)
+//   semi_implicit_euler  v_1 = v_0 + h a(x_0, v_0),  x_1 = x_0 + h v_1                                          (2)
+// whose largest factor of growth a power iteration finds.
+//
+// Constant laws only. Left out: tables, ends, ropes, tyres and contacts, which push on one side or saturate, so that
+// too long a step chatters but stays bounded; gravity; rows, whose owner solves them implicitly; the modes and segments
+// alone (flexible/validate_flexible.h). An instant, not a bound for all poses.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/problem.h"
+#include "multibody/formulations/integrators.h"
+#include "multibody/model/model.h"
+#include "multibody/model/parameters.h"
+
+namespace slew::multibody {
+
+[[nodiscard]] constexpr bool is_explicit(Integrator rule) noexcept {
+  return rule == Integrator::rk4 || rule == Integrator::semi_implicit_euler;
+}
+
+// Whether a parameter of this kind is a mass or a law that the check sees.
+[[nodiscard]] constexpr bool may_speed_up(ParameterKind kind) noexcept {
+  return kind == ParameterKind::body_mass || kind == ParameterKind::line_law || kind == ParameterKind::angle_law ||
+         kind == ParameterKind::bushing || kind == ParameterKind::beam;
+}
+
+struct TooFast {
+  std::string element;      // that grows most when it is alone
+  double growth = 0;        // factor in one sub-step
+  double longest_step = 0;  // s, that does not let it grow
+};
+
+// In sub-steps of h [s]. None: the rule is implicit or follows.
+[[nodiscard]] std::optional<TooFast> find_too_fast_element(const Model& model, Integrator rule, double h);
+
+// The sentence for it: what, and what would be right.
+[[nodiscard]] Problem problem_of(const TooFast& found, Integrator rule, double h);
+
+// The same for a scene's mechanics, as a problem. Pre-condition: validate() found nothing.
+void check_element_speeds(const MechanicsDef& mechanics, double h, Problems& problems);
+
+}  // namespace slew::multibody

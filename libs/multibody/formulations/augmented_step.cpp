@@ -1,0 +1,197 @@
+// The step of the formulation `augmented`: equations (5) to (8) of body_penalty.h.
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "core/reductions.h"
+#include "multibody/constraints/loops.h"
+#include "multibody/contacts/contact_passes.h"
+#include "multibody/formulations/body_attitude.h"
+#include "multibody/formulations/penalty_passes.h"
+
+namespace slew::multibody {
+
+using math::Vec3;
+
+namespace {
+
+// corrections of Newton's method, m and rad of the mechanism's size: each is worth a factor of a hundred to ten
+// thousand
+constexpr int kMostStepCorrections = 30;
+constexpr double kStepSettled = 1e-12;
+// under stiff springs rounding ends the way down before that
+constexpr double kRounded = 1e-9;
+constexpr double kStepStalled = 0.5;
+// the matrix is made anew when a correction shrinks by less
+constexpr double kSlowStep = 0.1;
+constexpr double kClosedRate = 1e-12;  // m/s, 1/s of its speed
+
+math::Quaternion turned(Vec3 turn, const math::Quaternion& attitude) noexcept {
+  const double angle = norm(turn);
+  const auto [s, c] = math::sin_cos(0.5 * angle);
+  // sin(x/2)/x near zero
+  constexpr double kSmall = 1e-4;
+  const double scale = angle > kSmall ? s / angle : 0.5 - angle * angle / 48;
+  return math::Quaternion{c, scale * turn[0], scale * turn[1], scale * turn[2]} * attitude;
+}
+
+// the change of a rotation vector that turns its end by delta: exp(delta~) exp(turn~) = exp((turn + result)~)
+Vec3 change_of_turn(Vec3 turn, Vec3 delta) noexcept {
+  const double square = dot(turn, turn);
+  constexpr double kSmall = 1e-4;
+  double factor = 1.0 / 12 + square / 720;
+  if (square > kSmall) {
+    const double half = 0.5 * std::sqrt(square);
+    const auto [s, c] = math::sin_cos(half);
+    factor = (1 - half * c / s) / square;
+  }
+  return delta - cross(turn, delta) * 0.5 + cross(turn, cross(turn, delta)) * factor;
+}
+
+class Trapezoid {
+ public:
+  Trapezoid(const Model& model, const PenaltyModel& body, const BodyState& start, Workspace& ws, PenaltyWorkspace& pws,
+            double h) noexcept
+      : model_(model), body_(body), start_(start), ws_(ws), pws_(pws), h_(h) {}
+
+  // from accelerations that stay as they are
+  void predict() noexcept {
+    for (std::size_t k = 0; k < pws_.displacement.size(); ++k) {
+      pws_.displacement[k] = h_ * (start_.u[k] + 0.5 * h_ * pws_.udot[k]);
+    }
+    place();
+  }
+
+  bool close_positions() noexcept {
+    bool is_regular = factorize(model_, body_, ws_, pws_, h_);
+    const double extent = extent_of(ws_).length;
+    double before = 0, size = 0;
+    for (pws_.iterations = 1; pws_.iterations <= kMostStepCorrections; ++pws_.iterations) {
+      correct();
+      size = fixed_max_abs(pws_.correction) / extent;
+      if (size <= kStepSettled) return is_regular;
+      const bool is_slow = pws_.iterations > 1 && size > kSlowStep * before;
+      if (is_slow && size <= kRounded && size > kStepStalled * before) return is_regular;
+      if (is_slow) is_regular = factorize(model_, body_, ws_, pws_, h_) && is_regular;
+      before = size;
+    }
+    return is_regular && size <= kRounded;
+  }
+
+  // (8)
+  void close_speeds() noexcept {
+    const double closed = kClosedRate * extent_of(ws_).speed;
+    double before = 0;
+    for (int round = 0; round < kMostStepCorrections; ++round) {
+      std::fill(pws_.correction.begin(), pws_.correction.end(), 0.0);
+      double largest = 0;
+      for (std::size_t row = 0; row < pws_.rates.size(); ++row) pws_.rates[row] = 0;
+      for_each_prescribed([&](std::size_t row, double rate) { pws_.rates[row] = -rate; });
+      for_each_present(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+        pws_.rates[row] += along(held, pws_.stage.u);
+        largest = std::max(largest, std::fabs(pws_.rates[row]));
+      });
+      for_each_factored(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+        subtract_row(held, body_.alpha[row] * pws_.rates[row], pws_.correction);
+      });
+      if (largest <= closed || (round > 0 && largest > kStepStalled * before)) return;
+      before = largest;
+      pws_.ldl.solve(pws_.correction);
+      for (std::size_t k = 0; k < pws_.stage.u.size(); ++k) pws_.stage.u[k] += pws_.correction[k];
+    }
+  }
+
+ private:
+  // visit(row, rate that its law prescribes)
+  template <typename Visit>
+  void for_each_prescribed(Visit visit) noexcept {
+    for (std::size_t i = 0; i < body_.constraints.size(); ++i) {
+      const std::size_t first = at(body_.first_row[i]);
+      for (std::size_t k = 0; k < body_.constraints[i].rows.size(); ++k) {
+        visit(first + k, prescribed_rate(body_.constraints[i], k, ws_.drives));
+      }
+    }
+  }
+
+  // state and accelerations at the end, from (5)
+  void place() noexcept {
+    for (std::size_t k = 0; k < pws_.displacement.size(); ++k) {
+      pws_.stage.u[k] = 2 / h_ * pws_.displacement[k] - start_.u[k];
+      pws_.end_udot[k] = 2 / h_ * (pws_.stage.u[k] - start_.u[k]) - pws_.udot[k];
+    }
+    for (std::size_t link = 1; link < model_.links.size(); ++link) {
+      const double* d = pws_.displacement.data() + 6 * (link - 1);
+      for (std::size_t k = 0; k < 3; ++k) pws_.stage.q[7 * (link - 1) + k] = start_.q[7 * (link - 1) + k] + d[k];
+      put_attitude(turned({d[3], d[4], d[5]}, attitude_at(start_.q, link)), pws_.stage.q, link);
+    }
+    const std::size_t links = model_.links.size() - 1;
+    for (std::size_t k = 6 * links; k < pws_.displacement.size(); ++k) {
+      pws_.stage.q[k + links] = start_.q[k + links] + pws_.displacement[k];
+    }
+    see(model_, body_, pws_.stage, pws_.stage_joints, ws_, pws_);
+  }
+
+  // one round of (7)
+  void correct() noexcept {
+    const double quarter = 0.25 * h_ * h_;
+    put_free_forces(model_, ws_, pws_.correction);
+    add_row_forces(model_, body_, pws_.stage_joints, ws_, pws_.row_force, pws_.ldl, pws_.correction);
+    subtract_mass(model_, ws_, pws_.end_udot, pws_.correction);
+    for_each_present(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+      subtract_row(held, pws_.multipliers[row], pws_.correction);
+    });
+    for (double& x : pws_.correction) x *= quarter;
+    for_each_factored(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+      subtract_row(held, body_.alpha[row] * pws_.rows[row].g, pws_.correction);
+    });
+    pws_.ldl.solve(pws_.correction);
+    for_each_factored(body_, pws_, [&](std::size_t row, const HeldRow& held) {
+      const double missed = pws_.rows[row].g + along(held, pws_.correction);
+      pws_.multipliers[row] += body_.alpha[row] / quarter * missed;
+    });
+    const std::size_t links = 6 * (model_.links.size() - 1);
+    for (std::size_t i = links; i < pws_.displacement.size(); ++i) pws_.displacement[i] += pws_.correction[i];
+    for (std::size_t i = 0; i < links; i += 6) {
+      double* d = pws_.displacement.data() + i;
+      const double* delta = pws_.correction.data() + i;
+      for (std::size_t k = 0; k < 3; ++k) d[k] += delta[k];
+      const Vec3 change = change_of_turn({d[3], d[4], d[5]}, {delta[3], delta[4], delta[5]});
+      for (std::size_t k = 0; k < 3; ++k) d[3 + k] += change[static_cast<int>(k)];
+    }
+    place();
+  }
+
+  const Model& model_;
+  const PenaltyModel& body_;
+  const BodyState& start_;
+  Workspace& ws_;
+  PenaltyWorkspace& pws_;
+  double h_;
+};
+
+}  // namespace
+
+bool advance_by_trapezoid(const Model& model, const PenaltyModel& body, BodyState& state, State& joints, Workspace& ws,
+                          PenaltyWorkspace& pws, double h, std::span<const double> mean,
+                          std::span<const double> slope) noexcept {
+  for (std::size_t k = 0; k < mean.size(); ++k) pws.row_force[k] = mean[k] - 0.5 * h * slope[k];
+  accelerations(model, pws, pws.row_force, pws.udot);
+  for (std::size_t k = 0; k < mean.size(); ++k) pws.row_force[k] = mean[k] + 0.5 * h * slope[k];
+  pws.stage_joints.q = joints.q;
+  set_stage_time(model, joints, h, ws);
+  Trapezoid step(model, body, state, ws, pws, h);
+  step.predict();
+  const bool has_settled = step.close_positions();
+  step.close_speeds();
+  state.q.swap(pws.stage.q);
+  state.u.swap(pws.stage.u);
+  normalize_attitudes(state);
+  joints.time += h;
+  see(model, body, state, joints, ws, pws);
+  accept_contacts(model, h, joints, ws);
+  const Drift left = drift(pws);
+  const Extent extent = extent_of(ws);
+  return has_settled && left.position <= kHeld * extent.length && left.rate <= kHeld * extent.speed;
+}
+
+}  // namespace slew::multibody

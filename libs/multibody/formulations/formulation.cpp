@@ -1,0 +1,350 @@
+#include "multibody/formulations/formulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/reductions.h"
+#include "multibody/contacts/contact_passes.h"
+#include "multibody/formulations/body_coordinates.h"
+#include "multibody/formulations/body_passes.h"
+#include "multibody/formulations/body_penalty.h"
+#include "multibody/formulations/dynamics.h"
+#include "multibody/formulations/passes.h"
+#include "multibody/model/observe.h"
+
+namespace slew::multibody {
+
+namespace {
+
+// a sub-step whose iteration does not settle is taken in 2, 4, ... parts, at most so many
+constexpr int kMostPartsOfAStep = 8;
+// An iteration that did not settle even then and left speeds so many times larger has run away.
+constexpr double kMostGrowth = 1e3;
+
+}  // namespace
+
+struct Dynamics::Bodies {
+  Bodies(const Model& mechanism, const State& start, const StepRule& rule)
+      : model(is_implicit(rule.integrator) ? build_stiff_body_model(mechanism) : build_body_model(mechanism)),
+        state(body_state(mechanism, start)),
+        ws(mechanism, model) {}
+
+  BodyModel model;
+  BodyState state;
+  BodyWorkspace ws;
+};
+
+struct Dynamics::HeldBodies {
+  HeldBodies(Formulation formulation, const Model& mechanism, const State& start)
+      : model(build_penalty_model(mechanism, formulation)), state(body_state(mechanism, start)), ws(mechanism, model) {}
+
+  PenaltyModel model;
+  BodyState state;
+  PenaltyWorkspace ws;
+};
+
+// Integrators beside rk4. In joint coordinates the iteration has a matrix of its own.
+struct Dynamics::Stages {
+  Stages(const Model& mechanism, const StepRule& step_rule, StageWorkspace::Coordinates coordinates)
+      : rule(step_rule), model(build_stiff_body_model(mechanism)), ws(mechanism, model, coordinates) {
+    if (coordinates == StageWorkspace::Coordinates::joint) matrix.emplace(mechanism, model);
+    start.joints = start_state(mechanism);
+    start.bodies = body_state(mechanism, start.joints);
+    keep(start.joints, nullptr);
+    part_mean.resize(mechanism.rows.size());
+  }
+
+  // The start of a sub-step, for another try in parts.
+  struct Start {
+    State joints;
+    BodyState bodies;
+    std::vector<double> algorithmic;
+    std::vector<math::Vec3> algorithmic_turn;
+  };
+  void keep(const State& joints, const BodyState* bodies) noexcept {
+    copy_state(joints, start.joints);
+    if (bodies != nullptr) start.bodies = *bodies;
+    start.algorithmic = ws.algorithmic;
+    start.algorithmic_turn = ws.algorithmic_turn;
+  }
+  void go_back(State& joints, BodyState* bodies) noexcept {
+    copy_state(start.joints, joints);
+    if (bodies != nullptr) *bodies = start.bodies;
+    ws.algorithmic = start.algorithmic;
+    ws.algorithmic_turn = start.algorithmic_turn;
+  }
+
+  StepRule rule;
+  BodyModel model;
+  StageWorkspace ws;
+  std::optional<BodyWorkspace> matrix;
+  Start start;
+  std::vector<double> part_mean;
+  int iterations = 0, parts = 1;  // of the last sub-step
+};
+
+namespace {
+
+// by the motion at the start of a sub-step; not finite: no
+bool is_resolved(const Workspace& ws, double h) noexcept {
+  constexpr double kSquare = kLargestTurn * kLargestTurn;
+  for (const LinkMotion& m : ws.motion) {
+    if (!(dot(m.w, m.w) * h * h <= kSquare)) return false;
+  }
+  return true;
+}
+
+bool take_lost(Workspace& ws) noexcept {
+  return ws.contact != nullptr && std::exchange(ws.contact->is_lost, false);
+}
+
+// what a sub-step must leave behind
+bool is_right(const Model& model, const State& state, Workspace& ws) noexcept {
+  const bool is_lost = take_lost(ws);
+  return !is_lost && is_finite(state) && are_drives_defined(model, state.time);
+}
+
+}  // namespace
+
+Dynamics::Dynamics(Formulation formulation, const Model& model, const State& start, StepRule rule) {
+  using enum StageWorkspace::Coordinates;
+  const bool has_rule = is_implicit(rule.integrator) || rule.integrator == Integrator::semi_implicit_euler;
+  switch (formulation) {
+    case Formulation::recursive:
+      is_euler_ = rule.integrator == Integrator::semi_implicit_euler;
+      if (is_implicit(rule.integrator)) stages_ = std::make_unique<Stages>(model, rule, joint);
+      break;
+    case Formulation::lagrange:
+      bodies_ = std::make_unique<Bodies>(model, start, rule);
+      if (has_rule) stages_ = std::make_unique<Stages>(model, rule, body);
+      break;
+    case Formulation::augmented:
+    case Formulation::penalty:
+      held_ = std::make_unique<HeldBodies>(formulation, model, start);
+      break;
+  }
+  if (model.contact == nullptr || held_ != nullptr || is_implicit(rule.integrator)) return;
+  rule.integrator = Integrator::sdirk2;
+  settling_ = std::make_unique<Stages>(model, rule, bodies_ == nullptr ? joint : body);
+  if (!settling_->matrix) settling_->matrix.emplace(model, settling_->model);
+}
+
+Dynamics::~Dynamics() = default;
+Dynamics::Dynamics(Dynamics&&) noexcept = default;
+Dynamics& Dynamics::operator=(Dynamics&&) noexcept = default;
+
+void Dynamics::evaluate(const Model& model, State& state, Workspace& ws) noexcept {
+  if (bodies_ != nullptr) {
+    is_regular_ = multibody::evaluate(model, bodies_->model, bodies_->state, state, ws, bodies_->ws);
+  } else if (held_ != nullptr) {
+    is_regular_ = multibody::evaluate(model, held_->model, held_->state, state, ws, held_->ws);
+  } else {
+    multibody::evaluate(model, state, ws);
+  }
+}
+
+StepKind Dynamics::contact_step() const noexcept {
+  if (stages_ != nullptr && is_implicit(stages_->rule.integrator)) return StepKind::implicit;
+  if (settling_ != nullptr) return StepKind::settling;
+  return held_ != nullptr && held_->model.formulation == Formulation::augmented ? StepKind::corrected
+                                                                                : StepKind::explicit_rule;
+}
+
+// One of the parts into which contacts divide a sub-step of h.
+struct Dynamics::PartOfStep {
+  double h;
+  ContactParts parts;
+  int index;
+  ContactParts pieces;
+  std::span<const double> mean, slope;
+
+  // means of the rows' forces, which go on along their lines, over a piece of it
+  void put_forces(int count, int piece, std::span<double> forces) const noexcept {
+    const double later = (index * count + piece + 0.5) * (h / parts.count / count) - 0.5 * h;
+    for (std::size_t k = 0; k < mean.size(); ++k) forces[k] = mean[k] + later * slope[k];
+  }
+};
+
+bool Dynamics::advance(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                       std::span<const double> slope) noexcept {
+  const ContactParts parts = multibody::contact_parts(model, h, contact_step(), ws);
+  contact_parts_ = 1;
+  settling_parts_ = 0;
+  if (parts.count == 1 && !parts.is_settling) {
+    return advance_part(model, state, ws, h, mean, slope) && is_right(model, state, ws);
+  }
+  contact_parts_ = 0;
+  bool is_sound = true;
+  for (int i = 0; i < parts.count; ++i) {
+    if (i > 0) evaluate(model, state, ws);
+    const ContactParts pieces = i > 0 ? contact_parts_again(model, h, parts.count, contact_step(), ws)
+                                      : ContactParts{.is_settling = parts.is_settling};
+    is_sound = advance_contacts(model, state, ws, {h, parts, i, pieces, mean, slope}) && is_sound;
+  }
+  return is_right(model, state, ws) && is_sound;
+}
+
+// after evaluate() at the start of the part
+bool Dynamics::advance_contacts(const Model& model, State& state, Workspace& ws, const PartOfStep& part) noexcept {
+  const double length = part.h / part.parts.count;
+  ContactParts pieces = part.pieces;
+  if (pieces.is_settling) {
+    part.put_forces(1, 0, ws.row_part);
+    ++contact_parts_;
+    ++settling_parts_;
+    if (settle_part(model, state, ws, length, ws.row_part, part.slope)) return true;
+    pieces = contact_parts_again(model, part.h, part.parts.count, StepKind::explicit_rule, ws);
+  }
+  pieces.count = std::max(pieces.count, part.parts.pieces);
+  bool is_sound = true;
+  for (int j = 0; j < pieces.count; ++j) {
+    if (j > 0) evaluate(model, state, ws);
+    part.put_forces(pieces.count, j, ws.row_part);
+    is_sound = advance_part(model, state, ws, length / pieces.count, ws.row_part, part.slope) && is_sound;
+    ++contact_parts_;
+  }
+  return is_sound;
+}
+
+// One part by the implicit rule; false: back at its start, evaluated.
+bool Dynamics::settle_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                           std::span<const double> slope) noexcept {
+  Stages& s = *settling_;
+  BodyState* const bodies = bodies_ == nullptr ? nullptr : &bodies_->state;
+  const bool was_lost = ws.contact->is_lost, is_fine_enough = is_resolved(ws, h);
+  s.keep(state, bodies);
+  bool is_sound = is_fine_enough && is_regular_;
+  if (bodies != nullptr) {
+    is_sound = multibody::evaluate(model, s.model, *bodies, state, ws, *s.matrix) && is_sound;
+  } else {
+    // nothing is carried from part to part
+    s.matrix->ldl.set_smallest_pivot(model.has_closing_rows() ? ws.loops.factor.smallest_pivot() : 1.0);
+  }
+  is_sound =
+      is_sound && multibody::advance(model, s.model, s.rule, {state, bodies}, ws, *s.matrix, s.ws, h, mean, slope);
+  // a corner that comes down beside what rests is a blow
+  if (is_sound && !ws.contact->is_hit && is_finite(state)) return true;
+  ws.contact->is_lost = was_lost;
+  s.go_back(state, bodies);
+  evaluate(model, state, ws);
+  return false;
+}
+
+bool Dynamics::advance_part(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                            std::span<const double> slope) noexcept {
+  const bool is_fine_enough = is_resolved(ws, h);
+  return take_substep(model, state, ws, h, mean, slope) && is_fine_enough;
+}
+
+bool Dynamics::take_substep(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                            std::span<const double> slope) noexcept {
+  if (is_euler_) return advance_by_euler(model, state, ws, h, mean);
+  if (stages_ != nullptr) return advance_by_rule(model, state, ws, h, mean, slope);
+  if (bodies_ != nullptr) {
+    Bodies& b = *bodies_;
+    return multibody::advance(model, b.model, b.state, state, ws, b.ws, h, mean, slope) && is_regular_;
+  }
+  if (held_ != nullptr) {
+    return multibody::advance(model, held_->model, held_->state, state, ws, held_->ws, h, mean, slope) && is_regular_;
+  }
+  return multibody::advance(model, state, ws, h, mean, slope);
+}
+
+bool Dynamics::advance_by_rule(const Model& model, State& state, Workspace& ws, double h, std::span<const double> mean,
+                               std::span<const double> slope) noexcept {
+  Stages& s = *stages_;
+  BodyState* const bodies = bodies_ == nullptr ? nullptr : &bodies_->state;
+  BodyWorkspace& bws = bodies_ == nullptr ? *s.matrix : bodies_->ws;
+  const BodyModel& body = bodies_ == nullptr ? s.model : bodies_->model;
+  const int most = is_implicit(s.rule.integrator) ? kMostPartsOfAStep : 1;
+  if (most > 1) s.keep(state, bodies);
+  s.iterations = 0;
+  bool is_sound = true;
+  for (s.parts = 1;; s.parts *= 2) {
+    // what does not settle is tried again in twice as many parts; the rows' forces go on along their lines
+    const double part = h / s.parts;
+    is_sound = true;
+    for (int i = 0; i < s.parts && (is_sound || s.parts == most); ++i) {
+      if (s.parts > 1) evaluate(model, state, ws);
+      const double later = (i + 0.5) * part - 0.5 * h;
+      for (std::size_t k = 0; k < mean.size(); ++k) s.part_mean[k] = mean[k] + later * slope[k];
+      is_sound = multibody::advance(model, body, s.rule, {state, bodies}, ws, bws, s.ws, part, s.part_mean, slope) &&
+                 is_regular_ && is_sound;
+      s.iterations += s.ws.iterations;
+    }
+    if (is_sound) return true;
+    if (s.parts == most) break;
+    s.go_back(state, bodies);
+  }
+  // what has run away is held where it was
+  if (most > 1 && !(fixed_max_abs(state.u) <= kMostGrowth * std::max(1.0, fixed_max_abs(s.start.joints.u)))) {
+    s.go_back(state, bodies);
+    evaluate(model, state, ws);
+  }
+  return false;
+}
+
+int Dynamics::iterations() const noexcept {
+  return stages_ == nullptr ? 0 : stages_->iterations;
+}
+
+int Dynamics::parts() const noexcept {
+  return stages_ == nullptr ? 1 : stages_->parts;
+}
+
+const BodyState* Dynamics::own_state() const noexcept {
+  return bodies_ != nullptr ? &bodies_->state : held_ != nullptr ? &held_->state : nullptr;
+}
+
+void Dynamics::observe(const Model& model, const State& state, Workspace& ws) const noexcept {
+  const BodyState* bodies = own_state();
+  if (bodies == nullptr) return multibody::observe(model, state, ws);
+  set_time(model, state.time, ws);
+  update_body_motion(model, *bodies, ws);
+  update_elements(model, state.q, Elements::all, ws);
+  begin_contacts(model, state, ws);
+  update_contacts(model, ws);
+}
+
+void Dynamics::add_to_hash(StateHash& hash) const noexcept {
+  if (const BodyState* bodies = own_state(); bodies != nullptr) {
+    hash.add(std::span<const double>(bodies->q));
+    hash.add(std::span<const double>(bodies->u));
+  }
+  if (stages_ == nullptr || stages_->rule.integrator != Integrator::generalised_alpha) return;
+  hash.add(std::span<const double>(stages_->ws.algorithmic));
+  for (const math::Vec3& turn : stages_->ws.algorithmic_turn) {
+    for (const double x : turn.array()) hash.add(x);
+  }
+}
+
+template <typename Self, typename Bytes>
+void Dynamics::visit(Self& self, Bytes& bytes) {
+  const auto visit_bodies = [&](auto& bodies) {
+    bytes.numbers(bodies.q);
+    bytes.numbers(bodies.u);
+  };
+  if (self.bodies_ != nullptr) visit_bodies(self.bodies_->state);
+  if (self.held_ != nullptr) visit_bodies(self.held_->state);
+  if (self.stages_ == nullptr) return;
+  auto& ws = self.stages_->ws;
+  bytes.numbers(ws.algorithmic);
+  for (auto& turn : ws.algorithmic_turn) visit_vector(bytes, turn);
+  // an implicit stage in joint coordinates begins with how near to singular the last one was
+  if (!self.stages_->matrix) return;
+  double pivot = self.stages_->matrix->ldl.smallest_pivot();
+  bytes.number(pivot);
+  if constexpr (Bytes::kIsReading) self.stages_->matrix->ldl.set_smallest_pivot(pivot);
+}
+
+void Dynamics::save(StateWriter& bytes) const {
+  visit(*this, bytes);
+}
+
+void Dynamics::load(StateReader& bytes) noexcept {
+  visit(*this, bytes);
+}
+
+}  // namespace slew::multibody

@@ -1,0 +1,12 @@
+// Joints that nothing resists: a part without inertia about a free axis. Internal to the library.
+#pragma once
+
+#include "core/problem.h"
+#include "multibody/model/defs.h"
+
+namespace slew::multibody {
+
+// Pre-condition: the Def is sound otherwise. Looks at the start position.
+void find_singular_joints(const MechanicsDef& mechanics, Problems& problems);
+
+}  // namespace slew::multibody

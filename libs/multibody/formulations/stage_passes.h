@@ -1,0 +1,51 @@
+// The passes of an implicit stage (integrators.h, equations (2) and (4)). Internal to the library.
+#pragma once
+
+#include <span>
+
+#include "multibody/formulations/body_passes.h"
+#include "multibody/formulations/integrators.h"
+
+namespace slew::multibody {
+
+// A stage's part of (2) beside u* and d.
+struct Stage {
+  double tau = 0, sigma = 0;  // s
+  double time = 0;            // s, from the start of the sub-step
+};
+
+struct StageContext {
+  const Model& model;
+  const BodyModel& body;
+  Moving moving;
+  Workspace& ws;
+  BodyWorkspace& bws;
+  StageWorkspace& stages;
+
+  [[nodiscard]] std::span<double> u() const noexcept { return moving.bodies ? moving.bodies->u : moving.joints.u; }
+  [[nodiscard]] std::span<double> q() const noexcept { return moving.bodies ? moving.bodies->q : moving.joints.q; }
+};
+
+// Coordinates and motion for the present speeds; joint coordinates where bodies are integrated.
+void place(const StageContext& at, double sigma) noexcept;
+
+// Accelerations that the speeds' rates cause, on top of those that the motion holds.
+void add_accelerations(const StageContext& at, std::span<const double> rate) noexcept;
+
+// What pushes on one side only, by element: on which side of its range an end damper does (-1, 0, 1), LimitedForce of
+// ropes and tyres, the pushing contact points of a pair. Needs the elements' motion and a search for contacts.
+[[nodiscard]] std::size_t stop_count(const Model& model) noexcept;
+void see_stops(const Model& model, const Workspace& ws, std::span<signed char> stops) noexcept;
+
+// Right side of (4) into bws.solution; elements, inertia and joints' rows on the way. Needs place(), and the time of
+// the stage in ws.
+void find_residual(const StageContext& at, const Stage& stage) noexcept;
+
+// Left side of (4), after find_residual(); with the pull of the joints when their multipliers are known. False:
+// singular to working precision.
+[[nodiscard]] bool factorize_stage(const StageContext& at, const Stage& stage) noexcept;
+
+// delta of bws.solution in the speeds that are integrated.
+void read_step(const StageContext& at, std::span<double> step) noexcept;
+
+}  // namespace slew::multibody

@@ -1,0 +1,352 @@
+#include "multibody/model/field_tables.h"
+
+#include <array>
+
+#include "multibody/constraints/gear_fields.h"
+#include "multibody/contacts/contact_fields.h"
+#include "multibody/forces/element_fields.h"
+#include "multibody/formulations/integrators.h"
+#include "multibody/joints/joint_fields.h"
+#include "multibody/motions/motion_fields.h"
+
+namespace slew::multibody {
+namespace {
+
+using enum Dimension;
+
+constexpr Range kAssemblyRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
+constexpr Range kSubstepRange{.min = 1e-6, .max = 20e-3, .min_is_open = false, .max_is_open = false};
+// below, joints are soft; above, rounding spoils what they leave free
+constexpr Range kPenaltyFactorRange{.min = 1e3, .max = 1e10, .min_is_open = false, .max_is_open = false};
+constexpr Range kPenaltyDampingRange{.min = 0.01, .max = 10, .min_is_open = false, .max_is_open = false};
+constexpr Range kPenaltyFrequencyRange{.min = 0, .max = 1e6, .max_is_open = false};
+constexpr Range kRadiusRange{.min = 0, .max = 1, .min_is_open = false, .max_is_open = false};
+constexpr Range kIterationRange{.min = 1e-13, .max = 1e-3, .min_is_open = false, .max_is_open = false};
+constexpr double kMassRamp = 1.0;  // s
+
+constexpr std::array<std::string_view, 2> kInertiaPoints = {"center_of_mass", "body_origin"};
+constexpr std::array<std::string_view, 4> kFormulations = {"recursive", "lagrange", "augmented", "penalty"};
+constexpr std::array<std::string_view, 7> kIntegrators = {
+    "rk4", "semi_implicit_euler", "trapezoidal", "generalised_alpha", "sdirk2", "index3_trapezoidal", "own"};
+
+constexpr ReadBy kReadByPenaltyFactor[] = {
+    read_by<&MechanicsDef::formulation, Formulation::augmented, Formulation::penalty>(
+        "formulation", "formulation: augmented or penalty")};
+constexpr ReadBy kReadByPenalty[] = {
+    read_by<&MechanicsDef::formulation, Formulation::penalty>("formulation", "formulation: penalty")};
+constexpr ReadBy kReadByAlpha[] = {
+    read_by<&MechanicsDef::integrator, Integrator::generalised_alpha>("integrator", "integrator: generalised_alpha")};
+// augmented takes index3_trapezoidal as its own
+constexpr ReadBy kReadByImplicit[] = {{"integrator", "an implicit integrator", [](const void* def) noexcept {
+                                         const auto& mechanics = *static_cast<const MechanicsDef*>(def);
+                                         const Integrator rule = mechanics.integrator == Integrator::own
+                                                                     ? own_integrator(mechanics.formulation)
+                                                                     : mechanics.integrator;
+                                         return rule != Integrator::rk4 && rule != Integrator::semi_implicit_euler;
+                                       }}};
+
+constexpr Field kMechanicsFields[] = {
+    field<&MechanicsDef::gravity>(
+        "gravity", {.dimension = acceleration, .change = Change::live, .doc = "acceleration of gravity, global axes"}),
+    field<&MechanicsDef::formulation>("formulation", {.choices = kFormulations, .doc = "equations of motion"}),
+    field<&MechanicsDef::assembly_tolerance>(
+        "assembly_tolerance",
+        {.dimension = length,
+         .range = kAssemblyRange,
+         .doc = "how far poses may miss a joint at the start (a radian counts as a metre): bodies "
+                "are then moved onto it and named"}),
+    field<&MechanicsDef::max_substep>(
+        "max_substep",
+        {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step of the integrator inside a step"}),
+    field<&MechanicsDef::contact_substep>(
+        "contact_substep",
+        {.dimension = time, .range = kSubstepRange, .doc = "longest sub-step while shapes touch or are about to"}),
+    field<&MechanicsDef::penalty_factor>(
+        "penalty_factor",
+        {.range = kPenaltyFactorRange,
+         .read_by = kReadByPenaltyFactor,
+         .doc = "augmented, penalty: mass that resists a joint's opening, over the mechanism's mass"}),
+    field<&MechanicsDef::penalty_damping>("penalty_damping", {.range = kPenaltyDampingRange,
+                                                              .read_by = kReadByPenalty,
+                                                              .doc = "penalty: damping ratio of what opens a joint"}),
+    field<&MechanicsDef::penalty_frequency>("penalty_frequency",
+                                            {.dimension = angular_velocity,
+                                             .range = kPenaltyFrequencyRange,
+                                             .read_by = kReadByPenalty,
+                                             .doc = "penalty: angular frequency at which a joint closes again"}),
+    field<&MechanicsDef::integrator>(
+        "integrator",
+        {.choices = kIntegrators,
+         .doc =
+             "rule of a sub-step. recursive, lagrange: the first five, of which the last three are implicit (springs "
+             "and dampers may be stiff); augmented: index3_trapezoidal; penalty: rk4. own: the first of these"}),
+    field<&MechanicsDef::spectral_radius>(
+        "spectral_radius",
+        {.range = kRadiusRange,
+         .read_by = kReadByAlpha,
+         .doc = "generalised_alpha: share of an oscillation far too fast for the sub-step that is left after one"}),
+    field<&MechanicsDef::iteration_tolerance>(
+        "iteration_tolerance",
+        {.range = kIterationRange,
+         .read_by = kReadByImplicit,
+         .doc = "implicit integrators: error of speeds at which the iteration ends, of the mechanism's largest (at "
+                "least 1 m/s, 1 rad/s)"}),
+    field<&MechanicsDef::payload>(
+        "payload",
+        {.reference = "body",
+         .doc =
+             "body that the machine lifts, whose mass its load notes ask for: a rigid one that moves. Without it the "
+             "one at the end of the longest chain of joints outside of loops"}),
+};
+
+constexpr Field kRelativeTo = field<&BodyDef::relative_to>(
+    "relative_to", {.reference = "body", .doc = "body that position and orientation refer to"});
+constexpr Field kPosition =
+    field<&BodyDef::position>("position", {.dimension = length, .doc = "origin of the body's frame"});
+constexpr Field kOrientation =
+    field<&BodyDef::orientation>("orientation", {.dimension = angle, .doc = "successive Euler rotations z, x', z''"});
+
+constexpr Field kBodyFields[] = {
+    kRelativeTo,
+    kPosition,
+    kOrientation,
+    field<&BodyDef::mass>("mass", {.dimension = mass,
+                                   .range = kPositive,
+                                   .presence = Presence::required,
+                                   .change = Change::live,
+                                   .ramp = kMassRamp,
+                                   .doc = "mass; a live change scales the inertia with it"}),
+    field<&BodyDef::center_of_mass>("center_of_mass", {.dimension = length, .doc = "centre of mass, body frame"}),
+    field<&BodyDef::inertia>("inertia",
+                             {.dimension = inertia,
+                              .range = kNotNegative,
+                              .presence = Presence::required,
+                              .doc = "moments Ixx, Iyy, Izz in body axes; 0, 0, 0 is a point mass; or from_mesh"}),
+    field<&BodyDef::products>(
+        "products",
+        {.dimension = inertia, .doc = "the tensor's elements Ixy, Ixz, Iyz (minus the integral of x y dm)"}),
+    field<&BodyDef::inertia_about>("inertia_about",
+                                   {.choices = kInertiaPoints, .doc = "point that inertia and products refer to"}),
+};
+
+constexpr Field kFlexibleBodyFields[] = {
+    kRelativeTo,
+    kPosition,
+    kOrientation,
+    field<&BodyDef::flex_model>("flex_model",
+                                {.doc = "model in the names Model_Prefix_Matrix.dat of its flexible files; without it "
+                                        "the scene's name"}),
+    field<&BodyDef::flex_file_prefix>(
+        "flex_file_prefix",
+        {.presence = Presence::required, .doc = "prefix in the names of the files, which lie beside the scene"}),
+    field<&BodyDef::flex_modes>(
+        "flex_modes",
+        {.doc = "modes that are taken, as '1;2', or none: rigid, with the files' mass; without it all of the files"}),
+    field<&BodyDef::flex_frequency_limit>(
+        "flex_frequency_limit",
+        {.dimension = Dimension::frequency, .range = kPositive, .doc = "modes above it are left out"}),
+    field<&BodyDef::relative_damping>(
+        "relative_damping", {.doc = "damping over critical damping by mode, as '0.005;0.005', or one for all; 0"}),
+};
+
+constexpr Field kSegmentedBodyFields[] = {
+    kRelativeTo,
+    kPosition,
+    kOrientation,
+    field<&BodyDef::flex_model>("flex_model",
+                                {.doc = "model in the names Model_Prefix_Matrix.dat of its flexible files; without it "
+                                        "the scene's name"}),
+    field<&BodyDef::flex_file_prefix>(
+        "flex_file_prefix",
+        {.presence = Presence::required, .doc = "prefix in the names of the files, which lie beside the scene"}),
+    field<&BodyDef::segments>("segments", {.range = {1, 200, false, false},
+                                           .doc = "elastic connectors of equal length, between one more rigid lumps"}),
+    field<&BodyDef::relative_damping>("relative_damping",
+                                      {.doc = "damping over critical damping of the files' first mode, one number; 0"}),
+};
+
+template <typename Def>
+constexpr Field spring_table_row(Dimension argument, Dimension value, std::string_view doc) {
+  return field<&Def::spring_table>("spring_table", {.dimension = argument, .value_dimension = value, .doc = doc});
+}
+template <typename Def>
+constexpr Field damper_table_row(Dimension argument, Dimension value, std::string_view doc) {
+  return field<&Def::damper_table>("damper_table", {.dimension = argument, .value_dimension = value, .doc = doc});
+}
+
+constexpr Field kTranslationalForceFields[] = {
+    field<&TranslationalForceDef::body1>("body1",
+                                         {.presence = Presence::required, .reference = "body", .doc = "first body"}),
+    field<&TranslationalForceDef::point1>("point1", {.dimension = length, .doc = "force's point P1 in body 1"}),
+    field<&TranslationalForceDef::body2>("body2",
+                                         {.presence = Presence::required, .reference = "body", .doc = "second body"}),
+    field<&TranslationalForceDef::point2>("point2", {.dimension = length, .doc = "force's point P2 in body 2"}),
+    field<&TranslationalForceDef::spring_constant>(
+        "spring_constant",
+        {.dimension = stiffness, .range = kNotNegative, .change = Change::live, .doc = "spring between the points"}),
+    field<&TranslationalForceDef::damping_constant>(
+        "damping_constant",
+        {.dimension = damping, .range = kNotNegative, .change = Change::live, .doc = "damper between the points"}),
+    field<&TranslationalForceDef::free_length>("free_length", {.dimension = length,
+                                                               .range = kNotNegative,
+                                                               .change = Change::live,
+                                                               .doc = "length at which the spring carries nothing"}),
+    field<&TranslationalForceDef::min_length>(
+        "min_length", {.dimension = length, .range = kNotNegative, .doc = "length below which the end damper pushes"}),
+    field<&TranslationalForceDef::max_length>(
+        "max_length",
+        {.dimension = length, .range = kNotNegative, .doc = "length above which the end damper pulls back"}),
+    field<&TranslationalForceDef::end_spring_constant>("end_spring_constant",
+                                                       {.dimension = stiffness,
+                                                        .range = kNotNegative,
+                                                        .change = Change::live,
+                                                        .doc = "spring of the end dampers; 0: no end dampers"}),
+    field<&TranslationalForceDef::end_damping_constant>(
+        "end_damping_constant",
+        {.dimension = damping, .range = kNotNegative, .change = Change::live, .doc = "damper of the end dampers"}),
+    spring_table_row<TranslationalForceDef>(length, force, "tension over length - free_length"),
+    damper_table_row<TranslationalForceDef>(velocity, force, "tension over the rate of length"),
+};
+
+constexpr Field kRotationalForceFields[] = {
+    field<&RotationalForceDef::body1>("body1",
+                                      {.presence = Presence::required, .reference = "body", .doc = "first body"}),
+    field<&RotationalForceDef::f1>("f1", {.doc = "direction at a right angle to the axis, body 1"}),
+    field<&RotationalForceDef::g1>("g1", {.doc = "direction at a right angle to axis and f1, body 1"}),
+    field<&RotationalForceDef::body2>("body2",
+                                      {.presence = Presence::required, .reference = "body", .doc = "second body"}),
+    field<&RotationalForceDef::f2>("f2", {.doc = "direction whose angle from f1 towards g1 is measured, body 2"}),
+    field<&RotationalForceDef::spring_constant>("spring_constant", {.dimension = rotational_stiffness,
+                                                                    .range = kNotNegative,
+                                                                    .change = Change::live,
+                                                                    .doc = "spring about the axis"}),
+    field<&RotationalForceDef::damping_constant>("damping_constant", {.dimension = rotational_damping,
+                                                                      .range = kNotNegative,
+                                                                      .change = Change::live,
+                                                                      .doc = "damper about the axis"}),
+    field<&RotationalForceDef::free_angle>(
+        "free_angle", {.dimension = angle, .change = Change::live, .doc = "angle at which the spring carries nothing"}),
+    field<&RotationalForceDef::min_angle>("min_angle",
+                                          {.dimension = angle, .doc = "angle below which the end damper pushes"}),
+    field<&RotationalForceDef::max_angle>("max_angle",
+                                          {.dimension = angle, .doc = "angle above which the end damper pushes back"}),
+    field<&RotationalForceDef::end_spring_constant>("end_spring_constant",
+                                                    {.dimension = rotational_stiffness,
+                                                     .range = kNotNegative,
+                                                     .change = Change::live,
+                                                     .doc = "spring of the end dampers; 0: no end dampers"}),
+    field<&RotationalForceDef::end_damping_constant>("end_damping_constant", {.dimension = rotational_damping,
+                                                                              .range = kNotNegative,
+                                                                              .change = Change::live,
+                                                                              .doc = "damper of the end dampers"}),
+    spring_table_row<RotationalForceDef>(angle, torque, "torque that holds angle - free_angle"),
+    damper_table_row<RotationalForceDef>(angular_velocity, torque, "torque that holds the rate"),
+};
+
+constexpr Range kDummyIndex{.min = 1, .max = 2, .min_is_open = false, .max_is_open = false};
+
+constexpr Field kForceDummyFields[] = {
+    field<&ForceDummyDef::relative_to>(
+        "relative_to",
+        {.presence = Presence::required, .reference = "force", .doc = "translational force that carries the mass"}),
+    field<&ForceDummyDef::index>("index", {.range = kDummyIndex,
+                                           .presence = Presence::required,
+                                           .doc = "1: cylinder, at body 1's point; 2: piston, at body 2's point"}),
+    field<&ForceDummyDef::mass>("mass",
+                                {.dimension = mass, .range = kPositive, .presence = Presence::required, .doc = "mass"}),
+    field<&ForceDummyDef::center_of_mass>(
+        "center_of_mass", {.dimension = length, .doc = "centre of mass on the element's x axis = unit(P1 - P2)"}),
+    field<&ForceDummyDef::inertia>("inertia", {.dimension = inertia,
+                                               .range = kNotNegative,
+                                               .doc = "moments about the centre of mass, element frame; Iyy = Izz, "
+                                                      "the axial Ixx has no effect"}),
+};
+
+constexpr Field kStaticDummyFields[] = {
+    field<&StaticDummyDef::relative_to>("relative_to", {.reference = "body", .doc = "body that carries the mass"}),
+    field<&StaticDummyDef::position>("position", {.dimension = length, .doc = "origin of the dummy in the body"}),
+    field<&StaticDummyDef::orientation>("orientation",
+                                        {.dimension = angle, .doc = "successive Euler rotations z, x', z''"}),
+    field<&StaticDummyDef::mass>("mass",
+                                 {.dimension = mass, .range = kNotNegative, .doc = "mass; 0 for graphics only"}),
+    field<&StaticDummyDef::center_of_mass>("center_of_mass",
+                                           {.dimension = length, .doc = "centre of mass, dummy's frame"}),
+    field<&StaticDummyDef::inertia>(
+        "inertia",
+        {.dimension = inertia, .range = kNotNegative, .doc = "moments about the centre of mass, dummy's axes"}),
+};
+
+template <auto List>
+void* append_to(MechanicsDef& mechanics, std::string_view element) {
+  auto& def = (mechanics.*List).emplace_back();
+  def.name = element;
+  return &def;
+}
+
+template <BodyType Type>
+void* append_body(MechanicsDef& mechanics, std::string_view element) {
+  BodyDef& body = mechanics.bodies.emplace_back();
+  body.name = element;
+  body.type = Type;
+  return &body;
+}
+
+// in the order of BodyType
+constexpr ElementType kBodyTypes[] = {
+    {"rigid", "body", "rigid body", kBodyFields, append_to<&MechanicsDef::bodies>, true},
+    {"flexible", "body", "flexible body of a reduced finite element model", kFlexibleBodyFields,
+     append_body<BodyType::flexible>},
+    {"segmented", "body", "body of rigid lumps with elastic beams between them, from the same files",
+     kSegmentedBodyFields, append_body<BodyType::segmented>},
+};
+
+constexpr ElementType kForceTypes[] = {
+    {"translational", "force", "spring-damper between two points, or a cylinder's line of force",
+     kTranslationalForceFields, append_to<&MechanicsDef::translational_forces>},
+    {"rotational", "force", "spring-damper about an axis, or a slewing drive's torque", kRotationalForceFields,
+     append_to<&MechanicsDef::rotational_forces>},
+    {"point_force", "force", "force of given size at a point of a body", kPointForceFields,
+     append_to<&MechanicsDef::point_forces>},
+    {"point_torque", "force", "torque of given size on a body", kPointTorqueFields,
+     append_to<&MechanicsDef::point_torques>},
+    {"bushing", "force", "elastic bearing: six springs and dampers between two frames", kBushingFields,
+     append_to<&MechanicsDef::bushings>},
+    {"beam", "force", "massless elastic beam between two frames", kBeamFields, append_to<&MechanicsDef::beams>},
+    {"rope", "force", "wire rope over points of bodies", kRopeFields, append_to<&MechanicsDef::ropes>},
+};
+
+constexpr ElementType kDummyTypes[] = {
+    {"body_to_body_force", "dummy", "mass of a cylinder or piston, carried by a translational force", kForceDummyFields,
+     append_to<&MechanicsDef::force_dummies>},
+    {"static", "dummy", "mass fixed to a body", kStaticDummyFields, append_to<&MechanicsDef::static_dummies>},
+    {"tyre", "dummy", "wheel with mass and the forces of a plane ground on it", kTyreDummyFields,
+     append_to<&MechanicsDef::tyre_dummies>},
+    {"part", "dummy", "mass on one body, placed in the frame of another", kPartDummyFields,
+     append_to<&MechanicsDef::part_dummies>},
+    {"constraint", "dummy", "mass of a joint's own part", kConstraintDummyFields,
+     append_to<&MechanicsDef::constraint_dummies>},
+};
+
+}  // namespace
+
+std::span<const Section> sections() noexcept {
+  static const Section kSections[] = {
+      {"bodies", kBodyTypes},          {"joints", joint_types()},   {"forces", kForceTypes},
+      {"dummies", kDummyTypes},        {"shapes", shape_types()},   {"contacts", contact_types()},
+      {"frictions", friction_types()}, {"motions", motion_types()}, {"gears", gear_types()}};
+  return kSections;
+}
+
+std::span<const Field> mechanics_fields() noexcept {
+  return kMechanicsFields;
+}
+
+std::string_view key_of(Formulation formulation) noexcept {
+  return kFormulations[static_cast<std::size_t>(formulation)];
+}
+
+std::string_view key_of(Integrator integrator) noexcept {
+  return kIntegrators[static_cast<std::size_t>(integrator)];
+}
+
+}  // namespace slew::multibody

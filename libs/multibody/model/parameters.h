@@ -1,0 +1,55 @@
+// Parameters that may change while a mechanism runs, between two steps. Finding one and setting it do not allocate.
+//
+//   "Bag.mass"                     body: inertia scales with the mass, the centre of mass stays
+//   "ForceT_Lift.damping_constant" the live fields of force elements
+//   "Body_Pillar.viscous_friction", "Cross.limit_damping_2"  friction and limit constants of joints that have a row
+//   "mechanics.gravity.x" (y, z)   gravity
+//   "Mount.stiffness.x"            the live fields of the other elements (elements/element_set.h)
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "multibody/model/model.h"
+
+namespace slew::multibody {
+
+enum class ParameterKind : std::uint8_t {
+  body_mass,
+  line_law,
+  angle_law,
+  joint_law,
+  gravity,
+  load,
+  bushing,
+  beam,
+  rope,
+  tyre
+};
+
+struct Parameter {
+  ParameterKind kind = ParameterKind::body_mass;
+  int element = 0;  // body, element, row; axis of gravity
+  int member = 0;   // of a law
+};
+
+// Empty when the path names nothing that can change here while running.
+[[nodiscard]] std::optional<Parameter> find_parameter(const Model& model, std::string_view path) noexcept;
+
+// Whether the model has it: of a number that came from outside.
+[[nodiscard]] bool has_parameter(const Model& model, Parameter parameter) noexcept;
+
+// How many there are.
+[[nodiscard]] std::size_t parameter_count(const Model& model) noexcept;
+
+[[nodiscard]] double get_parameter(const Model& model, Parameter parameter) noexcept;
+
+// SI value, in the range of its field; merged bodies and the elements' use are updated.
+void set_parameter(Model& model, Parameter parameter, double value) noexcept;
+
+// kg, > 0. body: index in the model.
+void set_body_mass(Model& model, int body, double mass) noexcept;
+
+}  // namespace slew::multibody

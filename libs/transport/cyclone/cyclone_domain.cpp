@@ -1,0 +1,339 @@
+#include "transport/cyclone/cyclone_domain.h"
+
+#include <arpa/inet.h>
+#include <dds/dds.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "core/escaped.h"
+
+namespace slew::transport {
+namespace {
+
+constexpr std::uint32_t kFirstPort = 7400, kPortsOfDomain = 250;  // RTPS 2.5, 9.6.2
+constexpr std::size_t kFiles = 16;
+constexpr std::size_t kSpace = std::size_t{256} << 20;  // bytes of addresses
+constexpr std::size_t kData = std::size_t{128} << 20;   // bytes of those that can be written
+constexpr std::size_t kThreads = 8;
+
+struct Interface {
+  std::string name;
+  std::string address;  // IPv4
+  bool is_up, is_loopback;
+};
+
+// interfaces with an IPv4 address
+std::vector<Interface> interfaces_of_host() {
+  std::vector<Interface> found;
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return found;
+  for (const ifaddrs* i = first; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN] = "";
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr, text, sizeof text);
+    found.push_back({i->ifa_name, text, (i->ifa_flags & IFF_UP) != 0, (i->ifa_flags & IFF_LOOPBACK) != 0});
+  }
+  freeifaddrs(first);
+  return found;
+}
+
+std::string listing(const std::vector<Interface>& interfaces) {
+  std::string text;
+  for (const Interface& i : interfaces) {
+    text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", i.name, i.address, i.is_up ? "" : ", down");
+  }
+  return text.empty() ? "none" : text;
+}
+
+Status find_address(const std::string& name, std::string& address) {
+  const std::vector<Interface> interfaces = interfaces_of_host();
+  const auto found = std::ranges::find(interfaces, name, &Interface::name);
+  if (found == interfaces.end()) {
+    return Status::error(
+        ExitCode::resources,
+        fmt::format("network interface '{}' does not exist or has no IPv4 address; there are: {}; choose one with "
+                    "--interface",
+                    name, listing(interfaces)));
+  }
+  if (!found->is_up) {
+    return Status::error(ExitCode::resources,
+                         fmt::format("network interface '{0}' is down; bring it up (ip link set {0} up) or choose "
+                                     "another with --interface",
+                                     name));
+  }
+  address = found->address;
+  return Status::ok();
+}
+
+bool is_host(const std::string& text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == ':';
+  });
+}
+
+// the plugins lie beside the library, which finds them by these names
+std::string security_xml(const CycloneSecurity& security) {
+  const auto library = [](const char* name, const char* function) {
+    return fmt::format(R"(<Library path="{0}" initFunction="init_{1}" finalizeFunction="finalize_{1}"/>)", name,
+                       function);
+  };
+  const auto file = [](const char* element, const std::string& path) {
+    return fmt::format("<{0}>file:{1}</{0}>", element, escaped(path));
+  };
+  return fmt::format(
+      "\n <Security><Authentication>{}{}{}{}</Authentication>\n"
+      "  <AccessControl>{}{}{}{}</AccessControl>\n"
+      "  <Cryptographic>{}</Cryptographic></Security>",
+      library("dds_security_auth", "authentication"), file("IdentityCA", security.identity_authority),
+      file("IdentityCertificate", security.certificate), file("PrivateKey", security.private_key),
+      library("dds_security_ac", "access_control"), file("PermissionsCA", security.permissions_authority),
+      file("Governance", security.governance), file("Permissions", security.permissions),
+      library("dds_security_crypto", "crypto"));
+}
+
+Status lacks(const std::string& what, int why, const char* remedy) {
+  return Status::error(ExitCode::resources,
+                       fmt::format("this process {} ({}), a session needs that; nothing was started; raise the limit "
+                                   "({}) or end other programs",
+                                   what, std::strerror(why), remedy));
+}
+
+Status enough_files() {
+  std::array<int, kFiles> files{};
+  std::size_t opened = 0;
+  while (opened < files.size() && (files[opened] = ::open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0) ++opened;
+  const int why = errno;
+  for (std::size_t i = 0; i < opened; ++i) ::close(files[i]);
+  if (opened == files.size()) return Status::ok();
+  return Status::error(ExitCode::resources,
+                       fmt::format("this process can open {} more files ({}), a session needs {}; nothing was started; "
+                                   "raise the limit (ulimit -n) or end other programs",
+                                   opened, std::strerror(why), files.size()));
+}
+
+Status enough_space() {
+  void* const space = ::mmap(nullptr, kSpace, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (space == MAP_FAILED) {
+    return lacks(fmt::format("cannot have {} MB more memory", kSpace >> 20), errno, "ulimit -v");
+  }
+  ::munmap(space, kSpace);
+  return Status::ok();
+}
+
+// What can be written counts as data (RLIMIT_DATA). It is reckoned and not tried: where memory is locked, all of it
+// would be filled.
+Status enough_data() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return Status::ok();
+  std::ifstream file("/proc/self/status");
+  std::size_t kilobytes = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("VmData:")) kilobytes = std::strtoull(line.c_str() + 7, nullptr, 10);
+  }
+  if ((kilobytes << 10) + kData <= limit.rlim_cur) return Status::ok();
+  return lacks(fmt::format("cannot have {} MB more memory", kData >> 20), ENOMEM, "ulimit -d");
+}
+
+// As many at the same time as Cyclone starts.
+Status enough_threads() {
+  std::promise<void> all_are_there;
+  const std::shared_future<void> end = all_are_there.get_future().share();
+  std::vector<std::thread> threads;
+  int why = 0;
+  try {
+    while (threads.size() < kThreads) threads.emplace_back([end] { end.wait(); });
+  } catch (const std::system_error& error) {
+    why = error.code().value();
+  } catch (const std::bad_alloc&) {
+    why = ENOMEM;
+  }
+  all_are_there.set_value();
+  for (std::thread& thread : threads) thread.join();
+  if (why == 0) return Status::ok();
+  return lacks(fmt::format("can start {} more threads of {}", threads.size(), kThreads), why, "ulimit -u, -d, -v");
+}
+
+// What Cyclone does not survive to be without: files for its sockets, memory for its caches, threads.
+Status enough_resources() {
+  if (Status status = enough_files(); !status.is_ok()) return status;
+  if (Status status = enough_space(); !status.is_ok()) return status;
+  if (Status status = enough_data(); !status.is_ok()) return status;
+  return enough_threads();
+}
+
+// A UDP socket of this process that hears all addresses. A number of a file is used again, an inode is not.
+struct OpenSocket {
+  int fd;
+  ino_t inode;
+  std::uint16_t port;
+};
+
+std::vector<OpenSocket> sockets_on_all_addresses() {
+  std::vector<OpenSocket> found;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", gone)) {
+    const int fd = std::atoi(entry.path().filename().c_str());
+    sockaddr_in address{};
+    socklen_t size = sizeof address;
+    int type = 0;
+    socklen_t type_size = sizeof type;
+    struct stat status {};
+    if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &type_size) != 0 || type != SOCK_DGRAM) continue;
+    if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) continue;
+    if (address.sin_family != AF_INET || address.sin_addr.s_addr != htonl(INADDR_ANY)) continue;
+    if (fstat(fd, &status) == 0) found.push_back({fd, status.st_ino, ntohs(address.sin_port)});
+  }
+  return found;
+}
+
+bool is_bound_to(int fd, const std::string& interface) {
+  std::array<char, IFNAMSIZ> device{};
+  socklen_t size = device.size();
+  return getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, device.data(), &size) == 0 && interface == device.data();
+}
+
+bool is_port_of(std::uint16_t port, std::uint32_t domain) {
+  const std::uint32_t first = kFirstPort + kPortsOfDomain * domain;
+  return port >= first && port < first + kPortsOfDomain;
+}
+
+// Cyclone binds what it receives with to all addresses. Those sockets hear loopback alone from now on: they are the
+// ones on ports of this domain that were not there before it. Sockets of the program itself are left alone. To bind one
+// a second time needs CAP_NET_RAW.
+Status confine_to_loopback(const CycloneNetwork& network, const std::vector<OpenSocket>& before) {
+  const std::string& interface = network.interface;
+  for (const OpenSocket& socket : sockets_on_all_addresses()) {
+    const bool was_there = std::ranges::find(before, socket.inode, &OpenSocket::inode) != before.end();
+    if (was_there || !is_port_of(socket.port, network.domain)) continue;
+    if (is_bound_to(socket.fd, interface) || setsockopt(socket.fd, SOL_SOCKET, SO_BINDTODEVICE, interface.c_str(),
+                                                        static_cast<socklen_t>(interface.size())) == 0) {
+      continue;
+    }
+    return Status::error(
+        ExitCode::resources,
+        fmt::format("cannot keep port {} to {}: {}; other machines could reach this process, which ends; use "
+                    "Linux 5.7 or later, or give it CAP_NET_RAW",
+                    socket.port, interface, std::strerror(errno)));
+  }
+  return Status::ok();
+}
+
+}  // namespace
+
+bool leaves_machine(const std::string& interface) {
+  const std::vector<Interface> interfaces = interfaces_of_host();
+  const auto found = std::ranges::find(interfaces, interface, &Interface::name);
+  return found != interfaces.end() && !found->is_loopback;
+}
+
+std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_address) {
+  std::string peers = fmt::format(R"(<Peer Address="{}"/>)", own_address);
+  for (const std::string& peer : network.peers) {
+    if (peer != own_address) peers += fmt::format(R"(<Peer Address="{}"/>)", peer);
+  }
+  // heartbeat and nack timers: on a network a lost packet costs milliseconds; on loopback nothing is lost but what a
+  // reader has no room for, and each question and answer costs as much as a sample
+  const char* const timers = leaves_machine(network.interface)
+                                 ? R"(<HeartbeatInterval min="2ms" minsched="2ms" max="20ms">5ms</HeartbeatInterval>
+  <PreEmptiveAckDelay>1ms</PreEmptiveAckDelay>)"
+                                 : R"(<HeartbeatInterval min="20ms" minsched="20ms" max="40ms">20ms</HeartbeatInterval>
+  <PreEmptiveAckDelay>10ms</PreEmptiveAckDelay>)";
+  // writer cache above depth x size of every topic and not adaptive: a slow reader never makes a writer wait; reorder:
+  // what arrives during a repair is not asked again
+  return fmt::format(
+      R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
+ <General>
+  <Interfaces><NetworkInterface name="{}" multicast="false"/></Interfaces>
+  <AllowMulticast>false</AllowMulticast>
+  <FragmentSize>12000 B</FragmentSize>
+ </General>
+ <Discovery>
+  <ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>
+  <SPDPInterval>500ms</SPDPInterval><LeaseDuration>2s</LeaseDuration>
+  <Peers>{}</Peers>
+ </Discovery>
+ <Internal>
+  {}
+  <NackDelay>0ms</NackDelay>
+  <AutoReschedNackDelay>5ms</AutoReschedNackDelay>
+  <PrimaryReorderMaxSamples>1024</PrimaryReorderMaxSamples><SecondaryReorderMaxSamples>1024</SecondaryReorderMaxSamples>
+  <WriterLingerDuration>0ms</WriterLingerDuration>
+  <Watermarks><WhcHigh>64 MB</WhcHigh><WhcHighInit>64 MB</WhcHighInit><WhcAdaptive>false</WhcAdaptive></Watermarks>
+ </Internal>{}
+</Domain></CycloneDDS>)",
+      network.interface, kMaxProcesses, peers, timers, network.security ? security_xml(*network.security) : "");
+}
+
+Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<CycloneDomain>& domain) {
+  if (network.domain > kMaxDomain) {
+    return Status::error(ExitCode::bad_input,
+                         fmt::format("DDS domain {} is out of range; expected 0 to {}", network.domain, kMaxDomain));
+  }
+  for (const std::string& peer : network.peers) {
+    if (!is_host(peer)) {
+      return Status::error(
+          ExitCode::bad_input,
+          fmt::format("'{}' is not the address or name of a peer; expected for example 10.0.0.2", peer));
+    }
+  }
+  if (Status status = enough_resources(); !status.is_ok()) return status;
+  std::string own_address;
+  if (Status status = find_address(network.interface, own_address); !status.is_ok()) return status;
+
+  std::shared_ptr<CycloneDomain> opened(new CycloneDomain(network.domain, network.security.has_value()));
+  opened->log_.set_echo(CycloneLog::Echo::off);
+  const std::vector<OpenSocket> before = sockets_on_all_addresses();
+  opened->handle_ = dds_create_domain(network.domain, cyclone_xml(network, own_address).c_str());
+  if (opened->handle_ == DDS_RETCODE_PRECONDITION_NOT_MET) {
+    return Status::error(ExitCode::failed,
+                         fmt::format("internal error: this process has DDS domain {} already", network.domain));
+  }
+  if (opened->handle_ < 0) {
+    const std::string reason = opened->log_.last_line();
+    const std::string remedy =
+        reason.find("participant index") == std::string::npos
+            ? ""
+            : fmt::format("; {} processes use DDS domain {} on this host: end some or choose another with --domain",
+                          kMaxProcesses, network.domain);
+    return Status::error(ExitCode::resources, fmt::format("cannot join DDS domain {} on {}: {}{}", network.domain,
+                                                          network.interface, reason, remedy));
+  }
+  if (!leaves_machine(network.interface)) {
+    if (Status status = confine_to_loopback(network, before); !status.is_ok()) return status;
+  }
+  opened->log_.set_echo(CycloneLog::Echo::on);
+  domain = std::move(opened);
+  return Status::ok();
+}
+
+void CycloneDomain::wake_timers() noexcept {
+  // neither deaf nor mute, as it is; what is scheduled in front of all that waits wakes the thread
+  constexpr dds_duration_t kInFrontOfAll = DDS_SECS(-3600);
+  static_cast<void>(dds_domain_set_deafmute(handle_, /*deaf=*/false, /*mute=*/false, kInFrontOfAll));
+}
+
+CycloneDomain::~CycloneDomain() {
+  if (handle_ > 0) dds_delete(handle_);
+}
+
+}  // namespace slew::transport

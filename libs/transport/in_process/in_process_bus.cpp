@@ -1,0 +1,123 @@
+#include "transport/in_process/in_process_bus.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/time.h"
+
+namespace slew::transport {
+namespace {
+
+constexpr std::size_t kFirstCapacity = 64;  // messages of a new inbox
+
+}  // namespace
+
+InProcessEndpoint::InProcessEndpoint(InProcessBus& bus, InProcessOptions options)
+    : bus_(bus), options_(std::move(options)) {
+  taken_.bytes.reserve(InProcessBus::kSlotBytes);
+  const std::lock_guard lock(bus_.mutex_);
+  // what earlier writers keep for late readers
+  for (const InProcessEndpoint* writer : bus_.endpoints_) {
+    for (const Message& message : writer->kept_)
+      receive(message.topic, message.bytes, message.source_ns, writer->number_);
+  }
+  number_ = ++bus_.last_number_;
+  bus_.endpoints_.push_back(this);
+}
+
+InProcessEndpoint::~InProcessEndpoint() {
+  const std::lock_guard lock(bus_.mutex_);
+  std::erase(bus_.endpoints_, this);
+}
+
+Status InProcessEndpoint::publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept {
+  if (!options_.writes.contains(topic)) {
+    return Status::error(ExitCode::failed, std::string("internal error: ") + options_.role +
+                                               " publishes on the undeclared topic " + traits(topic).name);
+  }
+  const std::int64_t now = wall_clock_ns();
+  const std::lock_guard lock(bus_.mutex_);
+  keep(topic, bytes, now);
+  for (InProcessEndpoint* reader : bus_.endpoints_) {
+    if (reader != this) reader->receive(topic, bytes, now, number_);
+  }
+  return Status::ok();
+}
+
+void InProcessEndpoint::keep(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns) {
+  const std::int32_t depth = traits(topic).kept;
+  if (depth == 0) return;
+  const auto is_of_topic = [topic](const Message& message) { return message.topic == topic; };
+  if (std::count_if(kept_.begin(), kept_.end(), is_of_topic) == depth) {
+    kept_.erase(std::find_if(kept_.begin(), kept_.end(), is_of_topic));
+  }
+  kept_.push_back({topic, source_ns, {bytes.begin(), bytes.end()}, number_});
+}
+
+// the bus's mutex is held
+void InProcessEndpoint::receive(wire::Topic topic, std::span<const std::byte> bytes, std::int64_t source_ns,
+                                std::uint64_t writer) {
+  if (!options_.reads.contains(topic)) return;
+  if (count_ == inbox_.size() && count_ < InProcessBus::kInboxLimit) grow();
+  if (count_ == inbox_.size()) {
+    first_ = (first_ + 1) % inbox_.size();
+    --count_;
+    ++dropped_;
+  }
+  Message& slot = inbox_[(first_ + count_) % inbox_.size()];
+  slot.topic = topic;
+  slot.source_ns = source_ns;
+  slot.writer = topic == wire::Topic::controller_input ? writer : 0;
+  slot.bytes.assign(bytes.begin(), bytes.end());
+  ++count_;
+  has_message_.notify_one();
+}
+
+// twice the places, the oldest message first
+void InProcessEndpoint::grow() {
+  std::rotate(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(first_), inbox_.end());
+  first_ = 0;
+  const std::size_t old = inbox_.size();
+  inbox_.resize(std::max(kFirstCapacity, 2 * old));
+  for (std::size_t i = old; i < inbox_.size(); ++i) inbox_[i].bytes.reserve(InProcessBus::kSlotBytes);
+}
+
+bool InProcessEndpoint::take(Received& message) {
+  const std::lock_guard lock(bus_.mutex_);
+  if (count_ == 0) return false;
+  std::swap(taken_, inbox_[first_]);
+  first_ = (first_ + 1) % inbox_.size();
+  --count_;
+  message = {taken_.topic, taken_.bytes, taken_.source_ns, taken_.writer};
+  return true;
+}
+
+WriterSight InProcessEndpoint::see_writer(wire::Topic, std::uint64_t writer) {
+  const std::lock_guard lock(bus_.mutex_);
+  const bool is_there = std::any_of(bus_.endpoints_.begin(), bus_.endpoints_.end(),
+                                    [writer](const InProcessEndpoint* one) { return one->number_ == writer; });
+  return {.has_left = writer != 0 && !is_there};
+}
+
+void InProcessEndpoint::wait_until(std::int64_t monotonic_deadline_ns) {
+  const std::chrono::steady_clock::time_point deadline{std::chrono::nanoseconds(monotonic_deadline_ns)};
+  std::unique_lock lock(bus_.mutex_);
+  has_message_.wait_until(lock, deadline, [this] { return count_ > 0; });
+}
+
+std::vector<std::string> InProcessEndpoint::discovered_writers(wire::Topic topic) {
+  std::vector<std::string> writers;
+  const std::lock_guard lock(bus_.mutex_);
+  for (const InProcessEndpoint* endpoint : bus_.endpoints_) {
+    if (!endpoint->options_.writes.contains(topic)) continue;
+    writers.push_back(endpoint->options_.role + " in this process, type " + traits(topic).type_name);
+  }
+  return writers;
+}
+
+std::uint64_t InProcessEndpoint::dropped() const {
+  const std::lock_guard lock(bus_.mutex_);
+  return dropped_;
+}
+
+}  // namespace slew::transport
