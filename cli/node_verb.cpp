@@ -8,21 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "core/child_process.h"
 #include "cli/verbs.h"
+#include "core/child_process.h"
+#include "core/node_names.h"
 #include "core/suggestion.h"
 
 namespace slew::cli {
-namespace {
-
-constexpr const char* kRoles[] = {"io", "mechanics", "hydraulics", "flex", "recorder"};
-
-}  // namespace
+namespace {}  // namespace
 
 int become_node(int argc, char** argv) {
   const std::string role = argv[2];
-  if (std::find(std::begin(kRoles), std::end(kRoles), role) == std::end(kRoles)) {
-    const std::string meant = closest(role, {std::begin(kRoles), std::end(kRoles)});
+  if (std::find(std::begin(kNodeNames), std::end(kNodeNames), role) == std::end(kNodeNames)) {
+    const std::string meant = closest(role, {std::begin(kNodeNames), std::end(kNodeNames)});
     std::fprintf(
         stderr, "slewring: there is no role '%s'; nothing was started; %s\n", role.c_str(),
         meant.empty() ? "roles: io, mechanics, hydraulics, flex, recorder" : ("did you mean '" + meant + "'?").c_str());

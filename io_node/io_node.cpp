@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "node/sample_exchange.h"
+#include "transport/roles.h"
 
 namespace slew::io {
 namespace {
@@ -39,6 +40,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
       input_ns_(config_.channels.size()),
       tick_ns_(static_cast<std::size_t>(kLoopMemory)),
       script_(config_.channels.size()) {
+  newest_.fill(kJoinStep);
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
   if (config_.source) {
@@ -273,7 +275,8 @@ bool IoNode::advance_initialising(std::int64_t now_ns) {
 
 std::string IoNode::not_ready_text() const {
   std::string text;
-  for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
+  for (const Role role : wire::kNodeRoles) {
+    if (role == Role::io) continue;
     const node::Peer& peer = member_.peer(role);
     if (!member_.requires_role(role) || (peer.is_known && peer.status.state >= NodeState::ready)) continue;
     text += (text.empty() ? "" : "; ") + member_.describe_peer(role) + " is " + std::string(to_text(peer.status.state));
@@ -304,18 +307,18 @@ bool IoNode::advance_join(std::int64_t now_ns) {
   return false;
 }
 
-// the last sample that a flex node must have published before tick n
-StepIndex IoNode::needed_of_flex(StepIndex n) const noexcept {
+// the last sample that a physics node must have published before tick n
+StepIndex IoNode::needed_of(Role role, StepIndex n) const noexcept {
+  if (!transport::traits(role).is_follower) return n - config_.window + 1;
   const StepIndex oldest = n - node::kFollowerWindow;
   return oldest < 0 ? kJoinStep : oldest - oldest % static_cast<StepIndex>(config_.flexible_every);
 }
 
 // the first role whose samples are missing for tick n
 std::optional<Role> IoNode::holds_back(StepIndex n) const noexcept {
-  const StepIndex needed = n - config_.window + 1;
-  if (member_.requires_role(Role::mechanics) && mechanics_at_ < needed) return Role::mechanics;
-  if (member_.requires_role(Role::hydraulics) && hydraulics_at_ < needed) return Role::hydraulics;
-  if (member_.requires_role(Role::flex) && flex_at_ < needed_of_flex(n)) return Role::flex;
+  for (const Role role : wire::kPhysicsRoles) {
+    if (member_.requires_role(role) && newest_of(role) < needed_of(role, n)) return role;
+  }
   return std::nullopt;
 }
 
@@ -357,8 +360,11 @@ void IoNode::show_running() {
 // All samples that io needs up to this step have come.
 StepIndex IoNode::complete_up_to() const noexcept {
   StepIndex complete = n_;
-  if (member_.requires_role(Role::mechanics)) complete = std::min(complete, mechanics_at_);
-  if (member_.requires_role(Role::hydraulics)) complete = std::min(complete, hydraulics_at_);
+  for (const Role role : wire::kPhysicsRoles) {
+    if (member_.requires_role(role) && !transport::traits(role).is_follower) {
+      complete = std::min(complete, newest_of(role));
+    }
+  }
   return complete;
 }
 
@@ -458,20 +464,17 @@ void IoNode::measure_wait(std::int64_t now_ns) noexcept {
 void IoNode::ask_for_missing(std::int64_t now_ns) {
   if (!resend_.is_due(now_ns)) return;
   resend_.asked(now_ns);
-  const auto ask = [&](Role role, Topic topic, StepIndex at, StepIndex needed) {
-    if (!member_.requires_role(role) || at >= needed) return;
+  for (const Role role : wire::kPhysicsRoles) {
+    const StepIndex needed = needed_of(role, n_);
+    if (!member_.requires_role(role) || newest_of(role) >= needed) continue;
     wire::ResendRequest request;
-    request.header = member_.header(Phase::running, at + 1);
+    request.header = member_.header(Phase::running, newest_of(role) + 1);
     request.role = role;
-    request.topic = static_cast<std::uint8_t>(topic);
+    request.topic = static_cast<std::uint8_t>(transport::traits(role).sample);
     request.last_step = needed;
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
-  };
-  const StepIndex needed = n_ - config_.window + 1;
-  ask(Role::mechanics, Topic::mechanism, mechanics_at_, needed);
-  ask(Role::hydraulics, Topic::actuators, hydraulics_at_, needed);
-  ask(Role::flex, Topic::elastic, flex_at_, needed_of_flex(n_));
+  }
 }
 
 void IoNode::issue_tick(std::int64_t now_ns) {
@@ -504,6 +507,7 @@ void IoNode::issue_tick(std::int64_t now_ns) {
                 : shedding_.level() == Shed::view ? static_cast<std::uint32_t>(wire::TickFlag::shed_view)
                                                   : static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
                                                         static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
+  newest_.fill(kJoinStep);
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
   for (std::size_t i = 0; i < gate_.size(); ++i) {
@@ -557,7 +561,7 @@ void IoNode::start_epoch(std::int64_t now_ns, StepIndex from) {
   n_ = begin_step_ = std::max<StepIndex>(0, from);
   controllers_due_ns_ = controllers_wait_ns_ = 0;
   std::ranges::fill(input_ns_, 0);
-  mechanics_at_ = hydraulics_at_ = flex_at_ = n_ - 1;
+  newest_.fill(n_ - 1);
   for (node::KeptCheckpoints& states : states_) states.clear();
   replaced_.fill({n_, kJoinStep});
   saving_.reset();
@@ -619,7 +623,8 @@ void IoNode::watch(std::int64_t now_ns) {
   watch_vacancies(now_ns);
   // of several that went wrong in the same moment the one of the earliest step is named, then by the order of roles
   const node::Peer* first = nullptr;
-  for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
+  for (const Role role : wire::kNodeRoles) {
+    if (role == Role::io) continue;
     const node::Peer& peer = member_.peer(role);
     if (!member_.requires_role(role) || !peer.is_known || peer.status.state < NodeState::ended) continue;
     if (vacancy(role) != nullptr) continue;

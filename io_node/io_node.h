@@ -143,7 +143,7 @@ class IoNode final : public node::Node {
   [[nodiscard]] bool is_saving_now() const noexcept { return saving_ && n_ >= saving_->step; }
   // A place is held, or who took it computes what was done before it came.
   [[nodiscard]] bool is_replacing() const noexcept;
-  [[nodiscard]] StepIndex needed_of_flex(StepIndex n) const noexcept;
+  [[nodiscard]] StepIndex needed_of(wire::Role role, StepIndex n) const noexcept;
   [[nodiscard]] std::optional<wire::Role> holds_back(StepIndex n) const noexcept;
   [[nodiscard]] bool partners_allow(StepIndex n) const noexcept;
   [[nodiscard]] std::int64_t due_ns(StepIndex n) const noexcept;
@@ -224,12 +224,8 @@ class IoNode final : public node::Node {
   [[nodiscard]] std::optional<node::Awaited> awaited() const noexcept;
   void look_for_stall(std::int64_t now_ns);
   void end_stall(std::int64_t now_ns);
-  [[nodiscard]] StepIndex& newest_of(wire::Role role) noexcept {
-    return role == wire::Role::mechanics ? mechanics_at_ : role == wire::Role::hydraulics ? hydraulics_at_ : flex_at_;
-  }
-  [[nodiscard]] StepIndex newest_of(wire::Role role) const noexcept {
-    return role == wire::Role::mechanics ? mechanics_at_ : role == wire::Role::hydraulics ? hydraulics_at_ : flex_at_;
-  }
+  [[nodiscard]] StepIndex& newest_of(wire::Role role) noexcept { return newest_[static_cast<std::size_t>(role)]; }
+  [[nodiscard]] StepIndex newest_of(wire::Role role) const noexcept { return newest_[static_cast<std::size_t>(role)]; }
   void answer(const wire::ControlRequest& request, bool accepted, const std::string& reason, StepIndex step,
               double value = 0);
   [[nodiscard]] bool is_asked_again(const wire::ControlRequest& request);
@@ -250,10 +246,8 @@ class IoNode final : public node::Node {
   LiveParameters parameters_;
   Stage stage_ = Stage::checking_name;
   wire::SessionDescription description_;
-  StepIndex n_ = 0;                     // next tick
-  StepIndex mechanics_at_ = kJoinStep;  // highest sample seen without a gap
-  StepIndex hydraulics_at_ = kJoinStep;
-  StepIndex flex_at_ = kJoinStep;
+  StepIndex n_ = 0;                             // next tick
+  std::array<StepIndex, wire::kRoles> newest_;  // of each physics node, highest sample received without a gap
   std::vector<wire::Command> waiting_commands_;
   bool is_paused_ = false;
   StepIndex single_steps_ = 0;  // ticks still to issue while paused

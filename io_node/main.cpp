@@ -4,6 +4,7 @@
 #include "node/carrier.h"
 #include "node/node_program.h"
 #include "scene/scene_options.h"
+#include "transport/roles.h"
 
 namespace {
 
@@ -42,7 +43,7 @@ int main(int argc, char** argv) {
       "  io_node scenes/truck_crane.yaml --session truck_crane --interface eth0 --peer 192.168.1.10 "
       "--keys plant");
   IoOptions options;
-  options.node.priority = node::kIoPriority;
+  options.node.priority = transport::traits(wire::Role::io).priority;
   scene::add_scene_options(program, options.scene);
   node::add_node_options(program, options.node);
   node::add_join_timeout(program, options.node);

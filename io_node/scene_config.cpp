@@ -1,6 +1,7 @@
 #include "io_node/scene_config.h"
 
 #include "scene/parameters.h"
+#include "transport/roles.h"
 
 namespace slew::io {
 
@@ -30,11 +31,17 @@ void ScriptSource::changes(SimTime from, SimTime to, std::vector<wire::Command>&
 }
 
 std::uint32_t required_roles(const scene::Scene& scene, Recording recording) noexcept {
-  std::uint32_t roles = bit(wire::Role::io);
-  if (scene.has_mechanics()) roles |= bit(wire::Role::mechanics);
-  if (scene.has_hydraulics()) roles |= bit(wire::Role::hydraulics);
-  if (scene.has_modes()) roles |= bit(wire::Role::flex);
-  if (recording == Recording::required) roles |= bit(wire::Role::recorder);
+  using transport::Needed;
+  const auto is_needed = [&](Needed needed) {
+    return needed == Needed::always || (needed == Needed::with_mechanics && scene.has_mechanics()) ||
+           (needed == Needed::with_hydraulics && scene.has_hydraulics()) ||
+           (needed == Needed::with_modes && scene.has_modes()) ||
+           (needed == Needed::to_record && recording == Recording::required);
+  };
+  std::uint32_t roles = 0;
+  for (const transport::RoleTraits& role : transport::roles()) {
+    if (is_needed(role.needed)) roles |= bit(role.role);
+  }
   return roles;
 }
 

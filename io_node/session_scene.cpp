@@ -29,7 +29,7 @@ SessionScene load_session_scene(const scene::SceneOptions& options) {
                                            " and its duration is " + time_text(scene.session.duration) +
                                            "; nothing was started; say a longer --duration, or 0");
   }
-  for (const wire::Role role : {wire::Role::io, wire::Role::mechanics, wire::Role::hydraulics, wire::Role::flex}) {
+  for (const wire::Role role : wire::kStateRoles) {
     const bool is_needed = (required_roles(scene, Recording::none) & bit(role)) != 0;
     if (!is_needed || saved.find(role) != nullptr) continue;
     throw Failure(ExitCode::bad_input, options.from + ": the file has no state of " + std::string(node::to_text(role)) +

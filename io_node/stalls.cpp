@@ -1,5 +1,6 @@
 // io_node's part that watches the messages which the next tick needs: a writer may be heard and never deliver them.
 #include "io_node/io_node.h"
+#include "transport/roles.h"
 
 namespace slew::io {
 
@@ -11,10 +12,7 @@ std::optional<node::Awaited> IoNode::awaited() const noexcept {
   if (!vacancies_.empty()) return std::nullopt;
   const std::optional<Role> role = holds_back(n_);
   if (!role) return node::Awaited{Role::recorder, Topic::node_status, n_};
-  const Topic topic = *role == Role::mechanics    ? Topic::mechanism
-                      : *role == Role::hydraulics ? Topic::actuators
-                                                  : Topic::elastic;
-  return node::Awaited{*role, topic, newest_of(*role) + 1};
+  return node::Awaited{*role, transport::traits(*role).sample, newest_of(*role) + 1};
 }
 
 // Named after 0.3 s; after session.stall_timeout the place is given away, or the session ends. The recorder may wait

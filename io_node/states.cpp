@@ -18,8 +18,6 @@ using wire::Topic;
 
 namespace {
 
-constexpr Role kMayLack[] = {Role::mechanics, Role::hydraulics, Role::flex};
-
 // steps that everybody can say again, less those that are on their way
 constexpr StepIndex kReach = static_cast<StepIndex>(node::kSentDepth) - 2 * node::kFollowerWindow;
 
@@ -188,7 +186,7 @@ node::Checkpoint TickFollower::state(StepIndex step) const {
 void IoNode::begin_with(const Beginning& beginning) {
   n_ = begin_step_ = beginning.step;
   replaced_.fill({n_, kJoinStep});
-  mechanics_at_ = hydraulics_at_ = flex_at_ = n_ - 1;
+  newest_.fill(n_ - 1);
   for (const SavedState& of_role : beginning.states) {
     states_[static_cast<std::size_t>(of_role.role)].keep(of_role.state);
   }
@@ -240,7 +238,7 @@ void IoNode::answer_asked(const wire::ControlRequest& request, bool accepted, co
 }
 
 std::optional<Role> IoNode::has_not_saved() const noexcept {
-  for (const Role role : kMayLack) {
+  for (const Role role : wire::kPhysicsRoles) {
     const node::KeptCheckpoints& kept = states_[static_cast<std::size_t>(role)];
     if (member_.requires_role(role) && kept.find(saving_->step) == nullptr) return role;
   }
@@ -269,7 +267,7 @@ bool IoNode::advance_saving(std::int64_t now_ns) {
   }
   if (!saving_->resend.is_due(now_ns)) return false;
   saving_->resend.asked(now_ns);
-  for (const Role role : kMayLack) {
+  for (const Role role : wire::kPhysicsRoles) {
     if (!member_.requires_role(role)) continue;
     if (states_[static_cast<std::size_t>(role)].find(saving_->step) != nullptr) continue;
     wire::ResendRequest request;
@@ -291,7 +289,7 @@ void IoNode::give_saved() {
   node::Checkpoint own;
   save_own(step, own);
   node::send_checkpoint(member_, Topic::state, Role::io, own, request.request);
-  for (const Role role : kMayLack) {
+  for (const Role role : wire::kPhysicsRoles) {
     if (!member_.requires_role(role)) continue;
     node::send_checkpoint(member_, Topic::state, role, *states_[static_cast<std::size_t>(role)].find(step),
                           request.request);
@@ -310,7 +308,8 @@ void IoNode::receive_upload(std::span<const std::byte> bytes, std::int64_t now_n
   }
   const bool is_for_this = part_.header.session == description_.header.session && part_.request != 0;
   const bool has_state = part_.role == Role::io ||
-                         (std::find(std::begin(kMayLack), std::end(kMayLack), part_.role) != std::end(kMayLack) &&
+                         (std::find(std::begin(wire::kPhysicsRoles), std::end(wire::kPhysicsRoles), part_.role) !=
+                              std::end(wire::kPhysicsRoles) &&
                           member_.requires_role(part_.role));
   if (!is_for_this || part_.header.role != Role::observer || !has_state) return;
   if (upload_.request != part_.request) {
@@ -349,7 +348,7 @@ void IoNode::advance_loading(std::int64_t now_ns) {
   if (stage_ != Stage::ticking) return refuse("the session is not running any more");
   if (!vacancies_.empty()) return refuse(vacancy_text(vacancies_.front()) + "; ask again when it has come");
   const node::CheckpointParts& own = upload_.parts[static_cast<std::size_t>(Role::io)];
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::flex}) {
+  for (const Role role : wire::kStateRoles) {
     const node::CheckpointParts& parts = upload_.parts[static_cast<std::size_t>(role)];
     if (!member_.requires_role(role)) continue;
     if (!parts.is_whole()) {
@@ -401,7 +400,7 @@ bool IoNode::are_bound(Role role, Role other) const noexcept {
 // sample of the step that it has reached, and can say its own from the step on that it began with.
 bool IoNode::suits(Role role, StepIndex step) const noexcept {
   if (step % config_.save_unit != 0) return false;
-  for (const Role other : kMayLack) {
+  for (const Role other : wire::kPhysicsRoles) {
     if (other == role || !member_.requires_role(other) || !are_bound(role, other)) continue;
     // both begin anew, at the same step
     if (begins_anew(other)) {

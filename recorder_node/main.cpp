@@ -5,6 +5,7 @@
 #include "node/node_program.h"
 #include "node/subsystem_factory.h"
 #include "recorder_node/recorder_node.h"
+#include "transport/roles.h"
 
 namespace {
 
@@ -34,7 +35,7 @@ int main(int argc, char** argv) {
   options::Program program("recorder_node", "Recorder of a Slewring session: one .mcap file in a new folder of --out.");
   program.footer("Example:\n  recorder_node --session truck_crane --out /data/runs");
   node::NodeOptions options;
-  options.priority = node::kRecorderPriority;
+  options.priority = transport::traits(wire::Role::recorder).priority;
   std::string runs = "runs";
   node::add_node_options(program, options);
   node::add_finding_options(program, options);

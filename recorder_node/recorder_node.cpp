@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "transport/roles.h"
 #include "transport/topics.h"
 
 namespace slew::recorder {
@@ -268,13 +269,12 @@ StepStream RecorderNode::make_stream(StepIndex begin) const {
 void RecorderNode::begin_streams(StepIndex from) {
   streams_.begin = std::max<StepIndex>(0, from);
   missing_states_.clear();
-  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::flex}) {
+  for (const Role role : wire::kStateRoles) {
     if (from >= 0 && member_.requires_role(role)) missing_states_[role];
   }
-  for (const auto& [topic, role] : {std::pair(Topic::tick, Role::io), std::pair(Topic::mechanism, Role::mechanics),
-                                    std::pair(Topic::actuators, Role::hydraulics)}) {
-    if (!member_.requires_role(role)) continue;
-    streams_.steps.try_emplace({topic, role}, make_stream(streams_.begin));
+  for (const Role role : wire::kStateRoles) {
+    if (!member_.requires_role(role) || transport::traits(role).is_follower) continue;
+    streams_.steps.try_emplace({transport::traits(role).sample, role}, make_stream(streams_.begin));
   }
 }
 

@@ -11,10 +11,10 @@
 #include "keys/certificates.h"
 #include "keys/key_files.h"
 #include "keys/security_documents.h"
-#include "node/carrier.h"
 #include "node/identity.h"
 #include "node/session_options.h"
 #include "transport/protection.h"
+#include "transport/roles.h"
 
 namespace slew::keys {
 namespace {
@@ -25,8 +25,6 @@ using wire::Role;
 constexpr const char* kList = "identities.json";
 constexpr const char* kGovernanceText = "governance.xml";  // as it was signed
 constexpr const char* kOldConfig = "openssl.cnf";          // of stores that version 0.1.0 made
-constexpr Role kAllRoles[] = {Role::io,       Role::mechanics, Role::hydraulics, Role::flex,
-                              Role::recorder, Role::observer,  Role::controller};
 constexpr const char* kViewer = "viewer";
 
 struct Allowed {
@@ -34,9 +32,9 @@ struct Allowed {
 };
 
 std::optional<Allowed> allowed_to(const std::string& role) {
-  if (role == kViewer) return Allowed{{}, node::topics_read(Role::observer)};
-  for (const Role one : kAllRoles) {
-    if (node::to_text(one) == role) return Allowed{node::topics_written(one), node::topics_readable(one)};
+  if (role == kViewer) return Allowed{{}, transport::traits(Role::observer).reads};
+  if (const std::optional<Role> one = transport::role_of(role)) {
+    return Allowed{transport::traits(*one).writes, transport::topics_readable(*one)};
   }
   return std::nullopt;
 }
@@ -74,7 +72,7 @@ void require_good(const KeyIdentity& identity) {
 const std::vector<std::string>& key_roles() {
   static const std::vector<std::string> roles = [] {
     std::vector<std::string> names;
-    for (const Role role : kAllRoles) names.emplace_back(node::to_text(role));
+    for (const transport::RoleTraits& role : transport::roles()) names.emplace_back(role.name);
     names.emplace_back(kViewer);
     return names;
   }();

@@ -6,16 +6,10 @@
 
 #include "node/session_options.h"
 #include "transport/in_process/in_process_bus.h"
-#include "transport/topics.h"
 #include "transport/transport.h"
 #include "transport/wire.h"
 
 namespace slew::node {
-
-[[nodiscard]] transport::TopicSet topics_written(wire::Role role) noexcept;
-[[nodiscard]] transport::TopicSet topics_read(wire::Role role) noexcept;
-// What keys let a role read: an observer also the samples that open_observer_with_samples() reads.
-[[nodiscard]] transport::TopicSet topics_readable(wire::Role role) noexcept;
 
 // Throws Failure with the carrier's text.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier(wire::Role role, const SessionOptions& options);

@@ -17,6 +17,7 @@
 #include "core/arithmetic_self_test.h"
 #include "core/time.h"
 #include "node/build_id.h"
+#include "transport/roles.h"
 #include "transport/topics.h"
 
 namespace slew::node {
@@ -71,22 +72,7 @@ std::optional<wire::SessionId> session_id_of(std::string_view text) {
 }
 
 std::string_view to_text(wire::Role role) noexcept {
-  switch (role) {
-    case wire::Role::io:
-      return "io";
-    case wire::Role::mechanics:
-      return "mechanics";
-    case wire::Role::hydraulics:
-      return "hydraulics";
-    case wire::Role::flex:
-      return "flex";
-    case wire::Role::recorder:
-      return "recorder";
-    case wire::Role::observer:
-      return "observer";
-    case wire::Role::controller:
-      return "controller";
-  }
+  if (static_cast<std::size_t>(role) < transport::roles().size()) return transport::traits(role).name;
   return "unknown role";
 }
 

@@ -26,6 +26,7 @@
 #include "node/sample_exchange.h"
 #include "node/stall_watch.h"
 #include "node/step_ring.h"
+#include "transport/roles.h"
 
 namespace slew::node {
 
@@ -107,7 +108,7 @@ class PhysicsNode final : public Node {
   void judge_after(StepIndex begin) noexcept;
   void measure_release(StepIndex step) noexcept;
   void work_more() const noexcept;
-  [[nodiscard]] bool is_follower() const noexcept { return member_.role() == wire::Role::flex; }
+  [[nodiscard]] bool is_follower() const noexcept { return transport::traits(member_.role()).is_follower; }
   void update_health() noexcept;
 
   SessionMember member_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "transport/given_up.h"
+#include "transport/roles.h"
 #include "transport/topics.h"
 
 namespace slew::node {
@@ -53,67 +54,7 @@ bool has_settled(std::int64_t ready_ns, std::int64_t now_ns) {
   return ready_ns != 0 && now_ns - ready_ns > kSettled.ns;
 }
 
-// the topic by which a role is missed
-Topic main_topic(Role role) {
-  switch (role) {
-    case Role::io:
-      return Topic::tick;
-    case Role::mechanics:
-      return Topic::mechanism;
-    case Role::hydraulics:
-      return Topic::actuators;
-    case Role::flex:
-      return Topic::elastic;
-    default:
-      return Topic::node_status;
-  }
-}
-
 }  // namespace
-
-std::uint32_t writers_of(Topic topic) noexcept {
-  switch (topic) {
-    case Topic::session:
-    case Topic::tick:
-    case Topic::controller_lease:
-    case Topic::control_reply:
-    case Topic::state:
-      return bit(Role::io);
-    case Topic::checkpoint:
-      return bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex);
-    case Topic::mechanism:
-    case Topic::flexible:
-      return bit(Role::mechanics);
-    case Topic::actuators:
-      return bit(Role::hydraulics);
-    case Topic::elastic:
-      return bit(Role::flex);
-    case Topic::variable_directory:
-    case Topic::variables:
-      return bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex);
-    default:
-      return (1u << wire::kRoles) - 1;
-  }
-}
-
-std::uint32_t readers_of(Topic topic) noexcept {
-  switch (topic) {
-    case Topic::tick:
-      return bit(Role::mechanics) | bit(Role::hydraulics) | bit(Role::flex) | bit(Role::recorder);
-    case Topic::mechanism:
-      return bit(Role::io) | bit(Role::hydraulics) | bit(Role::recorder);
-    case Topic::actuators:
-      return bit(Role::io) | bit(Role::mechanics) | bit(Role::recorder);
-    case Topic::flexible:
-      return bit(Role::flex) | bit(Role::recorder);
-    case Topic::elastic:
-      return bit(Role::io) | bit(Role::mechanics) | bit(Role::recorder);
-    case Topic::variables:
-      return bit(Role::recorder);
-    default:
-      return 0;
-  }
-}
 
 SessionMember::SessionMember(Role role, transport::Transport& transport, std::span<const Topic> step_topics,
                              std::optional<wire::SessionId> only)
@@ -212,7 +153,7 @@ bool SessionMember::is_in_session(const wire::Header& header) const noexcept {
 
 // the process that holds the role, and the role writes the topic
 bool SessionMember::is_writer(const wire::Header& header, Topic topic) const noexcept {
-  if ((writers_of(topic) & bit(header.role)) == 0) return false;
+  if ((transport::writers_of(topic) & bit(header.role)) == 0) return false;
   const Peer& peer = peers_[static_cast<std::size_t>(header.role)];
   return peer.is_known && peer.incarnation == header.incarnation;
 }
@@ -223,7 +164,7 @@ bool SessionMember::is_of_session(const wire::Header& header, Topic topic) noexc
     return false;
   }
   if (!is_writer(header, topic)) {
-    const bool is_early = (writers_of(topic) & bit(header.role)) != 0 && !peer(header.role).is_known;
+    const bool is_early = (transport::writers_of(topic) & bit(header.role)) != 0 && !peer(header.role).is_known;
     ++(is_early ? refusals_.early : refusals_.unexpected_writer);
     return false;
   }
@@ -404,9 +345,7 @@ void SessionMember::on_health(std::span<const std::byte> bytes, std::int64_t now
 }
 
 bool SessionMember::may_be_replaced(Role role) const noexcept {
-  const bool is_physics =
-      std::find(std::begin(wire::kPhysicsRoles), std::end(wire::kPhysicsRoles), role) != std::end(wire::kPhysicsRoles);
-  return is_physics && session_.rejoin_ns > 0;
+  return is_physics(role) && session_.rejoin_ns > 0;
 }
 
 void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
@@ -553,7 +492,7 @@ void SessionMember::heard(const wire::Header& from, Topic topic, std::int64_t no
 bool SessionMember::must_read(Role reader, Topic topic) const noexcept {
   const bool is_of_flexible_bodies = topic == Topic::flexible || topic == Topic::elastic;
   if (is_of_flexible_bodies && !requires_role(Role::flex)) return false;
-  return reader != role_ && requires_role(reader) && (readers_of(topic) & bit(reader)) != 0;
+  return reader != role_ && requires_role(reader) && (transport::readers_of(topic) & bit(reader)) != 0;
 }
 
 bool SessionMember::has_heard_me(Role reader, Topic topic) const noexcept {
@@ -592,7 +531,7 @@ std::string SessionMember::missing_join_text() {
   for (const Role role : wire::kNodeRoles) {
     if (role != role_ && requires_role(role) && !peer(role).is_known) {
       text += (text.empty() ? "" : "; ") + std::string("no ") + std::string(to_text(role)) +
-              " node has been heard in session '" + session_.name + "'" + found_writers(main_topic(role));
+              " node has been heard in session '" + session_.name + "'" + found_writers(transport::traits(role).sample);
     }
   }
   for (const Topic topic : step_topics_) {

@@ -255,10 +255,4 @@ class SessionMember {
   std::vector<std::byte> buffer_;
 };
 
-// Which of the required roles may write a topic that starts with a Header, as a set of bit(Role).
-[[nodiscard]] std::uint32_t writers_of(wire::Topic topic) noexcept;
-
-// Which roles read a step topic, as a set of bit(Role).
-[[nodiscard]] std::uint32_t readers_of(wire::Topic topic) noexcept;
-
 }  // namespace slew::node

@@ -7,12 +7,9 @@
 
 #include "node/session_member.h"
 #include "options/options.h"
+#include "transport/roles.h"
 
 namespace slew::node {
-
-inline constexpr int kIoPriority = 30;  // the clock goes before the nodes that wait for it
-inline constexpr int kDefaultPriority = 20;
-inline constexpr int kRecorderPriority = 10;  // in `real` pace nothing waits for it: it compresses behind the physics
 
 struct SessionOptions {
   std::string session;             // name
@@ -27,10 +24,10 @@ struct SessionOptions {
 struct NodeOptions {
   SessionOptions session;
   bool is_real_time = false;
-  int priority = kDefaultPriority;  // SCHED_FIFO, 1..99
-  int cpu = -1;                     // processor to run on; -1: any
-  double added_work_us = 0;         // CPU time that each step of a physics node burns beside its own
-  double join_timeout = 10;         // s
+  int priority = transport::kPhysicsPriority;  // SCHED_FIFO, 1..99
+  int cpu = -1;                                // processor to run on; -1: any
+  double added_work_us = 0;                    // CPU time that each step of a physics node burns beside its own
+  double join_timeout = 10;                    // s
   // of nodes that look for their session
   double session_timeout = 30;  // s
   std::string session_id;       // 32 hexadecimal digits; empty: the first session of the name

@@ -4,10 +4,13 @@
 #include <charconv>
 #include <string_view>
 
+#include <fmt/format.h>
+
+#include "core/node_names.h"
+
 namespace slew::scene {
 namespace {
 
-constexpr std::string_view kRoles[] = {"io", "mechanics", "hydraulics", "flex", "recorder"};
 constexpr int kMostCpus = 1024;
 
 std::string_view without_spaces(std::string_view text) {
@@ -33,8 +36,8 @@ Status parse_cpu_places(const std::string& text, std::vector<CpuPlace>& places) 
     if (equals == std::string_view::npos) return wrong(item, "is no role=number");
     const std::string_view role = without_spaces(item.substr(0, equals)),
                            number = without_spaces(item.substr(equals + 1));
-    if (std::find(std::begin(kRoles), std::end(kRoles), role) == std::end(kRoles)) {
-      return wrong(role, "is no role: io, mechanics, hydraulics, flex, recorder");
+    if (std::find(std::begin(kNodeNames), std::end(kNodeNames), role) == std::end(kNodeNames)) {
+      return wrong(role, fmt::format("is no role: {}", fmt::join(kNodeNames, ", ")));
     }
     int cpu = -1;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), cpu);

@@ -160,7 +160,7 @@ class Supervisor {
       arguments.insert(arguments.end(), {"--join-timeout", fmt::format("{}", *options_.join_timeout)});
     }
     arguments.insert(arguments.end(), {"--session", options_.session.session});
-    if (role == Role::mechanics || role == Role::hydraulics || role == Role::flex) {
+    if (is_physics(role)) {
       arguments.insert(arguments.end(), {"--assets", options_.assets()});
     }
     // nodes of this run follow its own io and no other of its name
@@ -176,8 +176,7 @@ class Supervisor {
     for (const scene::CpuPlace& place : cpus_) {
       if (place.role == node::to_text(role)) arguments.insert(arguments.end(), {"--cpu", std::to_string(place.cpu)});
     }
-    const bool is_physics = role != Role::io && role != Role::recorder;
-    if (is_physics && options_.added_work_us > 0) {
+    if (is_physics(role) && options_.added_work_us > 0) {
       arguments.insert(arguments.end(), {"--add-work", fmt::format("{}", options_.added_work_us)});
     }
     const std::string name(node::to_text(role));
@@ -186,8 +185,8 @@ class Supervisor {
 
   void start_others() {
     are_others_started_ = true;
-    for (const Role role : {Role::mechanics, Role::hydraulics, Role::flex, Role::recorder}) {
-      if (is_ours(role)) start(role);
+    for (const Role role : wire::kNodeRoles) {
+      if (role != Role::io && is_ours(role)) start(role);
     }
     watcher_.begin();
   }
@@ -203,11 +202,10 @@ class Supervisor {
   // ---- starting again -----------------------------------------------------------------------------------------
 
   [[nodiscard]] bool is_place_held(const Node& node) const {
-    const bool is_physics = node.role != Role::io && node.role != Role::recorder;
     const NodeView& io = observer_->view().node(Role::io);
     const bool runs =
         io.is_known && io.status.state >= wire::NodeState::running && !observer_->view().is_over() && interrupts() == 0;
-    return rejoin_.ns > 0 && is_physics && runs && deadline_ns_ == 0;
+    return rejoin_.ns > 0 && is_physics(node.role) && runs && deadline_ns_ == 0;
   }
 
   // Processes of the role that io has given up: it holds the place of the last one.

@@ -13,6 +13,7 @@
 #include "session/interrupts.h"
 #include "session/monolithic_session.h"
 #include "session/observer.h"
+#include "transport/roles.h"
 
 namespace slew::session {
 namespace {
@@ -40,7 +41,7 @@ class InProcessRun {
 
   RunOutcome run() {
     if (options_.is_real_time) {
-      const Status status = make_real_time(node::kDefaultPriority);
+      const Status status = make_real_time(transport::kPhysicsPriority);
       if (!status.is_ok()) options_.watcher->report("slewring: warning: " + status.text);
     }
     count_interrupts();

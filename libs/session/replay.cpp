@@ -347,7 +347,9 @@ class Replay {
     has_stopped_ = true;
   }
 
-  static std::size_t index(Role role) { return role == Role::mechanics ? 0 : role == Role::hydraulics ? 1 : 2; }
+  static std::size_t index(Role role) {
+    return static_cast<std::size_t>(role) - static_cast<std::size_t>(wire::kPhysicsRoles[0]);
+  }
 
   const recording::Reader& reader_;
   OnDifference on_difference_;

@@ -36,6 +36,10 @@ class TopicSet {
   }
   constexpr void insert(wire::Topic topic) { bits_ |= 1u << static_cast<unsigned>(topic); }
   constexpr void erase(wire::Topic topic) { bits_ &= ~(1u << static_cast<unsigned>(topic)); }
+  [[nodiscard]] constexpr TopicSet operator|(TopicSet other) const {
+    other.bits_ |= bits_;
+    return other;
+  }
   [[nodiscard]] constexpr bool is_empty() const { return bits_ == 0; }
   [[nodiscard]] constexpr bool contains(wire::Topic topic) const {
     return (bits_ & (1u << static_cast<unsigned>(topic))) != 0;

@@ -38,7 +38,12 @@ enum class Role : std::uint8_t { io, mechanics, hydraulics, flex, recorder, obse
 inline constexpr std::size_t kRoles = 5;  // roles that can be required: io .. recorder
 
 inline constexpr Role kNodeRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex, Role::recorder};
+inline constexpr Role kStateRoles[] = {Role::io, Role::mechanics, Role::hydraulics, Role::flex};  // have a state
 inline constexpr Role kPhysicsRoles[] = {Role::mechanics, Role::hydraulics, Role::flex};
+
+[[nodiscard]] constexpr bool is_physics(Role role) noexcept {
+  return role >= Role::mechanics && role <= Role::flex;
+}
 
 [[nodiscard]] constexpr std::uint32_t bit(Role role) noexcept {
   return 1u << static_cast<unsigned>(role);

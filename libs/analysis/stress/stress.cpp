@@ -22,6 +22,7 @@
 #include "session/distributed_run.h"
 #include "session/interrupts.h"
 #include "session/observer.h"
+#include "transport/roles.h"
 
 namespace slew::analysis {
 namespace {
@@ -45,15 +46,10 @@ bool fifo_is_allowed() {
   bool is_allowed = false;
   std::thread([&is_allowed] {
     sched_param parameters{};
-    parameters.sched_priority = node::kIoPriority;
+    parameters.sched_priority = transport::traits(Role::io).priority;
     is_allowed = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
   }).join();
   return is_allowed;
-}
-
-int priority_of(Role role) noexcept {
-  if (role == Role::io) return node::kIoPriority;
-  return role == Role::recorder ? node::kRecorderPriority : node::kDefaultPriority;
 }
 
 // A loop for every node of the session, io's in front; what they burn is not known yet.
@@ -65,7 +61,7 @@ std::vector<YardstickLoop> loops_of(Scheduling scheduling, std::uint32_t roles, 
     if ((roles & bit(role)) == 0) continue;
     YardstickLoop& loop = loops.emplace_back();
     loop.role = role;
-    if (scheduling == Scheduling::fifo) loop.priority = priority_of(role);
+    if (scheduling == Scheduling::fifo) loop.priority = transport::traits(role).priority;
     const auto place = std::ranges::find(all, node::to_text(role), &scene::CpuPlace::role);
     if (place != all.end()) loop.cpu = place->cpu;
     loop.ends_step = role == Role::io || role == Role::mechanics || role == Role::hydraulics;

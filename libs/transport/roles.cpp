@@ -1,0 +1,144 @@
+#include "transport/roles.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/node_names.h"
+
+namespace slew::transport {
+namespace {
+
+using wire::Role;
+using wire::Topic;
+
+constexpr TopicSet all_but(Topic topic) {
+  TopicSet topics = TopicSet::all();
+  topics.erase(topic);
+  return topics;
+}
+
+constexpr std::array kRoles = {
+    RoleTraits{Role::io,
+               kNodeNames[0],
+               Needed::always,
+               false,
+               kIoPriority,
+               Topic::tick,
+               {Topic::session, Topic::node_status, Topic::tick, Topic::variable_directory, Topic::variables,
+                Topic::controller_lease, Topic::control_reply, Topic::health, Topic::resend, Topic::state},
+               {Topic::session, Topic::node_status, Topic::mechanism, Topic::actuators, Topic::elastic,
+                Topic::controller_input, Topic::control_request, Topic::health, Topic::resend, Topic::checkpoint,
+                Topic::state},
+               {}},
+    RoleTraits{Role::mechanics,
+               kNodeNames[1],
+               Needed::with_mechanics,
+               false,
+               kPhysicsPriority,
+               Topic::mechanism,
+               {Topic::node_status, Topic::mechanism, Topic::flexible, Topic::variable_directory, Topic::variables,
+                Topic::health, Topic::resend, Topic::checkpoint},
+               {Topic::session, Topic::node_status, Topic::tick, Topic::actuators, Topic::elastic, Topic::health,
+                Topic::resend, Topic::state},
+               {}},
+    RoleTraits{
+        Role::hydraulics,
+        kNodeNames[2],
+        Needed::with_hydraulics,
+        false,
+        kPhysicsPriority,
+        Topic::actuators,
+        {Topic::node_status, Topic::actuators, Topic::variable_directory, Topic::variables, Topic::health,
+         Topic::resend, Topic::checkpoint},
+        {Topic::session, Topic::node_status, Topic::tick, Topic::mechanism, Topic::health, Topic::resend, Topic::state},
+        {}},
+    RoleTraits{
+        Role::flex,
+        kNodeNames[3],
+        Needed::with_modes,
+        true,
+        kPhysicsPriority,
+        Topic::elastic,
+        {Topic::node_status, Topic::elastic, Topic::variable_directory, Topic::variables, Topic::health, Topic::resend,
+         Topic::checkpoint},
+        {Topic::session, Topic::node_status, Topic::tick, Topic::flexible, Topic::health, Topic::resend, Topic::state},
+        {}},
+    RoleTraits{Role::recorder,
+               kNodeNames[4],
+               Needed::to_record,
+               false,
+               kRecorderPriority,
+               Topic::node_status,
+               {Topic::node_status, Topic::health, Topic::resend},
+               all_but(Topic::checkpoint),
+               {}},
+    RoleTraits{Role::observer,
+               "observer",
+               Needed::never,
+               false,
+               0,
+               Topic::node_status,
+               {Topic::controller_input, Topic::control_request, Topic::state},
+               {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
+                Topic::controller_lease, Topic::control_reply, Topic::health, Topic::state},
+               {Topic::mechanism, Topic::actuators}},
+    RoleTraits{Role::controller,
+               "controller",
+               Needed::never,
+               false,
+               0,
+               Topic::node_status,
+               {Topic::controller_input, Topic::control_request},
+               {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
+                Topic::controller_lease, Topic::control_reply, Topic::health},
+               {}},
+};
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kRoles.size(); ++i) {
+    if (static_cast<std::size_t>(kRoles[i].role) != i) return false;
+  }
+  return true;
+}
+static_assert(is_in_order(), "the table is indexed by role");
+
+}  // namespace
+
+std::span<const RoleTraits> roles() noexcept {
+  return kRoles;
+}
+
+const RoleTraits& traits(Role role) noexcept {
+  return kRoles[static_cast<std::size_t>(role)];
+}
+
+std::optional<Role> role_of(std::string_view name) noexcept {
+  const auto found = std::find_if(kRoles.begin(), kRoles.end(), [&](const RoleTraits& r) { return r.name == name; });
+  return found == kRoles.end() ? std::nullopt : std::optional(found->role);
+}
+
+TopicSet topics_readable(Role role) noexcept {
+  return traits(role).reads | traits(role).reads_on_request;
+}
+
+std::uint32_t writers_of(Topic topic) noexcept {
+  std::uint32_t bits = 0;
+  for (const Role role : wire::kNodeRoles) {
+    if (traits(role).writes.contains(topic)) bits |= bit(role);
+  }
+  return bits;
+}
+
+std::uint32_t readers_of(Topic topic) noexcept {
+  std::uint32_t bits = 0;
+  for (const Role role : wire::kNodeRoles) {
+    if (traits(role).reads.contains(topic)) bits |= bit(role);
+  }
+  return bits;
+}
+
+bool is_sample(Topic topic) noexcept {
+  return topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::flexible || topic == Topic::elastic;
+}
+
+}  // namespace slew::transport

@@ -1,0 +1,79 @@
+// The table of roles against what a session needs of it: one writer of each sample, a partner for each reader.
+#include "transport/roles.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <set>
+
+#include "core/node_names.h"
+
+namespace slew::transport {
+namespace roles_test {
+
+using wire::Role;
+using wire::Topic;
+
+TEST(Roles, HaveNamesOfTheirOwnByWhichTheyAreFound) {
+  std::set<std::string_view> names;
+  for (const RoleTraits& role : roles()) {
+    EXPECT_TRUE(names.insert(role.name).second) << role.name;
+    EXPECT_EQ(role_of(role.name), role.role);
+  }
+  EXPECT_EQ(role_of("nobody"), std::nullopt);
+  for (const Role role : wire::kNodeRoles) {
+    EXPECT_EQ(traits(role).name, kNodeNames[static_cast<std::size_t>(role)]);
+    EXPECT_NE(traits(role).needed, Needed::never) << traits(role).name;
+  }
+}
+
+TEST(Roles, EverySampleHasOneWriterAndAReader) {
+  for (std::size_t i = 0; i < wire::kTopics; ++i) {
+    const auto topic = static_cast<Topic>(i);
+    if (!is_sample(topic)) continue;
+    EXPECT_EQ(std::popcount(writers_of(topic)), 1) << traits(topic).name;
+    const std::uint32_t partners = readers_of(topic) & ~writers_of(topic) & ~bit(Role::recorder) & ~bit(Role::io);
+    EXPECT_NE(partners, 0u) << traits(topic).name;
+    EXPECT_NE(readers_of(topic) & bit(Role::recorder), 0u) << traits(topic).name;
+  }
+}
+
+// io asks a physics node for its samples, and looks for them
+TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
+  for (const Role role : wire::kPhysicsRoles) {
+    EXPECT_TRUE(is_physics(role));
+    EXPECT_TRUE(is_sample(traits(role).sample));
+    EXPECT_TRUE(traits(role).writes.contains(traits(role).sample));
+    EXPECT_TRUE(traits(Role::io).reads.contains(traits(role).sample));
+    EXPECT_TRUE(traits(role).reads.contains(Topic::tick));
+    EXPECT_TRUE(traits(role).writes.contains(Topic::checkpoint));
+  }
+  EXPECT_FALSE(is_physics(Role::io));
+  EXPECT_FALSE(is_physics(Role::recorder));
+}
+
+// whoever joins must be seen, and its messages must be found again
+TEST(Roles, EveryNodeSaysHowItIsAndAsksForWhatItMisses) {
+  for (const Role role : wire::kNodeRoles) {
+    for (const Topic topic : {Topic::node_status, Topic::health, Topic::resend}) {
+      EXPECT_TRUE(traits(role).writes.contains(topic)) << traits(role).name;
+      EXPECT_TRUE(traits(role).reads.contains(topic)) << traits(role).name;
+    }
+    EXPECT_TRUE(traits(role).reads.contains(Topic::session)) << traits(role).name;
+  }
+}
+
+TEST(Roles, NobodyFromOutsideWritesWhatAStepNeeds) {
+  for (const Role role : {Role::observer, Role::controller}) {
+    for (const Topic topic : {Topic::session, Topic::tick, Topic::node_status, Topic::health, Topic::checkpoint}) {
+      EXPECT_FALSE(traits(role).writes.contains(topic)) << traits(role).name << " " << traits(topic).name;
+    }
+    for (std::size_t i = 0; i < wire::kTopics; ++i) {
+      const auto topic = static_cast<Topic>(i);
+      EXPECT_FALSE(is_sample(topic) && traits(role).writes.contains(topic)) << traits(topic).name;
+    }
+  }
+}
+
+}  // namespace roles_test
+}  // namespace slew::transport
