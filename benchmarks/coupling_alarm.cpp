@@ -202,7 +202,7 @@ Outcome outcome_of(scene::Scene& scene, const Variant& variant, const Signals& s
   scene.session.step = variant.H;
   scene.session.coupling = variant.level;
   scene.session.mode = variant.late > 0 ? scene::ExchangeMode::free_running : scene::ExchangeMode::lockstep;
-  CoupledRun run(scene, variant.late > 0 ? coupling::test::delayed(variant.late) : coupling::test::exchanges_of(scene));
+  CoupledRun run(scene, variant.late > 0 ? coupling::test::delayed(variant.late) : coupling::test::Ages{});
   Outcome outcome;
   if (!run.start().is_ok()) return outcome;
   std::vector<SecondOf> errors(traces.size(), SecondOf(variant.H));

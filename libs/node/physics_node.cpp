@@ -14,8 +14,7 @@ using wire::Topic;
 
 // variables are read by the recorder only; the sample topics are what the partners need
 std::vector<Topic> topics_of(Role role) {
-  const std::span<const Topic> samples = SampleExchange::topics_written(role);
-  std::vector<Topic> topics(samples.begin(), samples.end());
+  std::vector<Topic> topics = SampleExchange::topics_written(role);
   topics.push_back(Topic::variables);
   return topics;
 }
@@ -63,7 +62,7 @@ std::int64_t PhysicsNode::next_deadline(std::int64_t now_ns) const {
     case Stage::joining:
       return now_ns + kProbeInterval.ns / 2;
     case Stage::stepping:
-      if (built_.ports.is_free_running) return free_deadline(now_ns);
+      if (is_free_running()) return free_deadline(now_ns);
       [[fallthrough]];
     case Stage::initialising:
     case Stage::loading:
@@ -169,7 +168,7 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
     return;
   }
   variable_values_.resize(built_.subsystem->variables().size());
-  samples_.configure(member_, built_.ports, built_.flexible);
+  samples_.configure(member_, built_.exchange, is_free_running());
   const bool has_deadline = session.pace == wire::Pace::real;
   step_timing_.set_deadline({has_deadline ? session.step_ns * samples_.stride() : 0});
   member_.set_state(NodeState::joining);
@@ -216,7 +215,7 @@ void PhysicsNode::receive_tick(std::span<const std::byte> bytes, std::int64_t no
   }
   if (header.step >= n_ + static_cast<StepIndex>(kRingDepth)) {
     ++member_.refusals().too_far_ahead;
-  } else if (header.step < n_ && built_.ports.is_free_running) {
+  } else if (header.step < n_ && is_free_running()) {
     take_late_tick(bytes);
   } else if (header.step < n_ || ticks_.find(header.step) != nullptr) {
     ++member_.refusals().duplicate;
@@ -312,7 +311,7 @@ bool PhysicsNode::advance(std::int64_t now_ns) {
       bool any = false;
       const auto go_on = [&] {
         if (is_follower()) return follow(now_ns);
-        return built_.ports.is_free_running ? advance_free(now_ns) : advance_step(now_ns);
+        return is_free_running() ? advance_free(now_ns) : advance_step(now_ns);
       };
       while (stage_ == Stage::stepping && member_.send_failure().is_ok() && go_on()) any = true;
       if (!any) ask_for_missing(now_ns);
@@ -494,14 +493,15 @@ bool PhysicsNode::advance_free(std::int64_t now_ns) {
   // the tick, or its time and the budget
   if (tick == nullptr && newest_tick_ < n_) {
     const bool is_far_ahead = newest_tick_ == kNoStep || n_ - newest_tick_ > member_.session().window;
-    if (is_far_ahead || is_withheld(n_) || now_ns < tick_due_ns() + built_.ports.wait_budget.ns) return false;
+    if (is_far_ahead || is_withheld(n_) || now_ns < tick_due_ns() + built_.session.wait_budget_duration().ns)
+      return false;
   }
   coupling::PartnerSamples partners;
   samples_.find_newest(n_, partners);
   const StepIndex age = std::max(partners.mechanism_age, partners.actuators_age);
   // one that is behind the ticks has nothing to wait for: its partner is ahead
   if (age > 0 && newest_tick_ <= n_) {
-    if (sample_due_ns_ == 0) sample_due_ns_ = now_ns + built_.ports.wait_budget.ns;
+    if (sample_due_ns_ == 0) sample_due_ns_ = now_ns + built_.session.wait_budget_duration().ns;
     if (now_ns < sample_due_ns_) return false;
   }
   sample_due_ns_ = 0;
@@ -528,7 +528,8 @@ std::int64_t PhysicsNode::tick_due_ns() const noexcept {
 
 std::int64_t PhysicsNode::free_deadline(std::int64_t now_ns) const noexcept {
   if (is_ended_by_fault_ || newest_tick_ == kNoStep) return now_ns + kProbeInterval.ns;
-  const std::int64_t step = sample_due_ns_ > 0 ? sample_due_ns_ : tick_due_ns() + built_.ports.wait_budget.ns;
+  const std::int64_t step =
+      sample_due_ns_ > 0 ? sample_due_ns_ : tick_due_ns() + built_.session.wait_budget_duration().ns;
   return std::max(now_ns, std::min(step, missed_ticks_.empty() ? step : resend_.due_ns()));
 }
 
@@ -558,9 +559,9 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
   const std::int64_t spent_ns = monotonic_ns() - begin_ns;
   // told beside the state, which knows no clock
   if (step_timing_.is_late()) report.raise(StepFlag::overrun);
-  quality_ = report.has(StepFlag::late_input)                  ? coupling::Quality::degraded
-             : built_.ports.is_free_running && used_step_ < n_ ? coupling::Quality::extrapolated
-                                                               : coupling::Quality::ok;
+  quality_ = report.has(StepFlag::late_input)       ? coupling::Quality::degraded
+             : is_free_running() && used_step_ < n_ ? coupling::Quality::extrapolated
+                                                    : coupling::Quality::ok;
   n_ += samples_.stride();
   publish_sample(Phase::running, n_, report);
   step_timing_.published();
@@ -577,7 +578,7 @@ void PhysicsNode::compute(const coupling::PartnerSamples& partners, std::span<co
 }
 
 void PhysicsNode::judge_after(StepIndex begin) noexcept {
-  step_timing_.judge_from(begin + built_.start_grace.ns / member_.session().step_ns);
+  step_timing_.judge_from(begin + duration_of_seconds(built_.session.start_grace).ns / member_.session().step_ns);
 }
 
 void PhysicsNode::measure_release(StepIndex step) noexcept {

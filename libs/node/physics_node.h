@@ -36,11 +36,9 @@ struct BuiltSubsystem {
   std::unique_ptr<coupling::Subsystem> subsystem;
   std::uint32_t variables_every = 10;              // steps between two variable blocks
   std::vector<std::uint32_t> published_variables;  // indices into Subsystem::variables(), ascending
-  PortTraffic ports;
-  FlexibleTraffic flexible;
-  StepIndex exchange_unit = 1;                       // steps after which all nodes have exchanged
-  SimDuration start_grace;                           // steps of this time after the first are not judged
-  SimDuration stall_timeout = milliseconds(10'000);  // longest wait for one message of a node that is heard otherwise
+  scene::SessionDef session;
+  ExchangeRules exchange;
+  StepIndex exchange_unit = 1;  // steps after which all nodes have exchanged
 };
 
 // Builds the subsystem; refuses with the reason (assets that differ, scene that this build cannot run).
@@ -109,6 +107,9 @@ class PhysicsNode final : public Node {
   void measure_release(StepIndex step) noexcept;
   void work_more() const noexcept;
   [[nodiscard]] bool is_follower() const noexcept { return transport::traits(member_.role()).is_follower; }
+  [[nodiscard]] bool is_free_running() const noexcept {
+    return built_.session.mode == scene::ExchangeMode::free_running;
+  }
   void update_health() noexcept;
 
   SessionMember member_;

@@ -43,7 +43,7 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
     if (!is_withheld(n_ + samples_.stride() - 1)) samples_.for_each_missing(n_ + samples_.stride(), ask);
     return;
   }
-  if (built_.ports.is_free_running) {
+  if (is_free_running()) {
     // samples are too late by then, commands are not
     for (const StepIndex step : missed_ticks_) ask(Role::io, Topic::tick, step);
     return;
@@ -57,7 +57,7 @@ void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
 std::optional<Awaited> PhysicsNode::awaited() noexcept {
   if (stage_ == Stage::loading) return Awaited{Role::io, Topic::state, n_};
   const wire::NodeStatus& io = member_.peer(Role::io).status;
-  if (stage_ != Stage::stepping || is_ended_by_fault_ || built_.ports.is_free_running) return std::nullopt;
+  if (stage_ != Stage::stepping || is_ended_by_fault_ || is_free_running()) return std::nullopt;
   // io waits for a node, and ends the session when that takes too long
   if (io.state == NodeState::holding || io.state >= NodeState::ended) return std::nullopt;
   const StepIndex next = is_follower() ? n_ + samples_.stride() : n_;
@@ -90,7 +90,7 @@ void PhysicsNode::look_for_stall(std::int64_t now_ns) {
     if (stall_.may_warn()) member_.warn(text);
     if (stage_ == Stage::stepping) member_.hold(text);
   }
-  const SimDuration most{built_.stall_timeout.ns + kLostAfter.ns};
+  const SimDuration most{duration_of_seconds(built_.session.stall_timeout).ns + kLostAfter.ns};
   if (!stall_.is_named() || stall_.waited() < most) return;
   leave(ExitCode::node_lost,
         stall_.text(member_, asked) + ", nothing came within " + seconds_text(most) +

@@ -11,16 +11,17 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// what the partners need comes before what serves the eye
-constexpr Topic kMechanicsSamples[] = {Topic::mechanism, Topic::flexible};
-constexpr Topic kHydraulicsSamples[] = {Topic::actuators};
-constexpr Topic kFlexSamples[] = {Topic::elastic};
-
+// false: a sample that is needed is not there
 template <typename Message, typename Sample>
 bool take(const Inbox<Message>& inbox, const Message* found, const Sample*& sample) noexcept {
   if (!inbox.is_needed) return true;
   sample = found != nullptr ? &found->sample : nullptr;
   return found != nullptr;
+}
+
+template <typename Message, typename Sample>
+bool take_start(const Inbox<Message>& inbox, const Sample*& sample) noexcept {
+  return take(inbox, inbox.find_start(), sample);
 }
 
 template <typename Message, typename Sample>
@@ -35,72 +36,55 @@ SampleExchange::SampleExchange(Role own) : own_(own) {
   for (const Topic topic : topics_written(own)) outboxes_.push_back({topic, SentCache()});
 }
 
-std::span<const Topic> SampleExchange::topics_written(Role role) noexcept {
-  switch (role) {
-    case Role::mechanics:
-      return kMechanicsSamples;
-    case Role::hydraulics:
-      return kHydraulicsSamples;
-    case Role::flex:
-      return kFlexSamples;
-    default:
-      return {};
+std::vector<Topic> SampleExchange::topics_written(Role role) {
+  std::vector<Topic> topics;
+  for (std::size_t i = 0; i < wire::kTopics; ++i) {
+    const auto topic = static_cast<Topic>(i);
+    if (transport::is_sample(topic) && transport::traits(role).writes.contains(topic)) topics.push_back(topic);
   }
+  return topics;
 }
 
-bool SampleExchange::is_sample(Topic topic) noexcept {
-  return topic == Topic::mechanism || topic == Topic::actuators || topic == Topic::flexible || topic == Topic::elastic;
-}
-
-void SampleExchange::configure(const SessionMember& member, const PortTraffic& ports, const FlexibleTraffic& flexible) {
-  const bool is_stated_once = flexible.exchange == coupling::ElasticExchange::once;
+void SampleExchange::configure(const SessionMember& member, const ExchangeRules& rules, bool takes_late) {
+  rules_ = rules;
   has_flexible_ = member.requires_role(Role::flex);
-  flexible_every_ = is_stated_once ? std::max<StepIndex>(1, flexible.every) : 1;
-  if (own_ == Role::mechanics && member.requires_role(Role::hydraulics)) actuators_.need(ports.every);
-  if (own_ == Role::mechanics && has_flexible_) elastic_.need(1);
-  elastic_.is_needed_each_step = !is_stated_once;
-  if (own_ == Role::hydraulics && member.requires_role(Role::mechanics)) mechanism_.need(ports.every);
-  actuators_.takes_late = mechanism_.takes_late = ports.is_free_running;
-  if (own_ == Role::flex) flexible_.need(flexible_every_);
+  for_each_inbox([&](auto& inbox) {
+    if (inbox.reading.reader == own_ && member.requires_role(inbox.reading.writer)) inbox.need(rules);
+  });
+  actuators_.takes_late = mechanism_.takes_late = takes_late;
   for (Outbox& outbox : outboxes_) outbox.sent.set_depth(sent_depth(kSentTime, {member.session().step_ns}));
 }
 
 void SampleExchange::clear() noexcept {
-  actuators_.clear();
-  elastic_.clear();
-  mechanism_.clear();
-  flexible_.clear();
+  for_each_inbox([](auto& inbox) { inbox.clear(); });
   for (Outbox& outbox : outboxes_) outbox.sent.clear();
 }
 
 bool SampleExchange::has_partner() const noexcept {
-  return actuators_.is_needed || elastic_.is_needed || mechanism_.is_needed || flexible_.is_needed;
+  bool has_partner = false;
+  for_each_needed([&](const auto&) { has_partner = true; });
+  return has_partner;
 }
 
 // ---- receiving ------------------------------------------------------------------------------------------------
 
 void SampleExchange::receive(std::span<const std::byte> bytes, const wire::Header& header, Topic topic, StepIndex n,
                              Refusals& refusals) {
-  const auto into = [&](auto& inbox) {
-    if (inbox.topic != topic || !inbox.is_needed) return;
+  for_each_inbox([&](auto& inbox) {
+    if (inbox.reading.sample != topic || !inbox.is_needed) return;
     if (header.phase == Phase::init) inbox.keep_init(bytes, refusals);
     if (header.phase == Phase::running && inbox.is_needed_each_step) inbox.keep(bytes, header.step, n, refusals);
-  };
-  into(actuators_);
-  into(elastic_);
-  into(mechanism_);
-  into(flexible_);
+  });
 }
 
 bool SampleExchange::find_start(coupling::PartnerSamples& partners) const noexcept {
-  return take(actuators_, actuators_.find(0), partners.actuators) &&
-         take(elastic_, elastic_.init(), partners.elastic) && take(mechanism_, mechanism_.init(), partners.mechanism) &&
-         take(flexible_, flexible_.find(0), partners.flexible);
+  return take_start(actuators_, partners.actuators) && take_start(elastic_, partners.elastic) &&
+         take_start(mechanism_, partners.mechanism) && take_start(flexible_, partners.flexible);
 }
 
 bool SampleExchange::find(StepIndex step, coupling::PartnerSamples& partners) const noexcept {
-  partners.actuators_age = step % actuators_.every;
-  partners.mechanism_age = step % mechanism_.every;
+  partners.actuators_age = rules_.age(Topic::actuators, step);
+  partners.mechanism_age = rules_.age(Topic::mechanism, step);
   return take_step(actuators_, step, partners.actuators) && take_step(elastic_, step, partners.elastic) &&
          take_step(mechanism_, step, partners.mechanism) && take_step(flexible_, step, partners.flexible);
 }
@@ -148,7 +132,7 @@ void SampleExchange::publish(SessionMember& member, Phase phase, StepIndex step,
   if (own_ == Role::mechanics) {
     mechanism_out_.state = state;
     send(member, outboxes_[0], step, fill(mechanism_out_, own.mechanism));
-    const bool is_due = has_flexible_ && phase == Phase::running && step % flexible_every_ == 0;
+    const bool is_due = has_flexible_ && phase == Phase::running && rules_.age(Topic::flexible, step) == 0;
     if (is_due) send(member, outboxes_[1], step, fill(flexible_out_, own.flexible));
   } else if (own_ == Role::hydraulics) {
     actuators_out_.state = state;

@@ -1,14 +1,8 @@
 // The samples of one physics node: those of its partners by step, as long as they are needed, and its own, kept for
-// those that missed one.
+// those that missed one. Which samples a role uses in which step: node/exchange.h.
 //
-//   role         reads                                          writes
-//   mechanics    actuators, elastic                             mechanism, flexible
-//   hydraulics   mechanism                                      actuators
-//   flex         flexible                                       elastic
-// Mechanics and hydraulics may exchange at every k-th step only: in between they are handed the sample of the last
-// exchange again, with its age. Of a free-running session the newest sample is handed over, however old.
-// A node with several partners waits for all of them. Flexible bodies whose elastic forces were stated once are waited
-// for at the start only; samples for them and of them then come at every k-th step, those of the variables.
+// In between two exchanges a node is handed the sample of the last one again, with its age; in a free-running session
+// the newest sample, however old. A node with several partners waits for all of them.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +10,11 @@
 #include <vector>
 
 #include "coupling/subsystem.h"
+#include "node/exchange.h"
 #include "node/sent_cache.h"
 #include "node/session_member.h"
 #include "node/step_ring.h"
+#include "transport/roles.h"
 
 namespace slew::node {
 
@@ -29,24 +25,11 @@ inline constexpr std::size_t kRingDepth = 128;
 // steps that a node may be behind although nobody waits for its samples: io's ticks wait for it then
 inline constexpr StepIndex kFollowerWindow = 64;
 
-// How the flexible bodies of a session take part.
-struct FlexibleTraffic {
-  coupling::ElasticExchange exchange = coupling::ElasticExchange::once;
-  std::uint32_t every = 1;  // steps between two samples for and of them
-};
-
-// How mechanics and hydraulics of a session exchange.
-struct PortTraffic {
-  std::uint32_t every = 1;       // steps between two exchanges
-  bool is_free_running = false;  // nobody waits longer than the budget
-  SimDuration wait_budget;       // of a free-running node
-};
-
 // Samples of one partner.
 template <typename Message>
 class Inbox {
  public:
-  Inbox(wire::Role from, wire::Topic on) : writer(from), topic(on) {}
+  explicit Inbox(const Reading& of) : reading(of) {}
 
   // Takes a message of a step that is still needed, once. n: the next step to do.
   void keep(std::span<const std::byte> bytes, StepIndex step, StepIndex n, Refusals& refusals) {
@@ -67,10 +50,11 @@ class Inbox {
     has_init_ = transport::decode(bytes, init_);
     if (!has_init_) ++refusals.undecodable;
   }
-  // The session has this partner. every: steps between two of its messages.
-  void need(StepIndex steps) {
+  // The session has this partner.
+  void need(const ExchangeRules& rules) {
     is_needed = true;
-    every = steps;
+    is_needed_each_step = rules.is_used_in_steps(reading.sample);
+    every = is_needed_each_step ? rules.every(reading.sample) : 1;
     ring_ = StepRing<Message>(kRingDepth);
   }
   void clear() noexcept {
@@ -87,10 +71,13 @@ class Inbox {
     }
     return nullptr;
   }
-  [[nodiscard]] const Message* init() const noexcept { return has_init_ ? &init_ : nullptr; }
+  // What the reader starts from.
+  [[nodiscard]] const Message* find_start() const noexcept {
+    if (reading.start == StartSample::first) return find(0);
+    return has_init_ ? &init_ : nullptr;
+  }
 
-  const wire::Role writer;
-  const wire::Topic topic;
+  const Reading reading;
   bool is_needed = false;
   bool is_needed_each_step = true;  // beyond the start
   bool takes_late = false;          // also messages of steps that are done
@@ -106,22 +93,23 @@ class SampleExchange {
  public:
   explicit SampleExchange(wire::Role own);
 
-  [[nodiscard]] static std::span<const wire::Topic> topics_written(wire::Role role) noexcept;
-  [[nodiscard]] static bool is_sample(wire::Topic topic) noexcept;
+  // Topics of the samples that a role publishes; what its partners need comes before what serves the eye.
+  [[nodiscard]] static std::vector<wire::Topic> topics_written(wire::Role role);
 
-  // Who takes part in the session. flexible: of a session with a flex node.
-  void configure(const SessionMember& member, const PortTraffic& ports, const FlexibleTraffic& flexible);
+  // To be called when the session is known. takes_late: samples of steps that are done are kept too.
+  void configure(const SessionMember& member, const ExchangeRules& rules, bool takes_late);
   void clear() noexcept;
   [[nodiscard]] bool has_partner() const noexcept;
   // Steps from one of this node's samples to the next.
-  [[nodiscard]] StepIndex stride() const noexcept { return own_ == wire::Role::flex ? flexible_every_ : 1; }
+  [[nodiscard]] StepIndex stride() const noexcept {
+    return transport::traits(own_).is_follower ? rules_.every(transport::traits(own_).sample) : 1;
+  }
 
   // A partner's message, of this session and epoch. n: the next step to do.
   void receive(std::span<const std::byte> bytes, const wire::Header& header, wire::Topic topic, StepIndex n,
                Refusals& refusals);
 
-  // False while a needed sample is missing. Start: mechanics from the others' INIT or sample 0, hydraulics from the
-  // mechanics' INIT, flexible bodies from the mechanics' sample 0.
+  // False while a needed sample is missing.
   [[nodiscard]] bool find_start(coupling::PartnerSamples& partners) const noexcept;
   [[nodiscard]] bool find(StepIndex step, coupling::PartnerSamples& partners) const noexcept;
   // The newest samples up to the step. Pre-condition: the session is free-running.
@@ -130,22 +118,17 @@ class SampleExchange {
   // What is missing, for a request: visit(role, topic, step).
   template <typename Visit>
   void for_each_missing_at_start(Visit visit) const {
-    if (actuators_.is_needed && actuators_.find(0) == nullptr) visit(actuators_.writer, actuators_.topic, StepIndex{0});
-    if (elastic_.is_needed && elastic_.init() == nullptr) visit(elastic_.writer, elastic_.topic, kJoinStep);
-    if (mechanism_.is_needed && mechanism_.init() == nullptr) visit(mechanism_.writer, mechanism_.topic, kJoinStep);
-    if (flexible_.is_needed && flexible_.find(0) == nullptr) visit(flexible_.writer, flexible_.topic, StepIndex{0});
+    for_each_needed([&](const auto& inbox) {
+      const StepIndex step = inbox.reading.start == StartSample::init ? kJoinStep : 0;
+      if (inbox.find_start() == nullptr) visit(inbox.reading.writer, inbox.reading.sample, step);
+    });
   }
   template <typename Visit>
   void for_each_missing(StepIndex step, Visit visit) const {
-    const auto look = [&](const auto& inbox) {
-      if (inbox.is_needed && inbox.is_needed_each_step && inbox.find(step) == nullptr) {
-        visit(inbox.writer, inbox.topic, step - step % inbox.every);
-      }
-    };
-    look(actuators_);
-    look(elastic_);
-    look(mechanism_);
-    look(flexible_);
+    for_each_needed([&](const auto& inbox) {
+      if (!inbox.is_needed_each_step || inbox.find(step) != nullptr) return;
+      visit(inbox.reading.writer, inbox.reading.sample, step - step % inbox.every);
+    });
   }
 
   // Step -1 on every topic of this node that somebody has not heard yet.
@@ -163,14 +146,28 @@ class SampleExchange {
   };
   template <typename Message>
   void send(SessionMember& member, Outbox& outbox, StepIndex step, const Message& message);
+  template <typename Visit>
+  void for_each_inbox(Visit visit) {
+    visit(actuators_);
+    visit(elastic_);
+    visit(mechanism_);
+    visit(flexible_);
+  }
+  template <typename Visit>
+  void for_each_needed(Visit visit) const {
+    if (actuators_.is_needed) visit(actuators_);
+    if (elastic_.is_needed) visit(elastic_);
+    if (mechanism_.is_needed) visit(mechanism_);
+    if (flexible_.is_needed) visit(flexible_);
+  }
 
   wire::Role own_;
-  StepIndex flexible_every_ = 1;
+  ExchangeRules rules_;
   bool has_flexible_ = false;
-  Inbox<wire::ActuatorMessage> actuators_{wire::Role::hydraulics, wire::Topic::actuators};
-  Inbox<wire::ElasticMessage> elastic_{wire::Role::flex, wire::Topic::elastic};
-  Inbox<wire::MechanismMessage> mechanism_{wire::Role::mechanics, wire::Topic::mechanism};
-  Inbox<wire::FlexibleMessage> flexible_{wire::Role::mechanics, wire::Topic::flexible};
+  Inbox<wire::ActuatorMessage> actuators_{reading_of(wire::Topic::actuators)};
+  Inbox<wire::ElasticMessage> elastic_{reading_of(wire::Topic::elastic)};
+  Inbox<wire::MechanismMessage> mechanism_{reading_of(wire::Topic::mechanism)};
+  Inbox<wire::FlexibleMessage> flexible_{reading_of(wire::Topic::flexible)};
   wire::MechanismMessage mechanism_out_;
   wire::ActuatorMessage actuators_out_;
   wire::FlexibleMessage flexible_out_;

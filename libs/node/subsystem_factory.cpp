@@ -39,12 +39,9 @@ node::SubsystemFactory subsystem_factory(MakeSubsystem make, std::string assets)
       *scene = scene::load_text(session.scene_text, "scene of session '" + session.name + "'", {}, assets);
       built.subsystem = make(*scene);
       built.variables_every = static_cast<std::uint32_t>(scene->recording.every);
-      built.ports = {static_cast<std::uint32_t>(scene->session.exchange_every),
-                     scene->session.mode == scene::ExchangeMode::free_running, scene->session.wait_budget_duration()};
-      built.flexible = {scene->session.flexible, scene->flexible_every()};
+      built.session = scene->session;
+      built.exchange = exchange_rules(*scene);
       built.exchange_unit = scene->exchange_unit();
-      built.start_grace = duration_of_seconds(scene->session.start_grace);
-      built.stall_timeout = duration_of_seconds(scene->session.stall_timeout);
       built.published_variables = published_variables(*scene, *built.subsystem);
       return Status::ok();
     } catch (const scene::LoadError& error) {

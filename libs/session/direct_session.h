@@ -2,6 +2,7 @@
 // and the ticks, in the same order. For replay and for a look at the start state.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -11,8 +12,10 @@
 
 #include "coupling/subsystem.h"
 #include "io_node/saved_session.h"
+#include "node/exchange.h"
 #include "scene/scene.h"
 #include "session/monolithic_session.h"
+#include "transport/roles.h"
 #include "transport/wire.h"
 
 namespace slew::session {
@@ -45,15 +48,19 @@ class DirectSession {
   [[nodiscard]] std::vector<ElementVariable> variables() const;
   // Hash of the role's state now, 0 when the scene has no such role.
   [[nodiscard]] std::uint64_t state_hash(wire::Role role) const noexcept;
-  // What the role published last; of mechanics, hydraulics or flex.
+  // What a physics role published last.
   [[nodiscard]] const coupling::OwnSample& sample(wire::Role role) const noexcept;
   // Whether the role has a sample of this step.
   [[nodiscard]] bool has_sample(wire::Role role, StepIndex step) const noexcept {
-    return role != wire::Role::flex || step % flexible_every_ == 0;
+    return rules_.is_published_at(transport::traits(role).sample, step);
   }
-  // What mechanics and hydraulics have said of t_n; empty in a scene without them.
-  [[nodiscard]] const coupling::MechanismSample& mechanism() const noexcept { return mechanics_sample_.mechanism; }
-  [[nodiscard]] const coupling::ActuatorSample& actuators() const noexcept { return hydraulics_sample_.actuators; }
+  // Samples of mechanics and hydraulics at t_n; empty in a scene without them.
+  [[nodiscard]] const coupling::MechanismSample& mechanism() const noexcept {
+    return sample(wire::Role::mechanics).mechanism;
+  }
+  [[nodiscard]] const coupling::ActuatorSample& actuators() const noexcept {
+    return sample(wire::Role::hydraulics).actuators;
+  }
   // Mechanics' hash at its INIT sample.
   [[nodiscard]] std::uint64_t init_hash() const noexcept { return init_hash_; }
   // What the role's part of the last step reported, and how long it took [ns of the wall clock].
@@ -63,30 +70,33 @@ class DirectSession {
   [[nodiscard]] std::string failure() const;
 
  private:
-  [[nodiscard]] coupling::Subsystem* part(wire::Role role) const noexcept;
-
-  SubsystemFamily family_;
-  std::unique_ptr<coupling::Subsystem> mechanics_;
-  std::unique_ptr<coupling::Subsystem> hydraulics_;
-  std::unique_ptr<coupling::Subsystem> flex_;
-  coupling::ElasticExchange elastic_exchange_;
-  StepIndex flexible_every_;  // steps between two samples for and of flexible bodies
-  StepIndex exchange_every_;  // steps between two exchanges of mechanics and hydraulics
-  SampleAges ages_;           // empty: as the scene exchanges
-  struct Said {
+  static constexpr std::size_t kParts = std::size(wire::kPhysicsRoles);
+  // The two samples that mechanics and hydraulics exchange.
+  struct Exchanged {
     coupling::MechanismSample mechanism;
     coupling::ActuatorSample actuators;
   };
-  std::vector<Said> said_;                // of the last steps, when samples may be late
-  coupling::OwnSample mechanics_sample_;  // at t_n
-  coupling::OwnSample hydraulics_sample_;
-  coupling::OwnSample mechanics_exchanged_, hydraulics_exchanged_;  // those of the last exchange, when it is not t_n's
-  coupling::OwnSample flex_sample_;
-  coupling::OwnSample mechanics_next_;
-  coupling::OwnSample hydraulics_next_;
-  StepReport mechanics_report_;
-  StepReport hydraulics_report_;
-  std::int64_t mechanics_ns_ = 0, hydraulics_ns_ = 0;
+
+  static constexpr std::size_t index(wire::Role role) noexcept {
+    return static_cast<std::size_t>(role) - static_cast<std::size_t>(wire::kPhysicsRoles[0]);
+  }
+  [[nodiscard]] coupling::Subsystem* part(wire::Role role) const noexcept {
+    return is_physics(role) ? parts_[index(role)].get() : nullptr;
+  }
+  [[nodiscard]] coupling::PartnerSamples partners_at_start(wire::Role role) const noexcept;
+  [[nodiscard]] coupling::PartnerSamples partners_in_step(wire::Role role, StepIndex n) const noexcept;
+  void advance(wire::Role role, StepIndex n, std::span<const wire::Command> commands,
+               std::span<const double> controls) noexcept;
+
+  SubsystemFamily family_;
+  std::array<std::unique_ptr<coupling::Subsystem>, kParts> parts_;
+  node::ExchangeRules rules_;
+  SampleAges ages_;  // empty: as the scene exchanges
+  // of the last steps, by step, where the samples that a step uses are not those of its own instant
+  std::vector<Exchanged> history_;
+  std::array<coupling::OwnSample, kParts> now_, next_;  // at t_n, t_{n+1}
+  std::array<StepReport, kParts> reports_{};            // of the last step
+  std::array<std::int64_t, kParts> step_ns_{};
   std::uint64_t init_hash_ = 0;
 };
 

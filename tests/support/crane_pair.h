@@ -1,5 +1,5 @@
-// Both physics subsystems of the truck crane stepped by hand inside a test, with the scene's own script or with levers
-// held by the test.
+// Both physics subsystems of a scene stepped by hand inside a test: the exchange of samples written down a second time,
+// against which sessions are held.
 #pragma once
 
 #include <array>
@@ -23,12 +23,15 @@ class CranePair {
       : mechanics(std::make_unique<mechanics::MechanicsSubsystem>(scene)),
         hydraulics(std::make_unique<hydraulic_node::HydraulicsSubsystem>(scene)) {}
 
-  void start() {
+  // Hash of the mechanics at INIT.
+  std::uint64_t start() {
     coupling::OwnSample init;
     static_cast<void>(mechanics->first_sample(init));
+    const std::uint64_t init_hash = mechanics->state_hash();
     require(hydraulics->start({&init.mechanism, nullptr}, hydraulics_now));
     require(mechanics->start({nullptr, &hydraulics_now.actuators}, mechanics_now));
     n = 0;
+    return init_hash;
   }
 
   // one communication step with these control values; no allocation

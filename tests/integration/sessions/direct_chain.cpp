@@ -14,6 +14,7 @@
 #include "program.h"
 #include "recorder_node/recorder_node.h"
 #include "scene/scene_options.h"
+#include "support/crane_pair.h"
 #include "transport/in_process/in_process_bus.h"
 
 namespace slew::testing {
@@ -27,52 +28,10 @@ std::unique_ptr<coupling::Subsystem> make_subsystem(Role role, const scene::Scen
                                  : hydraulic_node::make_hydraulics_subsystem(scene);
 }
 
-// both subsystems stepped by hand: each step from the partner's sample of the same instant
-class Pair {
- public:
-  explicit Pair(const scene::Scene& scene)
-      : mechanics_(make_subsystem(Role::mechanics, scene)), hydraulics_(make_subsystem(Role::hydraulics, scene)) {}
-
-  // Gives the mechanics' hash at INIT.
-  std::uint64_t start() {
-    coupling::OwnSample init;
-    static_cast<void>(mechanics_->first_sample(init));
-    const std::uint64_t hash = mechanics_->state_hash();
-    require(hydraulics_->start({&init.mechanism, nullptr}, hydraulics_now_));
-    require(mechanics_->start({nullptr, &hydraulics_now_.actuators}, mechanics_now_));
-    return hash;
-  }
-
-  void step(const wire::Tick& tick) {
-    const StepIndex n = tick.header.step;
-    for (const wire::Command& command : tick.commands) {
-      for (coupling::Subsystem* subsystem : {mechanics_.get(), hydraulics_.get()}) {
-        subsystem->change_parameter(n, {command.path, command.value, {command.over_ns}});
-      }
-    }
-    coupling::OwnSample mechanics_next, hydraulics_next;
-    const std::span<const double> controls = tick.controls.span();
-    mechanics_->step(n, {nullptr, &hydraulics_now_.actuators}, controls, mechanics_next);
-    hydraulics_->step(n, {&mechanics_now_.mechanism, nullptr}, controls, hydraulics_next);
-    mechanics_now_ = mechanics_next;
-    hydraulics_now_ = hydraulics_next;
-  }
-
-  [[nodiscard]] StepHashes hashes() const { return {0, mechanics_->state_hash(), hydraulics_->state_hash()}; }
-
- private:
-  static void require(const Status& status) {
-    if (!status.is_ok()) throw std::runtime_error(status.text);
-  }
-
-  std::unique_ptr<coupling::Subsystem> mechanics_, hydraulics_;
-  coupling::OwnSample mechanics_now_, hydraulics_now_;
-};
-
 }  // namespace
 
-scene::Scene scene::load_scene(const std::string& file, const std::string& duration,
-                               const std::vector<std::string>& overrides) {
+scene::Scene load_scene(const std::string& file, const std::string& duration,
+                        const std::vector<std::string>& overrides) {
   scene::SceneOptions options;
   options.file = file;
   options.duration = duration;
@@ -82,14 +41,20 @@ scene::Scene scene::load_scene(const std::string& file, const std::string& durat
 }
 
 HashChain chain_of_ticks(const scene::Scene& scene, const std::map<StepIndex, wire::Tick>& ticks) {
-  Pair pair(scene);
+  CranePair pair(scene);
+  const auto hashes = [&] { return StepHashes{0, pair.mechanics->state_hash(), pair.hydraulics->state_hash()}; };
   HashChain chain;
   chain[kJoinStep].mechanics = pair.start();
-  chain[0] = pair.hashes();
+  chain[0] = hashes();
   for (const auto& [step, tick] : ticks) {
     if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0 || step < 0) continue;
-    pair.step(tick);
-    chain[step + 1] = pair.hashes();
+    for (const wire::Command& command : tick.commands) {
+      const coupling::ParameterChange change{command.path, command.value, {command.over_ns}};
+      pair.mechanics->change_parameter(step, change);
+      pair.hydraulics->change_parameter(step, change);
+    }
+    pair.step(tick.controls.span());
+    chain[step + 1] = hashes();
   }
   return chain;
 }
@@ -121,8 +86,7 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
 
 HashChain undisturbed_chain(const std::string& scene_file, StepIndex steps) {
   const ScratchFolder folder;
-  return run_in_one_process(scene::load_scene(scene_file, std::to_string(steps) + " ms"), folder.path() / "runs")
-      .chain();
+  return run_in_one_process(load_scene(scene_file, std::to_string(steps) + " ms"), folder.path() / "runs").chain();
 }
 
 HashChain physics_only(HashChain chain) {

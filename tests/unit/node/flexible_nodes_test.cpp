@@ -16,14 +16,14 @@ using wire::Role;
 using wire::TickFlag;
 using wire::Topic;
 
-constexpr std::uint32_t kEvery = 10;
+constexpr StepIndex kEvery = 10;
 
 class WithFlexibleBodies : public ::testing::Test {
  protected:
   [[nodiscard]] static SubsystemFactory built_for(ElasticExchange exchange) {
     return [exchange](const wire::SessionDescription&, BuiltSubsystem& built) {
       built.subsystem = std::make_unique<testing::StillSubsystem>();
-      built.flexible = {exchange, exchange == ElasticExchange::once ? kEvery : 1};
+      built.exchange = {.port_every = 1, .flexible_every = kEvery, .elastic = exchange};
       return Status::ok();
     };
   }

@@ -83,7 +83,8 @@ class FreeRunning : public ::testing::Test {
   PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
   PhysicsNode node{Role::mechanics, played.carrier(), [this](const wire::SessionDescription&, BuiltSubsystem& built) {
                      built.subsystem = std::make_unique<Witness>(done, changes);
-                     built.ports = {1, true, {kMs / 2}};
+                     built.session.mode = scene::ExchangeMode::free_running;
+                     built.session.wait_budget = 0.5e-3;
                      return Status::ok();
                    }};
   std::int64_t now_ns = 1000 * kMs;

@@ -52,7 +52,7 @@ TEST(CouplingAlarm, IsSilentOnASpoolThatJumps) {
   for (const Level level : {Level::two, Level::linear}) {
     for (const double H : {1e-3, 2e-3, 5e-3, 10e-3}) {
       const scene::Scene scene = load(kScenes + "two_dof_crane.yaml", H, level);
-      const Ended ended = run(scene, 10, 0, exchanges_of(scene));
+      const Ended ended = run(scene, 10, 0, {});
       EXPECT_FALSE(ended.has_failed) << H << ended.text;
       EXPECT_FALSE(ended.is_flagged) << H;
     }
@@ -62,7 +62,7 @@ TEST(CouplingAlarm, IsSilentOnASpoolThatJumps) {
 TEST(CouplingAlarm, IsSilentOnTheLightPortOfAnExcavator) {
   for (const double H : {1e-3, 2e-3, 5e-3, 10e-3}) {
     const scene::Scene scene = load(kExcavator, H, Level::two);
-    const Ended ended = run(scene, 8, 0, exchanges_of(scene));
+    const Ended ended = run(scene, 8, 0, {});
     EXPECT_FALSE(ended.has_failed) << H << ended.text;
     EXPECT_FALSE(ended.is_flagged) << H;
   }
@@ -71,14 +71,14 @@ TEST(CouplingAlarm, IsSilentOnTheLightPortOfAnExcavator) {
 TEST(CouplingAlarm, IsSilentOnValvesThatAlwaysMove) {
   for (const double H : {1e-3, 2e-3, 5e-3}) {
     const scene::Scene scene = load(kExcavator, H, Level::two);
-    const Ended ended = run(scene, 6, 0.8, exchanges_of(scene));
+    const Ended ended = run(scene, 6, 0.8, {});
     EXPECT_FALSE(ended.has_failed) << H << ended.text;
   }
 }
 
 TEST(CouplingAlarm, EndsLevelLinearBeyondItsLimitAndNamesLevelTwo) {
   const scene::Scene scene = load(kExcavator, 10e-3, Level::linear, kSmooth);
-  const Ended ended = run(scene, 8, 0, exchanges_of(scene));
+  const Ended ended = run(scene, 8, 0, {});
   EXPECT_TRUE(ended.has_failed);
   EXPECT_NE(ended.text.find("the coupling diverges"), std::string::npos) << ended.text;
   EXPECT_NE(ended.text.find("coupling: two"), std::string::npos) << ended.text;
@@ -86,7 +86,7 @@ TEST(CouplingAlarm, EndsLevelLinearBeyondItsLimitAndNamesLevelTwo) {
 
 TEST(CouplingAlarm, EndsLevelLinearDrivenByItsValve) {
   const scene::Scene scene = load(kScenes + "single_cylinder.yaml", 20e-3, Level::linear);
-  EXPECT_NE(run(scene, 6, 3, exchanges_of(scene)).text.find("the coupling diverges"), std::string::npos);
+  EXPECT_NE(run(scene, 6, 3, {}).text.find("the coupling diverges"), std::string::npos);
 }
 
 TEST(CouplingAlarm, EndsSamplesThatComeTooLateAndNamesNothingThatIsChosen) {

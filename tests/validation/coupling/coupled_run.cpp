@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "scene/parameters.h"
+
 namespace slew::coupling::test {
 
 // ---- operator -------------------------------------------------------------------------------------------------
@@ -28,10 +30,6 @@ std::span<const double> Operator::controls(SimTime t) {
 
 // ---- coupled run ----------------------------------------------------------------------------------------------
 
-Ages exchanges_of(const scene::Scene& scene) {
-  return [every = scene.session.exchange_every](StepIndex n) { return n % every; };
-}
-
 Ages lost(StepIndex count, StepIndex period) {
   return [count, period](StepIndex n) { return std::max<StepIndex>(0, n % period - (period - count) + 1); };
 }
@@ -41,51 +39,38 @@ Ages delayed(StepIndex steps) {
 }
 
 CoupledRun::CoupledRun(const scene::Scene& scene, Ages ages)
-    : H_(scene.session.step_duration()),
-      mechanics_(scene),
-      hydraulics_(scene),
-      ages_(std::move(ages)),
-      mechanics_samples_(kKept),
-      hydraulics_samples_(kKept) {}
+    : scene_(scene), session_(scene, ages), H_(scene.session.step_duration()), ages_(std::move(ages)) {}
 
 Status CoupledRun::start() {
-  PartnerSamples partners;
-  static_cast<void>(mechanics_.first_sample(mechanics_samples_[0]));
-  partners.mechanism = &mechanics_samples_[0].mechanism;
-  const Status status = hydraulics_.start(partners, hydraulics_samples_[0]);
-  if (!status.is_ok()) return status;
-  partners = {};
-  partners.actuators = &hydraulics_samples_[0].actuators;
-  return mechanics_.start(partners, mechanics_samples_[0]);
+  return session_.start();
 }
 
 void CoupledRun::step(std::span<const double> controls) {
-  const StepIndex age = ages_(n_);
+  const StepIndex age = ages_ ? ages_(n_) : n_ % scene_.session.exchange_every;
   had_news_ = n_ - age != used_;
   used_ = n_ - age;
-  PartnerSamples for_mechanics, for_hydraulics;
-  for_mechanics.actuators = &hydraulics_samples_[slot(n_ - age)].actuators;
-  for_hydraulics.mechanism = &mechanics_samples_[slot(n_ - age)].mechanism;
-  for_mechanics.actuators_age = for_hydraulics.mechanism_age = age;
-  const StepReport m = mechanics_.step(n_, for_mechanics, controls, mechanics_samples_[slot(n_ + 1)]);
-  const StepReport h = hydraulics_.step(n_, for_hydraulics, controls, hydraulics_samples_[slot(n_ + 1)]);
-  flags_ |= m.flags | h.flags;
-  has_failed_ = has_failed_ || m.has_failed() || h.has_failed();
+  session_.step(n_, changes_, controls);
+  changes_.clear();
+  for (const wire::Role role : {wire::Role::mechanics, wire::Role::hydraulics}) {
+    flags_ |= session_.report(role).flags;
+    has_failed_ = has_failed_ || session_.report(role).has_failed();
+  }
   ++n_;
 }
 
 void CoupledRun::change(std::string_view path, double value, SimDuration over) {
-  const ParameterChange change{path, value, over};
-  // a level of the coupling is both sides'
-  const bool of_mechanics = mechanics_.change_parameter(n_, change);
-  if (!hydraulics_.change_parameter(n_, change) && !of_mechanics) {
+  if (scene::ParameterDirectory(scene_).find(path) == nullptr) {
     throw std::runtime_error("no such parameter: " + std::string(path));
   }
+  wire::Command& change = changes_.emplace_back();
+  change.path = path;
+  change.value = value;
+  change.over_ns = over.ns;
 }
 
 double CoupledRun::variable(std::string_view name) const {
-  for (const Subsystem* subsystem :
-       {static_cast<const Subsystem*>(&mechanics_), static_cast<const Subsystem*>(&hydraulics_)}) {
+  for (const wire::Role role : {wire::Role::mechanics, wire::Role::hydraulics}) {
+    const Subsystem* const subsystem = session_.subsystem(role);
     const std::span<const ElementVariable> variables = subsystem->variables();
     for (std::size_t i = 0; i < variables.size(); ++i) {
       if (variables[i].name != name) continue;
@@ -121,7 +106,7 @@ Traces reference_traces(const scene::Scene& scene, double duration, monolith::Mo
 }
 
 Comparison compare(const scene::Scene& scene, const Traces& reference, double duration) {
-  return compare(scene, reference, duration, exchanges_of(scene));
+  return compare(scene, reference, duration, Ages{});
 }
 
 Comparison compare(const scene::Scene& scene, const Traces& reference, double duration, Ages ages) {

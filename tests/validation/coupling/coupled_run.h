@@ -4,17 +4,16 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "coupling/subsystem.h"
 #include "hydraulics_node/hydraulics_subsystem.h"
-#include "mechanics_node/mechanics_subsystem.h"
 #include "monolith/monolith.h"
 #include "scene/scene.h"
 #include "scene/script.h"
+#include "session/direct_session.h"
 
 namespace slew::coupling::test {
 
@@ -33,11 +32,8 @@ class Operator {
   std::vector<double> ramped_, controls_;
 };
 
-// How many steps old the newest sample is that both sides have at step n: lost and late samples.
-using Ages = std::function<StepIndex(StepIndex n)>;
+using Ages = session::SampleAges;
 
-// As a session exchanges that loses nothing: at every exchange_every-th step.
-[[nodiscard]] Ages exchanges_of(const scene::Scene& scene);
 // The last `count` samples of every `period` steps are lost.
 [[nodiscard]] Ages lost(StepIndex count, StepIndex period);
 // Every sample comes `steps` late.
@@ -46,33 +42,29 @@ using Ages = std::function<StepIndex(StepIndex n)>;
 class CoupledRun {
  public:
   // scene outlives the run; its session's step and level are those of the construction.
-  explicit CoupledRun(const scene::Scene& scene) : CoupledRun(scene, exchanges_of(scene)) {}
-  // Pre-condition: ages of less than kKept steps.
-  CoupledRun(const scene::Scene& scene, Ages ages);
+  explicit CoupledRun(const scene::Scene& scene, Ages ages = {});
   Status start();
   void step(std::span<const double> controls);
   void change(std::string_view path, double value, SimDuration over);
 
   [[nodiscard]] SimTime time() const { return start_of(n_, H_); }
-  [[nodiscard]] const MechanismSample& mechanism() const { return mechanics_samples_[slot(n_)].mechanism; }
-  [[nodiscard]] const ActuatorSample& actuators() const { return hydraulics_samples_[slot(n_)].actuators; }
+  [[nodiscard]] const MechanismSample& mechanism() const { return session_.mechanism(); }
+  [[nodiscard]] const ActuatorSample& actuators() const { return session_.actuators(); }
   [[nodiscard]] bool has_failed() const { return has_failed_; }
   [[nodiscard]] bool had_news() const { return had_news_; }     // the last step had a sample that no step before it had
   [[nodiscard]] std::uint32_t flags() const { return flags_; }  // all so far
-  [[nodiscard]] const Indicator& indicator() const { return hydraulics_.indicator(); }
+  [[nodiscard]] const Indicator& indicator() const { return hydraulics().indicator(); }
   [[nodiscard]] double variable(std::string_view name) const;
-  [[nodiscard]] mechanics::MechanicsSubsystem& mechanics() { return mechanics_; }
-  [[nodiscard]] hydraulic_node::HydraulicsSubsystem& hydraulics() { return hydraulics_; }
+  [[nodiscard]] const hydraulic_node::HydraulicsSubsystem& hydraulics() const {
+    return dynamic_cast<const hydraulic_node::HydraulicsSubsystem&>(*session_.subsystem(wire::Role::hydraulics));
+  }
 
  private:
+  const scene::Scene& scene_;
+  session::DirectSession session_;
   SimDuration H_;
-  mechanics::MechanicsSubsystem mechanics_;
-  hydraulic_node::HydraulicsSubsystem hydraulics_;
-  static constexpr StepIndex kKept = 128;
-  static std::size_t slot(StepIndex n) { return static_cast<std::size_t>(n % kKept); }
-
   Ages ages_;
-  std::vector<OwnSample> mechanics_samples_, hydraulics_samples_;  // of the last steps
+  std::vector<wire::Command> changes_;  // of the next step
   StepIndex n_ = 0;
   StepIndex used_ = -1;  // step of the sample that the last step had
   bool had_news_ = false;

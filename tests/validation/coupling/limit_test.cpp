@@ -6,6 +6,7 @@
 #include <string>
 
 #include "build_paths.h"
+#include "mechanics_node/mechanics_subsystem.h"
 #include "tests/validation/coupling/coupled_run.h"
 
 namespace slew::coupling::test {
