@@ -66,8 +66,8 @@ TopicSet all_but(Topic own) {
 class TransportLink final : public Link {
  public:
   TransportLink(std::uint32_t domain, Topic own) : own_(own) {
-    const Status status = CycloneTransport::open(CycloneNetwork{domain, "lo", {}},
-                                                 {"star", traits(own).name, {own}, all_but(own)}, transport_);
+    const Status status =
+        CycloneTransport::open(Network{domain, "lo", {}}, {"star", traits(own).name, {own}, all_but(own)}, transport_);
     if (!status.is_ok()) fail(status.text);
     tick_.controls.resize(kChannels);
     tick_.age.resize(kChannels);

@@ -15,9 +15,9 @@
 #include "core/failure.h"
 #include "core/json.h"
 #include "core/report_table.h"
-#include "node/carrier.h"
 #include "node/identity.h"
-#include "transport/cyclone/cyclone_domain.h"
+#include "node/open_transport.h"
+#include "transport/network.h"
 
 namespace slew::cli {
 namespace {

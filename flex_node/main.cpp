@@ -1,7 +1,7 @@
 // The program flex_node: the flexible bodies of a session's scene as a process of its own.
 #include "flex_node/flex_subsystem.h"
-#include "node/carrier.h"
 #include "node/node_program.h"
+#include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
 
@@ -11,9 +11,9 @@ using namespace slew;
 
 std::optional<ExitCode> run(const node::NodeOptions& options) {
   node::apply_real_time(options, "flex_node");
-  const auto carrier = node::open_carrier(wire::Role::flex, options.session);
+  const auto transport = node::open_transport(wire::Role::flex, options.session);
   node::PhysicsNode node(
-      wire::Role::flex, *carrier,
+      wire::Role::flex, *transport,
       node::subsystem_factory([](const scene::Scene& scene) { return flexible::make_flex_subsystem(scene); },
                               options.assets),
       options.join());

@@ -1,8 +1,8 @@
 // The program hydraulics_node: the hydraulic circuit of a session's scene as a process of its own.
 #include "hydraulics_node/hydraulics_subsystem.h"
 
-#include "node/carrier.h"
 #include "node/node_program.h"
+#include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
 
@@ -12,9 +12,9 @@ using namespace slew;
 
 std::optional<ExitCode> run(const node::NodeOptions& options) {
   node::apply_real_time(options, "hydraulics_node");
-  const auto carrier = node::open_carrier(wire::Role::hydraulics, options.session);
+  const auto transport = node::open_transport(wire::Role::hydraulics, options.session);
   node::PhysicsNode node(
-      wire::Role::hydraulics, *carrier,
+      wire::Role::hydraulics, *transport,
       node::subsystem_factory(
           [](const scene::Scene& scene) { return hydraulic_node::make_hydraulics_subsystem(scene); }, options.assets),
       options.join());

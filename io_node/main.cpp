@@ -1,8 +1,8 @@
 // The program io_node: owner of a session, its clock, its operator input and its commands.
 #include "core/failure.h"
 #include "io_node/session_scene.h"
-#include "node/carrier.h"
 #include "node/node_program.h"
+#include "node/open_transport.h"
 #include "scene/scene_options.h"
 #include "transport/roles.h"
 
@@ -18,7 +18,7 @@ struct IoOptions {
 ExitCode run(const IoOptions& options) {
   node::apply_real_time(options.node, "io_node");
   const io::SessionScene session = io::load_session_scene(options.scene);
-  const auto carrier = node::open_carrier(wire::Role::io, options.node.session);
+  const auto transport = node::open_transport(wire::Role::io, options.node.session);
   io::SessionWish wish;
   wish.session_name = options.node.session.session;
   wish.operating = options.scene.has_script() ? io::Operator::script : io::Operator::nobody;
@@ -28,7 +28,7 @@ ExitCode run(const IoOptions& options) {
   // on loopback everybody has this host's clock
   const bool is_on_loopback = options.node.session.interface == node::SessionOptions{}.interface;
   config.controllers_clock = is_on_loopback ? node::WriterClock::same : node::WriterClock::other;
-  io::IoNode node(*carrier, std::move(config));
+  io::IoNode node(*transport, std::move(config));
   return node::run_node(node).value();  // its own session is nothing that it follows
 }
 

@@ -1,8 +1,8 @@
 // The program mechanics_node: the mechanism of a session's scene as a process of its own.
 #include "mechanics_node/mechanics_subsystem.h"
 
-#include "node/carrier.h"
 #include "node/node_program.h"
+#include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
 
@@ -12,9 +12,9 @@ using namespace slew;
 
 std::optional<ExitCode> run(const node::NodeOptions& options) {
   node::apply_real_time(options, "mechanics_node");
-  const auto carrier = node::open_carrier(wire::Role::mechanics, options.session);
+  const auto transport = node::open_transport(wire::Role::mechanics, options.session);
   node::PhysicsNode node(
-      wire::Role::mechanics, *carrier,
+      wire::Role::mechanics, *transport,
       node::subsystem_factory([](const scene::Scene& scene) { return mechanics::make_mechanics_subsystem(scene); },
                               options.assets),
       options.join());

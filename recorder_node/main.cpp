@@ -1,8 +1,8 @@
 // The program recorder_node: writes everything that is said in a session into one recording.
 #include <cstdio>
 
-#include "node/carrier.h"
 #include "node/node_program.h"
+#include "node/open_transport.h"
 #include "node/subsystem_factory.h"
 #include "recorder_node/recorder_node.h"
 #include "transport/roles.h"
@@ -13,12 +13,12 @@ using namespace slew;
 
 std::optional<ExitCode> run(const node::NodeOptions& options, const std::string& runs, double keep_free_mb) {
   node::apply_real_time(options, "recorder_node");
-  const auto carrier = node::open_carrier(wire::Role::recorder, options.session);
+  const auto transport = node::open_transport(wire::Role::recorder, options.session);
   recorder::RecorderConfig config;
   config.runs_directory = runs;
   config.keep_free = static_cast<std::uint64_t>(keep_free_mb * 1e6);
   config.join = options.join();
-  recorder::RecorderNode node(*carrier, std::move(config));
+  recorder::RecorderNode node(*transport, std::move(config));
   // the path is said last, whatever the end was
   struct SayPath {
     const recorder::RecorderNode& node;

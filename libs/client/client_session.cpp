@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
-#include <mutex>
 #include <random>
 #include <utility>
 
@@ -34,18 +33,6 @@ std::string in_seconds(SimDuration time) {
   return text + " s";
 }
 
-// Cyclone bears one domain of a number in a process; a program may join several sessions in it.
-Status shared_domain(const transport::CycloneNetwork& network, std::shared_ptr<transport::CycloneDomain>& domain) {
-  static std::mutex mutex;
-  static std::map<std::uint32_t, std::weak_ptr<transport::CycloneDomain>> open;
-  const std::lock_guard lock(mutex);
-  domain = open[network.domain].lock();
-  if (domain != nullptr) return Status::ok();
-  const Status status = transport::CycloneDomain::open(network, domain);
-  if (status.is_ok()) open[network.domain] = domain;
-  return status;
-}
-
 // of a program whose command line is its own
 transport::Protection protection_of_environment() {
   const auto value = [](const char* name, const char* otherwise) {
@@ -73,19 +60,17 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
                                     std::to_string(wire::kMaxNameLength) + " characters"};
   }
   std::unique_ptr<ClientSession> opened(new ClientSession(options));
-  std::shared_ptr<transport::CycloneDomain> domain;
-  transport::CycloneNetwork network = options.network;
+  transport::Network network = options.network;
   Status status = transport::protect(network, protection_of_environment());
-  if (status.is_ok()) status = shared_domain(network, domain);
   if (status.is_ok()) {
-    transport::CycloneOptions endpoint;
+    transport::Endpoint endpoint;
     endpoint.session = options.session;
     endpoint.role = "controller";
     endpoint.writes = {Topic::controller_input};
     endpoint.reads = {Topic::session, Topic::node_status, Topic::variable_directory, Topic::variables,
                       Topic::controller_lease};
     endpoint.is_controller = true;
-    status = transport::CycloneTransport::open(std::move(domain), endpoint, opened->carrier_);
+    status = transport::open_transport(network, endpoint, opened->transport_);
   }
   if (!status.is_ok()) return {status.code == ExitCode::bad_input ? Code::bad_argument : Code::failed, status.text};
   if (!opened->wait_for([&] { return opened->has_session_; }, timeout)) {
@@ -104,7 +89,7 @@ Answer ClientSession::join(const JoinOptions& options, SimDuration timeout, std:
 }
 
 ClientSession::~ClientSession() {
-  if (carrier_ == nullptr) return;
+  if (transport_ == nullptr) return;
   for (const Channel& channel : channels_) {
     if (channel.lease == Lease::held && !is_over_) {
       static_cast<void>(send(channel.name, wire::ControllerAction::release, 0, channel.answered));
@@ -129,13 +114,13 @@ bool ClientSession::wait_for(Done done, SimDuration timeout) {
       return done();
     }
     seen_ns = std::min(deadline_ns, now_ns + kLongestSleepNs);
-    carrier_->wait_until(seen_ns);
+    transport_->wait_until(seen_ns);
   }
 }
 
 void ClientSession::drain() {
   transport::Received message;
-  while (carrier_->take(message)) take(message.topic, message.bytes);
+  while (transport_->take(message)) take(message.topic, message.bytes);
 }
 
 void ClientSession::take(Topic topic, std::span<const std::byte> bytes) {
@@ -434,7 +419,7 @@ Answer ClientSession::send(const std::string& channel, wire::ControllerAction ac
   input.sequence = ++sequence_;
   input.based_on_step = based_on;
   if (!transport::encode(input, buffer_)) return {Code::bad_argument, "'" + channel + "' is no name of a channel"};
-  const Status status = carrier_->publish(Topic::controller_input, buffer_);
+  const Status status = transport_->publish(Topic::controller_input, buffer_);
   return status.is_ok() ? Answer{} : Answer{Code::failed, status.text};
 }
 

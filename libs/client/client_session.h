@@ -16,7 +16,7 @@
 
 #include "core/status.h"
 #include "core/time.h"
-#include "transport/cyclone/cyclone_transport.h"
+#include "transport/network.h"
 #include "transport/wire.h"
 
 namespace slew::client {
@@ -32,7 +32,7 @@ struct Answer {
 struct JoinOptions {
   std::string session;
   std::string controller;
-  transport::CycloneNetwork network;
+  transport::Network network;
 };
 
 enum class Which : std::uint8_t { next, newest };
@@ -118,7 +118,7 @@ class ClientSession {
   [[nodiscard]] Answer ended() const;
 
   JoinOptions options_;
-  std::unique_ptr<transport::CycloneTransport> carrier_;
+  std::unique_ptr<transport::Transport> transport_;
   bool has_session_ = false;
   std::vector<Early> before_session_;
   wire::SessionDescription description_;

@@ -10,7 +10,7 @@
 #include "keys/key_store.h"
 #include "keys/openssl.h"
 #include "keys/security_documents.h"
-#include "node/carrier.h"
+#include "node/open_transport.h"
 #include "transport/protection.h"
 
 namespace slew::keys {
@@ -64,9 +64,9 @@ std::string permissions_end(const std::string& document) {
 
 KeyFinding check_identity(const fs::path& folder, const std::string& name) {
   KeyFinding finding{name, "", ""};
-  transport::CycloneNetwork network;
+  transport::Network network;
   require(transport::protect(network, {folder.string(), name}));
-  const transport::CycloneSecurity& files = *network.security;
+  const transport::SecurityFiles& files = *network.security;
   std::string said;
   if (!try_openssl({"verify", "-CAfile", files.identity_authority, files.certificate}, said)) {
     finding.problem = fmt::format("the certificate is not good: {}", reason_of(said));

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "transport/cyclone/cyclone_domain.h"
+#include "transport/network.h"
 
 namespace slew::keys {
 namespace {

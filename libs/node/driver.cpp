@@ -123,9 +123,9 @@ class LoopHeap {
       before_ = now;
       return;
     }
-    const std::uint64_t of_carrier = now.carrier - before_.carrier;
-    node_.timing().allocations = static_cast<std::int64_t>(now.all - before_.all - of_carrier);
-    node_.timing().carrier_allocations = static_cast<std::int64_t>(of_carrier);
+    const std::uint64_t of_transport = now.transport - before_.transport;
+    node_.timing().allocations = static_cast<std::int64_t>(now.all - before_.all - of_transport);
+    node_.timing().carrier_allocations = static_cast<std::int64_t>(of_transport);
   }
 
  private:

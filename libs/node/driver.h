@@ -20,7 +20,7 @@ void install_signal_handlers();
 // Heap calls of the calling thread so far.
 struct HeapCalls {
   std::uint64_t all = 0;
-  std::uint64_t carrier = 0;  // of them inside the carrier's calls: the middleware's
+  std::uint64_t transport = 0;  // of them inside the transport's calls: the middleware's
 };
 using HeapMeter = HeapCalls (*)() noexcept;
 

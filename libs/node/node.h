@@ -1,5 +1,5 @@
 // A node as a driver sees it: something to poll. The same node code runs in a process of its own, where the driver
-// waits on the carrier, and beside others on one thread, where the driver polls them in turn.
+// waits on the transport, and beside others on one thread, where the driver polls them in turn.
 #pragma once
 
 #include <atomic>

@@ -11,7 +11,7 @@
 #include "core/real_time_thread.h"
 #include "node/driver.h"
 #include "node/identity.h"
-#include "node/metered_carrier.h"
+#include "node/metered_transport.h"
 #include "scene/diagnostic.h"
 
 namespace slew::node {

@@ -516,7 +516,7 @@ bool SessionMember::probe_is_due(std::int64_t now_ns) noexcept {
   return true;
 }
 
-// what the carrier knows about the writers of a topic that should be heard
+// what the transport knows about the writers of a topic that should be heard
 std::string SessionMember::found_writers(Topic topic) {
   const transport::TopicTraits& expected = transport::traits(topic);
   std::string text = std::string(" (expected topic ") + expected.name + ", type " + expected.type_name + "; found ";

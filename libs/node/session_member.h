@@ -1,7 +1,7 @@
 // What every node of a session does alike: who am I, who are the others, have we heard each other, is anybody gone.
 //
 // JOIN: a writer repeats step -1 on each of its step topics until every required reader has reported, in its
-// NodeStatus, that it heard this writer there. "Matched" at the carrier proves nothing; only a received message does.
+// NodeStatus, that it heard this writer there. "Matched" at the transport proves nothing; only a received message does.
 #pragma once
 
 #include <array>
@@ -151,7 +151,7 @@ class SessionMember {
   void yield();
   // Steps aside because the session was withdrawn: is_withdrawn(), or failed when there is no other session for it.
   void withdraw();
-  // This process may take part in the next session of the name, as a new node on a new carrier.
+  // This process may take part in the next session of the name, as a new node on a new transport.
   [[nodiscard]] bool is_withdrawn() const noexcept { return is_withdrawn_; }
   // Waits for somebody, and says for whom in its status; running again when the reason is gone.
   void hold(std::string reason);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "transport/cyclone/cyclone_domain.h"
+#include "transport/network.h"
 #include "transport/wire.h"
 
 namespace slew::node {

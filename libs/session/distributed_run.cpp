@@ -15,8 +15,8 @@
 #include "core/failure.h"
 #include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
-#include "node/carrier.h"
 #include "node/identity.h"
+#include "node/open_transport.h"
 #include "node/session_member.h"
 #include "recording/run_directory.h"
 #include "scene/cpu_places.h"
@@ -66,7 +66,7 @@ class Supervisor {
     count_interrupts();
     started_wall_ns_ = wall_clock_ns();
     if (is_ours(Role::io)) start(Role::io);
-    observer_ = std::make_unique<Observer>(open_carrier(), options_.session.session);
+    observer_ = std::make_unique<Observer>(open_transport(), options_.session.session);
     if (!is_ours(Role::io)) start_others();
     while (!all_ended()) {
       wait_for_output();
@@ -101,13 +101,13 @@ class Supervisor {
   };
 
   // values are needed by the watcher, and for the summary of a run that is not recorded here
-  [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier() const {
+  [[nodiscard]] std::unique_ptr<transport::Transport> open_transport() const {
     // what the samples report is in the recording when there is one: each reader costs the writers time
     if (!is_ours(Role::recorder)) {
-      if (auto carrier = open_with_samples()) return carrier;
+      if (auto transport = open_with_samples()) return transport;
     }
     if (watcher_.reads_values() || !is_ours(Role::recorder)) {
-      return node::open_carrier(Role::observer, options_.session);
+      return node::open_transport(Role::observer, options_.session);
     }
     return node::open_observer_without_values(options_.session);
   }

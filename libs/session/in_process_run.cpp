@@ -5,8 +5,8 @@
 
 #include "core/real_time_thread.h"
 #include "io_node/scene_config.h"
-#include "node/carrier.h"
 #include "node/driver.h"
+#include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
 #include "recorder_node/recorder_node.h"
@@ -56,7 +56,7 @@ class InProcessRun {
 
  private:
   transport::Transport& endpoint(Role role) {
-    endpoints_.push_back(node::open_carrier(role, bus_));
+    endpoints_.push_back(node::open_transport(role, bus_));
     return *endpoints_.back();
   }
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "core/failure.h"
-#include "node/carrier.h"
 #include "node/driver.h"
+#include "node/open_transport.h"
 #include "session/survey.h"
 #include "transport/cdr/codec.h"
 
@@ -24,12 +24,12 @@ constexpr SimDuration kLastWords = milliseconds(200);
 
 }  // namespace
 
-Observer::Observer(std::unique_ptr<transport::Transport> carrier, std::string session)
-    : carrier_(std::move(carrier)), session_(std::move(session)), view_(session_) {}
+Observer::Observer(std::unique_ptr<transport::Transport> transport, std::string session)
+    : transport_(std::move(transport)), session_(std::move(session)), view_(session_) {}
 
 void Observer::drain() {
   transport::Received message;
-  while (carrier_->take(message)) {
+  while (transport_->take(message)) {
     view_.take(message.topic, message.bytes);
     wire::ControlReply reply;
     take_state(message);
@@ -61,7 +61,7 @@ void Observer::give_state(std::uint64_t request, wire::Role role, const node::Ch
     if (!transport::encode(part, bytes)) {
       throw Failure(ExitCode::bad_input, "the saved state is too large; nothing was sent");
     }
-    require(carrier_->publish(Topic::state, bytes));
+    require(transport_->publish(Topic::state, bytes));
   }
 }
 
@@ -72,7 +72,7 @@ bool Observer::wait_for(const std::function<bool()>& done, SimDuration at_most) 
     if (done()) return true;
     const std::int64_t now_ns = monotonic_ns();
     if (now_ns >= end_ns || node::stop_requested.load() != 0) return false;
-    carrier_->wait_until(std::min(end_ns, now_ns + kLongestWait.ns));
+    transport_->wait_until(std::min(end_ns, now_ns + kLongestWait.ns));
   }
 }
 
@@ -91,7 +91,7 @@ std::uint64_t Observer::send(wire::ControlRequest request) {
   if (!transport::encode(request, bytes)) {
     throw Failure(ExitCode::bad_input, "the request is too long; nothing was sent; names have at most 63 characters");
   }
-  require(carrier_->publish(Topic::control_request, bytes));
+  require(transport_->publish(Topic::control_request, bytes));
   return request.request;
 }
 
@@ -100,7 +100,7 @@ bool Observer::wait_until_heard() {
   const auto is_heard = [this] {
     const NodeView& io = view_.node(wire::Role::io);
     return io.health.header.session == view_.session().header.session &&
-           node::is_heard(*carrier_, Topic::control_request) && node::is_heard(*carrier_, Topic::state);
+           transport_->matched_readers(Topic::control_request) > 0 && transport_->matched_readers(Topic::state) > 0;
   };
   return wait_for([&] { return is_gone() || is_heard(); }, kAnswerTimeout) && !is_gone();
 }
@@ -152,14 +152,14 @@ void Observer::say_why_not_answered(SimDuration waited) const {
 void Observer::send(const wire::ControllerInput& input) {
   transport::ByteBuffer bytes;
   // a lost lever position needs no reaction: the next one follows within 50 ms
-  if (transport::encode(input, bytes)) static_cast<void>(carrier_->publish(Topic::controller_input, bytes));
+  if (transport::encode(input, bytes)) static_cast<void>(transport_->publish(Topic::controller_input, bytes));
 }
 
 std::unique_ptr<Observer> find_session(node::SessionOptions options, Access access) {
   if (options.session.empty()) options.session = only_session(options);
-  auto carrier =
-      access == Access::look ? node::open_viewer(options) : node::open_carrier(wire::Role::observer, options);
-  auto observer = std::make_unique<Observer>(std::move(carrier), options.session);
+  auto transport =
+      access == Access::look ? node::open_viewer(options) : node::open_transport(wire::Role::observer, options);
+  auto observer = std::make_unique<Observer>(std::move(transport), options.session);
   const bool is_found = observer->wait_for([&] { return observer->view().has_session(); }, kFindTimeout);
   if (is_found) return observer;
   if (const int stop = node::stop_requested.load(); stop != 0)

@@ -1,4 +1,4 @@
-// Looks at a live session from outside and speaks to it: the carrier of a verb, and what is known through it.
+// Looks at a live session from outside and speaks to it: the transport of a verb, and what is known through it.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline constexpr SimDuration kAnswerTimeout = milliseconds(3000);
 
 class Observer {
  public:
-  Observer(std::unique_ptr<transport::Transport> carrier, std::string session);
+  Observer(std::unique_ptr<transport::Transport> transport, std::string session);
 
   [[nodiscard]] const SessionView& view() const noexcept { return view_; }
   [[nodiscard]] const std::string& session_name() const noexcept { return session_; }
@@ -57,7 +57,7 @@ class Observer {
   [[nodiscard]] bool is_gone() const noexcept;
   [[noreturn]] void say_why_not_answered(SimDuration waited) const;
 
-  std::unique_ptr<transport::Transport> carrier_;
+  std::unique_ptr<transport::Transport> transport_;
   std::string session_;
   SessionView view_;
   std::function<void(const wire::ControlReply&)> on_reply_;

@@ -1,6 +1,6 @@
 // What an observer knows of a session: who takes part, how each node does, the variables' names, values and extremes.
 //
-// Fed with messages, from a live carrier or from a recording. Messages of other sessions are passed over.
+// Fed with messages, from a live transport or from a recording. Messages of other sessions are passed over.
 #pragma once
 
 #include <array>
@@ -76,7 +76,7 @@ class SessionView {
   // io_node's last answer to this controller about a channel; null before.
   [[nodiscard]] const wire::ControllerLease* lease(const std::string& controller, const std::string& channel) const;
 
-  // What the physics samples reported, as far as the carrier reads their topics.
+  // What the physics samples reported, as far as the transport reads their topics.
   [[nodiscard]] const FlagCounter& flags() const noexcept { return flags_; }
 
   // Every node that offers variables has told all their names.

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "core/failure.h"
-#include "node/carrier.h"
 #include "node/driver.h"
+#include "node/open_transport.h"
 #include "transport/cdr/codec.h"
 
 namespace slew::session {
@@ -59,7 +59,7 @@ bool is_running(const FoundSession& session) {
 }  // namespace
 
 std::vector<FoundSession> find_sessions(const node::SessionOptions& options, SimDuration time, SimDuration longest) {
-  const auto carrier = node::open_survey(options);
+  const auto transport = node::open_survey(options);
   Found found;
   const std::int64_t begin_ns = monotonic_ns();
   const auto end_ns = [&] {
@@ -69,8 +69,8 @@ std::vector<FoundSession> find_sessions(const node::SessionOptions& options, Sim
   };
   while (monotonic_ns() < end_ns() && node::stop_requested.load() == 0) {
     transport::Received message;
-    while (carrier->take(message)) take(message, found);
-    carrier->wait_until(std::min(end_ns(), monotonic_ns() + kSurveyWait.ns));
+    while (transport->take(message)) take(message, found);
+    transport->wait_until(std::min(end_ns(), monotonic_ns() + kSurveyWait.ns));
   }
   std::vector<FoundSession> sessions;
   for (auto& [id, session] : found) {

@@ -8,7 +8,7 @@
 
 namespace slew::transport {
 
-CycloneSecurity key_files(const std::filesystem::path& store, const std::string& identity) {
+SecurityFiles key_files(const std::filesystem::path& store, const std::string& identity) {
   // as a child process in another folder sees it as well
   const std::filesystem::path folder = std::filesystem::absolute(store).lexically_normal();
   const std::filesystem::path own = folder / identity;
@@ -17,9 +17,9 @@ CycloneSecurity key_files(const std::filesystem::path& store, const std::string&
           own / kPrivateKey,           own / kPermissions};
 }
 
-Status protect(CycloneNetwork& network, const Protection& protection) {
+Status protect(Network& network, const Protection& protection) {
   if (!protection.keys.empty()) {
-    const CycloneSecurity files = key_files(protection.keys, protection.identity);
+    const SecurityFiles files = key_files(protection.keys, protection.identity);
     for (const std::string& file : {files.identity_authority, files.permissions_authority, files.governance,
                                     files.certificate, files.private_key, files.permissions}) {
       if (::access(file.c_str(), R_OK) == 0) continue;

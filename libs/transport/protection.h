@@ -13,7 +13,7 @@
 #include <string>
 
 #include "core/status.h"
-#include "transport/cyclone/cyclone_domain.h"
+#include "transport/network.h"
 
 namespace slew::transport {
 
@@ -26,7 +26,7 @@ inline constexpr const char* kCertificate = "certificate.pem";
 inline constexpr const char* kPrivateKey = "private_key.pem";
 inline constexpr const char* kPermissions = "permissions.p7s";
 
-[[nodiscard]] CycloneSecurity key_files(const std::filesystem::path& store, const std::string& identity);
+[[nodiscard]] SecurityFiles key_files(const std::filesystem::path& store, const std::string& identity);
 
 struct Protection {
   std::string keys;              // folder of a key store; empty: none
@@ -36,6 +36,6 @@ struct Protection {
 
 // Gives the network its keys. Error bad_input: a file cannot be read; or there are no keys, and the network's interface
 // leaves this machine without leave.
-[[nodiscard]] Status protect(CycloneNetwork& network, const Protection& protection);
+[[nodiscard]] Status protect(Network& network, const Protection& protection);
 
 }  // namespace slew::transport

@@ -1,7 +1,7 @@
 // One node's connection to the others: bytes out on a topic, bytes in with their topic.
 //
-// Two carriers behind it: Cyclone DDS (cyclone_transport.h) and the bus of one process (in_process_bus.h). Both carry
-// the same CDR bytes from one encoder (codec.h), so that a recording does not depend on the carrier.
+// Two transports behind it: Cyclone DDS (cyclone_transport.h) and the bus of one process (in_process_bus.h). Both carry
+// the same CDR bytes from one encoder (codec.h), so that a recording does not depend on the transport.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ struct Received {
   std::uint64_t writer = 0;
 };
 
-// What the carrier knows of a writer.
+// What the transport knows of a writer.
 struct WriterSight {
   bool has_left = false;  // it is known to be there no more
   std::string process{};  // "process 812 on crane2"; empty: not known
@@ -35,7 +35,7 @@ class Transport {
  public:
   virtual ~Transport() = default;
 
-  // Sends; never blocks longer than the carrier's own bound (stated in the implementation). Thread-safe.
+  // Sends; never blocks longer than the transport's own bound (stated in the implementation). Thread-safe.
   virtual Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept = 0;
 
   // Next received message of any subscribed topic; false when there is none now. One thread only.
@@ -47,9 +47,13 @@ class Transport {
   // Blocks until a message may be there or the monotonic deadline passes.
   virtual void wait_until(std::int64_t monotonic_deadline_ns) = 0;
 
-  // For messages about a JOIN that does not come about: who writes a topic as the carrier sees it, e.g.
-  // "host:pid type slewring::Tick"; empty when the carrier cannot tell.
+  // For messages about a JOIN that does not come about: who writes a topic as the transport sees it, e.g.
+  // "host:pid type slewring::Tick"; empty when the transport cannot tell.
   [[nodiscard]] virtual std::vector<std::string> discovered_writers(wire::Topic topic) = 0;
+
+  // Readers of other processes that a message on this topic reaches now; a topic that keeps nothing loses what is sent
+  // earlier.
+  [[nodiscard]] virtual std::size_t matched_readers(wire::Topic topic) const = 0;
 
   // Who is in this session with a type or QoS that keeps them and this endpoint from hearing each other, a sentence
   // each; without this they would only be silent. Thread-safe.

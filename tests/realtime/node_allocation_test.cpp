@@ -10,7 +10,7 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "node/carrier.h"
+#include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
 #include "support/crane_pair.h"
@@ -90,7 +90,7 @@ class LockStep {
 
   static constexpr const char* kSession = "session_of_the_allocation_test";
 
-  transport::Transport& endpoint(Role role) { return *ends_.emplace_back(node::open_carrier(role, bus_)); }
+  transport::Transport& endpoint(Role role) { return *ends_.emplace_back(node::open_transport(role, bus_)); }
 
   std::int64_t now_ns_ = 1'000'000'000;
   const scene::Scene scene_;

@@ -40,24 +40,27 @@ class StillSubsystem : public coupling::Subsystem {
   [[nodiscard]] std::string_view offender_name(std::int32_t) const noexcept override { return ""; }
 };
 
-// A carrier that cannot send on one topic any more, once it is told so.
-class BreakableCarrier final : public transport::Transport {
+// A transport that cannot send on one topic any more, once it is told so.
+class BreakableTransport final : public transport::Transport {
  public:
-  explicit BreakableCarrier(transport::Transport& carrier) : carrier_(carrier) {}
+  explicit BreakableTransport(transport::Transport& transport) : transport_(transport) {}
   void break_down(wire::Topic topic) { broken_.insert(topic); }
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override {
-    if (!broken_.contains(topic)) return carrier_.publish(topic, bytes);
+    if (!broken_.contains(topic)) return transport_.publish(topic, bytes);
     return Status::error(ExitCode::failed, "message not sent");
   }
-  bool take(transport::Received& message) override { return carrier_.take(message); }
-  void wait_until(std::int64_t monotonic_deadline_ns) override { carrier_.wait_until(monotonic_deadline_ns); }
+  bool take(transport::Received& message) override { return transport_.take(message); }
+  void wait_until(std::int64_t monotonic_deadline_ns) override { transport_.wait_until(monotonic_deadline_ns); }
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override {
-    return carrier_.discovered_writers(topic);
+    return transport_.discovered_writers(topic);
   }
-  [[nodiscard]] std::vector<std::string> misfits() override { return carrier_.misfits(); }
+  [[nodiscard]] std::vector<std::string> misfits() override { return transport_.misfits(); }
+  [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const override {
+    return transport_.matched_readers(topic);
+  }
 
  private:
-  transport::Transport& carrier_;
+  transport::Transport& transport_;
   transport::TopicSet broken_;
 };
 
@@ -76,7 +79,7 @@ class PlayedSession {
     session.pid = 77;
   }
 
-  [[nodiscard]] transport::Transport& carrier() { return node_; }
+  [[nodiscard]] transport::Transport& transport() { return node_; }
   [[nodiscard]] static std::uint32_t incarnation(wire::Role role) { return 10 + static_cast<std::uint32_t>(role); }
 
   [[nodiscard]] wire::Header header(wire::Role role, StepIndex step, wire::Phase phase = wire::Phase::running,

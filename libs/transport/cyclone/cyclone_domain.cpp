@@ -92,7 +92,7 @@ bool is_host(const std::string& text) {
 }
 
 // the plugins lie beside the library, which finds them by these names
-std::string security_xml(const CycloneSecurity& security) {
+std::string security_xml(const SecurityFiles& security) {
   const auto library = [](const char* name, const char* function) {
     return fmt::format(R"(<Library path="{0}" initFunction="init_{1}" finalizeFunction="finalize_{1}"/>)", name,
                        function);
@@ -220,7 +220,7 @@ bool is_port_of(std::uint16_t port, std::uint32_t domain) {
 // Cyclone binds what it receives with to all addresses. Those sockets hear loopback alone from now on: they are the
 // ones on ports of this domain that were not there before it. Sockets of the program itself are left alone. To bind one
 // a second time needs CAP_NET_RAW.
-Status confine_to_loopback(const CycloneNetwork& network, const std::vector<OpenSocket>& before) {
+Status confine_to_loopback(const Network& network, const std::vector<OpenSocket>& before) {
   const std::string& interface = network.interface;
   for (const OpenSocket& socket : sockets_on_all_addresses()) {
     const bool was_there = std::ranges::find(before, socket.inode, &OpenSocket::inode) != before.end();
@@ -246,7 +246,7 @@ bool leaves_machine(const std::string& interface) {
   return found != interfaces.end() && !found->is_loopback;
 }
 
-std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_address) {
+std::string cyclone_xml(const Network& network, const std::string& own_address) {
   std::string peers = fmt::format(R"(<Peer Address="{}"/>)", own_address);
   for (const std::string& peer : network.peers) {
     if (peer != own_address) peers += fmt::format(R"(<Peer Address="{}"/>)", peer);
@@ -284,7 +284,7 @@ std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_ad
       network.interface, kMaxProcesses, peers, timers, network.security ? security_xml(*network.security) : "");
 }
 
-Status CycloneDomain::open(const CycloneNetwork& network, std::shared_ptr<CycloneDomain>& domain) {
+Status CycloneDomain::open(const Network& network, std::shared_ptr<CycloneDomain>& domain) {
   if (network.domain > kMaxDomain) {
     return Status::error(ExitCode::bad_input,
                          fmt::format("DDS domain {} is out of range; expected 0 to {}", network.domain, kMaxDomain));

@@ -9,42 +9,18 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "core/status.h"
 #include "transport/cyclone/cyclone_log.h"
+#include "transport/network.h"
 
 namespace slew::transport {
-
-inline constexpr std::uint32_t kMaxDomain = 230;
-inline constexpr int kMaxProcesses = 60;  // of one domain on one host
-
-// Files of DDS Security: who may take part, and what this process may say and hear (docs/security.md).
-struct CycloneSecurity {
-  std::string identity_authority;     // certificate that signed those of all processes, PEM
-  std::string permissions_authority;  // certificate that signed governance and permissions, PEM
-  std::string governance;             // what is protected and how, signed (S/MIME)
-  std::string certificate;            // of this process, PEM
-  std::string private_key;            // PEM
-  std::string permissions;            // of this process, signed (S/MIME)
-};
-
-struct CycloneNetwork {
-  std::uint32_t domain = 0;                   // 0 .. kMaxDomain
-  std::string interface = "lo";               // name of the network interface, as in `ip link`
-  std::vector<std::string> peers;             // addresses or names of the other hosts; this host is always among them
-  std::optional<CycloneSecurity> security{};  // none: whoever reaches the ports takes part
-};
-
-// What is sent on it goes beyond this machine. False too when there is no such interface.
-[[nodiscard]] bool leaves_machine(const std::string& interface);
 
 class CycloneDomain {
  public:
   // Fills `domain`, or says which interface, peer or number is wrong and what there is instead.
-  [[nodiscard]] static Status open(const CycloneNetwork& network, std::shared_ptr<CycloneDomain>& domain);
+  [[nodiscard]] static Status open(const Network& network, std::shared_ptr<CycloneDomain>& domain);
 
   ~CycloneDomain();
   CycloneDomain(const CycloneDomain&) = delete;
@@ -68,6 +44,6 @@ class CycloneDomain {
 };
 
 // The configuration as Cyclone reads it; `own_address` is the interface's.
-[[nodiscard]] std::string cyclone_xml(const CycloneNetwork& network, const std::string& own_address);
+[[nodiscard]] std::string cyclone_xml(const Network& network, const std::string& own_address);
 
 }  // namespace slew::transport

@@ -127,17 +127,17 @@ void on_data_available(dds_entity_t, void* bell) {
 
 }  // namespace
 
-CycloneTransport::CycloneTransport(std::shared_ptr<CycloneDomain> domain, CycloneOptions options)
+CycloneTransport::CycloneTransport(std::shared_ptr<CycloneDomain> domain, Endpoint options)
     : domain_(std::move(domain)), options_(std::move(options)) {}
 
-Status CycloneTransport::open(const CycloneNetwork& network, const CycloneOptions& options,
+Status CycloneTransport::open(const Network& network, const Endpoint& options,
                               std::unique_ptr<CycloneTransport>& transport) {
   std::shared_ptr<CycloneDomain> domain;
   if (Status status = CycloneDomain::open(network, domain); !status.is_ok()) return status;
   return open(std::move(domain), options, transport);
 }
 
-Status CycloneTransport::open(std::shared_ptr<CycloneDomain> domain, const CycloneOptions& options,
+Status CycloneTransport::open(std::shared_ptr<CycloneDomain> domain, const Endpoint& options,
                               std::unique_ptr<CycloneTransport>& transport) {
   const bool is_pure_reader = options.writes.is_empty();
   if (!is_session_name(options.session) && !(is_pure_reader && options.session == kAnySession)) {

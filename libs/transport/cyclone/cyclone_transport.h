@@ -1,4 +1,4 @@
-// The carrier over Cyclone DDS: one participant with one writer or reader per topic, QoS as in topics.h.
+// The transport over Cyclone DDS: one participant with one writer or reader per topic, QoS as in topics.h.
 //
 // Every endpoint is in the partition slewring/<session>. The participant does not hear itself. Messages are received on
 // Cyclone's thread and handed to the loop by ringing a doorbell; the loop thread sleeps on that, no thread of ours
@@ -29,17 +29,6 @@ inline constexpr SimDuration kMaxBlocking = milliseconds(20);
 inline constexpr SimDuration kFarewell = milliseconds(250);  // for the last messages to arrive, at the end
 // blocks of variables that a writer keeps for a controller that finds it after the first ticks of its loop's delay
 inline constexpr std::int32_t kLastBlocks = 128;
-inline constexpr const char* kAnySession = "*";  // of a pure reader: messages of all sessions of the domain
-
-struct CycloneOptions {
-  std::string session;  // name, or kAnySession
-  std::string role;     // how others name this endpoint in messages, "mechanics"
-  TopicSet writes;
-  TopicSet reads;
-  // Hears also the last blocks of variables of before it was found, since it answers each, and of the answers to
-  // controllers none of before, since they were another one's.
-  bool is_controller = false;
-};
 
 // What the receiving thread needs to ring for a topic.
 struct TopicBell {
@@ -50,9 +39,9 @@ struct TopicBell {
 class CycloneTransport final : public Transport {
  public:
   // Fills `transport`, or says what is wrong. The first form makes a domain of its own.
-  [[nodiscard]] static Status open(const CycloneNetwork& network, const CycloneOptions& options,
+  [[nodiscard]] static Status open(const Network& network, const Endpoint& options,
                                    std::unique_ptr<CycloneTransport>& transport);
-  [[nodiscard]] static Status open(std::shared_ptr<CycloneDomain> domain, const CycloneOptions& options,
+  [[nodiscard]] static Status open(std::shared_ptr<CycloneDomain> domain, const Endpoint& options,
                                    std::unique_ptr<CycloneTransport>& transport);
 
   ~CycloneTransport() override;
@@ -68,14 +57,12 @@ class CycloneTransport final : public Transport {
   // Of all vendors: types by name, and by layout where it is told; QoS by reliability, durability, representation,
   // ownership, deadline, latency budget, liveliness, destination order and presentation.
   [[nodiscard]] std::vector<std::string> misfits() override;
-
-  // Readers of other participants that match the writer of this topic now.
-  [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const;
+  [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const override;
 
  private:
   static constexpr std::size_t kBatch = 16;  // messages taken from a reader at once
 
-  CycloneTransport(std::shared_ptr<CycloneDomain> domain, CycloneOptions options);
+  CycloneTransport(std::shared_ptr<CycloneDomain> domain, Endpoint options);
   [[nodiscard]] Status create();
   [[nodiscard]] bool hears_kept(wire::Topic topic) const noexcept;
   [[nodiscard]] Status create_endpoints(wire::Topic topic, std::int32_t publisher, std::int32_t subscriber);
@@ -84,7 +71,7 @@ class CycloneTransport final : public Transport {
   [[nodiscard]] std::uint64_t writer_of(wire::Topic topic, std::uint64_t handle);
 
   std::shared_ptr<CycloneDomain> domain_;
-  const CycloneOptions options_;
+  const Endpoint options_;
   std::int32_t participant_ = 0;
   std::array<std::int32_t, wire::kTopics> writers_{};
   std::array<std::int32_t, wire::kTopics> readers_{};

@@ -105,6 +105,13 @@ void InProcessEndpoint::wait_until(std::int64_t monotonic_deadline_ns) {
   has_message_.wait_until(lock, deadline, [this] { return count_ > 0; });
 }
 
+std::size_t InProcessEndpoint::matched_readers(wire::Topic topic) const {
+  const std::lock_guard lock(bus_.mutex_);
+  return static_cast<std::size_t>(std::count_if(
+      bus_.endpoints_.begin(), bus_.endpoints_.end(),
+      [&](const InProcessEndpoint* reader) { return reader != this && reader->options_.reads.contains(topic); }));
+}
+
 std::vector<std::string> InProcessEndpoint::discovered_writers(wire::Topic topic) {
   std::vector<std::string> writers;
   const std::lock_guard lock(bus_.mutex_);

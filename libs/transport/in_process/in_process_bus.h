@@ -1,4 +1,4 @@
-// The carrier of one process: endpoints of one bus hand each other copies of the encoded bytes.
+// The transport of one process: endpoints of one bus hand each other copies of the encoded bytes.
 //
 // Messages reach every endpoint in the order in which they were published, whoever published them; an endpoint does not
 // hear itself. A late endpoint first gets the kept messages of the transient-local topics, as with DDS. Endpoints may
@@ -44,13 +44,13 @@ class InProcessEndpoint final : public Transport {
   void wait_until(std::int64_t monotonic_deadline_ns) override;
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override;
   [[nodiscard]] std::vector<std::string> misfits() override { return {}; }  // there are none on a bus
+  [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const override;
 
   // Messages lost because they were not taken in time.
   [[nodiscard]] std::uint64_t dropped() const;
 
  private:
   friend class InProcessBus;
-
   struct Message {
     wire::Topic topic = wire::Topic::session;
     std::int64_t source_ns = 0;

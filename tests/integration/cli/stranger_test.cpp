@@ -30,7 +30,7 @@ constexpr std::int64_t kDeadline = 5'000'000'000;  // ns for the genuine ones af
 
 std::unique_ptr<CycloneTransport> open(std::uint32_t domain, const std::string& store, const char* identity,
                                        transport::TopicSet writes, transport::TopicSet reads) {
-  transport::CycloneNetwork network{domain, "lo", {}};
+  transport::Network network{domain, "lo", {}};
   std::unique_ptr<CycloneTransport> opened;
   if (!transport::protect(network, {store, identity}).is_ok()) return nullptr;
   if (!CycloneTransport::open(network, {"s", identity, writes, reads}, opened).is_ok()) return nullptr;

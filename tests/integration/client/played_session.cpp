@@ -16,9 +16,10 @@ namespace transport = slew::transport;
 using wire::Role;
 
 template <typename Message>
-void say(transport::Transport& carrier, const Message& message) {
+void say(transport::Transport& transport, const Message& message) {
   transport::ByteBuffer bytes;
-  if (!transport::encode(message, bytes) || !carrier.publish(transport::kTopicOf<Message>, bytes).is_ok()) std::exit(1);
+  if (!transport::encode(message, bytes) || !transport.publish(transport::kTopicOf<Message>, bytes).is_ok())
+    std::exit(1);
 }
 
 wire::Header header_of(Role role) {
@@ -64,16 +65,16 @@ int main(int argc, char** argv) {
   sigaddset(&signals, SIGTERM);
   sigprocmask(SIG_BLOCK, &signals, nullptr);  // before the middleware has threads
 
-  transport::CycloneOptions options;
+  transport::Endpoint options;
   options.session = argv[1];
   options.role = "io";
   options.writes = {wire::Topic::session, wire::Topic::variable_directory};
-  std::unique_ptr<transport::CycloneTransport> carrier;
-  transport::CycloneNetwork network{static_cast<std::uint32_t>(std::atoi(argv[2])), "lo", {}};
-  if (!transport::CycloneTransport::open(network, options, carrier).is_ok()) return 1;
-  say(*carrier, session_of(argv[1]));
-  say(*carrier, directory_of(Role::io, "Input_Lift.value"));
+  std::unique_ptr<transport::CycloneTransport> transport;
+  transport::Network network{static_cast<std::uint32_t>(std::atoi(argv[2])), "lo", {}};
+  if (!transport::CycloneTransport::open(network, options, transport).is_ok()) return 1;
+  say(*transport, session_of(argv[1]));
+  say(*transport, directory_of(Role::io, "Input_Lift.value"));
   wait_for(SIGUSR1);
-  say(*carrier, directory_of(Role::mechanics, "Bag.position.x"));
+  say(*transport, directory_of(Role::mechanics, "Bag.position.x"));
   wait_for(SIGTERM);
 }

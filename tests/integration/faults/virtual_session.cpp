@@ -11,8 +11,8 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "node/carrier.h"
 #include "node/identity.h"
+#include "node/open_transport.h"
 #include "node/subsystem_factory.h"
 
 namespace slew::testing {
@@ -35,7 +35,7 @@ node::MakeSubsystem maker_of(Role role) {
 // ---- auditor ---------------------------------------------------------------------------------------------------
 
 Auditor::Auditor(transport::InProcessBus& bus)
-    : carrier_(std::make_unique<transport::InProcessEndpoint>(
+    : transport_(std::make_unique<transport::InProcessEndpoint>(
           bus, transport::InProcessOptions{"auditor", {}, transport::TopicSet::all()})) {}
 
 template <typename Message>
@@ -72,7 +72,7 @@ std::size_t Auditor::given_up(Role role) const {
 
 void Auditor::listen() {
   transport::Received message;
-  while (carrier_->take(message)) {
+  while (transport_->take(message)) {
     switch (message.topic) {
       case Topic::tick:
         hear<wire::Tick>(message);
@@ -132,12 +132,12 @@ std::vector<Role> VirtualSession::roles_of(const scene::Scene& scene) {
   return roles;
 }
 
-FaultyCarrier& VirtualSession::place_for(Role role) {
+FaultyTransport& VirtualSession::place_for(Role role) {
   Place& place = places_.emplace_back();
   place.role = role;
-  place.endpoint = node::open_carrier(role, bus_);
-  place.carrier = std::make_unique<FaultyCarrier>(*place.endpoint, role, clock_, plan_, count_);
-  return *place.carrier;
+  place.endpoint = node::open_transport(role, bus_);
+  place.transport = std::make_unique<FaultyTransport>(*place.endpoint, role, clock_, plan_, count_);
+  return *place.transport;
 }
 
 void VirtualSession::add_physics(Role role) {
@@ -147,7 +147,7 @@ void VirtualSession::add_physics(Role role) {
 
 std::unique_ptr<node::Node> VirtualSession::make_physics(const Place& place) {
   return std::make_unique<node::PhysicsNode>(
-      place.role, *place.carrier, node::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
+      place.role, *place.transport, node::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
 }
 
 // A process that has died says nothing more; the one that a supervisor starts in its place hears what is kept.
@@ -164,12 +164,12 @@ void VirtualSession::kill_and_replace() {
       place.is_dead = true;
       place.health.reset();
       place.node.reset();
-      place.carrier.reset();
+      place.transport.reset();
       place.endpoint.reset();
       died_[place.role] = auditor_.given_up(place.role);
     } else if (auditor_.given_up(place.role) > died_[place.role]) {
-      place.endpoint = node::open_carrier(place.role, bus_);
-      place.carrier = std::make_unique<FaultyCarrier>(*place.endpoint, place.role, clock_, plan_, count_);
+      place.endpoint = node::open_transport(place.role, bus_);
+      place.transport = std::make_unique<FaultyTransport>(*place.endpoint, place.role, clock_, plan_, count_);
       place.node = make_physics(place);
       place.health = std::make_unique<node::HealthReport>(*place.node);
       place.is_dead = false;

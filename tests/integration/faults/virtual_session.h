@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "faulty_carrier.h"
+#include "faulty_transport.h"
 #include "io_node/io_node.h"
 #include "node/health_report.h"
 #include "node/physics_node.h"
@@ -35,7 +35,7 @@ class Auditor {
   template <typename Message>
   void hear(const transport::Received& message);
 
-  std::unique_ptr<transport::Transport> carrier_;
+  std::unique_ptr<transport::Transport> transport_;
   Chain chain_;
   std::map<std::tuple<wire::Topic, wire::Phase, StepIndex>, std::vector<std::byte>> said_;
   std::string contradiction_;
@@ -81,13 +81,13 @@ class VirtualSession {
   struct Place {
     wire::Role role;
     std::unique_ptr<transport::Transport> endpoint;
-    std::unique_ptr<FaultyCarrier> carrier;
+    std::unique_ptr<FaultyTransport> transport;
     std::unique_ptr<node::Node> node;
     std::unique_ptr<node::HealthReport> health;
     bool is_dead = false;
   };
 
-  FaultyCarrier& place_for(wire::Role role);
+  FaultyTransport& place_for(wire::Role role);
   void add_physics(wire::Role role);
   [[nodiscard]] std::unique_ptr<node::Node> make_physics(const Place& place);
   void kill_and_replace();

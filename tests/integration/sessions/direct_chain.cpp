@@ -7,8 +7,8 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 #include "io_node/scene_config.h"
 #include "mechanics_node/mechanics_subsystem.h"
-#include "node/carrier.h"
 #include "node/driver.h"
+#include "node/open_transport.h"
 #include "node/physics_node.h"
 #include "node/subsystem_factory.h"
 #include "program.h"
@@ -64,7 +64,7 @@ RecordedSession run_in_one_process(const scene::Scene& scene, const std::filesys
   std::array<std::unique_ptr<transport::Transport>, 4> ends;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     constexpr std::array<Role, 4> kRoles = {Role::io, Role::mechanics, Role::hydraulics, Role::recorder};
-    ends[i] = node::open_carrier(kRoles[i], bus);
+    ends[i] = node::open_transport(kRoles[i], bus);
   }
   io::IoConfig config = io::make_config(scene, {"in_process", io::Operator::script, io::Recording::required});
   config.name_check = {};

@@ -22,26 +22,26 @@ constexpr std::int64_t kAskAgainNs = 500'000'000;
 // ---- observer -------------------------------------------------------------------------------------------------
 
 Observer::Observer(std::uint32_t domain, const std::string& session) : session_(session) {
-  const transport::CycloneNetwork network{domain, "lo", {}};
+  const transport::Network network{domain, "lo", {}};
   const transport::TopicSet writes = {Topic::controller_input, Topic::controller_lease, Topic::control_request,
                                       Topic::session, Topic::node_status};
-  const transport::CycloneOptions endpoint{session, "observer", writes, transport::TopicSet::all()};
-  std::unique_ptr<transport::CycloneTransport> carrier;
-  if (const Status status = transport::CycloneTransport::open(network, endpoint, carrier); !status.is_ok()) {
+  const transport::Endpoint endpoint{session, "observer", writes, transport::TopicSet::all()};
+  std::unique_ptr<transport::CycloneTransport> transport;
+  if (const Status status = transport::CycloneTransport::open(network, endpoint, transport); !status.is_ok()) {
     throw std::runtime_error(status.text);
   }
-  carrier_ = std::move(carrier);
+  transport_ = std::move(transport);
 }
 
 bool Observer::wait_until(const std::function<bool()>& condition, std::int64_t longest_ns) {
   const std::int64_t deadline_ns = monotonic_ns() + longest_ns;
   while (true) {
     transport::Received message;
-    while (carrier_->take(message)) take(message);
+    while (transport_->take(message)) take(message);
     if (condition()) return true;
     const std::int64_t now_ns = monotonic_ns();
     if (now_ns >= deadline_ns) return false;
-    carrier_->wait_until(std::min(deadline_ns, now_ns + 20'000'000));
+    transport_->wait_until(std::min(deadline_ns, now_ns + 20'000'000));
   }
 }
 
@@ -57,7 +57,7 @@ bool Observer::wait_for_healths(Role role, std::uint64_t count) {
 bool Observer::wait_for_process(pid_t pid) {
   const std::string known = "pid " + std::to_string(pid) + ",";
   return wait_until([&] {
-    const std::vector<std::string> writers = carrier_->discovered_writers(Topic::node_status);
+    const std::vector<std::string> writers = transport_->discovered_writers(Topic::node_status);
     return std::any_of(writers.begin(), writers.end(),
                        [&](const std::string& writer) { return writer.find(known) != std::string::npos; });
   });

@@ -46,7 +46,7 @@ class Observer {
   template <typename Message>
   void say(wire::Topic topic, const Message& message) {
     if (!transport::encode(message, buffer_)) throw std::runtime_error("a message cannot be encoded");
-    if (const Status sent = carrier_->publish(topic, buffer_); !sent.is_ok()) throw std::runtime_error(sent.text);
+    if (const Status sent = transport_->publish(topic, buffer_); !sent.is_ok()) throw std::runtime_error(sent.text);
   }
   // What io has said to controllers since the last acquire().
   [[nodiscard]] const std::vector<wire::ControllerLease>& leases() const noexcept { return leases_; }
@@ -79,7 +79,7 @@ class Observer {
   void take(const transport::Received& message);
 
   std::string session_;
-  std::unique_ptr<transport::Transport> carrier_;
+  std::unique_ptr<transport::Transport> transport_;
   StepIndex step_ = -1;
   std::uint32_t epoch_ = 0;
   std::uint64_t ticks_ = 0;

@@ -100,7 +100,7 @@ TEST(CycloneInterop, ATypedReaderOfAnotherProgramReadsEveryFieldOfWhatWeSend) {
   ChildProcess program([&] { return read_typed_mechanism_messages(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
   const Status status =
-      CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+      CycloneTransport::open(Network{domain.number(), "lo", {}},
                              {kSession, "mechanics", {Topic::mechanism}, {Topic::control_request}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   Received message;
@@ -143,7 +143,7 @@ TEST(CycloneInterop, WeReadWhatATypedWriterOfAnotherProgramSends) {
   const testing::TestDomain domain;
   ChildProcess program([&] { return write_typed_inputs(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+  const Status status = CycloneTransport::open(Network{domain.number(), "lo", {}},
                                                {kSession, "io", {Topic::tick}, {Topic::controller_input}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   Received message;
@@ -186,8 +186,8 @@ TEST(CycloneInterop, AWriterOfAnotherLayoutIsNamedAsSuch) {
   const testing::TestDomain domain;
   ChildProcess program([&] { return write_another_layout(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
-                                               {kSession, "mechanics", {}, {Topic::tick}}, transport);
+  const Status status =
+      CycloneTransport::open(Network{domain.number(), "lo", {}}, {kSession, "mechanics", {}, {Topic::tick}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   std::vector<std::string> writers;
   ASSERT_TRUE(eventually([&] {
@@ -223,7 +223,7 @@ TEST(CycloneInterop, WhoHasTheWrongTypeOrQosIsNamed) {
   const testing::TestDomain domain;
   ChildProcess program([&] { return take_part_wrongly(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+  const Status status = CycloneTransport::open(Network{domain.number(), "lo", {}},
                                                {kSession,
                                                 "observer",
                                                 {Topic::control_request, Topic::health},
@@ -278,9 +278,8 @@ TEST_P(ForeignQos, ThatDoesNotFitIsNamed) {
   const testing::TestDomain domain;
   ChildProcess program([&] { return take_part_with(domain.number(), GetParam()); });
   std::unique_ptr<CycloneTransport> transport;
-  const Status status =
-      CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
-                             {kSession, "observer", {Topic::control_request}, {Topic::tick}}, transport);
+  const Status status = CycloneTransport::open(
+      Network{domain.number(), "lo", {}}, {kSession, "observer", {Topic::control_request}, {Topic::tick}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   std::vector<std::string> misfits;
   EXPECT_TRUE(eventually([&] {

@@ -36,8 +36,8 @@ bool say_ready(CycloneTransport& transport) {
 // the recorder's place: every step of both topics, in order
 bool hear_every_step(std::uint32_t domain) {
   std::unique_ptr<CycloneTransport> transport;
-  const CycloneOptions options{"loss", "recorder", {Topic::node_status}, {Topic::tick, Topic::variables}};
-  if (!CycloneTransport::open(CycloneNetwork{domain, "lo", {}}, options, transport).is_ok()) return false;
+  const Endpoint options{"loss", "recorder", {Topic::node_status}, {Topic::tick, Topic::variables}};
+  if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
   if (!say_ready(*transport)) return false;
   StepIndex next_tick = 0;
   StepIndex next_block = 0;
@@ -70,7 +70,7 @@ void expect_no_step_lost(Stream stream) {
   ChildProcess recorder([&] { return hear_every_step(domain.number()); });
   std::unique_ptr<CycloneTransport> transport;
   const Status status =
-      CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+      CycloneTransport::open(Network{domain.number(), "lo", {}},
                              {"loss", "io", {Topic::tick, Topic::variables}, {Topic::node_status}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   Received received;
@@ -110,8 +110,8 @@ TEST(CycloneLoss, NightlyAReaderStoppedFor200MillisecondsAtFourKilohertzLosesNot
 
 bool hear_ticks(std::uint32_t domain, StepIndex count) {
   std::unique_ptr<CycloneTransport> transport;
-  const CycloneOptions options{"loss", "recorder", {Topic::node_status}, {Topic::tick}};
-  if (!CycloneTransport::open(CycloneNetwork{domain, "lo", {}}, options, transport).is_ok()) return false;
+  const Endpoint options{"loss", "recorder", {Topic::node_status}, {Topic::tick}};
+  if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
   if (!say_ready(*transport)) return false;
   Received message;
   wire::Header header;
@@ -126,7 +126,7 @@ TEST(CycloneLoss, TheLastMessagesOfALeavingWriterArrive) {
   constexpr StepIndex kCount = 1000;
   ChildProcess recorder([&] { return hear_ticks(domain.number(), kCount); });
   std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
+  const Status status = CycloneTransport::open(Network{domain.number(), "lo", {}},
                                                {"loss", "io", {Topic::tick}, {Topic::node_status}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   Received ready;
@@ -143,8 +143,8 @@ TEST(CycloneLoss, TheLastMessagesOfALeavingWriterArrive) {
 
 bool hear_the_session(std::uint32_t domain) {
   std::unique_ptr<CycloneTransport> transport;
-  const CycloneOptions options{"loss", "mechanics", {}, {Topic::session}};
-  if (!CycloneTransport::open(CycloneNetwork{domain, "lo", {}}, options, transport).is_ok()) return false;
+  const Endpoint options{"loss", "mechanics", {}, {Topic::session}};
+  if (!CycloneTransport::open(Network{domain, "lo", {}}, options, transport).is_ok()) return false;
   Received message;
   wire::SessionDescription session;
   return next(*transport, message) && decode(message.bytes, session) &&
@@ -160,8 +160,8 @@ TEST(CycloneLoss, TheLargestSceneReachesALateNode) {
   });
   ASSERT_TRUE(node.wait_until_stopped());
   std::unique_ptr<CycloneTransport> transport;
-  const Status status = CycloneTransport::open(CycloneNetwork{domain.number(), "lo", {}},
-                                               {"loss", "io", {Topic::session}, {}}, transport);
+  const Status status =
+      CycloneTransport::open(Network{domain.number(), "lo", {}}, {"loss", "io", {Topic::session}, {}}, transport);
   ASSERT_TRUE(status.is_ok()) << status.text;
   wire::SessionDescription session;
   session.scene_text.assign(wire::kMaxSceneBytes, 'x');

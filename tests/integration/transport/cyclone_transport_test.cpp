@@ -201,7 +201,7 @@ TEST(CycloneDomainErrors, AnExhaustedParticipantIndexIsExplained) {
     std::shared_ptr<CycloneDomain> domain;
     std::unique_ptr<CycloneTransport> transport;
     const Status status =
-        CycloneTransport::open(CycloneNetwork{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
+        CycloneTransport::open(Network{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
     if (!status.is_ok()) {
       std::fprintf(stderr, "%s\n", status.text.c_str());
       return false;
@@ -216,7 +216,7 @@ TEST(CycloneDomainErrors, AnExhaustedParticipantIndexIsExplained) {
   testing::ChildProcess one_too_many([&number] {
     std::unique_ptr<CycloneTransport> transport;
     const Status status =
-        CycloneTransport::open(CycloneNetwork{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
+        CycloneTransport::open(Network{number.number(), "lo", {}}, {"a", "observer", {}, {}}, transport);
     return status.code == ExitCode::resources && status.text.find("--domain") != std::string::npos;
   });
   EXPECT_EQ(one_too_many.wait(), 0);

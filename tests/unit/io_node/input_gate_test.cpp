@@ -270,7 +270,7 @@ TEST(InputGate, ASecondProcessOfTheHoldersNameIsRefusedAndMovesNothing) {
   const std::optional<LeaseAnswer> told = gate.answer_to_write(0, "pid", 2000 * kMs, 8);
   ASSERT_TRUE(told.has_value());
   EXPECT_EQ(told->reason, refused.reason);
-  // a carrier that does not know its writers cannot tell them apart
+  // a transport that does not know its writers cannot tell them apart
   EXPECT_TRUE(gate.write(0, "pid", 0.6, 0, 0));
   // when the first has fallen silent the second has it
   gate.advance(1, held({0}), 8000 * kMs);

@@ -447,10 +447,10 @@ TEST_F(Io, NamesNoTickOfAnEpochThatHadNone) {
 }
 
 TEST_F(Io, EndsWhenATickCannotBeSent) {
-  testing::BreakableCarrier carrier(played.carrier());
-  node = std::make_unique<IoNode>(carrier, config());
+  testing::BreakableTransport transport(played.transport());
+  node = std::make_unique<IoNode>(transport, config());
   get_running();
-  carrier.break_down(Topic::tick);
+  transport.break_down(Topic::tick);
   say_samples(1);
   poll(kMs);
   EXPECT_EQ(node->member().exit_code(), ExitCode::failed);

@@ -28,7 +28,7 @@ class Io : public ::testing::Test {
     return config;
   }
   void poll(std::int64_t after_ns = 0) { node->poll(now_ns += after_ns); }
-  void restart(IoConfig with) { node = std::make_unique<IoNode>(played.carrier(), std::move(with)); }
+  void restart(IoConfig with) { node = std::make_unique<IoNode>(played.transport(), std::move(with)); }
   // so many milliseconds in which the others give signs of life
   void live(std::int64_t ms) {
     for (const std::int64_t end_ns = now_ns + ms * kMs; now_ns < end_ns;) {
@@ -106,7 +106,7 @@ class Io : public ::testing::Test {
   }
 
   PlayedSession played{0};
-  std::unique_ptr<IoNode> node = std::make_unique<IoNode>(played.carrier(), config());
+  std::unique_ptr<IoNode> node = std::make_unique<IoNode>(played.transport(), config());
   std::int64_t now_ns = 1000 * kMs;
   std::uint64_t requests_ = 0;
 };

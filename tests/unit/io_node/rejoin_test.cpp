@@ -31,7 +31,7 @@ class Rejoin : public ::testing::Test {
 
   // every node is ready and has its first sample
   void get_ready(IoConfig with) {
-    node = std::make_unique<IoNode>(played.carrier(), std::move(with));
+    node = std::make_unique<IoNode>(played.transport(), std::move(with));
     poll();
     const auto sessions = played.said<wire::SessionDescription>(Topic::session);
     ASSERT_FALSE(sessions.empty());

@@ -57,7 +57,7 @@ class World {
 
   void get_running(IoConfig with) {
     const StepIndex begin = with.beginning ? with.beginning->step : 0;
-    node = std::make_unique<IoNode>(played.carrier(), std::move(with));
+    node = std::make_unique<IoNode>(played.transport(), std::move(with));
     poll();
     const auto sessions = played.said<wire::SessionDescription>(Topic::session);
     ASSERT_FALSE(sessions.empty());

@@ -263,7 +263,7 @@ class Rejoining : public ::testing::Test {
   }
 
   PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
-  PhysicsNode node{Role::mechanics, played.carrier(), build};
+  PhysicsNode node{Role::mechanics, played.transport(), build};
   std::int64_t now_ns = 1000 * kMs;
   std::map<StepIndex, std::uint64_t> hashes;
 };
@@ -275,7 +275,7 @@ TEST_F(Rejoining, SaysItsStateAtTheStartAndInPartsAfterEveryIntervalAndNothingWi
 
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
   other.session.rejoin_ns = 1000 * kMs;
-  PhysicsNode saving{Role::mechanics, other.carrier(), build};
+  PhysicsNode saving{Role::mechanics, other.transport(), build};
   other.say(Topic::session, other.session);
   saving.poll(now_ns);
   other.say_heard(Role::io, NodeState::joining, saving.member().header(Phase::join, kJoinStep), {Topic::mechanism});
@@ -349,7 +349,7 @@ TEST_F(Rejoining, WithTheStateOfAnEarlierStepSaysTheSameBitsAgainAndGoesOn) {
   PlayedSession other{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
   other.session.rejoin_ns = 1000 * kMs;
   other.session.header.step = 120;
-  PhysicsNode second{Role::mechanics, other.carrier(), build};
+  PhysicsNode second{Role::mechanics, other.transport(), build};
   other.say(Topic::session, other.session);
   second.poll(now_ns);
   const wire::Header own = second.member().header(Phase::join, kJoinStep);
@@ -453,7 +453,7 @@ TEST_F(Rejoining, ANodeThatCannotBeSavedTakesNoPartInASessionThatHoldsPlaces) {
   };
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
   other.session.rejoin_ns = 1000 * kMs;
-  PhysicsNode forgetful{Role::mechanics, other.carrier(), build_other};
+  PhysicsNode forgetful{Role::mechanics, other.transport(), build_other};
   other.say(Topic::session, other.session);
   forgetful.poll(now_ns);
   EXPECT_TRUE(forgetful.is_finished());

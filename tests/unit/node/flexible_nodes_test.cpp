@@ -50,7 +50,7 @@ class WithFlexibleBodies : public ::testing::Test {
 class Mechanics : public WithFlexibleBodies {
  protected:
   void get_ready(ElasticExchange exchange) {
-    node = std::make_unique<PhysicsNode>(Role::mechanics, played.carrier(), built_for(exchange));
+    node = std::make_unique<PhysicsNode>(Role::mechanics, played.transport(), built_for(exchange));
     played.say(Topic::session, played.session);
     poll(0);
     const wire::Header own = node->member().header(Phase::join, kJoinStep);
@@ -74,7 +74,7 @@ class Mechanics : public WithFlexibleBodies {
 };
 
 TEST_F(Mechanics, StartsWithTheElasticForcesOfTheFlexNode) {
-  node = std::make_unique<PhysicsNode>(Role::mechanics, played.carrier(), built_for(ElasticExchange::once));
+  node = std::make_unique<PhysicsNode>(Role::mechanics, played.transport(), built_for(ElasticExchange::once));
   played.say(Topic::session, played.session);
   poll(0);
   const wire::Header own = node->member().header(Phase::join, kJoinStep);
@@ -150,7 +150,7 @@ TEST_F(Mechanics, SendsTheStateOfItsModesAgainWhenAsked) {
 class FlexNode : public WithFlexibleBodies {
  protected:
   void get_ready(ElasticExchange exchange) {
-    node = std::make_unique<PhysicsNode>(Role::flex, played.carrier(), built_for(exchange));
+    node = std::make_unique<PhysicsNode>(Role::flex, played.transport(), built_for(exchange));
     played.say(Topic::session, played.session);
     poll(0);
     const wire::Header own = node->member().header(Phase::join, kJoinStep);
@@ -240,7 +240,7 @@ TEST_F(FlexNode, BeginsAnewAfterAReset) {
 
 TEST(NodesWithoutFlexibleBodies, ProveNoTopicOfTheirs) {
   PlayedSession played{bit(Role::io) | bit(Role::mechanics)};
-  PhysicsNode node(Role::mechanics, played.carrier(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
+  PhysicsNode node(Role::mechanics, played.transport(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
     built.subsystem = std::make_unique<testing::StillSubsystem>();
     return Status::ok();
   });

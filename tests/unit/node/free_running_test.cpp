@@ -81,7 +81,7 @@ class FreeRunning : public ::testing::Test {
   std::vector<Done> done;
   std::vector<std::pair<StepIndex, std::string>> changes;
   PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
-  PhysicsNode node{Role::mechanics, played.carrier(), [this](const wire::SessionDescription&, BuiltSubsystem& built) {
+  PhysicsNode node{Role::mechanics, played.transport(), [this](const wire::SessionDescription&, BuiltSubsystem& built) {
                      built.subsystem = std::make_unique<Witness>(done, changes);
                      built.session.mode = scene::ExchangeMode::free_running;
                      built.session.wait_budget = 0.5e-3;

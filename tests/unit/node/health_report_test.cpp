@@ -17,7 +17,7 @@ using wire::Topic;
 // does nothing until its health was heard
 class IdleNode final : public Node {
  public:
-  explicit IdleNode(PlayedSession& played) : played_(played), member_(Role::mechanics, played.carrier(), {}) {}
+  explicit IdleNode(PlayedSession& played) : played_(played), member_(Role::mechanics, played.transport(), {}) {}
   void join() {
     ASSERT_TRUE(member_.adopt(played_.session, 0).is_ok());
     health().has_session = true;

@@ -48,14 +48,14 @@ class Physics : public ::testing::Test {
   }
 
   PlayedSession played{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
-  testing::BreakableCarrier carrier{played.carrier()};
-  PhysicsNode node{Role::mechanics, carrier, build};
+  testing::BreakableTransport transport{played.transport()};
+  PhysicsNode node{Role::mechanics, transport, build};
   std::int64_t now_ns = 1000 * kMs;
   StepIndex newest_ = kJoinStep;
 };
 
 TEST_F(Physics, WaitsForJoinTenSecondsAndWithoutTimeoutAsLongAsItTakes) {
-  PhysicsNode patient{Role::mechanics, carrier, build, {kNoTimeout, kNoTimeout, std::nullopt}};
+  PhysicsNode patient{Role::mechanics, transport, build, {kNoTimeout, kNoTimeout, std::nullopt}};
   for (PhysicsNode* waiting : {&node, &patient}) {
     played.say(Topic::session, played.session);
     waiting->poll(now_ns);
@@ -136,7 +136,7 @@ class Observed final : public StillSubsystem {
 };
 
 TEST_F(Physics, LeavesOutTheValuesOfItsVariablesWhereTheTickSaysSo) {
-  PhysicsNode observed(Role::mechanics, played.carrier(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
+  PhysicsNode observed(Role::mechanics, played.transport(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
     built.subsystem = std::make_unique<Observed>();
     built.published_variables = {0};
     built.variables_every = 1;
@@ -173,7 +173,7 @@ TEST_F(Physics, EndsAtTheFirstSampleThatCannotBeSent) {
     played.say_tick(step);
     if (step > 0) played.say_actuators(step);
   }
-  carrier.break_down(Topic::mechanism);
+  transport.break_down(Topic::mechanism);
   poll(kMs);
   poll(kMs);
   EXPECT_EQ(node.member().state(), NodeState::fault);
@@ -248,7 +248,7 @@ TEST_F(Physics, SaysThatItWaitsWhenSomethingIsOverdue) {
 
 TEST_F(Physics, CountsAnInitThatCannotBeDecoded) {
   PlayedSession other{bit(Role::io) | bit(Role::mechanics) | bit(Role::hydraulics)};
-  PhysicsNode hydraulics{Role::hydraulics, other.carrier(), build};
+  PhysicsNode hydraulics{Role::hydraulics, other.transport(), build};
   other.say(Topic::session, other.session);
   hydraulics.poll(now_ns);
   other.say_status(Role::mechanics, NodeState::initialising);
@@ -301,7 +301,7 @@ TEST_F(Physics, RefusesToPublishMoreVariablesThanTheWireNumbers) {
     return Status::ok();
   };
   PlayedSession other{bit(Role::io) | bit(Role::mechanics)};
-  PhysicsNode many{Role::mechanics, other.carrier(), build_many};
+  PhysicsNode many{Role::mechanics, other.transport(), build_many};
   other.say(Topic::session, other.session);
   many.poll(now_ns);
   EXPECT_TRUE(many.is_finished());

@@ -339,7 +339,7 @@ TEST_F(Member, ThatStoodStillAndHearsNobodyAfterwardsSaysSo) {
             "what stopped the process (a signal, a debugger, lack of memory or of processors)");
 }
 
-// A carrier whose cable is out: it sends when it is plugged in again.
+// A transport whose cable is out: it sends when it is plugged in again.
 class Unplugged final : public transport::Transport {
  public:
   Status publish(Topic, std::span<const std::byte>) noexcept override {
@@ -350,6 +350,7 @@ class Unplugged final : public transport::Transport {
   void wait_until(std::int64_t) override {}
   std::vector<std::string> discovered_writers(Topic) override { return {}; }
   std::vector<std::string> misfits() override { return {}; }
+  std::size_t matched_readers(Topic) const override { return 1; }
 };
 
 TEST_F(Member, ThatCouldNotSendIsToldToLookAtItsNetwork) {

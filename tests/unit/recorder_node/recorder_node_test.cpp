@@ -33,7 +33,7 @@ class RecorderBench {
     std::string name = (std::filesystem::temp_directory_path() / "slewring_recorder_XXXXXX").string();
     folder = ::mkdtemp(name.data());
     config.runs_directory = folder;
-    node = std::make_unique<RecorderNode>(played.carrier(), std::move(config));
+    node = std::make_unique<RecorderNode>(played.transport(), std::move(config));
   }
   ~RecorderBench() { std::filesystem::remove_all(folder); }
   RecorderBench(const RecorderBench&) = delete;

@@ -69,6 +69,7 @@ class PlayedIo final : public transport::Transport {
   void wait_until(std::int64_t) override {}
   std::vector<std::string> discovered_writers(Topic) override { return {}; }
   std::vector<std::string> misfits() override { return {}; }
+  std::size_t matched_readers(Topic) const override { return 1; }
 
  private:
   struct Said {

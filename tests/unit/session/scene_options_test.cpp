@@ -92,10 +92,10 @@ TEST_F(SceneOptionsTest, NoneAndKeyboardLeaveNoScript) {
 TEST_F(SceneOptionsTest, WhoMovesAnInputMayBeAnotherWhereASessionGoesOn) {
   options_.overrides = {"Input_Lift.controller=lockstep", "Input_Lift.controller_delay=3"};
   const scene::Scene saved = scene::load_scene(options_);
-  SceneOptions on;
+  scene::SceneOptions on;
   on.overrides = {"Input_Lift.controller=sampled", "Input_Lift.controller_wait=2 s", "Input_Slew.supervisor=boss",
                   "Bag.mass=750 kg"};
-  const ContinuedScene continued = continue_scene(on, saved.expanded_text, saved.name);
+  const scene::ContinuedScene continued = scene::continue_scene(on, saved.expanded_text, saved.name);
   const scene::Scene again = scene::load_text(continued.scene.expanded_text, "again");
   for (const scene::InputDef& input : again.inputs) {
     EXPECT_EQ(input.controller, scene::ControllerMode::sampled);
@@ -108,9 +108,9 @@ TEST_F(SceneOptionsTest, WhoMovesAnInputMayBeAnotherWhereASessionGoesOn) {
   EXPECT_EQ(continued.changes[0].path, "Bag.mass");
   // of the same field a wrong value, and another one of the same input
   on.overrides = {"Input_Lift.controller=somehow"};
-  EXPECT_THROW(static_cast<void>(continue_scene(on, saved.expanded_text, saved.name)), scene::LoadError);
+  EXPECT_THROW(static_cast<void>(scene::continue_scene(on, saved.expanded_text, saved.name)), scene::LoadError);
   on.overrides = {"Input_Lift.ramp=1 s"};
-  EXPECT_THROW(static_cast<void>(continue_scene(on, saved.expanded_text, saved.name)), Failure);
+  EXPECT_THROW(static_cast<void>(scene::continue_scene(on, saved.expanded_text, saved.name)), Failure);
 }
 
 TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
@@ -118,9 +118,9 @@ TEST_F(SceneOptionsTest, ArgumentsForAChildGiveTheSameScene) {
   options_.duration = "5 s";
   options_.is_recording = false;
   options::Program program("child", "");
-  SceneOptions parsed;
-  add_scene_options(program, parsed);
-  program.parse(scene_arguments(options_));
+  scene::SceneOptions parsed;
+  scene::add_scene_options(program, parsed);
+  program.parse(scene::scene_arguments(options_));
   EXPECT_FALSE(parsed.is_recording);
   EXPECT_EQ(scene::load_scene(parsed).expanded_text, load_scene(options_).expanded_text);
 }

@@ -1,9 +1,9 @@
-// Faults between the nodes of one process, drawn from a seed: what a carrier does to messages, and what a scheduler
+// Faults between the nodes of one process, drawn from a seed: what a transport does to messages, and what a scheduler
 // does to nodes. Times are those of a clock that is a number.
 //
 // Ticks, samples, resends and health are lost, doubled, late and overtaken; in a partition they are lost. The rest
 // (session, status, variables, leases, requests, to the recorder bodies' shapes too) is late only and keeps its order,
-// in a partition until its end: a reliable carrier repeats it for as long as it takes, and the nodes rely on that
+// in a partition until its end: a reliable transport repeats it for as long as it takes, and the nodes rely on that
 // (idl/README.md).
 #pragma once
 
@@ -50,7 +50,7 @@ struct Kill {
 };
 
 // Messages that never arrive from a time on, as behind a filter or in a reader that was led astray: those of one topic,
-// of one size or in one direction, whatever else arrives. Any topic, also one that a reliable carrier would repeat.
+// of one size or in one direction, whatever else arrives. Any topic, also one that a reliable transport would repeat.
 struct Drop {
   std::optional<wire::Topic> topic;
   std::optional<wire::Role> from, to;
@@ -94,21 +94,24 @@ struct FaultCount {
 };
 
 // The receiving side of a node's place at the bus. Sending is left as it is.
-class FaultyCarrier final : public transport::Transport {
+class FaultyTransport final : public transport::Transport {
  public:
-  // All outlive the carrier.
-  FaultyCarrier(transport::Transport& carrier, wire::Role self, const VirtualClock& clock, const FaultPlan& plan,
-                FaultCount& count);
+  // All outlive the transport.
+  FaultyTransport(transport::Transport& transport, wire::Role self, const VirtualClock& clock, const FaultPlan& plan,
+                  FaultCount& count);
 
   Status publish(wire::Topic topic, std::span<const std::byte> bytes) noexcept override {
-    return carrier_.publish(topic, bytes);
+    return transport_.publish(topic, bytes);
   }
   bool take(transport::Received& message) override;
   void wait_until(std::int64_t) override {}
   [[nodiscard]] std::vector<std::string> discovered_writers(wire::Topic topic) override {
-    return carrier_.discovered_writers(topic);
+    return transport_.discovered_writers(topic);
   }
-  [[nodiscard]] std::vector<std::string> misfits() override { return carrier_.misfits(); }
+  [[nodiscard]] std::vector<std::string> misfits() override { return transport_.misfits(); }
+  [[nodiscard]] std::size_t matched_readers(wire::Topic topic) const override {
+    return transport_.matched_readers(topic);
+  }
 
  private:
   struct Pending {
@@ -125,7 +128,7 @@ class FaultyCarrier final : public transport::Transport {
   [[nodiscard]] bool happens(double chance);
   [[nodiscard]] std::int64_t delay();
 
-  transport::Transport& carrier_;
+  transport::Transport& transport_;
   wire::Role self_;
   const VirtualClock& clock_;
   const FaultPlan& plan_;

@@ -1,11 +1,10 @@
-#include "node/carrier.h"
+#include "node/open_transport.h"
 
 #include <utility>
 
 #include "core/failure.h"
 #include "node/identity.h"
-#include "node/metered_carrier.h"
-#include "transport/cyclone/cyclone_transport.h"
+#include "node/metered_transport.h"
 #include "transport/protection.h"
 #include "transport/roles.h"
 
@@ -18,25 +17,25 @@ using wire::Topic;
 
 namespace {
 
-// Whose keys a role of this process has: who only reads is an observer.
+// The keys are those of the role, unless the options name others: a process that only reads is an observer.
 std::unique_ptr<transport::Transport> open(const SessionOptions& options, Role role,
-                                           transport::CycloneOptions endpoint) {
-  transport::CycloneNetwork network{options.domain, options.interface, options.peers};
+                                           const transport::Endpoint& endpoint) {
+  transport::Network network{options.domain, options.interface, options.peers};
   require(transport::protect(
-      network, {options.keys, options.identity.empty() ? std::string(node::to_text(role)) : options.identity,
+      network, {options.keys, options.identity.empty() ? std::string(traits(role).name) : options.identity,
                 options.is_insecure_lan}));
-  std::unique_ptr<transport::CycloneTransport> carrier;
-  require(transport::CycloneTransport::open(network, endpoint, carrier));
-  return carrier;
+  std::unique_ptr<transport::Transport> opened;
+  require(transport::open_transport(network, endpoint, opened));
+  return opened;
 }
 
 }  // namespace
 
-std::unique_ptr<transport::Transport> open_carrier(Role role, const SessionOptions& options) {
-  auto carrier =
+std::unique_ptr<transport::Transport> open_transport(Role role, const SessionOptions& options) {
+  auto transport =
       open(options, role, {options.session, std::string(traits(role).name), traits(role).writes, traits(role).reads});
-  if (static_cast<std::size_t>(role) >= wire::kRoles) return carrier;
-  return std::make_unique<MeteredCarrier>(std::move(carrier));
+  if (static_cast<std::size_t>(role) >= wire::kRoles) return transport;
+  return std::make_unique<MeteredTransport>(std::move(transport));
 }
 
 std::unique_ptr<transport::Transport> open_observer_without_values(const SessionOptions& options) {
@@ -66,14 +65,9 @@ std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options)
               {transport::kAnySession, "survey", {}, {Topic::session, Topic::node_status, Topic::health}});
 }
 
-std::unique_ptr<transport::Transport> open_carrier(Role role, transport::InProcessBus& bus) {
+std::unique_ptr<transport::Transport> open_transport(Role role, transport::InProcessBus& bus) {
   return std::make_unique<transport::InProcessEndpoint>(
       bus, transport::InProcessOptions{std::string(traits(role).name), traits(role).writes, traits(role).reads});
-}
-
-bool is_heard(const transport::Transport& carrier, Topic topic) {
-  const auto* cyclone = dynamic_cast<const transport::CycloneTransport*>(&carrier);
-  return cyclone == nullptr || cyclone->matched_readers(topic) > 0;
 }
 
 }  // namespace slew::node

@@ -1,4 +1,5 @@
-// The endpoint of a role: which topics it writes and reads, over Cyclone DDS or on the bus of one process.
+// Opens the endpoint of a role, with the topics of its row in transport/roles.h: on the network, or on the bus of one
+// process.
 #pragma once
 
 #include <memory>
@@ -11,8 +12,8 @@
 
 namespace slew::node {
 
-// Throws Failure with the carrier's text.
-[[nodiscard]] std::unique_ptr<transport::Transport> open_carrier(wire::Role role, const SessionOptions& options);
+// Throws Failure.
+[[nodiscard]] std::unique_ptr<transport::Transport> open_transport(wire::Role role, const SessionOptions& options);
 
 // An observer that does not look at the variables' values: for a run that shows none, since every reader costs the
 // writers time.
@@ -28,9 +29,6 @@ namespace slew::node {
 // Reads what all sessions of the domain say about themselves; writes nothing.
 [[nodiscard]] std::unique_ptr<transport::Transport> open_survey(const SessionOptions& options);
 
-[[nodiscard]] std::unique_ptr<transport::Transport> open_carrier(wire::Role role, transport::InProcessBus& bus);
-
-// True when somebody would hear a message on this topic now. A topic that keeps nothing loses what is said earlier.
-[[nodiscard]] bool is_heard(const transport::Transport& carrier, wire::Topic topic);
+[[nodiscard]] std::unique_ptr<transport::Transport> open_transport(wire::Role role, transport::InProcessBus& bus);
 
 }  // namespace slew::node

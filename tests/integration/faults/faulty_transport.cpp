@@ -1,4 +1,4 @@
-#include "faulty_carrier.h"
+#include "faulty_transport.h"
 
 #include <fmt/format.h>
 
@@ -171,16 +171,16 @@ std::string FaultPlan::text() const {
   return text;
 }
 
-FaultyCarrier::FaultyCarrier(transport::Transport& carrier, Role self, const VirtualClock& clock, const FaultPlan& plan,
-                             FaultCount& count)
-    : carrier_(carrier),
+FaultyTransport::FaultyTransport(transport::Transport& transport, Role self, const VirtualClock& clock,
+                                 const FaultPlan& plan, FaultCount& count)
+    : transport_(transport),
       self_(self),
       clock_(clock),
       plan_(plan),
       count_(count),
       random_(plan.seed * wire::kRoles + static_cast<std::uint64_t>(self)) {}
 
-bool FaultyCarrier::take(transport::Received& message) {
+bool FaultyTransport::take(transport::Received& message) {
   fetch();
   if (pending_.empty() || pending_.begin()->first > clock_.now_ns) return false;
   taken_ = std::move(pending_.begin()->second);
@@ -189,12 +189,12 @@ bool FaultyCarrier::take(transport::Received& message) {
   return true;
 }
 
-void FaultyCarrier::fetch() {
+void FaultyTransport::fetch() {
   transport::Received message;
-  while (carrier_.take(message)) deliver(message);
+  while (transport_.take(message)) deliver(message);
 }
 
-void FaultyCarrier::deliver(const transport::Received& message) {
+void FaultyTransport::deliver(const transport::Received& message) {
   const std::int64_t now_ns = clock_.now_ns;
   wire::Header header;
   const bool has_sender = transport::decode_header(message.bytes, header);
@@ -239,7 +239,7 @@ void FaultyCarrier::deliver(const transport::Received& message) {
 }
 
 // What a damaged or hostile datagram does: the message with some bytes changed, or cut, in front of it or in its place.
-void FaultyCarrier::deliver_mutated(const transport::Received& message) {
+void FaultyTransport::deliver_mutated(const transport::Received& message) {
   ++count_.mutated;
   Pending changed{message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}};
   if (share(random_) < 0.2) {
@@ -254,19 +254,19 @@ void FaultyCarrier::deliver_mutated(const transport::Received& message) {
 }
 
 // with the faults the delays end
-std::int64_t FaultyCarrier::due_ns(std::int64_t delay_ns) const noexcept {
+std::int64_t FaultyTransport::due_ns(std::int64_t delay_ns) const noexcept {
   return std::min(clock_.now_ns + delay_ns, std::max(clock_.now_ns, plan_.end_ns));
 }
 
-void FaultyCarrier::put(const transport::Received& message, std::int64_t due_ns) {
+void FaultyTransport::put(const transport::Received& message, std::int64_t due_ns) {
   pending_.emplace(due_ns, Pending{message.topic, message.source_ns, {message.bytes.begin(), message.bytes.end()}});
 }
 
-bool FaultyCarrier::happens(double chance) {
+bool FaultyTransport::happens(double chance) {
   return share(random_) < chance;
 }
 
-std::int64_t FaultyCarrier::delay() {
+std::int64_t FaultyTransport::delay() {
   return between(random_, 0, plan_.messages.longest_delay_ns);
 }
 

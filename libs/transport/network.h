@@ -1,0 +1,57 @@
+// How a process reaches the others, whatever middleware carries the messages: a network, and an endpoint on it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+#include "transport/topics.h"
+#include "transport/transport.h"
+
+namespace slew::transport {
+
+inline constexpr std::uint32_t kMaxDomain = 230;  // its UDP ports are below 65536
+inline constexpr int kMaxProcesses = 60;          // of one domain on one host
+inline constexpr const char* kAnySession = "*";   // of a pure reader: messages of all sessions of the domain
+
+// Files of DDS Security: who may take part, and what this process may write and read (docs/security.md).
+struct SecurityFiles {
+  std::string identity_authority;     // certificate that signed those of all processes, PEM
+  std::string permissions_authority;  // certificate that signed governance and permissions, PEM
+  std::string governance;             // what is protected and how, signed (S/MIME)
+  std::string certificate;            // of this process, PEM
+  std::string private_key;            // PEM
+  std::string permissions;            // of this process, signed (S/MIME)
+  bool operator==(const SecurityFiles&) const = default;
+};
+
+struct Network {
+  std::uint32_t domain = 0;                 // 0 .. kMaxDomain
+  std::string interface = "lo";             // name of the network interface, as in `ip link`
+  std::vector<std::string> peers;           // addresses or names of the other hosts; this host is always among them
+  std::optional<SecurityFiles> security{};  // none: every process that reaches the ports takes part
+  bool operator==(const Network&) const = default;
+};
+
+struct Endpoint {
+  std::string session;  // name, or kAnySession
+  std::string role;     // how others name this endpoint in messages, "mechanics"
+  TopicSet writes;      // publish() of another topic is refused
+  TopicSet reads;
+  // Receives also the last blocks of variables of before it was found, since it answers each, and of the answers to
+  // controllers none of before, since they were another one's.
+  bool is_controller = false;
+};
+
+// Messages sent on this interface go beyond this machine. False too when there is no such interface.
+[[nodiscard]] bool leaves_machine(const std::string& interface);
+
+// Fills `transport`, or says which interface, peer or number is wrong and what there is instead. Endpoints of one
+// process in one domain share the network of the first. Thread-safe.
+[[nodiscard]] Status open_transport(const Network& network, const Endpoint& endpoint,
+                                    std::unique_ptr<Transport>& transport);
+
+}  // namespace slew::transport
