@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -90,13 +91,101 @@ TEST(Architecture, IncludesFollowTheListedEdges) {
   }
 }
 
-TEST(Architecture, EveryLibraryIsListed) {
-  const fs::path root = SLEWRING_SOURCE_DIR;
-  const Edges edges = read_edges(root / "tests/architecture/edges.txt");
-  for (const auto& entry : fs::directory_iterator(root / "libs")) {
-    if (fs::is_empty(entry.path())) continue;
-    EXPECT_TRUE(edges.allowed.contains(entry.path().filename())) << entry.path().filename();
+// Folders of the sources that are no tests, benchmarks or examples: those of libs/, and those beside it.
+std::vector<fs::path> rooms() {
+  std::vector<fs::path> found;
+  const std::set<std::string> others = {"tests", "benchmarks", "examples", "build", "libs"};
+  for (const fs::path& above : {fs::path(SLEWRING_SOURCE_DIR), fs::path(SLEWRING_SOURCE_DIR) / "libs"}) {
+    for (const auto& entry : fs::directory_iterator(above)) {
+      const std::string name = entry.path().filename();
+      const bool is_ours = !others.contains(name) && name[0] != '.';
+      if (is_ours && fs::exists(entry.path() / "CMakeLists.txt")) found.push_back(entry.path());
+    }
   }
+  return found;
+}
+
+TEST(Architecture, EveryRoomIsListed) {
+  const Edges edges = read_edges(fs::path(SLEWRING_SOURCE_DIR) / "tests/architecture/edges.txt");
+  const std::vector<fs::path> found = rooms();
+  EXPECT_GT(found.size(), 20u);
+  for (const fs::path& room : found) EXPECT_TRUE(edges.allowed.contains(room.filename())) << room;
+  EXPECT_EQ(found.size(), edges.allowed.size()) << "edges.txt lists a part that is not there";
+}
+
+struct Linked {
+  std::string room;
+  std::vector<std::string> depends;  // names of libraries
+};
+
+// slewring_library(NAME ... DEPENDS ...) and slewring_program(...) of one list, by name.
+std::map<std::string, Linked> linked(const fs::path& list, const std::string& room) {
+  std::map<std::string, Linked> found;
+  std::ifstream in(list);
+  std::stringstream whole;
+  whole << in.rdbuf();
+  const std::string text = whole.str();
+  for (const std::string command : {"slewring_library(", "slewring_program(", "add_library(slewring_"}) {
+    for (std::size_t at = text.find(command); at != std::string::npos; at = text.find(command, at + 1)) {
+      const std::size_t from = at + command.size();
+      std::istringstream words(text.substr(from, text.find(')', from) - from));
+      std::string word;
+      words >> word;
+      // a program may have the name of its library
+      Linked& entry = found[command == "slewring_program(" ? word + " (program)" : word];
+      entry.room = room;
+      bool is_depends = false;
+      while (words >> word) {
+        const bool is_keyword =
+            std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isupper(c) != 0 || c == '_'; });
+        if (is_keyword) {
+          is_depends = word == "DEPENDS";
+        } else if (is_depends) {
+          entry.depends.push_back(word);
+        }
+      }
+    }
+  }
+  return found;
+}
+
+// What the linker is given follows the same list as the includes.
+std::vector<std::string> forbidden_links(const Edges& edges, const std::map<std::string, Linked>& all) {
+  std::vector<std::string> found;
+  for (const auto& [name, own] : all) {
+    for (const std::string& library : own.depends) {
+      const auto other = all.find(library);
+      const std::string room = other != all.end() ? other->second.room : "";
+      if (room == own.room || (edges.allowed.contains(own.room) && edges.allowed.at(own.room).contains(room))) continue;
+      found.push_back(name + " in " + own.room + " depends on " + library +
+                      (room.empty() ? ", which is not there" : ""));
+    }
+  }
+  return found;
+}
+
+TEST(Architecture, LinksFollowTheListedEdges) {
+  const Edges edges = read_edges(fs::path(SLEWRING_SOURCE_DIR) / "tests/architecture/edges.txt");
+  std::map<std::string, Linked> all;
+  for (const fs::path& room : rooms()) {
+    for (const auto& entry : fs::recursive_directory_iterator(room)) {
+      if (entry.path().filename() == "CMakeLists.txt") all.merge(linked(entry.path(), room.filename()));
+    }
+  }
+  EXPECT_GT(all.size(), 20u);
+  for (const std::string& violation : forbidden_links(edges, all)) ADD_FAILURE() << violation;
+}
+
+TEST(Architecture, ScannerFindsAForbiddenLink) {
+  const fs::path list = fs::temp_directory_path() / ("slewring_links_" + std::to_string(::getpid()));
+  std::ofstream(list) << "slewring_library(math\n  SOURCES a.cpp\n  DEPENDS core scene\n  LINK fmt::fmt)\n";
+  Edges edges;
+  edges.allowed = {{"math", {"core"}}, {"core", {}}, {"scene", {"math"}}};
+  std::map<std::string, Linked> all = linked(list, "math");
+  all["core"] = {"core", {}};
+  all["scene"] = {"scene", {}};
+  EXPECT_EQ(forbidden_links(edges, all), std::vector<std::string>{"math in math depends on scene"});
+  fs::remove(list);
 }
 
 TEST(Architecture, AllowedEdgesHaveNoCycle) {
