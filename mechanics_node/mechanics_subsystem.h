@@ -7,7 +7,7 @@
 // contact has changed since (coupling/trends.h); loads that follow a table are looked up ahead. Published a_free and W
 // contain the joints' laws condensed implicitly over H (MobilityKind::step), so that the partner sees a slewing ring
 // with its friction, not without. Where springs or modes behind the ports change W over a step, the published rows are
-// those of the step (multibody/step_rows.h); decided once, at the start of the scene.
+// those of the step (multibody/constraints/step_rows.h); decided once, at the start of the scene.
 #pragma once
 
 #include <memory>

@@ -11,7 +11,7 @@
 //
 // q and u hold the modes of flexible bodies and the coordinates between segments beside those of joints; z are bristles
 // of joint friction, one a row, none in a scene without. Joints that are cut are closed by projecting q and u onto them
-// before every evaluation (multibody/loops.h); what y itself violates meanwhile is close()'s to take away.
+// before every evaluation (multibody/constraints/loops.h); what y itself violates meanwhile is close()'s to take away.
 //
 // The laws are the very code that the split simulation runs: multibody dynamics, coupling::LineForceLaw (3),
 // multibody::JointLaw (4), hydraulics::Circuit::rates (5). What differs is only that nothing is held, extrapolated or

@@ -62,7 +62,7 @@ class ParameterDirectory {
   // "Bag.mass=1500kg", "Cyl_Lift.coupling=linear": refused when unknown (with a suggestion), not live, of a wrong
   // dimension, out of range, none of the choices, a value with which the loader would refuse the machine, or a mass,
   // spring or damper with which the mechanics' explicit integrator could not follow what it moves
-  // (multibody/element_speeds.h; at the start, the rest as the scene has it).
+  // (multibody/forces/element_speeds.h; at the start, the rest as the scene has it).
   [[nodiscard]] Assignment parse_assignment(std::string_view text, std::optional<SimDuration> over = {});
   // The same for a value that is already in SI, as it comes over the wire. over: the time that is asked for; without
   // one it is the parameter's own. A choice is made at once, or refused.

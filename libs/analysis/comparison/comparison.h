@@ -6,7 +6,7 @@
 // at least the error of any method of order one or more where the motion is smooth; near singular positions shorter
 // steps need not be better, which the energies show. A row's difference below the estimate says no more than that.
 //
-// Energy (kinetic and potential, multibody/observe.h), relative to the largest kinetic energy of the reference:
+// Energy (kinetic and potential, multibody/model/observe.h), relative to the largest kinetic energy of the reference:
 //   kept      the reference keeps it: a row's drift is max |E(t) - E(0)|
 //   compared  the scene is driven, loses energy or stores it elsewhere: a row's drift is max |E(t) - E_ref(t)|
 // Coupling errors of H are in all rows alike; benchmarks and docs/coupling-results.md judge those.

@@ -1,7 +1,7 @@
 // What a scene says about force elements beyond spring-dampers, and about the masses that elements carry.
 //
-// Frames as in multibody/defs.h: a point and successive rotations about x, y', z'' in a body. A table is a monotone
-// cubic through its points (math/monotone_cubic.h).
+// Frames as in multibody/model/defs.h: a point and successive rotations about x, y', z'' in a body. A table is a
+// monotone cubic through its points (math/monotone_cubic.h).
 #pragma once
 
 #include <cstdint>

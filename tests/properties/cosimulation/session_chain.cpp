@@ -72,7 +72,7 @@ SessionChain::SessionChain(const scene::Scene& scene, const Drive& drive)
   if (scene.has_modes()) parts_[kFlex] = flexible::make_flex_subsystem(scene);
 }
 
-// as cli/direct_session.cpp
+// as libs/session/direct_session.cpp
 void SessionChain::start() {
   coupling::OwnSample init;
   if (part(kMechanics) != nullptr) static_cast<void>(part(kMechanics)->first_sample(init));
