@@ -32,8 +32,8 @@ namespace {
 using wire::Role;
 
 constexpr int kRoundMs = 20;
-// after io is through, or a node is lost, the others have this long: their own linger and some more
-constexpr std::int64_t kGraceNs = 4'000'000'000;
+// after io is through, or a node is lost, the others have their own linger and this time
+constexpr std::int64_t kGraceNs = 2'000'000'000;
 constexpr std::int64_t kTermNs = 1'500'000'000;
 // a recorder closes when the disk has confirmed all that waited: 64 MiB of its own and what the system holds back
 constexpr std::int64_t kWritingNs = 600'000'000'000;
@@ -54,6 +54,7 @@ class Supervisor {
         text_(scene),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
+        give_up_after_(duration_of_seconds(scene.session.give_up_after)),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
         is_refusal_told_(options.is_refusal_told) {
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
@@ -263,7 +264,8 @@ class Supervisor {
     for (Node& node : nodes_) {
       if (node.process->poll_end() || node.is_killed_as_lost || !has_lost_its_place(node)) continue;
       status_.say("slewring: the " + node.process->name() + " node (process " + std::to_string(node.process->pid()) +
-                  ") was silent for 2 s and has lost its place; it is killed");
+                  ") was silent for " + node::seconds_text(give_up_after_) +
+                  " (session.give_up_after) and has lost its place; it is killed");
       node.is_killed_as_lost = true;
       node.process->send_signal(SIGKILL);
     }
@@ -368,7 +370,7 @@ class Supervisor {
   void report_kill(const Node& node, const std::string& what_follows) {
     is_node_killed_ = true;
     say_kill(node, what_follows);
-    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
   }
 
   void report_end(Node& node) {
@@ -391,11 +393,16 @@ class Supervisor {
     }
     const bool is_wrong = end.signal != 0 || end.exit_code != 0;
     if (node.role == Role::io || is_wrong) {
-      if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+      if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
     }
   }
 
   // ---- ending -------------------------------------------------------------------------------------------------
+
+  // From now on; a node that has not ended by then is asked to.
+  [[nodiscard]] std::int64_t end_deadline_ns() const {
+    return monotonic_ns() + std::max(node::kLinger.ns, give_up_after_.ns) + kGraceNs;
+  }
 
   void send(Node& node, int signal) {
     if (node.process->poll_end()) return;
@@ -441,7 +448,7 @@ class Supervisor {
   void end_session() {
     if (is_ending_) return;
     is_ending_ = true;
-    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
     if (is_ours(Role::io)) {
       // io ends the session in order: END, the recorder closes, everybody leaves; its code is in the recording
       const bool is_ctrl_c = interrupt_code() == static_cast<int>(ExitCode::interrupted);
@@ -543,7 +550,8 @@ class Supervisor {
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
   std::optional<Keyboard> keyboard_;
-  SimDuration rejoin_;  // time that io holds the place of a physics node that is lost; 0: it does not
+  SimDuration give_up_after_;  // silence after which the others give a node up
+  SimDuration rejoin_;         // time that io holds the place of a physics node that is lost; 0: it does not
   bool are_others_started_ = false;
   bool is_node_killed_ = false;
   bool is_recorder_awaited_ = false;  // it still writes when everybody else has ended

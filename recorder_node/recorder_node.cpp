@@ -260,7 +260,7 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
 }
 
 StepStream RecorderNode::make_stream(StepIndex begin) const {
-  return {StreamGaps(stream_depth({member_.session().step_ns}), begin), {}};
+  return {StreamGaps(stream_depth(member_.give_up_after(), {member_.session().step_ns}), begin), {}};
 }
 
 // what must be complete: the ticks and the samples of every role that takes part, and the states they begin with.
@@ -418,7 +418,7 @@ void RecorderNode::watch(std::int64_t now_ns) {
     return;
   }
   // a moment longer, so that the others' last messages are recorded
-  if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns / 2;
+  if (deadline_ns_ == 0) deadline_ns_ = now_ns + member_.linger().ns / 2;
   if (!has_everything() && now_ns < deadline_ns_) return;
   if (lost_node_) {
     return begin_ending(ExitCode::node_lost,

@@ -65,10 +65,10 @@ struct StepStream {
   node::ResendClock resend;
 };
 
-// Steps ahead of a gap that are remembered: more than everybody can say again.
-[[nodiscard]] constexpr std::size_t stream_depth(SimDuration step) noexcept {
+// Steps ahead of a gap that are remembered: more than any node can send again.
+[[nodiscard]] constexpr std::size_t stream_depth(SimDuration give_up_after, SimDuration step) noexcept {
   constexpr std::size_t kLeast = 4096;
-  return std::max(kLeast, 2 * node::sent_depth(node::kSentTime, step));
+  return std::max(kLeast, 2 * node::sent_depth(give_up_after, step));
 }
 // messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
 inline constexpr std::size_t kMaxEarly = 256;

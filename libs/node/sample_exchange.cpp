@@ -62,7 +62,8 @@ void SampleExchange::configure(const SessionMember& member, const PortTraffic& p
   if (own_ == Role::hydraulics && member.requires_role(Role::mechanics)) mechanism_.need(ports.every);
   actuators_.takes_late = mechanism_.takes_late = ports.is_free_running;
   if (own_ == Role::flex) flexible_.need(flexible_every_);
-  for (Outbox& outbox : outboxes_) outbox.sent.set_depth(sent_depth(kSentTime, {member.session().step_ns}));
+  const std::size_t depth = sent_depth(member.give_up_after(), {member.session().step_ns});
+  for (Outbox& outbox : outboxes_) outbox.sent.set_depth(depth);
 }
 
 void SampleExchange::clear() noexcept {

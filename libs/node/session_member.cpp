@@ -416,7 +416,7 @@ void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
   const std::int64_t sending_ns = sending_ns_ + std::exchange(sent_before_ns_, sending_ns_);
   sending_ns_ = 0;
   if (gap_ns <= kUsualLook.ns) return;
-  if (gap_ns > kLostAfter.ns) {
+  if (gap_ns > session_.give_up_ns) {
     stood_still_ns_ = gap_ns;
     stood_until_ns_ = now_ns;
     stood_sending_ = sending_ns > gap_ns / 2;
@@ -442,12 +442,12 @@ PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noe
       peer.is_lost = peer.is_silent = false;
       return PeerEvent::back;
     }
-    if (now_ns - peer.gone_ns <= session_.rejoin_ns + kLostAfter.ns) return PeerEvent::none;
+    if (now_ns - peer.gone_ns <= session_.rejoin_ns + session_.give_up_ns) return PeerEvent::none;
     peer.gone_ns = 0;
     return PeerEvent::lost;
   }
   if (peer.is_lost) return PeerEvent::none;
-  if (is_gone || silent_ns > kLostAfter.ns) {
+  if (is_gone || silent_ns > session_.give_up_ns) {
     peer.is_lost = true;
     if (!may_be_replaced(role)) return PeerEvent::lost;
     peer.gone_ns = now_ns;
@@ -497,7 +497,11 @@ std::string SessionMember::describe_peer(Role role) const {
 
 std::string SessionMember::silence_text(Role role) const {
   return "waits for " + describe_peer(role) + ", which has been silent for 0.3 s at step " +
-         std::to_string(status_.header.step) + "; it is given up after 2 s";
+         std::to_string(status_.header.step) + "; it is given up after " + give_up_text();
+}
+
+std::string SessionMember::give_up_text() const {
+  return seconds_text(give_up_after()) + " (session.give_up_after)";
 }
 
 std::string SessionMember::end_text(Role about, const std::string& reason) const {
@@ -512,17 +516,17 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
       std::string("; look for what stopped the process (a signal, a debugger, lack of memory or of processors)") +
       (stood_sending_ ? " or took nothing from it (a cable that is out, an interface that is down)" : "");
   if (is_given_up && stood_still_ns_ > 0) {
-    return "this node " + stood_still + " at step " + std::to_string(status_.header.step) +
-           " and was given up after 2 s; session '" + session_.name + "' has ended" + remedy;
+    return "this node " + stood_still + " at step " + std::to_string(status_.header.step) + " and was given up after " +
+           give_up_text() + "; session '" + session_.name + "' has ended" + remedy;
   }
   if (is_given_up) {
-    return "this node ran, but was not heard for 2 s and was given up; look at the network from this machine to the "
-           "others; " +
-           reason;
+    return "this node ran, but was not heard for " + give_up_text() +
+           " and was given up; look at the network from this machine to the others; " + reason;
   }
   // the others may have given it up and have gone
-  if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= kLostAfter.ns + kLinger.ns) {
-    return reason + "; this node itself had " + stood_still + ", and after 2 s the others give a node up" + remedy;
+  if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= session_.give_up_ns + linger().ns) {
+    return reason + "; this node itself had " + stood_still + ", and after " + give_up_text() +
+           " the others give a node up" + remedy;
   }
   return reason;
 }

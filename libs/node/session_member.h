@@ -4,6 +4,7 @@
 // NodeStatus, that it heard this writer there. "Matched" at the carrier proves nothing; only a received message does.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -27,7 +28,6 @@ inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
 inline constexpr SimDuration kNoTimeout = {100LL * 365 * 86400 * 1'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
 inline constexpr SimDuration kSilentAfter = {300'000'000};  // named, everybody holds
-inline constexpr SimDuration kLostAfter = {2'000'000'000};  // given up
 inline constexpr SimDuration kSettled = {2'000'000'000};    // after READY: who claims the role from then on comes late
 // between two looks: what goes beyond is the silence of the process that looks and nobody else's
 inline constexpr SimDuration kUsualLook = {100'000'000};
@@ -37,9 +37,7 @@ inline constexpr SimDuration kProcessLook = {1'000'000};     // between two look
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
-// what everybody can say again: of the time in which nobody is given up, and of asking for it
-inline constexpr SimDuration kSentTime = {kLostAfter.ns + 500'000'000};
-inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends after its own end, at most
+inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends after its own end, at least
 
 // Messages that were received but not applied, by cause.
 struct Refusals {
@@ -118,6 +116,12 @@ class SessionMember {
   [[nodiscard]] Status problem_of_protocol() const;
   [[nodiscard]] bool has_session() const noexcept { return has_session_; }
   [[nodiscard]] const wire::SessionDescription& session() const noexcept { return session_; }
+  // Silence after which the session gives a node up (session.give_up_after), and with its key for a message:
+  // "2 s (session.give_up_after)".
+  [[nodiscard]] SimDuration give_up_after() const noexcept { return {session_.give_up_ns}; }
+  [[nodiscard]] std::string give_up_text() const;
+  // How long this node answers resends after its own end, at most: others may be silent for a while and come back.
+  [[nodiscard]] SimDuration linger() const noexcept { return {std::max(kLinger.ns, session_.give_up_ns)}; }
   [[nodiscard]] bool requires_role(wire::Role role) const noexcept {
     return (session_.required_roles & bit(role)) != 0;
   }

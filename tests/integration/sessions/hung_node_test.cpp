@@ -140,6 +140,24 @@ TEST_P(HungNode, ThatComesBackInTimeGoesOnWithTheSameBits) {
   expect_named(recorded, GetParam(), session.node(GetParam()));
 }
 
+// For longer than the 2 s that a session without the key waits.
+TEST_P(HungNode, ThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
+  std::vector<std::string> patient = kRealPace;
+  patient.insert(patient.end(), {"--set", "session.give_up_after=20"});
+  Session session(patient, scene_with(GetParam()));
+  start_with(GetParam(), session);
+  ASSERT_TRUE(session.observer().wait_for_step(100)) << session.said();
+  session.node(GetParam()).send(SIGSTOP);
+  const std::int64_t stopped_ns = monotonic_ns();
+  EXPECT_TRUE(is_waited_for(session, GetParam(), session.node(GetParam()))) << session.said();
+  sleep_until_monotonic(stopped_ns + 3'000'000'000);
+  session.node(GetParam()).send(SIGCONT);
+  expect_all_well(session);
+  const RecordedSession recorded = session.recorded();
+  expect_undisturbed_bits(GetParam(), recorded);
+  expect_named(recorded, GetParam(), session.node(GetParam()));
+}
+
 // For 30 s (nightly) or somewhat longer than it is waited for. Meanwhile another session has got its name.
 TEST_P(HungNode, ThatIsGivenUpFindsThatItsSessionIsOverAndDoesNotDisturbTheNextOne) {
   const Role hung = GetParam();

@@ -273,6 +273,29 @@ TEST_F(Member, NamesASilentNodeOnceAndTakesItBack) {
   EXPECT_EQ(watch(321 * kMs), PeerEvent::back);
 }
 
+class GiveUpAfter : public Member, public ::testing::WithParamInterface<std::int64_t> {};
+
+TEST_P(GiveUpAfter, IsTheSessionsAndNotLess) {
+  wire::SessionDescription session = description();
+  session.give_up_ns = GetParam() * kMs;
+  ASSERT_TRUE(member.adopt(session, 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5), 0).is_ok());
+  std::int64_t lost_ns = 0;
+  for (std::int64_t now_ns = 10 * kMs; lost_ns == 0 && now_ns < 100'000 * kMs; now_ns += 10 * kMs) {
+    hear_health(Role::io, 9, now_ns);
+    if (member.watch_peers(now_ns, about) == PeerEvent::lost) lost_ns = now_ns;
+  }
+  EXPECT_EQ(about, Role::hydraulics);
+  EXPECT_EQ(lost_ns, session.give_up_ns + 10 * kMs);
+  EXPECT_NE(member.silence_text(about).find("; it is given up after " + seconds_text({session.give_up_ns}) +
+                                            " (session.give_up_after)"),
+            std::string::npos)
+      << member.silence_text(about);
+  EXPECT_EQ(member.linger().ns, std::max(session.give_up_ns, kLinger.ns));
+}
+
+INSTANTIATE_TEST_SUITE_P(Milliseconds, GiveUpAfter, ::testing::Values(500, 2'000, 10'000, 60'000));
+
 // ---- standing still oneself -----------------------------------------------------------------------------------
 
 TEST_F(Member, ThatStoodStillItselfGivesTheOthersTimeToBeHeardAgainOnce) {
@@ -312,14 +335,16 @@ TEST_F(Member, ThatWasGivenUpSaysWhetherItStoodStillOrWasNotHeard) {
   EXPECT_EQ(watch(10 * kMs), PeerEvent::none);
   ASSERT_TRUE(hear(io, 20 * kMs).is_ok());
   const std::string reason = "io ended the session: " + io.reason;
-  EXPECT_EQ(member.end_text(Role::io, reason),
-            "this node ran, but was not heard for 2 s and was given up; look at the network from this machine to the "
-            "others; " +
-                reason);
+  EXPECT_EQ(
+      member.end_text(Role::io, reason),
+      "this node ran, but was not heard for 2 s (session.give_up_after) and was given up; look at the network from "
+      "this machine to the others; " +
+          reason);
   EXPECT_EQ(watch(30'010 * kMs), PeerEvent::none);
-  EXPECT_EQ(member.end_text(Role::io, reason),
-            "this node stood still for 30 s at step 512 and was given up after 2 s; session 's' has ended; look for "
-            "what stopped the process (a signal, a debugger, lack of memory or of processors)");
+  EXPECT_EQ(
+      member.end_text(Role::io, reason),
+      "this node stood still for 30 s at step 512 and was given up after 2 s (session.give_up_after); session 's' "
+      "has ended; look for what stopped the process (a signal, a debugger, lack of memory or of processors)");
   // any other reason is its own
   io.reason = "hydraulics (process 1005 on elsewhere) is gone; the session was held";
   ASSERT_TRUE(hear(io, 30'020 * kMs).is_ok());
@@ -334,9 +359,10 @@ TEST_F(Member, ThatStoodStillAndHearsNobodyAfterwardsSaysSo) {
   EXPECT_EQ(watch(30'100 * kMs + kSilentAfter.ns), PeerEvent::none);
   EXPECT_EQ(watch(31'000 * kMs), PeerEvent::none);
   EXPECT_EQ(watch(32'001 * kMs), PeerEvent::lost);
-  EXPECT_EQ(member.end_text(about, "io is gone"),
-            "io is gone; this node itself had stood still for 30 s, and after 2 s the others give a node up; look for "
-            "what stopped the process (a signal, a debugger, lack of memory or of processors)");
+  EXPECT_EQ(
+      member.end_text(about, "io is gone"),
+      "io is gone; this node itself had stood still for 30 s, and after 2 s (session.give_up_after) the others give "
+      "a node up; look for what stopped the process (a signal, a debugger, lack of memory or of processors)");
 }
 
 // A carrier whose cable is out: it sends when it is plugged in again.
@@ -365,10 +391,12 @@ TEST_F(Member, ThatCouldNotSendIsToldToLookAtItsNetwork) {
   EXPECT_EQ(watch_sender(2'221 * kMs + kSilentAfter.ns), PeerEvent::silent);
   EXPECT_EQ(watch_sender(3'000 * kMs), PeerEvent::none);
   EXPECT_EQ(watch_sender(4'212 * kMs), PeerEvent::lost);
-  EXPECT_EQ(sender.end_text(about, "io is gone"),
-            "io is gone; this node itself had stood still for 2 s while it sent, and after 2 s the others give a node "
-            "up; look for what stopped the process (a signal, a debugger, lack of memory or of processors) or took "
-            "nothing from it (a cable that is out, an interface that is down)");
+  EXPECT_EQ(
+      sender.end_text(about, "io is gone"),
+      "io is gone; this node itself had stood still for 2 s while it sent, and after 2 s (session.give_up_after) the "
+      "others give a node up; look for what stopped the process (a signal, a debugger, lack of memory or of "
+      "processors) or took "
+      "nothing from it (a cable that is out, an interface that is down)");
 }
 
 // ---- other programs -------------------------------------------------------------------------------------------
