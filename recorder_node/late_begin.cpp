@@ -14,14 +14,18 @@ using wire::Topic;
 // that hears a later message first is a second one: it records nothing and waits for the first one's status, which
 // names it.
 bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std::int64_t now_ns) {
-  if (header.phase == Phase::join) {
-    if (topic == Topic::tick) member_.set_state(NodeState::ready);
-    return true;
-  }
+  if (header.phase == Phase::join && topic == Topic::tick) has_heard_probe_ = true;
+  if (header.phase == Phase::join || has_heard_probe_) return true;
   if (topic != Topic::tick && header.step <= streams_.begin) return true;
   ++member_.refusals().early;
   if (late_deadline_ns_ == 0) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
   return false;
+}
+
+// io's probe was heard, and io has chosen this recorder: nobody takes its role from it.
+void RecorderNode::become_ready() noexcept {
+  if (member_.state() != NodeState::joining || !has_heard_probe_ || !member_.holds_role()) return;
+  member_.set_state(NodeState::ready);
 }
 
 // What the others can say again from the first step on is no reason to begin later. Blocks of variables are not said

@@ -47,6 +47,7 @@ bool RecorderNode::poll(std::int64_t now_ns) {
       stage_ = Stage::finished;
     }
   } else if (stage_ != Stage::finished) {
+    become_ready();
     ask_for_gaps(now_ns);
     ask_for_states(now_ns);
     watch(now_ns);

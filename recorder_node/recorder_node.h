@@ -122,6 +122,7 @@ class RecorderNode final : public node::Node {
   void withdraw();
   void refuse_late();
   void receive_stepped(const transport::Received& message, std::int64_t now_ns);
+  void become_ready() noexcept;
   [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
   void record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
                    std::int64_t now_ns);
@@ -198,6 +199,7 @@ class RecorderNode final : public node::Node {
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
   Begin begin_ = Begin::known;
+  bool has_heard_probe_ = false;         // of io, which comes before the first tick
   std::int64_t late_deadline_ns_ = 0;    // of one that came after the session's begin; 0: it did not
   std::optional<wire::Role> lost_node_;  // who is gone, while the others are still saying so
   struct Early {

@@ -28,7 +28,6 @@ inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
 inline constexpr SimDuration kNoTimeout = {100LL * 365 * 86400 * 1'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
 inline constexpr SimDuration kSilentAfter = {300'000'000};  // named, everybody holds
-inline constexpr SimDuration kSettled = {2'000'000'000};    // after READY: who claims the role from then on comes late
 // between two looks: what goes beyond is the silence of the process that looks and nobody else's
 inline constexpr SimDuration kUsualLook = {100'000'000};
 inline constexpr SimDuration kStoodStill = {1'000'000'000};  // between two looks: the others may have given one up
@@ -64,7 +63,6 @@ struct Peer {
   std::int64_t excused_ns = -1;    // what last_heard_ns became by that, until something is heard
   ProcessWatch process;
   std::int64_t exit_seen_ns = 0;  // when the process was first seen to be gone; 0: it is there
-  std::int64_t ready_ns = 0;      // when it was first heard to be ready; 0: it was not
   bool is_silent = false;         // named once
   bool is_lost = false;           // given up, or gone
   StepIndex step = kJoinStep;     // the next one to do, as its health says
@@ -166,10 +164,13 @@ class SessionMember {
 
   // ---- others
   // Takes a NodeStatus or Health message. Returns a refusal when another process holds this role. Of several processes
-  // of one role the first holds it; what the others say is not heard. Of two that started together the first is agreed
-  // on until kSettled after READY; whatever is said later, who has the role then keeps it.
+  // of one role the one holds it whose status io took first. io publishes its choice: an entry of topic node_status in
+  // `heard` of its own status, the last of a role, less those that were given up. Messages from the others are ignored.
+  // No node becomes READY before io has chosen it, so that no status takes its role from it afterwards.
   Status on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns);
   void on_health(std::span<const std::byte> bytes, std::int64_t now_ns);
+  // io has chosen this process for its role.
+  [[nodiscard]] bool holds_role() const noexcept { return holder(role_) == incarnation_; }
   [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
   // Looks for silent and lost required peers; at most one event per call, with the role it is about. Time in which this
   // process stood still is nobody's silence: once, until the peer is heard again.
@@ -217,9 +218,11 @@ class SessionMember {
   void excuse_peers(std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_writer(const wire::Header& header, wire::Topic topic) const noexcept;
   [[nodiscard]] std::string found_writers(wire::Topic topic);
-  [[nodiscard]] Status on_own_role(const wire::NodeStatus& status, std::int64_t now_ns);
+  [[nodiscard]] std::optional<std::uint32_t> holder(wire::Role role) const noexcept;
+  [[nodiscard]] bool may_hold(const wire::NodeStatus& status, const Peer& peer) const noexcept;
+  [[nodiscard]] Status follow_choice(std::int64_t now_ns);
+  [[nodiscard]] Status on_own_role(const wire::NodeStatus& status);
   void tell_of_claim(const wire::NodeStatus& status);
-  [[nodiscard]] bool is_ready() const noexcept;
   void compare_builds(const wire::NodeStatus& status);
   [[nodiscard]] bool must_read(wire::Role reader, wire::Topic topic) const noexcept;
   [[nodiscard]] bool has_heard_me(wire::Role reader, wire::Topic topic) const noexcept;
@@ -242,12 +245,11 @@ class SessionMember {
   std::vector<wire::NodeStatus> early_statuses_;  // came before the session's description
   std::vector<std::string> warnings_;
   std::array<Peer, wire::kRoles> peers_;
-  // what a second process of a role said last: it may come before the word that the first one was given up
+  // The last status of another process of a role: io may have chosen that one, or give the first one up.
   std::array<std::optional<wire::NodeStatus>, wire::kRoles> rivals_;
   Refusals refusals_;
   Status send_failure_;
   std::int64_t next_probe_ns_ = 0;
-  std::int64_t ready_ns_ = 0;  // when this process was first seen to be ready; 0: it was not
   bool has_told_of_claim_ = false;
   std::int64_t processes_ns_ = 0;    // when their processes were looked for last
   std::int64_t watched_ns_ = 0;      // when the peers were looked at last

@@ -52,7 +52,14 @@ class RecorderBench {
     poll(kMs);
     say_probe();
     poll(kMs);
+    ASSERT_EQ(node->member().state(), NodeState::joining) << "io has not chosen it";
+    choose(node->member().header(Phase::join, kJoinStep), NodeState::joining);
     ASSERT_EQ(node->member().state(), NodeState::ready);
+  }
+  // io has taken the status of this process first
+  void choose(const wire::Header& process, NodeState state) {
+    played.say_heard(Role::io, state, process, {Topic::node_status});
+    poll(kMs);
   }
   // ticks and samples of [from, to]
   void say_steps(StepIndex from, StepIndex to) {
@@ -675,20 +682,26 @@ TEST_F(Recorder, IsNotDisturbedByAnEmptyOneWhoseClockIsBehind) {
   EXPECT_EQ(recorded(Topic::tick).size(), 13u);
 }
 
-TEST_F(Recorder, KeepsWhatItHasRecordedWhenItMustGiveWay) {
+// Directly after READY, whatever the other one says.
+TEST_F(Recorder, ThatIsReadyYieldsToNoStatus) {
   join();
-  say_steps(0, 9);
   played.say(Topic::node_status, other_recorder(NodeState::running, 100, 0));
   poll(kMs);
-  EXPECT_TRUE(node->is_finished());
-  EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
+  EXPECT_FALSE(node->is_finished());
+  say_steps(0, 9);
+  played.say(Topic::node_status, other_recorder(NodeState::running, 200, 0));
+  say_end(9);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
   EXPECT_EQ(recorded(Topic::tick).size(), 10u);
 }
 
-TEST_F(Recorder, LeavesNothingBehindWhenItGivesWayBeforeTheFirstStep) {
-  join();
-  played.say(Topic::node_status, other_recorder(NodeState::ready, kJoinStep, 0));
+TEST_F(Recorder, LeavesNothingBehindWhenIoHasChosenAnotherOne) {
+  played.say(Topic::session, played.session);
+  poll();
+  played.say(Topic::node_status, other_recorder(NodeState::joining, kJoinStep, 0));
   poll(kMs);
+  EXPECT_FALSE(node->is_finished());
+  choose(other_recorder(NodeState::joining, kJoinStep, 0).header, NodeState::joining);
   EXPECT_TRUE(node->is_finished());
   EXPECT_TRUE(std::filesystem::is_empty(folder));
   EXPECT_TRUE(node->recording().empty());
@@ -709,7 +722,7 @@ TEST_F(Recorder, LeavesNothingBehindOfASessionThatIsWithdrawn) {
 TEST_F(Recorder, ThatComesToARunningSessionIsNoRivalBeforeItHasHeardTheFirst) {
   played.say(Topic::session, played.session);
   poll();
-  played.say_status(Role::io, NodeState::running);
+  choose(other_recorder(NodeState::running, 499, INT64_MAX).header, NodeState::running);
   played.say_tick(500);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::joining);
