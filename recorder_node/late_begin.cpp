@@ -85,11 +85,21 @@ void RecorderNode::refuse_late() {
                                                 "session"));
 }
 
-// The states that an epoch begins with, so that it can be computed again from there. Those that io gives to others
-// later are no news.
+void RecorderNode::expect_states(StepIndex step) {
+  states_step_ = step;
+  wants_states_ = false;
+  counts_[static_cast<std::size_t>(Topic::state)].lost += missing_states_.size();
+  missing_states_.clear();
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::flex}) {
+    if (member_.requires_role(role)) missing_states_[role];
+  }
+}
+
+// The states that an epoch begins with, or that follow a gap, so that it can be computed again from there. Those that
+// io gives to others later are not recorded.
 void RecorderNode::receive_state(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late;
+  const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late || wants_states_;
   if (!is_wanted || writer_ == nullptr || !transport::decode_header(message.bytes, header)) return;
   if (header.role != Role::io || !member_.fits(header, Topic::state)) return;
   if (!transport::decode(message.bytes, part_)) {
@@ -98,7 +108,8 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
   }
   // io gives its own state with those of all others alone
   if (begin_ == Begin::late && part_.role == Role::io) begin_late(header.step, now_ns);
-  if (header.step != streams_.begin) return;
+  if (wants_states_ && part_.role == Role::io && header.step > gap_end_) expect_states(header.step);
+  if (header.step != states_step_) return;
   const auto missing = missing_states_.find(part_.role);
   if (missing == missing_states_.end() || missing->second.has(part_)) return;
   const bool is_whole = missing->second.take(part_);
@@ -111,7 +122,9 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
 void RecorderNode::ask_for_states(std::int64_t now_ns) {
   const bool knows_io = member_.peer(Role::io).is_known && member_.state() != NodeState::joining;
   const bool is_late = begin_ == Begin::late;
-  if ((missing_states_.empty() && !is_late) || !knows_io || !states_resend_.is_due(now_ns)) return;
+  // a session that cannot be saved gives none
+  if (now_ns > states_deadline_ns_) wants_states_ = false;
+  if ((missing_states_.empty() && !is_late && !wants_states_) || !knows_io || !states_resend_.is_due(now_ns)) return;
   states_resend_.asked(now_ns);
   const auto ask = [&](Role role, StepIndex step) {
     wire::ResendRequest request;
@@ -122,8 +135,8 @@ void RecorderNode::ask_for_states(std::int64_t now_ns) {
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
   };
-  if (is_late) return ask(Role::io, kJoinStep);
-  for (const auto& [role, parts] : missing_states_) ask(role, streams_.begin);
+  if (is_late || wants_states_) return ask(Role::io, kJoinStep);
+  for (const auto& [role, parts] : missing_states_) ask(role, states_step_);
 }
 
 }  // namespace slew::recorder

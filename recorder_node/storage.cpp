@@ -156,19 +156,31 @@ bool RecorderNode::is_left_out(Topic topic, StepIndex step, std::uint32_t epoch)
 }
 
 void RecorderNode::end_gap() {
-  if (!gap_) return;
+  if (const auto gap = std::exchange(gap_, std::nullopt)) mark(*gap, "the disk was slower than the session");
+}
+
+void RecorderNode::end_lost_steps() {
+  if (const auto lost = std::exchange(lost_, std::nullopt)) mark(*lost, "no node could send them again");
+}
+
+// A session whose ticks have a gap is computed again from the next states on.
+void RecorderNode::mark(const Gap& gap, const char* cause) {
   recording::TextMap entries;
-  entries["cause"] = "the disk was slower than the session";
-  entries["epoch"] = std::to_string(gap_->epoch);
-  entries["from_step"] = std::to_string(gap_->from);
-  entries["to_step"] = std::to_string(gap_->to);
+  entries["cause"] = cause;
+  entries["epoch"] = std::to_string(gap.epoch);
+  entries["from_step"] = std::to_string(gap.from);
+  entries["to_step"] = std::to_string(gap.to);
   for (std::size_t i = 0; i < wire::kTopics; ++i) {
-    if (gap_->messages[i] > 0)
-      entries["left_out." + std::string(to_text(static_cast<Topic>(i)))] = std::to_string(gap_->messages[i]);
+    if (gap.messages[i] > 0)
+      entries["left_out." + std::string(to_text(static_cast<Topic>(i)))] = std::to_string(gap.messages[i]);
   }
-  gap_.reset();
   // a failure is told by the next write
   std::ignore = writer_->add_metadata(recording::kGapName, entries);
+  const bool lacks_ticks = gap.messages[static_cast<std::size_t>(Topic::tick)] > 0;
+  if (!lacks_ticks || gap.epoch != member_.epoch() || gap.to < states_step_) return;
+  wants_states_ = true;
+  gap_end_ = gap.to;
+  states_deadline_ns_ = now_ns_ + node::kJoinTimeout.ns;
 }
 
 // The session goes on without its recording; what comes from now on is counted as lost.
@@ -213,6 +225,7 @@ void RecorderNode::close(const SessionEnd& session) {
 void RecorderNode::close_file(SessionEnd session) {
   const node::DiskWait disk(health());
   end_gap();
+  end_lost_steps();
   // what fails only now is told in the summary too
   const Status flushed = writer_->flush();
   if (stopped_.is_ok()) stopped_ = flushed;

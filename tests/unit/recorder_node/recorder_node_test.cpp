@@ -180,6 +180,86 @@ TEST_F(Recorder, AsksForAGapWhileAllElseComesInOrder) {
   EXPECT_EQ(next[0].header.step, 9);
 }
 
+// Ticks that no node can send again, as a recorder sees them that was behind by more than the others keep.
+TEST_F(Recorder, BehindAGapInTheTicksRecordsTheStatesOfAllNodes) {
+  join();
+  say_steps(0, 9);
+  for (StepIndex step = 10; step < 3000; ++step) {
+    if (step < 13 || step > 15) played.say_tick(step);
+    played.say_mechanism(step);
+    played.say_actuators(step);
+    if (step % 100 == 0) poll(100 * kMs);
+  }
+  poll(kMs);
+  // asked for as a recorder does that comes late
+  const auto has_asked = [&](Role role, StepIndex step) {
+    const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+    return std::any_of(asked.begin(), asked.end(), [&](const wire::ResendRequest& request) {
+      return request.topic == static_cast<std::uint8_t>(Topic::state) && request.role == role &&
+             request.header.step == step;
+    });
+  };
+  EXPECT_TRUE(has_asked(Role::io, kJoinStep));
+  wire::StatePart part;
+  part.total = 5;
+  part.bytes.resize(5);
+  const auto say_state = [&](Role role, StepIndex step) {
+    part.header = played.header(Role::io, step);
+    part.role = role;
+    played.say(Topic::state, part);
+    poll(kMs);
+  };
+  say_state(Role::io, 14);  // of a step in the gap: no use
+  say_state(Role::io, 3000);
+  say_state(Role::mechanics, 3000);
+  played.forget();
+  poll(200 * kMs);
+  EXPECT_TRUE(has_asked(Role::hydraulics, 3000));
+  say_state(Role::hydraulics, 3000);
+  say_state(Role::hydraulics, 3000);
+  say_state(Role::io, 3100);  // of somebody who saves the session
+  played.forget();
+  say_steps(3000, 3010);
+  EXPECT_FALSE(has_asked(Role::io, kJoinStep)) << "once";
+  say_end(3010);
+  ASSERT_TRUE(node->is_finished());
+  EXPECT_EQ(recorded(Topic::state), std::set<StepIndex>{3000});
+  EXPECT_EQ(summary("state.recorded"), "3");
+  EXPECT_EQ(summary("state.lost"), "0");
+  EXPECT_EQ(summary("tick.lost"), "3");
+  EXPECT_EQ(node->member().exit_code(), ExitCode::losses);
+  std::unique_ptr<recording::Reader> reader;
+  ASSERT_EQ(recording::Reader::open(node->recording(), reader).text, "");
+  std::vector<recording::TextMap> gaps;
+  for (const recording::MetadataRecord& record : reader->metadata()) {
+    if (record.name == recording::kGapName) gaps.push_back(record.entries);
+  }
+  ASSERT_EQ(gaps.size(), 1u);
+  EXPECT_EQ(gaps[0], (recording::TextMap{{"cause", "no node could send them again"},
+                                         {"epoch", "0"},
+                                         {"from_step", "13"},
+                                         {"to_step", "15"},
+                                         {"left_out.tick", "3"}}));
+}
+
+// A sample that is missing is no obstacle for who computes the session again.
+TEST_F(Recorder, BehindAGapInTheSamplesAsksForNoStates) {
+  join();
+  say_steps(0, 9);
+  for (StepIndex step = 10; step < 3000; ++step) {
+    played.say_tick(step);
+    if (step != 13) played.say_mechanism(step);
+    played.say_actuators(step);
+    if (step % 100 == 0) poll(100 * kMs);
+  }
+  poll(kMs);
+  for (const wire::ResendRequest& request : played.said<wire::ResendRequest>(Topic::resend)) {
+    EXPECT_NE(request.topic, static_cast<std::uint8_t>(Topic::state));
+  }
+  say_end(2999);
+  EXPECT_EQ(summary("mechanism.lost"), "1");
+}
+
 TEST_F(Recorder, NamesNoFileThatItCouldNotCreate) {
   played.session.step_ns = 0;
   played.say(Topic::session, played.session);
