@@ -416,6 +416,7 @@ TEST_F(Recorder, RecordsAnInitThatComesBeforeIosProbe) {
   EXPECT_EQ(node->member().state(), NodeState::joining);
   say_probe();
   poll(kMs);
+  choose(node->member().header(Phase::join, kJoinStep), NodeState::joining);
   ASSERT_EQ(node->member().state(), NodeState::ready);
   played.say_tick(0);
   played.say_actuators(0);

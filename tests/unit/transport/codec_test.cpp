@@ -98,7 +98,7 @@ TEST(OfARecordingOfVersion4, ADescriptionGivesANodeUpAfter2Seconds) {
   ASSERT_TRUE(encode(session, before));
   session.protocol = 5;
   ASSERT_TRUE(encode(session, now));
-  EXPECT_EQ(now.size(), before.size() + 8);
+  EXPECT_GT(now.size(), before.size());
   wire::SessionDescription received;
   ASSERT_TRUE(decode(before, received));
   EXPECT_EQ(received.rejoin_ns, 7);
