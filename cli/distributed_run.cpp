@@ -15,6 +15,7 @@
 #include "cli/interrupts.h"
 #include "cli/keyboard.h"
 #include "cli/observer.h"
+#include "cli/run_report.h"
 #include "cli/status_line.h"
 #include "cli_support/carrier.h"
 #include "core/failure.h"
@@ -52,6 +53,7 @@ class Supervisor {
         begin_(begin),
         status_(status_mode(options.is_quiet || options.is_json)),
         text_(scene),
+        kept_({report_variables(scene), scene.session.step_duration()}),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
         give_up_after_(duration_of_seconds(scene.session.give_up_after)),
@@ -72,6 +74,7 @@ class Supervisor {
     started_wall_ns_ = wall_clock_ns();
     if (is_ours(Role::io)) start(Role::io);
     observer_ = std::make_unique<Observer>(open_carrier(), options_.session.session);
+    observer_->keep_curves(kept_);
     if (!is_ours(Role::io)) start_others();
     while (!all_ended()) {
       wait_for_output();
@@ -108,12 +111,13 @@ class Supervisor {
 
   // values are needed for the status line, and for the summary of a run that is not recorded here
   [[nodiscard]] std::unique_ptr<transport::Transport> open_carrier() const {
-    const bool shows_values = !options_.is_quiet && !options_.is_json;
-    // what the samples report is in the recording when there is one: each reader costs the writers time
+    // a run that is part of a measurement has no summary
+    const bool needs_values = !options_.each_round;
+    // what the samples report is counted by the recorder when there is one: each reader costs the writers time
     if (!is_ours(Role::recorder)) {
       if (auto carrier = open_with_samples()) return carrier;
     }
-    if (shows_values || keyboard_ || !is_ours(Role::recorder)) {
+    if (needs_values || keyboard_ || !is_ours(Role::recorder)) {
       return cli_support::open_carrier(Role::observer, options_.session);
     }
     return cli_support::open_observer_without_values(options_.session);
@@ -544,6 +548,7 @@ class Supervisor {
   StepIndex begin_;  // step that the session goes on from
   StatusLine status_;
   StatusText text_;
+  Curves kept_;  // none yet
   std::uint32_t roles_;
   std::vector<scene::CpuPlace> cpus_;
   std::string name_;         // of the scene

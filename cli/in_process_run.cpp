@@ -8,6 +8,7 @@
 #include "cli/keyboard.h"
 #include "cli/monolithic_session.h"
 #include "cli/observer.h"
+#include "cli/run_report.h"
 #include "cli/status_line.h"
 #include "cli_support/carrier.h"
 #include "cli_support/subsystem_factory.h"
@@ -42,6 +43,7 @@ class InProcessRun {
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
     observer_ = std::make_unique<Observer>(cli_support::open_observer_with_samples(bus_), options.session.session);
+    observer_->keep_curves({report_variables(session.scene), session.scene.session.step_duration()});
     if (options.scene.input == "keyboard") keyboard_.emplace(session.scene);
   }
 

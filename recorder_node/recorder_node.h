@@ -22,8 +22,10 @@
 #include <vector>
 
 #include "node/checkpoint.h"
+#include "node/flag_counter.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
+#include "node/tick_counter.h"
 #include "recorder_node/stream_gaps.h"
 #include "recording/writer.h"
 
@@ -148,6 +150,7 @@ class RecorderNode final : public node::Node {
   Status create(const wire::SessionDescription& session);
   Status add_attachments(const wire::SessionDescription& session);
   void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
+  void count(const transport::Received& message);
   void start_epoch(const wire::Header& init);
   void begin_streams(StepIndex from);
   [[nodiscard]] StepStream make_stream(StepIndex begin) const;
@@ -195,6 +198,14 @@ class RecorderNode final : public node::Node {
   std::int64_t states_deadline_ns_ = 0;  // of the request for them
   StepIndex states_step_ = 0;            // of the states that are being recorded, or were last
   std::int64_t now_ns_ = 0;              // of the poll that goes on
+  // What is in the file, for who wants to know it without reading all of it.
+  std::optional<node::TickCounter> ticks_;
+  node::FlagCounter flags_;
+  std::uint64_t variables_digest_ = 0;
+  wire::Tick tick_;
+  wire::NodeStatus status_;
+  wire::MechanismMessage mechanism_;
+  wire::ActuatorMessage actuators_;
   bool has_told_of_waiting_ = false;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
