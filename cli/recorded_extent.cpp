@@ -97,7 +97,9 @@ void take(const RecordedMessage& message, StepIndex every, Epoch& epoch, const w
 
 std::optional<StepIndex> first_step(const Epoch& epoch) {
   // states that follow a gap are no begin
-  const auto is_before_states = [&epoch](const auto& stream) { return stream.second.oldest() < *epoch.states_at; };
+  const auto is_before_states = [&epoch](const auto& stream) {
+    return !is_of_flexible_bodies(stream.first) && stream.second.oldest() < *epoch.states_at;
+  };
   const bool has_begun_before =
       epoch.init_at || (epoch.states_at && std::any_of(epoch.streams.begin(), epoch.streams.end(), is_before_states));
   if (epoch.states_at && !has_begun_before) return epoch.states_at;

@@ -140,7 +140,8 @@ TEST_P(HungNode, ThatComesBackInTimeGoesOnWithTheSameBits) {
   expect_named(recorded, GetParam(), session.node(GetParam()));
 }
 
-// For longer than the 2 s that a session without the key waits.
+// For longer than the 2 s that a session without the key waits. The middleware misses it meanwhile: blocks of variables
+// that are sent before it is found again may be missing, which are not sent again.
 TEST_P(HungNode, ThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
   std::vector<std::string> patient = kRealPace;
   patient.insert(patient.end(), {"--set", "session.give_up_after=20"});
@@ -152,9 +153,15 @@ TEST_P(HungNode, ThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
   EXPECT_TRUE(is_waited_for(session, GetParam(), session.node(GetParam()))) << session.said();
   sleep_until_monotonic(stopped_ns + 3'000'000'000);
   session.node(GetParam()).send(SIGCONT);
-  expect_all_well(session);
+  const std::map<Role, int> codes = session.wait_all();
   const RecordedSession recorded = session.recorded();
-  expect_undisturbed_bits(GetParam(), recorded);
+  const std::string lost = recorded.summary.at("variables.lost");
+  for (const auto& [role, code] : codes) {
+    EXPECT_EQ(code, role == Role::recorder && lost != "0" ? 3 : 0) << node::to_text(role) << session.said();
+  }
+  EXPECT_EQ(recorded.problem, "");
+  EXPECT_EQ(recorded.losses(), std::stoll(lost)) << "no tick and no sample";
+  EXPECT_EQ(first_difference(recorded.chain(), undisturbed_with(GetParam())), "");
   expect_named(recorded, GetParam(), session.node(GetParam()));
 }
 
