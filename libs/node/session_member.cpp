@@ -247,9 +247,15 @@ void SessionMember::step_aside(ExitCode code, std::string reason) {
 }
 
 void SessionMember::yield() {
-  step_aside(ExitCode::node_lost, "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
-                                      "' was given to another process, because nothing had been heard of this one; "
-                                      "this one ends, and the session goes on without it");
+  const Status why = given_to_another();
+  step_aside(why.code, why.text);
+}
+
+Status SessionMember::given_to_another() const {
+  return Status::error(ExitCode::node_lost, "the role " + std::string(to_text(role_)) + " of session '" +
+                                                session_.name +
+                                                "' was given to another process, because nothing had been heard of "
+                                                "this one; this one ends, and the session goes on without it");
 }
 
 void SessionMember::withdraw() {
@@ -350,13 +356,16 @@ Status SessionMember::follow_choice(std::int64_t now_ns) {
     peer = Peer{};
     if (const auto rival = std::exchange(rivals_[index], std::nullopt)) static_cast<void>(take_status(*rival, now_ns));
   }
+  was_chosen_ = was_chosen_ || holds_role();
   const auto rival = rivals_[static_cast<std::size_t>(role_)];
   return rival && !holds_role() ? on_own_role(*rival) : Status::ok();
 }
 
 void SessionMember::tell_of_claim(const wire::NodeStatus& status) {
-  // a second process that was just started learns from io that the role is held
-  if (!is_ready_state(status.state) || std::exchange(has_told_of_claim_, true)) return;
+  // a second process that was just started learns from io that the role is held, and one that came later may have got
+  // it
+  const bool is_usual = !is_ready_state(status.state) || status.started_ns > identity_.started_ns;
+  if (is_usual || std::exchange(has_told_of_claim_, true)) return;
   warn("process " + std::to_string(status.pid) + " on " + machine_of(status.host) + ", started " +
        time_text(status.started_ns) + ", says that it has the role " + std::string(to_text(role_)) + " of session '" +
        session_.name + "'; this process keeps it and the other one is not heard; stop it, or look who sends that");
@@ -373,6 +382,8 @@ Status SessionMember::on_own_role(const wire::NodeStatus& status) {
     tell_of_claim(status);
   }
   if (!chosen || *chosen != status.header.incarnation) return Status::ok();
+  // io's word that this one was given up may come behind its new choice
+  if (was_chosen_) return given_to_another();
   return Status::error(ExitCode::bad_input,
                        "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
                            "' is held by process " + std::to_string(status.pid) + " on " + machine_of(status.host) +

@@ -223,6 +223,7 @@ class SessionMember {
   [[nodiscard]] Status follow_choice(std::int64_t now_ns);
   [[nodiscard]] Status on_own_role(const wire::NodeStatus& status);
   void tell_of_claim(const wire::NodeStatus& status);
+  [[nodiscard]] Status given_to_another() const;
   void compare_builds(const wire::NodeStatus& status);
   [[nodiscard]] bool must_read(wire::Role reader, wire::Topic topic) const noexcept;
   [[nodiscard]] bool has_heard_me(wire::Role reader, wire::Topic topic) const noexcept;
@@ -251,6 +252,7 @@ class SessionMember {
   Status send_failure_;
   std::int64_t next_probe_ns_ = 0;
   bool has_told_of_claim_ = false;
+  bool was_chosen_ = false;          // io has named this process once
   std::int64_t processes_ns_ = 0;    // when their processes were looked for last
   std::int64_t watched_ns_ = 0;      // when the peers were looked at last
   std::int64_t stood_still_ns_ = 0;  // from one look to the next, when the others had time to give this process up

@@ -162,7 +162,8 @@ TEST_P(HungNode, ThatComesBackWithinGiveUpAfterGoesOnWithTheSameBits) {
   EXPECT_EQ(recorded.problem, "");
   EXPECT_EQ(recorded.losses(), std::stoll(lost)) << "no tick and no sample";
   EXPECT_EQ(first_difference(recorded.chain(), undisturbed_with(GetParam())), "");
-  expect_named(recorded, GetParam(), session.node(GetParam()));
+  // a recorder that was missed gets the last status of each node alone
+  if (GetParam() != Role::recorder) expect_named(recorded, GetParam(), session.node(GetParam()));
 }
 
 // For 30 s (nightly) or somewhat longer than it is waited for. Meanwhile another session has got its name.

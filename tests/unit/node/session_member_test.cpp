@@ -191,6 +191,21 @@ TEST_F(Member, KeepsTheRoleThatIoHasChosenItForFromReadyOnWhateverASecondOneSays
       << warnings.front();
 }
 
+// One that was stopped, and wakes up when io has given its place away.
+TEST_F(Member, WhoseRoleWasGivenToAnotherProcessSaysSo) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  const std::uint32_t own = member.header(Phase::join, kJoinStep).incarnation;
+  ASSERT_TRUE(hear(io_chooses({{Role::mechanics, own}})).is_ok());
+  member.set_state(NodeState::running);
+  NodeStatus next = status_of(Role::mechanics, 5);
+  next.started_ns = INT64_MAX;
+  ASSERT_TRUE(hear(next).is_ok());
+  EXPECT_TRUE(member.take_warnings().empty());
+  const Status lost = hear(io_chooses({{Role::mechanics, own}, {Role::mechanics, 5}}));
+  EXPECT_EQ(lost.code, ExitCode::node_lost);
+  EXPECT_NE(lost.text.find("was given to another process"), std::string::npos) << lost.text;
+}
+
 TEST_F(Member, KeepsTheHolderOfAnotherRoleUntilItEnds) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   NodeStatus holder = status_of(Role::hydraulics, 6, NodeState::ready);
