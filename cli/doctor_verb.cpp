@@ -69,7 +69,9 @@ Finding check_pidfd() {
   const long fd = syscall(SYS_pidfd_open, getpid(), 0);
   if (fd < 0) {
     return {"process watch", Verdict::warning,
-            "no pidfd in this kernel; a lost node is noticed after 2 s instead of at once; use Linux 5.3 or newer"};
+            "no pidfd in this kernel; a lost node is noticed after session.give_up_after instead of at once; use Linux "
+            "5.3 or "
+            "newer"};
   }
   close(static_cast<int>(fd));
   return {"process watch", Verdict::good, "a lost node on this machine is noticed at once"};

@@ -2,18 +2,88 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/display.h"
 #include "core/failure.h"
 #include "node/identity.h"
-#include "session/flag_counter.h"
 #include "session/recorded.h"
 #include "transport/cdr/codec.h"
 #include "transport/wire.h"
 
 namespace slew::cli {
+namespace {
+
+using node::FlagCounter;
+
+struct Meaning {
+  const char* what;
+  const char* remedy;
+};
+
+// in the order of FlagCounter::kFlags
+constexpr std::array<Meaning, FlagCounter::kFlags.size()> kMeanings = {{
+    {"an iteration reached its limit and its residual was accepted", "choose a smaller step"},
+    {"the sub-step budget was used up and the error of the last one accepted",
+     "raise hydraulics.substep_budget or the tolerances"},
+    {"a quantity was held at a bound of its validity", "look at the pressures and the inputs"},
+    {"a sample was later than the copy of the partner's model is good for",
+     "look for load on the machine or the network, or choose session.mode: lockstep"},
+    {"the coupling created energy, so the run may be unstable",
+     "choose a smaller session.step, or level two for a port that has another"},
+    {"a volume cavitated", "look at the pressures near zero"},
+    {"a pressure was beyond what the oil's law is good for (1000 bar)",
+     "limit it: a relief valve on the line, a lower load or setting"},
+    {"a flexible body was bent by more than a tenth of its length",
+     "its theory is one of small deflections: take the numbers for estimates"},
+}};
+
+}  // namespace
+
+// volumes: names, in the order of the scene.
+std::vector<std::string> flag_sentences(const FlagCounter& flags, SimDuration step,
+                                        const std::vector<std::string>& volumes) {
+  std::vector<std::string> sentences;
+  for (const auto& [role, counts] : flags.by_role()) {
+    if (counts.late == 0 && counts.lost == 0) continue;
+    sentences.push_back(
+        fmt::format("{}: free-running, {} of {} without the partner's sample ({:.3g} %), {} in a row at "
+                    "most; {} never used",
+                    node::to_text(role), counts.late, counted(counts.steps, "step", "steps"),
+                    100.0 * static_cast<double>(counts.late) / static_cast<double>(counts.steps), counts.longest,
+                    counted(counts.lost, "sample", "samples")));
+  }
+  for (const auto& [role, counts] : flags.by_role()) {
+    for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+      const FlagCounter::Seen& entry = counts.seen[i];
+      if (entry.steps == 0) continue;
+      const bool is_named = entry.volume >= 0 && static_cast<std::size_t>(entry.volume) < volumes.size();
+      const std::string name = is_named ? volumes[static_cast<std::size_t>(entry.volume)] + ": " : "";
+      sentences.push_back(fmt::format("{}: {}{} in {}, first at {}; {}", node::to_text(role), name, kMeanings[i].what,
+                                      counted(entry.steps, "step", "steps"),
+                                      duration_text(static_cast<double>(entry.first) * step.seconds()),
+                                      kMeanings[i].remedy));
+    }
+  }
+  return sentences;
+}
+
+namespace {
+
+std::vector<std::string> volume_names(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) names.push_back(volume.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> explain_flags(const FlagCounter& flags, const scene::Scene& scene) {
+  return flag_sentences(flags, scene.session.step_duration(), volume_names(scene));
+}
 
 std::vector<std::string> explain_flags(const recording::Reader& reader) {
-  session::FlagCounter flags;
+  FlagCounter flags;
   recording::MessageFilter filter;
   for (const wire::Topic topic : {wire::Topic::mechanism, wire::Topic::actuators}) {
     filter.topics.emplace_back(node::to_text(topic));
@@ -31,15 +101,15 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   if (status.code == ExitCode::storage) throw Failure(status.code, status.text);
   const SimDuration step = reader.identity().communication_step;
   // the scene is read for the names in the sentences alone
-  if (flags.sentences(step, {}).empty()) return {};
+  if (flag_sentences(flags, step, {}).empty()) return {};
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
-  return flags.sentences(step, session::volume_names(scene));
+  return flag_sentences(flags, step, volume_names(scene));
 }
 
 std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene) {
   using wire::Role;
-  const session::FlagCounter& flags = outcome.view.flags();
-  std::vector<std::string> sentences = flags.sentences(scene.session.step_duration(), session::volume_names(scene));
+  const FlagCounter& flags = outcome.view.flags();
+  std::vector<std::string> sentences = explain_flags(flags, scene);
   const bool has_steps = outcome.view.has_session() && outcome.steps > 0 &&
                          (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;
   if (has_steps && !flags.has_samples()) {

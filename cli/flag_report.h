@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "node/flag_counter.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
 #include "session/run_outcome.h"
@@ -16,6 +17,10 @@ namespace slew::cli {
 // What happens in sound runs too, end stops and open relief valves, is left out. Of a free-running session also how
 // often its nodes went on without a sample. Throws Failure when the recording cannot be read.
 [[nodiscard]] std::vector<std::string> explain_flags(const recording::Reader& reader);
+// A sentence for each flag that was counted. volumes: names, in the order of the scene.
+[[nodiscard]] std::vector<std::string> flag_sentences(const node::FlagCounter& flags, SimDuration step,
+                                                      const std::vector<std::string>& volumes);
+[[nodiscard]] std::vector<std::string> explain_flags(const node::FlagCounter& flags, const scene::Scene& scene);
 // The same of the samples that were read while the session ran, and how many did not arrive.
 [[nodiscard]] std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const scene::Scene& scene);
 

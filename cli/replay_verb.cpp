@@ -32,6 +32,8 @@ struct Options {
 };
 
 Json to_json(const session::ReplayResult& result) {
+  Json gaps = Json::array();
+  for (const std::string& gap : result.gaps) gaps.push_back(gap);
   return {{"steps", result.steps},
           {"epochs", result.epochs},
           {"compared", result.compared},
@@ -41,6 +43,7 @@ Json to_json(const session::ReplayResult& result) {
           {"unreached_steps", result.unreached_steps},
           {"unreached_hashes", result.unreached_hashes},
           {"equal", result.is_equal() && result.is_whole()},
+          {"gaps", gaps},
           {"problem", result.problem}};
 }
 
@@ -71,6 +74,11 @@ StepIndex step_until(const recording::Reader& reader, const std::string& assets,
   return (step + unit - 1) / unit * unit;
 }
 
+void print_gaps(const session::ReplayResult& result) {
+  std::fflush(stdout);
+  for (const std::string& gap : result.gaps) std::fprintf(stderr, "slewring: %s\n", printable_lines(gap).c_str());
+}
+
 ExitCode run_until(const Options& options) {
   node::install_signal_handlers();
   const auto reader = session::open_recording(options.recording);
@@ -83,6 +91,7 @@ ExitCode run_until(const Options& options) {
     throw Failure(ExitCode::failed, result.problem + "; nothing was saved or started" +
                                         (result.different > 0 ? "; replay it with its own build" : ""));
   }
+  print_gaps(result);
   end.saved.build = node::build_id();
   if (!options.is_json) {
     fmt::print("{} computed again until t = {:.6g} s, {} compared, none different\n",
@@ -132,12 +141,13 @@ ExitCode run(const Options& options) {
     if (result.unrecorded > 0) {
       fmt::print("not in the recording and not compared: {}\n", counted(result.unrecorded, "sample", "samples"));
     }
-    if (!result.is_whole()) {
+    if (result.unreached_steps > 0 || result.unreached_hashes > 0) {
       fmt::print("in the recording and not reached: {}, {}, from {} on; nothing is known of them\n",
                  counted(result.unreached_steps, "step", "steps"), counted(result.unreached_hashes, "hash", "hashes"),
                  result.end);
     }
   }
+  print_gaps(result);
   // a gap is no build's fault
   const bool may_be_build = result.different > 0 && reader->identity().build != node::build_id();
   if (!result.is_equal()) {
@@ -149,7 +159,7 @@ ExitCode run(const Options& options) {
                               : "");
   }
   if (!options.is_verifying) return ExitCode::ok;
-  if (!result.is_equal()) return ExitCode::failed;
+  if (!result.is_equal() || !result.gaps.empty()) return ExitCode::failed;
   if (result.unrecorded > 0 || !result.is_whole()) return ExitCode::losses;
   if (!options.is_json) fmt::print("equal bit for bit\n");
   return ExitCode::ok;
@@ -161,9 +171,10 @@ void add_replay(options::Command& program) {
   options::Command verb = program.command("replay", "compute a recorded session again from its ticks");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   verb.option("recording", options->recording, "recording, or the folder of a run").required().value_name("REC");
-  verb.flag("--verify", options->is_verifying,
-            "stop at the first step whose state differs, or at a gap, with exit code 1; 3 when recorded steps were not "
-            "reached");
+  verb.flag(
+      "--verify", options->is_verifying,
+      "stop at the first step whose state differs, with exit code 1; 1 too when ticks are missing, behind which it "
+      "goes on where the recording has the states of a later step; 3 when recorded steps were not reached");
   verb.option("--assets", options->assets,
               "folder with the scene's files; without it the copies that lie beside the recording")
       .value_name("FOLDER");

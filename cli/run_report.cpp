@@ -21,7 +21,6 @@
 #include "plotting/svg_plot.h"
 #include "recording/run_directory.h"
 #include "scene/names.h"
-#include "session/flag_counter.h"
 #include "session/recorded.h"
 
 namespace slew::cli {
@@ -41,7 +40,7 @@ void report_nodes(const session::SessionView& view, RunReport& report) {
   report.slip = static_cast<double>(view.node(Role::io).health.slip_ns) * 1e-9;
 }
 
-void report_variables(const session::SessionView& view, const scene::Scene& scene, RunReport& report) {
+void report_ranges(const session::SessionView& view, const scene::Scene& scene, RunReport& report) {
   for (std::size_t i = 0; i < scene.ports.size(); ++i) {
     const scene::PortDef& port = scene.ports[i];
     const session::VariableView* eta = view.find(port.name + ".coupling_eta");
@@ -186,25 +185,29 @@ Json session_json(const RunReport& report) {
   return json;
 }
 
-// What the recording says beside numbers, and the scene's plots and files beside it.
-void explain(const recording::Reader& reader, const session::SessionView& recorded, const scene::Scene& scene,
-             const std::string& assets, const session::RunOutcome& outcome, RunReport& report) {
-  for (std::string& stalled : analysis::explain_stalls(reader, scene)) report.notes.push_back(std::move(stalled));
-  report_left_out(recorded, report);
-  const session::FlagCounter& flags = outcome.view.flags();
-  const bool are_counted = flags.has_samples() && flags.missed(outcome.begin) == 0;
-  for (std::string& flagged : are_counted ? explain_flags(outcome, scene) : explain_flags(reader)) {
+// What is told beside numbers, and the scene's plots and files beside the recording.
+void explain(const recording::Reader& reader, const session::SessionView& view,
+             const std::optional<session::ClosingCounts>& closing, const scene::Scene& scene, const std::string& assets,
+             const session::RunOutcome& outcome, RunReport& report) {
+  for (std::string& stalled : analysis::explain_stalls(*view.curves(), scene))
+    report.notes.push_back(std::move(stalled));
+  report_left_out(view, report);
+  const node::FlagCounter& flags = outcome.view.flags();
+  const bool are_seen = flags.has_samples() && flags.missed(outcome.begin) == 0;
+  for (std::string& flagged : are_seen  ? explain_flags(outcome, scene)
+                              : closing ? explain_flags(closing->flags, scene)
+                                        : explain_flags(reader)) {
     report.notes.push_back(std::move(flagged));
   }
   session::keep_assets(scene, assets, report.recording);
-  analysis::ScenePlots read = analysis::read_plots(scene, reader);
-  for (std::string& left_out : read.left_out) report.notes.push_back(std::move(left_out));
-  report.plots = analysis::write_plots(read.plots, reader);
+  analysis::ScenePlots drawn = analysis::draw_plots(scene, *view.curves(), reader);
+  for (std::string& left_out : drawn.left_out) report.notes.push_back(std::move(left_out));
+  report.plots = analysis::write_plots(drawn.plots, reader);
 }
 
 // Steps of the session that the recording has not got, and ticks that it should not have. A session that was in order
 // then ends with losses.
-void compare_steps(const session::TickSpan& span, const session::NodeView& io, RunReport& report) {
+void compare_steps(const TickSpan& span, const session::NodeView& io, RunReport& report) {
   const bool is_in_order =
       report.code == ExitCode::ok || report.code == ExitCode::interrupted || report.code == ExitCode::terminated;
   if (!is_in_order) return;
@@ -225,14 +228,24 @@ void compare_steps(const session::TickSpan& span, const session::NodeView& io, R
   if (report.code == ExitCode::ok) report.code = ExitCode::losses;
 }
 
+// What was seen of the session is what was recorded of it.
+bool has_seen_all(const session::SessionView& view, const std::optional<session::ClosingCounts>& closing) {
+  return closing && view.curves() != nullptr && view.curves()->is_sound() && view.has_whole_directory() &&
+         view.variables_digest() == closing->variables;
+}
+
 // The recording has every message; an observer may have missed some.
 void report_recorded(const scene::Scene& scene, const std::string& assets, const session::RunOutcome& outcome,
                      RunReport& report) {
   const auto reader = session::open_recording(report.recording);
-  const session::SessionView recorded = session::view_recording(*reader, session::Values::all);
-  report_variables(recorded, scene, report);
+  const std::optional<session::ClosingCounts> closing = session::closing_counts(*reader);
+  report.is_read_back = !has_seen_all(outcome.view, closing);
+  std::optional<session::SessionView> recorded;
+  if (report.is_read_back) recorded = session::view_recording(*reader, session::Values::all, report_variables(scene));
+  const session::SessionView& view = recorded ? *recorded : outcome.view;
+  report_ranges(view, scene, report);
   report.lost = losses(*reader);
-  const session::TickSpan span = session::tick_span(*reader);
+  const TickSpan span = closing ? closing->ticks : session::tick_span(*reader);
   // a recording that could not go on knows less than what was seen of the session
   const bool is_short = report.code == ExitCode::storage && span.steps < report.steps;
   if (!is_short) {
@@ -249,10 +262,16 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
         fmt::format("the recording ends after {}, and what is said of variables and losses is of it alone",
                     duration_text(static_cast<double>(span.steps) * report.step)));
   }
-  explain(*reader, recorded, scene, assets, outcome, report);
+  explain(*reader, view, closing, scene, assets, outcome, report);
 }
 
 }  // namespace
+
+std::vector<std::string> report_variables(const scene::Scene& scene) {
+  std::vector<std::string> patterns = analysis::plotted(scene);
+  for (std::string& name : analysis::stall_variables(scene)) patterns.push_back(std::move(name));
+  return patterns;
+}
 
 RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& scene, const std::string& assets) {
   RunReport report;
@@ -271,7 +290,7 @@ RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& sc
     report.books = io::problem_of_books(report.nodes.front().health, scene.session.step_duration());
   }
   if (outcome.recording.empty()) {
-    report_variables(outcome.view, scene, report);
+    report_ranges(outcome.view, scene, report);
     report_left_out(outcome.view, report);
     for (std::string& flagged : explain_flags(outcome, scene)) report.notes.push_back(std::move(flagged));
   } else {
@@ -381,7 +400,8 @@ std::string to_json_text(const RunReport& report) {
                {"notes", report.notes},
                {"messages", report.messages},
                {"plots", report.plots},
-               {"recording", report.recording}})
+               {"recording", report.recording},
+               {"read_back", report.is_read_back}})
       .dump(2);
 }
 

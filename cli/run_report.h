@@ -50,12 +50,17 @@ struct RunReport {
   std::vector<std::string> messages;  // why it did not end well
   std::string plots;                  // path of the picture
   std::string recording;              // path
+  bool is_read_back = false;          // the recording was read for this, and not its summary alone
 };
 
-// Collects the report, from the recording where there is one, and writes the scene's plots and copies of its files
-// beside it. assets: folder of the files.
+// Collects the report and writes the scene's plots and copies of its files beside the recording, where there is one.
+// What was seen of the session counts when the recorder has the same blocks of variables, and what the recorder counted
+// while it wrote; else the recording is read. assets: folder of the files.
 [[nodiscard]] RunReport make_report(const session::RunOutcome& outcome, const scene::Scene& scene,
                                     const std::string& assets);
+
+// Names and patterns of the variables whose curves the report needs.
+[[nodiscard]] std::vector<std::string> report_variables(const scene::Scene& scene);
 
 // For people; the path of the recording is the last line. Of a session that failed before its first step: why, and
 // nothing else.

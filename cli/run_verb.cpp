@@ -83,6 +83,7 @@ ExitCode run_session(session::RunOptions options, const io::SessionScene& sessio
                   "--join-timeout waits for other processes, and --in-process has none; nothing was "
                   "started; leave one out");
   }
+  options.kept = report_variables(scene);
   options.watcher = std::make_shared<TerminalWatcher>(options, scene);
   const session::RunOutcome outcome =
       options.is_in_process ? session::run_in_process(options, session) : session::run_distributed(options, session);

@@ -48,7 +48,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
     gate_.reserve(pieces);
     for (SignalCourse& raw : script_) raw.reserve(pieces);
   }
-  sent_.set_depth(node::sent_depth(node::kSentTime, config_.step));
+  sent_.set_depth(node::sent_depth(config_.give_up_after, config_.step));
   if (transport::encode(tick_, buffer_)) sent_.reserve(buffer_.size());
   description_.name = config_.session_name;
   description_.scene_name = config_.scene_name;
@@ -64,6 +64,7 @@ IoNode::IoNode(transport::Transport& transport, IoConfig config)
   description_.pid = member_.identity().pid;
   description_.started_ns = member_.identity().started_ns;
   description_.rejoin_ns = config_.rejoin.ns;
+  description_.give_up_ns = config_.give_up_after.ns;
   description_.header = member_.header(Phase::join, config_.beginning ? config_.beginning->step : kJoinStep);
   description_.header.session = node::random_session_id();
   static_cast<void>(member_.adopt(description_, 0));
@@ -605,11 +606,11 @@ void IoNode::begin_ending(ExitCode code, const std::string& reason, std::int64_t
     member_.fail(code, reason.empty() ? "ended before the first step" : reason);
   }
   stage_ = Stage::ending;
-  deadline_ns_ = now_ns == 0 ? 0 : now_ns + node::kLinger.ns;
+  deadline_ns_ = now_ns == 0 ? 0 : now_ns + member_.linger().ns;
 }
 
 bool IoNode::advance_ending(std::int64_t now_ns) {
-  if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns;
+  if (deadline_ns_ == 0) deadline_ns_ = now_ns + member_.linger().ns;
   if (member_.all_required(NodeState::ended) || now_ns > deadline_ns_) stage_ = Stage::finished;
   return false;
 }

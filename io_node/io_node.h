@@ -84,6 +84,7 @@ struct IoConfig {
   bool is_free_running = false;                      // nodes may be ahead of the ticks by the window
   SimDuration rejoin{};                              // a lost physics node's place is held so long; 0: the session ends
   SimDuration stall_timeout = milliseconds(10'000);  // longest wait for one message of a node that is heard otherwise
+  SimDuration give_up_after{wire::kGiveUpNs};        // silence after which a node is given up
   std::string save_obstacle{};                       // why the session's state cannot be saved; empty: it can
   StepIndex save_unit = 1;  // every how many steps it can, because all nodes have exchanged then
   std::optional<Beginning> beginning{};

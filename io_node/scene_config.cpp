@@ -72,6 +72,7 @@ IoConfig make_config(const scene::Scene& scene, const SessionWish& wish) {
   config.save_unit = scene.exchange_unit();
   config.rejoin = duration_of_seconds(scene.session.rejoin);
   config.stall_timeout = duration_of_seconds(scene.session.stall_timeout);
+  config.give_up_after = duration_of_seconds(scene.session.give_up_after);
   config.required_roles = required_roles(scene, wish.recording);
   config.steps = scene.session.duration > 0 ? scene.session.steps() : -1;
   for (const scene::InputDef& input : scene.inputs) {

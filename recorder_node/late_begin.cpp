@@ -14,14 +14,18 @@ using wire::Topic;
 // that hears a later message first is a second one: it records nothing and waits for the first one's status, which
 // names it.
 bool RecorderNode::has_come_in_time(const wire::Header& header, Topic topic, std::int64_t now_ns) {
-  if (header.phase == Phase::join) {
-    if (topic == Topic::tick) member_.set_state(NodeState::ready);
-    return true;
-  }
+  if (header.phase == Phase::join && topic == Topic::tick) has_heard_probe_ = true;
+  if (header.phase == Phase::join || has_heard_probe_) return true;
   if (topic != Topic::tick && header.step <= streams_.begin) return true;
   ++member_.refusals().early;
   if (late_deadline_ns_ == 0) late_deadline_ns_ = now_ns + node::kJoinTimeout.ns;
   return false;
+}
+
+// io's probe was heard, and io has chosen this recorder: nobody takes its role from it.
+void RecorderNode::become_ready() noexcept {
+  if (member_.state() != NodeState::joining || !has_heard_probe_ || !member_.holds_role()) return;
+  member_.set_state(NodeState::ready);
 }
 
 // What the others can say again from the first step on is no reason to begin later. Blocks of variables are not said
@@ -81,11 +85,21 @@ void RecorderNode::refuse_late() {
                                                 "session"));
 }
 
-// The states that an epoch begins with, so that it can be computed again from there. Those that io gives to others
-// later are no news.
+void RecorderNode::expect_states(StepIndex step) {
+  states_step_ = step;
+  wants_states_ = false;
+  counts_[static_cast<std::size_t>(Topic::state)].lost += missing_states_.size();
+  missing_states_.clear();
+  for (const Role role : {Role::io, Role::mechanics, Role::hydraulics, Role::flex}) {
+    if (member_.requires_role(role)) missing_states_[role];
+  }
+}
+
+// The states that an epoch begins with, or that follow a gap, so that it can be computed again from there. Those that
+// io gives to others later are not recorded.
 void RecorderNode::receive_state(const transport::Received& message, std::int64_t now_ns) {
   wire::Header header;
-  const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late;
+  const bool is_wanted = !missing_states_.empty() || begin_ == Begin::late || wants_states_;
   if (!is_wanted || writer_ == nullptr || !transport::decode_header(message.bytes, header)) return;
   if (header.role != Role::io || !member_.fits(header, Topic::state)) return;
   if (!transport::decode(message.bytes, part_)) {
@@ -94,7 +108,8 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
   }
   // io gives its own state with those of all others alone
   if (begin_ == Begin::late && part_.role == Role::io) begin_late(header.step, now_ns);
-  if (header.step != streams_.begin) return;
+  if (wants_states_ && part_.role == Role::io && header.step > gap_end_) expect_states(header.step);
+  if (header.step != states_step_) return;
   const auto missing = missing_states_.find(part_.role);
   if (missing == missing_states_.end() || missing->second.has(part_)) return;
   const bool is_whole = missing->second.take(part_);
@@ -107,7 +122,9 @@ void RecorderNode::receive_state(const transport::Received& message, std::int64_
 void RecorderNode::ask_for_states(std::int64_t now_ns) {
   const bool knows_io = member_.peer(Role::io).is_known && member_.state() != NodeState::joining;
   const bool is_late = begin_ == Begin::late;
-  if ((missing_states_.empty() && !is_late) || !knows_io || !states_resend_.is_due(now_ns)) return;
+  // a session that cannot be saved gives none
+  if (now_ns > states_deadline_ns_) wants_states_ = false;
+  if ((missing_states_.empty() && !is_late && !wants_states_) || !knows_io || !states_resend_.is_due(now_ns)) return;
   states_resend_.asked(now_ns);
   const auto ask = [&](Role role, StepIndex step) {
     wire::ResendRequest request;
@@ -118,8 +135,8 @@ void RecorderNode::ask_for_states(std::int64_t now_ns) {
     member_.publish(Topic::resend, request);
     ++health().resends_asked;
   };
-  if (is_late) return ask(Role::io, kJoinStep);
-  for (const auto& [role, parts] : missing_states_) ask(role, streams_.begin);
+  if (is_late || wants_states_) return ask(Role::io, kJoinStep);
+  for (const auto& [role, parts] : missing_states_) ask(role, states_step_);
 }
 
 }  // namespace slew::recorder

@@ -32,6 +32,7 @@ RecorderNode::~RecorderNode() {
 }
 
 bool RecorderNode::poll(std::int64_t now_ns) {
+  now_ns_ = now_ns;
   bool any = false;
   transport::Received message;
   while (stage_ != Stage::finished && member_.transport().take(message)) {
@@ -48,6 +49,8 @@ bool RecorderNode::poll(std::int64_t now_ns) {
       stage_ = Stage::finished;
     }
   } else if (stage_ != Stage::finished) {
+    become_ready();
+    give_up_unanswerable();
     ask_for_gaps(now_ns);
     ask_for_states(now_ns);
     watch(now_ns);
@@ -261,17 +264,17 @@ void RecorderNode::record_step(const transport::Received& message, const wire::H
 }
 
 StepStream RecorderNode::make_stream(StepIndex begin) const {
-  return {StreamGaps(stream_depth({member_.session().step_ns}), begin), {}};
+  return {StreamGaps(stream_depth(member_.give_up_after(), {member_.session().step_ns}), begin), {}};
 }
 
 // what must be complete: the ticks and the samples of every role that takes part, and the states they begin with.
 // from: step of these states; -1: the epoch begins with INIT
 void RecorderNode::begin_streams(StepIndex from) {
   streams_.begin = std::max<StepIndex>(0, from);
+  wants_states_ = false;
   missing_states_.clear();
-  for (const Role role : wire::kStateRoles) {
-    if (from >= 0 && member_.requires_role(role)) missing_states_[role];
-  }
+  states_step_ = streams_.begin;
+  if (from >= 0) expect_states(from);
   for (const Role role : wire::kStateRoles) {
     if (!member_.requires_role(role) || transport::traits(role).is_follower) continue;
     streams_.steps.try_emplace({transport::traits(role).sample, role}, make_stream(streams_.begin));
@@ -314,6 +317,7 @@ void RecorderNode::keep_for_next_epoch(const transport::Received& message) {
 }
 
 void RecorderNode::start_epoch(const wire::Header& init) {
+  if (writer_ != nullptr && stopped_.is_ok()) end_lost_steps();
   count_losses(former_, false);
   former_ = std::exchange(streams_, {});
   begin_streams(init.step);
@@ -382,6 +386,30 @@ void RecorderNode::report_progress(std::int64_t now_ns) {
   }
 }
 
+// Steps that are further behind than every writer keeps them. They are one gap until all streams go on behind it.
+void RecorderNode::give_up_unanswerable() {
+  if (writer_ == nullptr || !stopped_.is_ok() || streams_.steps.empty()) return;
+  const std::size_t depth = node::sent_depth(member_.give_up_after(), {member_.session().step_ns});
+  // one odd number in one stream is no step of the session
+  StepIndex newest = wire::kMaxStep;
+  for (const auto& [key, stream] : streams_.steps) newest = std::min(newest, stream.gaps.newest());
+  for (auto& [key, stream] : streams_.steps) {
+    stream.gaps.give_up_before(newest - static_cast<StepIndex>(depth) + 1);
+    const StreamGaps::Lost lost = stream.gaps.take_lost();
+    if (lost.steps == 0) continue;
+    if (!lost_) lost_ = Gap{member_.epoch(), lost.first, lost.last, {}};
+    lost_->from = std::min(lost_->from, lost.first);
+    lost_->to = std::max(lost_->to, lost.last);
+    lost_->messages[static_cast<std::size_t>(key.first)] += lost.steps;
+  }
+  if (!lost_) return;
+  const bool is_over = std::all_of(streams_.steps.begin(), streams_.steps.end(), [this](const auto& entry) {
+    const StreamGaps& gaps = entry.second.gaps;
+    return !gaps.has_gap() || gaps.next() > lost_->to + 1;
+  });
+  if (is_over) end_lost_steps();
+}
+
 void RecorderNode::ask_for_gaps(std::int64_t now_ns) {
   for (auto& [key, stream] : streams_.steps) {
     const StreamGaps& gaps = stream.gaps;
@@ -418,7 +446,7 @@ void RecorderNode::watch(std::int64_t now_ns) {
     return;
   }
   // a moment longer, so that the others' last messages are recorded
-  if (deadline_ns_ == 0) deadline_ns_ = now_ns + node::kLinger.ns / 2;
+  if (deadline_ns_ == 0) deadline_ns_ = now_ns + member_.linger().ns / 2;
   if (!has_everything() && now_ns < deadline_ns_) return;
   if (lost_node_) {
     return begin_ending(ExitCode::node_lost,

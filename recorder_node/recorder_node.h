@@ -6,7 +6,9 @@
 //
 // While the disk is slower than the session, up to 64 MiB wait for it. In `free` pace the session then waits too. In
 // `real` pace variables and health are left out from half of that on, and what is step by step when all of it is used;
-// each such gap is marked in the file (Metadata "slewring.gap"), and the messages are counted as lost.
+// each such gap is marked in the file (Metadata "slewring.gap"), and the messages are counted as lost. So are ticks and
+// samples that no node can send again. Behind a gap in the ticks the recorder requests the states of all nodes, as one
+// that comes late does: the recording replays from them on.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +22,10 @@
 #include <vector>
 
 #include "node/checkpoint.h"
+#include "node/flag_counter.h"
 #include "node/node.h"
 #include "node/resend_clock.h"
+#include "node/tick_counter.h"
 #include "recorder_node/stream_gaps.h"
 #include "recording/writer.h"
 
@@ -65,10 +69,10 @@ struct StepStream {
   node::ResendClock resend;
 };
 
-// Steps ahead of a gap that are remembered: more than everybody can say again.
-[[nodiscard]] constexpr std::size_t stream_depth(SimDuration step) noexcept {
+// Steps ahead of a gap that are remembered: more than any node can send again.
+[[nodiscard]] constexpr std::size_t stream_depth(SimDuration give_up_after, SimDuration step) noexcept {
   constexpr std::size_t kLeast = 4096;
-  return std::max(kLeast, 2 * node::sent_depth(node::kSentTime, step));
+  return std::max(kLeast, 2 * node::sent_depth(give_up_after, step));
 }
 // messages of an epoch that has not begun yet: INIT, sample 0 and a few variable blocks of every node
 inline constexpr std::size_t kMaxEarly = 256;
@@ -122,6 +126,7 @@ class RecorderNode final : public node::Node {
   void withdraw();
   void refuse_late();
   void receive_stepped(const transport::Received& message, std::int64_t now_ns);
+  void become_ready() noexcept;
   [[nodiscard]] bool has_come_in_time(const wire::Header& header, wire::Topic topic, std::int64_t now_ns);
   void record_step(const transport::Received& message, const wire::Header& header, EpochStreams& streams,
                    std::int64_t now_ns);
@@ -135,6 +140,7 @@ class RecorderNode final : public node::Node {
   void file_what_came_before(std::int64_t now_ns);
   void file(const transport::Received& message);
   void receive_state(const transport::Received& message, std::int64_t now_ns);
+  void expect_states(StepIndex step);
   void ask_for_states(std::int64_t now_ns);
   void record_variables(const transport::Received& message, const wire::Header& header, EpochStreams& streams);
   void record_block(const transport::Received& message, const wire::Header& header, const BlockSource& source,
@@ -144,6 +150,7 @@ class RecorderNode final : public node::Node {
   Status create(const wire::SessionDescription& session);
   Status add_attachments(const wire::SessionDescription& session);
   void write(const transport::Received& message, std::uint32_t epoch, StepIndex step, std::uint32_t sequence);
+  void count(const transport::Received& message);
   void start_epoch(const wire::Header& init);
   void begin_streams(StepIndex from);
   [[nodiscard]] StepStream make_stream(StepIndex begin) const;
@@ -161,6 +168,8 @@ class RecorderNode final : public node::Node {
   void count_all_losses();
   [[nodiscard]] bool is_left_out(wire::Topic topic, StepIndex step, std::uint32_t epoch);
   void end_gap();
+  void give_up_unanswerable();
+  void end_lost_steps();
   void stop_recording(const Status& why);
   void stop_when_room_is_short(std::int64_t now_ns);
   [[nodiscard]] Status problem_of_room(const std::filesystem::path& place) const;
@@ -175,18 +184,33 @@ class RecorderNode final : public node::Node {
   std::unique_ptr<recording::Writer> writer_;
   Status stopped_;  // why nothing is written any more, while the session goes on; ok: it is being recorded
   std::int64_t room_checked_ns_ = 0;
-  // messages left out while the disk is slower than the session
   struct Gap {
     std::uint32_t epoch = 0;
     StepIndex from = 0, to = 0;
     std::array<std::uint64_t, wire::kTopics> messages{};
   };
-  std::optional<Gap> gap_;
+  void mark(const Gap& gap, const char* cause);
+  std::optional<Gap> gap_;   // messages left out while the disk is slower than the session
+  std::optional<Gap> lost_;  // ticks and samples that no node has any more
+  // Behind a gap in the ticks the session's states are recorded, so that it can be computed again from there.
+  bool wants_states_ = false;
+  StepIndex gap_end_ = kJoinStep;        // last step of that gap
+  std::int64_t states_deadline_ns_ = 0;  // of the request for them
+  StepIndex states_step_ = 0;            // of the states that are being recorded, or were last
+  std::int64_t now_ns_ = 0;              // of the poll that goes on
+  // What is in the file, for who wants to know it without reading all of it.
+  std::optional<node::TickCounter> ticks_;
+  node::FlagCounter flags_;
+  std::uint64_t variables_digest_ = 0;
+  wire::Tick tick_;
+  wire::NodeStatus status_;
+  wire::MechanismMessage mechanism_;
+  wire::ActuatorMessage actuators_;
   bool has_told_of_waiting_ = false;
   std::array<recording::ChannelId, wire::kTopics> channels_{};
   std::array<TopicCounts, wire::kTopics> counts_{};
   EpochStreams streams_;
-  // of an epoch that begins with states: those that have not come whole
+  // of the states that an epoch begins with, or goes on from behind a gap: those that have not come whole
   std::map<wire::Role, node::CheckpointParts> missing_states_;
   node::ResendClock states_resend_;
   wire::StatePart part_;
@@ -198,6 +222,7 @@ class RecorderNode final : public node::Node {
   std::int64_t reported_ns_ = 0;
   std::int64_t deadline_ns_ = 0;
   Begin begin_ = Begin::known;
+  bool has_heard_probe_ = false;         // of io, which comes before the first tick
   std::int64_t late_deadline_ns_ = 0;    // of one that came after the session's begin; 0: it did not
   std::optional<wire::Role> lost_node_;  // who is gone, while the others are still saying so
   struct Early {

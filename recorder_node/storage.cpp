@@ -4,6 +4,7 @@
 #include <optional>
 #include <tuple>
 
+#include "node/message_digest.h"
 #include "recorder_node/idl_text.h"
 #include "recorder_node/recorder_node.h"
 #include "recording/run_directory.h"
@@ -77,6 +78,7 @@ Status RecorderNode::create(const wire::SessionDescription& session) {
     return status;
   }
   path_ = path;
+  ticks_.emplace(identity.communication_step);
   status = add_attachments(session);
   for (std::size_t i = 0; status.is_ok() && i < wire::kTopics; ++i) {
     const recording::ChannelDef channel{
@@ -111,12 +113,36 @@ void RecorderNode::write(const transport::Received& message, std::uint32_t epoch
   const Status status = writer_->write(channels_[topic], {epoch, step, sequence, message.source_ns}, message.bytes);
   if (status.is_ok()) {
     ++counts_[topic].recorded;
+    count(message);
   } else if (status.code == ExitCode::failed) {
     // a message that no recording can hold; the session is not at fault
     ++counts_[topic].lost;
   } else {
     ++counts_[topic].lost;
     stop_recording(status);
+  }
+}
+
+void RecorderNode::count(const transport::Received& message) {
+  switch (message.topic) {
+    case Topic::tick:
+      if (!transport::decode(message.bytes, tick_)) return;
+      ticks_->take(tick_.header, tick_.flags);
+      return ticks_->take_time(message.source_ns);
+    case Topic::node_status:
+      if (transport::decode(message.bytes, status_)) ticks_->take_status(status_, message.source_ns);
+      return;
+    case Topic::mechanism:
+      if (transport::decode(message.bytes, mechanism_)) flags_.take(mechanism_.header, mechanism_.state);
+      return;
+    case Topic::actuators:
+      if (transport::decode(message.bytes, actuators_)) flags_.take(actuators_.header, actuators_.state);
+      return;
+    case Topic::variables:
+      variables_digest_ += node::digest_of(message.bytes);
+      return;
+    default:
+      return;
   }
 }
 
@@ -156,19 +182,31 @@ bool RecorderNode::is_left_out(Topic topic, StepIndex step, std::uint32_t epoch)
 }
 
 void RecorderNode::end_gap() {
-  if (!gap_) return;
+  if (const auto gap = std::exchange(gap_, std::nullopt)) mark(*gap, "the disk was slower than the session");
+}
+
+void RecorderNode::end_lost_steps() {
+  if (const auto lost = std::exchange(lost_, std::nullopt)) mark(*lost, "no node could send them again");
+}
+
+// A session whose ticks have a gap is computed again from the next states on.
+void RecorderNode::mark(const Gap& gap, const char* cause) {
   recording::TextMap entries;
-  entries["cause"] = "the disk was slower than the session";
-  entries["epoch"] = std::to_string(gap_->epoch);
-  entries["from_step"] = std::to_string(gap_->from);
-  entries["to_step"] = std::to_string(gap_->to);
+  entries["cause"] = cause;
+  entries["epoch"] = std::to_string(gap.epoch);
+  entries["from_step"] = std::to_string(gap.from);
+  entries["to_step"] = std::to_string(gap.to);
   for (std::size_t i = 0; i < wire::kTopics; ++i) {
-    if (gap_->messages[i] > 0)
-      entries["left_out." + std::string(to_text(static_cast<Topic>(i)))] = std::to_string(gap_->messages[i]);
+    if (gap.messages[i] > 0)
+      entries["left_out." + std::string(to_text(static_cast<Topic>(i)))] = std::to_string(gap.messages[i]);
   }
-  gap_.reset();
   // a failure is told by the next write
   std::ignore = writer_->add_metadata(recording::kGapName, entries);
+  const bool lacks_ticks = gap.messages[static_cast<std::size_t>(Topic::tick)] > 0;
+  if (!lacks_ticks || gap.epoch != member_.epoch() || gap.to < states_step_) return;
+  wants_states_ = true;
+  gap_end_ = gap.to;
+  states_deadline_ns_ = now_ns_ + node::kJoinTimeout.ns;
 }
 
 // The session goes on without its recording; what comes from now on is counted as lost.
@@ -213,6 +251,7 @@ void RecorderNode::close(const SessionEnd& session) {
 void RecorderNode::close_file(SessionEnd session) {
   const node::DiskWait disk(health());
   end_gap();
+  end_lost_steps();
   // what fails only now is told in the summary too
   const Status flushed = writer_->flush();
   if (stopped_.is_ok()) stopped_ = flushed;
@@ -230,6 +269,14 @@ void RecorderNode::close_file(SessionEnd session) {
     summary[name + ".recorded"] = std::to_string(in_file);
     summary[name + ".lost"] = std::to_string(counts_[i].lost + counts_[i].recorded - in_file);
     summary[name + ".duplicates"] = std::to_string(counts_[i].duplicates);
+  }
+  const bool is_counted = !first_lost && stopped_.is_ok() && ticks_ && ticks_->is_in_order() && flags_.is_in_order();
+  if (is_counted) {
+    char digest[24];
+    std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(variables_digest_));
+    summary[recording::kTicksKey] = text_of(ticks_->span());
+    summary[recording::kFlagsKey] = flags_.text();
+    summary[recording::kVariablesKey] = digest;
   }
   const Status status = writer_->close(summary);
   if (!status.is_ok() && stopped_.is_ok()) stopped_ = status;

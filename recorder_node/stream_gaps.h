@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/time.h"
@@ -33,10 +34,7 @@ class StreamGaps {
     if (ahead_[slot(step)]) return Arrival::duplicate;
     ahead_[slot(step)] = true;
     if (step > newest_) newest_ = step;
-    while (ahead_[slot(next_)]) {
-      ahead_[slot(next_)] = false;
-      ++next_;
-    }
+    advance();
     return Arrival::new_step;
   }
 
@@ -54,18 +52,39 @@ class StreamGaps {
 
   // Counts every step up to and including `last` that has not come as lost.
   void close_at(StepIndex last) { give_up_below(last + 1); }
+  // Counts every step before `end` that has not come as lost.
+  void give_up_before(StepIndex end) { give_up_below(end); }
+  // Steps that were counted as lost since this was called last.
+  struct Lost {
+    StepIndex first = 0, last = 0;
+    std::uint64_t steps = 0;
+  };
+  [[nodiscard]] Lost take_lost() noexcept { return std::exchange(newly_lost_, {}); }
 
  private:
+  void advance() noexcept {
+    while (ahead_[slot(next_)]) {
+      ahead_[slot(next_)] = false;
+      ++next_;
+    }
+  }
   void give_up_below(StepIndex end) {
     // no more than a depth is remembered; what lies behind it was never there
     const StepIndex remembered = std::min(end, next_ + static_cast<StepIndex>(ahead_.size()));
     for (; next_ < remembered; ++next_) {
-      if (!ahead_[slot(next_)]) ++lost_;
+      if (!ahead_[slot(next_)]) lose(next_, next_);
       ahead_[slot(next_)] = false;
     }
-    if (next_ >= end) return;
-    lost_ += static_cast<std::uint64_t>(end - next_);
-    next_ = end;
+    if (next_ < end) lose(next_, end - 1);
+    next_ = std::max(next_, end);
+    advance();
+  }
+  void lose(StepIndex first, StepIndex last) noexcept {
+    const auto steps = static_cast<std::uint64_t>(last - first + 1);
+    if (newly_lost_.steps == 0) newly_lost_.first = first;
+    newly_lost_.last = last;
+    newly_lost_.steps += steps;
+    lost_ += steps;
   }
   [[nodiscard]] std::size_t slot(StepIndex step) const noexcept {
     return static_cast<std::size_t>(step) % ahead_.size();
@@ -76,6 +95,7 @@ class StreamGaps {
   StepIndex newest_;
   StepIndex doubted_ = -1;  // last step that was not believed
   std::uint64_t lost_ = 0;
+  Lost newly_lost_;
 };
 
 }  // namespace slew::recorder

@@ -13,9 +13,21 @@
 
 namespace slew::analysis {
 
+std::vector<std::string> plotted(const scene::Scene& scene) {
+  std::vector<std::string> patterns;
+  for (const scene::PlotDef& plot : scene.plots) {
+    patterns.insert(patterns.end(), plot.variables.begin(), plot.variables.end());
+  }
+  return patterns;
+}
+
 ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader) {
+  return draw_plots(scene, *session::view_recording(reader, session::Values::all, plotted(scene)).curves(), reader);
+}
+
+ScenePlots draw_plots(const scene::Scene& scene, const Curves& curves, const recording::Reader& reader) {
   ScenePlots read;
-  const std::vector<std::string> names = session::recorded_names(reader);
+  const std::vector<std::string> names = curves.names();
   for (const scene::PlotDef& plot : scene.plots) {
     std::vector<std::string> wanted = plot.variables;
     const std::vector<std::string> missing = scene::unmatched(wanted, names);
@@ -26,8 +38,7 @@ ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader
       });
     }
     if (wanted.empty()) continue;
-    read.plots.push_back(
-        {plot.title.empty() ? plot.name : plot.title, session::read_series(reader, wanted, session::Units::display)});
+    read.plots.push_back({plot.title.empty() ? plot.name : plot.title, curves.select(wanted, Units::display)});
     plotting::part_at_gaps(read.plots.back().series);
   }
   return read;

@@ -7,6 +7,7 @@
 #include "plotting/svg_plot.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
+#include "session/curves.h"
 
 namespace slew::analysis {
 
@@ -16,6 +17,10 @@ struct ScenePlots {
   std::vector<std::string> left_out;  // a sentence for each plot that lacks something
 };
 [[nodiscard]] ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader);
+// The same from curves that keep what the plots need; of the reader nothing but its scene is read.
+[[nodiscard]] ScenePlots draw_plots(const scene::Scene& scene, const Curves& curves, const recording::Reader& reader);
+// Names and patterns of all that the scene plots.
+[[nodiscard]] std::vector<std::string> plotted(const scene::Scene& scene);
 // What stands above pictures of a recording.
 [[nodiscard]] plotting::PlotOptions plot_heading(const recording::Reader& reader);
 

@@ -11,7 +11,6 @@
 #include "core/failure.h"
 #include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/l90ls_valve.h"
-#include "session/recorded.h"
 
 namespace slew::analysis {
 namespace {
@@ -66,13 +65,15 @@ std::vector<Drive> drives_of(const scene::Scene& scene) {
   return drives;
 }
 
-// The longest stall of a drive.
-std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& drive) {
+std::vector<std::string> variables_of(const Drive& drive) {
   const std::string& name = drive.cylinder->name;
-  const std::vector<std::string> wanted = {drive.valve->name + ".control_signal", name + ".speed", name + ".stroke",
-                                           name + ".static_force",
-                                           name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
-  std::vector<plotting::Series> curves = session::read_series(reader, wanted, session::Units::si);
+  return {drive.valve->name + ".control_signal", name + ".speed", name + ".stroke", name + ".static_force",
+          name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
+}
+
+// The longest stall of a drive.
+std::optional<Stall> find_stall(const Curves& all, const Drive& drive) {
+  std::vector<plotting::Series> curves = all.select(variables_of(drive), Units::si);
   plotting::keep_common_instants(curves);  // of nodes that did not end together
   const std::size_t size = curves[0].values.size();
   const double sign = drive.direction;
@@ -106,28 +107,25 @@ struct HeldLoad {
 };
 
 // Value of a variable at a time.
-double value_at(const recording::Reader& reader, const std::string& name, double time) {
+double value_at(const Curves& curves, const std::string& name, double time) {
   const std::string wanted[] = {name};
-  const plotting::Series curve = session::read_series(reader, wanted, session::Units::si).front();
+  const plotting::Series curve = curves.select(wanted, Units::si).front();
   const auto at = std::lower_bound(curve.time.begin(), curve.time.end(), time);
   if (at == curve.time.end()) return curve.values.back();
   return curve.values[static_cast<std::size_t>(at - curve.time.begin())];
 }
 
 // The mechanics states the mass of its last moving body, and every port's static force per kilogram of it.
-std::optional<HeldLoad> find_load(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
-                                  double time) {
-  const session::SessionView view = session::view_recording(reader, session::Values::none);
+std::optional<HeldLoad> find_load(const Curves& curves, const scene::Scene& scene, const Drive& drive, double time) {
   for (const multibody::BodyDef& body : scene.mechanics.bodies) {
-    if (view.find(body.name + ".mass") == nullptr) continue;
-    return HeldLoad{body.name, value_at(reader, body.name + ".mass", time),
-                    drive.direction * value_at(reader, drive.cylinder->name + ".static_force_per_kg", time)};
+    if (!curves.has(body.name + ".mass")) continue;
+    return HeldLoad{body.name, value_at(curves, body.name + ".mass", time),
+                    drive.direction * value_at(curves, drive.cylinder->name + ".static_force_per_kg", time)};
   }
   return std::nullopt;
 }
 
-std::string sentence(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
-                     const Stall& stall) {
+std::string sentence(const Curves& curves, const scene::Scene& scene, const Drive& drive, const Stall& stall) {
   const DoubleActingCylinderDef& cylinder = *drive.cylinder;
   const double tank = [&] {
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {
@@ -149,7 +147,7 @@ std::string sentence(const recording::Reader& reader, const scene::Scene& scene,
   const double available =
       (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * cylinder.common.cylinder_coefficient -
       cylinder.common.seal_friction;
-  const std::optional<HeldLoad> load = find_load(reader, scene, drive, stall.to);
+  const std::optional<HeldLoad> load = find_load(curves, scene, drive, stall.to);
   if (!load || !(load->slope > 0)) return text;
   const double mass = load->mass - (stall.static_force - available) / load->slope;
   if (!(mass > 0)) return text + fmt::format("; not even {} without load could be moved there", load->body);
@@ -159,12 +157,24 @@ std::string sentence(const recording::Reader& reader, const scene::Scene& scene,
 
 }  // namespace
 
-std::vector<std::string> explain_stalls(const recording::Reader& reader, const scene::Scene& scene) {
+std::vector<std::string> stall_variables(const scene::Scene& scene) {
+  std::vector<std::string> names;
+  for (const Drive& drive : drives_of(scene)) {
+    for (std::string& name : variables_of(drive)) names.push_back(std::move(name));
+    names.push_back(drive.cylinder->name + ".static_force_per_kg");
+  }
+  for (const multibody::BodyDef& body : scene.mechanics.bodies) {
+    if (!names.empty()) names.push_back(body.name + ".mass");
+  }
+  return names;
+}
+
+std::vector<std::string> explain_stalls(const Curves& curves, const scene::Scene& scene) {
   std::vector<std::string> sentences;
   for (const Drive& drive : drives_of(scene)) {
     try {
-      const std::optional<Stall> stall = find_stall(reader, drive);
-      if (stall) sentences.push_back(sentence(reader, scene, drive, *stall));
+      const std::optional<Stall> stall = find_stall(curves, drive);
+      if (stall) sentences.push_back(sentence(curves, scene, drive, *stall));
     } catch (const Failure&) {
       // the scene does not record what this looks at
     }

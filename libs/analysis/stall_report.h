@@ -13,12 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "recording/reader.h"
 #include "scene/scene.h"
+#include "session/curves.h"
 
 namespace slew::analysis {
 
-// One sentence for each cylinder that stalled. Empty also when the recording lacks the variables it needs.
-[[nodiscard]] std::vector<std::string> explain_stalls(const recording::Reader& reader, const scene::Scene& scene);
+// One sentence for each cylinder that stalled. Empty also when the curves lack the variables it needs.
+[[nodiscard]] std::vector<std::string> explain_stalls(const Curves& curves, const scene::Scene& scene);
+// The variables that this looks at.
+[[nodiscard]] std::vector<std::string> stall_variables(const scene::Scene& scene);
 
 }  // namespace slew::analysis

@@ -73,7 +73,7 @@ class HealthThread {
                               : "the loop of this node goes on; it had stood still for " + seconds_text(before);
     text += " at step " + std::to_string(node_.health().step.load());
     if (stands) {
-      text += "; it is silent from now on, and given up after " + seconds_text(kLostAfter) +
+      text += "; it is silent from now on, and given up after " + node_.member().give_up_text() +
               "; look for a deadlock, a computation without an end, or a debugger";
     }
     say_warning(text);

@@ -602,7 +602,7 @@ std::string PhysicsNode::divergence_text(const StepReport& report) const {
 }
 
 bool PhysicsNode::advance_leaving(std::int64_t now_ns) {
-  if (leave_deadline_ns_ == 0) leave_deadline_ns_ = now_ns + kLinger.ns;
+  if (leave_deadline_ns_ == 0) leave_deadline_ns_ = now_ns + member_.linger().ns;
   // stays to answer resends until everybody is through
   if (member_.all_required(NodeState::ended) || now_ns > leave_deadline_ns_) stage_ = Stage::finished;
   return false;
@@ -646,7 +646,7 @@ void PhysicsNode::leave(ExitCode code, const std::string& reason, std::int64_t n
   } else {
     member_.fail(code, reason);
   }
-  leave_deadline_ns_ = now_ns == 0 ? 0 : now_ns + kLinger.ns;
+  leave_deadline_ns_ = now_ns == 0 ? 0 : now_ns + member_.linger().ns;
   stage_ = member_.has_session() ? Stage::leaving : Stage::finished;
 }
 

@@ -90,11 +90,11 @@ void PhysicsNode::look_for_stall(std::int64_t now_ns) {
     if (stall_.may_warn()) member_.warn(text);
     if (stage_ == Stage::stepping) member_.hold(text);
   }
-  const SimDuration most{duration_of_seconds(built_.session.stall_timeout).ns + kLostAfter.ns};
+  const SimDuration most{duration_of_seconds(built_.session.stall_timeout).ns + member_.give_up_after().ns};
   if (!stall_.is_named() || stall_.waited() < most) return;
   leave(ExitCode::node_lost,
         stall_.text(member_, asked) + ", nothing came within " + seconds_text(most) +
-            " (session.stall_timeout and 2 s for io); this node stopped after step " + std::to_string(n_),
+            " (session.stall_timeout and session.give_up_after); this node stopped after step " + std::to_string(n_),
         now_ns);
 }
 

@@ -52,7 +52,8 @@ void SampleExchange::configure(const SessionMember& member, const ExchangeRules&
     if (inbox.reading.reader == own_ && member.requires_role(inbox.reading.writer)) inbox.need(rules);
   });
   actuators_.takes_late = mechanism_.takes_late = takes_late;
-  for (Outbox& outbox : outboxes_) outbox.sent.set_depth(sent_depth(kSentTime, {member.session().step_ns}));
+  const std::size_t depth = sent_depth(member.give_up_after(), {member.session().step_ns});
+  for (Outbox& outbox : outboxes_) outbox.sent.set_depth(depth);
 }
 
 void SampleExchange::clear() noexcept {

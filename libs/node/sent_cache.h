@@ -20,10 +20,15 @@ inline constexpr StepIndex kMostAnswers = 128;
 // Of one cache at most, where steps are short and messages long.
 inline constexpr std::size_t kSentBytes = std::size_t{64} << 20;
 
-// Messages of so much time: who may be silent for it without being given up finds all that it has missed.
-[[nodiscard]] constexpr std::size_t sent_depth(SimDuration time, SimDuration step) noexcept {
-  const std::int64_t steps = step.ns > 0 ? (time.ns + step.ns - 1) / step.ns : 0;
-  return std::max(kSentDepth, static_cast<std::size_t>(steps));
+// A node that comes back just before it is given up has this time to request what it has missed.
+inline constexpr SimDuration kRequestTime = {500'000'000};
+// No step message is shorter: its encapsulation and its header.
+inline constexpr std::size_t kLeastMessage = 44;
+
+// Messages that a node may lack that has been silent without being given up, and is requesting them.
+[[nodiscard]] constexpr std::size_t sent_depth(SimDuration give_up_after, SimDuration step) noexcept {
+  const std::int64_t steps = step.ns > 0 ? (give_up_after.ns + kRequestTime.ns + step.ns - 1) / step.ns : 0;
+  return std::clamp(static_cast<std::size_t>(steps), kSentDepth, kSentBytes / kLeastMessage);
 }
 
 class SentCache {

@@ -1,7 +1,6 @@
 #include "node/session_member.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "transport/given_up.h"
@@ -20,23 +19,6 @@ bool is_over(NodeState state) {
   return state == NodeState::ended || state == NodeState::fault;
 }
 
-// on the way to the first step; one that initialises was heard by all, and the others may have let it begin
-int progress(NodeState state) {
-  if (state < NodeState::initialising || is_over(state)) return 0;
-  return state == NodeState::initialising ? 1 : 2;
-}
-
-// of two claimants of a role: the one that is further on, else the one that started first, else the lower pid. The
-// clocks of two machines differ: what was recorded counts before them.
-bool goes_first(const wire::NodeStatus& a, const wire::NodeStatus& b) {
-  if (is_over(a.state) != is_over(b.state)) return is_over(b.state);
-  if (progress(a.state) != progress(b.state)) return progress(a.state) > progress(b.state);
-  const bool a_records = a.recorded_step >= 0, b_records = b.recorded_step >= 0;
-  if (a_records != b_records) return a_records;
-  if (a.started_ns != b.started_ns) return a.started_ns < b.started_ns;
-  return std::tie(a.pid, a.host) < std::tie(b.pid, b.host);
-}
-
 // tells processes of one role apart; not 0, which nobody has
 std::uint32_t incarnation_of(const Identity& identity) {
   const std::uint64_t mixed = static_cast<std::uint64_t>(identity.started_ns) * 0x9e3779b97f4a7c15u + identity.pid;
@@ -49,9 +31,6 @@ bool is_ready_state(NodeState state) {
   return state >= NodeState::ready && state < NodeState::ended;
 }
 
-// From here on no status of another process changes who has the role.
-bool has_settled(std::int64_t ready_ns, std::int64_t now_ns) {
-  return ready_ns != 0 && now_ns - ready_ns > kSettled.ns;
 }
 
 }  // namespace
@@ -211,9 +190,15 @@ void SessionMember::step_aside(ExitCode code, std::string reason) {
 }
 
 void SessionMember::yield() {
-  step_aside(ExitCode::node_lost, "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
-                                      "' was given to another process, because nothing had been heard of this one; "
-                                      "this one ends, and the session goes on without it");
+  const Status why = given_to_another();
+  step_aside(why.code, why.text);
+}
+
+Status SessionMember::given_to_another() const {
+  return Status::error(ExitCode::node_lost, "the role " + std::string(to_text(role_)) + " of session '" +
+                                                session_.name +
+                                                "' was given to another process, because nothing had been heard of "
+                                                "this one; this one ends, and the session goes on without it");
 }
 
 void SessionMember::withdraw() {
@@ -255,24 +240,21 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
     ++refusals_.other_session;
     return Status::ok();
   }
-  const auto index = static_cast<std::size_t>(status.header.role);
+  const Role role = status.header.role;
+  const auto index = static_cast<std::size_t>(role);
   if (index >= wire::kRoles) return Status::ok();
-  if (status.header.role == role_) return on_own_role(status, now_ns);
+  if (role == role_) return on_own_role(status);
   Peer& peer = peers_[index];
-  if (is_given_up(status.header.role, status.header.incarnation)) {
+  if (is_given_up(role, status.header.incarnation)) {
     ++refusals_.unexpected_writer;
     return Status::ok();
   }
-  if (peer.is_known && peer.incarnation != status.header.incarnation) {
-    // a second process of the role takes over only from one that goes behind it
-    const bool is_settled = has_settled(peer.ready_ns, now_ns) && !is_over(peer.status.state);
-    if (peer.is_lost || is_settled || !goes_first(status, peer.status)) {
-      if (may_be_replaced(status.header.role)) rivals_[index] = status;
-      ++refusals_.unexpected_writer;
-      return Status::ok();
-    }
-    peer = Peer{};
+  if (!may_hold(status, peer)) {
+    if (role != Role::io) rivals_[index] = status;
+    ++refusals_.unexpected_writer;
+    return Status::ok();
   }
+  if (peer.is_known && peer.incarnation != status.header.incarnation) peer = Peer{};
   if (!peer.is_known) {
     if (status.host == identity_.host && status.pid != identity_.pid) peer.process = ProcessWatch(status.pid);
     compare_builds(status);
@@ -281,33 +263,70 @@ Status SessionMember::take_status(const wire::NodeStatus& status, std::int64_t n
   peer.incarnation = status.header.incarnation;
   peer.status = status;
   peer.last_heard_ns = now_ns;
-  if (peer.ready_ns == 0 && is_ready_state(status.state)) peer.ready_ns = now_ns;
-  return Status::ok();
+  if (role_ == Role::io) heard(status.header, Topic::node_status, now_ns);
+  return role == Role::io ? follow_choice(now_ns) : Status::ok();
 }
 
-bool SessionMember::is_ready() const noexcept {
-  return is_ready_state(status_.state);
+// The process of the role that io has chosen.
+std::optional<std::uint32_t> SessionMember::holder(Role role) const noexcept {
+  const std::vector<wire::Heard>& of_io = role_ == Role::io ? status_.heard : peer(Role::io).status.heard;
+  const auto chosen = std::find_if(of_io.rbegin(), of_io.rend(), [&](const wire::Heard& entry) {
+    return entry.role == role && entry.topic == static_cast<std::uint8_t>(Topic::node_status) &&
+           !is_given_up(role, entry.incarnation);
+  });
+  return chosen == of_io.rend() ? std::nullopt : std::optional(chosen->incarnation);
+}
+
+// The writer of this status has the role, as far as this node has received: the session's owner, the one that io has
+// chosen, or before that the first that was heard and has not ended.
+bool SessionMember::may_hold(const wire::NodeStatus& status, const Peer& peer) const noexcept {
+  const std::uint32_t claimant = status.header.incarnation;
+  if (status.header.role == Role::io) return claimant == session_.header.incarnation;
+  if (peer.is_known && peer.incarnation == claimant) return true;
+  if (peer.is_known && peer.is_lost) return false;
+  const bool is_vacant = !peer.is_known || (is_over(peer.status.state) && !is_over(status.state));
+  if (role_ == Role::io) return is_vacant;
+  const std::optional<std::uint32_t> chosen = holder(status.header.role);
+  return chosen ? *chosen == claimant : is_vacant;
+}
+
+// io has published its choice: a process that it has not chosen is not followed any more.
+Status SessionMember::follow_choice(std::int64_t now_ns) {
+  for (std::size_t index = 0; index < wire::kRoles; ++index) {
+    const std::optional<std::uint32_t> chosen = holder(static_cast<Role>(index));
+    Peer& peer = peers_[index];
+    if (!chosen || !peer.is_known || peer.is_lost || peer.incarnation == *chosen) continue;
+    peer = Peer{};
+    if (const auto rival = std::exchange(rivals_[index], std::nullopt)) static_cast<void>(take_status(*rival, now_ns));
+  }
+  was_chosen_ = was_chosen_ || holds_role();
+  const auto rival = rivals_[static_cast<std::size_t>(role_)];
+  return rival && !holds_role() ? on_own_role(*rival) : Status::ok();
 }
 
 void SessionMember::tell_of_claim(const wire::NodeStatus& status) {
-  if (std::exchange(has_told_of_claim_, true)) return;
+  // a second process that was just started learns from io that the role is held, and one that came later may have got
+  // it
+  const bool is_usual = !is_ready_state(status.state) || status.started_ns > identity_.started_ns;
+  if (is_usual || std::exchange(has_told_of_claim_, true)) return;
   warn("process " + std::to_string(status.pid) + " on " + machine_of(status.host) + ", started " +
        time_text(status.started_ns) + ", says that it has the role " + std::string(to_text(role_)) + " of session '" +
        session_.name + "'; this process keeps it and the other one is not heard; stop it, or look who sends that");
 }
 
 // another process that says it has this role
-Status SessionMember::on_own_role(const wire::NodeStatus& status, std::int64_t now_ns) {
+Status SessionMember::on_own_role(const wire::NodeStatus& status) {
   if (status.header.incarnation == incarnation_ || is_over(status.state)) return Status::ok();
   if (is_given_up(role_, status.header.incarnation)) return Status::ok();
-  wire::NodeStatus own = status_;
-  own.header.incarnation = incarnation_;
-  if (!goes_first(status, own)) return Status::ok();
-  if (has_settled(ready_ns_, now_ns)) {
+  rivals_[static_cast<std::size_t>(role_)] = status;
+  const std::optional<std::uint32_t> chosen = role_ == Role::io ? incarnation_ : holder(role_);
+  if (chosen == incarnation_) {
     ++refusals_.unexpected_writer;
     tell_of_claim(status);
-    return Status::ok();
   }
+  if (!chosen || *chosen != status.header.incarnation) return Status::ok();
+  // io's word that this one was given up may come behind its new choice
+  if (was_chosen_) return given_to_another();
   return Status::error(ExitCode::bad_input,
                        "the role " + std::string(to_text(role_)) + " of session '" + session_.name +
                            "' is held by process " + std::to_string(status.pid) + " on " + machine_of(status.host) +
@@ -355,7 +374,7 @@ void SessionMember::excuse_peers(std::int64_t now_ns) noexcept {
   const std::int64_t sending_ns = sending_ns_ + std::exchange(sent_before_ns_, sending_ns_);
   sending_ns_ = 0;
   if (gap_ns <= kUsualLook.ns) return;
-  if (gap_ns > kLostAfter.ns) {
+  if (gap_ns > session_.give_up_ns) {
     stood_still_ns_ = gap_ns;
     stood_until_ns_ = now_ns;
     stood_sending_ = sending_ns > gap_ns / 2;
@@ -381,12 +400,12 @@ PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noe
       peer.is_lost = peer.is_silent = false;
       return PeerEvent::back;
     }
-    if (now_ns - peer.gone_ns <= session_.rejoin_ns + kLostAfter.ns) return PeerEvent::none;
+    if (now_ns - peer.gone_ns <= session_.rejoin_ns + session_.give_up_ns) return PeerEvent::none;
     peer.gone_ns = 0;
     return PeerEvent::lost;
   }
   if (peer.is_lost) return PeerEvent::none;
-  if (is_gone || silent_ns > kLostAfter.ns) {
+  if (is_gone || silent_ns > session_.give_up_ns) {
     peer.is_lost = true;
     if (!may_be_replaced(role)) return PeerEvent::lost;
     peer.gone_ns = now_ns;
@@ -404,7 +423,6 @@ PeerEvent SessionMember::look_at(Peer& peer, Role role, std::int64_t now_ns) noe
 }
 
 PeerEvent SessionMember::watch_peers(std::int64_t now_ns, Role& about) {
-  if (ready_ns_ == 0 && is_ready()) ready_ns_ = now_ns;
   excuse_peers(now_ns);
   const bool looks_for_processes = now_ns - processes_ns_ >= kProcessLook.ns;
   if (looks_for_processes) processes_ns_ = now_ns;
@@ -436,7 +454,11 @@ std::string SessionMember::describe_peer(Role role) const {
 
 std::string SessionMember::silence_text(Role role) const {
   return "waits for " + describe_peer(role) + ", which has been silent for 0.3 s at step " +
-         std::to_string(status_.header.step) + "; it is given up after 2 s";
+         std::to_string(status_.header.step) + "; it is given up after " + give_up_text();
+}
+
+std::string SessionMember::give_up_text() const {
+  return seconds_text(give_up_after()) + " (session.give_up_after)";
 }
 
 std::string SessionMember::end_text(Role about, const std::string& reason) const {
@@ -451,17 +473,17 @@ std::string SessionMember::end_text(Role about, const std::string& reason) const
       std::string("; look for what stopped the process (a signal, a debugger, lack of memory or of processors)") +
       (stood_sending_ ? " or took nothing from it (a cable that is out, an interface that is down)" : "");
   if (is_given_up && stood_still_ns_ > 0) {
-    return "this node " + stood_still + " at step " + std::to_string(status_.header.step) +
-           " and was given up after 2 s; session '" + session_.name + "' has ended" + remedy;
+    return "this node " + stood_still + " at step " + std::to_string(status_.header.step) + " and was given up after " +
+           give_up_text() + "; session '" + session_.name + "' has ended" + remedy;
   }
   if (is_given_up) {
-    return "this node ran, but was not heard for 2 s and was given up; look at the network from this machine to the "
-           "others; " +
-           reason;
+    return "this node ran, but was not heard for " + give_up_text() +
+           " and was given up; look at the network from this machine to the others; " + reason;
   }
   // the others may have given it up and have gone
-  if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= kLostAfter.ns + kLinger.ns) {
-    return reason + "; this node itself had " + stood_still + ", and after 2 s the others give a node up" + remedy;
+  if (peer.is_lost && stood_still_ns_ > 0 && watched_ns_ - stood_until_ns_ <= session_.give_up_ns + linger().ns) {
+    return reason + "; this node itself had " + stood_still + ", and after " + give_up_text() +
+           " the others give a node up" + remedy;
   }
   return reason;
 }

@@ -4,6 +4,7 @@
 // NodeStatus, that it heard this writer there. "Matched" at the transport proves nothing; only a received message does.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -27,8 +28,6 @@ inline constexpr SimDuration kJoinTimeout = {10'000'000'000};
 inline constexpr SimDuration kNoTimeout = {100LL * 365 * 86400 * 1'000'000'000};
 inline constexpr SimDuration kProbeInterval = {20'000'000};
 inline constexpr SimDuration kSilentAfter = {300'000'000};  // named, everybody holds
-inline constexpr SimDuration kLostAfter = {2'000'000'000};  // given up
-inline constexpr SimDuration kSettled = {2'000'000'000};    // after READY: who claims the role from then on comes late
 // between two looks: what goes beyond is the silence of the process that looks and nobody else's
 inline constexpr SimDuration kUsualLook = {100'000'000};
 inline constexpr SimDuration kStoodStill = {1'000'000'000};  // between two looks: the others may have given one up
@@ -37,9 +36,7 @@ inline constexpr SimDuration kProcessLook = {1'000'000};     // between two look
 inline constexpr SimDuration kResendAfter = {3'000'000};     // a missing step is asked for
 inline constexpr SimDuration kResendAtMost = {100'000'000};  // longest pause between two requests
 inline constexpr SimDuration kHealthInterval = {100'000'000};
-// what everybody can say again: of the time in which nobody is given up, and of asking for it
-inline constexpr SimDuration kSentTime = {kLostAfter.ns + 500'000'000};
-inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends after its own end, at most
+inline constexpr SimDuration kLinger = {2'000'000'000};  // answers resends after its own end, at least
 
 // Messages that were received but not applied, by cause.
 struct Refusals {
@@ -66,7 +63,6 @@ struct Peer {
   std::int64_t excused_ns = -1;    // what last_heard_ns became by that, until something is heard
   ProcessWatch process;
   std::int64_t exit_seen_ns = 0;  // when the process was first seen to be gone; 0: it is there
-  std::int64_t ready_ns = 0;      // when it was first heard to be ready; 0: it was not
   bool is_silent = false;         // named once
   bool is_lost = false;           // given up, or gone
   StepIndex step = kJoinStep;     // the next one to do, as its health says
@@ -118,6 +114,12 @@ class SessionMember {
   [[nodiscard]] Status problem_of_protocol() const;
   [[nodiscard]] bool has_session() const noexcept { return has_session_; }
   [[nodiscard]] const wire::SessionDescription& session() const noexcept { return session_; }
+  // Silence after which the session gives a node up (session.give_up_after), and with its key for a message:
+  // "2 s (session.give_up_after)".
+  [[nodiscard]] SimDuration give_up_after() const noexcept { return {session_.give_up_ns}; }
+  [[nodiscard]] std::string give_up_text() const;
+  // How long this node answers resends after its own end, at most: others may be silent for a while and come back.
+  [[nodiscard]] SimDuration linger() const noexcept { return {std::max(kLinger.ns, session_.give_up_ns)}; }
   [[nodiscard]] bool requires_role(wire::Role role) const noexcept {
     return (session_.required_roles & bit(role)) != 0;
   }
@@ -162,10 +164,13 @@ class SessionMember {
 
   // ---- others
   // Takes a NodeStatus or Health message. Returns a refusal when another process holds this role. Of several processes
-  // of one role the first holds it; what the others say is not heard. Of two that started together the first is agreed
-  // on until kSettled after READY; whatever is said later, who has the role then keeps it.
+  // of one role the one holds it whose status io took first. io publishes its choice: an entry of topic node_status in
+  // `heard` of its own status, the last of a role, less those that were given up. Messages from the others are ignored.
+  // No node becomes READY before io has chosen it, so that no status takes its role from it afterwards.
   Status on_node_status(std::span<const std::byte> bytes, std::int64_t now_ns);
   void on_health(std::span<const std::byte> bytes, std::int64_t now_ns);
+  // io has chosen this process for its role.
+  [[nodiscard]] bool holds_role() const noexcept { return holder(role_) == incarnation_; }
   [[nodiscard]] const Peer& peer(wire::Role role) const noexcept { return peers_[static_cast<std::size_t>(role)]; }
   // Looks for silent and lost required peers; at most one event per call, with the role it is about. Time in which this
   // process stood still is nobody's silence: once, until the peer is heard again.
@@ -213,9 +218,12 @@ class SessionMember {
   void excuse_peers(std::int64_t now_ns) noexcept;
   [[nodiscard]] bool is_writer(const wire::Header& header, wire::Topic topic) const noexcept;
   [[nodiscard]] std::string found_writers(wire::Topic topic);
-  [[nodiscard]] Status on_own_role(const wire::NodeStatus& status, std::int64_t now_ns);
+  [[nodiscard]] std::optional<std::uint32_t> holder(wire::Role role) const noexcept;
+  [[nodiscard]] bool may_hold(const wire::NodeStatus& status, const Peer& peer) const noexcept;
+  [[nodiscard]] Status follow_choice(std::int64_t now_ns);
+  [[nodiscard]] Status on_own_role(const wire::NodeStatus& status);
   void tell_of_claim(const wire::NodeStatus& status);
-  [[nodiscard]] bool is_ready() const noexcept;
+  [[nodiscard]] Status given_to_another() const;
   void compare_builds(const wire::NodeStatus& status);
   [[nodiscard]] bool must_read(wire::Role reader, wire::Topic topic) const noexcept;
   [[nodiscard]] bool has_heard_me(wire::Role reader, wire::Topic topic) const noexcept;
@@ -238,13 +246,13 @@ class SessionMember {
   std::vector<wire::NodeStatus> early_statuses_;  // came before the session's description
   std::vector<std::string> warnings_;
   std::array<Peer, wire::kRoles> peers_;
-  // what a second process of a role said last: it may come before the word that the first one was given up
+  // The last status of another process of a role: io may have chosen that one, or give the first one up.
   std::array<std::optional<wire::NodeStatus>, wire::kRoles> rivals_;
   Refusals refusals_;
   Status send_failure_;
   std::int64_t next_probe_ns_ = 0;
-  std::int64_t ready_ns_ = 0;  // when this process was first seen to be ready; 0: it was not
   bool has_told_of_claim_ = false;
+  bool was_chosen_ = false;          // io has named this process once
   std::int64_t processes_ns_ = 0;    // when their processes were looked for last
   std::int64_t watched_ns_ = 0;      // when the peers were looked at last
   std::int64_t stood_still_ns_ = 0;  // from one look to the next, when the others had time to give this process up

@@ -15,7 +15,11 @@ inline constexpr int kFormatVersion = 1;
 inline constexpr const char* kProfile = "slewring";
 inline constexpr const char* kIdentityName = "slewring.recording";  // first Metadata record
 inline constexpr const char* kSummaryName = "slewring.summary";     // Metadata record of an orderly end
-inline constexpr const char* kGapName = "slewring.gap";             // Metadata record of messages that were left out
+// entries of the summary that the recorder counts while it writes; absent when messages came out of their order
+inline constexpr const char* kTicksKey = "counts.ticks";
+inline constexpr const char* kFlagsKey = "counts.flags";
+inline constexpr const char* kVariablesKey = "digest.variables";
+inline constexpr const char* kGapName = "slewring.gap";  // Metadata record of messages that were left out
 
 struct SessionIdentity {
   std::string scene;  // name of the scene

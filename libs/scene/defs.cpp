@@ -29,6 +29,7 @@ constexpr Range kWaitRange{.min = 0.001, .max = 60, .min_is_open = false, .max_i
 constexpr Range kRawRange{.min = -1, .max = 1, .min_is_open = false, .max_is_open = false};
 constexpr Range kExchangeRange{.min = 1, .max = 64, .min_is_open = false, .max_is_open = false};
 constexpr Range kStallRange{.min = 0.5, .max = 3600, .min_is_open = false, .max_is_open = false};
+constexpr Range kGiveUpRange{.min = 0.5, .max = 60, .min_is_open = false, .max_is_open = false};
 constexpr Range kRejoinRange{.min = 0, .max = 3600, .min_is_open = false, .max_is_open = false};
 constexpr Range kBudgetRange{.min = 0, .max = 0.1, .min_is_open = false, .max_is_open = false};
 constexpr Range kToleranceRange{.min = 1e-10, .max = 1e-3, .min_is_open = false, .max_is_open = false};
@@ -136,6 +137,13 @@ constexpr Field kSessionFields[] = {
          .range = kStallRange,
          .doc = "how long a step waits for one message of a node that is heard otherwise; then the session ends with "
                 "exit code 4, or with session.rejoin the node's place is given away"}),
+    field<&SessionDef::give_up_after>(
+        "give_up_after",
+        {.dimension = Dimension::time,
+         .range = kGiveUpRange,
+         .doc = "how long a node may be silent; then it is given up. The session ends with exit code 4, or with "
+                "session.rejoin holds the node's place. Every node keeps the ticks and samples of this time and 0.5 s "
+                "more, so that a silent node that comes back misses none"}),
     field<&SessionDef::overrun>(
         "overrun",
         {.choices = kOverrunPolicies,

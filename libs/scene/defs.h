@@ -72,6 +72,7 @@ struct SessionDef {
 
   // s, longest wait for one message of a node that is heard otherwise
   double stall_timeout = 10;
+  double give_up_after = 2;  // s of silence after which a node is given up
 
   OverrunPolicy overrun = OverrunPolicy::slip;
   std::int64_t overrun_after =

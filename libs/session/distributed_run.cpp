@@ -30,8 +30,8 @@ namespace {
 using wire::Role;
 
 constexpr int kRoundMs = 20;
-// after io is through, or a node is lost, the others have this long: their own linger and some more
-constexpr std::int64_t kGraceNs = 4'000'000'000;
+// after io is through, or a node is lost, the others have their own linger and this time
+constexpr std::int64_t kGraceNs = 2'000'000'000;
 constexpr std::int64_t kTermNs = 1'500'000'000;
 // a recorder closes when the disk has confirmed all that waited: 64 MiB of its own and what the system holds back
 constexpr std::int64_t kWritingNs = 600'000'000'000;
@@ -49,8 +49,10 @@ class Supervisor {
       : options_(options),
         begin_(begin),
         watcher_(*options.watcher),
+        step_(scene.session.step_duration()),
         roles_(io::required_roles(scene, options.scene.is_recording ? io::Recording::required : io::Recording::none)),
         name_(scene.name),
+        give_up_after_(duration_of_seconds(scene.session.give_up_after)),
         rejoin_(duration_of_seconds(scene.session.rejoin)),
         is_refusal_told_(options.is_refusal_told) {
     const std::string& places = options.cpus.empty() ? scene.session.cpus : options.cpus;
@@ -67,6 +69,7 @@ class Supervisor {
     started_wall_ns_ = wall_clock_ns();
     if (is_ours(Role::io)) start(Role::io);
     observer_ = std::make_unique<Observer>(open_transport(), options_.session.session);
+    observer_->keep_curves({options_.kept, step_});
     if (!is_ours(Role::io)) start_others();
     while (!all_ended()) {
       wait_for_output();
@@ -100,13 +103,13 @@ class Supervisor {
     std::int64_t not_before_ns = 0;  // of its next start
   };
 
-  // values are needed by the watcher, and for the summary of a run that is not recorded here
+  // values are needed by the watcher, and for the summary
   [[nodiscard]] std::unique_ptr<transport::Transport> open_transport() const {
-    // what the samples report is in the recording when there is one: each reader costs the writers time
+    // what the samples report is counted by the recorder when there is one: each reader costs the writers time
     if (!is_ours(Role::recorder)) {
       if (auto transport = open_with_samples()) return transport;
     }
-    if (watcher_.reads_values() || !is_ours(Role::recorder)) {
+    if (watcher_.reads_values() || !options_.kept.empty() || !is_ours(Role::recorder)) {
       return node::open_transport(Role::observer, options_.session);
     }
     return node::open_observer_without_values(options_.session);
@@ -255,8 +258,8 @@ class Supervisor {
     for (Node& node : nodes_) {
       if (node.process->poll_end() || node.is_killed_as_lost || !has_lost_its_place(node)) continue;
       watcher_.report("slewring: the " + node.process->name() + " node (process " +
-                      std::to_string(node.process->pid()) +
-                      ") was silent for 2 s and has lost its place; it is killed");
+                      std::to_string(node.process->pid()) + ") was silent for " + node::seconds_text(give_up_after_) +
+                      " (session.give_up_after) and has lost its place; it is killed");
       node.is_killed_as_lost = true;
       node.process->send_signal(SIGKILL);
     }
@@ -361,7 +364,7 @@ class Supervisor {
   void report_kill(const Node& node, const std::string& what_follows) {
     is_node_killed_ = true;
     say_kill(node, what_follows);
-    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
   }
 
   void report_end(Node& node) {
@@ -384,11 +387,16 @@ class Supervisor {
     }
     const bool is_wrong = end.signal != 0 || end.exit_code != 0;
     if (node.role == Role::io || is_wrong) {
-      if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+      if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
     }
   }
 
   // ---- ending -------------------------------------------------------------------------------------------------
+
+  // From now on; a node that has not ended by then is asked to.
+  [[nodiscard]] std::int64_t end_deadline_ns() const {
+    return monotonic_ns() + std::max(node::kLinger.ns, give_up_after_.ns) + kGraceNs;
+  }
 
   void send(Node& node, int signal) {
     if (node.process->poll_end()) return;
@@ -436,7 +444,7 @@ class Supervisor {
   void end_session() {
     if (is_ending_) return;
     is_ending_ = true;
-    if (deadline_ns_ == 0) deadline_ns_ = monotonic_ns() + kGraceNs;
+    if (deadline_ns_ == 0) deadline_ns_ = end_deadline_ns();
     if (is_ours(Role::io)) {
       // io ends the session in order: END, the recorder closes, everybody leaves; its code is in the recording
       const bool is_ctrl_c = interrupt_code() == static_cast<int>(ExitCode::interrupted);
@@ -529,12 +537,14 @@ class Supervisor {
   const RunOptions& options_;
   StepIndex begin_;  // step that the session goes on from
   RunWatcher& watcher_;
+  SimDuration step_;
   std::uint32_t roles_;
   std::vector<scene::CpuPlace> cpus_;
   std::string name_;         // of the scene
   std::vector<Node> nodes_;  // io first, when it is ours
   std::unique_ptr<Observer> observer_;
-  SimDuration rejoin_;  // time that io holds the place of a physics node that is lost; 0: it does not
+  SimDuration give_up_after_;  // silence after which the others give a node up
+  SimDuration rejoin_;         // time that io holds the place of a physics node that is lost; 0: it does not
   bool are_others_started_ = false;
   bool is_node_killed_ = false;
   bool is_recorder_awaited_ = false;  // it still writes when everybody else has ended

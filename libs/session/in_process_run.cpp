@@ -37,6 +37,7 @@ class InProcessRun {
     for (const Role role : wire::kPhysicsRoles) add_physics(role);
     if (options.scene.is_recording) add_recorder();
     observer_ = std::make_unique<Observer>(node::open_observer_with_samples(bus_), options.session.session);
+    observer_->keep_curves({options.kept, session.scene.session.step_duration()});
   }
 
   RunOutcome run() {

@@ -27,6 +27,9 @@ class Observer {
   [[nodiscard]] const SessionView& view() const noexcept { return view_; }
   [[nodiscard]] const std::string& session_name() const noexcept { return session_; }
 
+  // Keeps these variables as curves from now on.
+  void keep_curves(Curves curves) { view_.keep_curves(std::move(curves)); }
+
   // Takes what has arrived. Does not wait.
   void drain();
 

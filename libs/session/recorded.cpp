@@ -46,29 +46,6 @@ void read_all(const Reader& reader, const recording::MessageFilter& filter,
   if (!status.is_ok()) std::fprintf(stderr, "warning: %s\n", printable_lines(status.text).c_str());
 }
 
-// Where in the curves a variable's values go: by writer and index.
-using Places = std::map<std::pair<wire::Role, std::uint32_t>, std::size_t>;
-
-void add_block(const wire::VariableBlock& block, double time, const Places& places,
-               std::span<plotting::Series> curves) {
-  for (auto place = places.lower_bound({block.header.role, block.first}); place != places.end(); ++place) {
-    const auto& [role, index] = place->first;
-    if (role != block.header.role || index >= block.first + block.values.size()) break;
-    plotting::Series& curve = curves[place->second];
-    curve.time.push_back(time);
-    curve.values.push_back(block.values[index - block.first]);
-  }
-}
-
-bool was_paused(const std::map<std::uint64_t, bool>& paused_since, std::uint64_t from_ns, std::uint64_t to_ns) {
-  auto change = paused_since.upper_bound(from_ns);
-  if (change != paused_since.begin() && std::prev(change)->second) return true;
-  for (; change != paused_since.end() && change->first < to_ns; ++change) {
-    if (change->second) return true;
-  }
-  return false;
-}
-
 constexpr const char* kSceneFile = "scene.yaml";
 
 struct Attached {
@@ -217,147 +194,90 @@ void keep_assets(const scene::Scene& scene, const std::string& folder, const std
   if (scene.script.file && !scene.script.file->found.empty()) keep(scene.script.file->found, scene.script.file->file);
 }
 
-SessionView view_recording(const Reader& reader, Values values) {
+SessionView view_recording(const Reader& reader, Values values, const std::vector<std::string>& patterns) {
   SessionView view;
+  view.keep_curves({patterns, reader.identity().communication_step});
   const auto take = [&](const recording::RecordedMessage& message) {
-    view.take(topic_of(*message.channel), message.payload);
+    view.take(topic_of(*message.channel), message.payload, static_cast<double>(message.log_time_ns) / 1e9);
     return Visit::go_on;
   };
   // names first: a message of the directory may be filed behind the first values
   read_all(reader, only({Topic::session}), take);
   read_all(reader, only({Topic::variable_directory, Topic::node_status, Topic::health}), take);
+  view.end_names();
   if (values == Values::all) read_all(reader, only({Topic::variables}), take);
   return view;
 }
 
 namespace {
 
-struct RecordedVariable {
-  std::pair<wire::Role, std::uint32_t> place;  // writer and index
-  std::string unit;
-};
-using Known = std::map<std::string, RecordedVariable>;
-
-Known known_variables(const Reader& reader) {
-  Known known;
+Curves named_curves(const Reader& reader, std::span<const std::string> patterns) {
+  Curves curves({patterns.begin(), patterns.end()}, reader.identity().communication_step);
+  wire::VariableDirectory directory;
   read_all(reader, only({Topic::variable_directory}), [&](const recording::RecordedMessage& message) {
-    wire::VariableDirectory directory;
-    if (!transport::decode(message.payload, directory)) return Visit::go_on;
-    for (std::size_t i = 0; i < directory.entries.size(); ++i) {
-      const std::pair place(directory.header.role, directory.first + static_cast<std::uint32_t>(i));
-      const wire::VariableEntry& entry = directory.entries[i];
-      known.emplace(entry.name, RecordedVariable{place, entry.unit});
-    }
+    if (transport::decode(message.payload, directory)) curves.take(directory);
     return Visit::go_on;
   });
-  return known;
-}
-
-// in the order of roles and places, whichever node was heard first
-std::vector<std::string> names_of(const Known& known) {
-  std::vector<std::string> names;
-  for (const auto& entry : known) names.push_back(entry.first);
-  std::sort(names.begin(), names.end(),
-            [&](const std::string& a, const std::string& b) { return known.at(a).place < known.at(b).place; });
-  return names;
+  curves.end_names();
+  return curves;
 }
 
 }  // namespace
 
 std::vector<std::string> recorded_names(const Reader& reader) {
-  return names_of(known_variables(reader));
+  return named_curves(reader, {}).names();
 }
 
 std::vector<plotting::Series> read_series(const Reader& reader, std::span<const std::string> patterns, Units units,
                                           const TimeRange& range) {
-  const Known known = known_variables(reader);
-  const std::vector<std::string> names = names_of(known);
+  Curves curves = named_curves(reader, patterns);
+  const std::vector<std::string> names = curves.names();
   if (const std::vector<std::string> missing = scene::unmatched(patterns, names); !missing.empty()) {
     throw Failure(ExitCode::bad_input, why_missing(reader, missing, names));
   }
-  Places places;
-  std::vector<plotting::Series> curves;
-  for (const std::string& name : scene::choose(patterns, names)) {
-    const auto& [place, unit] = known.at(name);
-    places.emplace(place, curves.size());
-    plotting::Series curve;
-    curve.name = name;
-    curve.unit = units == Units::display ? std::string(display_unit(unit).unit) : unit;
-    if (curve.unit == "1") curve.unit.clear();
-    curves.push_back(std::move(curve));
-  }
-  // values; a node's blocks come every k-th step, from step 0 on
-  std::map<wire::Role, StepIndex> steps_between;
   wire::VariableBlock block;
   recording::MessageFilter blocks = only({Topic::variables});
   blocks.from_ns = range.from_ns;
   blocks.to_ns = range.to_ns;
   read_all(reader, blocks, [&](const recording::RecordedMessage& message) {
-    if (transport::decode(message.payload, block) && block.header.phase == wire::Phase::running) {
-      add_block(block, static_cast<double>(message.log_time_ns) / 1e9, places, curves);
-      StepIndex& between = steps_between[block.header.role];
-      between = std::gcd(between, block.header.step);
-    }
+    if (transport::decode(message.payload, block)) curves.take(block, static_cast<double>(message.log_time_ns) / 1e9);
     return Visit::go_on;
   });
-  for (const auto& [place, curve] : places) {
-    curves[curve].spacing =
-        static_cast<double>(steps_between[place.first]) * reader.identity().communication_step.seconds();
-  }
-  if (units == Units::display) {
-    for (plotting::Series& curve : curves) {
-      const double factor = display_unit(known.at(curve.name).unit).factor;
-      for (double& value : curve.values) value *= factor;
-    }
-  }
-  return curves;
+  return curves.select(patterns, units);
+}
+
+std::optional<ClosingCounts> closing_counts(const Reader& reader) {
+  const recording::TextMap* summary = reader.find_metadata(recording::kSummaryName);
+  if (summary == nullptr || reader.damage() || !reader.has_all_messages()) return std::nullopt;
+  const auto text = [&](const char* key) {
+    const auto found = summary->find(key);
+    return found == summary->end() ? std::string() : found->second;
+  };
+  const std::optional<TickSpan> ticks = node::tick_span_of(text(recording::kTicksKey));
+  std::optional<node::FlagCounter> flags = node::FlagCounter::of_text(text(recording::kFlagsKey));
+  const std::string variables = text(recording::kVariablesKey);
+  if (!ticks || !flags || variables.empty()) return std::nullopt;
+  return ClosingCounts{*ticks, std::move(*flags), std::strtoull(variables.c_str(), nullptr, 16)};
 }
 
 TickSpan tick_span(const Reader& reader) {
-  TickSpan span;
-  std::vector<std::uint64_t> ticks;                                 // ns, wall clock of their writer
-  std::map<std::uint64_t, bool> paused_since;                       // ns, at each status of io_node
-  std::map<std::uint32_t, std::pair<StepIndex, StepIndex>> epochs;  // first and last step
-  std::map<std::uint32_t, StepIndex> ends;                          // first step that an END names
+  node::TickCounter counter(reader.identity().communication_step);
+  std::vector<std::int64_t> sent;  // ns, wall clock of their writer
   wire::Tick tick;
   wire::NodeStatus status;
   read_all(reader, only({Topic::tick, Topic::node_status}), [&](const recording::RecordedMessage& message) {
+    const auto sent_ns = static_cast<std::int64_t>(message.publish_time_ns);
     if (topic_of(*message.channel) == Topic::tick && transport::decode(message.payload, tick)) {
-      const bool is_end = (tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0;
-      if (tick.header.phase == wire::Phase::running && !is_end) {
-        auto& [first, last] = epochs.try_emplace(tick.header.epoch, tick.header.step, tick.header.step).first->second;
-        first = std::min(first, tick.header.step);
-        last = std::max(last, tick.header.step);
-      }
-      if (tick.header.phase == wire::Phase::running && is_end) {
-        StepIndex& end = ends.try_emplace(tick.header.epoch, tick.header.step).first->second;
-        end = std::min(end, tick.header.step);
-      }
-      if (message.publish_time_ns != 0) ticks.push_back(message.publish_time_ns);
-    } else if (transport::decode(message.payload, status) && status.header.role == wire::Role::io) {
-      paused_since[message.publish_time_ns] = is_pause(status);
+      counter.take(tick.header, tick.flags);
+      sent.push_back(sent_ns);
+    } else if (transport::decode(message.payload, status)) {
+      counter.take_status(status, sent_ns);
     }
     return Visit::go_on;
   });
-  for (const auto& [epoch, steps] : epochs) {
-    span.steps += steps.second - steps.first + 1;
-    span.epoch = epoch;
-    span.next = steps.second + 1;
-    const auto end = ends.find(epoch);
-    if (end != ends.end() && steps.second >= end->second) {
-      span.behind_end += static_cast<std::uint64_t>(steps.second - std::max(steps.first, end->second) + 1);
-    }
-  }
-  std::sort(ticks.begin(), ticks.end());
-  const auto step_ns = static_cast<std::uint64_t>(reader.identity().communication_step.ns);
-  for (std::size_t i = 1; i < ticks.size(); ++i) {
-    const std::uint64_t gap_ns = ticks[i] - ticks[i - 1];
-    const bool is_paused = was_paused(paused_since, ticks[i - 1], ticks[i]);
-    const std::uint64_t running_ns = is_paused ? std::min(gap_ns, step_ns) : gap_ns;
-    span.wall_time += static_cast<double>(running_ns) * 1e-9;
-    span.paused_time += static_cast<double>(gap_ns - running_ns) * 1e-9;
-  }
-  return span;
+  std::sort(sent.begin(), sent.end());
+  for (const std::int64_t sent_ns : sent) counter.take_time(sent_ns);
+  return counter.span();
 }
 
 std::string behind_end_text(const TickSpan& span) {

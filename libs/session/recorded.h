@@ -6,16 +6,22 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "node/flag_counter.h"
+#include "node/tick_counter.h"
 #include "plotting/series.h"
 #include "recording/reader.h"
 #include "scene/scene.h"
+#include "session/curves.h"
 #include "session/session_view.h"
 
 namespace slew::session {
+
+using node::TickSpan;
 
 // Opens a recording; a folder of a run stands for the file in it. Throws Failure. A warning on
 // standard error for a cut recording, and for one whose attached scene is not what is read.
@@ -26,9 +32,9 @@ namespace slew::session {
 
 // Session, nodes, health and the names of all variables; values and extremes of the variables only when asked for.
 enum class Values : std::uint8_t { none, all };
-[[nodiscard]] SessionView view_recording(const recording::Reader& reader, Values values);
-
-enum class Units : std::uint8_t { si, display };
+// patterns: of variables that the view keeps as curves.
+[[nodiscard]] SessionView view_recording(const recording::Reader& reader, Values values,
+                                         const std::vector<std::string>& patterns = {});
 
 // Times of the recording, both included.
 struct TimeRange {
@@ -54,15 +60,16 @@ struct TimeRange {
 // Steps that were done, in all epochs, those of lost ticks between others among them, and the wall time from the first
 // tick to the last as their writer stamped them. Of the time between two ticks around which the session was paused one
 // step counts as running, the rest as paused.
-struct TickSpan {
-  double wall_time = 0;    // s, without pauses
-  double paused_time = 0;  // s
-  StepIndex steps = 0;
-  std::uint32_t epoch = 0;       // the last one
-  StepIndex next = 0;            // step behind the last one of that epoch
-  std::uint64_t behind_end = 0;  // ticks behind the END of their epoch, which a session in order has not got
-};
 [[nodiscard]] TickSpan tick_span(const recording::Reader& reader);
+
+// What the recorder has counted while it wrote; none: the recording was not closed in order, or messages came out of
+// their order, and it must be read.
+struct ClosingCounts {
+  TickSpan ticks;
+  node::FlagCounter flags;
+  std::uint64_t variables = 0;  // digest of all blocks of variables
+};
+[[nodiscard]] std::optional<ClosingCounts> closing_counts(const recording::Reader& reader);
 // Names ticks behind an END; empty: there are none.
 [[nodiscard]] std::string behind_end_text(const TickSpan& span);
 

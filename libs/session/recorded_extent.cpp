@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -34,6 +35,7 @@ class Runs {
       runs_.erase(next);
     }
   }
+  [[nodiscard]] StepIndex oldest() const { return runs_.empty() ? kNone : runs_.begin()->first; }
   [[nodiscard]] StepIndex newest() const { return runs_.empty() ? -1 : runs_.rbegin()->second; }
   // The last one from `first` on without a gap; first - 1: not even that one.
   [[nodiscard]] StepIndex complete_to(StepIndex first) const {
@@ -51,6 +53,7 @@ class Runs {
   }
 
  private:
+  static constexpr StepIndex kNone = std::numeric_limits<StepIndex>::max();
   std::map<StepIndex, StepIndex> runs_;  // first and last of each
 };
 
@@ -93,7 +96,13 @@ void take(const RecordedMessage& message, StepIndex every, Epoch& epoch, const w
 }
 
 std::optional<StepIndex> first_step(const Epoch& epoch) {
-  if (epoch.states_at) return epoch.states_at;
+  // states that follow a gap are no begin
+  const auto is_before_states = [&epoch](const auto& stream) {
+    return !is_of_flexible_bodies(stream.first) && stream.second.oldest() < *epoch.states_at;
+  };
+  const bool has_begun_before =
+      epoch.init_at || (epoch.states_at && std::any_of(epoch.streams.begin(), epoch.streams.end(), is_before_states));
+  if (epoch.states_at && !has_begun_before) return epoch.states_at;
   if (epoch.init_at) return epoch.init_at;
   // a session of one node has no INIT
   const bool has_first = std::any_of(epoch.streams.begin(), epoch.streams.end(),

@@ -51,6 +51,7 @@ class Replay {
 
   ReplayResult run() {
     read_states();
+    if (!states_.empty()) read_first_ticks();
     epoch_ = first_epoch();
     if (end_ != nullptr) {
       last_epoch_ = last_epoch();
@@ -96,19 +97,42 @@ class Replay {
 
   // ---- states -------------------------------------------------------------------------------------------------
 
-  // Epochs that begin with states have them in the recording.
+  // Epochs that begin with states, or have a gap, have them in the recording.
   void read_states() {
     recording::MessageFilter filter;
     filter.topics.emplace_back(node::to_text(Topic::state));
-    std::map<std::pair<std::uint32_t, Role>, node::CheckpointParts> parts;
+    std::map<std::tuple<std::uint32_t, StepIndex, Role>, node::CheckpointParts> parts;
     wire::StatePart part;
     const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
       if (!transport::decode(message.payload, part)) return Visit::go_on;
-      node::CheckpointParts& of_role = parts[{part.header.epoch, part.role}];
-      if (of_role.take(part)) states_[part.header.epoch].push_back({part.role, of_role.checkpoint()});
+      node::CheckpointParts& of_role = parts[{part.header.epoch, part.header.step, part.role}];
+      if (of_role.take(part)) states_[part.header.epoch][part.header.step].push_back({part.role, of_role.checkpoint()});
       return Visit::go_on;
     });
     if (!status.is_ok()) throw Failure(status.code, status.text);
+  }
+
+  // The first step of each epoch that has a tick.
+  void read_first_ticks() {
+    recording::MessageFilter filter;
+    filter.topics.emplace_back(node::to_text(Topic::tick));
+    wire::Header header;
+    const Status status = reader_.for_each(filter, [&](const recording::RecordedMessage& message) {
+      if (!transport::decode_header(message.payload, header) || header.phase != Phase::running) return Visit::go_on;
+      StepIndex& first = first_ticks_.try_emplace(header.epoch, header.step).first->second;
+      first = std::min(first, header.step);
+      return Visit::go_on;
+    });
+    if (!status.is_ok()) throw Failure(status.code, status.text);
+  }
+
+  // The states with which the epoch begins: no tick is older. None: it begins with INIT.
+  [[nodiscard]] const std::vector<io::SavedState>* first_states() const {
+    const auto states = states_.find(epoch_);
+    if (states == states_.end()) return nullptr;
+    const auto& [step, first] = *states->second.begin();
+    const auto tick = first_ticks_.find(epoch_);
+    return tick != first_ticks_.end() && tick->second < step ? nullptr : &first;
   }
 
   // A recording may begin later than its session.
@@ -179,38 +203,90 @@ class Replay {
 
   void start_epoch() {
     ++result_.epochs;
-    const auto states = states_.find(epoch_);
-    begin_ = states == states_.end() ? 0 : states->second.front().state.step;
-    next_ = begin_;
     has_ended_ = false;
     waiting_ticks_.clear();
     waiting_samples_.clear();
+    begin_from(first_states());
+    init_hash_ = session_.init_hash();
+  }
+
+  // With INIT, or with the states of a step.
+  void begin_from(const std::vector<io::SavedState>* states) {
+    begin_ = states == nullptr ? 0 : states->front().state.step;
+    next_ = begin_;
     hashes_ = {};
-    const Status status = states == states_.end() ? session_.start() : session_.load(states->second);
+    const Status status = states == nullptr ? session_.start() : session_.load(*states);
     if (status.is_ok() && follower_) {
       const node::Checkpoint* own = nullptr;
-      if (states != states_.end()) {
-        for (const io::SavedState& of_role : states->second) {
+      if (states != nullptr) {
+        for (const io::SavedState& of_role : *states) {
           if (of_role.role == Role::io) own = &of_role.state;
         }
       }
       if (const Status followed = follower_->begin(own); !followed.is_ok()) return stop(followed.text);
     }
-    if (!status.is_ok())
-      return stop((states == states_.end() ? "INIT: " : "the states of step " + std::to_string(begin_) + ": ") +
-                  status.text);
-    init_hash_ = session_.init_hash();
+    if (!status.is_ok()) {
+      return stop((states == nullptr ? "INIT: " : "the states of step " + std::to_string(begin_) + ": ") + status.text);
+    }
     keep_hashes();
+  }
+
+  // ---- gaps ---------------------------------------------------------------------------------------------------
+
+  // The tick of the next step never comes. The session is computed again from the first states behind it; what is
+  // recorded in between is not reached. False: there are none.
+  bool cross_gap() {
+    const auto states = states_.find(epoch_);
+    if (states == states_.end()) return false;
+    // all states are needed
+    const auto suits = [this](const auto& of_step) {
+      return of_step.first > next_ && of_step.second.size() == states_.at(epoch_).rbegin()->second.size();
+    };
+    const auto behind = std::find_if(states->second.begin(), states->second.end(), suits);
+    if (behind == states->second.end()) return false;
+    const StepIndex step = behind->first;
+    result_.gaps.push_back(
+        fmt::format("gap: tick {} of epoch {} is missing, tick {} follows; computed again from the "
+                    "states of step {} on",
+                    next_, epoch_, waiting_ticks_.begin()->first, step));
+    count_unrecorded(EpochEnd::recording);
+    while (!waiting_ticks_.empty() && waiting_ticks_.begin()->first < step) {
+      const wire::Tick& tick = waiting_ticks_.begin()->second;
+      if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) == 0) {
+        unreached_ticks_.emplace(epoch_, tick.header.step);
+      }
+      waiting_ticks_.erase(waiting_ticks_.begin());
+    }
+    while (!waiting_samples_.empty() && waiting_samples_.begin()->first.first < step) {
+      const auto [at, role] = waiting_samples_.begin()->first;
+      unreached_samples_.emplace(epoch_, at, role);
+      waiting_samples_.erase(waiting_samples_.begin());
+    }
+    session_.reset();
+    begin_from(&behind->second);
+    if (!has_stopped_) compare_waiting();
+    return true;
   }
 
   // A reset overtakes the last ticks: what nobody computed any more is not missing.
   enum class EpochEnd : std::uint8_t { recording, reset };
 
   void finish_epoch(EpochEnd end) {
-    if (!waiting_ticks_.empty()) {
-      return stop(fmt::format("gap: tick {} of epoch {} is missing, tick {} follows", next_, epoch_,
-                              waiting_ticks_.begin()->first));
-    }
+    while (!waiting_ticks_.empty() && !has_stopped_) pass_gap();
+    if (has_stopped_) return;
+    count_unrecorded(end);
+    // samples whose ticks did not come
+    for (const auto& [key, hash] : waiting_samples_) unreached_samples_.emplace(epoch_, key.first, key.second);
+  }
+
+  void pass_gap() {
+    if (cross_gap()) return step_on();
+    stop(fmt::format("gap: tick {} of epoch {} is missing, tick {} follows", next_, epoch_,
+                     waiting_ticks_.begin()->first));
+  }
+
+  // Steps that were computed and have no sample in the recording.
+  void count_unrecorded(EpochEnd end) {
     for (const Hashes& of_role : hashes_) {
       std::size_t expected = of_role.is_compared.size();
       while (end == EpochEnd::reset && expected > 0 && !of_role.is_compared[expected - 1]) --expected;
@@ -218,8 +294,6 @@ class Replay {
         if (!of_role.is_compared[i]) ++result_.unrecorded;
       }
     }
-    // samples whose ticks did not come
-    for (const auto& [key, hash] : waiting_samples_) unreached_samples_.emplace(epoch_, key.first, key.second);
   }
 
   void count_unreached() {
@@ -255,6 +329,12 @@ class Replay {
     }
     if (header.epoch != epoch_ || header.step < next_ || has_ended_) return;
     waiting_ticks_.emplace(header.step, tick_);
+    step_on();
+    if (waiting_ticks_.size() > kMostWaiting && !has_stopped_) pass_gap();
+  }
+
+  // Computes as far as ticks have come.
+  void step_on() {
     while (!waiting_ticks_.empty() && waiting_ticks_.begin()->first == next_ && !has_stopped_ && !is_at_end()) {
       const wire::Tick tick = std::move(waiting_ticks_.begin()->second);
       waiting_ticks_.erase(waiting_ticks_.begin());
@@ -262,7 +342,6 @@ class Replay {
       if ((tick.flags & static_cast<std::uint32_t>(wire::TickFlag::end)) != 0) return end_epoch(tick.header.step);
       step(tick);
     }
-    if (waiting_ticks_.size() > kMostWaiting) finish_epoch(EpochEnd::recording);
   }
 
   // Ticks behind the END, which a session in order has not got, are not reached.
@@ -283,7 +362,11 @@ class Replay {
     ++next_;
     ++result_.steps;
     keep_hashes();
-    // samples that stood in front of their tick in the file
+    compare_waiting();
+  }
+
+  // Samples that stood in front of their tick in the file.
+  void compare_waiting() {
     while (!waiting_samples_.empty() && waiting_samples_.begin()->first.first <= next_ && !has_stopped_) {
       const auto [key, hash] = *waiting_samples_.begin();
       waiting_samples_.erase(waiting_samples_.begin());
@@ -359,7 +442,8 @@ class Replay {
   ReplayEnd* end_;
   io::IoConfig config_;
   std::optional<io::TickFollower> follower_;
-  std::map<std::uint32_t, std::vector<io::SavedState>> states_;  // by epoch, of those that begin with them
+  std::map<std::uint32_t, std::map<StepIndex, std::vector<io::SavedState>>> states_;  // by epoch and step
+  std::map<std::uint32_t, StepIndex> first_ticks_;                                    // by epoch
   bool has_stopped_ = false;
   std::uint32_t epoch_ = 0;
   std::uint32_t last_epoch_ = 0;

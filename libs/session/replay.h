@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/status.h"
 #include "core/time.h"
@@ -29,10 +30,11 @@ struct ReplayResult {
   std::uint64_t unreached_hashes = 0;  // recorded samples of steps that were not computed
   std::string end;                     // where the ticks that were not reached begin, by name; empty: all were
   double compute_time = 0;             // s
-  std::string problem;                 // first difference or gap, by name; empty: none
+  std::vector<std::string> gaps;       // in the ticks, behind which states follow; what is between was not compared
+  std::string problem;                 // first difference, or gap without states behind it, by name; empty: none
   [[nodiscard]] bool is_equal() const noexcept { return problem.empty() && different == 0; }
   // Every recorded step and hash was reached.
-  [[nodiscard]] bool is_whole() const noexcept { return unreached_steps == 0 && unreached_hashes == 0; }
+  [[nodiscard]] bool is_whole() const noexcept { return unreached_steps == 0 && unreached_hashes == 0 && gaps.empty(); }
 };
 
 // Until where a recording is computed, and the session as it is there.

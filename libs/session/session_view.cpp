@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "node/message_digest.h"
+#include "node/tick_counter.h"
 #include "transport/cdr/codec.h"
 #include "transport/given_up.h"
 
@@ -30,7 +32,7 @@ void SessionView::take_sample(std::span<const std::byte> bytes, Sample& sample) 
   flags_.take(sample.header, sample.state);
 }
 
-void SessionView::take(Topic topic, std::span<const std::byte> bytes) {
+void SessionView::take(Topic topic, std::span<const std::byte> bytes, std::optional<double> time) {
   // topics arrive in any order; those that are said only once must wait for the session they belong to
   const bool is_said_once =
       topic == Topic::node_status || topic == Topic::variable_directory || topic == Topic::controller_lease;
@@ -48,7 +50,7 @@ void SessionView::take(Topic topic, std::span<const std::byte> bytes) {
     case Topic::variable_directory:
       return take_directory(bytes);
     case Topic::variables:
-      return take_block(bytes);
+      return take_block(bytes, time);
     case Topic::mechanism:
       return take_sample(bytes, mechanism_);
     case Topic::actuators:
@@ -111,6 +113,8 @@ void SessionView::look_at(std::optional<wire::SessionDescription> session) {
   index_.clear();
   leases_.clear();
   flags_ = {};
+  curves_ = empty_curves_;
+  variables_digest_ = 0;
   step_ = kJoinStep;
   if (!session_) return;
   name_ = session_->name;
@@ -138,6 +142,7 @@ void SessionView::take_directory(std::span<const std::byte> bytes) {
   if (!transport::decode(bytes, directory) || node_of(directory.header) == nullptr) return;
   const auto role = static_cast<std::size_t>(directory.header.role);
   std::vector<VariableView>& variables = variables_[role];
+  if (curves_) curves_->take(directory);
   has_told_[role] = true;
   if (variables.size() < directory.total) variables.resize(directory.total);
   for (std::size_t i = 0; i < directory.entries.size(); ++i) {
@@ -150,9 +155,13 @@ void SessionView::take_directory(std::span<const std::byte> bytes) {
   }
 }
 
-void SessionView::take_block(std::span<const std::byte> bytes) {
+void SessionView::take_block(std::span<const std::byte> bytes, std::optional<double> time) {
   if (!transport::decode(bytes, block_) || node_of(block_.header) == nullptr) return;
   if (block_.header.phase != wire::Phase::running) return;
+  variables_digest_ += node::digest_of(bytes);
+  if (curves_)
+    curves_->take(block_,
+                  time.value_or(static_cast<double>(start_of(block_.header.step, {session_->step_ns}).ns) / 1e9));
   NodeView& node = *node_of(block_.header);
   ++node.blocks;
   if (!block_.values.empty()) {
@@ -178,12 +187,8 @@ bool SessionView::is_left_out(std::string_view name) const {
   return found != index_.end() && nodes_[found->second.first].left_out_since;
 }
 
-bool is_pause(const wire::NodeStatus& io) noexcept {
-  return io.state == wire::NodeState::holding && io.reason.empty();
-}
-
 bool SessionView::is_paused() const noexcept {
-  return is_pause(node(Role::io).status);
+  return node::is_pause(node(Role::io).status);
 }
 
 bool SessionView::is_over() const noexcept {

@@ -12,7 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "session/flag_counter.h"
+#include "node/flag_counter.h"
+#include "session/curves.h"
 #include "transport/transport.h"
 #include "transport/wire.h"
 
@@ -46,15 +47,19 @@ struct VariableView {
   StepIndex step = kJoinStep;  // of the value
 };
 
-// io_node's status in a pause that somebody asked for; when it holds for a node it gives a reason.
-[[nodiscard]] bool is_pause(const wire::NodeStatus& io) noexcept;
-
 class SessionView {
  public:
   // name: of the session to look at; empty takes the first one that is heard.
   explicit SessionView(std::string name = {}) : name_(std::move(name)) {}
 
-  void take(wire::Topic topic, std::span<const std::byte> bytes);
+  // time: of the message in the session [s]; none: that of its step.
+  void take(wire::Topic topic, std::span<const std::byte> bytes, std::optional<double> time = std::nullopt);
+  // Keeps variables as curves from now on.
+  void keep_curves(Curves curves) { curves_ = empty_curves_ = std::move(curves); }
+  // No further name of a variable comes.
+  void end_names() noexcept {
+    if (curves_) curves_->end_names();
+  }
 
   [[nodiscard]] bool has_session() const noexcept { return session_.has_value(); }
   [[nodiscard]] const wire::SessionDescription& session() const noexcept { return *session_; }
@@ -77,7 +82,11 @@ class SessionView {
   [[nodiscard]] const wire::ControllerLease* lease(const std::string& controller, const std::string& channel) const;
 
   // What the physics samples reported, as far as the transport reads their topics.
-  [[nodiscard]] const FlagCounter& flags() const noexcept { return flags_; }
+  [[nodiscard]] const node::FlagCounter& flags() const noexcept { return flags_; }
+  // What was kept of the variables; null: nothing.
+  [[nodiscard]] const Curves* curves() const noexcept { return curves_ ? &*curves_ : nullptr; }
+  // Of all blocks of variables that have come, whatever their order.
+  [[nodiscard]] std::uint64_t variables_digest() const noexcept { return variables_digest_; }
 
   // Every node that offers variables has told all their names.
   [[nodiscard]] bool has_whole_directory() const noexcept;
@@ -89,7 +98,7 @@ class SessionView {
   void take_status(std::span<const std::byte> bytes);
   void take_health(std::span<const std::byte> bytes);
   void take_directory(std::span<const std::byte> bytes);
-  void take_block(std::span<const std::byte> bytes);
+  void take_block(std::span<const std::byte> bytes, std::optional<double> time);
   template <typename Sample>
   void take_sample(std::span<const std::byte> bytes, Sample& sample);
   [[nodiscard]] NodeView* node_of(const wire::Header& header);
@@ -111,7 +120,9 @@ class SessionView {
   std::map<std::pair<std::string, std::string>, wire::ControllerLease> leases_;
   StepIndex step_ = kJoinStep;
   wire::VariableBlock block_;
-  FlagCounter flags_;
+  node::FlagCounter flags_;
+  std::optional<Curves> curves_, empty_curves_;
+  std::uint64_t variables_digest_ = 0;
   wire::MechanismMessage mechanism_;
   wire::ActuatorMessage actuators_;
 };

@@ -17,7 +17,7 @@
 
 namespace slew::wire {
 
-inline constexpr std::uint32_t kProtocolVersion = 4;
+inline constexpr std::uint32_t kProtocolVersion = 5;
 inline constexpr std::size_t kMaxChannels = 64;
 inline constexpr std::size_t kMaxCommandsPerTick = 16;
 inline constexpr std::size_t kMaxVariablesPerBlock = 1024;
@@ -28,6 +28,10 @@ inline constexpr std::size_t kMaxReasonLength = 255;       // characters: senten
 inline constexpr std::size_t kMaxAssets = 256;
 inline constexpr std::size_t kMaxHeard = 256;
 inline constexpr std::size_t kMaxSceneBytes = 8 * 1024 * 1024;
+// silence after which a node is given up: of a session that does not state it, and its bounds
+inline constexpr std::int64_t kGiveUpNs = 2'000'000'000;
+inline constexpr std::int64_t kLeastGiveUpNs = 500'000'000;
+inline constexpr std::int64_t kMostGiveUpNs = 60'000'000'000;
 inline constexpr std::size_t kMaxGivenUp = 64;                   // processes of one session
 inline constexpr std::size_t kMaxStatePart = 8192;               // bytes
 inline constexpr std::size_t kMaxStateBytes = 64 * 1024 * 1024;  // of one node
@@ -164,6 +168,8 @@ struct SessionDescription {
   // from protocol version 4 on
   std::int64_t rejoin_ns = 0;     // how long the place of a physics node that is lost is held; 0: it is not
   std::vector<GivenUp> given_up;  // at most kMaxGivenUp
+  // from protocol version 5 on
+  std::int64_t give_up_ns = kGiveUpNs;  // silence after which a node is given up
   bool operator==(const SessionDescription&) const = default;
 };
 

@@ -187,6 +187,7 @@ void fields(A& a, typename A::template Of<wire::SessionDescription>& m) {
   a(sentence(m.host), m.pid, m.started_ns);
   // recordings of earlier versions are read for ever
   if (m.protocol >= 4) a(m.rejoin_ns, List{m.given_up, wire::kMaxGivenUp});
+  if (m.protocol >= 5) a(Bounded{m.give_up_ns, wire::kLeastGiveUpNs, wire::kMostGiveUpNs});
 }
 
 template <typename A>

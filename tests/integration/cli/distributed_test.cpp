@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "../../support/test_domain.h"
 #include "command.h"
@@ -226,6 +228,64 @@ TEST_F(Distributed, ResetIsRecordedAndReplayed) {
   const CommandResult replayed = offline({"replay", work_.recording().string(), "--verify", "--json"});
   EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
   EXPECT_EQ(nlohmann::json::parse(replayed.out).at("epochs"), 2);
+}
+
+// Ranges, flags, times and plots come from what was seen and what the recorder counted; a reader of the whole recording
+// finds the same.
+TEST_F(Distributed, TheSummaryIsThatOfTheRecordingWithoutReadingIt) {
+  using nlohmann::json;
+  const CommandResult result = slewring({"run", scene_file("truck_crane.yaml"), "--pace", "free", "--duration", "4 s",
+                                         "--set", "hydraulics.substep_budget=2", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json summary = json::parse(result.out);
+  EXPECT_FALSE(summary.at("read_back").get<bool>());
+  EXPECT_EQ(summary.at("steps"), 4000);
+  const std::string recording = summary.at("recording");
+  // flags
+  const json info = json::parse(offline({"info", recording, "--json"}).out);
+  ASSERT_FALSE(info.at("notes").empty()) << "sub-steps that were accepted with their error";
+  for (const json& note : info.at("notes")) {
+    EXPECT_NE(std::find(summary.at("notes").begin(), summary.at("notes").end(), note), summary.at("notes").end())
+        << note;
+  }
+  // ranges
+  ASSERT_GT(summary.at("variables").size(), 3u);
+  for (const auto& [name, range] : summary.at("variables").items()) {
+    std::istringstream table(offline({"export", recording, name}).out);
+    std::string line;
+    std::getline(table, line);
+    double least = HUGE_VAL, most = -HUGE_VAL, last = 0;
+    while (std::getline(table, line)) {
+      last = std::stod(line.substr(line.find(',') + 1));
+      least = std::min(least, last);
+      most = std::max(most, last);
+    }
+    EXPECT_EQ(range.at("min").get<double>(), least) << name;
+    EXPECT_EQ(range.at("max").get<double>(), most) << name;
+    EXPECT_EQ(range.at("last").get<double>(), last) << name;
+  }
+  // plots
+  const auto text_of = [this](const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(work_.path() / path).rdbuf();
+    return text.str();
+  };
+  const std::string plots = summary.at("plots");
+  const std::string drawn = text_of(plots);
+  EXPECT_GT(drawn.size(), 1000u);
+  ASSERT_EQ(offline({"plot", recording}).code, 0);
+  EXPECT_EQ(text_of(plots), drawn);
+}
+
+// What the run's process did not get it reads in the recording.
+TEST_F(Distributed, TheSummaryOfASessionThatWasResetIsReadInTheRecording) {
+  const auto command = start("truck_crane.yaml", {"--duration", "60 s", "--json", "--pace", "real"});
+  ASSERT_TRUE(wait_until([&] { return slewring({"control", "reset"}).code == 0 || command->has_ended(); }));
+  EXPECT_EQ(slewring({"control", "stop"}).code, 0);
+  const CommandResult result = command->wait();
+  const nlohmann::json summary = nlohmann::json::parse(result.out);
+  EXPECT_TRUE(summary.at("read_back").get<bool>());
+  EXPECT_GT(summary.at("variables").size(), 3u);
 }
 
 TEST_F(Distributed, ASecondSessionOfTheNameIsRefusedNamingTheFirst) {

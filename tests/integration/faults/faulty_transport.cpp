@@ -114,8 +114,9 @@ FaultPlan FaultPlan::drawn_for_good(std::uint64_t seed, const std::vector<Role>&
 
 bool FaultPlan::is_dropped(Topic topic, Role from, Role to, std::size_t bytes, std::int64_t now_ns) const noexcept {
   return std::any_of(drops.begin(), drops.end(), [&](const Drop& drop) {
-    return now_ns >= drop.begin_ns && (!drop.topic || drop.topic == topic) && (!drop.from || drop.from == from) &&
-           (!drop.to || drop.to == to) && bytes >= drop.least_bytes && bytes <= drop.most_bytes;
+    return now_ns >= drop.begin_ns && now_ns < drop.end_ns && (!drop.topic || drop.topic == topic) &&
+           (!drop.from || drop.from == from) && (!drop.to || drop.to == to) && bytes >= drop.least_bytes &&
+           bytes <= drop.most_bytes;
   });
 }
 

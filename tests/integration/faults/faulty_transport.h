@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <random>
@@ -49,13 +50,15 @@ struct Kill {
   std::int64_t at_ns = 0;
 };
 
-// Messages that never arrive from a time on, as behind a filter or in a reader that was led astray: those of one topic,
-// of one size or in one direction, whatever else arrives. Any topic, also one that a reliable transport would repeat.
+// Messages that never arrive from a time on, or up to another one, as behind a filter or in a reader that was led
+// astray: those of one topic, of one size or in one direction, whatever else arrives. Any topic, also one that a
+// reliable transport would repeat.
 struct Drop {
   std::optional<wire::Topic> topic;
   std::optional<wire::Role> from, to;
   std::size_t least_bytes = 0, most_bytes = static_cast<std::size_t>(-1);
   std::int64_t begin_ns = 0;
+  std::int64_t end_ns = std::numeric_limits<std::int64_t>::max();
 };
 
 struct FaultPlan {

@@ -78,7 +78,8 @@ json to_json(const wire::SessionDescription& m) {
           {"pid", m.pid},
           {"started_ns", value_of(m.started_ns)},
           {"rejoin_ns", value_of(m.rejoin_ns)},
-          {"given_up", given_up}};
+          {"given_up", given_up},
+          {"give_up_ns", value_of(m.give_up_ns)}};
 }
 
 json to_json(const wire::NodeStatus& m) {

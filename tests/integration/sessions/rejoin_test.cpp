@@ -252,7 +252,8 @@ TEST_F(RunWithRejoin, StartsAKilledNodeAgainAndEndsWellWithTheSameBits) {
 TEST_F(RunWithRejoin, ReplacesANodeThatHangs) {
   send_to(Role::hydraulics, SIGSTOP);
   expect_one_restart_and_undisturbed_bits();
-  EXPECT_NE(run_.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos)
+  EXPECT_NE(run_.err().find("was silent for 2 s (session.give_up_after) and has lost its place; it is killed"),
+            std::string::npos)
       << run_.err();
 }
 
@@ -266,7 +267,8 @@ TEST_F(RunWithRejoin, NightlyReplacesANodeWhoseLoopHangs) {
   EXPECT_NE(run_.err().find("mechanics: warning: the loop of this node has stood still for 1 s at step "),
             std::string::npos)
       << run_.err();
-  EXPECT_NE(run_.err().find("was silent for 2 s and has lost its place; it is killed"), std::string::npos)
+  EXPECT_NE(run_.err().find("was silent for 2 s (session.give_up_after) and has lost its place; it is killed"),
+            std::string::npos)
       << run_.err();
 }
 

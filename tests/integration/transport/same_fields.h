@@ -111,7 +111,7 @@ inline bool same(const slewring_SessionDescription& a, const wire::SessionDescri
          a.scene_text == b.scene_text && same_list(a.assets, b.assets) && a.build == b.build &&
          a.self_test == b.self_test && a.step_ns == b.step_ns && same_value(a.pace, b.pace) && a.window == b.window &&
          a.required_roles == b.required_roles && a.host == b.host && a.pid == b.pid && a.started_ns == b.started_ns &&
-         a.rejoin_ns == b.rejoin_ns && same_list(a.given_up, b.given_up);
+         a.rejoin_ns == b.rejoin_ns && same_list(a.given_up, b.given_up) && a.give_up_ns == b.give_up_ns;
 }
 
 inline bool same(const slewring_Heard& a, const wire::Heard& b) {

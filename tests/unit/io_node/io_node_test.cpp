@@ -338,6 +338,31 @@ TEST_F(Io, TellsTheOthersToLeaveOutWhatItMayWhenStepsOverrun) {
   EXPECT_EQ(node->timing().transitions, 1u);
 }
 
+// A node that comes back just before it is given up requests the first tick that it has missed.
+TEST_F(Io, SendsTicksOfTheTimeAfterWhichANodeIsGivenUpAgain) {
+  IoConfig patient = config();
+  patient.give_up_after = milliseconds(5000);
+  restart(std::move(patient));
+  get_running();
+  EXPECT_EQ(played.session.header.session, node->member().session().header.session);
+  EXPECT_EQ(node->member().session().give_up_ns, 5000 * kMs);
+  run_to(5600);
+  const auto has_tick = [&](StepIndex step) {
+    played.forget();
+    wire::ResendRequest request;
+    request.header = played.header(Role::hydraulics, step);
+    request.role = Role::io;
+    request.topic = static_cast<std::uint8_t>(Topic::tick);
+    request.last_step = step;
+    played.say(Topic::resend, request);
+    poll();
+    const auto ticks = played.said<wire::Tick>(Topic::tick);
+    return !ticks.empty() && ticks.front().header.step == step;
+  };
+  EXPECT_TRUE(has_tick(5600 - 5500));
+  EXPECT_FALSE(has_tick(5600 - 5501));
+}
+
 TEST_F(Io, AsksForSamplesOnlyWhenTheyAreDue) {
   IoConfig slow = config();
   slow.step = milliseconds(10);

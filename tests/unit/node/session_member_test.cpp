@@ -133,8 +133,20 @@ TEST_F(Member, KeepsStatusesThatComeBeforeTheSession) {
   EXPECT_TRUE(member.peer(Role::hydraulics).is_known);
 }
 
+// ---- which process has a role ---------------------------------------------------------------------------------
+
+// io's status, which names the processes that it has chosen
+NodeStatus io_chooses(std::initializer_list<std::pair<Role, std::uint32_t>> processes) {
+  NodeStatus io = status_of(Role::io, 9, NodeState::joining);
+  for (const auto& [role, incarnation] : processes) {
+    io.heard.push_back({role, incarnation, static_cast<std::uint8_t>(Topic::node_status)});
+  }
+  return io;
+}
+
 TEST_F(Member, IsRefusedWhenItsRoleWasHeldBeforeItCame) {
   ASSERT_TRUE(hear(status_of(Role::mechanics, 5)).is_ok());
+  ASSERT_TRUE(hear(io_chooses({{Role::mechanics, 5}})).is_ok());
   const Status refusal = member.adopt(description(), 0);
   EXPECT_EQ(refusal.code, ExitCode::bad_input);
   EXPECT_NE(refusal.text.find("the role mechanics of session 's' is held by process 1005 on elsewhere"),
@@ -142,37 +154,35 @@ TEST_F(Member, IsRefusedWhenItsRoleWasHeldBeforeItCame) {
       << refusal.text;
 }
 
-TEST_F(Member, GivesWayToAnEarlierProcessOfItsRoleAndNotToALaterOne) {
+TEST_F(Member, GivesWayToTheProcessThatIoHasChosenInWhateverOrderTheStatusesCome) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
-  NodeStatus later = status_of(Role::mechanics, 6, NodeState::joining);
-  later.started_ns = INT64_MAX;
-  EXPECT_TRUE(hear(later).is_ok());
-  EXPECT_EQ(hear(status_of(Role::mechanics, 5, NodeState::joining)).code, ExitCode::bad_input);
+  NodeStatus other = status_of(Role::mechanics, 5, NodeState::joining);
+  other.started_ns = 0;
+  EXPECT_TRUE(hear(other).is_ok()) << "io has not chosen";
+  EXPECT_EQ(hear(io_chooses({{Role::mechanics, 5}})).code, ExitCode::bad_input);
+  EXPECT_EQ(hear(other).code, ExitCode::bad_input);
   // one that has ended holds nothing
   EXPECT_TRUE(hear(status_of(Role::mechanics, 5, NodeState::ended)).is_ok());
+  EXPECT_TRUE(hear(status_of(Role::mechanics, 6, NodeState::joining)).is_ok()) << "io has chosen another one";
 }
 
-TEST_F(Member, GivesWayToNobodyWhoHasRecordedNothingWhileItHas) {
+TEST_F(Member, KeepsTheRoleThatIoHasChosenItForFromReadyOnWhateverASecondOneSays) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
-  member.set_state(NodeState::running);
-  member.set_recorded_step(0);
-  NodeStatus earlier = status_of(Role::mechanics, 5);
-  earlier.started_ns = 0;
-  EXPECT_TRUE(hear(earlier).is_ok());
-  earlier.recorded_step = 7;
-  EXPECT_EQ(hear(earlier).code, ExitCode::bad_input);
-}
-
-TEST_F(Member, ThatHasBeenReadyFor2SecondsKeepsItsRoleWhateverASecondOneSays) {
-  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  const std::uint32_t own = member.header(Phase::join, kJoinStep).incarnation;
+  EXPECT_FALSE(member.holds_role());
+  ASSERT_TRUE(hear(io_chooses({{Role::mechanics, own}})).is_ok());
+  EXPECT_TRUE(member.holds_role());
   member.set_state(NodeState::ready);
   watch(kMs);
+  NodeStatus second = status_of(Role::mechanics, 6, NodeState::joining);
+  EXPECT_TRUE(hear(second, kMs).is_ok());
+  EXPECT_TRUE(member.take_warnings().empty()) << "one that has just been started ends by itself";
   NodeStatus forged = status_of(Role::mechanics, 5);
   forged.started_ns = 0;
   forged.recorded_step = 7;
-  EXPECT_TRUE(hear(forged, kSettled.ns + 2 * kMs).is_ok());
-  EXPECT_TRUE(hear(forged, kSettled.ns + 3 * kMs).is_ok());
-  EXPECT_EQ(member.refusals().unexpected_writer, 2u);
+  EXPECT_TRUE(hear(forged, kMs).is_ok());
+  EXPECT_TRUE(hear(forged, 2 * kMs).is_ok());
+  EXPECT_EQ(member.refusals().unexpected_writer, 3u);
   const std::vector<std::string> warnings = member.take_warnings();
   ASSERT_EQ(warnings.size(), 1u) << "once";
   EXPECT_NE(warnings.front().find("process 1005 on elsewhere, started 1970-01-01"), std::string::npos)
@@ -181,22 +191,90 @@ TEST_F(Member, ThatHasBeenReadyFor2SecondsKeepsItsRoleWhateverASecondOneSays) {
       << warnings.front();
 }
 
-TEST_F(Member, KeepsTheHolderOfARoleThatHasBeenReadyFor2SecondsUntilItEnds) {
+// One that was stopped, and wakes up when io has given its place away.
+TEST_F(Member, WhoseRoleWasGivenToAnotherProcessSaysSo) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  const std::uint32_t own = member.header(Phase::join, kJoinStep).incarnation;
+  ASSERT_TRUE(hear(io_chooses({{Role::mechanics, own}})).is_ok());
+  member.set_state(NodeState::running);
+  NodeStatus next = status_of(Role::mechanics, 5);
+  next.started_ns = INT64_MAX;
+  ASSERT_TRUE(hear(next).is_ok());
+  EXPECT_TRUE(member.take_warnings().empty());
+  const Status lost = hear(io_chooses({{Role::mechanics, own}, {Role::mechanics, 5}}));
+  EXPECT_EQ(lost.code, ExitCode::node_lost);
+  EXPECT_NE(lost.text.find("was given to another process"), std::string::npos) << lost.text;
+}
+
+TEST_F(Member, KeepsTheHolderOfAnotherRoleUntilItEnds) {
   ASSERT_TRUE(member.adopt(description(), 0).is_ok());
   NodeStatus holder = status_of(Role::hydraulics, 6, NodeState::ready);
   ASSERT_TRUE(hear(holder, kMs).is_ok());
   NodeStatus forged = status_of(Role::hydraulics, 5, NodeState::running);
   forged.started_ns = 0;
-  EXPECT_TRUE(hear(forged, kSettled.ns + 2 * kMs).is_ok());
+  EXPECT_TRUE(hear(forged, kMs).is_ok());
   EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 6u);
   holder.state = NodeState::initialising;  // a reset changes nothing
-  ASSERT_TRUE(hear(holder, kSettled.ns + 3 * kMs).is_ok());
-  EXPECT_TRUE(hear(forged, kSettled.ns + 4 * kMs).is_ok());
+  ASSERT_TRUE(hear(holder, 2 * kMs).is_ok());
+  EXPECT_TRUE(hear(forged, 3 * kMs).is_ok());
   EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 6u);
   holder.state = NodeState::fault;
-  ASSERT_TRUE(hear(holder, kSettled.ns + 5 * kMs).is_ok());
-  EXPECT_TRUE(hear(forged, kSettled.ns + 6 * kMs).is_ok());
+  ASSERT_TRUE(hear(holder, 4 * kMs).is_ok());
+  EXPECT_TRUE(hear(forged, 5 * kMs).is_ok());
   EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 5u);
+}
+
+TEST_F(Member, HasOnlyOneIo) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  NodeStatus forged = status_of(Role::io, 5, NodeState::fault);
+  forged.started_ns = 0;
+  ASSERT_TRUE(hear(forged).is_ok());
+  EXPECT_EQ(member.peer(Role::io).incarnation, 9u);
+  EXPECT_EQ(member.peer(Role::io).status.state, NodeState::joining);
+}
+
+TEST_F(Member, FollowsTheProcessThatIoHasChosenWhicheverItHeardFirst) {
+  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5, NodeState::joining)).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 6, NodeState::joining)).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 5u);
+  ASSERT_TRUE(hear(io_chooses({{Role::hydraulics, 6}})).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 6u);
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5, NodeState::ready)).is_ok());
+  EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 6u);
+  // a replacement
+  wire::SessionDescription renewed = description();
+  renewed.given_up.push_back({Role::hydraulics, 6});
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 7, NodeState::joining)).is_ok());
+  ASSERT_TRUE(hear(io_chooses({{Role::hydraulics, 6}, {Role::hydraulics, 7}})).is_ok());
+  member.renew(renewed, 0);
+  EXPECT_EQ(member.peer(Role::hydraulics).incarnation, 7u);
+}
+
+// Two processes of a role that start at one instant: whatever each hears first, io decides before one can be READY.
+TEST(TwoOfOneRole, AreDecidedByTheOneWhoseStatusIoTookFirst) {
+  InProcessBus bus;
+  InProcessEndpoint place(bus, {"io", {Topic::node_status}, transport::TopicSet::all()});
+  InProcessEndpoint hears(bus, {"listener", {}, {Topic::node_status}});
+  SessionMember owner(Role::io, place, {});
+  wire::SessionDescription own = description();
+  own.header.incarnation = owner.header(Phase::join, kJoinStep).incarnation;
+  ASSERT_TRUE(owner.adopt(own, 0).is_ok());
+  for (const std::uint32_t incarnation : {6u, 5u}) {
+    NodeStatus claim =
+        status_of(Role::mechanics, incarnation, incarnation == 5 ? NodeState::running : NodeState::joining);
+    std::vector<std::byte> bytes;
+    ASSERT_TRUE(transport::encode(claim, bytes));
+    ASSERT_TRUE(owner.on_node_status(bytes, 0).is_ok());
+  }
+  owner.publish_status_if_changed();
+  transport::Received received;
+  ASSERT_TRUE(hears.take(received));
+  NodeStatus said;
+  ASSERT_TRUE(transport::decode(received.bytes, said));
+  const wire::Heard chosen{Role::mechanics, 6, static_cast<std::uint8_t>(Topic::node_status)};
+  EXPECT_EQ(said.heard, std::vector<wire::Heard>{chosen});
+  EXPECT_FALSE(owner.fits(status_of(Role::mechanics, 5).header, Topic::mechanism));
 }
 
 TEST_F(Member, DoesNotHearASecondProcessOfAnotherRole) {
@@ -214,23 +292,6 @@ TEST_F(Member, TakesTheSuccessorOfANodeThatEndedBeforeTheStart) {
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 5, NodeState::fault)).is_ok());
   ASSERT_TRUE(hear(status_of(Role::hydraulics, 6, NodeState::joining)).is_ok());
   EXPECT_EQ(member.peer(Role::hydraulics).status.pid, 1006u);
-}
-
-TEST_F(Member, KeepsTheProcessThatIsFurtherOnUntilAnotherOneIsAsFar) {
-  ASSERT_TRUE(member.adopt(description(), 0).is_ok());
-  const auto heard_now = [&](std::uint32_t incarnation, NodeState state, std::int64_t started_ns) {
-    NodeStatus status = status_of(Role::hydraulics, incarnation, state);
-    status.started_ns = started_ns;
-    EXPECT_TRUE(hear(status).is_ok());
-    return member.peer(Role::hydraulics).incarnation;
-  };
-  EXPECT_EQ(heard_now(6, NodeState::joining, 20), 6u);
-  EXPECT_EQ(heard_now(6, NodeState::initialising, 20), 6u);
-  EXPECT_EQ(heard_now(5, NodeState::joining, 10), 6u) << "it started first, but the other one was heard by all";
-  EXPECT_EQ(heard_now(5, NodeState::initialising, 10), 5u);
-  EXPECT_EQ(heard_now(6, NodeState::ready, 20), 6u);
-  EXPECT_EQ(heard_now(5, NodeState::ready, 10), 5u);
-  EXPECT_EQ(heard_now(6, NodeState::holding, 20), 5u);
 }
 
 TEST_F(Member, CountsMessagesThatDoNotFitPerCause) {
@@ -273,6 +334,29 @@ TEST_F(Member, NamesASilentNodeOnceAndTakesItBack) {
   EXPECT_EQ(watch(321 * kMs), PeerEvent::back);
 }
 
+class GiveUpAfter : public Member, public ::testing::WithParamInterface<std::int64_t> {};
+
+TEST_P(GiveUpAfter, IsTheSessionsAndNotLess) {
+  wire::SessionDescription session = description();
+  session.give_up_ns = GetParam() * kMs;
+  ASSERT_TRUE(member.adopt(session, 0).is_ok());
+  ASSERT_TRUE(hear(status_of(Role::hydraulics, 5), 0).is_ok());
+  std::int64_t lost_ns = 0;
+  for (std::int64_t now_ns = 10 * kMs; lost_ns == 0 && now_ns < 100'000 * kMs; now_ns += 10 * kMs) {
+    hear_health(Role::io, 9, now_ns);
+    if (member.watch_peers(now_ns, about) == PeerEvent::lost) lost_ns = now_ns;
+  }
+  EXPECT_EQ(about, Role::hydraulics);
+  EXPECT_EQ(lost_ns, session.give_up_ns + 10 * kMs);
+  EXPECT_NE(member.silence_text(about).find("; it is given up after " + seconds_text({session.give_up_ns}) +
+                                            " (session.give_up_after)"),
+            std::string::npos)
+      << member.silence_text(about);
+  EXPECT_EQ(member.linger().ns, std::max(session.give_up_ns, kLinger.ns));
+}
+
+INSTANTIATE_TEST_SUITE_P(Milliseconds, GiveUpAfter, ::testing::Values(500, 2'000, 10'000, 60'000));
+
 // ---- standing still oneself -----------------------------------------------------------------------------------
 
 TEST_F(Member, ThatStoodStillItselfGivesTheOthersTimeToBeHeardAgainOnce) {
@@ -312,14 +396,16 @@ TEST_F(Member, ThatWasGivenUpSaysWhetherItStoodStillOrWasNotHeard) {
   EXPECT_EQ(watch(10 * kMs), PeerEvent::none);
   ASSERT_TRUE(hear(io, 20 * kMs).is_ok());
   const std::string reason = "io ended the session: " + io.reason;
-  EXPECT_EQ(member.end_text(Role::io, reason),
-            "this node ran, but was not heard for 2 s and was given up; look at the network from this machine to the "
-            "others; " +
-                reason);
+  EXPECT_EQ(
+      member.end_text(Role::io, reason),
+      "this node ran, but was not heard for 2 s (session.give_up_after) and was given up; look at the network from "
+      "this machine to the others; " +
+          reason);
   EXPECT_EQ(watch(30'010 * kMs), PeerEvent::none);
-  EXPECT_EQ(member.end_text(Role::io, reason),
-            "this node stood still for 30 s at step 512 and was given up after 2 s; session 's' has ended; look for "
-            "what stopped the process (a signal, a debugger, lack of memory or of processors)");
+  EXPECT_EQ(
+      member.end_text(Role::io, reason),
+      "this node stood still for 30 s at step 512 and was given up after 2 s (session.give_up_after); session 's' "
+      "has ended; look for what stopped the process (a signal, a debugger, lack of memory or of processors)");
   // any other reason is its own
   io.reason = "hydraulics (process 1005 on elsewhere) is gone; the session was held";
   ASSERT_TRUE(hear(io, 30'020 * kMs).is_ok());
@@ -334,9 +420,10 @@ TEST_F(Member, ThatStoodStillAndHearsNobodyAfterwardsSaysSo) {
   EXPECT_EQ(watch(30'100 * kMs + kSilentAfter.ns), PeerEvent::none);
   EXPECT_EQ(watch(31'000 * kMs), PeerEvent::none);
   EXPECT_EQ(watch(32'001 * kMs), PeerEvent::lost);
-  EXPECT_EQ(member.end_text(about, "io is gone"),
-            "io is gone; this node itself had stood still for 30 s, and after 2 s the others give a node up; look for "
-            "what stopped the process (a signal, a debugger, lack of memory or of processors)");
+  EXPECT_EQ(
+      member.end_text(about, "io is gone"),
+      "io is gone; this node itself had stood still for 30 s, and after 2 s (session.give_up_after) the others give "
+      "a node up; look for what stopped the process (a signal, a debugger, lack of memory or of processors)");
 }
 
 // A transport whose cable is out: it sends when it is plugged in again.
@@ -366,10 +453,12 @@ TEST_F(Member, ThatCouldNotSendIsToldToLookAtItsNetwork) {
   EXPECT_EQ(watch_sender(2'221 * kMs + kSilentAfter.ns), PeerEvent::silent);
   EXPECT_EQ(watch_sender(3'000 * kMs), PeerEvent::none);
   EXPECT_EQ(watch_sender(4'212 * kMs), PeerEvent::lost);
-  EXPECT_EQ(sender.end_text(about, "io is gone"),
-            "io is gone; this node itself had stood still for 2 s while it sent, and after 2 s the others give a node "
-            "up; look for what stopped the process (a signal, a debugger, lack of memory or of processors) or took "
-            "nothing from it (a cable that is out, an interface that is down)");
+  EXPECT_EQ(
+      sender.end_text(about, "io is gone"),
+      "io is gone; this node itself had stood still for 2 s while it sent, and after 2 s (session.give_up_after) the "
+      "others give a node up; look for what stopped the process (a signal, a debugger, lack of memory or of "
+      "processors) or took "
+      "nothing from it (a cable that is out, an interface that is down)");
 }
 
 // ---- other programs -------------------------------------------------------------------------------------------

@@ -52,7 +52,14 @@ class RecorderBench {
     poll(kMs);
     say_probe();
     poll(kMs);
+    ASSERT_EQ(node->member().state(), NodeState::joining) << "io has not chosen it";
+    choose(node->member().header(Phase::join, kJoinStep), NodeState::joining);
     ASSERT_EQ(node->member().state(), NodeState::ready);
+  }
+  // io has taken the status of this process first
+  void choose(const wire::Header& process, NodeState state) {
+    played.say_heard(Role::io, state, process, {Topic::node_status});
+    poll(kMs);
   }
   // ticks and samples of [from, to]
   void say_steps(StepIndex from, StepIndex to) {
@@ -171,6 +178,86 @@ TEST_F(Recorder, AsksForAGapWhileAllElseComesInOrder) {
   const auto next = played.said<wire::ResendRequest>(Topic::resend);
   ASSERT_GE(next.size(), 1u);
   EXPECT_EQ(next[0].header.step, 9);
+}
+
+// Ticks that no node can send again, as a recorder sees them that was behind by more than the others keep.
+TEST_F(Recorder, BehindAGapInTheTicksRecordsTheStatesOfAllNodes) {
+  join();
+  say_steps(0, 9);
+  for (StepIndex step = 10; step < 3000; ++step) {
+    if (step < 13 || step > 15) played.say_tick(step);
+    played.say_mechanism(step);
+    played.say_actuators(step);
+    if (step % 100 == 0) poll(100 * kMs);
+  }
+  poll(kMs);
+  // asked for as a recorder does that comes late
+  const auto has_asked = [&](Role role, StepIndex step) {
+    const auto asked = played.said<wire::ResendRequest>(Topic::resend);
+    return std::any_of(asked.begin(), asked.end(), [&](const wire::ResendRequest& request) {
+      return request.topic == static_cast<std::uint8_t>(Topic::state) && request.role == role &&
+             request.header.step == step;
+    });
+  };
+  EXPECT_TRUE(has_asked(Role::io, kJoinStep));
+  wire::StatePart part;
+  part.total = 5;
+  part.bytes.resize(5);
+  const auto say_state = [&](Role role, StepIndex step) {
+    part.header = played.header(Role::io, step);
+    part.role = role;
+    played.say(Topic::state, part);
+    poll(kMs);
+  };
+  say_state(Role::io, 14);  // of a step in the gap: no use
+  say_state(Role::io, 3000);
+  say_state(Role::mechanics, 3000);
+  played.forget();
+  poll(200 * kMs);
+  EXPECT_TRUE(has_asked(Role::hydraulics, 3000));
+  say_state(Role::hydraulics, 3000);
+  say_state(Role::hydraulics, 3000);
+  say_state(Role::io, 3100);  // of somebody who saves the session
+  played.forget();
+  say_steps(3000, 3010);
+  EXPECT_FALSE(has_asked(Role::io, kJoinStep)) << "once";
+  say_end(3010);
+  ASSERT_TRUE(node->is_finished());
+  EXPECT_EQ(recorded(Topic::state), std::set<StepIndex>{3000});
+  EXPECT_EQ(summary("state.recorded"), "3");
+  EXPECT_EQ(summary("state.lost"), "0");
+  EXPECT_EQ(summary("tick.lost"), "3");
+  EXPECT_EQ(node->member().exit_code(), ExitCode::losses);
+  std::unique_ptr<recording::Reader> reader;
+  ASSERT_EQ(recording::Reader::open(node->recording(), reader).text, "");
+  std::vector<recording::TextMap> gaps;
+  for (const recording::MetadataRecord& record : reader->metadata()) {
+    if (record.name == recording::kGapName) gaps.push_back(record.entries);
+  }
+  ASSERT_EQ(gaps.size(), 1u);
+  EXPECT_EQ(gaps[0], (recording::TextMap{{"cause", "no node could send them again"},
+                                         {"epoch", "0"},
+                                         {"from_step", "13"},
+                                         {"to_step", "15"},
+                                         {"left_out.tick", "3"}}));
+}
+
+// A sample that is missing is no obstacle for who computes the session again.
+TEST_F(Recorder, BehindAGapInTheSamplesAsksForNoStates) {
+  join();
+  say_steps(0, 9);
+  for (StepIndex step = 10; step < 3000; ++step) {
+    played.say_tick(step);
+    if (step != 13) played.say_mechanism(step);
+    played.say_actuators(step);
+    if (step % 100 == 0) poll(100 * kMs);
+  }
+  poll(kMs);
+  for (const wire::ResendRequest& request : played.said<wire::ResendRequest>(Topic::resend)) {
+    EXPECT_NE(request.topic, static_cast<std::uint8_t>(Topic::state));
+  }
+  say_end(2999);
+  EXPECT_EQ(summary("mechanism.lost"), "1");
 }
 
 TEST_F(Recorder, NamesNoFileThatItCouldNotCreate) {
@@ -329,6 +416,7 @@ TEST_F(Recorder, RecordsAnInitThatComesBeforeIosProbe) {
   EXPECT_EQ(node->member().state(), NodeState::joining);
   say_probe();
   poll(kMs);
+  choose(node->member().header(Phase::join, kJoinStep), NodeState::joining);
   ASSERT_EQ(node->member().state(), NodeState::ready);
   played.say_tick(0);
   played.say_actuators(0);
@@ -675,20 +763,26 @@ TEST_F(Recorder, IsNotDisturbedByAnEmptyOneWhoseClockIsBehind) {
   EXPECT_EQ(recorded(Topic::tick).size(), 13u);
 }
 
-TEST_F(Recorder, KeepsWhatItHasRecordedWhenItMustGiveWay) {
+// Directly after READY, whatever the other one says.
+TEST_F(Recorder, ThatIsReadyYieldsToNoStatus) {
   join();
-  say_steps(0, 9);
   played.say(Topic::node_status, other_recorder(NodeState::running, 100, 0));
   poll(kMs);
-  EXPECT_TRUE(node->is_finished());
-  EXPECT_EQ(node->member().exit_code(), ExitCode::bad_input);
+  EXPECT_FALSE(node->is_finished());
+  say_steps(0, 9);
+  played.say(Topic::node_status, other_recorder(NodeState::running, 200, 0));
+  say_end(9);
+  EXPECT_EQ(node->member().exit_code(), ExitCode::ok) << node->member().reason();
   EXPECT_EQ(recorded(Topic::tick).size(), 10u);
 }
 
-TEST_F(Recorder, LeavesNothingBehindWhenItGivesWayBeforeTheFirstStep) {
-  join();
-  played.say(Topic::node_status, other_recorder(NodeState::ready, kJoinStep, 0));
+TEST_F(Recorder, LeavesNothingBehindWhenIoHasChosenAnotherOne) {
+  played.say(Topic::session, played.session);
+  poll();
+  played.say(Topic::node_status, other_recorder(NodeState::joining, kJoinStep, 0));
   poll(kMs);
+  EXPECT_FALSE(node->is_finished());
+  choose(other_recorder(NodeState::joining, kJoinStep, 0).header, NodeState::joining);
   EXPECT_TRUE(node->is_finished());
   EXPECT_TRUE(std::filesystem::is_empty(folder));
   EXPECT_TRUE(node->recording().empty());
@@ -709,7 +803,7 @@ TEST_F(Recorder, LeavesNothingBehindOfASessionThatIsWithdrawn) {
 TEST_F(Recorder, ThatComesToARunningSessionIsNoRivalBeforeItHasHeardTheFirst) {
   played.say(Topic::session, played.session);
   poll();
-  played.say_status(Role::io, NodeState::running);
+  choose(other_recorder(NodeState::running, 499, INT64_MAX).header, NodeState::running);
   played.say_tick(500);
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::joining);

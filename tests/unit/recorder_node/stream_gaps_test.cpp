@@ -51,6 +51,23 @@ TEST(StreamGaps, WhatNeverComesIsCountedAsLost) {
   EXPECT_EQ(stream.lost(), 5u);
 }
 
+TEST(StreamGaps, TellsOnceWhatItHasGivenUp) {
+  StreamGaps stream(64);
+  for (const StepIndex step : {0, 1, 4, 7, 8}) stream.arrived(step);
+  stream.give_up_before(6);
+  EXPECT_EQ(stream.next(), 6);
+  const StreamGaps::Lost first = stream.take_lost();
+  EXPECT_EQ(first.first, 2);
+  EXPECT_EQ(first.last, 5);
+  EXPECT_EQ(first.steps, 3u);
+  EXPECT_EQ(stream.take_lost().steps, 0u);
+  stream.give_up_before(7);
+  EXPECT_EQ(stream.next(), 9) << "7 and 8 have come";
+  EXPECT_EQ(stream.take_lost().steps, 1u);
+  stream.give_up_before(5);
+  EXPECT_EQ(stream.lost(), 4u);
+}
+
 TEST(StreamGaps, OneOddStepGivesUpNothing) {
   StreamGaps stream(8);
   stream.arrived(0);

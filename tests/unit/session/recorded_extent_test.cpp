@@ -108,6 +108,18 @@ TEST_F(Extent, EndsInFrontOfTheFirstGapHoweverLongItIs) {
   EXPECT_EQ(torn.lost, 3u * (1 + 20'000 - 731));
 }
 
+TEST_F(Extent, BeginsNotWithTheStatesThatFollowAGap) {
+  say(Topic::mechanism, kJoinStep, Phase::init);
+  run(0, 300);
+  run(320, 400);
+  say(Topic::state, 410);
+  run(401, 500);
+  const RecordedExtent torn = extent();
+  EXPECT_EQ(torn.first_step, 0);
+  EXPECT_EQ(torn.complete_to, 300);
+  EXPECT_EQ(torn.lost, 3u * 19);
+}
+
 TEST_F(Extent, CountsTheFirstStepsThatAreMissingBehindTheStates) {
   say(Topic::state, 700);
   run(702, 710);

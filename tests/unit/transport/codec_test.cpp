@@ -89,6 +89,28 @@ TEST(OfARecordingOfVersion3, AReplySaysNotWhatWasAsked) {
   expect_may_be_missing(reply, &wire::ControlReply::asked, 4 + 40 + 8 + 8 + 8 + 8);
 }
 
+TEST(OfARecordingOfVersion4, ADescriptionGivesANodeUpAfter2Seconds) {
+  wire::SessionDescription session;
+  session.protocol = 4;
+  session.rejoin_ns = 7;
+  session.give_up_ns = 9'000'000'000;
+  ByteBuffer before, now;
+  ASSERT_TRUE(encode(session, before));
+  session.protocol = 5;
+  ASSERT_TRUE(encode(session, now));
+  EXPECT_GT(now.size(), before.size());
+  wire::SessionDescription received;
+  ASSERT_TRUE(decode(before, received));
+  EXPECT_EQ(received.rejoin_ns, 7);
+  EXPECT_EQ(received.give_up_ns, 2'000'000'000);
+  ASSERT_TRUE(decode(now, received));
+  EXPECT_EQ(received.give_up_ns, 9'000'000'000);
+  for (const std::int64_t refused : {std::int64_t{0}, std::int64_t{499'999'999}, std::int64_t{60'000'000'001}}) {
+    session.give_up_ns = refused;
+    EXPECT_FALSE(encode(session, now)) << refused;
+  }
+}
+
 TYPED_TEST(EveryMessage, WithFourBytesTooManyIsRefused) {
   std::mt19937_64 random(3);
   ByteBuffer buffer;

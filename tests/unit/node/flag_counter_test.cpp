@@ -1,12 +1,15 @@
 // Counts of what samples report.
-#include "session/flag_counter.h"
+#include "node/flag_counter.h"
 
 #include <gtest/gtest.h>
 
+#include "cli/flag_report.h"
 #include "core/step_report.h"
 
 namespace slew::session {
 namespace flag_counter_test {
+
+using node::FlagCounter;
 
 void take(FlagCounter& flags, StepIndex step, StepFlag flag, std::uint32_t epoch = 1) {
   wire::Header header;
@@ -26,7 +29,7 @@ TEST(FlagCounter, ARepeatedSampleIsCountedOnce) {
   for (const StepIndex step : {0, 1, 2, 2, 1, 3}) take(flags, step, StepFlag::beyond_oil_law);
   EXPECT_EQ(flags.missed(0), 0u);
   EXPECT_EQ(
-      flags.sentences(milliseconds(1), {"Tank", "Line"}),
+      flag_sentences(flags, milliseconds(1), {"Tank", "Line"}),
       std::vector<std::string>{
           "hydraulics: Line: a pressure was beyond what the oil's law is good for (1000 bar) in 4 steps, first at "
           "0; limit it: a relief valve on the line, a lower load or setting"});
@@ -38,7 +41,23 @@ TEST(FlagCounter, SamplesThatDidNotArriveAreCountedAndANewEpochIsNoGap) {
   for (const StepIndex step : {0, 1}) take(flags, step, StepFlag{}, 2);
   EXPECT_EQ(flags.missed(0), 4u);  // 1 and 2, 5 and 6
   EXPECT_EQ(flags.missed(3), 2u);
-  EXPECT_TRUE(flags.sentences(milliseconds(1), {}).empty());
+  EXPECT_TRUE(flag_sentences(flags, milliseconds(1), {}).empty());
+}
+
+TEST(FlagCounter, ComesBackFromItsLine) {
+  FlagCounter flags;
+  for (const StepIndex step : {3, 4, 7}) take(flags, step, StepFlag::cavitating);
+  take(flags, 8, StepFlag::large_deflection);
+  const std::optional<FlagCounter> read = FlagCounter::of_text(flags.text());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->text(), flags.text());
+  EXPECT_EQ(flag_sentences(*read, milliseconds(1), {"Tank", "Line"}),
+            flag_sentences(flags, milliseconds(1), {"Tank", "Line"}));
+  EXPECT_TRUE(flags.is_in_order());
+  take(flags, 5, StepFlag::cavitating);
+  EXPECT_FALSE(flags.is_in_order());
+  for (const char* broken : {"", "1 2", "1 9 0 0 0 0 0 0 0 0", "x"})
+    EXPECT_FALSE(FlagCounter::of_text(broken)) << broken;
 }
 
 }  // namespace flag_counter_test
