@@ -49,7 +49,7 @@ analysis::Motion read_motion(const recording::Reader& reader, const scene::Scene
     for (const char* part : kParts) names.push_back(machine.bodies[body].name + "." + part);
   }
   check_poses(reader, scene, names);
-  std::vector<plotting::Series> series = session::read_series(reader, names, Units::si, range);
+  std::vector<plotting::Series> series = session::read_series(reader, names, session::Units::si, range);
   plotting::keep_common_instants(series);
   const plotting::PlotOptions heading = analysis::plot_heading(reader);
   analysis::Motion motion{heading.title, heading.subtitle, series.front().time, {}, {}};

@@ -72,7 +72,7 @@ std::string input_text(const recording::Reader& reader, const session::TimeRange
   }
   std::vector<std::string> names;
   for (const scene::InputDef& input : scene.inputs) names.push_back(input.name + ".raw");
-  std::vector<plotting::Series> curves = session::read_series(reader, names, Units::si, range);
+  std::vector<plotting::Series> curves = session::read_series(reader, names, session::Units::si, range);
   plotting::keep_common_instants(curves);
   check_values(reader, curves);
   const std::vector<double>& time = curves.front().time;
@@ -125,7 +125,7 @@ ExitCode export_variables(Options options) {
   if (wishes.empty()) wishes = {"*"};
   const session::TimeRange range = session::recorded_range(options.from, options.to);
   const auto reader = session::open_recording(options.recording);
-  const std::vector<plotting::Series> curves = session::read_series(*reader, wishes, Units::si, range);
+  const std::vector<plotting::Series> curves = session::read_series(*reader, wishes, session::Units::si, range);
   check_values(*reader, curves);
   if (options.output.empty() || options.output == "-") {
     plotting::write_csv(curves, std::cout);

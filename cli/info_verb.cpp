@@ -133,7 +133,7 @@ Json to_json(const recording::Reader& reader, double simulated) {
 
 void print(const recording::Reader& reader, double simulated, bool has_all_events) {
   const recording::SessionIdentity& identity = reader.identity();
-  const TickSpan span = session::tick_span(reader);
+  const session::TickSpan span = session::tick_span(reader);
   ReportTable rows({"", ""});
   rows.add(
       {"file", fmt::format("{} ({:.2f} MB)", reader.path().string(), static_cast<double>(reader.file_bytes()) * 1e-6)});

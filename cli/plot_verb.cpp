@@ -46,7 +46,7 @@ std::vector<plotting::Series> read_beside(const Readers& readers, const std::vec
   std::vector<std::vector<plotting::Series>> by_recording;
   for (std::size_t i = 0; i < readers.size(); ++i) {
     try {
-      by_recording.push_back(session::read_series(*readers[i], variables, Units::display));
+      by_recording.push_back(session::read_series(*readers[i], variables, session::Units::display));
     } catch (const Failure& failure) {
       throw Failure(failure.code(), readers[i]->path().string() + ": " + failure.what());
     }
@@ -95,7 +95,8 @@ ExitCode plot(const Options& options) {
   plotting::PlotOptions look = analysis::plot_heading(*reader);
   if (!options.title.empty()) look.title = options.title;
   if (!options.variables.empty()) {
-    plotting::Plot plot{.title = "", .series = session::read_series(*reader, options.variables, Units::display)};
+    plotting::Plot plot{.title = "",
+                        .series = session::read_series(*reader, options.variables, session::Units::display)};
     plotting::part_at_gaps(plot.series);
     return draw({&plot, 1}, look, options.output);
   }

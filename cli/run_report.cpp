@@ -207,7 +207,7 @@ void explain(const recording::Reader& reader, const session::SessionView& view,
 
 // Steps of the session that the recording has not got, and ticks that it should not have. A session that was in order
 // then ends with losses.
-void compare_steps(const TickSpan& span, const session::NodeView& io, RunReport& report) {
+void compare_steps(const session::TickSpan& span, const session::NodeView& io, RunReport& report) {
   const bool is_in_order =
       report.code == ExitCode::ok || report.code == ExitCode::interrupted || report.code == ExitCode::terminated;
   if (!is_in_order) return;
@@ -245,7 +245,7 @@ void report_recorded(const scene::Scene& scene, const std::string& assets, const
   const session::SessionView& view = recorded ? *recorded : outcome.view;
   report_ranges(view, scene, report);
   report.lost = losses(*reader);
-  const TickSpan span = closing ? closing->ticks : session::tick_span(*reader);
+  const session::TickSpan span = closing ? closing->ticks : session::tick_span(*reader);
   // a recording that could not go on knows less than what was seen of the session
   const bool is_short = report.code == ExitCode::storage && span.steps < report.steps;
   if (!is_short) {

@@ -25,7 +25,7 @@ ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader
   return draw_plots(scene, *session::view_recording(reader, session::Values::all, plotted(scene)).curves(), reader);
 }
 
-ScenePlots draw_plots(const scene::Scene& scene, const Curves& curves, const recording::Reader& reader) {
+ScenePlots draw_plots(const scene::Scene& scene, const session::Curves& curves, const recording::Reader& reader) {
   ScenePlots read;
   const std::vector<std::string> names = curves.names();
   for (const scene::PlotDef& plot : scene.plots) {
@@ -38,7 +38,7 @@ ScenePlots draw_plots(const scene::Scene& scene, const Curves& curves, const rec
       });
     }
     if (wanted.empty()) continue;
-    read.plots.push_back({plot.title.empty() ? plot.name : plot.title, curves.select(wanted, Units::display)});
+    read.plots.push_back({plot.title.empty() ? plot.name : plot.title, curves.select(wanted, session::Units::display)});
     plotting::part_at_gaps(read.plots.back().series);
   }
   return read;

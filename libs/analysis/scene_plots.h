@@ -18,7 +18,8 @@ struct ScenePlots {
 };
 [[nodiscard]] ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader);
 // The same from curves that keep what the plots need; of the reader nothing but its scene is read.
-[[nodiscard]] ScenePlots draw_plots(const scene::Scene& scene, const Curves& curves, const recording::Reader& reader);
+[[nodiscard]] ScenePlots draw_plots(const scene::Scene& scene, const session::Curves& curves,
+                                    const recording::Reader& reader);
 // Names and patterns of all that the scene plots.
 [[nodiscard]] std::vector<std::string> plotted(const scene::Scene& scene);
 // What stands above pictures of a recording.

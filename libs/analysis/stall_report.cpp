@@ -72,8 +72,8 @@ std::vector<std::string> variables_of(const Drive& drive) {
 }
 
 // The longest stall of a drive.
-std::optional<Stall> find_stall(const Curves& all, const Drive& drive) {
-  std::vector<plotting::Series> curves = all.select(variables_of(drive), Units::si);
+std::optional<Stall> find_stall(const session::Curves& all, const Drive& drive) {
+  std::vector<plotting::Series> curves = all.select(variables_of(drive), session::Units::si);
   plotting::keep_common_instants(curves);  // of nodes that did not end together
   const std::size_t size = curves[0].values.size();
   const double sign = drive.direction;
@@ -107,16 +107,17 @@ struct HeldLoad {
 };
 
 // Value of a variable at a time.
-double value_at(const Curves& curves, const std::string& name, double time) {
+double value_at(const session::Curves& curves, const std::string& name, double time) {
   const std::string wanted[] = {name};
-  const plotting::Series curve = curves.select(wanted, Units::si).front();
+  const plotting::Series curve = curves.select(wanted, session::Units::si).front();
   const auto at = std::lower_bound(curve.time.begin(), curve.time.end(), time);
   if (at == curve.time.end()) return curve.values.back();
   return curve.values[static_cast<std::size_t>(at - curve.time.begin())];
 }
 
 // The mechanics states the mass of its last moving body, and every port's static force per kilogram of it.
-std::optional<HeldLoad> find_load(const Curves& curves, const scene::Scene& scene, const Drive& drive, double time) {
+std::optional<HeldLoad> find_load(const session::Curves& curves, const scene::Scene& scene, const Drive& drive,
+                                  double time) {
   for (const multibody::BodyDef& body : scene.mechanics.bodies) {
     if (!curves.has(body.name + ".mass")) continue;
     return HeldLoad{body.name, value_at(curves, body.name + ".mass", time),
@@ -125,7 +126,7 @@ std::optional<HeldLoad> find_load(const Curves& curves, const scene::Scene& scen
   return std::nullopt;
 }
 
-std::string sentence(const Curves& curves, const scene::Scene& scene, const Drive& drive, const Stall& stall) {
+std::string sentence(const session::Curves& curves, const scene::Scene& scene, const Drive& drive, const Stall& stall) {
   const DoubleActingCylinderDef& cylinder = *drive.cylinder;
   const double tank = [&] {
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {
@@ -169,7 +170,7 @@ std::vector<std::string> stall_variables(const scene::Scene& scene) {
   return names;
 }
 
-std::vector<std::string> explain_stalls(const Curves& curves, const scene::Scene& scene) {
+std::vector<std::string> explain_stalls(const session::Curves& curves, const scene::Scene& scene) {
   std::vector<std::string> sentences;
   for (const Drive& drive : drives_of(scene)) {
     try {

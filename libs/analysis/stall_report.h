@@ -19,7 +19,7 @@
 namespace slew::analysis {
 
 // One sentence for each cylinder that stalled. Empty also when the curves lack the variables it needs.
-[[nodiscard]] std::vector<std::string> explain_stalls(const Curves& curves, const scene::Scene& scene);
+[[nodiscard]] std::vector<std::string> explain_stalls(const session::Curves& curves, const scene::Scene& scene);
 // The variables that this looks at.
 [[nodiscard]] std::vector<std::string> stall_variables(const scene::Scene& scene);
 

@@ -31,8 +31,6 @@ bool is_ready_state(NodeState state) {
   return state >= NodeState::ready && state < NodeState::ended;
 }
 
-}
-
 }  // namespace
 
 SessionMember::SessionMember(Role role, transport::Transport& transport, std::span<const Topic> step_topics,

@@ -13,6 +13,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"

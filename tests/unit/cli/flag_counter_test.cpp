@@ -6,7 +6,7 @@
 #include "cli/flag_report.h"
 #include "core/step_report.h"
 
-namespace slew::session {
+namespace slew::cli {
 namespace flag_counter_test {
 
 using node::FlagCounter;
@@ -61,4 +61,4 @@ TEST(FlagCounter, ComesBackFromItsLine) {
 }
 
 }  // namespace flag_counter_test
-}  // namespace slew::session
+}  // namespace slew::cli
