@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "coupling/static_forces.h"
@@ -103,6 +104,19 @@ void payload_slopes(multibody::Model& model, const multibody::State& state, mult
       !static_line_forces(model, state, ws, ratio, payload, mass + 1, more.span()))
     return;
   for (std::size_t i = 0; i < m; ++i) slopes[i] = more[i] - now[i];
+}
+
+PayloadSensitivity::PayloadSensitivity(const multibody::Model& model, int payload, std::vector<double> ratio)
+    : model_(model), payload_(payload), ratio_(std::move(ratio)) {}
+
+void PayloadSensitivity::copy_signals(const multibody::Model& model) noexcept {
+  auto& loads = model_.elements.loads;
+  for (std::size_t i = 0; i < loads.size(); ++i) loads[i].signal = model.elements.loads[i].signal;
+}
+
+void PayloadSensitivity::read(const multibody::State& state, double mass, multibody::Workspace& ws,
+                              std::span<double> slopes) noexcept {
+  payload_slopes(model_, state, ws, ratio_, payload_, mass, slopes);
 }
 
 }  // namespace slew::mechanics

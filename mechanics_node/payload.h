@@ -6,6 +6,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "coupling/samples.h"
 #include "multibody/formulations/dynamics.h"
@@ -30,5 +31,28 @@ namespace slew::mechanics {
 // The model is left with 1 kg more. Does not allocate.
 void payload_slopes(multibody::Model& model, const multibody::State& state, multibody::Workspace& ws,
                     std::span<const double> ratio, int payload, double mass, std::span<double> slopes) noexcept;
+
+// (2) of a running mechanism, on a model of its own whose payload has 1 kg more. The owner applies each change of the
+// mechanism's model to this model as well.
+class PayloadSensitivity {
+ public:
+  // payload: body of the model, 0: none; ratio: m or m/rad of each port. Allocates.
+  PayloadSensitivity(const multibody::Model& model, int payload, std::vector<double> ratio);
+
+  [[nodiscard]] int payload() const noexcept { return payload_; }
+  [[nodiscard]] multibody::Model& model() noexcept { return model_; }
+  // Takes over all parameters of the mechanism's model. Allocates.
+  void copy(const multibody::Model& model) { model_ = model; }
+  // Takes over the signals of its loads. Does not allocate.
+  void copy_signals(const multibody::Model& model) noexcept;
+
+  // As payload_slopes(), in the workspace ws. Does not allocate.
+  void read(const multibody::State& state, double mass, multibody::Workspace& ws, std::span<double> slopes) noexcept;
+
+ private:
+  multibody::Model model_;
+  int payload_;
+  std::vector<double> ratio_;
+};
 
 }  // namespace slew::mechanics
