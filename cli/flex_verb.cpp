@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <numeric>
 
-#include "core/display.h"
 #include "cli/flex_report_json.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "flex/flexible_files.h"

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/display.h"
 #include "cli/verbs.h"
+#include "core/display.h"
 #include "core/failure.h"
 #include "core/json.h"
 #include "urdf/import.h"

@@ -8,8 +8,8 @@
 #include <iosfwd>
 #include <span>
 
-#include "plotting/series.h"
 #include "core/status.h"
+#include "plotting/series.h"
 
 namespace slew::plotting {
 

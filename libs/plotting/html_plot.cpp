@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/escaped.h"
 #include "plotting/html_text.h"
 #include "plotting/svg_text.h"
-#include "core/escaped.h"
 
 namespace slew::plotting {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "plotting/series.h"
 #include "core/status.h"
+#include "plotting/series.h"
 
 namespace slew::plotting {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "plotting/svg_text.h"
 #include "core/escaped.h"
+#include "plotting/svg_text.h"
 
 namespace slew::plotting {
 namespace {

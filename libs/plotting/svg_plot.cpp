@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/escaped.h"
 #include "plotting/axis.h"
 #include "plotting/decimation.h"
 #include "plotting/svg_text.h"
-#include "core/escaped.h"
 
 namespace slew::plotting {
 namespace {

@@ -20,6 +20,7 @@ using wire::Topic;
 class Physics : public ::testing::Test {
  protected:
   static Status build(const wire::SessionDescription&, BuiltSubsystem& built) {
+    built.session.start_grace = 0;
     built.subsystem = std::make_unique<StillSubsystem>();
     return Status::ok();
   }
