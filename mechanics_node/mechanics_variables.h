@@ -12,7 +12,7 @@
 #include "coupling/samples.h"
 #include "mechanics_node/mechanism.h"
 #include "mechanics_node/payload.h"
-#include "mechanics_node/port.h"
+#include "mechanics_node/row_force_laws.h"
 
 namespace slew::mechanics {
 

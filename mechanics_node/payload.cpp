@@ -16,12 +16,12 @@ namespace {
 
 using Names = std::map<std::string_view, std::vector<const multibody::JointDef*>>;
 
-// "Boom" of "Boom.Node20", which a joint may have for a body
+// "Boom" of "Boom.Node20", which a joint may name as its body
 std::string_view body_of(std::string_view name, const Names& joints) {
   return joints.count(name) > 0 ? name : name.substr(0, name.find('.'));
 }
 
-// Joints that move between each body and Ground, on the shortest way over the scene's joints.
+// Number of moving joints between each body and Ground, on the shortest path over the scene's joints.
 std::map<std::string_view, int> distances(const Names& joints) {
   std::map<std::string_view, int> found = {{multibody::kGroundName, 0}};
   std::deque<std::string_view> next = {multibody::kGroundName};
@@ -62,7 +62,7 @@ int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model&
   for (const multibody::BodyDef& body : mechanics.bodies) {
     const auto found = distance.find(body.name);
     if (body.type != multibody::BodyType::rigid || found == distance.end() || found->second == 0) continue;
-    const int length = joints.at(body.name).size() == 1 ? found->second : 0;  // others carry, or close a loop
+    const int length = joints.at(body.name).size() == 1 ? found->second : 0;  // other bodies carry, or close a loop
     if (length < longest) continue;
     longest = length;
     payload = body.name;

@@ -1,5 +1,5 @@
-// What the load that hangs on a machine asks of its actuators: line forces that hold the ports at rest, and their
-// change with the payload's mass,
+// Static demand of a payload on the actuators: line forces that hold the ports at rest, and their change with the
+// payload's mass,
 //   W F = -a_free                                                                                     (1)
 //   dF/dm = F(m + 1 kg) - F(m)                                                                        (2)
 // without friction and limits of joints. (2) is exact at rest, since gravity is linear in the mass.
@@ -13,22 +13,22 @@
 
 namespace slew::mechanics {
 
-// The scene's `payload`. Without it, of the rigid bodies with a single joint the one with most moving joints on its way
-// to Ground, the last of the file where several have as many; of a machine without such a body the last that moves. 0:
-// none moves.
+// The scene's `payload`. By default the rigid body with a single joint and the most moving joints between it and
+// Ground, the last one in the file where several have as many; in a machine without such a body the last one that
+// moves. 0: no body moves.
 [[nodiscard]] int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model& model);
 
-// kg, now.
+// Present mass [kg].
 [[nodiscard]] double mass_of(const multibody::Model& model, int body) noexcept;
 
-// (1) at the state with the payload at `mass` [kg > 0], which the model then has. The ports are the first rows; ratio:
+// (1) at the state with the payload at `mass` [kg > 0], which stays in the model. The ports are the first rows; ratio:
 // m or m/rad of each. False: no forces hold them. Does not allocate.
 [[nodiscard]] bool static_line_forces(multibody::Model& model, const multibody::State& state, multibody::Workspace& ws,
                                       std::span<const double> ratio, int payload, double mass,
                                       std::span<double> F) noexcept;
 
-// (2) [m/s2] at `mass`; zero where no forces hold the ports, or nothing hangs there.
-// The model is left with 1 kg more. Does not allocate.
+// (2) [m/s2] at `mass`; zero where no forces hold the ports, or without payload. The payload of the model keeps 1 kg
+// more. Does not allocate.
 void payload_slopes(multibody::Model& model, const multibody::State& state, multibody::Workspace& ws,
                     std::span<const double> ratio, int payload, double mass, std::span<double> slopes) noexcept;
 

@@ -17,7 +17,6 @@
 #include "coupling/trends.h"
 #include "mechanics_node/mechanism.h"
 #include "mechanics_node/partner_force.h"
-#include "mechanics_node/port.h"
 #include "mechanics_node/row_force_laws.h"
 #include "mechanics_node/row_mobility.h"
 #include "mechanics_node/timed_loads.h"

@@ -14,7 +14,7 @@
 
 #include "coupling/samples.h"
 #include "mechanics_node/mechanism.h"
-#include "mechanics_node/port.h"
+#include "mechanics_node/row_force_laws.h"
 #include "mechanics_node/row_mobility.h"
 
 namespace slew::mechanics {

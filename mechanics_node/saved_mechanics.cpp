@@ -7,7 +7,7 @@ namespace slew::mechanics {
 namespace {
 
 constexpr std::uint32_t kLayout = 2;
-constexpr std::size_t kFrameNumbers = 13;  // of a flexible body in its sample
+constexpr std::size_t kFrameNumbers = 13;  // per flexible body in its sample
 
 template <typename Sample, typename Bytes>
 void visit_sample(Sample& sample, std::size_t ports, Bytes& bytes) {
