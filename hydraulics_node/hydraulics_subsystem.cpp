@@ -1,17 +1,15 @@
 #include "hydraulics_node/hydraulics_subsystem.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <optional>
+#include <string>
 
 #include "core/failure.h"
+#include "coupling/indicator.h"
+#include "coupling/own_past.h"
 #include "coupling/saved_model.h"
 #include "coupling/static_forces.h"
-#include "scene/deep_starts.h"
+#include "hydraulics_node/start_checks.h"
 #include "scene/ports.h"
 
 namespace slew::hydraulic_node {
@@ -29,63 +27,22 @@ constexpr std::size_t kIndicatorVariables = 7;
 
 }  // namespace
 
-coupling::LineForce ReducedMechanics::line_force(std::size_t port, double F, double x, double v) const noexcept {
-  if (ports_[port].level != coupling::Level::tlm) return laws_[port].evaluate(F, x, v);
-  coupling::LineForce line = laws_[port].evaluate(ports_[port].thrust, x, v);
-  line.d_pressure = 0;
-  return line;
-}
-
-void ReducedMechanics::accelerations(const double* F, const double* x, const double* v, double* a) const noexcept {
-  const std::size_t m = laws_.size();
-  std::array<double, kMaxPorts> line{};
-  for (std::size_t j = 0; j < m; ++j) line[j] = line_force(j, F[j], x[j], v[j]).force;
-  for (std::size_t i = 0; i < m; ++i) {
-    a[i] = 0;
-    if (ports_[i].level != coupling::Level::two) continue;
-    double sum = a_free_[i];
-    for (std::size_t j = 0; j < m; ++j) sum += W_[i * m + j] * line[j];
-    a[i] = sum;
-  }
-}
-
-double ReducedMechanics::time_to_rest(const double* v, const double* a, const double* j) const noexcept {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < laws_.size(); ++i) shortest = std::min(shortest, laws_[i].time_to_rest(v[i], a[i], j[i]));
-  return shortest;
-}
-
-void ReducedMechanics::slopes(const double* F, const double* x, const double* v, double* da_dF, double* da_dx,
-                              double* da_dv) const noexcept {
-  const std::size_t m = laws_.size();
-  for (std::size_t j = 0; j < m; ++j) {
-    const coupling::LineForce line = line_force(j, F[j], x[j], v[j]);
-    for (std::size_t i = 0; i < m; ++i) {
-      const double w = ports_[i].level == coupling::Level::two ? W_[i * m + j] : 0.0;
-      da_dF[i * m + j] = w * line.d_pressure;
-      da_dx[i * m + j] = w * line.d_position;
-      da_dv[i * m + j] = w * line.d_speed;
-    }
-  }
-}
-
 HydraulicsSubsystem::HydraulicsSubsystem(const scene::Scene& scene)
     : scene_(scene),
+      circuit_(std::make_unique<hydraulics::Circuit>(scene.hydraulics)),
+      integrator_(std::make_unique<hydraulics::CircuitIntegrator>(*circuit_, scene.hydraulics)),
       m_(scene.ports.size()),
-      levels_(scene::port_levels(scene)),
       H_(scene.session.step_duration()),
-      is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
-      ends_on_alarm_(scene.session.coupling_alarm == scene::CouplingAlarm::stop),
       exchange_every_(scene.session.exchange_every),
-      past_(m_),
-      said_(is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
+      is_free_running_(scene.session.mode == scene::ExchangeMode::free_running),
+      levels_(scene::port_levels(scene)),
+      signals_(scene, *circuit_),
       reduced_(laws_of(scene)),
-      indicator_(m_, {H_.ns * exchange_every_}) {
-  reset();
-  for (const scene::PortDef& port : scene.ports) port_names_.push_back(port.name);
-  for (const scene::InputDef& input : scene.inputs) {
-    control_of_channel_.push_back(circuit_->find_control(input.primitive));
-  }
+      late_samples_(m_, is_free_running_ ? static_cast<std::size_t>(coupling::kRememberedSteps) : 0),
+      alarm_(scene),
+      ramps_(circuit_->parameters().size()) {
+  coupling::resize(published_, m_);
+  stiffness_.resize(m_);
   list_variables();
   saved_model_ = coupling::saved_model(
       variables_, {H_.ns, exchange_every_, is_free_running_, static_cast<int>(scene.hydraulics.solver)});
@@ -95,15 +52,12 @@ void HydraulicsSubsystem::reset() {
   integrator_.reset();
   circuit_ = std::make_unique<hydraulics::Circuit>(scene_.hydraulics);
   integrator_ = std::make_unique<hydraulics::CircuitIntegrator>(*circuit_, scene_.hydraulics);
-  signal_trends_ = coupling::Trends(circuit_->flow_controls().size());
-  signals_.resize(circuit_->flow_controls().size());
-  indicator_.reset();
+  signals_ = ControlSignals(scene_, *circuit_);
+  alarm_.reset();
   ramps_ = coupling::ParameterRamps(circuit_->parameters().size());
   levels_.reset();
   failure_ = StepReport{};
-  failure_text_length_ = 0;
-  past_.clear();
-  std::fill(said_.begin(), said_.end(), Said{});
+  late_samples_.clear();
   used_step_ = -1;
   partner_age_ = 0;
   coupling::resize(published_, m_);
@@ -134,76 +88,20 @@ Status HydraulicsSubsystem::start(const coupling::PartnerSamples& partners, coup
       return Status::error(ExitCode::failed, std::string(coupling::kNoStaticForces));
     }
     if (scene_.hydraulics.start == hydraulics::StartState::equilibrium) {
-      if (Status status = check_pressures({F.data(), m_}); !status.is_ok()) return status;
+      if (Status status = check_pressures(scene_, *circuit_, {F.data(), m_}); !status.is_ok()) return status;
     }
   }
   integrator_->start({x.data(), m_}, {v.data(), m_}, {F.data(), m_});
   apply_levels();
   integrator_->refresh();
   publish(sample.actuators, 0, false);
-  if (m_ > 0 && ends_on_alarm_) {
-    if (Status status = check_coupling(*partners.mechanism); !status.is_ok()) return status;
+  if (m_ > 0 && alarm_.ends_session()) {
+    Status status = check_coupling(scene_, partners.mechanism->W, published_.K, levels_);
+    if (!status.is_ok()) return status;
   }
-  return check_stability(partners.mechanism);
-}
-
-// A load that the circuit cannot hold at rest is refused: its pressures would not be those of this machine.
-Status HydraulicsSubsystem::check_pressures(std::span<const double> F) const {
-  const std::optional<hydraulics::StartDemand> demand = circuit_->demand_beyond_limits(F);
-  if (!demand) return Status::ok();
-  constexpr double kBar = 1e5, kKilo = 1e3;
-  const auto actuator = static_cast<std::size_t>(demand->actuator);
-  std::string limit = "no oil has a pressure below 0";
-  if (demand->pressure >= 0) {
-    limit = demand->valve.empty()
-                ? fmt::format("a chamber without a relief valve is taken to hold {:.0f} bar", demand->limit / kBar)
-                : fmt::format("{} lets its oil out from {:.4g} bar on", demand->valve, demand->limit / kBar);
-  }
-  const std::string contacts = scene::deep_starts(scene_);
-  return Status::error(
-      ExitCode::failed,
-      fmt::format("hydraulics.start: equilibrium asks for {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
-                  demand->pressure / kBar, circuit_->volume_name(demand->volume), F[actuator] / kKilo,
-                  port_names_[actuator], limit,
-                  contacts.empty() ? "Lighten the load or begin in another pose, or set hydraulics.start: table13"
-                                   : contacts + ". Move these bodies apart, or set hydraulics.start: table13"));
-}
-
-// An explicit solver beyond its limit at the very start is refused; later it is flagged.
-Status HydraulicsSubsystem::check_stability(const coupling::MechanismSample* mechanism) {
-  if (mechanism != nullptr && m_ > 0) reduced_.set_sample(*mechanism);
+  if (partners.mechanism != nullptr && m_ > 0) reduced_.set_sample(*partners.mechanism);
   const hydraulics::ExplicitStability stability = integrator_->explicit_stability(H_.seconds(), reduced_);
-  if (!(stability.ratio > 1)) return Status::ok();
-  return Status::error(
-      ExitCode::failed,
-      fmt::format(
-          "hydraulics.solver: rk4 with sub-steps of {:.3g} ms would be unstable: {} moves {:.2g} times too fast "
-          "for it. Set hydraulics.max_substep below {:.3g} ms, or solver: rodas3",
-          1e3 * stability.substep, offender_name(stability.owner), stability.ratio,
-          1e3 * stability.substep / stability.ratio));
-}
-
-// A machine that swings on its oil further than any exchange can follow is refused, and earlier with samples that are
-// late by a step at least.
-Status HydraulicsSubsystem::check_coupling(const coupling::MechanismSample& mechanism) const {
-  const double H = H_.seconds() * static_cast<double>(exchange_every_);
-  coupling::PortArray K = published_.K;
-  for (std::size_t i = 0; i < m_; ++i) {
-    if (!coupling::is_balanced(levels_[i])) K[i] = 0;
-  }
-  const double omega_H = coupling::coupling_frequency(mechanism.W, K, H);
-  const double limit = is_free_running_ ? coupling::kMostLate : coupling::kMostSampled;
-  if (!(omega_H > limit)) return Status::ok();
-  const char* const why = is_free_running_ ? "which samples that are a step late, as those of free_running, do not bear"
-                                           : "so that there are less than two exchanges to a swing";
-  return Status::error(
-      ExitCode::failed,
-      fmt::format(
-          "session.coupling: the machine swings on its oil by omega_H = {:.2g} from one exchange to the next in "
-          "{:.3g} ms, {}: at most {:.2g}. Nothing was run. Set {} below {:.2g} ms{}, or session.coupling_alarm: "
-          "warn to run it all the same",
-          omega_H, 1e3 * H, why, limit, exchange_every_ > 1 ? "the time between two exchanges" : "session.step",
-          1e3 * H * limit / omega_H, is_free_running_ ? ", or session.mode: lockstep" : ""));
+  return check_stability(stability, offender_name(stability.owner));
 }
 
 // ---- step -----------------------------------------------------------------------------------------------------
@@ -215,72 +113,41 @@ void HydraulicsSubsystem::apply_levels() noexcept {
   }
 }
 
-// The pistons take the positions of this step's sample. Without news they go on by their own copy of the mechanics.
+// The pistons take the positions of a new sample of this step; a late one corrects them.
+void HydraulicsSubsystem::align(const coupling::MechanismSample& mechanism, StepIndex age) noexcept {
+  if (age == 0) {
+    alarm_.update(mechanism, published_, stiffness_, levels_);
+    integrator_->align(mechanism.x.span(), mechanism.v.span());
+    return;
+  }
+  late_samples_.align(used_step_, mechanism, *integrator_);
+  coupling::ActuatorSample own;
+  if (late_samples_.own_sample(used_step_, mechanism, H_.seconds(), own)) {
+    alarm_.update(mechanism, own, stiffness_, levels_);
+  }
+}
+
+// Without a new sample the pistons continue by their own copy of the mechanics.
 void HydraulicsSubsystem::take_mechanism(StepIndex n, const coupling::MechanismSample& mechanism, StepIndex age,
                                          StepReport& report) noexcept {
   partner_age_ = age;
-  const bool has_news = n - age != used_step_;
+  const bool is_new = n - age != used_step_;
   used_step_ = n - age;
-  if (has_news && age == 0) {
-    indicator_.update(mechanism, published_, stiffness_, levels_);
-    integrator_->align(mechanism.x.span(), mechanism.v.span());
-  } else if (has_news) {
-    take_late(used_step_, mechanism);
-  }
-  // the exchange was that of the levels of the finished step; those of the coming one hold now
+  if (is_new) align(mechanism, age);
+  // the exchange used the levels of the finished step; the coming step uses the present ones
   apply_levels();
-  if (has_news) {
+  if (is_new) {
     for (std::size_t i = 0; i < m_; ++i) {
       reduced_.set_thrust(i, published_.F[i] - published_.D[i] * (mechanism.v[i] - published_.v_ref[i]));
     }
     reduced_.set_sample(mechanism);
   }
   if (!is_free_running_) return;
-  keep_begin(n);
+  late_samples_.keep_pistons(n, *circuit_, *integrator_);
   const double late = static_cast<double>(age) * H_.seconds();
   if (age > 0 && coupling::coupling_frequency(mechanism.W, published_.K, late) > coupling::kDegradedAbove) {
     report.raise(StepFlag::late_input);
   }
-}
-
-// A sample of an earlier step: the pistons move by what it says of that step (coupling/own_past.h), and the indicator
-// compares the ways of both sides in that step, since the circuit's own position then lacks what it learned later.
-void HydraulicsSubsystem::take_late(StepIndex step, const coupling::MechanismSample& mechanism) noexcept {
-  if (!past_.has(step)) return;
-  std::array<double, kMaxPorts> x{}, v{};
-  for (std::size_t i = 0; i < m_; ++i) {
-    const double dx = mechanism.x[i] - past_.first(step, i);
-    const double dv = mechanism.v[i] - past_.second(step, i);
-    past_.correct(step, i, dx, dv);
-    x[i] = integrator_->actuators()[i].x + dx;
-    v[i] = integrator_->actuators()[i].v + dv;
-  }
-  integrator_->align({x.data(), m_}, {v.data(), m_});
-  const Said& said = said_[static_cast<std::size_t>(step) % said_.size()];
-  if (said.step != step) return;
-  coupling::ActuatorSample own = said.sample;
-  for (std::size_t i = 0; i < m_; ++i) {
-    own.x_ref[i] = mechanism.x[i] - (mechanism.v_mean[i] * H_.seconds() - said.way[i]);
-  }
-  indicator_.update(mechanism, own, stiffness_, levels_);
-}
-
-void HydraulicsSubsystem::keep_begin(StepIndex n) noexcept {
-  std::array<double, kMaxPorts> x{}, v{};
-  for (std::size_t i = 0; i < m_; ++i) {
-    const int port = static_cast<int>(i);
-    x[i] = integrator_->state()[static_cast<std::size_t>(circuit_->position(port))];
-    v[i] = integrator_->state()[static_cast<std::size_t>(circuit_->speed(port))];
-  }
-  past_.keep(n, {x.data(), m_}, {v.data(), m_});
-}
-
-void HydraulicsSubsystem::keep_end(StepIndex n) noexcept {
-  Said& said = said_[static_cast<std::size_t>(n) % said_.size()];
-  said.step = n;
-  said.sample = published_;
-  said.way.resize(m_);
-  for (std::size_t i = 0; i < m_; ++i) said.way[i] = published_.x_ref[i] - past_.first(n - 1, i);
 }
 
 StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples& partners,
@@ -289,92 +156,33 @@ StepReport HydraulicsSubsystem::step(StepIndex n, const coupling::PartnerSamples
     sample.actuators = published_;
     return failure_;
   }
-  take_tick(n, controls);
+  apply_tick(n, controls);
   StepReport taken;
   if (partners.mechanism != nullptr && m_ > 0) take_mechanism(n, *partners.mechanism, partners.mechanism_age, taken);
   StepReport report = integrator_->step(H_.seconds(), reduced_);
   report.flags |= taken.flags;
-  if (const std::optional<std::size_t> port = first_alarm()) {
-    report.raise(StepFlag::coupling_creates_energy);
-    if (ends_on_alarm_ && coupling::is_balanced(levels_[*port])) {
-      report.raise(StepFlag::ended);
-      end_at(*port);
-    }
-  }
+  alarm_.raise_flags(levels_, report);
   if (report.has_failed()) {
     failure_ = report;
     sample.actuators = published_;
     return report;
   }
   publish(sample.actuators, report.flags, n % exchange_every_ != 0);
-  if (is_free_running_ && m_ > 0) keep_end(n + 1);
+  if (is_free_running_ && m_ > 0) late_samples_.keep_sent(n + 1, published_);
   return report;
 }
 
-// Levels whose two sides foresee each other: hold makes energy on any machine that swings, and a line of level tlm has
-// A port that ends the session comes before one that is only flagged.
-std::optional<std::size_t> HydraulicsSubsystem::first_alarm() const noexcept {
-  std::optional<std::size_t> flagged;
-  for (std::size_t i = 0; i < m_; ++i) {
-    if (coupling::is_balanced(levels_[i])) {
-      if (indicator_.diverges(i)) return i;
-    } else if (!flagged && indicator_.port(i).creates_energy) {
-      flagged = i;
-    }
-  }
-  return flagged;
-}
-
-void HydraulicsSubsystem::end_at(std::size_t port) noexcept {
-  const char* const remedy = levels_[port] != coupling::Level::two ? "a shorter session.step or coupling: two"
-                             : is_free_running_                    ? "a shorter session.step or session.mode: lockstep"
-                                                                   : "a shorter session.step";
-  const auto written = fmt::format_to_n(
-      failure_text_.data(), failure_text_.size(),
-      "{}: the coupling diverges: over the last second the works of both sides have differed by {:.2g} % of the work "
-      "done, not by one jump alone, and the machine swings on its oil by {:.2g} from one exchange to the next; use {}, "
-      "or session.coupling_alarm: warn to go on with red lamps",
-      port_names_[port], 1e2 * indicator_.own_residual(port), indicator_.omega_H(), remedy);
-  failure_text_length_ = std::min(written.size, failure_text_.size());
-}
-
-// parameters on their way, and the controls of the step
-void HydraulicsSubsystem::take_tick(StepIndex n, std::span<const double> controls) noexcept {
-  for (std::size_t k = 0; k < signals_.size(); ++k) {
-    const auto control = static_cast<std::size_t>(circuit_->flow_controls()[k]);
-    static_cast<void>(signal_trends_.begin(k, circuit_->control_signals()[control]));
-  }
+// Parameters that change over a time, and the controls of the step.
+void HydraulicsSubsystem::apply_tick(StepIndex n, std::span<const double> controls) noexcept {
   ramps_.apply(n, [this](int parameter, double value) { circuit_->set_parameter(parameter, value); });
-  for (std::size_t i = 0; i < std::min(controls.size(), control_of_channel_.size()); ++i) {
-    if (control_of_channel_[i] >= 0) circuit_->set_control(control_of_channel_[i], controls[i]);
-  }
-  for (std::size_t k = 0; k < signals_.size(); ++k) {
-    signal_trends_.end(k, circuit_->control_signals()[static_cast<std::size_t>(circuit_->flow_controls()[k])]);
-  }
-}
-
-// F_dot is for the coming step, whose signals are not there yet: they go on changing as they did, by the limiter of
-// trends.h, so that a jump is not continued.
-void HydraulicsSubsystem::foresee_signals() noexcept {
-  bool is_any_moving = false;
-  const std::span<const int> controls = circuit_->flow_controls();
-  for (std::size_t k = 0; k < signals_.size(); ++k) {
-    signals_[k] = circuit_->control_signals()[static_cast<std::size_t>(controls[k])];
-    const double change = signal_trends_.begin(k, signals_[k]);
-    if (change == 0) continue;
-    circuit_->set_control(controls[k], signals_[k] + change);
-    is_any_moving = true;
-  }
-  if (!is_any_moving) return;
-  integrator_->refresh_force_rates();
-  for (std::size_t k = 0; k < signals_.size(); ++k) circuit_->set_control(controls[k], signals_[k]);
+  signals_.set(controls, *circuit_);
 }
 
 StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
                                        const coupling::PartnerSamples& partners, std::span<const double> controls,
                                        coupling::OwnSample& sample) noexcept {
-  take_tick(n, controls);
-  if (partners.mechanism != nullptr && m_ > 0) indicator_.update(*partners.mechanism, published_, stiffness_, levels_);
+  apply_tick(n, controls);
+  if (partners.mechanism != nullptr && m_ > 0) alarm_.update(*partners.mechanism, published_, stiffness_, levels_);
   std::copy(step.state.begin(), step.state.end(), integrator_->mutable_state().begin());
   circuit_->set_vapour_capacities(step.vapour);
   integrator_->refresh();
@@ -389,10 +197,10 @@ StepReport HydraulicsSubsystem::follow(StepIndex n, const FollowedCircuit& step,
   return report;
 }
 
-// adds_up: work and impulse go on from the sample before, since there was no exchange in between
+// adds_up: work and impulse continue those of the sample before, since there was no exchange in between
 void HydraulicsSubsystem::publish(coupling::ActuatorSample& sample, std::uint32_t flags, bool adds_up) noexcept {
   if (sample.F.size() != m_) coupling::resize(sample, m_);
-  foresee_signals();
+  signals_.foresee(*circuit_, *integrator_);
   const std::span<const hydraulics::ActuatorLinearisation> actuators = integrator_->actuators();
   for (std::size_t i = 0; i < m_; ++i) {
     const hydraulics::ActuatorLinearisation& a = actuators[i];
@@ -432,12 +240,9 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
   StateHash hash;
   integrator_->add_to(hash);
   ramps_.add_to(hash);
-  if (exchange_every_ > 1) reduced_.add_to(hash);  // otherwise every step brings another
+  if (exchange_every_ > 1) reduced_.add_to(hash);  // an exchange at every step replaces it
   levels_.add_to(hash);
-  signal_trends_.add_to(hash);
-  for (const int control : circuit_->flow_controls()) {
-    hash.add(circuit_->control_signals()[static_cast<std::size_t>(control)]);
-  }
+  signals_.add_to(*circuit_, hash);
   hash.add(failure_.has_failed());
   return hash.digest();
 }
@@ -445,7 +250,8 @@ std::uint64_t HydraulicsSubsystem::state_hash() const noexcept {
 void HydraulicsSubsystem::list_variables() {
   const std::span<const ElementVariable> circuit = circuit_->variables();
   variables_.assign(circuit.begin(), circuit.end());
-  for (const std::string& port : port_names_) {
+  for (const scene::PortDef& def : scene_.ports) {
+    const std::string& port = def.name;
     variables_.push_back({port + ".coupling_e_x", Dimension::length});
     variables_.push_back({port + ".coupling_e_v", Dimension::velocity});
     variables_.push_back({port + ".coupling_e_F", Dimension::force});
@@ -462,13 +268,13 @@ void HydraulicsSubsystem::read_variables(std::span<double> values) const noexcep
   const std::size_t circuit = circuit_->variables().size();
   circuit_->read_variables(integrator_->state().data(), values.first(circuit));
   for (std::size_t i = 0; i < m_; ++i) {
-    const coupling::PortDefects& defects = indicator_.port(i);
+    const coupling::PortDefects& defects = indicator().port(i);
     const std::array<double, kIndicatorVariables> shown = {defects.e_x,     defects.e_v, defects.e_F, defects.dE,
                                                            defects.dE_star, defects.eta, defects.net};
     std::copy(shown.begin(), shown.end(), values.begin() + static_cast<std::ptrdiff_t>(circuit + i * shown.size()));
   }
   const std::size_t rest = circuit + m_ * kIndicatorVariables;
-  values[rest] = indicator_.omega_H();
+  values[rest] = indicator().omega_H();
   if (is_free_running_) values[rest + 1] = static_cast<double>(partner_age_);
 }
 
@@ -476,7 +282,7 @@ std::string_view HydraulicsSubsystem::offender_name(std::int32_t index) const no
   if (index >= 0 && index < circuit_->volume_count()) return circuit_->volume_name(index);
   const std::int32_t actuator = index - circuit_->volume_count();
   if (actuator >= 0 && actuator < 2 * circuit_->actuator_count()) {
-    return port_names_[static_cast<std::size_t>(actuator % circuit_->actuator_count())];
+    return scene_.ports[static_cast<std::size_t>(actuator % circuit_->actuator_count())].name;
   }
   return "a state of a hydraulic component";
 }

@@ -6,16 +6,6 @@ namespace {
 
 constexpr std::uint32_t kLayout = 1;
 
-template <typename Sample, typename Bytes>
-void visit_sample(Sample& sample, std::size_t ports, Bytes& bytes) {
-  for (auto* values :
-       {&sample.F, &sample.F_dot, &sample.K, &sample.lambda, &sample.D, &sample.x_ref, &sample.v_ref,
-        &sample.friction_scale, &sample.work, &sample.impulse, &sample.p_A, &sample.p_B, &sample.Q_A, &sample.Q_B}) {
-    visit_sized(bytes, *values, ports);
-  }
-  bytes.number(sample.flags);
-}
-
 }  // namespace
 
 template <typename Self, typename Bytes>
@@ -26,31 +16,23 @@ void HydraulicsSubsystem::visit(Self& self, Bytes& bytes) {
     self.ramps_.load(bytes, [&](int handle) { return handle >= 0 && handle < parameters; });
     self.levels_.load(bytes);
     self.reduced_.load(bytes);
-    self.signal_trends_.load(bytes);
-    self.indicator_.load(bytes);
-    if (self.is_free_running_) self.past_.load(bytes);
+    self.signals_.load(bytes);
+    self.alarm_.load_indicator(bytes);
   } else {
     self.integrator_->save(bytes);
     self.ramps_.save(bytes);
     self.levels_.save(bytes);
     self.reduced_.save(bytes);
-    self.signal_trends_.save(bytes);
-    self.indicator_.save(bytes);
-    if (self.is_free_running_) self.past_.save(bytes);
+    self.signals_.save(bytes);
+    self.alarm_.save_indicator(bytes);
   }
-  for (auto& said : self.said_) {
-    bytes.number(said.step);
-    if (said.step < 0) continue;
-    visit_sample(said.sample, self.m_, bytes);
-    visit_sized(bytes, said.way, self.m_);
-  }
+  LateSamples::visit(self.late_samples_, bytes);
   bytes.number(self.used_step_);
   bytes.number(self.partner_age_);
-  visit_sample(self.published_, self.m_, bytes);
+  visit_actuators(self.published_, self.m_, bytes);
   visit_sized(bytes, self.stiffness_, self.m_);
   visit_report(bytes, self.failure_);
-  bytes.count(self.failure_text_length_, self.failure_text_.size());
-  bytes.numbers(std::span(self.failure_text_).first(self.failure_text_length_));
+  CouplingAlarm::visit_text(self.alarm_, bytes);
 }
 
 Status HydraulicsSubsystem::can_save() const {

@@ -13,9 +13,9 @@
 namespace slew::mechanics {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;  // rad a sub-step: from there on nothing tells which way a body turns
-constexpr double kFar = 1;                      // m a sub-step, that no body of a machine goes
-constexpr double kOpen = 1e-6;  // m or rad: what a joint of a sound run stays below in every formulation but `penalty`
+constexpr double kHalfTurn = std::numbers::pi;  // rad a sub-step: beyond, the direction of the turn is unknown
+constexpr double kFar = 1;                      // m a sub-step: no body of a machine moves so far
+constexpr double kOpen = 1e-6;                  // m or rad: a sound joint stays below, except in `penalty`
 constexpr const char* kRemedy =
     "the motion is not the mechanism's any more. Use a shorter session.step or mechanics.max_substep, or another "
     "mechanics.integrator or formulation";

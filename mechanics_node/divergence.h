@@ -1,11 +1,11 @@
-// Ends a run whose motion is the mechanism's no longer while its numbers are finite still.
+// Ends a run whose motion has left the mechanism's while its numbers are still finite.
 //
-// Two rules, judged after every step:
-//   - The excess of steps that did not converge over those that did reaches kMostUnconverged: more than half of the
-//     steps, and something is lost: a body is bent beyond small deflections, turns by half a turn or goes a metre in a
-//     sub-step, or a joint is open. The count leaks, one by one, down to zero, so that single steps never add up to an
-//     end. Where nothing is lost (a wheel of 6000 rpm on its axis, a load that is pressed onto a stiff stop) the steps
-//     stay flagged.
+// Two rules, checked after every step:
+//   - The excess of steps that did not converge over those that did reaches kMostUnconverged (more than half of the
+//     steps), and the motion shows an error: a body is bent beyond small deflections, turns by half a turn or moves by
+//     a metre in a sub-step, or a joint is open. The count decreases by one with each converged step, down to zero, so
+//     that single steps never add up to an end. Without such an error (a wheel of 6000 rpm on its axis, a load that is
+//     pressed onto a stiff stop) the steps are only flagged.
 //   - A flexible body is bent by more than kLostDeflection of its length (multibody/flexible/deflection.h).
 // Not covered: motion that is finite, small and converged, and wrong.
 #pragma once
@@ -22,8 +22,8 @@
 
 namespace slew::mechanics {
 
-// More than a hit, a stop or a whip of a sound run takes: no step of the repository's scenes fails to converge at
-// steps of 0.5 to 5 ms.
+// More than a hit, a stop or a whip takes in a sound run: no step of the repository's scenes fails to converge at steps
+// of 0.5 to 5 ms.
 inline constexpr int kMostUnconverged = 20;  // steps
 
 class DivergenceWatch {
@@ -34,13 +34,13 @@ class DivergenceWatch {
   void reset() noexcept { unconverged_ = 0, text_length_ = 0; }
   void count_step(bool has_converged) noexcept;
 
-  // For the motion in ws, as Dynamics::observe() leaves it, and sub-steps of h [s]. True: the run ends, text() says
-  // with which body and why. Neither allocates.
+  // For the motion in ws, as Dynamics::observe() leaves it, and sub-steps of h [s]. True: the run ends; text() names
+  // the body and the reason. Neither allocates.
   [[nodiscard]] bool ends_run(const multibody::Model& model, const multibody::State& state,
                               const multibody::Workspace& ws, double h) noexcept;
   [[nodiscard]] std::string_view text() const noexcept { return {text_.data(), text_length_}; }
 
-  // Nothing while no step of late has failed to converge: what a sound run leaves in the hash is its motion.
+  // Adds nothing while all recent steps have converged: the hash of a sound run is that of its motion.
   void add_to(StateHash& hash) const noexcept {
     if (unconverged_ != 0) hash.add(unconverged_);
   }

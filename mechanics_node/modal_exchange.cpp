@@ -77,7 +77,7 @@ Status ModalExchange::begin(const multibody::MechanicsDef& mechanics, const Elas
              std::equal(law.D.begin(), law.D.end(), part.damping.begin());
     multibody::set_elastic_law(with, body.part, law);
   }
-  // those of the files were looked at when the scene was read
+  // the elastic forces of the files were checked with the scene
   Problems problems;
   if (!is_own) multibody::check_mode_speeds(mechanics, with, problems);
   if (!problems.empty()) {

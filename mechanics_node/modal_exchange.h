@@ -1,5 +1,5 @@
-// The mechanics' side of flexible bodies in a session: where they are, for the flex node, and the elastic forces that
-// it states for their modes.
+// The mechanics' side of flexible bodies in a session: their motion, which the flex node receives, and the elastic
+// forces that it returns for their modes.
 #pragma once
 
 #include <cstddef>
@@ -23,18 +23,19 @@ class ModalExchange {
   [[nodiscard]] std::size_t mode_count() const noexcept { return modes_; }
   [[nodiscard]] bool is_empty() const noexcept { return bodies_.empty(); }
 
-  // Where the bodies are.
+  // Writes modal coordinates and frames of the bodies.
   void read(const multibody::Model& model, const multibody::State& state, const multibody::Workspace& ws,
             coupling::FlexibleSample& sample) const noexcept;
 
-  // Takes the elastic forces of a session's start. Error: they cannot be those of the model's bodies, or its integrator
-  // cannot follow them; the model is as it was then.
+  // Takes the elastic forces of a session's start. Error: they do not fit the model's bodies, or its integrator cannot
+  // follow them; the model is unchanged.
   Status begin(const multibody::MechanicsDef& mechanics, const coupling::ElasticSample& sample,
                multibody::Model& model);
-  // Those of a step. Pre-condition: begin() took a sample. Sizes that are others now leave the model as it is: false.
+  // Takes the elastic forces of a step. Pre-condition: begin() took a sample. False: the sizes have changed, and the
+  // model is unchanged.
   [[nodiscard]] bool apply(const coupling::ElasticSample& sample, multibody::Model& model) const noexcept;
 
-  // Modal coordinates that the flex node keeps itself, into the state; the step then moves this side's copy.
+  // Copies modal coordinates that the flex node integrates into the state; the step then moves this copy.
   void take_places(const coupling::ElasticSample& sample, const multibody::Model& model,
                    multibody::State& state) const noexcept;
 

@@ -1,4 +1,4 @@
-// A multibody parameter as the one number that coupling::ParameterRamps keeps.
+// A multibody parameter as one number, the handle of coupling::ParameterRamps.
 #pragma once
 
 #include "multibody/model/parameters.h"

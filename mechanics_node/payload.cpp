@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "coupling/static_forces.h"
@@ -15,12 +16,12 @@ namespace {
 
 using Names = std::map<std::string_view, std::vector<const multibody::JointDef*>>;
 
-// "Boom" of "Boom.Node20", which a joint may have for a body
+// "Boom" of "Boom.Node20", which a joint may name as its body
 std::string_view body_of(std::string_view name, const Names& joints) {
   return joints.count(name) > 0 ? name : name.substr(0, name.find('.'));
 }
 
-// Joints that move between each body and Ground, on the shortest way over the scene's joints.
+// Number of moving joints between each body and Ground, on the shortest path over the scene's joints.
 std::map<std::string_view, int> distances(const Names& joints) {
   std::map<std::string_view, int> found = {{multibody::kGroundName, 0}};
   std::deque<std::string_view> next = {multibody::kGroundName};
@@ -61,7 +62,7 @@ int payload_of(const multibody::MechanicsDef& mechanics, const multibody::Model&
   for (const multibody::BodyDef& body : mechanics.bodies) {
     const auto found = distance.find(body.name);
     if (body.type != multibody::BodyType::rigid || found == distance.end() || found->second == 0) continue;
-    const int length = joints.at(body.name).size() == 1 ? found->second : 0;  // others carry, or close a loop
+    const int length = joints.at(body.name).size() == 1 ? found->second : 0;  // other bodies carry, or close a loop
     if (length < longest) continue;
     longest = length;
     payload = body.name;
@@ -103,6 +104,19 @@ void payload_slopes(multibody::Model& model, const multibody::State& state, mult
       !static_line_forces(model, state, ws, ratio, payload, mass + 1, more.span()))
     return;
   for (std::size_t i = 0; i < m; ++i) slopes[i] = more[i] - now[i];
+}
+
+PayloadSensitivity::PayloadSensitivity(const multibody::Model& model, int payload, std::vector<double> ratio)
+    : model_(model), payload_(payload), ratio_(std::move(ratio)) {}
+
+void PayloadSensitivity::copy_signals(const multibody::Model& model) noexcept {
+  auto& loads = model_.elements.loads;
+  for (std::size_t i = 0; i < loads.size(); ++i) loads[i].signal = model.elements.loads[i].signal;
+}
+
+void PayloadSensitivity::read(const multibody::State& state, double mass, multibody::Workspace& ws,
+                              std::span<double> slopes) noexcept {
+  payload_slopes(model_, state, ws, ratio_, payload_, mass, slopes);
 }
 
 }  // namespace slew::mechanics

@@ -1,4 +1,4 @@
-// The mechanics' state as bytes: what is integrated, and what a step takes over from the one before.
+// The mechanics' state as bytes: what is integrated, and what a step takes over from the step before.
 #include "coupling/saved_model.h"
 #include "mechanics_node/mechanics_subsystem.h"
 #include "mechanics_node/parameter_handle.h"
@@ -7,7 +7,7 @@ namespace slew::mechanics {
 namespace {
 
 constexpr std::uint32_t kLayout = 2;
-constexpr std::size_t kFrameNumbers = 13;  // of a flexible body in its sample
+constexpr std::size_t kFrameNumbers = 13;  // per flexible body in its sample
 
 template <typename Sample, typename Bytes>
 void visit_sample(Sample& sample, std::size_t ports, Bytes& bytes) {
@@ -24,32 +24,24 @@ void visit_sample(Sample& sample, std::size_t ports, Bytes& bytes) {
 template <typename Self, typename Bytes>
 void MechanicsSubsystem::visit(Self& self, Bytes& bytes) {
   if constexpr (Bytes::kIsReading) {
-    multibody::load(self.model_, self.state_, bytes);
     self.mechanism_.load(bytes);
-    self.ramps_.load(bytes, [&](int handle) { return multibody::has_parameter(self.model_, parameter_of(handle)); });
-    self.levels_.load(bytes);
-    self.a_free_trends_.load(bytes);
-    if (self.is_free_running_) self.past_.load(bytes);
+    self.ramps_.load(bytes, [&](int handle) { return multibody::has_parameter(self.model(), parameter_of(handle)); });
+    self.partner_.levels().load(bytes);
   } else {
-    multibody::save(self.model_, self.state_, bytes);
     self.mechanism_.save(bytes);
     self.ramps_.save(bytes);
-    self.levels_.save(bytes);
-    self.a_free_trends_.save(bytes);
-    if (self.is_free_running_) self.past_.save(bytes);
+    self.partner_.levels().save(bytes);
   }
-  for (auto& operated : self.operated_) bytes.number(self.model_.elements.loads[operated.load].signal);
-  bytes.number(self.used_step_);
-  bytes.number(self.partner_age_);
-  for (auto& port : self.ports_) {
-    for (auto* x : {&port.z, &port.F, &port.friction, &port.stop}) bytes.number(*x);
-  }
-  for (auto& is_active : self.row_is_active_) bytes.flag(is_active);
-  bytes.numbers(self.row_force_);
+  PortProblem::visit_trends(self.port_problem_, bytes);
+  PartnerForce::visit_past(self.partner_, bytes);
+  Mechanism::visit_signals(self.mechanism_, bytes);
+  PartnerForce::visit_age(self.partner_, bytes);
+  PortProblem::visit_rows(self.port_problem_, bytes);
+  bytes.numbers(std::span(self.row_force_));
   DivergenceWatch::visit(self.divergence_, bytes);
   bytes.flag(self.has_failed_);
   visit_report(bytes, self.failure_);
-  visit_sample(self.published_.mechanism, self.ports_.size(), bytes);
+  visit_sample(self.published_.mechanism, self.port_problem_.ports().size(), bytes);
   auto& flexible = self.published_.flexible;
   visit_sized(bytes, flexible.q, self.modal_.mode_count());
   visit_sized(bytes, flexible.u, self.modal_.mode_count());
@@ -81,22 +73,14 @@ Status MechanicsSubsystem::load(std::span<const std::byte> state, coupling::OwnS
   return Status::ok();
 }
 
-// What follows from the state, as the end of a step leaves it.
+// Computes what follows from the state, as the end of a step leaves it.
 void MechanicsSubsystem::show_loaded() noexcept {
-  heavier_ = model_;
-  multibody::copy_state(state_, last_good_);
-  for (std::size_t row = 0; row < row_is_active_.size(); ++row) {
-    if (row_is_active_[row] != 0) {
-      multibody::activate_row(workspace_, static_cast<int>(row));
-    } else {
-      multibody::deactivate_row(workspace_, static_cast<int>(row));
-    }
-  }
-  is_evaluated_ = false;
-  evaluate();
-  multibody::observe(model_, state_, workspace_);
-  // angles of body coordinates are read off the motion, and continued from those that were there
-  multibody::copy_state(last_good_, state_);
+  payload_.copy(model());
+  multibody::copy_state(state(), last_good_);
+  mechanism_.evaluate();
+  mechanism_.observe();
+  // body coordinates give angles from the motion; those of the saved state are continued
+  multibody::copy_state(last_good_, mechanism_.state_as_evaluated());
 }
 
 }  // namespace slew::mechanics

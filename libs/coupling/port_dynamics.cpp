@@ -220,7 +220,7 @@ bool PortDynamics::solve_stage(double weight, double time, const RowLaws& laws, 
   }
 }
 
-void PortDynamics::set_weight(double weight, const RowLaws& laws) noexcept {
+void PortDynamics::set_weight(double weight, RowLaws& laws) noexcept {
   prepare(weight);
   laws.set_interval(weight);
 }
@@ -260,7 +260,7 @@ void PortDynamics::move(PortStep& report) noexcept {
 }
 
 // Two stages; false, and nothing has moved, where a stop asks for a shorter step.
-bool PortDynamics::try_stages(const Span& span, const RowLaws& laws, PortStep& report) noexcept {
+bool PortDynamics::try_stages(const Span& span, RowLaws& laws, PortStep& report) noexcept {
   const double weight = kGamma * span.length, rate = 1 / weight;
   PortStep tried;
   if (has_memory_) laws.keep();
@@ -303,7 +303,7 @@ bool PortDynamics::try_stages(const Span& span, const RowLaws& laws, PortStep& r
   return true;
 }
 
-PortStep PortDynamics::solve(double h, int micro_steps, const RowLaws& laws) noexcept {
+PortStep PortDynamics::solve(double h, int micro_steps, RowLaws& laws) noexcept {
   PortStep report;
   h_ = h;
   const double delta = h / micro_steps;

@@ -58,15 +58,15 @@ class RowLaws {
     for (std::size_t row = 0; row < rows; ++row) force[row] = evaluate(row, z[row], x[row], v[row]);
   }
 
-  // Laws that remember something (bristles of dry friction), which their owner keeps. begin(): from here on evaluate()
-  // means the end of an interval h at its speed, begun with what is remembered; true when any row of this solve
-  // remembers. set_interval(): another h from here on. carry(): the memory of a row moves on by h at the speed v.
-  // go_back(): the memory is that of the last keep().
-  virtual bool begin(double /*h*/) const noexcept { return false; }
-  virtual void set_interval(double /*h*/) const noexcept {}
-  virtual void carry(std::size_t /*row*/, double /*v*/, double /*h*/) const noexcept {}
-  virtual void keep() const noexcept {}
-  virtual void go_back() const noexcept {}
+  // Laws with a memory (bristles of dry friction). begin(): from here on evaluate() means the end of an interval h at
+  // its speed, which began with the memory as it is; true when any row of this solve has a memory. set_interval():
+  // another h from here on. carry(): the memory of a row advances by h at the speed v. go_back(): the memory returns to
+  // the last keep().
+  virtual bool begin(double /*h*/) noexcept { return false; }
+  virtual void set_interval(double /*h*/) noexcept {}
+  virtual void carry(std::size_t /*row*/, double /*v*/, double /*h*/) noexcept {}
+  virtual void keep() noexcept {}
+  virtual void go_back() noexcept {}
 
   // Whether x is where a stop of this row can push.
   [[nodiscard]] virtual bool is_at_stop(std::size_t /*row*/, double /*x*/) const noexcept { return false; }
@@ -98,7 +98,7 @@ class PortDynamics {
   std::span<RowPartner> partner() noexcept { return {partner_.data(), rows_}; }
 
   // Integrates over h in `micro_steps` equal steps.
-  PortStep solve(double h, int micro_steps, const RowLaws& laws) noexcept;
+  PortStep solve(double h, int micro_steps, RowLaws& laws) noexcept;
 
   // results of the last solve(): force over the sub-step is f_mean + (t - h/2) f_slope to first order; of a force that
   // is linear in time the mean is exact, the slope of rows with a partner too large by 24 % over the square of
@@ -117,10 +117,10 @@ class PortDynamics {
     double begin, length, first, end;  // s
   };
   void prepare(double weight) noexcept;
-  bool try_stages(const Span& span, const RowLaws& laws, PortStep& report) noexcept;
-  void take_in_parts(const Span& span, const RowLaws& laws, PortStep& report) noexcept;
-  void take_euler(const Span& span, const RowLaws& laws, PortStep& report) noexcept;
-  void set_weight(double weight, const RowLaws& laws) noexcept;
+  bool try_stages(const Span& span, RowLaws& laws, PortStep& report) noexcept;
+  void take_in_parts(const Span& span, RowLaws& laws, PortStep& report) noexcept;
+  void take_euler(const Span& span, RowLaws& laws, PortStep& report) noexcept;
+  void set_weight(double weight, RowLaws& laws) noexcept;
   void keep_first() noexcept;
   // When the force of a stage acts. of_stage: where the stage is, for rows with a partner; of_line: so that mean and
   // slope of a force that is linear in time are exact, for friction that holds against what grows; of_way: so that they

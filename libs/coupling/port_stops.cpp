@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-9;
 }  // namespace
 
 // (3); its force counts as from the start on, as its way does
-void PortDynamics::take_euler(const Span& span, const RowLaws& laws, PortStep& report) noexcept {
+void PortDynamics::take_euler(const Span& span, RowLaws& laws, PortStep& report) noexcept {
   set_weight(span.length, laws);
   for (std::size_t i = 0; i < rows_; ++i) {
     x_base_[i] = x_[i];
@@ -34,7 +34,7 @@ void PortDynamics::take_euler(const Span& span, const RowLaws& laws, PortStep& r
   move(report);
 }
 
-void PortDynamics::take_in_parts(const Span& span, const RowLaws& laws, PortStep& report) noexcept {
+void PortDynamics::take_in_parts(const Span& span, RowLaws& laws, PortStep& report) noexcept {
   double done = 0, length = span.length / kPart;
   for (bool is_last = false; !is_last;) {
     const double rest = span.length - done;

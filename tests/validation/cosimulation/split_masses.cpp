@@ -68,7 +68,8 @@ void SplitMasses::move_masses() {
     port_.a_free()[0] = now.a_free;
     port_.W()[0] = now.W;
     port_.partner()[0] = partner;
-    port_.solve(h, micro_steps, Line());
+    Line line;
+    port_.solve(h, micro_steps, line);
     const double mean = port_.f_mean()[0], slope = port_.f_slope()[0];
     const State k1 = rate(y_, mean - h / 2 * slope), k2 = rate(y_ + h / 2 * k1, mean), k3 = rate(y_ + h / 2 * k2, mean),
                 k4 = rate(y_ + h * k3, mean + h / 2 * slope);

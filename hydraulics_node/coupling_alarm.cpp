@@ -1,0 +1,56 @@
+#include "hydraulics_node/coupling_alarm.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace slew::hydraulic_node {
+
+CouplingAlarm::CouplingAlarm(const scene::Scene& scene)
+    : scene_(scene),
+      ends_session_(scene.session.coupling_alarm == scene::CouplingAlarm::stop),
+      indicator_(scene.ports.size(), {scene.session.step_duration().ns * scene.session.exchange_every}) {}
+
+void CouplingAlarm::reset() noexcept {
+  indicator_.reset();
+  text_length_ = 0;
+}
+
+// Two sides of a balanced level foresee each other; hold creates energy on any machine that swings, and is only
+// flagged. A port that ends the session comes before a flagged one.
+std::optional<std::size_t> CouplingAlarm::first_alarm(const coupling::PortLevels& levels) const noexcept {
+  std::optional<std::size_t> flagged;
+  for (std::size_t i = 0; i < scene_.ports.size(); ++i) {
+    if (coupling::is_balanced(levels[i])) {
+      if (indicator_.diverges(i)) return i;
+    } else if (!flagged && indicator_.port(i).creates_energy) {
+      flagged = i;
+    }
+  }
+  return flagged;
+}
+
+void CouplingAlarm::raise_flags(const coupling::PortLevels& levels, StepReport& report) noexcept {
+  const std::optional<std::size_t> port = first_alarm(levels);
+  if (!port) return;
+  report.raise(StepFlag::coupling_creates_energy);
+  if (!ends_session_ || !coupling::is_balanced(levels[*port])) return;
+  report.raise(StepFlag::ended);
+  write_text(*port, levels[*port]);
+}
+
+void CouplingAlarm::write_text(std::size_t port, coupling::Level level) noexcept {
+  const bool is_free_running = scene_.session.mode == scene::ExchangeMode::free_running;
+  const char* const remedy = level != coupling::Level::two ? "a shorter session.step or coupling: two"
+                             : is_free_running             ? "a shorter session.step or session.mode: lockstep"
+                                                           : "a shorter session.step";
+  const auto written = fmt::format_to_n(
+      text_.data(), text_.size(),
+      "{}: the coupling diverges: over the last second the works of both sides have differed by {:.2g} % of the work "
+      "done, not by one jump alone, and the machine swings on its oil by {:.2g} from one exchange to the next; use {}, "
+      "or session.coupling_alarm: warn to go on with red lamps",
+      scene_.ports[port].name, 1e2 * indicator_.own_residual(port), indicator_.omega_H(), remedy);
+  text_length_ = std::min(written.size, text_.size());
+}
+
+}  // namespace slew::hydraulic_node

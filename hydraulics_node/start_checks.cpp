@@ -1,0 +1,69 @@
+#include "hydraulics_node/start_checks.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+
+#include "coupling/indicator.h"
+#include "coupling/own_past.h"
+#include "scene/deep_starts.h"
+
+namespace slew::hydraulic_node {
+
+Status check_pressures(const scene::Scene& scene, const hydraulics::Circuit& circuit, std::span<const double> F) {
+  const std::optional<hydraulics::StartDemand> demand = circuit.demand_beyond_limits(F);
+  if (!demand) return Status::ok();
+  constexpr double kBar = 1e5, kKilo = 1e3;
+  const auto actuator = static_cast<std::size_t>(demand->actuator);
+  std::string limit = "no oil has a pressure below 0";
+  if (demand->pressure >= 0) {
+    limit = demand->valve.empty()
+                ? fmt::format("a chamber without a relief valve is taken to hold {:.0f} bar", demand->limit / kBar)
+                : fmt::format("{} lets its oil out from {:.4g} bar on", demand->valve, demand->limit / kBar);
+  }
+  const std::string contacts = scene::deep_starts(scene);
+  return Status::error(
+      ExitCode::failed,
+      fmt::format("hydraulics.start: equilibrium asks for {:.4g} bar in {} to hold {:.4g} kN on {}, but {}. {}",
+                  demand->pressure / kBar, circuit.volume_name(demand->volume), F[actuator] / kKilo,
+                  scene.ports[actuator].name, limit,
+                  contacts.empty() ? "Lighten the load or begin in another pose, or set hydraulics.start: table13"
+                                   : contacts + ". Move these bodies apart, or set hydraulics.start: table13"));
+}
+
+Status check_stability(const hydraulics::ExplicitStability& stability, std::string_view owner) {
+  if (!(stability.ratio > 1)) return Status::ok();
+  return Status::error(
+      ExitCode::failed,
+      fmt::format(
+          "hydraulics.solver: rk4 with sub-steps of {:.3g} ms would be unstable: {} moves {:.2g} times too fast "
+          "for it. Set hydraulics.max_substep below {:.3g} ms, or solver: rodas3",
+          1e3 * stability.substep, owner, stability.ratio, 1e3 * stability.substep / stability.ratio));
+}
+
+Status check_coupling(const scene::Scene& scene, const coupling::PortMatrix& W, const coupling::PortArray& K,
+                      const coupling::PortLevels& levels) {
+  const StepIndex exchange_every = scene.session.exchange_every;
+  const bool is_free_running = scene.session.mode == scene::ExchangeMode::free_running;
+  const double H = scene.session.step_duration().seconds() * static_cast<double>(exchange_every);
+  coupling::PortArray stiffness = K;
+  for (std::size_t i = 0; i < stiffness.size(); ++i) {
+    if (!coupling::is_balanced(levels[i])) stiffness[i] = 0;
+  }
+  const double omega_H = coupling::coupling_frequency(W, stiffness, H);
+  const double limit = is_free_running ? coupling::kMostLate : coupling::kMostSampled;
+  if (!(omega_H > limit)) return Status::ok();
+  const char* const why = is_free_running ? "which samples that are a step late, as those of free_running, do not bear"
+                                          : "so that there are less than two exchanges to a swing";
+  return Status::error(
+      ExitCode::failed,
+      fmt::format(
+          "session.coupling: the machine swings on its oil by omega_H = {:.2g} from one exchange to the next in "
+          "{:.3g} ms, {}: at most {:.2g}. Nothing was run. Set {} below {:.2g} ms{}, or session.coupling_alarm: "
+          "warn to run it all the same",
+          omega_H, 1e3 * H, why, limit, exchange_every > 1 ? "the time between two exchanges" : "session.step",
+          1e3 * H * limit / omega_H, is_free_running ? ", or session.mode: lockstep" : ""));
+}
+
+}  // namespace slew::hydraulic_node

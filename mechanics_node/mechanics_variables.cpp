@@ -1,0 +1,69 @@
+#include "mechanics_node/mechanics_variables.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "coupling/static_forces.h"
+#include "multibody/model/observe.h"
+
+namespace slew::mechanics {
+namespace {
+
+// Line forces that would hold the ports at rest: W F = -a_free; zero where there are none.
+coupling::PortArray holding_forces(const coupling::MechanismSample& sample, std::size_t ports) noexcept {
+  coupling::PortArray F;
+  F.resize(ports);
+  if (!coupling::static_forces(sample.W.span(), sample.a_free.span(), F.span())) std::fill(F.begin(), F.end(), 0.0);
+  return F;
+}
+
+}  // namespace
+
+MechanicsVariables::MechanicsVariables(const multibody::Model& model, const std::vector<Port>& ports, int payload,
+                                       bool has_partner_age)
+    : list_(multibody::variables(model)),
+      of_model_(list_.size()),
+      payload_(payload),
+      has_partner_age_(has_partner_age),
+      workspace_(model),
+      reactions_(model.joints.size()) {
+  for (ElementVariable& variable : multibody::reaction_variables(model)) list_.push_back(std::move(variable));
+  of_reactions_ = list_.size() - of_model_;
+  for (const Port& port : ports) {
+    list_.push_back({port.name + ".line_force", Dimension::force});
+    list_.push_back({port.name + ".friction_force", Dimension::force});
+    list_.push_back({port.name + ".end_stop_force", Dimension::force});
+    list_.push_back({port.name + ".static_force", Dimension::force});
+    list_.push_back({port.name + ".static_force_per_kg", Dimension::acceleration});
+  }
+  if (has_partner_age) list_.push_back({"mechanics.partner_age", Dimension::none});
+  if (payload > 0) {
+    list_.push_back({model.bodies[static_cast<std::size_t>(payload)].name + ".mass", Dimension::mass});
+  }
+}
+
+void MechanicsVariables::read(const Instant& instant, PayloadSensitivity& payload, std::span<double> values) noexcept {
+  const multibody::Model& model = instant.mechanism.model();
+  const multibody::State& state = instant.mechanism.state();
+  multibody::read_variables(model, state, instant.mechanism.workspace(), instant.row_force, values.first(of_model_));
+  multibody::joint_reactions(model, state, workspace_, instant.row_force, reactions_);
+  multibody::read_reactions(model, workspace_, instant.row_force, reactions_, values.subspan(of_model_, of_reactions_));
+  std::size_t k = of_model_ + of_reactions_;
+  const std::size_t m = instant.ports.size();
+  const double mass = payload_ > 0 ? mass_of(model, payload_) : 0;
+  coupling::PortArray slopes;
+  slopes.resize(m);
+  payload.read(state, mass, workspace_, slopes.span());
+  const coupling::PortArray static_force = holding_forces(instant.published, m);
+  for (std::size_t i = 0; i < m; ++i) {
+    values[k++] = instant.published.F_line[i];
+    values[k++] = instant.ports[i].friction;
+    values[k++] = instant.ports[i].stop;
+    values[k++] = static_force[i];
+    values[k++] = slopes[i];
+  }
+  if (has_partner_age_) values[k++] = static_cast<double>(instant.partner_age);
+  if (payload_ > 0) values[k++] = mass;
+}
+
+}  // namespace slew::mechanics

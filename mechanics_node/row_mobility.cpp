@@ -1,0 +1,92 @@
+#include "mechanics_node/row_mobility.h"
+
+#include <cmath>
+#include <utility>
+
+namespace slew::mechanics {
+namespace {
+
+using multibody::Integrator;
+
+// Change of W over an interval, in units of sqrt(W_ii W_jj): an error of a tenth in W is far inside of what level two
+// tolerates (coupling study, section 3), and rows over an interval cost a factorisation each.
+constexpr double kSignificantChange = 0.1;
+
+// Implicit sub-steps do not resolve the springs behind the rows.
+bool takes_long_substeps(Integrator integrator) noexcept {
+  return multibody::is_implicit(integrator) || integrator == Integrator::index3_trapezoidal;
+}
+
+// How the integrator answers a force that is held over a sub-step. generalised_alpha: the trapezoidal rule, apart from
+// the accelerations that it carries along. sdirk2: to second order; motion much faster than the sub-step stops at its
+// end.
+multibody::StepShares shares_of(Integrator integrator) noexcept {
+  switch (integrator) {
+    case Integrator::trapezoidal:
+    case Integrator::generalised_alpha:
+    case Integrator::index3_trapezoidal:
+      return multibody::kTrapezoidalShares;
+    case Integrator::sdirk2:
+      return {.position = 0.5, .rate = 1, .strain = 0.5};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+RowMobility::RowMobility(Mechanism& mechanism, std::size_t ports, double exchange_interval, double substep)
+    : mechanism_(mechanism), exchange_interval_(exchange_interval) {
+  const Integrator integrator = multibody::step_rule(mechanism.def()).integrator;
+  substep_shares_ = shares_of(integrator);
+  const multibody::Model& model = mechanism.model();
+  if (model.rows.empty() || !multibody::has_springs(model)) return;
+  auto step_rows = std::make_unique<multibody::StepRows>(model);
+  mechanism.evaluate();
+  const auto varies = [&](std::size_t count, double h) {
+    return step_rows->evaluate(model, mechanism.state(), mechanism.workspace(), h) &&
+           differs(count, multibody::row_mobility(mechanism.workspace()), step_rows->mobility());
+  };
+  varies_over_exchange_ = ports > 0 && varies(ports, exchange_interval);
+  varies_over_substep_ =
+      takes_long_substeps(integrator) && (varies_over_exchange_ || varies(model.rows.size(), substep));
+  mechanism.mark_changed();
+  if (varies_over_exchange_ || varies_over_substep_ || model.contact != nullptr) step_rows_ = std::move(step_rows);
+}
+
+// Compares the first `count` rows.
+bool RowMobility::differs(std::size_t count, std::span<const double> W, std::span<const double> W_h) const noexcept {
+  const std::size_t rows = mechanism_.row_count();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double scale = std::sqrt(W[i * rows + i] * W[j * rows + j]);
+      if (std::fabs(W_h[i * rows + j] - W[i * rows + j]) > kSignificantChange * scale) return true;
+    }
+  }
+  return false;
+}
+
+Rows RowMobility::at_instant() const noexcept {
+  const multibody::Workspace& workspace = mechanism_.workspace();
+  return {multibody::row_free_accelerations(workspace), multibody::row_mobility(workspace)};
+}
+
+Rows RowMobility::over(double h, multibody::StepShares shares) noexcept {
+  if (step_rows_ == nullptr ||
+      !step_rows_->evaluate(mechanism_.model(), mechanism_.state(), mechanism_.workspace(), h, shares)) {
+    return at_instant();
+  }
+  return {step_rows_->free_accelerations(), step_rows_->mobility(), coupling::MobilityKind::step};
+}
+
+Rows RowMobility::over_exchange() noexcept {
+  const bool takes_interval = varies_over_exchange_ || mechanism_.has_active_contact();
+  return takes_interval ? over(exchange_interval_, {}) : at_instant();
+}
+
+Rows RowMobility::over_substep(double h) noexcept {
+  const bool takes_interval = varies_over_substep_ || mechanism_.has_active_contact();
+  return takes_interval ? over(h, substep_shares_) : at_instant();
+}
+
+}  // namespace slew::mechanics
