@@ -21,6 +21,7 @@ class Physics : public ::testing::Test {
  protected:
   static Status build(const wire::SessionDescription&, BuiltSubsystem& built) {
     built.subsystem = std::make_unique<StillSubsystem>();
+    built.session.start_grace = 0;
     return Status::ok();
   }
   void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }
