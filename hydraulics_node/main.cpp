@@ -1,39 +1,12 @@
 // The program hydraulics_node: the hydraulic circuit of a session's scene as a process of its own.
 #include "hydraulics_node/hydraulics_subsystem.h"
-
-#include "node/node_program.h"
-#include "node/open_transport.h"
-#include "node/physics_node.h"
-#include "node/subsystem_factory.h"
-
-namespace {
-
-using namespace slew;
-
-std::optional<ExitCode> run(const node::NodeOptions& options) {
-  node::apply_real_time(options, "hydraulics_node");
-  const auto transport = node::open_transport(wire::Role::hydraulics, options.session);
-  node::PhysicsNode node(
-      wire::Role::hydraulics, *transport,
-      node::subsystem_factory(
-          [](const scene::Scene& scene) { return hydraulic_node::make_hydraulics_subsystem(scene); }, options.assets),
-      options.join());
-  node.add_work(microseconds(static_cast<std::int64_t>(options.added_work_us)));
-  return node::run_node(node);
-}
-
-}  // namespace
+#include "node/physics_program.h"
 
 int main(int argc, char** argv) {
-  options::Program program(
-      "hydraulics_node",
-      "Hydraulics of a Slewring session: valves, pump, cylinders, hoses. Takes the scene from the session.");
-  program.footer(
-      "Example, on the machine that computes the hydraulics:\n"
-      "  hydraulics_node --session truck_crane --interface eth0 --peer 192.168.1.20 "
-      "--keys for_crane2");
-  node::NodeOptions options;
-  node::add_physics_node_options(program, options);
-  program.action([&] { return node::run_until_in_session([&] { return run(options); }); });
-  return node::run_program(program, argc, argv);
+  using namespace slew;
+  return node::run_physics_program(
+      {wire::Role::hydraulics, "Hydraulics of a Slewring session: valves, pump, cylinders, hoses.",
+       "--session truck_crane --interface eth0 --peer 192.168.1.20 --keys for_crane2",
+       hydraulic_node::make_hydraulics_subsystem},
+      argc, argv);
 }

@@ -507,7 +507,6 @@ void IoNode::issue_tick(std::int64_t now_ns) {
                 : shedding_.level() == Shed::view ? static_cast<std::uint32_t>(wire::TickFlag::shed_view)
                                                   : static_cast<std::uint32_t>(wire::TickFlag::shed_view) |
                                                         static_cast<std::uint32_t>(wire::TickFlag::shed_variables);
-  newest_.fill(kJoinStep);
   tick_.controls.resize(gate_.size());
   tick_.age.resize(gate_.size());
   for (std::size_t i = 0; i < gate_.size(); ++i) {

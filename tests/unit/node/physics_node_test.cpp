@@ -20,8 +20,8 @@ using wire::Topic;
 class Physics : public ::testing::Test {
  protected:
   static Status build(const wire::SessionDescription&, BuiltSubsystem& built) {
-    built.subsystem = std::make_unique<StillSubsystem>();
     built.session.start_grace = 0;
+    built.subsystem = std::make_unique<StillSubsystem>();
     return Status::ok();
   }
   void poll(std::int64_t after_ns = 0) { node.poll(now_ns += after_ns); }

@@ -1,0 +1,22 @@
+// The program of a physics node: mechanics_node, hydraulics_node and flex_node differ in their subsystem and their
+// help.
+#pragma once
+
+#include <string>
+
+#include "node/subsystem_factory.h"
+#include "transport/wire.h"
+
+namespace slew::node {
+
+struct PhysicsProgram {
+  wire::Role role = wire::Role::mechanics;
+  std::string description;  // of --help
+  std::string example;      // of --help: the command's options
+  MakeSubsystem make;
+};
+
+// What main() does; gives the exit code.
+[[nodiscard]] int run_physics_program(const PhysicsProgram& program, int argc, const char* const* argv) noexcept;
+
+}  // namespace slew::node
