@@ -82,20 +82,18 @@ void PhysicsNode::receive_session(std::span<const std::byte> bytes, std::int64_t
 // Error: this node cannot take part in the session.
 Status PhysicsNode::build(const wire::SessionDescription& session) {
   if (Status built = factory_(session, built_); !built.is_ok()) return built;
-  if (built_.published_variables.size() > wire::kMaxVariables) {
-    return Status::error(ExitCode::bad_input,
-                         "scene '" + session.scene_name + "' publishes " +
-                             std::to_string(built_.published_variables.size()) + " variables of this node, at most " +
-                             std::to_string(wire::kMaxVariables) +
-                             " can be told apart; this node does not take part; name fewer in recording.variables");
+  if (const std::size_t count = built_.published_variables.size(); count > wire::kMaxVariables) {
+    return Status::error(ExitCode::bad_input, "scene '" + session.scene_name + "' publishes " + std::to_string(count) +
+                                                  " variables of this node, the limit is " +
+                                                  std::to_string(wire::kMaxVariables) +
+                                                  "; this node does not take part; name fewer in recording.variables");
   }
   const bool must_save = session.rejoin_ns > 0 || member_.has_state();
   const Status can_save = must_save ? built_.subsystem->can_save() : Status::ok();
   if (can_save.is_ok()) return can_save;
   return Status::error(can_save.code,
                        "the state of this node cannot be taken over by another process: " + can_save.text +
-                           "; this node does not take part; run it with session.rejoin=0, from the "
-                           "start");
+                           "; this node does not take part; run it with session.rejoin=0, from the start");
 }
 
 // io has published which processes it gave up, and the step of the session
