@@ -38,10 +38,6 @@ std::optional<Awaited> FollowerLoop::awaited(StepIndex n) const noexcept {
   return first_missing_sample(member_, samples_, next_sample(n));
 }
 
-std::int64_t FollowerLoop::next_poll_ns(StepIndex, std::int64_t, std::int64_t request_due_ns) const noexcept {
-  return request_due_ns;
-}
-
 void FollowerLoop::restart() noexcept {
   tick_flags_ = 0;
   end_ = TickEnd::none;

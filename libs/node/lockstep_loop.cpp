@@ -43,10 +43,6 @@ std::optional<Awaited> LockstepLoop::awaited(StepIndex n) const noexcept {
   return was_sent ? std::optional(Awaited{Role::io, Topic::tick, n}) : std::nullopt;
 }
 
-std::int64_t LockstepLoop::next_poll_ns(StepIndex, std::int64_t, std::int64_t request_due_ns) const noexcept {
-  return request_due_ns;
-}
-
 void LockstepLoop::restart() noexcept {
   ticks_.clear();
   tick_flags_ = 0;

@@ -17,14 +17,11 @@ class LockstepLoop final : public StepLoop {
   [[nodiscard]] bool lacks_tick(StepIndex n) const noexcept override { return ticks_.find(n) == nullptr; }
   void collect_missing(StepIndex n, MissingMessages& missing) const noexcept override;
   [[nodiscard]] std::optional<Awaited> awaited(StepIndex n) const noexcept override;
-  [[nodiscard]] std::int64_t next_poll_ns(StepIndex n, std::int64_t now_ns,
-                                          std::int64_t request_due_ns) const noexcept override;
   [[nodiscard]] bool is_ended_by_fault() const noexcept override { return end_ == TickEnd::fault; }
   [[nodiscard]] bool sheds_variables() const noexcept override {
     return has_flag(tick_flags_, wire::TickFlag::shed_variables);
   }
   void restart() noexcept override;
-  void take_over(const wire::SampleState&) noexcept override {}
 
  private:
   SessionMember& member_;

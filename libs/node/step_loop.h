@@ -61,9 +61,10 @@ class StepLoop {
   // The first message without which the step is not done although its writer has published it; none: the step waits
   // for no message, or the reason of the wait is published in the status of another node.
   [[nodiscard]] virtual std::optional<Awaited> awaited(StepIndex n) const noexcept = 0;
-  // Monotonic time of the next poll when no message arrives. request_due_ns: when the node may request again.
-  [[nodiscard]] virtual std::int64_t next_poll_ns(StepIndex n, std::int64_t now_ns,
-                                                  std::int64_t request_due_ns) const noexcept = 0;
+  // Monotonic time of the next poll when no message arrives. Parameters: n, the present time, that of the next request.
+  [[nodiscard]] virtual std::int64_t next_poll_ns(StepIndex, std::int64_t, std::int64_t request_due_ns) const noexcept {
+    return request_due_ns;
+  }
 
   // A tick announced that the session ends by a fault: no message is requested any more.
   [[nodiscard]] virtual bool is_ended_by_fault() const noexcept = 0;
@@ -72,8 +73,8 @@ class StepLoop {
 
   // A new epoch begins.
   virtual void restart() noexcept = 0;
-  // Continues from the state of a session under way. published: what the sample of that step stated.
-  virtual void take_over(const wire::SampleState& published) noexcept = 0;
+  // Continues from the state of a session under way, with what the sample of that step stated.
+  virtual void take_over(const wire::SampleState&) noexcept {}
 };
 
 // The loop of the role and of the session's mode. The arguments outlive it.
