@@ -1,4 +1,5 @@
-// PhysicsNode's part that waits: what the next step lacks, asking for it again, partners that are silent or gone.
+// How a physics node waits: requests for the messages that the next step lacks, the stall watch, and what it does when
+// another node is silent, gone or at its end.
 #include <algorithm>
 
 #include "node/physics_node.h"
@@ -12,72 +13,74 @@ using wire::Topic;
 
 namespace {
 
-// ticks and samples that a node asks for at once when it computes steps that the others have done
+// ticks and samples that one request names at most
 constexpr StepIndex kCatchUp = static_cast<StepIndex>(kRingDepth) - 32;
 
 }  // namespace
 
-// io has not sent this tick yet: the session does not tick, or it is paused
-bool PhysicsNode::is_withheld(StepIndex tick) const noexcept {
-  const wire::NodeStatus& io = member_.peer(Role::io).status;
-  if (io.header.epoch != member_.epoch()) return false;
-  const bool is_paused = io.state == NodeState::holding && io.reason.empty() && io.header.step <= tick;
-  return io.state < NodeState::running || is_paused;
+void PhysicsNode::update_health() noexcept {
+  HealthState& h = health();
+  h.state = static_cast<std::uint8_t>(member_.state());
+  h.step = n_;
+  h.epoch = member_.epoch();
+  h.refused = member_.refusals().refused();
+  Role missing = Role::io;
+  if (loop_ != nullptr && !loop_->lacks_tick(n_)) {
+    samples_.for_each_missing(n_, [&](Role role, Topic, StepIndex) { missing = role; });
+  }
+  h.is_waiting = stage_ == Stage::stepping && resend_.is_overdue();
+  h.waiting_for = static_cast<std::uint8_t>(missing);
+  h.waiting_step = n_;
+  h.has_session.store(member_.has_session(), std::memory_order_release);
 }
 
-void PhysicsNode::ask_for_missing(std::int64_t now_ns) {
-  if (is_ended_by_fault_ || !resend_.is_due(now_ns)) return;
-  const auto ask = [&](Role role, Topic topic, StepIndex step) {
-    wire::ResendRequest request;
-    request.header = member_.header(Phase::running, step);
-    request.role = role;
-    request.topic = static_cast<std::uint8_t>(topic);
-    request.last_step = stage_ == Stage::stepping ? std::max(step, std::min(caught_up_at_ - 1, n_ + kCatchUp)) : step;
-    member_.publish(Topic::resend, request);
-    ++health().resends_asked;
-  };
+// In `real` pace the next tick is due one step later. No node waits for a follower: it does not request a sample before
+// the time at which that pace brings it.
+void PhysicsNode::expect_next(std::int64_t now_ns) noexcept {
+  const std::int64_t stride_ns = std::min(samples_.stride() * member_.session().step_ns, kResendAtMost.ns);
+  const bool has_time = is_follower() || member_.session().pace == wire::Pace::real;
+  resend_.restart(has_time ? now_ns + stride_ns : now_ns);
+}
+
+void PhysicsNode::request_missing(std::int64_t now_ns) {
+  if (loop_->is_ended_by_fault() || !resend_.is_due(now_ns)) return;
   resend_.asked(now_ns);
-  if (stage_ == Stage::initialising) return samples_.for_each_missing_at_start(ask);
-  if (stage_ == Stage::loading) return ask(member_.role(), Topic::state, kJoinStep);
-  if (is_follower()) {
-    if (!is_withheld(n_ + samples_.stride() - 1)) samples_.for_each_missing(n_ + samples_.stride(), ask);
-    return;
+  MissingMessages missing;
+  if (stage_ == Stage::initialising) {
+    samples_.for_each_missing_at_start([&](Role role, Topic topic, StepIndex step) {
+      missing.push_back({role, topic, step});
+    });
+  } else if (stage_ == Stage::loading) {
+    missing.push_back({member_.role(), Topic::state, kJoinStep});
+  } else {
+    loop_->collect_missing(n_, missing);
   }
-  if (is_free_running()) {
-    // samples are too late by then, commands are not
-    for (const StepIndex step : missed_ticks_) ask(Role::io, Topic::tick, step);
-    return;
-  }
-  if (ticks_.find(n_) == nullptr && !is_withheld(n_)) ask(Role::io, Topic::tick, n_);
-  samples_.for_each_missing(n_, ask);
+  for (const Awaited& message : missing) request(message);
 }
 
-// The first message that the next step lacks, as long as no other node has published the reason. A free-running node
-// waits for none.
-std::optional<Awaited> PhysicsNode::awaited() noexcept {
+// While this node computes steps that the others have done it requests many messages at once.
+void PhysicsNode::request(const Awaited& missing) {
+  const StepIndex newest = std::min(states_.caught_up_at() - 1, n_ + kCatchUp);
+  wire::ResendRequest request;
+  request.header = member_.header(Phase::running, missing.step);
+  request.role = missing.role;
+  request.topic = static_cast<std::uint8_t>(missing.topic);
+  request.last_step = stage_ == Stage::stepping ? std::max(missing.step, newest) : missing.step;
+  member_.publish(Topic::resend, request);
+  ++health().resends_asked;
+}
+
+// The first message that the next step lacks, as long as no other node has published the reason.
+std::optional<Awaited> PhysicsNode::awaited() const noexcept {
   if (stage_ == Stage::loading) return Awaited{Role::io, Topic::state, n_};
-  const wire::NodeStatus& io = member_.peer(Role::io).status;
-  if (stage_ != Stage::stepping || is_ended_by_fault_ || is_free_running()) return std::nullopt;
+  if (stage_ != Stage::stepping || loop_->is_ended_by_fault()) return std::nullopt;
   // io waits for a node, and ends the session when that takes too long
+  const wire::NodeStatus& io = member_.peer(Role::io).status;
   if (io.state == NodeState::holding || io.state >= NodeState::ended) return std::nullopt;
-  const StepIndex next = is_follower() ? n_ + samples_.stride() : n_;
-  if (is_withheld(is_follower() ? next - 1 : next)) return std::nullopt;
-  if (!is_follower() && ticks_.find(n_) == nullptr) {
-    // a tick that io has not sent has its reason there
-    const Peer& of_ticks = member_.peer(Role::io);
-    const bool was_sent = of_ticks.step_epoch == member_.epoch() && of_ticks.step > n_;
-    return was_sent ? std::optional(Awaited{Role::io, Topic::tick, n_}) : std::nullopt;
-  }
-  std::optional<Awaited> first;
-  samples_.for_each_missing(next, [&](Role role, Topic topic, StepIndex step) {
-    const Peer& partner = member_.peer(role);
-    // a holding node has published its own reason
-    if (!first && !partner.is_lost && partner.status.state != NodeState::holding) first = Awaited{role, topic, step};
-  });
-  return first;
+  return loop_->awaited(n_);
 }
 
-// io decides first; a node that io does not hear of ends by itself a little later.
+// io decides first. A node whose messages io does not receive ends by itself a little later.
 void PhysicsNode::look_for_stall(std::int64_t now_ns) {
   const bool was_named = stall_.is_named();
   const std::uint64_t asked = health().resends_asked;
@@ -117,6 +120,10 @@ void PhysicsNode::watch(std::int64_t now_ns) {
     if (now_ns - io_ended_ns_ > kSilentAfter.ns) leave(ExitCode::ok, "", now_ns);
     return;
   }
+  on_peer_event(event, about, now_ns);
+}
+
+void PhysicsNode::on_peer_event(PeerEvent event, Role about, std::int64_t now_ns) {
   switch (event) {
     case PeerEvent::lost:
       return leave(ExitCode::node_lost,

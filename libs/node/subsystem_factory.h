@@ -7,7 +7,7 @@
 #include <string>
 
 #include "coupling/subsystem.h"
-#include "node/physics_node.h"
+#include "node/built_subsystem.h"
 #include "scene/scene.h"
 
 namespace slew::node {

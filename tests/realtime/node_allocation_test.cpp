@@ -67,6 +67,14 @@ class LockStep {
   // Heap calls of io's polls since this was last asked.
   std::uint64_t io_calls() { return std::exchange(io_calls_, 0); }
   [[nodiscard]] StepIndex step() const { return io_->next_step(); }
+  // Why the session ended, by every node.
+  [[nodiscard]] std::string reasons() {
+    std::string reasons = "io: " + io_->member().reason();
+    for (const auto& node : physics_) {
+      reasons += "; " + std::string(node::to_text(node->member().role())) + ": " + node->member().reason();
+    }
+    return reasons;
+  }
   [[nodiscard]] std::size_t nodes() const { return physics_.size(); }
 
  private:
@@ -123,7 +131,7 @@ TEST(NodeLoop, DoesNotAllocateWithAFlexNode) {
         warm_up);
     ASSERT_EQ(session.nodes(), 3u);
     EXPECT_GT(session.run_to(warm_up), 0u);
-    ASSERT_GE(session.step(), warm_up);
+    ASSERT_GE(session.step(), warm_up) << session.reasons();
     EXPECT_EQ(session.run_to(warm_up + 900), 0u) << exchange;
   }
 }

@@ -40,6 +40,16 @@ class StillSubsystem : public coupling::Subsystem {
   [[nodiscard]] std::string_view offender_name(std::int32_t) const noexcept override { return ""; }
 };
 
+// The same with one variable.
+class ObservedSubsystem final : public StillSubsystem {
+ public:
+  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
+  void read_variables(std::span<double> values) const noexcept override { values[0] = 7; }
+
+ private:
+  std::vector<ElementVariable> variables_{{"Bag.mass", Dimension::mass}};
+};
+
 // A transport that cannot send on one topic any more, once it is told so.
 class BreakableTransport final : public transport::Transport {
  public:

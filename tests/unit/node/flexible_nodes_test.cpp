@@ -22,7 +22,9 @@ class WithFlexibleBodies : public ::testing::Test {
  protected:
   [[nodiscard]] static SubsystemFactory built_for(ElasticExchange exchange) {
     return [exchange](const wire::SessionDescription&, BuiltSubsystem& built) {
-      built.subsystem = std::make_unique<testing::StillSubsystem>();
+      built.subsystem = std::make_unique<testing::ObservedSubsystem>();
+      built.published_variables = {0};
+      built.variables_every = kEvery;
       built.exchange = {.port_every = 1, .flexible_every = kEvery, .elastic = exchange};
       return Status::ok();
     };
@@ -203,6 +205,48 @@ TEST_F(FlexNode, EndsWhenItHasSeenTheLastStep) {
   poll(kMs);
   EXPECT_EQ(node->member().state(), NodeState::ended);
   EXPECT_EQ(node->member().exit_code(), ExitCode::ok);
+}
+
+TEST_F(FlexNode, StatesThatItUsedTheSampleOfTheSameStep) {
+  get_ready(ElasticExchange::once);
+  say_flexible(10);
+  poll(kMs);
+  const auto samples = played.said<wire::ElasticMessage>(Topic::elastic);
+  ASSERT_EQ(samples.size(), 2u);
+  for (const auto& sample : samples) EXPECT_EQ(sample.state.used_step, sample.header.step);
+}
+
+TEST_F(FlexNode, ShedsTheValuesOfItsVariablesFirst) {
+  get_ready(ElasticExchange::once);
+  const auto view = static_cast<std::uint32_t>(TickFlag::shed_view);
+  const auto variables = static_cast<std::uint32_t>(TickFlag::shed_variables);
+  const std::uint32_t flags[] = {0, view, view | variables, 0};
+  for (StepIndex exchange = 0; exchange < 4; ++exchange) {
+    played.say_tick(exchange * kEvery, flags[exchange]);
+    say_flexible((exchange + 1) * kEvery);
+    poll(kMs);
+  }
+  std::vector<std::size_t> values;
+  for (const auto& block : played.said<wire::VariableBlock>(Topic::variables)) {
+    if (block.header.phase == Phase::running) values.push_back(block.values.size());
+  }
+  EXPECT_EQ(values, (std::vector<std::size_t>{1, 1, 0, 0, 1}));
+}
+
+TEST_F(FlexNode, FollowsToTheLastStepAfterAFaultAndRequestsNothing) {
+  get_ready(ElasticExchange::once);
+  played.say_tick(25, static_cast<std::uint32_t>(TickFlag::end) | static_cast<std::uint32_t>(TickFlag::fault));
+  played.say_status(Role::io, NodeState::running, 25);
+  poll(kMs);
+  played.forget();
+  for (int i = 0; i < 10; ++i) poll(20 * kMs);
+  EXPECT_TRUE(played.said<wire::ResendRequest>(Topic::resend).empty());
+  say_flexible(10);
+  say_flexible(20);
+  say_flexible(30);
+  poll(kMs);
+  EXPECT_EQ(steps_of<wire::ElasticMessage>(Topic::elastic), (std::vector<StepIndex>{10, 20}));
+  EXPECT_EQ(node->member().state(), NodeState::running) << "the reason follows in the status of io";
 }
 
 TEST_F(FlexNode, AsksForAStateThatIsOverdue) {

@@ -163,6 +163,35 @@ TEST_F(FreeRunning, AppliesTheCommandsOfALateTickOnceInTheNextStep) {
   EXPECT_EQ(changes[0], std::pair(StepIndex{2}, std::string("Bag.mass")));
 }
 
+TEST_F(FreeRunning, BeginsAnEpochWithNothingOfTheFormer) {
+  poll(3 * kMs / 2);  // step 1 without its tick
+  say_tick(1, 0.7, "Bag.mass");
+  wire::Tick init;
+  init.header = played.header(Role::io, kJoinStep, Phase::init, 1);
+  played.say(Topic::tick, init);
+  played.say_actuators(0, Phase::running, 1);
+  poll(kMs);
+  poll(kMs);
+  ASSERT_EQ(node.member().state(), NodeState::ready);
+  wire::NodeStatus io = played.status(Role::io, NodeState::running, 0);
+  io.header.epoch = 1;
+  played.say(Topic::node_status, io);
+  samples();
+  done.clear();
+  wire::Tick tick;
+  tick.header = played.header(Role::io, 0, Phase::running, 1);
+  played.say(Topic::tick, tick);
+  poll(kMs);
+  ASSERT_EQ(done.size(), 1u);
+  EXPECT_EQ(done[0].step, 0);
+  EXPECT_EQ(done[0].control, -1) << "no control of the former epoch";
+  EXPECT_TRUE(changes.empty());
+  const auto said = samples();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0].state.used_step, 0);
+  EXPECT_EQ(said[0].state.lost, 0u);
+}
+
 TEST_F(FreeRunning, AsksForAMissedTick) {
   poll(kMs + kMs / 2);
   poll(kMs / 2);

@@ -126,19 +126,9 @@ TEST_F(Physics, HasNoDeadlineInFreePace) {
   EXPECT_EQ(node.timing().response.count(), 1u);
 }
 
-// one variable, published at every step
-class Observed final : public StillSubsystem {
- public:
-  [[nodiscard]] std::span<const ElementVariable> variables() const noexcept override { return variables_; }
-  void read_variables(std::span<double> values) const noexcept override { values[0] = 7; }
-
- private:
-  std::vector<ElementVariable> variables_{{"Bag.mass", Dimension::mass}};
-};
-
 TEST_F(Physics, LeavesOutTheValuesOfItsVariablesWhereTheTickSaysSo) {
   PhysicsNode observed(Role::mechanics, played.transport(), [](const wire::SessionDescription&, BuiltSubsystem& built) {
-    built.subsystem = std::make_unique<Observed>();
+    built.subsystem = std::make_unique<testing::ObservedSubsystem>();
     built.published_variables = {0};
     built.variables_every = 1;
     return Status::ok();
