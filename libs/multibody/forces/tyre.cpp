@@ -19,6 +19,10 @@ constexpr double kFlatWheel = 0.1;  // sine of the angle between axle and normal
 
 constexpr std::array<std::string_view, 2> kTyreRolling = {"free", "with_body"};
 
+// a free wheel has no longitudinal slip
+constexpr ReadBy kReadByDrivenWheel[] = {
+    read_by<&TyreDummyDef::rolling, TyreRolling::with_body>("rolling", "rolling: with_body")};
+
 constexpr Field kTyreDummyFields[] = {
     required_body<&TyreDummyDef::relative_to>("relative_to", "body that carries the wheel"),
     field<&TyreDummyDef::position>("position", {.dimension = Dimension::length, .doc = "wheel's centre in the body"}),
@@ -50,8 +54,10 @@ constexpr Field kTyreDummyFields[] = {
                                               .doc = "damper; carries at most what the spring does"}),
     field<&TyreDummyDef::friction>(
         "friction", {.range = kPositive, .change = Change::live, .doc = "largest slip force over normal force"}),
-    field<&TyreDummyDef::longitudinal_slip_slope>(
-        "longitudinal_slip_slope", {.range = kNotNegative, .doc = "longitudinal force over normal force, per slip"}),
+    field<&TyreDummyDef::longitudinal_slip_slope>("longitudinal_slip_slope",
+                                                  {.range = kNotNegative,
+                                                   .read_by = kReadByDrivenWheel,
+                                                   .doc = "longitudinal force over normal force, per slip"}),
     field<&TyreDummyDef::lateral_slip_slope>(
         "lateral_slip_slope",
         {.range = kNotNegative, .doc = "lateral force over normal force, per tangent of the slip angle"}),
