@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "core/display.h"
 #include "core/failure.h"
-#include "hydraulics/components/double_acting_cylinder.h"
 #include "hydraulics/components/l90ls_valve.h"
 
 namespace slew::analysis {
 namespace {
 
-using hydraulics::DoubleActingCylinderDef;
+using hydraulics::ActuatorDef;
 using hydraulics::L90lsValveDef;
 
 constexpr double kFullyOpen = 0.9;      // of the maximum control signal
@@ -24,18 +22,19 @@ constexpr double kShortestStall = 0.5;  // s
 constexpr double kStandstill = 2e-3;    // m/s
 constexpr double kEndOfStroke = 1e-3;   // m
 
-// A cylinder, the valve that feeds it, and the side that is fed: direction +1 extends, through A.
+// An actuator, the valve that feeds it, and the side that is fed: direction +1 extends, through A.
 struct Drive {
-  const DoubleActingCylinderDef* cylinder = nullptr;
+  std::string name;
+  ActuatorDef actuator;
   const L90lsValveDef* valve = nullptr;
   int direction = 1;
 
-  [[nodiscard]] double area_a() const { return std::numbers::pi / 4 * std::pow(cylinder->common.piston_diameter, 2); }
-  [[nodiscard]] double area_b() const { return area_a() - std::numbers::pi / 4 * std::pow(cylinder->rod_diameter, 2); }
-  [[nodiscard]] double fed_area() const { return direction > 0 ? area_a() : area_b(); }
-  [[nodiscard]] double other_area() const { return direction > 0 ? area_b() : area_a(); }
-  [[nodiscard]] const std::string& fed_volume() const {
-    return direction > 0 ? cylinder->common.port_a : cylinder->common.port_b;
+  [[nodiscard]] double fed_area() const { return direction > 0 ? actuator.area_a : actuator.area_b; }
+  [[nodiscard]] double other_area() const { return direction > 0 ? actuator.area_b : actuator.area_a; }
+  [[nodiscard]] const std::string& fed_volume() const { return direction > 0 ? actuator.port_a : actuator.port_b; }
+  [[nodiscard]] const char* motion() const {
+    if (actuator.motion == hydraulics::Motion::rotary) return direction > 0 ? "turn forwards" : "turn back";
+    return direction > 0 ? "extend" : "retract";
   }
   // above tank
   [[nodiscard]] double feed_limit() const {
@@ -52,21 +51,21 @@ struct Stall {
 std::vector<Drive> drives_of(const scene::Scene& scene) {
   std::vector<Drive> drives;
   for (const auto& component : scene.hydraulics.components) {
-    const auto* cylinder = dynamic_cast<const DoubleActingCylinderDef*>(component.get());
-    if (cylinder == nullptr) continue;
+    const std::optional<ActuatorDef> actuator = component->actuator();
+    if (!actuator) continue;
     for (const auto& other : scene.hydraulics.components) {
       const auto* valve = dynamic_cast<const L90lsValveDef*>(other.get());
       if (valve == nullptr) continue;
-      if (valve->port_a != cylinder->common.port_a || valve->port_b != cylinder->common.port_b) continue;
-      drives.push_back({cylinder, valve, 1});
-      drives.push_back({cylinder, valve, -1});
+      if (valve->port_a != actuator->port_a || valve->port_b != actuator->port_b) continue;
+      drives.push_back({component->name, *actuator, valve, 1});
+      drives.push_back({component->name, *actuator, valve, -1});
     }
   }
   return drives;
 }
 
 std::vector<std::string> variables_of(const Drive& drive) {
-  const std::string& name = drive.cylinder->name;
+  const std::string& name = drive.name;
   return {drive.valve->name + ".control_signal", name + ".speed", name + ".stroke", name + ".static_force",
           name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
 }
@@ -86,8 +85,8 @@ std::optional<Stall> find_stall(const session::Curves& all, const Drive& drive) 
     if (!is_open) open_since = -1;
     if (is_open && open_since < 0) open_since = time;
     const bool is_at_end = drive.direction > 0
-                               ? curves[2].values[i] > drive.cylinder->common.maximum_stroke - kEndOfStroke
-                               : curves[2].values[i] < drive.cylinder->common.minimum_stroke + kEndOfStroke;
+                               ? curves[2].values[i] > drive.actuator.line_force.maximum_stroke - kEndOfStroke
+                               : curves[2].values[i] < drive.actuator.line_force.minimum_stroke + kEndOfStroke;
     const bool stands = is_open && time - open_since >= kSettling && !is_at_end &&
                         sign * curves[1].values[i] < kStandstill && sign * curves[3].values[i] > 0;
     if (!stands) standing_since = -1;
@@ -121,33 +120,32 @@ std::optional<HeldLoad> find_load(const session::Curves& curves, const scene::Sc
   for (const multibody::BodyDef& body : scene.mechanics.bodies) {
     if (!curves.has(body.name + ".mass")) continue;
     return HeldLoad{body.name, value_at(curves, body.name + ".mass", time),
-                    drive.direction * value_at(curves, drive.cylinder->name + ".static_force_per_kg", time)};
+                    drive.direction * value_at(curves, drive.name + ".static_force_per_kg", time)};
   }
   return std::nullopt;
 }
 
 std::string sentence(const session::Curves& curves, const scene::Scene& scene, const Drive& drive, const Stall& stall) {
-  const DoubleActingCylinderDef& cylinder = *drive.cylinder;
+  const hydraulics::LineForceParameters& line = drive.actuator.line_force;
   const double tank = [&] {
     for (const hydraulics::VolumeDef& volume : scene.hydraulics.volumes) {
       if (volume.name == drive.valve->port_t) return volume.initial_pressure;
     }
     return 0.0;
   }();
-  const double needed = ((stall.static_force + cylinder.common.seal_friction) / cylinder.common.cylinder_coefficient +
+  const double needed = ((stall.static_force + line.seal_friction) / line.cylinder_coefficient +
                          stall.other_pressure * drive.other_area()) /
                         drive.fed_area();
   const double limit = tank + drive.feed_limit();
-  std::string text =
-      fmt::format("{} did not {} from {:.1f} to {:.1f} s with {} fully open: moving the load takes {} in {}",
-                  cylinder.name, drive.direction > 0 ? "extend" : "retract", stall.from, stall.to, drive.valve->name,
-                  quantity_text(needed, "Pa"), drive.fed_volume());
+  std::string text = fmt::format(
+      "{} did not {} from {:.1f} to {:.1f} s with {} fully open: moving the load takes {} in {}", drive.name,
+      drive.motion(), stall.from, stall.to, drive.valve->name, quantity_text(needed, "Pa"), drive.fed_volume());
   if (needed <= limit) return text + ", which the valve could feed; look at the pump's pressure in a plot";
   text += fmt::format(", but {} feeds up to {} only (maximum_ls_pressure_{} and compensator_pressure above tank)",
                       drive.valve->name, quantity_text(limit, "Pa"), drive.direction > 0 ? "a" : "b");
   const double available =
-      (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * cylinder.common.cylinder_coefficient -
-      cylinder.common.seal_friction;
+      (limit * drive.fed_area() - stall.other_pressure * drive.other_area()) * line.cylinder_coefficient -
+      line.seal_friction;
   const std::optional<HeldLoad> load = find_load(curves, scene, drive, stall.to);
   if (!load || !(load->slope > 0)) return text;
   const double mass = load->mass - (stall.static_force - available) / load->slope;

@@ -9,7 +9,7 @@ CircuitBuilder::CircuitBuilder(const HydraulicsDef& def)
   for (const auto& component : def.components) {
     const ComponentType* type = find_component_type(component->type_name());
     SLEW_CHECK(type != nullptr);
-    actuator_count_ += type->is_actuator;
+    actuator_count_ += component->actuator().has_value();
     if (type->has_ls_port) ls_names_.push_back(component->name);
   }
   // oil in rigid blocks
@@ -46,8 +46,16 @@ LsIndex CircuitBuilder::ls_index(std::string_view component) const {
   return 0;
 }
 
-int CircuitBuilder::add_actuator(Actuator actuator) {
-  actuators_.push_back(std::move(actuator));
+int CircuitBuilder::add_actuator(const std::string& component, const ActuatorDef& actuator) {
+  actuators_.push_back({.name = component,
+                        .force = actuator.force,
+                        .port_a = volume(actuator.port_a),
+                        .port_b = volume(actuator.port_b),
+                        .area_a = actuator.area_a,
+                        .area_b = actuator.area_b,
+                        .coordinate = actuator.coordinate,
+                        .line_force = actuator.line_force,
+                        .start = actuator.start});
   return static_cast<int>(actuators_.size()) - 1;
 }
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "hydraulics/component.h"
-#include "hydraulics/components/cylinder_def.h"
 #include "hydraulics/hydraulics_def.h"
 
 namespace slew::hydraulics {
@@ -29,9 +28,6 @@ struct Content {
   double smallest = 0;       // m3
   WallLaw wall = {};
 };
-
-// How an actuator shares the static load between its chambers at an equilibrium start.
-enum class StartRule { return_pressure, mean_pressure };
 
 // A cylinder as the power port sees it.
 struct Actuator {
@@ -71,8 +67,8 @@ class CircuitBuilder {
   // Number of the component's own load-sensing pressure; of another component's.
   [[nodiscard]] LsIndex ls_index(std::string_view component) const;
   void add_content(const Content& content) { contents_.push_back(content); }
-  // Index of the actuator; its position is y[position(index)], its speed y[speed(index)].
-  [[nodiscard]] int add_actuator(Actuator actuator);
+  // Index of the component's actuator; its position is y[position(index)], its speed y[speed(index)].
+  [[nodiscard]] int add_actuator(const std::string& component, const ActuatorDef& actuator);
   [[nodiscard]] StateIndex position(int actuator) const noexcept { return volume_count_ + actuator; }
   [[nodiscard]] StateIndex speed(int actuator) const noexcept { return volume_count_ + actuator_count_ + actuator; }
   // The volume starts at the pump pressure in an equilibrium start.

@@ -5,16 +5,19 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "core/field.h"
 #include "core/problem.h"
+#include "hydraulics/actuator_def.h"
 
 namespace slew::hydraulics {
 
 struct HydraulicsDef;
+struct PumpLines;
 class HydraulicComponent;
 class CircuitBuilder;
 
@@ -33,6 +36,10 @@ struct ComponentDef {
   [[nodiscard]] virtual std::string_view type_name() const noexcept = 0;
   // Address of the final Def: what Field::member expects.
   [[nodiscard]] virtual void* address() noexcept = 0;
+  // Facts of a component that drives a force element through a power port; none of the others.
+  [[nodiscard]] virtual std::optional<ActuatorDef> actuator() const { return std::nullopt; }
+  // Adds what connects or relieves volumes whatever the control signals are (pump_lines.h), and pumps.
+  virtual void add_lines(PumpLines& /*lines*/) const {}
 };
 
 struct ComponentType {
@@ -46,7 +53,6 @@ struct ComponentType {
   std::unique_ptr<HydraulicComponent> (*build)(const ComponentDef& def, CircuitBuilder& builder) = nullptr;
   bool has_control_signal = false;  // takes an input (`inputs: ... primitive: NAME`)
   bool has_ls_port = false;         // may be named where a load-sensing pressure is wanted (reference "ls_source")
-  bool is_actuator = false;         // drives a force element through a power port
 };
 
 // All component types of this version, in the order of the documentation.

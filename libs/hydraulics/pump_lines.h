@@ -8,10 +8,32 @@
 // either: it ends where it is set, and after its delay.
 #pragma once
 
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
 #include "core/problem.h"
 #include "hydraulics/hydraulics_def.h"
 
 namespace slew::hydraulics {
+
+// What the components of a circuit add by ComponentDef::add_lines().
+struct PumpLines {
+  struct Connection {
+    std::string a, b;                                       // volumes
+    double flow = std::numeric_limits<double>::infinity();  // m3/s, the most that passes below the end of the oil's law
+  };
+  struct Pump {
+    std::string name, outlet;  // component, volume
+    double flow = 0;           // m3/s, the most that it delivers
+    double pressure = 0;       // Pa above tank, at which its controller ends
+  };
+  double oil_density = 0;            // kg/m3
+  std::vector<Connection> open{};    // volumes that are connected whatever the signals
+  std::set<std::string> relieved{};  // by a valve on them, or held at a pressure
+  std::vector<Pump> pumps{};
+};
 
 // One warning for each such pump. Pre-condition: validate() found no error so far.
 void find_unrelieved_pumps(const HydraulicsDef& def, Problems& warnings);

@@ -115,7 +115,7 @@ bool has_content(const HydraulicsDef& def, const VolumeDef& volume) {
   if (volume.fixed || volume.rigid_volume > 0) return true;
   for (const auto& component : def.components) {
     const ComponentType* type = find_component_type(component->type_name());
-    if (type == nullptr || !(type->is_actuator || type->name == "hose")) continue;
+    if (type == nullptr || !(component->actuator() || type->name == "hose")) continue;
     for (const Field& row : type->fields) {
       if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) return true;
     }
@@ -245,7 +245,7 @@ void check_circuit_numbers(const HydraulicsDef& def, Problems& errors) {
 const ComponentDef* find_chamber(const HydraulicsDef& def, const VolumeDef& volume) {
   for (const auto& component : def.components) {
     const ComponentType* type = find_component_type(component->type_name());
-    if (type == nullptr || !type->is_actuator) continue;
+    if (type == nullptr || !component->actuator()) continue;
     for (const Field& row : type->fields) {
       if (row.reference == "volume" && member<std::string>(row, component->address()) == volume.name) {
         return component.get();

@@ -10,6 +10,7 @@
 #include "multibody/build/validate.h"
 #include "multibody/forces/element_speeds.h"
 #include "multibody/joints/joint_axes.h"
+#include "multibody/model/field_tables.h"
 #include "multibody/model/model.h"
 #include "multibody/model/parameters.h"
 #include "scene/field_reader.h"
@@ -61,16 +62,6 @@ std::vector<ElementRef> everything(const Scene& scene) {
   return all;
 }
 
-// A rope has one spring and one damper.
-std::string obstacle_of_rope(const multibody::RopeDef& rope, const Field& field) {
-  if (field.key == "damping_constant" && !rope.damper_table.empty()) return "the rope has a damper_table";
-  const bool is_spring = field.key == "stiffness" || field.key == "axial_rigidity";
-  if (!is_spring || *static_cast<const double*>(field.member(const_cast<multibody::RopeDef*>(&rope))) > 0) return {};
-  return std::string("the rope has its spring by ") + (!rope.spring_table.empty() ? "spring_table"
-                                                       : rope.stiffness > 0       ? "stiffness"
-                                                                                  : "axial_rigidity");
-}
-
 // Why a live field of this element would change nothing in this scene: the mechanism has no row that it belongs to.
 // Empty: it changes something.
 std::string obstacle(const Scene& scene, const ElementRef& element, const Field& field) {
@@ -79,7 +70,8 @@ std::string obstacle(const Scene& scene, const ElementRef& element, const Field&
   };
   if (element.section == "mechanics" && !scene.has_mechanics()) return "the scene has no bodies";
   if (element.section == "session" && scene.ports.empty()) return "the scene has no cylinder that is coupled";
-  if (element.type == "rope") return obstacle_of_rope(*static_cast<const multibody::RopeDef*>(element.def), field);
+  const multibody::ElementType* const type = multibody::find_type(element.section, element.type);
+  if (type != nullptr && type->obstacle_of_change != nullptr) return type->obstacle_of_change(element.def, field);
   if (element.section != "joints") return {};
   const auto& joint = *static_cast<const multibody::JointDef*>(element.def);
   const int number = multibody::coordinate_of_key(joint.type, field.key);

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "coupling/samples.h"
-#include "hydraulics/components/double_acting_cylinder.h"
-#include "hydraulics/components/double_rod_cylinder.h"
-#include "hydraulics/components/slew_cylinder.h"
 #include "hydraulics/curve.h"
 #include "multibody/formulations/dynamics.h"
 
@@ -28,19 +26,20 @@ bool has_element(const std::vector<Def>& defs, std::string_view name) {
   return std::any_of(defs.begin(), defs.end(), [&](const Def& def) { return def.name == name; });
 }
 
-// What all kinds of cylinder say about the line force.
-PortDef port_of(const std::string& name, const hydraulics::CylinderParameters& cylinder) {
+PortDef port_of(const std::string& name, const hydraulics::ActuatorDef& actuator) {
   PortDef port;
   port.name = name;
-  port.force = cylinder.force;
-  port.level = static_cast<coupling::PortLevel>(cylinder.coupling);
-  port.line_force.efficiency = cylinder.cylinder_coefficient;
-  port.line_force.seal_friction = cylinder.seal_friction;
-  port.line_force.viscous_friction = cylinder.viscous_friction;
-  port.line_force.stroke_min = cylinder.minimum_stroke;
-  port.line_force.stroke_max = cylinder.maximum_stroke;
-  port.line_force.stop_stiffness = cylinder.end_stiffness;
-  port.line_force.stop_damping = cylinder.end_damping;
+  port.force = actuator.force;
+  port.offset = actuator.coordinate.offset;
+  port.ratio = actuator.coordinate.ratio;
+  port.level = static_cast<coupling::PortLevel>(actuator.coupling);
+  port.line_force.efficiency = actuator.line_force.cylinder_coefficient;
+  port.line_force.seal_friction = actuator.line_force.seal_friction;
+  port.line_force.viscous_friction = actuator.line_force.viscous_friction;
+  port.line_force.stroke_min = actuator.line_force.minimum_stroke;
+  port.line_force.stroke_max = actuator.line_force.maximum_stroke;
+  port.line_force.stop_stiffness = actuator.line_force.end_stiffness;
+  port.line_force.stop_damping = actuator.line_force.end_damping;
   return port;
 }
 
@@ -56,21 +55,15 @@ void take_curve(PortDef& port, const std::string& name, const Scene& scene, Prob
   }
 }
 
-void check_force(const PortDef& port, std::string_view wanted, bool fits, Problems& problems) {
+// The kind of the force element fits what the actuator moves.
+void check_force(const PortDef& port, hydraulics::Motion motion, const Scene& scene, Problems& problems) {
+  const bool is_linear = motion == hydraulics::Motion::linear;
+  const bool fits = is_linear ? has_element(scene.mechanics.translational_forces, port.force)
+                              : has_element(scene.mechanics.rotational_forces, port.force);
   if (fits) return;
+  const std::string_view wanted = is_linear ? "translational" : "rotational";
   problems.push_back({port.name + ".force", fmt::format("'{}' is not a {} force", port.force, wanted),
                       fmt::format("a force of type {}", wanted), ""});
-}
-
-// Of a cylinder between two points; its stroke is their distance less what is no stroke.
-template <typename Def>
-PortDef linear_port(const Def& cylinder, const Scene& scene, Problems& problems) {
-  PortDef port = port_of(cylinder.name, cylinder.common);
-  port.offset = -(cylinder.attachment_length + cylinder.rod_length);
-  take_curve(port, cylinder.common.friction_curve, scene, problems);
-  check_force(port, "translational", has_element(scene.mechanics.translational_forces, cylinder.common.force),
-              problems);
-  return port;
 }
 
 // Piston positions at the start, from the poses of the scene.
@@ -89,20 +82,11 @@ std::vector<double> start_strokes(const Scene& scene) {
 
 void make_ports(Scene& scene, Problems& problems) {
   for (const auto& component : scene.hydraulics.components) {
-    PortDef port;
-    if (const auto* line = dynamic_cast<const hydraulics::DoubleActingCylinderDef*>(component.get())) {
-      port = linear_port(*line, scene, problems);
-    } else if (const auto* rods = dynamic_cast<const hydraulics::DoubleRodCylinderDef*>(component.get())) {
-      port = linear_port(*rods, scene, problems);
-    } else if (const auto* slew = dynamic_cast<const hydraulics::SlewCylinderDef*>(component.get())) {
-      port = port_of(slew->name, slew->common);
-      port.offset = slew->stroke_offset;
-      port.ratio = slew->pinion_radius;
-      take_curve(port, slew->common.friction_curve, scene, problems);
-      check_force(port, "rotational", has_element(scene.mechanics.rotational_forces, slew->common.force), problems);
-    } else {
-      continue;
-    }
+    const std::optional<hydraulics::ActuatorDef> actuator = component->actuator();
+    if (!actuator) continue;
+    PortDef port = port_of(component->name, *actuator);
+    take_curve(port, actuator->line_force.friction_curve, scene, problems);
+    check_force(port, actuator->motion, scene, problems);
     scene.ports.push_back(std::move(port));
   }
   for (const PortDef& port : scene.ports) {

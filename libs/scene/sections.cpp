@@ -128,6 +128,13 @@ void collect(std::vector<ElementRef>& refs, const ElementTable& table, Defs& def
   for (auto& def : defs) refs.push_back(ref(table, def.name, &def));
 }
 
+// kinds of forces beyond spring-dampers
+void collect_kinds(std::vector<ElementRef>& refs, std::string_view section, multibody::MechanicsDef& mechanics) {
+  multibody::for_each_force_type(mechanics, [&](auto, const auto& type, auto& defs) {
+    if (type.section == section) collect(refs, table_of(section, type.name), defs);
+  });
+}
+
 void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& mechanics) {
   // in the order of JointType
   const std::span<const multibody::ElementType> joint_types = multibody::joint_types();
@@ -140,14 +147,10 @@ void collect_mechanics(std::vector<ElementRef>& refs, multibody::MechanicsDef& m
   }
   collect(refs, table_of("forces", "translational"), mechanics.translational_forces);
   collect(refs, table_of("forces", "rotational"), mechanics.rotational_forces);
-  collect(refs, table_of("forces", "point_force"), mechanics.point_forces);
-  collect(refs, table_of("forces", "point_torque"), mechanics.point_torques);
-  collect(refs, table_of("forces", "bushing"), mechanics.bushings);
-  collect(refs, table_of("forces", "beam"), mechanics.beams);
-  collect(refs, table_of("forces", "rope"), mechanics.ropes);
+  collect_kinds(refs, "forces", mechanics);
   collect(refs, table_of("dummies", "body_to_body_force"), mechanics.force_dummies);
   collect(refs, table_of("dummies", "static"), mechanics.static_dummies);
-  collect(refs, table_of("dummies", "tyre"), mechanics.tyre_dummies);
+  collect_kinds(refs, "dummies", mechanics);
   collect(refs, table_of("dummies", "part"), mechanics.part_dummies);
   collect(refs, table_of("dummies", "constraint"), mechanics.constraint_dummies);
   // values of `type:` in the order of contact::ShapeType

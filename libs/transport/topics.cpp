@@ -28,13 +28,13 @@ constexpr std::array<TopicTraits, wire::kTopics> kTraits = {{
     {wire::Topic::state, "slewring/state", "slewring::StatePart", kStepDepth, 0},
 }};
 
-constexpr bool is_by_topic() {
+constexpr bool topics_are_in_order() {
   for (std::size_t i = 0; i < kTraits.size(); ++i) {
     if (static_cast<std::size_t>(kTraits[i].topic) != i) return false;
   }
   return true;
 }
-static_assert(is_by_topic(), "the table is indexed by topic");
+static_assert(topics_are_in_order(), "the table is indexed by topic");
 
 }  // namespace
 

@@ -45,6 +45,10 @@ class Parts {
   [[nodiscard]] bool may_be(const std::string& path, double value) const {
     return directory_.check(path, value).status.is_ok();
   }
+  [[nodiscard]] bool is_already(const std::string& path, double value) const {
+    const scene::ParameterInfo* const parameter = directory_.find(path);
+    return parameter != nullptr && parameter->value == value;
+  }
   // every parameter of this name, of whatever element
   [[nodiscard]] scene::Overrides all(std::string_view field, double value) const {
     scene::Overrides overrides;
@@ -104,6 +108,7 @@ void add_machine(const scene::Scene& scene, const Parts& parts, Cases& cases) {
                     .what = fmt::format("{} to {} kg within one step", parts.payload(), mass),
                     .obstacle = no_payload};
     if (no_payload.empty()) one.changes = {{0.5, parts.payload(), mass}};
+    if (parts.is_already(parts.payload(), mass)) one.obstacle = "it changes nothing: the mass is this already";
     return one;
   };
   add(load("load_1500_kg", kHeavyLoad));
@@ -277,6 +282,19 @@ std::vector<ExtremeCase> extreme_cases(const scene::Scene& scene) {
   add_coupling(parts, cases);
   add_numbers(scene, parts, cases);
   return cases;
+}
+
+std::string lack_of_effect(const ExtremeCase& one, const scene::SceneOptions& options, const scene::Scene& scene) {
+  const bool delays = one.delay > 0 || one.lost > 0;
+  if (one.overrides.empty() || delays) return "";
+  scene::SceneOptions changed = options;
+  changed.overrides.insert(changed.overrides.end(), one.overrides.begin(), one.overrides.end());
+  try {
+    if (scene::load_scene(changed).expanded_text != scene.expanded_text) return "";
+  } catch (const scene::LoadError&) {
+    return "";  // the case's own run reports it
+  }
+  return "it changes nothing: the scene has these settings";
 }
 
 std::string_view to_text(CaseGroup group) noexcept {

@@ -11,6 +11,7 @@
 #include "analysis/extremes/judge.h"
 #include "core/time.h"
 #include "scene/scene.h"
+#include "scene/scene_options.h"
 
 namespace slew::analysis {
 
@@ -59,6 +60,11 @@ inline constexpr SimDuration kHold = {10'000'000'000};  // of wall time
 
 // All cases in the order of the table, those that do not apply with their obstacle.
 [[nodiscard]] std::vector<ExtremeCase> extreme_cases(const scene::Scene& scene);
+
+// Why a case would change nothing of the scene that these options load: an obstacle; empty: it changes something. Loads
+// the scene once more.
+[[nodiscard]] std::string lack_of_effect(const ExtremeCase& one, const scene::SceneOptions& options,
+                                         const scene::Scene& scene);
 
 [[nodiscard]] std::string_view to_text(CaseGroup group) noexcept;
 

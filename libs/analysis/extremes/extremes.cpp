@@ -66,7 +66,7 @@ class Examiner {
                               .name = one.name,
                               .what = one.what,
                               .group = one.group,
-                              .obstacle = one.obstacle,
+                              .obstacle = one.obstacle.empty() ? lack_of_effect(one, options, scene) : one.obstacle,
                               .failure = {},
                               .result = {}});
       files_.push_back(file);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -94,6 +95,10 @@ class CompensatedOrifice final : public HydraulicComponent {
 };
 
 }  // namespace
+
+void CompensatedOrificeDef::add_lines(PumpLines& lines) const {
+  if (opening > 0) lines.open.push_back({port_p, port_a});
+}
 
 ComponentType compensated_orifice_type() {
   return {.name = "compensated_orifice",

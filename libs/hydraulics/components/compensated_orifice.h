@@ -21,6 +21,7 @@ struct CompensatedOrificeDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "compensated_orifice"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType compensated_orifice_type();

@@ -9,15 +9,18 @@ namespace {
 // a chamber squeezed beyond its stop keeps this part of its largest volume, so that the equations stay defined
 constexpr double kSmallestChamber = 1e-3;
 
-Actuator actuator_of(const std::string& name, const CylinderParameters& common, const CylinderGeometry& geometry,
-                     const CircuitBuilder& builder) {
-  return {.name = name,
-          .force = common.force,
-          .port_a = builder.volume(common.port_a),
-          .port_b = builder.volume(common.port_b),
-          .area_a = geometry.area_a,
-          .area_b = geometry.area_b,
-          .coordinate = geometry.coordinate,
+}  // namespace
+
+double piston_area(const CylinderParameters& common) noexcept {
+  return 0.25 * std::numbers::pi * common.piston_diameter * common.piston_diameter;
+}
+
+ActuatorDef actuator_of(const CylinderParameters& common) {
+  return {.force = common.force,
+          .port_a = common.port_a,
+          .port_b = common.port_b,
+          .area_a = piston_area(common),
+          .area_b = piston_area(common),
           .line_force = {.friction_curve = common.friction_curve,
                          .cylinder_coefficient = common.cylinder_coefficient,
                          .seal_friction = common.seal_friction,
@@ -26,27 +29,21 @@ Actuator actuator_of(const std::string& name, const CylinderParameters& common, 
                          .end_damping = common.end_damping,
                          .minimum_stroke = common.minimum_stroke,
                          .maximum_stroke = common.maximum_stroke},
-          .start = geometry.start};
+          .coupling = common.coupling};
 }
 
-}  // namespace
-
-double piston_area(const CylinderParameters& common) noexcept {
-  return 0.25 * std::numbers::pi * common.piston_diameter * common.piston_diameter;
-}
-
-Cylinder::Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& common,
-                   const CylinderGeometry& geometry, CircuitBuilder& builder)
+Cylinder::Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& common, const ActuatorDef& actuator,
+                   CircuitBuilder& builder)
     : HydraulicComponent(*def),
       def_(std::move(def)),
       common_(common),
       a_(builder.volume(common.port_a)),
       b_(builder.volume(common.port_b)),
-      A_a_(geometry.area_a),
-      A_b_(geometry.area_b),
-      motion_(geometry.motion),
-      ratio_(geometry.coordinate.ratio) {
-  actuator_ = builder.add_actuator(actuator_of(name(), common, geometry, builder));
+      A_a_(actuator.area_a),
+      A_b_(actuator.area_b),
+      motion_(actuator.motion),
+      ratio_(actuator.coordinate.ratio) {
+  actuator_ = builder.add_actuator(name(), actuator);
   x_ = builder.position(actuator_);
   v_ = builder.speed(actuator_);
   const double span = common.free_way();

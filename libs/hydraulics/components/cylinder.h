@@ -8,23 +8,14 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/components/cylinder_def.h"
 
 namespace slew::hydraulics {
 
-enum class Motion { linear, rotary };
-
-// What sets a cylinder type apart.
-struct CylinderGeometry {
-  double area_a = 0, area_b = 0;  // m2, on the sides of ports A and B
-  PortCoordinate coordinate = {};
-  StartRule start = StartRule::return_pressure;
-  Motion motion = Motion::linear;  // rotary: coordinate.ratio turns the line force into a torque
-};
-
 class Cylinder final : public HydraulicComponent {
  public:
-  // def: the component's own copy of its Def; common: the part of it that all cylinders have.
-  Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& common, const CylinderGeometry& geometry,
+  // def: the component's own copy of its Def; common: the part of it that all cylinders have; actuator: its facts.
+  Cylinder(std::unique_ptr<ComponentDef> def, const CylinderParameters& common, const ActuatorDef& actuator,
            CircuitBuilder& builder);
 
   void declare_dependencies(DependencyList& dependencies) const override;
@@ -52,15 +43,17 @@ class Cylinder final : public HydraulicComponent {
 // The area of a full piston [m2].
 [[nodiscard]] double piston_area(const CylinderParameters& common) noexcept;
 
+// A linear actuator with a full piston on either side; the type's Def puts in what differs.
+[[nodiscard]] ActuatorDef actuator_of(const CylinderParameters& common);
+
 // Def: the final Def of `component`, with a member `CylinderParameters common`.
 template <typename Def>
 [[nodiscard]] std::unique_ptr<HydraulicComponent> make_cylinder(const ComponentDef& component,
-                                                                CylinderGeometry (*geometry_of)(const Def&),
                                                                 CircuitBuilder& builder) {
   auto def = std::make_unique<Def>(static_cast<const Def&>(component));
   const CylinderParameters& common = def->common;
-  const CylinderGeometry geometry = geometry_of(*def);
-  return std::make_unique<Cylinder>(std::move(def), common, geometry, builder);
+  const ActuatorDef actuator = def->actuator().value();
+  return std::make_unique<Cylinder>(std::move(def), common, actuator, builder);
 }
 
 }  // namespace slew::hydraulics

@@ -4,6 +4,8 @@
 #include <numbers>
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/oil.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -121,6 +123,10 @@ class DirectReliefValve final : public HydraulicComponent {
 };
 
 }  // namespace
+
+void DirectReliefValveDef::add_lines(PumpLines& lines) const {
+  if (crack_pressure < OilCompressibility::kHighest) lines.relieved.insert(port_1);
+}
 
 ComponentType direct_relief_valve_type() {
   return {.name = "direct_relief_valve",

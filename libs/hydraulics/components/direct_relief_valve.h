@@ -28,6 +28,7 @@ struct DirectReliefValveDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "direct_relief_valve"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType direct_relief_valve_type();

@@ -22,15 +22,6 @@ constexpr auto kDoubleActingCylinderFields = cylinder_fields<DoubleActingCylinde
         {.dimension = Dimension::length, .range = kNotNegative, .doc = "length of the attachment"}),
 });
 
-CylinderGeometry geometry_of(const DoubleActingCylinderDef& def) {
-  const double D = def.common.piston_diameter, d = def.rod_diameter;
-  return {.area_a = piston_area(def.common),
-          .area_b = 0.25 * std::numbers::pi * (D * D - d * d),
-          .coordinate = {.offset = -(def.attachment_length + def.rod_length), .ratio = 1},
-          .start = StartRule::return_pressure,
-          .motion = Motion::linear};
-}
-
 void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
   const DoubleActingCylinderDef& def = static_cast<const DoubleActingCylinderDef&>(component);
   if (!(def.rod_diameter < def.common.piston_diameter)) {
@@ -42,6 +33,14 @@ void validate_cylinder(const HydraulicsDef& circuit, const ComponentDef& compone
 
 }  // namespace
 
+std::optional<ActuatorDef> DoubleActingCylinderDef::actuator() const {
+  const double D = common.piston_diameter, d = rod_diameter;
+  ActuatorDef actuator = actuator_of(common);
+  actuator.area_b = 0.25 * std::numbers::pi * (D * D - d * d);
+  actuator.coordinate.offset = -(attachment_length + rod_length);
+  return actuator;
+}
+
 ComponentType double_acting_cylinder_type() {
   return {.name = "double_acting_cylinder",
           .fields = kDoubleActingCylinderFields,
@@ -49,9 +48,8 @@ ComponentType double_acting_cylinder_type() {
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<DoubleActingCylinderDef>(); },
           .validate = validate_cylinder,
           .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
-            return make_cylinder<DoubleActingCylinderDef>(def, geometry_of, builder);
-          },
-          .is_actuator = true};
+            return make_cylinder<DoubleActingCylinderDef>(def, builder);
+          }};
 }
 
 }  // namespace slew::hydraulics

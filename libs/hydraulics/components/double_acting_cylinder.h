@@ -26,6 +26,7 @@ struct DoubleActingCylinderDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "double_acting_cylinder"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  [[nodiscard]] std::optional<ActuatorDef> actuator() const override;
 };
 
 [[nodiscard]] ComponentType double_acting_cylinder_type();

@@ -23,18 +23,6 @@ constexpr auto kDoubleRodCylinderFields = cylinder_fields<DoubleRodCylinderDef>(
         {.dimension = Dimension::length, .range = kNotNegative, .doc = "length of the attachment"}),
 });
 
-double ring_area(const DoubleRodCylinderDef& def) noexcept {
-  return piston_area(def.common) - 0.25 * std::numbers::pi * def.rod_diameter * def.rod_diameter;
-}
-
-CylinderGeometry geometry_of(const DoubleRodCylinderDef& def) {
-  return {.area_a = ring_area(def),
-          .area_b = ring_area(def),
-          .coordinate = {.offset = -(def.attachment_length + def.rod_length), .ratio = 1},
-          .start = StartRule::mean_pressure,
-          .motion = Motion::linear};
-}
-
 void validate_double_rod(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
   const DoubleRodCylinderDef& def = static_cast<const DoubleRodCylinderDef&>(component);
   if (!(def.rod_diameter < def.common.piston_diameter)) {
@@ -46,6 +34,15 @@ void validate_double_rod(const HydraulicsDef& circuit, const ComponentDef& compo
 
 }  // namespace
 
+std::optional<ActuatorDef> DoubleRodCylinderDef::actuator() const {
+  ActuatorDef actuator = actuator_of(common);
+  actuator.area_a = piston_area(common) - 0.25 * std::numbers::pi * rod_diameter * rod_diameter;
+  actuator.area_b = actuator.area_a;
+  actuator.coordinate.offset = -(attachment_length + rod_length);
+  actuator.start = StartRule::mean_pressure;
+  return actuator;
+}
+
 ComponentType double_rod_cylinder_type() {
   return {.name = "double_rod_cylinder",
           .fields = kDoubleRodCylinderFields,
@@ -53,9 +50,8 @@ ComponentType double_rod_cylinder_type() {
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<DoubleRodCylinderDef>(); },
           .validate = validate_double_rod,
           .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
-            return make_cylinder<DoubleRodCylinderDef>(def, geometry_of, builder);
-          },
-          .is_actuator = true};
+            return make_cylinder<DoubleRodCylinderDef>(def, builder);
+          }};
 }
 
 }  // namespace slew::hydraulics

@@ -24,6 +24,7 @@ struct DoubleRodCylinderDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "double_rod_cylinder"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  [[nodiscard]] std::optional<ActuatorDef> actuator() const override;
 };
 
 [[nodiscard]] ComponentType double_rod_cylinder_type();

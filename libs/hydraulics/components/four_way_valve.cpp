@@ -5,6 +5,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -110,6 +111,12 @@ class FourWayValve final : public HydraulicComponent {
 };
 
 }  // namespace
+
+void FourWayValveDef::add_lines(PumpLines& lines) const {
+  if (opening_gain != 0) return;
+  if (neutral_opening > 0) lines.open.insert(lines.open.end(), {{port_p, port_a}, {port_b, port_t}});
+  if (neutral_opening < 1) lines.open.insert(lines.open.end(), {{port_p, port_b}, {port_a, port_t}});
+}
 
 ComponentType four_way_valve_type() {
   return {.name = "four_way_valve",

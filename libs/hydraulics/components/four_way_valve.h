@@ -23,6 +23,7 @@ struct FourWayValveDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "four_way_valve"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType four_way_valve_type();

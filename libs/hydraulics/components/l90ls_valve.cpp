@@ -5,6 +5,7 @@
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
 #include "hydraulics/components/l90ls_laws.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -377,6 +378,10 @@ void validate_valve(const HydraulicsDef& circuit, const ComponentDef& component,
 }
 
 }  // namespace
+
+void L90lsValveDef::add_lines(PumpLines& lines) const {
+  lines.relieved.insert({port_a, port_b});
+}
 
 ComponentType l90ls_valve_type() {
   return {.name = "l90ls_valve",

@@ -51,6 +51,7 @@ struct L90lsValveDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "l90ls_valve"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType l90ls_valve_type();

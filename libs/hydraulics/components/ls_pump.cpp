@@ -2,6 +2,7 @@
 
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -150,6 +151,14 @@ void validate_pump(const HydraulicsDef& circuit, const ComponentDef& component, 
 }
 
 }  // namespace
+
+void LsPumpDef::add_lines(PumpLines& lines) const {
+  lines.pumps.push_back({.name = name,
+                         .outlet = port_a,
+                         .flow = speed * displacement * volumetric_coefficient,
+                         .pressure = ls_port.empty() ? standby_pressure
+                                                     : std::max(standby_pressure, maximum_ls_pressure + set_pressure)});
+}
 
 ComponentType ls_pump_type() {
   return {.name = "ls_pump",

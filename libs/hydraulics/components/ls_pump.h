@@ -32,6 +32,7 @@ struct LsPumpDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "ls_pump"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType ls_pump_type();

@@ -3,6 +3,8 @@
 #include <cmath>
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/oil.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -116,6 +118,10 @@ class ReliefValve final : public HydraulicComponent {
 };
 
 }  // namespace
+
+void ReliefValveDef::add_lines(PumpLines& lines) const {
+  if (setting_pressure < OilCompressibility::kHighest) lines.relieved.insert(port_1);
+}
 
 ComponentType relief_valve_type() {
   return {.name = "relief_valve",

@@ -23,6 +23,7 @@ struct ReliefValveDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "relief_valve"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType relief_valve_type();

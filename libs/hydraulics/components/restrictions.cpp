@@ -4,6 +4,8 @@
 #include <numbers>
 #include "hydraulics/circuit_builder.h"
 #include "hydraulics/component.h"
+#include "hydraulics/oil.h"
+#include "hydraulics/pump_lines.h"
 #include "hydraulics/smooth.h"
 
 namespace slew::hydraulics {
@@ -126,6 +128,23 @@ class Restriction final : public HydraulicComponent {
 };
 
 }  // namespace
+
+void BleedDef::add_lines(PumpLines& lines) const {
+  if (!(nominal_flow > 0)) return;
+  const double drops = OilCompressibility::kHighest / nominal_pressure_drop;
+  lines.open.push_back({port_1, port_2, nominal_flow * std::sqrt(drops)});
+}
+
+void OrificeDef::add_lines(PumpLines& lines) const {
+  if (!(opening > 0)) return;
+  const double area = opening * std::numbers::pi / 4 * diameter * diameter;
+  const double speed = discharge_coefficient * std::sqrt(2 * OilCompressibility::kHighest / lines.oil_density);
+  lines.open.push_back({port_1, port_2, area * speed});
+}
+
+void LaminarRestrictionDef::add_lines(PumpLines& lines) const {
+  lines.open.push_back({port_1, port_2});
+}
 
 ComponentType bleed_type() {
   return {.name = "bleed",

@@ -20,6 +20,7 @@ struct BleedDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "bleed"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 struct OrificeDef final : ComponentDef {
@@ -30,6 +31,7 @@ struct OrificeDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "orifice"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 struct LaminarRestrictionDef final : ComponentDef {
@@ -39,6 +41,7 @@ struct LaminarRestrictionDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "laminar_restriction"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  void add_lines(PumpLines& lines) const override;
 };
 
 [[nodiscard]] ComponentType bleed_type();

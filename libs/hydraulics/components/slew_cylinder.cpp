@@ -18,19 +18,19 @@ constexpr auto kSlewCylinderFields = cylinder_fields<SlewCylinderDef>(std::array
                                                              .doc = "piston position at angle zero"}),
 });
 
-CylinderGeometry geometry_of(const SlewCylinderDef& def) {
-  return {.area_a = piston_area(def.common),
-          .area_b = piston_area(def.common),
-          .coordinate = {.offset = def.stroke_offset, .ratio = def.pinion_radius},
-          .start = StartRule::mean_pressure,
-          .motion = Motion::rotary};
-}
-
 void validate_slew(const HydraulicsDef& circuit, const ComponentDef& component, Problems& errors, Problems&) {
   check_cylinder(circuit, component.name, static_cast<const SlewCylinderDef&>(component).common, 0, errors);
 }
 
 }  // namespace
+
+std::optional<ActuatorDef> SlewCylinderDef::actuator() const {
+  ActuatorDef actuator = actuator_of(common);
+  actuator.motion = Motion::rotary;
+  actuator.coordinate = {.offset = stroke_offset, .ratio = pinion_radius};
+  actuator.start = StartRule::mean_pressure;
+  return actuator;
+}
 
 ComponentType slew_cylinder_type() {
   return {.name = "slew_cylinder",
@@ -39,9 +39,8 @@ ComponentType slew_cylinder_type() {
           .make_def = []() -> std::unique_ptr<ComponentDef> { return std::make_unique<SlewCylinderDef>(); },
           .validate = validate_slew,
           .build = [](const ComponentDef& def, CircuitBuilder& builder) -> std::unique_ptr<HydraulicComponent> {
-            return make_cylinder<SlewCylinderDef>(def, geometry_of, builder);
-          },
-          .is_actuator = true};
+            return make_cylinder<SlewCylinderDef>(def, builder);
+          }};
 }
 
 }  // namespace slew::hydraulics

@@ -20,6 +20,7 @@ struct SlewCylinderDef final : ComponentDef {
 
   [[nodiscard]] std::string_view type_name() const noexcept override { return "slew_cylinder"; }
   [[nodiscard]] void* address() noexcept override { return this; }
+  [[nodiscard]] std::optional<ActuatorDef> actuator() const override;
 };
 
 [[nodiscard]] ComponentType slew_cylinder_type();

@@ -141,8 +141,8 @@ class Validator {
     check_all(m_.frictions, 6, first);
     check_all(m_.motions, 7, motion_type_index);
     check_all(m_.gears, 8, [](const GearDef& gear) { return static_cast<std::size_t>(gear.kind); });
-    for_each_element_list(m_, [&](const auto& defs, std::size_t section, std::size_t type) {
-      check_all(defs, section, [type](const auto&) { return type; });
+    for_each_element_list(m_, [&](const auto& defs, std::span<const Field> fields) {
+      for (const auto& def : defs) check_fields(def.name, fields, const_cast<void*>(static_cast<const void*>(&def)));
     });
   }
 
@@ -248,7 +248,7 @@ class Validator {
     collect(m_.static_dummies);
     collect(m_.motions);
     collect(m_.gears);
-    for_each_element_list(m_, [&](const auto& defs, int, int) { collect(defs); });
+    for_each_element_list(m_, [&](const auto& defs, std::span<const Field>) { collect(defs); });
     std::sort(names.begin(), names.end());
     for (std::size_t i = 1; i < names.size(); ++i) {
       if (names[i] != names[i - 1]) continue;

@@ -61,8 +61,7 @@ void forget_accelerations(Workspace& ws) noexcept {
 
 bool has_springs(const Model& model) noexcept {
   const auto is_active = [](const auto& element) { return element.law.is_active; };
-  return !model.parts.empty() || !model.elements.bushings.empty() || !model.elements.beams.empty() ||
-         !model.elements.ropes.empty() || !model.elements.tyres.empty() || model.contact != nullptr ||
+  return !model.parts.empty() || has_slopes(model.elements) || model.contact != nullptr ||
          std::any_of(model.lines.begin(), model.lines.end(), is_active) ||
          std::any_of(model.angles.begin(), model.angles.end(), is_active);
 }

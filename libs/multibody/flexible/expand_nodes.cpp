@@ -31,14 +31,12 @@ class Expander {
     for (RotationalForceDef& force : def_.rotational_forces) attach(force.body1), attach(force.body2);
     for (StaticDummyDef& dummy : def_.static_dummies) attach(dummy.relative_to, dummy.position);
     for (ShapeDef& shape : def_.shapes) attach(shape.body, shape.position);
-    for (PointForceDef& force : def_.point_forces) attach(force.body, force.point);
-    for (PointTorqueDef& torque : def_.point_torques) attach(torque.body);
-    for (BushingDef& bushing : def_.bushings) attach(bushing.frames);
-    for (BeamDef& beam : def_.beams) attach(beam.frames);
-    for (RopeDef& rope : def_.ropes) {
-      for (std::size_t k = 0; k < rope.bodies.size(); ++k) attach(rope.bodies[k], rope.points[k]);
-    }
-    for (TyreDummyDef& tyre : def_.tyre_dummies) attach(tyre.relative_to, tyre.position);
+    const VisitPoint attach_point = [this](std::string& body, Triple* point) {
+      point == nullptr ? attach(body) : attach(body, *point);
+    };
+    for_each_force_type(def_, [&](auto row, const auto& /*type*/, auto& defs) {
+      for (auto& def : defs) row.visit_points(def, attach_point);
+    });
     for (PartDummyDef& dummy : def_.part_dummies) attach(dummy.carried_by);
     def_.bodies.insert(def_.bodies.end(), nodes_.begin(), nodes_.end());
     def_.joints.insert(def_.joints.end(), holds_.begin(), holds_.end());
@@ -196,7 +194,6 @@ class Expander {
     Triple origin{};
     attach(body, origin);
   }
-  void attach(ConnectorFrames& frames) { attach(frames.body1, frames.point1), attach(frames.body2, frames.point2); }
 
   MechanicsDef def_;
   std::vector<BodyDef> nodes_;  // and the joints that hold them, in the order of their first use

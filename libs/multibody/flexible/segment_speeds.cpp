@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "multibody/formulations/dynamics.h"
@@ -18,14 +19,12 @@ constexpr double kSegmentProbe = 1e-8;  // m, rad
 Model bare(const Model& model) {
   Model stripped = model;
   stripped.gravity = {};
-  ElementSet& set = stripped.elements;
-  set.loads.clear();
-  set.bushings.clear();
-  set.ropes.clear();
-  set.tyres.clear();
+  std::vector<Beam> beams = std::move(stripped.elements.beams);
   const auto first = static_cast<std::ptrdiff_t>(model.segmented.front().first_beam);
-  for (auto beam = set.beams.begin(); beam != set.beams.begin() + first; ++beam) beam->K = {};
-  for (Beam& beam : set.beams) beam.damping_time = 0;
+  for (auto beam = beams.begin(); beam != beams.begin() + first; ++beam) beam->K = {};
+  for (Beam& beam : beams) beam.damping_time = 0;
+  stripped.elements = {};
+  stripped.elements.beams = std::move(beams);
   for (LineElement& line : stripped.lines) line.law = {};
   for (AngleElement& angle : stripped.angles) angle.law = {};
   for (FlexiblePart& part : stripped.parts) std::fill(part.stiffness.begin(), part.stiffness.end(), 0.0);

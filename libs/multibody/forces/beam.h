@@ -15,10 +15,27 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "multibody/forces/frame_pair.h"
+#include "multibody/forces/connector.h"
 
 namespace slew::multibody {
+
+struct BeamDef {
+  std::string name{};
+  ConnectorFrames frames{};   // x along the beam; frame 1 at its near end
+  double length = 0;          // m, without load
+  double youngs_modulus = 0;  // Pa
+  double shear_modulus = 0;   // Pa; 0: from poisson_ratio
+  double poisson_ratio = 0.3;
+  double area = 0;              // m2
+  double second_moment_y = 0;   // m4, bending in the x-z plane
+  double second_moment_z = 0;   // m4, bending in the x-y plane
+  double torsion_constant = 0;  // m4
+  double shear_factor_y = 0;    // share of the area that carries shear along y; 0: no shear deformation
+  double shear_factor_z = 0;
+  double damping_time = 0;  // s, damping matrix over stiffness matrix
+};
 
 // The entries of (2) that are not zero [N/m, N, N m/rad].
 struct BeamStiffness {
@@ -49,8 +66,29 @@ struct Beam {
 
 [[nodiscard]] Six force_of(const Beam& beam, const Deflection& deflection) noexcept;
 // (position + rate beta) K.
-[[nodiscard]] SixBySix slopes_of(const Beam& beam, ChangeWeights weights) noexcept;
+[[nodiscard]] SixBySix slopes_of(const Beam& beam, const Deflection& deflection, ChangeWeights weights) noexcept;
 [[nodiscard]] double stored_energy(const Beam& beam, const Deflection& deflection) noexcept;  // x^T K x/2 [J]
 [[nodiscard]] WrenchPair wrenches_of(const Beam& beam, const LinkMotion& link1, const LinkMotion& link2) noexcept;
+
+[[nodiscard]] std::span<const Field> beam_fields() noexcept;
+
+struct BeamRow : ConnectorRow<Beam> {
+  struct Defs {
+    std::vector<BeamDef> beams;
+  };
+  struct Elements {
+    std::vector<Beam> beams;  // of the scene, then those between the segments of bodies
+  };
+  static constexpr auto kElements = &Elements::beams;
+  static constexpr std::tuple kTypes{
+      ForceType{"forces", "beam", "massless elastic beam between two frames", beam_fields, &Defs::beams}};
+
+  static Beam build(const BeamDef& def, ElementBuilder& builder);
+  static void check(const BeamDef& def, ElementRules& rules);
+  static void check_start(const BeamDef& def, ElementStartRules& rules);
+  static void silence(Beam& beam);
+  static std::span<const std::string_view> value_keys(const Beam& beam) noexcept;
+  static double* value(Beam& beam, std::size_t /*index*/) noexcept { return &beam.damping_time; }
+};
 
 }  // namespace slew::multibody

@@ -1,58 +1,36 @@
-// The force elements of a mechanism beyond spring-dampers, as flat arrays by kind.
+// The force elements of a mechanism beyond spring-dampers, as flat arrays by kind (force_kinds.h).
 //
-// Kinds with one law each are walked one after the other, each in the scene's order; a kind that the scene does not
-// have costs the look at an empty array. No element has a state: all are functions of the links' motions and of time.
+// No element has a state: all are functions of the links' motions and of time.
 #pragma once
 
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/element_variable.h"
 #include "core/state_bytes.h"
 #include "core/state_hash.h"
-#include "multibody/forces/beam.h"
-#include "multibody/forces/bushing.h"
-#include "multibody/forces/point_load.h"
-#include "multibody/forces/rope.h"
-#include "multibody/forces/tyre.h"
+#include "multibody/forces/force_kinds.h"
 
 namespace slew::multibody {
 
-struct ElementSet {
-  std::vector<PointLoad> loads;
-  std::vector<Bushing> bushings;
-  std::vector<Beam> beams;
-  std::vector<Rope> ropes;
-  std::vector<Tyre> tyres;
-};
+struct ElementSet : ForceKinds::Elements {};
+
+// The elements of a kind.
+template <typename Row>
+[[nodiscard]] auto& elements_of(Row /*row*/, ElementSet& set) noexcept {
+  return set.*Row::kElements;
+}
+template <typename Row>
+[[nodiscard]] const auto& elements_of(Row /*row*/, const ElementSet& set) noexcept {
+  return set.*Row::kElements;
+}
 
 // Calls add(link, body, wrench) for every link that every element touches. motion: of all links; time [s].
 template <typename Add>
 void for_each_wrench(const ElementSet& set, std::span<const LinkMotion> motion, double time, Add&& add) noexcept {
-  const auto link = [motion](int index) -> const LinkMotion& { return motion[static_cast<std::size_t>(index)]; };
-  const auto add_pair = [&](const FramePair& frames, const WrenchPair& pair) {
-    add(frames.link1, frames.body1, pair.on1);
-    add(frames.link2, frames.body2, pair.on2);
-  };
-  for (const PointLoad& load : set.loads) add(load.link, load.body, wrench_of(load, link(load.link), time));
-  for (const Bushing& bushing : set.bushings) {
-    add_pair(bushing.frames, wrenches_of(bushing, link(bushing.frames.link1), link(bushing.frames.link2)));
-  }
-  for (const Beam& beam : set.beams) {
-    add_pair(beam.frames, wrenches_of(beam, link(beam.frames.link1), link(beam.frames.link2)));
-  }
-  for (const Rope& rope : set.ropes) {
-    const double tension = state_of(rope, motion).tension;
-    if (tension == 0) continue;
-    for (std::size_t k = 0; k < rope.points.size(); ++k) {
-      add(rope.points[k].link, rope.points[k].body, wrench_on(rope, k, tension, motion));
-    }
-  }
-  for (const Tyre& tyre : set.tyres) {
-    const TyreState state = state_of(tyre, link(tyre.link));
-    if (state.depth > 0) add(tyre.link, tyre.body, wrench_of(tyre, state, link(tyre.link)));
-  }
+  for_each_force_kind([&](auto row) {
+    for (const auto& element : elements_of(row, set)) row.for_each_wrench(element, motion, time, add);
+  });
 }
 
 // Energy of all springs, preloads included [J].
@@ -61,26 +39,22 @@ void for_each_wrench(const ElementSet& set, std::span<const LinkMotion> motion, 
 // Whether anything follows the clock: then State::time is part of the state.
 [[nodiscard]] bool depends_on_time(const ElementSet& set) noexcept;
 
-// Variables, appended; values in the same order. put(value) is called once for each.
+// Whether anything has stiffness or damping; whether anything pushes on one side only.
+[[nodiscard]] bool has_slopes(const ElementSet& set) noexcept;
+[[nodiscard]] std::size_t stop_count(const ElementSet& set) noexcept;
+
+// Variables, appended; values in the same order.
 void list_variables(const ElementSet& set, std::vector<ElementVariable>& variables);
-struct VariableSink {
-  std::span<double> values;
-  std::size_t next = 0;
-  void put(double value) noexcept {
-    if (next < values.size()) values[next++] = value;
-  }
-  [[nodiscard]] std::span<double> rest() const noexcept { return values.subspan(next); }
-};
 void read_variables(const ElementSet& set, std::span<const LinkMotion> motion, double time,
                     VariableSink& sink) noexcept;
 
 // Index of a point force or torque by name; -1: none.
 [[nodiscard]] int find_load(const ElementSet& set, std::string_view name) noexcept;
 
-// Live constants. kind: in the order of the arrays above; member: of that kind; -1 when there is none of that key.
-enum class ElementKind : int { load, bushing, beam, rope, tyre };
+// A live value. kind: in the order of the table, -1: no element has the name; member: index in the row's value_keys(),
+// -1: the element has no such value.
 struct ElementValue {
-  ElementKind kind = ElementKind::load;
+  int kind = -1;
   int element = 0;
   int member = -1;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "multibody/formulations/dynamics.h"
@@ -132,9 +133,11 @@ bool has_curve(const ElementLaw& law) {
 Model constant_laws_of(const Model& given) {
   Model model = given;
   model.gravity = {};
-  model.elements.loads.clear();
-  model.elements.ropes.clear();
-  model.elements.tyres.clear();
+  for_each_force_kind([&](auto row) {
+    auto& elements = elements_of(row, model.elements);
+    if (!row.kIsLinear) elements.clear();
+    for (auto& element : elements) row.linearise(element);
+  });
   model.contact = nullptr;
   const auto keep = [](ElementLaw& law) {
     if (has_curve(law)) law = {};
@@ -142,37 +145,36 @@ Model constant_laws_of(const Model& given) {
   };
   for (LineElement& line : model.lines) keep(line.law);
   for (AngleElement& angle : model.angles) keep(angle.law);
-  for (Bushing& bushing : model.elements.bushings) bushing.curves.clear();
   mark_used_elements(model);
   return model;
 }
 
-void silence(Bushing& bushing) {
-  const std::string name = bushing.name;
-  const FramePair frames = bushing.frames;
-  bushing = {.name = name, .frames = frames};
+// How many elements of a kind are the scene's; the beams behind them are those between segments.
+template <typename Row>
+std::size_t own_count(const Model& model) {
+  if (std::is_same_v<Row, BeamRow> && !model.segmented.empty()) return model.segmented.front().first_beam;
+  return elements_of(Row(), model.elements).size();
 }
 
-// The model with one of its elements alone, or with none of them; `segments` are no elements of the scene.
+// The model with one of its elements alone, or with none of them.
 struct Element {
   std::string name;
   std::function<void(Model& alone, const Model& from)> put;
 };
 
-Model without_elements(const Model& given, std::size_t own_beams) {
+Model without_elements(const Model& given) {
   Model model = given;
   for (LineElement& line : model.lines) line.law = {};
   for (AngleElement& angle : model.angles) angle.law = {};
-  for (Bushing& bushing : model.elements.bushings) silence(bushing);
-  for (std::size_t i = 0; i < own_beams; ++i) {
-    model.elements.beams[i].K = {};
-    model.elements.beams[i].damping_time = 0;
-  }
+  for_each_force_kind([&](auto row) {
+    auto& elements = elements_of(row, model.elements);
+    for (std::size_t i = 0; i < own_count<decltype(row)>(given); ++i) row.silence(elements[i]);
+  });
   mark_used_elements(model);
   return model;
 }
 
-std::vector<Element> elements_of(const Model& model, std::size_t own_beams) {
+std::vector<Element> active_elements(const Model& model) {
   std::vector<Element> all;
   for (std::size_t i = 0; i < model.lines.size(); ++i) {
     if (!model.lines[i].law.is_active) continue;
@@ -182,14 +184,13 @@ std::vector<Element> elements_of(const Model& model, std::size_t own_beams) {
     if (!model.angles[i].law.is_active) continue;
     all.push_back({model.angles[i].name, [i](Model& to, const Model& from) { to.angles[i].law = from.angles[i].law; }});
   }
-  for (std::size_t i = 0; i < model.elements.bushings.size(); ++i) {
-    all.push_back({model.elements.bushings[i].name,
-                   [i](Model& to, const Model& from) { to.elements.bushings[i] = from.elements.bushings[i]; }});
-  }
-  for (std::size_t i = 0; i < own_beams; ++i) {
-    all.push_back({model.elements.beams[i].name,
-                   [i](Model& to, const Model& from) { to.elements.beams[i] = from.elements.beams[i]; }});
-  }
+  for_each_force_kind([&](auto row) {
+    for (std::size_t i = 0; i < own_count<decltype(row)>(model); ++i) {
+      all.push_back({elements_of(row, model.elements)[i].name, [row, i](Model& to, const Model& from) {
+                       elements_of(row, to.elements)[i] = elements_of(row, from.elements)[i];
+                     }});
+    }
+  });
   return all;
 }
 
@@ -208,11 +209,9 @@ double longest_step_of(const Model& model, Integrator rule, double h) {
 std::optional<TooFast> find_too_fast_element(const Model& given, Integrator rule, double h) {
   if (!is_explicit(rule)) return std::nullopt;
   const Model model = constant_laws_of(given);
-  const std::size_t own_beams =
-      model.segmented.empty() ? model.elements.beams.size() : model.segmented.front().first_beam;
-  const std::vector<Element> elements = elements_of(model, own_beams);
+  const std::vector<Element> elements = active_elements(model);
   if (elements.empty() || start_state(model).u.empty() || !is_too_long(model, rule, h)) return std::nullopt;
-  const Model bare = without_elements(model, own_beams);
+  const Model bare = without_elements(model);
   if (is_too_long(bare, rule, h)) return std::nullopt;
   TooFast found{elements.front().name, 0, longest_step_of(model, rule, h)};
   for (const Element& element : elements) {

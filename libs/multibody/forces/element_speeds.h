@@ -1,4 +1,4 @@
-// Whether an explicit integrator follows what springs, dampers, bushings and beams do to the masses they act on.
+// Whether an explicit integrator follows what springs, dampers and linear force kinds do to the masses they act on.
 //
 // The equations about the start, at rest and linear in displacement x and speed v of the joint coordinates,
 //   x' = v,   v' = A_x x + A_v v                                                                                (1)
@@ -8,9 +8,9 @@
 //   semi_implicit_euler  v_1 = v_0 + h a(x_0, v_0),  x_1 = x_0 + h v_1                                          (2)
 // whose largest factor of growth a power iteration finds.
 //
-// Constant laws only. Left out: tables, ends, ropes, tyres and contacts, which push on one side or saturate, so that
-// too long a step chatters but stays bounded; gravity; rows, whose owner solves them implicitly; the modes and segments
-// alone (flexible/validate_flexible.h). An instant, not a bound for all poses.
+// Constant laws only. Left out: tables, ends, kinds that are not linear (ForceRow::kIsLinear) and contacts, which push
+// on one side or saturate, so that too long a step chatters but stays bounded; gravity; rows, whose owner solves them
+// implicitly; the modes and segments alone (flexible/validate_flexible.h). An instant, not a bound for all poses.
 #pragma once
 
 #include <optional>
@@ -28,9 +28,9 @@ namespace slew::multibody {
 }
 
 // Whether a parameter of this kind is a mass or a law that the check sees.
-[[nodiscard]] constexpr bool may_speed_up(ParameterKind kind) noexcept {
+[[nodiscard]] inline bool may_speed_up(ParameterKind kind) noexcept {
   return kind == ParameterKind::body_mass || kind == ParameterKind::line_law || kind == ParameterKind::angle_law ||
-         kind == ParameterKind::bushing || kind == ParameterKind::beam;
+         is_linear_force(kind);
 }
 
 struct TooFast {

@@ -14,10 +14,23 @@
 #include <vector>
 
 #include "math/monotone_cubic.h"
+#include "multibody/forces/force_row.h"
 #include "multibody/forces/limited_damper.h"
-#include "multibody/forces/wrench.h"
 
 namespace slew::multibody {
+
+// Rope over points[k] on bodies[k].
+struct RopeDef {
+  std::string name{};
+  std::vector<std::string> bodies{};
+  std::vector<Triple> points{};  // m, each in its body's frame
+  double free_length = 0;        // m
+  double stiffness = 0;          // N/m, of the whole rope
+  double axial_rigidity = 0;     // N, E times A: stiffness = axial_rigidity / free_length
+  double damping_constant = 0;   // N s/m
+  Table spring_table{};          // m of stretch, N; goes on with its last slope
+  Table damper_table{};          // m/s, N; never falls beyond its ends
+};
 
 struct RopePoint {
   int link = 0, body = 0;
@@ -60,5 +73,57 @@ struct RopeSlopes {
 // On the link of point k, by the tension of state_of().
 [[nodiscard]] Wrench wrench_on(const Rope& rope, std::size_t k, double tension,
                                std::span<const LinkMotion> motion) noexcept;
+
+[[nodiscard]] std::span<const Field> rope_fields() noexcept;
+
+struct RopeRow : ForceRow<Rope> {
+  struct Defs {
+    std::vector<RopeDef> ropes;
+  };
+  struct Elements {
+    std::vector<Rope> ropes;
+  };
+  static constexpr auto kElements = &Elements::ropes;
+  static constexpr std::tuple kTypes{
+      ForceType{"forces", "rope", "wire rope over points of bodies", rope_fields, &Defs::ropes}};
+
+  static Rope build(const RopeDef& def, ElementBuilder& builder);
+  static void check(const RopeDef& def, ElementRules& rules);
+  static void check_start(const RopeDef& def, ElementStartRules& rules);
+  static std::string obstacle_of_change(const RopeDef& def, const Field& field);
+  static void visit_points(RopeDef& def, const VisitPoint& visit);
+
+  template <typename Add>
+  static void for_each_wrench(const Rope& rope, std::span<const LinkMotion> motion, double /*time*/,
+                              Add&& add) noexcept {
+    const double tension = state_of(rope, motion).tension;
+    if (tension == 0) return;
+    for (std::size_t k = 0; k < rope.points.size(); ++k) {
+      add(rope.points[k].link, rope.points[k].body, wrench_on(rope, k, tension, motion));
+    }
+  }
+  static double energy(const Rope& rope, std::span<const LinkMotion> motion) noexcept {
+    return stored_energy(rope, state_of(rope, motion));
+  }
+
+  static constexpr bool kHasSlopes = true;
+  static void add_stiffness(const Rope& rope, StiffnessSum& sum) noexcept;
+  template <typename Couple>
+  static void for_each_coupling(const Rope& rope, Couple&& couple) {
+    for (std::size_t a = 0; a < rope.points.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) couple(rope.points[a].link, rope.points[b].link);
+    }
+  }
+  static constexpr bool kHasStops = true;
+  static int side_of(const Rope& rope, std::span<const LinkMotion> motion) noexcept {
+    return state_of(rope, motion).springs;
+  }
+
+  static void list_variables(const Rope& rope, VariableNames& names);
+  static void read_variables(const Rope& rope, std::span<const LinkMotion> motion, double time,
+                             VariableSink& sink) noexcept;
+  static std::span<const std::string_view> value_keys(const Rope& rope) noexcept;
+  static double* value(Rope& rope, std::size_t index) noexcept;
+};
 
 }  // namespace slew::multibody

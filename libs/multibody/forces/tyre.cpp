@@ -1,12 +1,76 @@
 #include "multibody/forces/tyre.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "multibody/forces/build_elements.h"
+#include "multibody/forces/force_fields.h"
+#include "multibody/forces/stiffness_sum.h"
+#include "multibody/forces/validate_elements.h"
 
 namespace slew::multibody {
 namespace {
 
+using math::Mat3;
 using math::Vec3;
+
+constexpr double kFlatWheel = 0.1;  // sine of the angle between axle and normal at the start
+
+constexpr std::array<std::string_view, 2> kTyreRolling = {"free", "with_body"};
+
+// a free wheel has no longitudinal slip
+constexpr ReadBy kReadByDrivenWheel[] = {
+    read_by<&TyreDummyDef::rolling, TyreRolling::with_body>("rolling", "rolling: with_body")};
+
+constexpr Field kTyreDummyFields[] = {
+    required_body<&TyreDummyDef::relative_to>("relative_to", "body that carries the wheel"),
+    field<&TyreDummyDef::position>("position", {.dimension = Dimension::length, .doc = "wheel's centre in the body"}),
+    field<&TyreDummyDef::orientation>(
+        "orientation", {.dimension = Dimension::angle, .doc = "successive Euler rotations z, x', z''; the axle is z"}),
+    dummy_mass<&TyreDummyDef::mass>("mass of wheel and tyre"),
+    field<&TyreDummyDef::inertia>("inertia", {.dimension = Dimension::inertia,
+                                              .range = kNotNegative,
+                                              .doc = "moments about the centre; Izz of a free wheel has no effect"}),
+    field<&TyreDummyDef::rolling>(
+        "rolling",
+        {.choices = kTyreRolling, .doc = "free: turns on its axle; with_body: driven, braked, or its own body"}),
+    field<&TyreDummyDef::radius>("radius", {.dimension = Dimension::length,
+                                            .range = kPositive,
+                                            .presence = Presence::required,
+                                            .doc = "radius without load, at which it also rolls"}),
+    field<&TyreDummyDef::ground_normal>("ground_normal", {.doc = "upward normal of the ground, Ground axes"}),
+    field<&TyreDummyDef::ground_height>(
+        "ground_height",
+        {.dimension = Dimension::length, .change = Change::live, .doc = "ground along its normal, from the origin"}),
+    field<&TyreDummyDef::stiffness>("stiffness", {.dimension = Dimension::stiffness,
+                                                  .range = kPositive,
+                                                  .presence = Presence::required,
+                                                  .change = Change::live,
+                                                  .doc = "spring between wheel and ground"}),
+    field<&TyreDummyDef::damping>("damping", {.dimension = Dimension::damping,
+                                              .range = kNotNegative,
+                                              .change = Change::live,
+                                              .doc = "damper; carries at most what the spring does"}),
+    field<&TyreDummyDef::friction>(
+        "friction", {.range = kPositive, .change = Change::live, .doc = "largest slip force over normal force"}),
+    field<&TyreDummyDef::longitudinal_slip_slope>("longitudinal_slip_slope",
+                                                  {.range = kNotNegative,
+                                                   .read_by = kReadByDrivenWheel,
+                                                   .doc = "longitudinal force over normal force, per slip"}),
+    field<&TyreDummyDef::lateral_slip_slope>(
+        "lateral_slip_slope",
+        {.range = kNotNegative, .doc = "lateral force over normal force, per tangent of the slip angle"}),
+    field<&TyreDummyDef::rolling_resistance>(
+        "rolling_resistance",
+        {.range = kFraction, .change = Change::live, .doc = "resistance over normal force, also without slip"}),
+    field<&TyreDummyDef::slip_speed>(
+        "slip_speed",
+        {.dimension = Dimension::velocity, .range = kPositive, .doc = "speed below which slip acts as a damper"}),
+};
+
+constexpr std::array<std::string_view, 5> kTyreKeys = {"ground_height", "stiffness", "damping", "friction",
+                                                       "rolling_resistance"};
 
 constexpr double kFlat = 1e-3;      // a disc that lies flat has no lowest point
 constexpr double kNoSlip = 1e-150;  // below it (4) is its limit for G = 0
@@ -120,6 +184,93 @@ TyreSlopes slopes_of(const Tyre& tyre, const TyreState& state, const LinkMotion&
 double stored_energy(const Tyre& tyre, const TyreState& state) noexcept {
   const double depth = std::max(0.0, state.depth);
   return 0.5 * tyre.stiffness * depth * depth;
+}
+
+std::span<const Field> tyre_fields() noexcept {
+  return kTyreDummyFields;
+}
+
+Tyre TyreRow::build(const TyreDummyDef& def, ElementBuilder& builder) {
+  const int number = builder.number_of(def.relative_to);
+  const Body& body = builder.body_at(number);
+  Triple inertia = def.inertia;
+  if (def.rolling == TyreRolling::free) inertia[2] = 0;
+  builder.add_mass(number, builder.pose_in(builder.pose_at(number), def.position, def.orientation), def.mass, Vec3(),
+                   inertia);
+  return {.name = def.name,
+          .link = body.link,
+          .body = number,
+          .c_L = builder.in_link(number, def.position),
+          .axle_L = body.R_LB * math::rotation_zxz(def.orientation).c[2],
+          .normal_W = Vec3(def.ground_normal) * (1 / norm(Vec3(def.ground_normal))),
+          .height = def.ground_height,
+          .radius = def.radius,
+          .stiffness = def.stiffness,
+          .damping = def.damping,
+          .friction = def.friction,
+          .longitudinal = def.longitudinal_slip_slope,
+          .lateral = def.lateral_slip_slope,
+          .rolling_resistance = def.rolling_resistance,
+          .slip_speed = def.slip_speed,
+          .rolling = def.rolling};
+}
+
+void TyreRow::check(const TyreDummyDef& def, ElementRules& rules) {
+  if (rules.check_body(def.name, "relative_to", def.relative_to) && def.relative_to == kGroundName) {
+    rules.add(def.name + ".relative_to", "the wheel is on Ground, which does not move", "a body");
+  }
+  rules.check_direction(def.name + ".ground_normal", def.ground_normal);
+  rules.check_inertia(def.name, def.inertia);
+}
+
+void TyreRow::check_start(const TyreDummyDef& def, ElementStartRules& rules) {
+  const Vec3 axle = rules.pose_of(def.relative_to).R * math::rotation_zxz(def.orientation).c[2];
+  const Vec3 normal(def.ground_normal);
+  if (norm(cross(axle, normal)) > kFlatWheel * norm(normal)) return;
+  rules.add(def.name + ".orientation", "the axle stands on the ground at the start",
+            "an axle, z of the dummy's frame, along the ground");
+}
+
+void TyreRow::add_stiffness(const Tyre& tyre, StiffnessSum& sum) noexcept {
+  const LinkMotion& link = sum.motion()[static_cast<std::size_t>(tyre.link)];
+  const TyreState state = state_of(tyre, link);
+  if (tyre.link == 0 || !(state.depth > 0)) return;
+  const TyreSlopes slopes = slopes_of(tyre, state, link, sum.weights());
+  const Mat3 forwards = outer(state.t, state.t) * slopes.longitudinal;
+  Mat3 at_ground = outer(tyre.normal_W, tyre.normal_W) * slopes.normal + outer(state.l, state.l) * slopes.lateral;
+  if (tyre.rolling == TyreRolling::with_body) {
+    at_ground += forwards;
+  } else {
+    sum.add_relative(0, tyre.link, state.C, {forwards, {}, {}});
+  }
+  sum.add_relative(0, tyre.link, state.Q, {at_ground, {}, outer(state.axle, state.axle) * slopes.axle});
+}
+
+void TyreRow::list_variables(const Tyre& tyre, VariableNames& names) {
+  names.add(tyre.name + ".deflection", Dimension::length);
+  names.add(tyre.name + ".normal_force", Dimension::force);
+  names.add(tyre.name + ".longitudinal_force", Dimension::force);
+  names.add(tyre.name + ".lateral_force", Dimension::force);
+  names.add(tyre.name + ".slip", Dimension::none);
+  names.add(tyre.name + ".slip_angle", Dimension::angle);
+}
+
+void TyreRow::read_variables(const Tyre& tyre, std::span<const LinkMotion> motion, double /*time*/,
+                             VariableSink& sink) noexcept {
+  const TyreState state = state_of(tyre, motion[static_cast<std::size_t>(tyre.link)]);
+  for (const double value : {std::fmax(0.0, state.depth), state.normal_force, state.longitudinal_force,
+                             state.lateral_force, state.slip, std::atan(state.lateral_slip)}) {
+    sink.put(value);
+  }
+}
+
+std::span<const std::string_view> TyreRow::value_keys(const Tyre& /*tyre*/) noexcept {
+  return kTyreKeys;
+}
+
+double* TyreRow::value(Tyre& tyre, std::size_t index) noexcept {
+  double* const values[] = {&tyre.height, &tyre.stiffness, &tyre.damping, &tyre.friction, &tyre.rolling_resistance};
+  return values[index];
 }
 
 }  // namespace slew::multibody

@@ -19,12 +19,37 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "multibody/forces/element_defs.h"
+#include "multibody/forces/force_row.h"
 #include "multibody/forces/limited_damper.h"
-#include "multibody/forces/wrench.h"
 
 namespace slew::multibody {
+
+// Whether a tyre's wheel turns with the body that carries it.
+enum class TyreRolling : int { free, with_body };
+
+// Wheel with its mass and the forces of the ground on it. Dummy's frame: origin in the wheel's centre, z along the
+// axle.
+struct TyreDummyDef {
+  std::string name{};
+  std::string relative_to{};  // body
+  Triple position{};          // m, wheel's centre in the body
+  Triple orientation{};       // rad, Euler z-x'-z''
+  double mass = 0;            // kg
+  Triple inertia{};           // kg m2 about the centre, dummy's frame; Izz has no effect on a wheel that turns freely
+  TyreRolling rolling = TyreRolling::free;
+  double radius = 0;                    // m, without load
+  Triple ground_normal{0, 1, 0};        // of any length but 0, Ground axes
+  double ground_height = 0;             // m, of the plane along its normal, from Ground's origin
+  double stiffness = 0;                 // N/m
+  double damping = 0;                   // N s/m
+  double friction = 0.8;                // largest friction over normal force
+  double longitudinal_slip_slope = 10;  // friction over normal force, per slip
+  double lateral_slip_slope = 10;       // the same per tangent of the slip angle
+  double rolling_resistance = 0;        // share of the normal force
+  double slip_speed = 0.1;              // m/s, below which slip is a damper
+};
 
 struct Tyre {
   std::string name;
@@ -68,5 +93,48 @@ struct TyreSlopes {
 [[nodiscard]] TyreSlopes slopes_of(const Tyre& tyre, const TyreState& state, const LinkMotion& link,
                                    ChangeWeights weights) noexcept;
 [[nodiscard]] double stored_energy(const Tyre& tyre, const TyreState& state) noexcept;  // k delta^2/2 [J]
+
+[[nodiscard]] std::span<const Field> tyre_fields() noexcept;
+
+struct TyreRow : ForceRow<Tyre> {
+  struct Defs {
+    std::vector<TyreDummyDef> tyre_dummies;
+  };
+  struct Elements {
+    std::vector<Tyre> tyres;
+  };
+  static constexpr auto kElements = &Elements::tyres;
+  static constexpr std::tuple kTypes{ForceType{
+      "dummies", "tyre", "wheel with mass and the forces of a plane ground on it", tyre_fields, &Defs::tyre_dummies}};
+
+  static Tyre build(const TyreDummyDef& def, ElementBuilder& builder);
+  static void check(const TyreDummyDef& def, ElementRules& rules);
+  static void check_start(const TyreDummyDef& def, ElementStartRules& rules);
+  static void visit_points(TyreDummyDef& def, const VisitPoint& visit) { visit(def.relative_to, &def.position); }
+
+  template <typename Add>
+  static void for_each_wrench(const Tyre& tyre, std::span<const LinkMotion> motion, double /*time*/,
+                              Add&& add) noexcept {
+    const LinkMotion& link = motion[static_cast<std::size_t>(tyre.link)];
+    const TyreState state = state_of(tyre, link);
+    if (state.depth > 0) add(tyre.link, tyre.body, wrench_of(tyre, state, link));
+  }
+  static double energy(const Tyre& tyre, std::span<const LinkMotion> motion) noexcept {
+    return stored_energy(tyre, state_of(tyre, motion[static_cast<std::size_t>(tyre.link)]));
+  }
+
+  static constexpr bool kHasSlopes = true;
+  static void add_stiffness(const Tyre& tyre, StiffnessSum& sum) noexcept;
+  static constexpr bool kHasStops = true;
+  static int side_of(const Tyre& tyre, std::span<const LinkMotion> motion) noexcept {
+    return state_of(tyre, motion[static_cast<std::size_t>(tyre.link)]).springs;
+  }
+
+  static void list_variables(const Tyre& tyre, VariableNames& names);
+  static void read_variables(const Tyre& tyre, std::span<const LinkMotion> motion, double time,
+                             VariableSink& sink) noexcept;
+  static std::span<const std::string_view> value_keys(const Tyre& tyre) noexcept;
+  static double* value(Tyre& tyre, std::size_t index) noexcept;
+};
 
 }  // namespace slew::multibody

@@ -358,7 +358,7 @@ StageWorkspace::StageWorkspace(const Model& model, const BodyModel& body, Coordi
     by_link->resize(is_body ? 0 : links);
   }
   for (auto* by_element : {&stops, &stops_0}) by_element->resize(stop_count(model));
-  has_stops = !model.elements.ropes.empty() || !model.elements.tyres.empty() || model.contact != nullptr;
+  has_stops = stop_count(model.elements) > 0 || model.contact != nullptr;
   for (const LineElement& line : model.lines) has_stops = has_stops || line.law.end_spring > 0;
   for (const AngleElement& angle : model.angles) has_stops = has_stops || angle.law.end_spring > 0;
   row_force.resize(model.rows.size());

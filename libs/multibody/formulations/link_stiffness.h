@@ -31,13 +31,9 @@ template <typename Couple>
 void for_each_coupling(const Model& model, Couple&& couple) {
   for (const LineElement& line : model.lines) couple(line.link1, line.link2);
   for (const AngleElement& angle : model.angles) couple(angle.link1, angle.link2);
-  for (const Bushing& bushing : model.elements.bushings) couple(bushing.frames.link1, bushing.frames.link2);
-  for (const Beam& beam : model.elements.beams) couple(beam.frames.link1, beam.frames.link2);
-  for (const Rope& rope : model.elements.ropes) {
-    for (std::size_t a = 0; a < rope.points.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) couple(rope.points[a].link, rope.points[b].link);
-    }
-  }
+  for_each_force_kind([&](auto row) {
+    for (const auto& element : elements_of(row, model.elements)) row.for_each_coupling(element, couple);
+  });
   if (model.contact == nullptr) return;
   for (const contact::ContactPair& pair : model.contact->model.pairs()) {
     const auto link_of = [&](std::size_t shape) {

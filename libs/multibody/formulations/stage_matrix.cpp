@@ -50,9 +50,13 @@ void see_stops(const Model& model, const Workspace& ws, std::span<signed char> s
   for (std::size_t i = 0; i < model.angles.size(); ++i) {
     stops[k++] = side_of(model.angles[i].law, ws.angles[i].angle, ws.angles[i].rate);
   }
-  const auto note = [&](int kind) { stops[k++] = static_cast<signed char>(kind); };
-  for (const Rope& rope : model.elements.ropes) note(state_of(rope, ws.motion).springs);
-  for (const Tyre& tyre : model.elements.tyres) note(state_of(tyre, ws.motion[slew::at(tyre.link)]).springs);
+  for_each_force_kind([&](auto row) {
+    if constexpr (decltype(row)::kHasStops) {
+      for (const auto& element : elements_of(row, model.elements)) {
+        stops[k++] = static_cast<signed char>(row.side_of(element, ws.motion));
+      }
+    }
+  });
   if (model.contact == nullptr) return;
   const std::span<signed char> pairs = stops.subspan(k);
   std::fill(pairs.begin(), pairs.end(), static_cast<signed char>(0));
@@ -64,7 +68,7 @@ void see_stops(const Model& model, const Workspace& ws, std::span<signed char> s
 }
 
 std::size_t stop_count(const Model& model) noexcept {
-  return model.lines.size() + model.angles.size() + model.elements.ropes.size() + model.elements.tyres.size() +
+  return model.lines.size() + model.angles.size() + stop_count(model.elements) +
          (model.contact == nullptr ? 0 : model.contact->model.pairs().size());
 }
 

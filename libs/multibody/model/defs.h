@@ -19,7 +19,8 @@
 #include "multibody/contacts/contact_defs.h"
 #include "multibody/flexible/flexible_def.h"
 #include "multibody/flexible/segmented_def.h"
-#include "multibody/forces/element_defs.h"
+#include "multibody/forces/dummy_defs.h"
+#include "multibody/forces/force_kinds.h"
 #include "multibody/model/not_given.h"
 #include "multibody/motions/motion_defs.h"
 
@@ -190,7 +191,8 @@ enum class Integrator : int {
   own
 };
 
-struct MechanicsDef {
+// The lists of force kinds beyond spring-dampers (point_forces, bushings, ...) come with the table of kinds.
+struct MechanicsDef : ForceKinds::Defs {
   Triple gravity{0, -9.81, 0};  // m/s2
   Formulation formulation = Formulation::recursive;
   double assembly_tolerance = 1e-3;  // m and rad, how far a joint may be open at the start
@@ -214,12 +216,6 @@ struct MechanicsDef {
   std::vector<ShapeDef> shapes;
   std::vector<ContactPairDef> contacts;
   std::vector<FrictionDef> frictions;
-  std::vector<PointForceDef> point_forces;
-  std::vector<PointTorqueDef> point_torques;
-  std::vector<BushingDef> bushings;
-  std::vector<BeamDef> beams;
-  std::vector<RopeDef> ropes;
-  std::vector<TyreDummyDef> tyre_dummies;
   std::vector<PartDummyDef> part_dummies;
   std::vector<ConstraintDummyDef> constraint_dummies;
   std::vector<MotionDef> motions;

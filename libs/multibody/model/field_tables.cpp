@@ -1,10 +1,13 @@
 #include "multibody/model/field_tables.h"
 
 #include <array>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "multibody/constraints/gear_fields.h"
 #include "multibody/contacts/contact_fields.h"
-#include "multibody/forces/element_fields.h"
+#include "multibody/forces/dummy_fields.h"
 #include "multibody/formulations/integrators.h"
 #include "multibody/joints/joint_fields.h"
 #include "multibody/motions/motion_fields.h"
@@ -300,41 +303,95 @@ constexpr ElementType kBodyTypes[] = {
      kSegmentedBodyFields, append_body<BodyType::segmented>},
 };
 
-constexpr ElementType kForceTypes[] = {
+constexpr ElementType kSpringTypes[] = {
     {"translational", "force", "spring-damper between two points, or a cylinder's line of force",
      kTranslationalForceFields, append_to<&MechanicsDef::translational_forces>},
     {"rotational", "force", "spring-damper about an axis, or a slewing drive's torque", kRotationalForceFields,
      append_to<&MechanicsDef::rotational_forces>},
-    {"point_force", "force", "force of given size at a point of a body", kPointForceFields,
-     append_to<&MechanicsDef::point_forces>},
-    {"point_torque", "force", "torque of given size on a body", kPointTorqueFields,
-     append_to<&MechanicsDef::point_torques>},
-    {"bushing", "force", "elastic bearing: six springs and dampers between two frames", kBushingFields,
-     append_to<&MechanicsDef::bushings>},
-    {"beam", "force", "massless elastic beam between two frames", kBeamFields, append_to<&MechanicsDef::beams>},
-    {"rope", "force", "wire rope over points of bodies", kRopeFields, append_to<&MechanicsDef::ropes>},
 };
 
 constexpr ElementType kDummyTypes[] = {
     {"body_to_body_force", "dummy", "mass of a cylinder or piston, carried by a translational force", kForceDummyFields,
      append_to<&MechanicsDef::force_dummies>},
     {"static", "dummy", "mass fixed to a body", kStaticDummyFields, append_to<&MechanicsDef::static_dummies>},
-    {"tyre", "dummy", "wheel with mass and the forces of a plane ground on it", kTyreDummyFields,
-     append_to<&MechanicsDef::tyre_dummies>},
+};
+
+constexpr ElementType kPartTypes[] = {
     {"part", "dummy", "mass on one body, placed in the frame of another", kPartDummyFields,
      append_to<&MechanicsDef::part_dummies>},
     {"constraint", "dummy", "mass of a joint's own part", kConstraintDummyFields,
      append_to<&MechanicsDef::constraint_dummies>},
 };
 
+// a type of a force kind
+template <typename Row, std::size_t Index>
+ElementType element_type() {
+  constexpr const auto& type = std::get<Index>(Row::kTypes);
+  return {type.name,
+          type.section == "forces" ? "force" : "dummy",
+          type.doc,
+          type.fields(),
+          [](MechanicsDef& mechanics, std::string_view element) -> void* {
+            auto& def = (mechanics.*std::get<Index>(Row::kTypes).list).emplace_back();
+            def.name = element;
+            return &def;
+          },
+          false,
+          [](const void* def, const Field& field) {
+            using List = std::remove_cvref_t<decltype(std::declval<MechanicsDef>().*std::get<Index>(Row::kTypes).list)>;
+            return Row::obstacle_of_change(*static_cast<const typename List::value_type*>(def), field);
+          }};
+}
+
+void append_kinds(std::string_view section, std::vector<ElementType>& types) {
+  for_each_force_kind([&](auto row) {
+    using Row = decltype(row);
+    [&]<std::size_t... Index>(std::index_sequence<Index...>) {
+      const auto append = [&](const ElementType& type, std::string_view of) {
+        if (of == section) types.push_back(type);
+      };
+      (append(element_type<Row, Index>(), std::get<Index>(Row::kTypes).section), ...);
+    }
+    (std::make_index_sequence<std::tuple_size_v<std::remove_cvref_t<decltype(Row::kTypes)>>>());
+  });
+}
+
+// the types of the library's core, then the force kinds of the section
+std::vector<ElementType> types_of(std::string_view section, std::span<const ElementType> first,
+                                  std::span<const ElementType> last = {}) {
+  std::vector<ElementType> types(first.begin(), first.end());
+  append_kinds(section, types);
+  types.insert(types.end(), last.begin(), last.end());
+  return types;
+}
+
 }  // namespace
 
 std::span<const Section> sections() noexcept {
+  static const std::vector<ElementType> kForces = types_of("forces", kSpringTypes);
+  static const std::vector<ElementType> kDummies = types_of("dummies", kDummyTypes, kPartTypes);
   static const Section kSections[] = {
-      {"bodies", kBodyTypes},          {"joints", joint_types()},   {"forces", kForceTypes},
-      {"dummies", kDummyTypes},        {"shapes", shape_types()},   {"contacts", contact_types()},
+      {"bodies", kBodyTypes},          {"joints", joint_types()},   {"forces", kForces},
+      {"dummies", kDummies},           {"shapes", shape_types()},   {"contacts", contact_types()},
       {"frictions", friction_types()}, {"motions", motion_types()}, {"gears", gear_types()}};
   return kSections;
+}
+
+const ElementType* find_type(std::string_view section, std::string_view name) noexcept {
+  for (const Section& one : sections()) {
+    for (const ElementType& type : one.types) {
+      if (one.name == section && type.name == name) return &type;
+    }
+  }
+  return nullptr;
+}
+
+std::span<const Field> part_dummy_fields() noexcept {
+  return kPartDummyFields;
+}
+
+std::span<const Field> constraint_dummy_fields() noexcept {
+  return kConstraintDummyFields;
 }
 
 std::span<const Field> mechanics_fields() noexcept {

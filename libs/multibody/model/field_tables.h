@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/field.h"
@@ -21,12 +22,18 @@ struct ElementType {
   void* (*append)(MechanicsDef& mechanics, std::string_view element);
 
   bool is_default = false;  // whether it is meant where the key `type` is missing
+
+  // Why a live field would change nothing of this Def; empty: it changes something. Null: every live field does.
+  std::string (*obstacle_of_change)(const void* def, const Field& field) = nullptr;
 };
 
 struct Section {
   std::string_view name;  // "bodies", "joints", "forces", "dummies", "shapes", "contacts", "frictions"
   std::span<const ElementType> types;
 };
+
+// Null when a section has no such type.
+[[nodiscard]] const ElementType* find_type(std::string_view section, std::string_view name) noexcept;
 
 // The sections of elements by name.
 [[nodiscard]] std::span<const Section> sections() noexcept;

@@ -52,14 +52,13 @@ std::optional<Parameter> member_of(ParameterKind kind, std::size_t element, int 
   return Parameter{kind, static_cast<int>(element), member};
 }
 
-// the kinds of elements/element_set.h follow the others
+// the kinds of forces follow the others
 ElementValue element_value(Parameter p) noexcept {
-  const int kind = static_cast<int>(p.kind) - static_cast<int>(ParameterKind::load);
-  return {static_cast<ElementKind>(kind), p.element, p.member};
+  return {static_cast<int>(p.kind) - static_cast<int>(ParameterKind::force), p.element, p.member};
 }
 
 double& law_value(Model& model, Parameter p) noexcept {
-  if (p.kind >= ParameterKind::load) return value_of(model.elements, element_value(p));
+  if (p.kind >= ParameterKind::force) return value_of(model.elements, element_value(p));
   switch (p.kind) {
     case ParameterKind::line_law:
       return model.lines[at(p.element)].law.*kLineMembers[at(p.member)].value;
@@ -104,7 +103,7 @@ std::optional<Parameter> find_parameter(const Model& model, std::string_view pat
     if (member >= 0) return member_of(ParameterKind::joint_law, i, member);
   }
   const ElementValue value = find_value(model.elements, element, key);
-  const int kind = static_cast<int>(ParameterKind::load) + static_cast<int>(value.kind);
+  const int kind = static_cast<int>(ParameterKind::force) + value.kind;
   return member_of(static_cast<ParameterKind>(kind), static_cast<std::size_t>(value.element), value.member);
 }
 
@@ -123,14 +122,19 @@ bool has_parameter(const Model& model, Parameter p) noexcept {
       return is_below(model.rows.size(), kJointMembers.size());
     case ParameterKind::gravity:
       return is_below(kGravityKeys.size(), 1);
-    case ParameterKind::load:
-    case ParameterKind::bushing:
-    case ParameterKind::beam:
-    case ParameterKind::rope:
-    case ParameterKind::tyre:
-      return has_value(model.elements, element_value(p));
+    case ParameterKind::force:
+      break;
   }
-  return false;
+  return has_value(model.elements, element_value(p));
+}
+
+bool is_linear_force(ParameterKind kind) noexcept {
+  auto number = static_cast<int>(ParameterKind::force);
+  bool is_linear = false;
+  for_each_force_kind([&](auto row) {
+    if (static_cast<int>(kind) == number++) is_linear = row.kIsLinear;
+  });
+  return is_linear;
 }
 
 std::size_t parameter_count(const Model& model) noexcept {

@@ -4,7 +4,7 @@
 //   "ForceT_Lift.damping_constant" the live fields of force elements
 //   "Body_Pillar.viscous_friction", "Cross.limit_damping_2"  friction and limit constants of joints that have a row
 //   "mechanics.gravity.x" (y, z)   gravity
-//   "Mount.stiffness.x"            the live fields of the other elements (elements/element_set.h)
+//   "Mount.stiffness.x"            the live fields of the other elements (forces/element_set.h)
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,11 @@ enum class ParameterKind : std::uint8_t {
   angle_law,
   joint_law,
   gravity,
-  load,
-  bushing,
-  beam,
-  rope,
-  tyre
+  force  // and all above: kinds of force elements, in the order of their table
 };
+
+// Whether it is a value of a force kind whose law is linear around a pose (ForceRow::kIsLinear).
+[[nodiscard]] bool is_linear_force(ParameterKind kind) noexcept;
 
 struct Parameter {
   ParameterKind kind = ParameterKind::body_mass;

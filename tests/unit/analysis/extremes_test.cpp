@@ -150,6 +150,25 @@ TEST(ExtremeCases, CraneHasThemAllWithItsOwnNames) {
   }
 }
 
+TEST(ExtremeCases, CaseThatChangesNothingIsLeftOutByName) {
+  scene::SceneOptions options;
+  options.file = std::string(SLEWRING_SOURCE_DIR) + "/scenes/two_dof_crane.yaml";
+  const auto obstacle = [&](const char* name) {
+    const scene::Scene scene = scene::load_scene(options);
+    const std::vector<ExtremeCase> cases = extreme_cases(scene);
+    const ExtremeCase& one = named(cases, name);
+    return one.obstacle.empty() ? lack_of_effect(one, options, scene) : one.obstacle;
+  };
+  EXPECT_EQ(obstacle("zero_gravity"), "");
+  EXPECT_EQ(obstacle("load_1500_kg"), "");
+  EXPECT_EQ(obstacle("bulk_2e9_Pa"), "");  // of another oil law, which the case states
+  EXPECT_EQ(obstacle("delay_1"), "");
+  options.overrides = {"mechanics.gravity=[0, 0, 0]", "Load.mass=1500", "session.mode=free_running"};
+  EXPECT_NE(obstacle("zero_gravity").find("changes nothing"), std::string::npos) << obstacle("zero_gravity");
+  EXPECT_NE(obstacle("load_1500_kg").find("changes nothing"), std::string::npos) << obstacle("load_1500_kg");
+  EXPECT_EQ(obstacle("delay_1"), "");
+}
+
 // A load that is put on swings to twice what holds it, whatever kind of cylinder holds it.
 TEST(ExtremeCases, CylindersOfEveryKindBoundThePressuresByWhatTheyHold) {
   for (const char* file : {"single_cylinder.yaml", "two_dof_crane.yaml", "tipper.yaml"}) {

@@ -148,6 +148,52 @@ TEST(DoubleRodCylinder, starts_around_the_mean_pressure_and_holds_its_load) {
   EXPECT_DOUBLE_EQ(circuit.actuators()[0].area_a, circuit.actuators()[0].area_b);
 }
 
+// areas, lengths and ratios by hand
+TEST(ActuatorFacts, say_what_a_cylinder_of_any_type_is_to_the_mechanics) {
+  const auto with_common = [](auto def) {
+    def.common.force = "Force", def.common.port_a = "Vol_A", def.common.port_b = "Vol_B";
+    def.common.piston_diameter = 0.1, def.common.minimum_stroke = 0.02, def.common.maximum_stroke = 0.7;
+    def.common.cylinder_coefficient = 0.85, def.common.coupling = PortCoupling::tlm;
+    return def;
+  };
+  const double full = 7.853981633974483e-3, ring = 5.890486225480862e-3;  // m2
+  DoubleActingCylinderDef acting = with_common(DoubleActingCylinderDef());
+  acting.rod_diameter = 0.05, acting.rod_length = 0.8, acting.attachment_length = 0.1;
+  DoubleRodCylinderDef rods = with_common(DoubleRodCylinderDef());
+  rods.rod_diameter = 0.05, rods.rod_length = 0.8, rods.attachment_length = 0.1;
+  SlewCylinderDef slew = with_common(SlewCylinderDef());
+  slew.pinion_radius = 0.15, slew.stroke_offset = 0.3;
+  struct Expected {
+    const ComponentDef* def;
+    double area_a, area_b;
+    PortCoordinate coordinate;
+    Motion motion;
+    StartRule start;
+  };
+  for (const Expected& expected : {
+           Expected{&acting, full, ring, {-0.9, 1}, Motion::linear, StartRule::return_pressure},
+           Expected{&rods, ring, ring, {-0.9, 1}, Motion::linear, StartRule::mean_pressure},
+           Expected{&slew, full, full, {0.3, 0.15}, Motion::rotary, StartRule::mean_pressure},
+       }) {
+    const ActuatorDef actuator = expected.def->actuator().value();
+    SCOPED_TRACE(expected.def->type_name());
+    EXPECT_NEAR(actuator.area_a, expected.area_a, 1e-12);
+    EXPECT_NEAR(actuator.area_b, expected.area_b, 1e-12);
+    EXPECT_DOUBLE_EQ(actuator.coordinate.offset, expected.coordinate.offset);
+    EXPECT_EQ(actuator.coordinate.ratio, expected.coordinate.ratio);
+    EXPECT_EQ(actuator.motion, expected.motion);
+    EXPECT_EQ(actuator.start, expected.start);
+    EXPECT_EQ(actuator.force, "Force");
+    EXPECT_EQ(actuator.port_a, "Vol_A");
+    EXPECT_EQ(actuator.port_b, "Vol_B");
+    EXPECT_EQ(actuator.line_force.minimum_stroke, 0.02);
+    EXPECT_EQ(actuator.line_force.maximum_stroke, 0.7);
+    EXPECT_EQ(actuator.line_force.cylinder_coefficient, 0.85);
+    EXPECT_EQ(actuator.coupling, PortCoupling::tlm);
+  }
+  EXPECT_FALSE(OrificeDef().actuator());
+}
+
 TEST(FourWayValve, meters_by_complementary_edges) {
   HydraulicsDef def;
   def.oil_density = 850, def.orifice_transition = 1;

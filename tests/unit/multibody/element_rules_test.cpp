@@ -173,6 +173,27 @@ TEST(ElementParameters, AreFoundSetAndHashed) {
     EXPECT_FALSE(find_parameter(model, path).has_value()) << path;
 }
 
+// the field table of a Def against the values of its row, both ways; sound() has every kind
+TEST(ElementValues, AreTheLiveFieldsOfEveryKind) {
+  const MechanicsDef def = sound();
+  const Model model = build_model(def);
+  std::size_t live = 0;
+  for_each_force_type(def, [&](auto, const auto& type, const auto& defs) {
+    ASSERT_FALSE(defs.empty()) << type.name;
+    for (const Field& field : type.fields()) {
+      if (field.change != Change::live) continue;
+      const std::string path = defs.front().name + "." + std::string(field.key);
+      if (field.type == FieldType::triple) {
+        for (const char* axis : {".x", ".y", ".z"}) EXPECT_TRUE(find_parameter(model, path + axis)) << path << axis;
+      } else {
+        EXPECT_TRUE(find_parameter(model, path)) << path;
+      }
+      live += defs.size() * (field.type == FieldType::triple ? 3 : 1);
+    }
+  });
+  EXPECT_EQ(value_count(model.elements), live);
+}
+
 TEST(ElementTime, IsPartOfTheStateWhereALoadFollowsTheClock) {
   MechanicsDef def = sound();
   for (const bool has_table : {true, false}) {

@@ -1,0 +1,51 @@
+// What an actuator is to the mechanics, and to whatever reports on it: the facts of its Def that do not depend on its
+// type. Every ComponentDef that drives a force element through a power port returns them from actuator().
+#pragma once
+
+#include <string>
+
+namespace slew::hydraulics {
+
+// Parameters of the line force, evaluated in port space by both sides of the coupling:
+//   F_line = F - F_mu + F_stop,  F = p_A A_A - p_B A_B
+//   F_mu   = (|F| (1 - cylinder_coefficient) f(|v|) + seal_friction f_0(v)) sgn v + viscous_friction v
+//   F_stop = max(0, end_stiffness d + end_damping d') at either end, pushing only
+struct LineForceParameters {
+  std::string friction_curve;       // coefficient f over piston speed, m/s
+  double cylinder_coefficient = 1;  // eta
+  double seal_friction = 0;         // N
+  double viscous_friction = 0;      // N s/m
+  double end_stiffness = 0;         // N/m
+  double end_damping = 0;           // N s/m
+  double minimum_stroke = 0;        // m
+  double maximum_stroke = 0;        // m
+};
+
+// How closely the actuator's power port couples its circuit to the mechanism: a level of its own or the session's. The
+// coupling knows what they mean (coupling/level.h).
+enum class PortCoupling : int { session, hold, linear, two, tlm };
+
+// x = offset + ratio * (coordinate of the force element): distance of its points [m] or angle [rad].
+struct PortCoordinate {
+  double offset = 0;  // m
+  double ratio = 1;   // 1, or m/rad
+};
+
+// Kind of the force element: translational, or rotational, where coordinate.ratio turns the line force into a torque.
+enum class Motion { linear, rotary };
+
+// How an actuator shares the static load between its chambers at an equilibrium start.
+enum class StartRule { return_pressure, mean_pressure };
+
+struct ActuatorDef {
+  std::string force;              // force element that it drives
+  std::string port_a, port_b;     // volumes
+  double area_a = 0, area_b = 0;  // m2; F = p_A area_a - p_B area_b
+  Motion motion = Motion::linear;
+  PortCoordinate coordinate = {};
+  LineForceParameters line_force = {};
+  PortCoupling coupling = PortCoupling::session;
+  StartRule start = StartRule::return_pressure;
+};
+
+}  // namespace slew::hydraulics
