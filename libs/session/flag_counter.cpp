@@ -24,18 +24,18 @@ constexpr std::array<Meaning, FlagCounter::kFlags> kMeanings = {{
     {StepFlag::step_budget, "the sub-step budget was used up and the error of the last one accepted",
      "raise hydraulics.substep_budget or the tolerances"},
     {StepFlag::clamp_active, "a quantity was held at a bound of its validity", "look at the pressures and the inputs"},
-    {StepFlag::late_input, "a sample was later than the copy of the partner's model is good for",
+    {StepFlag::late_input, "a sample was later than the horizon of the partner model",
      "look for load on the machine or the network, or choose session.mode: lockstep"},
     {StepFlag::coupling_creates_energy, "the coupling created energy, so the run may be unstable",
      "choose a smaller session.step, or level two for a port that has another"},
     {StepFlag::cavitating, "a volume cavitated", "look at the pressures near zero"},
-    {StepFlag::beyond_oil_law, "a pressure was beyond what the oil's law is good for (1000 bar)",
+    {StepFlag::beyond_oil_law, "a pressure was beyond the range of the oil's law (1000 bar)",
      "limit it: a relief valve on the line, a lower load or setting"},
     {StepFlag::large_deflection, "a flexible body was bent by more than a tenth of its length",
      "its theory is one of small deflections: take the numbers for estimates"},
 }};
 
-// Of hydraulics' samples: the offender is a volume where none of the flags that name something else is up.
+// Hydraulics' samples: the offender is a volume when no flag with another kind of offender is up.
 bool names_volume(StepFlag flag, const wire::SampleState& state) {
   constexpr auto kOthers = static_cast<std::uint32_t>(StepFlag::not_converged) |
                            static_cast<std::uint32_t>(StepFlag::step_budget) |
@@ -51,7 +51,7 @@ void FlagCounter::take(const wire::Header& header, const wire::SampleState& stat
   if (header.phase != wire::Phase::running) return;
   Counts& counts = of_[header.role];
   const bool is_same_epoch = counts.has_sample && header.epoch == counts.epoch;
-  // a sample that is sent again, or one of an epoch that is over
+  // a repeated sample, or one of an earlier epoch
   if (counts.has_sample && (header.epoch < counts.epoch || (is_same_epoch && header.step <= counts.step))) return;
   if (is_same_epoch) counts.missed += static_cast<std::uint64_t>(header.step - counts.step - 1);
   if (!counts.has_sample) counts.begin = header.step;

@@ -1,5 +1,5 @@
-// Counts what the steps of the two physics nodes report (core/step_report.h), sample by sample: of a live session or of
-// a recording. One sentence for each flag that a user must see, with the first step that raised it.
+// Counts the flags of the physics nodes' steps (core/step_report.h), sample by sample, in a live session or a
+// recording. One sentence for each flag that a user must see, with the first step that raised it.
 #pragma once
 
 #include <array>
@@ -38,11 +38,11 @@ class FlagCounter {
   };
   struct Counts {
     std::array<Seen, kFlags> seen;
-    std::uint64_t steps = 0, late = 0;  // late: steps that continued a copy of the partner
+    std::uint64_t steps = 0, late = 0;  // late: steps that continued the partner model
     StepIndex longest = 0;              // late steps in a row
     std::uint32_t lost = 0;             // samples that no step used
     std::uint64_t missed = 0;           // samples that did not arrive here, between two that did
-    StepIndex begin = 0, step = 0;      // of the first and of the newest sample
+    StepIndex begin = 0, step = 0;      // first and newest sample
     std::uint32_t epoch = 0;
     bool has_sample = false;
   };

@@ -38,7 +38,7 @@ Topic topic_of(const recording::RecordedChannel& channel) {
   return Topic::count;
 }
 
-// A damaged chunk ends the reading; what was in front of it counts.
+// A damaged chunk ends the reading; the messages in front of it count.
 void read_all(const Reader& reader, const recording::MessageFilter& filter,
               const std::function<Visit(const recording::RecordedMessage&)>& visit) {
   const Status status = reader.for_each(filter, visit);
@@ -88,7 +88,7 @@ std::optional<wire::SessionDescription> description_of(const Reader& reader) {
   filter.topics.emplace_back(node::to_text(Topic::session));
   std::optional<wire::SessionDescription> found;
   wire::SessionDescription session;
-  // a damaged part behind the description is none of its business
+  // a damaged part behind the description does not matter
   static_cast<void>(reader.for_each(filter, [&](const recording::RecordedMessage& message) {
     const bool is_it = transport::decode(message.payload, session) &&
                        node::to_text(session.header.session) == reader.identity().session_id &&
@@ -253,7 +253,7 @@ Known known_variables(const Reader& reader) {
   return known;
 }
 
-// in the order of roles and places, whichever node was heard first
+// in the order of roles and places, independent of the order of arrival
 std::vector<std::string> names_of(const Known& known) {
   std::vector<std::string> names;
   for (const auto& entry : known) names.push_back(entry.first);

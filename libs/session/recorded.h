@@ -1,4 +1,4 @@
-// What a recording holds, for the verbs that read one: the session as an observer would have seen it, and variables as
+// Contents of a recording, for the verbs that read one: the session as an observer would have seen it, and variables as
 // curves.
 #pragma once
 
@@ -17,14 +17,14 @@
 
 namespace slew::session {
 
-// Opens a recording; a folder of a run stands for the file in it. Throws Failure. A warning on
-// standard error for a cut recording, and for one whose attached scene is not what is read.
+// Opens a recording; a folder of a run stands for the file in it. Throws Failure. Warns on standard error of a cut
+// recording, and of one whose attached scene is not the one that is read.
 [[nodiscard]] std::unique_ptr<recording::Reader> open_recording(const std::string& path);
 
 // Messages of these topics.
 [[nodiscard]] recording::MessageFilter only(std::initializer_list<wire::Topic> topics);
 
-// Session, nodes, health and the names of all variables; values and extremes of the variables only when asked for.
+// Session, nodes, health and the names of all variables; values and extremes of the variables only on request.
 enum class Values : std::uint8_t { none, all };
 [[nodiscard]] SessionView view_recording(const recording::Reader& reader, Values values);
 
@@ -51,16 +51,16 @@ struct TimeRange {
                                                         std::span<const std::string> patterns, Units units,
                                                         const TimeRange& range = {});
 
-// Steps that were done, in all epochs, those of lost ticks between others among them, and the wall time from the first
-// tick to the last as their writer stamped them. Of the time between two ticks around which the session was paused one
-// step counts as running, the rest as paused.
+// Steps that were done, in all epochs, including those of lost ticks between others, and the wall time from the first
+// tick to the last as their writer stamped them. Between two ticks around a pause, one step of the time counts as
+// running, the rest as paused.
 struct TickSpan {
   double wall_time = 0;    // s, without pauses
   double paused_time = 0;  // s
   StepIndex steps = 0;
-  std::uint32_t epoch = 0;       // the last one
+  std::uint32_t epoch = 0;       // number of the last epoch
   StepIndex next = 0;            // step behind the last one of that epoch
-  std::uint64_t behind_end = 0;  // ticks behind the END of their epoch, which a session in order has not got
+  std::uint64_t behind_end = 0;  // ticks behind the END of their epoch; 0 in an orderly session
 };
 [[nodiscard]] TickSpan tick_span(const recording::Reader& reader);
 // Names ticks behind an END; empty: there are none.
@@ -74,8 +74,8 @@ struct TickSpan {
 // Failure when neither can be read.
 [[nodiscard]] std::vector<scene::Asset> recorded_manifest(const recording::Reader& reader);
 
-// Folder beside a recording in which the files of its scene are kept: those of flexible bodies, of which a session's
-// text has only the names.
+// Folder beside a recording with the files of its scene: those of flexible bodies, of which a session's text has only
+// the names.
 [[nodiscard]] std::string recorded_assets(const std::string& recording);
 // Copies the scene's files there; nothing when it has none. Throws Failure.
 void keep_assets(const scene::Scene& scene, const std::string& folder, const std::string& recording);
