@@ -102,8 +102,8 @@ std::string input_text(const recording::Reader& reader, const session::TimeRange
   return text + "\n";
 }
 
-ExitCode export_input(const Options& options, const std::vector<std::string>& wishes) {
-  if (!wishes.empty()) {
+ExitCode export_input(const Options& options, const std::vector<std::string>& patterns) {
+  if (!patterns.empty()) {
     throw Failure(ExitCode::bad_input, "--input writes every input; nothing was written; leave the variables out");
   }
   const auto reader = session::open_recording(options.recording);
@@ -119,13 +119,13 @@ ExitCode export_variables(Options options) {
   const bool is_named_mat = std::filesystem::path(options.output).extension() == ".mat";
   options.is_mat = options.is_mat || (is_named_mat && !options.is_csv && !options.is_input);
   check_output(options);
-  std::vector<std::string> wishes = options.variables;
-  wishes.insert(wishes.end(), options.only.begin(), options.only.end());
-  if (options.is_input) return export_input(options, wishes);
-  if (wishes.empty()) wishes = {"*"};
+  std::vector<std::string> patterns = options.variables;
+  patterns.insert(patterns.end(), options.only.begin(), options.only.end());
+  if (options.is_input) return export_input(options, patterns);
+  if (patterns.empty()) patterns = {"*"};
   const session::TimeRange range = session::recorded_range(options.from, options.to);
   const auto reader = session::open_recording(options.recording);
-  const std::vector<plotting::Series> curves = session::read_series(*reader, wishes, session::Units::si, range);
+  const std::vector<plotting::Series> curves = session::read_series(*reader, patterns, session::Units::si, range);
   check_values(*reader, curves);
   if (options.output.empty() || options.output == "-") {
     plotting::write_csv(curves, std::cout);

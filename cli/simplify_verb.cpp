@@ -19,7 +19,7 @@ namespace {
 constexpr int kMostRepeats = 100;
 
 struct Options {
-  analysis::SimplifyWish wish;
+  analysis::SimplifyOptions run;
   std::string overlay;
   bool is_json = false, is_quiet = false;
 };
@@ -33,25 +33,25 @@ std::string remark(const analysis::Simplification& result) {
 }
 
 ExitCode run(const Options& options) {
-  if (options.wish.scene.input == "keyboard") {
+  if (options.run.scene.input == "keyboard") {
     throw Failure(ExitCode::bad_input,
                   "--input keyboard: every run needs the same input; nothing was run; write it into a "
                   ".csv file");
   }
-  const std::string target = analysis::overlay_target(options.wish.scene.file, options.overlay, "simplified");
+  const std::string target = analysis::overlay_target(options.run.scene.file, options.overlay, "simplified");
   session::count_interrupts();
   analysis::Simplification result;
   {
     ProgressLine line(options.is_quiet);
-    result = analysis::simplify(options.wish, [&line](std::string_view doing, double share) {
+    result = analysis::simplify(options.run, [&line](std::string_view doing, double share) {
       line.show(doing, share);
       return session::interrupts() == 0;
     });
   }
   if (result.helps()) {
-    scene::Overrides settings = options.wish.scene.overrides;
+    scene::Overrides settings = options.run.scene.overrides;
     settings.insert(settings.end(), result.settings.begin(), result.settings.end());
-    analysis::write_overlay(options.wish.scene.file, settings, remark(result), target);
+    analysis::write_overlay(options.run.scene.file, settings, remark(result), target);
   }
   if (options.is_json) {
     Json json = analysis::report_json(result);
@@ -70,24 +70,24 @@ void add_simplify(options::Command& program) {
   options::Command verb =
       program.command("simplify", "what of a scene may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
-  analysis::SimplifyWish& wish = options->wish;
-  verb.option("scene", wish.scene.file, "scene file").required().value_name("SCENE");
-  verb.option("--error", wish.errors,
+  analysis::SimplifyOptions& run = options->run;
+  verb.option("scene", run.scene.file, "scene file").required().value_name("SCENE");
+  verb.option("--error", run.errors,
               "a variable and by how much it may change: a quantity, or a part of its range in %; repeat for more")
       .required()
       .value_name("'VARIABLE TOLERANCE'")
       .one_value_each();
-  verb.option("--until", wish.scene.duration, "how long each run is; without it the scene's duration")
+  verb.option("--until", run.scene.duration, "how long each run is; without it the scene's duration")
       .value_name("TIME");
-  verb.option("--set", wish.scene.overrides, "change a value of the scene first; repeat for more")
+  verb.option("--set", run.scene.overrides, "change a value of the scene first; repeat for more")
       .value_name("PATH=VALUE")
       .one_value_each();
-  verb.option("--input", wish.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
+  verb.option("--input", run.scene.input, "script (the scene's own), none, or a .csv or .yaml file")
       .value_name("SOURCE")
       .show_default();
   verb.option("-o,--overlay", options->overlay, "file to write, beside the scene; without it SCENE_simplified.yaml")
       .value_name("FILE");
-  verb.option("--repeats", wish.repeats, "timed runs of everything tried")
+  verb.option("--repeats", run.repeats, "timed runs of everything tried")
       .between(1, kMostRepeats)
       .value_name("N")
       .show_default();

@@ -1,4 +1,4 @@
-// The plots that a scene asks for, of a recording of it.
+// The plots that a scene defines, for a recording of it.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace slew::analysis {
 
-// The scene's plots of a recording, without what it does not have.
+// The scene's plots of a recording, without missing variables.
 struct ScenePlots {
   std::vector<plotting::Plot> plots;
-  std::vector<std::string> left_out;  // a sentence for each plot that lacks something
+  std::vector<std::string> left_out;  // a sentence for each plot that lacks a variable
 };
 [[nodiscard]] ScenePlots read_plots(const scene::Scene& scene, const recording::Reader& reader);
-// What stands above pictures of a recording.
+// Heading of pictures of a recording.
 [[nodiscard]] plotting::PlotOptions plot_heading(const recording::Reader& reader);
 
 // Writes plots as one picture beside the recording. Returns its path; empty when there are none.

@@ -19,13 +19,13 @@ namespace {
 using hydraulics::DoubleActingCylinderDef;
 using hydraulics::L90lsValveDef;
 
-constexpr double kFullyOpen = 0.9;      // of the maximum control signal
+constexpr double kFullyOpen = 0.9;      // share of the maximum control signal
 constexpr double kSettling = 1.0;       // s: spool, load sensing and pump have answered
 constexpr double kShortestStall = 0.5;  // s
 constexpr double kStandstill = 2e-3;    // m/s
 constexpr double kEndOfStroke = 1e-3;   // m
 
-// A cylinder, the valve that feeds it, and the side that is fed: direction +1 extends, through A.
+// A cylinder, the valve that feeds it, and the fed side: direction +1 extends, through A.
 struct Drive {
   const DoubleActingCylinderDef* cylinder = nullptr;
   const L90lsValveDef* valve = nullptr;
@@ -38,7 +38,7 @@ struct Drive {
   [[nodiscard]] const std::string& fed_volume() const {
     return direction > 0 ? cylinder->common.port_a : cylinder->common.port_b;
   }
-  // above tank
+  // pressure above tank
   [[nodiscard]] double feed_limit() const {
     return (direction > 0 ? valve->maximum_ls_pressure_a : valve->maximum_ls_pressure_b) + valve->compensator_pressure;
   }
@@ -73,7 +73,7 @@ std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& dr
                                            name + ".static_force",
                                            name + (drive.direction > 0 ? ".pressure_b" : ".pressure_a")};
   std::vector<plotting::Series> curves = session::read_series(reader, wanted, session::Units::si);
-  plotting::keep_common_instants(curves);  // of nodes that did not end together
+  plotting::keep_common_instants(curves);  // nodes may end at different times
   const std::size_t size = curves[0].values.size();
   const double sign = drive.direction;
   std::optional<Stall> longest;
@@ -98,11 +98,11 @@ std::optional<Stall> find_stall(const recording::Reader& reader, const Drive& dr
   return longest;
 }
 
-// The load as the mechanics sees it: its mass and what each kilogram asks of the cylinder.
+// The load in the mechanics: its mass and the force that each kilogram takes of the cylinder.
 struct HeldLoad {
   std::string body;
   double mass = 0;   // kg, at the stall
-  double slope = 0;  // N/kg, of the static force against the direction
+  double slope = 0;  // N/kg, slope of the static force against the direction
 };
 
 // Value of a variable at a time.
@@ -114,7 +114,7 @@ double value_at(const recording::Reader& reader, const std::string& name, double
   return curve.values[static_cast<std::size_t>(at - curve.time.begin())];
 }
 
-// The mechanics states the mass of its last moving body, and every port's static force per kilogram of it.
+// The mechanics publishes the mass of its last moving body, and every port's static force per kilogram of it.
 std::optional<HeldLoad> find_load(const recording::Reader& reader, const scene::Scene& scene, const Drive& drive,
                                   double time) {
   const session::SessionView view = session::view_recording(reader, session::Values::none);
@@ -166,7 +166,7 @@ std::vector<std::string> explain_stalls(const recording::Reader& reader, const s
       const std::optional<Stall> stall = find_stall(reader, drive);
       if (stall) sentences.push_back(sentence(reader, scene, drive, *stall));
     } catch (const Failure&) {
-      // the scene does not record what this looks at
+      // the scene does not record the variables that this needs
     }
   }
   return sentences;

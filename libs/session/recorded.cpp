@@ -1,5 +1,7 @@
 #include "session/recorded.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>

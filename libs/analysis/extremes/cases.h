@@ -1,5 +1,5 @@
-// The hard cases of a scene: what is done to it, and the bounds of what may come of it. Built from what the scene
-// contains, never from its name.
+// The hard cases of a scene: the changes made to it, and the bounds of its results. Built from the scene's contents,
+// never from its name.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct SuddenChange {
   double value = 0;  // SI
 };
 
-// What the case is about; when it did not come about, the table says so.
+// Subject of the case; the table reports when it did not occur.
 enum class Aim : std::uint8_t { none, limit, cavitation, relief };
 
 struct ExtremeCase {
@@ -38,7 +38,7 @@ struct ExtremeCase {
   std::string what{};                // for people
   std::string obstacle{};            // why it does not apply to this scene; empty: it does
   double duration = 3;               // s
-  scene::Overrides overrides{};      // of the scene
+  scene::Overrides overrides{};      // changes of the scene
   std::vector<InputPoint> inputs{};  // none: neutral
   bool alternates = false;           // inputs go from one end to the other at every step
   std::vector<SuddenChange> changes{};

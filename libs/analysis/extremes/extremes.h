@@ -12,13 +12,13 @@
 
 namespace slew::analysis {
 
-struct ExtremesWish {
+struct ExtremesOptions {
   std::vector<std::string> files;  // scenes
-  scene::Overrides overrides;      // of all of them
+  scene::Overrides overrides;      // for all of them
   std::vector<std::string> only;   // patterns of names; empty: all cases
   std::string folder = "runs/extremes";
   int workers = 2;
-  bool is_anew = false;
+  bool is_fresh = false;
 };
 
 struct ExtremesRow {
@@ -44,12 +44,12 @@ struct Extremes {
 
 using ExtremesProgress = std::function<bool(std::string_view doing, double share)>;
 
-// Scenes of this repository that stand for its machines: a boom on one cylinder, the crane, with a jib that bends, and
-// setting its load down. folder: that of the scenes. Throws Failure when one is not there.
+// Scenes of this repository that represent its machines: a boom on one cylinder, the crane, the crane with a jib that
+// bends, and the crane setting its load down. folder: that of the scenes. Throws Failure when one is missing.
 [[nodiscard]] std::vector<std::string> suite_files(const std::string& folder);
 
-// Throws LoadError for a scene that is wrong, Failure for a pattern that nothing fits.
-[[nodiscard]] Extremes run_extremes(const ExtremesWish& wish, const ExtremesProgress& progress);
+// Throws LoadError for a wrong scene, Failure for a pattern without a match.
+[[nodiscard]] Extremes run_extremes(const ExtremesOptions& options, const ExtremesProgress& progress);
 
 // width [characters]: of the lines of a table; 0: no limit.
 [[nodiscard]] std::string report_text(const Extremes& extremes, std::size_t width = 0);

@@ -68,7 +68,7 @@ TEST_F(SweepTest, GoesOnWhereItWasEnded) {
   EXPECT_EQ(second[2].value.number(), 3);
   EXPECT_EQ(runs("a"), 1u);
   EXPECT_EQ(runs("b"), 1u);
-  options_.is_anew = true;
+  options_.is_fresh = true;
   const auto third = sweep(tasks);
   EXPECT_FALSE(third[0].was_kept);
   EXPECT_EQ(runs("a"), 2u);
