@@ -18,7 +18,7 @@ constexpr int kMostRepeats = 1000;
 
 struct Options {
   analysis::ComparisonOptions run;
-  std::string picture;  // empty: beside the user, named after the scene
+  std::string picture;  // empty: in the working folder, named after the scene
   std::string csv;
   bool is_json = false;
   bool is_quiet = false;
@@ -36,7 +36,7 @@ bool is_html(const std::string& path) {
   return path.ends_with(".html") || path.ends_with(".htm");
 }
 
-// refused before anything has run for minutes
+// a wrong name is refused before the runs
 void check_picture(const std::string& path) {
   if (path.empty() || path.ends_with(".svg") || is_html(path)) return;
   throw Failure(ExitCode::bad_input,
@@ -89,7 +89,7 @@ void add_what(options::Command& verb, Options& options) {
   verb.option("--until", run.scene.duration, "how long to simulate, such as '5 s'; without it the scene's duration")
       .value_name("TIME");
   verb.option("--variables", run.variables,
-              "whose difference to the reference is shown: names, or patterns with * and ?; repeat for more; "
+              "variables whose difference to the reference is shown: names, or patterns with * and ?; repeat for more; "
               "without it origins and centres of mass of all bodies")
       .value_name("PATTERN")
       .one_value_each();

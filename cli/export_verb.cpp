@@ -41,7 +41,7 @@ void check_values(const recording::Reader& reader, const std::vector<plotting::S
                             static_cast<double>(reader.statistics().end_time) * 1e-9));
 }
 
-// A file is replaced only when that is asked for, and never by half of another.
+// Replaces a file only on request, and never leaves a part of one.
 ExitCode write_file(const Options& options, const std::function<Status(const std::filesystem::path&)>& write) {
   std::error_code error;
   const std::filesystem::file_status there = std::filesystem::status(options.output, error);
@@ -64,7 +64,7 @@ void check_output(const Options& options) {
                                          "replace it with --force");
 }
 
-// What the operator did, as `run --input` and scripts read it: raw values by input.
+// The operator's inputs in the format of `run --input` and scripts: raw values by input.
 std::string input_text(const recording::Reader& reader, const session::TimeRange& range) {
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
   if (scene.inputs.empty()) {
@@ -157,7 +157,7 @@ void add_export(options::Command& program) {
                                   "value for each variable, SI units");
   options::Option input =
       verb.flag("--input", options->is_input,
-                "what the operator did, as 'run --input FILE' reads it; as often as variables were recorded, "
+                "the operator's inputs, in the format of 'run --input FILE'; as often as variables were recorded, "
                 "each value held for a step, straight lines between");
   csv.excludes(mat);
   input.excludes(mat);

@@ -1,4 +1,5 @@
-// `slewring extremes SCENE|--suite`: the hard cases of a scene, each judged by its bounds, and how near the edge it is.
+// `slewring extremes SCENE|--suite`: the hard cases of a scene, each judged by its bounds, and its distance from the
+// edge.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -82,7 +83,7 @@ void add_extremes(options::Command& program) {
   verb.action([options] { return run(*options); });
 }
 
-// the process of one case: no verb for people
+// the process of one case; not a verb for users
 void add_extremes_case(options::Command& program) {
   options::Command verb = program.command("extremes-case", "one hard case");
   verb.hide();

@@ -30,7 +30,7 @@ std::vector<std::string> explain_flags(const recording::Reader& reader) {
   });
   if (status.code == ExitCode::storage) throw Failure(status.code, status.text);
   const SimDuration step = reader.identity().communication_step;
-  // the scene is read for the names in the sentences alone
+  // the scene is read only for the names in the sentences
   if (flags.sentences(step, {}).empty()) return {};
   const scene::Scene scene = scene::load_text(session::recorded_scene_text(reader), reader.identity().scene);
   return flags.sentences(step, session::volume_names(scene));
@@ -44,8 +44,8 @@ std::vector<std::string> explain_flags(const session::RunOutcome& outcome, const
                          (outcome.view.session().required_roles & (bit(Role::mechanics) | bit(Role::hydraulics))) != 0;
   if (has_steps && !flags.has_samples()) {
     sentences.emplace_back(
-        "no sample of the physics arrived here, so that the flags of the steps are not known; record the session; keys "
-        "of an earlier version are made anew with 'slewring keys create'");
+        "no sample of the physics arrived here, so that the flags of the steps are missing; record the session; keys "
+        "of an earlier version must be replaced with 'slewring keys create'");
   }
   if (const std::uint64_t missed = flags.missed(outcome.begin); missed > 0) {
     sentences.push_back(

@@ -108,7 +108,7 @@ ExitCode run_until(const Options& options) {
 
 ExitCode run(const Options& options) {
   if (options.until.empty() && (options.goes_on || !options.saved.empty())) {
-    throw Failure(ExitCode::bad_input, "--then-live and --save need a time; nothing was done; say it with --until");
+    throw Failure(ExitCode::bad_input, "--then-live and --save need a time; nothing was done; set it with --until");
   }
   if (!options.until.empty() && !options.goes_on && options.saved.empty()) {
     throw Failure(ExitCode::bad_input,
@@ -133,12 +133,12 @@ ExitCode run(const Options& options) {
       fmt::print("not in the recording and not compared: {}\n", counted(result.unrecorded, "sample", "samples"));
     }
     if (!result.is_whole()) {
-      fmt::print("in the recording and not reached: {}, {}, from {} on; nothing is known of them\n",
+      fmt::print("in the recording and not reached: {}, {}, from {} on; they were not compared\n",
                  counted(result.unreached_steps, "step", "steps"), counted(result.unreached_hashes, "hash", "hashes"),
                  result.end);
     }
   }
-  // a gap is no build's fault
+  // a gap does not come from a different build
   const bool may_be_build = result.different > 0 && reader->identity().build != node::build_id();
   if (!result.is_equal()) {
     std::fflush(stdout);
@@ -190,7 +190,8 @@ void add_replay(options::Command& program) {
       .value_name("PACE")
       .group("Going on");
   verb.option("--set", options->run.scene.overrides,
-              "with --then-live: change a live parameter at that time, or who moves an input from there on, such as "
+              "with --then-live: change a live parameter at that time, or the controller of an input from there on, "
+              "such as "
               "Input_Lift.controller=sampled")
       .value_name("PATH=VALUE")
       .one_value_each()
@@ -202,7 +203,7 @@ void add_replay(options::Command& program) {
   node::add_session_options(verb, options->run.session, false);
   add_running_options(verb, options->run);
   verb.footer(
-      "Without --verify differences are counted and told, and the exit code is 0.\n\n"
+      "Without --verify differences are counted and reported, and the exit code is 0.\n\n"
       "Examples:\n"
       "  slewring replay runs/truck_crane-20260501-102030 --verify\n"
       "  slewring replay runs/truck_crane-20260501-102030 --until 8s --then-live --input keyboard");

@@ -1,5 +1,5 @@
-// `slewring simplify SCENE --error "Bag.position 1mm"`: what of a scene may be left out, tried, measured and written as
-// an overlay.
+// `slewring simplify SCENE --error "Bag.position 1mm"`: finds the parts of a scene that may be left out by trial,
+// measures the saving and writes an overlay.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -68,7 +68,7 @@ ExitCode run(const Options& options) {
 
 void add_simplify(options::Command& program) {
   options::Command verb =
-      program.command("simplify", "what of a scene may be left out while chosen variables stay as they are");
+      program.command("simplify", "parts of a scene that may be left out while chosen variables stay as they are");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   analysis::SimplifyOptions& run = options->run;
   verb.option("scene", run.scene.file, "scene file").required().value_name("SCENE");
@@ -95,7 +95,7 @@ void add_simplify(options::Command& program) {
   verb.flag("--quiet", options->is_quiet, "no progress");
   verb.footer(
       "Every part is tried alone, then those that hold and save time together; all runs are in this process, with the\n"
-      "same input. The overlay includes the scene. What is judged and what not: "
+      "same input. The overlay includes the scene. Scope of the judgement: "
       "docs/howto/describe-and-simplify.md.\n\n"
       "Example:\n"
       "  slewring simplify scenes/truck_crane.yaml --error 'Bag.position 1mm' --error 'Cyl_Lift.force 1%'");

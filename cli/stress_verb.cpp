@@ -1,4 +1,4 @@
-// `slewring stress SCENE`: how well this machine keeps a scene's deadlines.
+// `slewring stress SCENE`: measures how well this machine keeps a scene's deadlines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void complete(Options& options) {
                                           : analysis::Load::none);
   }
   run.scene.pace = "real";
-  static_cast<void>(scene::load_scene(run.scene));           // what is replaced below is refused as everywhere
+  static_cast<void>(scene::load_scene(run.scene));  // the scene's errors are reported before its settings are replaced
   run.scene.overrides.emplace_back("session.overrun=slip");  // a cell goes on to its end
   run.scene.duration = fmt::format("{} s", run.seconds);
 }
@@ -177,7 +177,7 @@ void add_stress(options::Command& program) {
   verb.flag("--json", options->is_json, "print the result as JSON and nothing else");
   verb.flag("--quiet", options->is_quiet, "no progress");
   verb.footer(
-      "Exit code 3 when a cell is over --max-miss or --p99, 7 when one could not be run. What is measured and how: "
+      "Exit code 3 when a cell is over --max-miss or --p99, 7 when one could not be run. Quantities and method: "
       "docs/realtime.md.\n\n"
       "Examples:\n"
       "  slewring stress scenes/truck_crane.yaml --rt --seconds 60 --max-miss 0.5 --p99 500\n"
@@ -185,7 +185,7 @@ void add_stress(options::Command& program) {
   verb.action([options] { return run(*options); });
 }
 
-// a process of other load: no verb for people
+// a process of other load; not a verb for users
 void add_stress_load(options::Command& program) {
   options::Command verb = program.command("stress-load", "one process of other load");
   verb.hide();

@@ -1,4 +1,4 @@
-// `slewring tradeoff SCENE`: error against cost of many settings of one scene, and which of them to take.
+// `slewring tradeoff SCENE`: error against cost of many settings of one scene, and the best of them.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -118,10 +118,11 @@ void add_what(options::Command& verb, Options& options) {
            "values of a setting to try, such as session.step=0.5ms,1ms,2ms; repeat for the product. Without it the "
            "scene's own axes: step, coupling, formulation, integrators, tolerances, modes, contact",
            "PATH=VALUES");
-  repeated("--variables", run.variables,
-           "whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
-           "actuators and the place of the payload (mechanics.payload)",
-           "PATTERN");
+  repeated(
+      "--variables", run.variables,
+      "variables whose error is shown: names, or patterns with * and ?; repeat for more; without it the forces of the "
+      "actuators and the place of the payload (mechanics.payload)",
+      "PATTERN");
   verb.flag("--full", options.is_full, "the whole product of the scene's own axes: may take hours");
   verb.option("--until", run.scene.duration, "how long to simulate, such as '5 s'; without it the scene's duration")
       .value_name("TIME");
@@ -164,7 +165,7 @@ void add_how(options::Command& verb, Options& options) {
 }  // namespace
 
 void add_tradeoff(options::Command& program) {
-  options::Command verb = program.command("tradeoff", "error against cost of a scene's settings, and which to take");
+  options::Command verb = program.command("tradeoff", "error against cost of a scene's settings, and the best of them");
   const auto options = std::make_shared<Options>();  // lives as long as the command line's callbacks
   add_what(verb, *options);
   add_answers(verb, *options);
@@ -179,7 +180,7 @@ void add_tradeoff(options::Command& program) {
   verb.action([options] { return run(*options); });
 }
 
-// the process of one row: no verb for people
+// the process of one row; not a verb for users
 void add_tradeoff_row(options::Command& program) {
   options::Command verb = program.command("tradeoff-row", "one row of a tradeoff");
   verb.hide();

@@ -1,8 +1,8 @@
 // Curves as a MAT-file (level 5, compressed) for MATLAB, Octave and scipy.io.
 //
 // One struct for each curve: name (as in the session), unit, time [s], value (columns of equal length). It is called
-// like the curve, made valid for MATLAB: "Cyl_Lift.force" is Cyl_Lift_force. One more struct, `recording`, says where
-// the curves come from.
+// like the curve, made valid for MATLAB: "Cyl_Lift.force" is Cyl_Lift_force. One more struct, `recording`, has the
+// origin of the curves.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "plotting/series.h"
 #include "core/status.h"
+#include "plotting/series.h"
 
 namespace slew::plotting {
 

@@ -13,7 +13,7 @@ namespace slew::session {
 struct FoundSession {
   wire::SessionDescription description;
   std::array<wire::NodeStatus, wire::kRoles> nodes{};
-  std::array<bool, wire::kRoles> is_heard{};
+  std::array<bool, wire::kRoles> has_status{};
   StepIndex step = kJoinStep;
 };
 
