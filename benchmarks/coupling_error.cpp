@@ -1,5 +1,5 @@
 // Coupling errors of all levels against the monolith, over the communication step, on the boom with one cylinder and on
-// the truck crane, rigid and with a jib boom that bends, with and without friction; and what eta says of them.
+// the truck crane, rigid and with a jib boom that bends, with and without friction; and their relation to eta.
 //
 //   coupling_error RESULTS.md FIGURES_FOLDER
 //
@@ -161,11 +161,12 @@ Sweep sweep(const Case& c, bool is_dashed) {
   return result;
 }
 
-// ---- what eta tells -------------------------------------------------------------------------------------------
+// ---- force error over eta -------------------------------------------------------------------------------------------
 
 std::string factors(const std::vector<EtaPoint>& points) {
   std::string text =
-      "### What eta tells\n\nRelative force error (largest error / largest force) over eta, of all runs above whose "
+      "### Force error over eta\n\nRelative force error (largest error / largest force) over eta, of all runs above "
+      "whose "
       "error "
       "is less than the range.\n\n| level | runs | least | a quarter below | median | three quarters below | most |\n"
       "|---|---|---|---|---|---|---|\n";
@@ -205,7 +206,7 @@ std::string eta_figure(const std::vector<EtaPoint>& points) {
                       .is_flagged = {false, false}});
   }
   return log_log_svg(curves,
-                     {.title = "What eta tells",
+                     {.title = "Force error over eta",
                       .subtitle = "every run of the tables: largest force error over the indicator of the same run",
                       .x_label = "eta, over the whole run",
                       .y_label = "largest force error / largest force",

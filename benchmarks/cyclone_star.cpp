@@ -233,12 +233,13 @@ std::unique_ptr<Link> connect(Way way, std::uint32_t domain, Topic own) {
   return std::make_unique<TransportLink>(domain, own);
 }
 
-// One process of the star: what it has heard last on every topic.
+// One process of the star: the last message received on every topic.
 class Process {
  public:
   Process(Way way, std::uint32_t domain, Topic own) : own_(own), link_(connect(way, domain, own)) {}
 
-  // Says hello until all others have been heard, then that it hears them until all others have said so.
+  // Publishes hello until a message of every other process has arrived, then a confirmation until all others have
+  // published theirs.
   void join() {
     for (const StepIndex stage : {kHello, kHeardAll}) {
       while (lowest_heard() < stage) {

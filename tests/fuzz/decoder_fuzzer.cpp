@@ -1,4 +1,5 @@
-// The sample decoder: any bytes of any message are read or refused, and what is read says the same when it is encoded.
+// The sample decoder: any bytes of any message are decoded or refused, and a decoded message is encoded to the same
+// contents.
 //
 // The first byte is the topic, modulo kTopicNumbers so that kept inputs stay those of their topic when topics are
 // added.

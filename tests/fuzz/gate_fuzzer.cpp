@@ -1,4 +1,4 @@
-// The controller gate: whatever controllers say and when, controls stay finite and within their channel's scale, and a
+// The controller gate: with any values at any times, controls stay finite and within their channel's scale, and a
 // channel without a holder takes no controller's value.
 #include <cmath>
 #include <string>

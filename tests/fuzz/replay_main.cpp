@@ -65,8 +65,8 @@ extern "C" void tell(int signal) {
   std::_Exit(1);
 }
 
-// A sanitizer tells more, where it has a handler.
-void tell_of(int signal) {
+// A sanitizer reports more, where it has a handler.
+void report_signal(int signal) {
   struct sigaction present {};
   const bool is_known = sigaction(signal, nullptr, &present) == 0;
   if (is_known && (present.sa_flags & SA_SIGINFO) == 0 && present.sa_handler == SIG_DFL) std::signal(signal, tell);
@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s CHANGED FOLDER_OR_FILE...; there are no inputs\n", argv[0]);
     return 2;
   }
-  for (const int signal : {SIGILL, SIGTRAP, SIGABRT, SIGSEGV, SIGFPE}) tell_of(signal);
+  for (const int signal : {SIGILL, SIGTRAP, SIGABRT, SIGSEGV, SIGFPE}) report_signal(signal);
   std::vector<Input> inputs;
   for (const std::filesystem::path& path : files) {
     std::ifstream file(path, std::ios::binary);

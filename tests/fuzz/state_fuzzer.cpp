@@ -1,5 +1,5 @@
-// States as nodes load them: whatever bytes say that they are a node's state, they are refused, which leaves the node
-// as after a reset, or they become a state that can be stepped and shown, the same one each time.
+// States as nodes load them: any bytes in the place of a node's state are refused, which leaves the node as after a
+// reset, or they become a state that can be stepped and shown, the same one each time.
 //
 // An input is a list of changes to a state that the node has just saved: the kept inputs outlive changes of layouts.
 // Sums are made right after the changes, in three of four inputs.

@@ -64,13 +64,13 @@ class LockStep {
     }
     return calls;
   }
-  // Heap calls of io's polls since this was last asked.
+  // Heap calls of io's polls since the last call.
   std::uint64_t io_calls() { return std::exchange(io_calls_, 0); }
   [[nodiscard]] StepIndex step() const { return io_->next_step(); }
   [[nodiscard]] std::size_t nodes() const { return physics_.size(); }
 
  private:
-  // a clock of its own: on a busy machine nodes would ask for samples that are on their way
+  // a clock of its own: on a busy machine nodes would request samples that are on their way
   static constexpr std::int64_t kBetweenPolls = 10'000;
 
   // a controller with long names, that says a value in every step

@@ -40,7 +40,7 @@ class StillSubsystem : public coupling::Subsystem {
   [[nodiscard]] std::string_view offender_name(std::int32_t) const noexcept override { return ""; }
 };
 
-// A transport that cannot send on one topic any more, once it is told so.
+// A transport that can be made unable to send on one topic.
 class BreakableTransport final : public transport::Transport {
  public:
   explicit BreakableTransport(transport::Transport& transport) : transport_(transport) {}
@@ -110,7 +110,7 @@ class PlayedSession {
   void say_status(wire::Role role, wire::NodeState state, StepIndex step = kJoinStep) {
     say(wire::Topic::node_status, status(role, state, step));
   }
-  // The role has heard the node under test on these topics.
+  // Publishes that the role has received from the node under test on these topics.
   void say_heard(wire::Role role, wire::NodeState state, const wire::Header& node,
                  std::initializer_list<wire::Topic> topics) {
     wire::NodeStatus message = status(role, state);
@@ -136,7 +136,7 @@ class PlayedSession {
     say(wire::Topic::actuators, message);
   }
 
-  // What the node under test has said on a topic since the last call.
+  // Messages that the node under test has published on a topic since the last call.
   template <typename Message>
   [[nodiscard]] std::vector<Message> said(wire::Topic topic) {
     listen();

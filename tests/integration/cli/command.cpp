@@ -82,7 +82,7 @@ bool Command::has_ended() {
 
 CommandResult Command::wait() {
   if (!wait_until([this] { return has_ended(); }, kLongestRun)) {
-    throw std::runtime_error("a program did not end within 120 s; so far it said:\n" + out() + err());
+    throw std::runtime_error("a program did not end within 120 s; its output so far:\n" + out() + err());
   }
   return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_), out(), err()};
 }

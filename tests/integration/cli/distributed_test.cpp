@@ -335,7 +335,7 @@ TEST_F(SlowDisk, IsWaitedForWhenTheSessionIsOverUntilCtrlCEndsTheWait) {
 }
 
 // The loop of a recorder that closes its file stands still, and others would give it up after 3 s. The disk has to fail
-// long before the session ends: what is behind its end is told otherwise.
+// long before the session ends: the message after the session's end is another one.
 TEST_F(SlowDisk, ThatTakesLongToCloseAFileInMidSessionEndsNothing) {
   const CommandResult result =
       run("/bin/bash",
@@ -409,10 +409,11 @@ TEST_F(Distributed, ANodeThatDiesForTheFourthTimeEndsTheSessionWithCode4AsTheRec
   EXPECT_EQ(result.code, 4) << result.err;
   EXPECT_NE(result.err.find("checkpoint (3 of 3)"), std::string::npos) << result.err;
   const std::string who = "the mechanics node (process " + std::to_string(last) + ") was killed by signal 9 (Killed); ";
-  EXPECT_NE(result.err.find(who + "it was started again 3 times and is not any more; the others hold for 2 s in case "
-                                  "that somebody else starts one ('slewring node mechanics --session r'), and then "
-                                  "end with code 4 and close the recording"),
-            std::string::npos)
+  EXPECT_NE(
+      result.err.find(who + "it was started again 3 times and will not be started any more; the others hold "
+                            "for 2 s for another process, started with 'slewring node mechanics --session r', and then "
+                            "end with code 4 and close the recording"),
+      std::string::npos)
       << result.err;
   EXPECT_NE(result.err.find("is gone, and no other process took its place within 2 s"), std::string::npos)
       << result.err;
@@ -463,8 +464,9 @@ TEST_F(Distributed, ANodeWhoseProgramIsGoneEndsTheSessionAtTheEndOfTheHold) {
   EXPECT_EQ(result.code, 4) << result.err;
   for (const char* said :
        {") exited with code 7; the others hold, and it is started again with the state of its last checkpoint (3 of 3)",
-        ") exited with code 7; it was started again 3 times and is not any more; the others hold for 4 s in case that "
-        "somebody else starts one ('slewring node mechanics --session r')",
+        ") exited with code 7; it was started again 3 times and will not be started any more; the others hold for 4 s "
+        "for "
+        "another process, started with 'slewring node mechanics --session r'",
         "is gone, and no other process took its place within 4 s",
         "/mechanics_node: No such file or directory; build"}) {
     EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
@@ -532,13 +534,13 @@ TEST_F(Distributed, ASessionThatIsNotThereIsNamed) {
   const auto begin = [&](const std::vector<std::string>& arguments) {
     return std::make_unique<Command>("slewring", with_domain(arguments), work_.path());
   };
-  const std::unique_ptr<Command> of_nobody[] = {begin({"watch", "x", "--session", "nobody"}),
-                                                begin({"control", "pause", "--session", "nobody"})};
+  const std::unique_ptr<Command> of_absent[] = {begin({"watch", "x", "--session", "absent"}),
+                                                begin({"control", "pause", "--session", "absent"})};
   const auto of_any = begin({"control", "pause"}), list = begin({"sessions"});
-  for (const auto& command : of_nobody) {
+  for (const auto& command : of_absent) {
     const CommandResult result = command->wait();
     EXPECT_EQ(result.code, 1);
-    EXPECT_NE(result.err.find("no session 'nobody' was found on domain"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("no session 'absent' was found on domain"), std::string::npos) << result.err;
   }
   EXPECT_EQ(of_any->wait().code, 1);
   EXPECT_EQ(list->wait().code, 0);

@@ -200,7 +200,7 @@ TEST_F(InProcess, ARecordingIsShownPlottedAndExported) {
   EXPECT_EQ(info.at("scene"), "truck_crane");
   EXPECT_EQ(info.at("step_ns"), 1'000'000);
   EXPECT_TRUE(info.at("complete").get<bool>());
-  EXPECT_EQ(info.at("topics").at("tick").at("recorded"), 1001);  // the last one says END
+  EXPECT_EQ(info.at("topics").at("tick").at("recorded"), 1001);  // the last one has the END flag
   EXPECT_EQ(info.at("topics").at("mechanism").at("lost"), "0");
 
   const CommandResult plotted = slewring({"plot", recording, "Cyl_*.force", "Bag.position.y", "-o", "out.svg"});
@@ -432,7 +432,7 @@ TEST_F(InProcess, TheSummarySaysWhyALoadCannotBeLiftedAndHowMuchCouldBe) {
   EXPECT_GT(most, 1100);
   EXPECT_LT(most, 1400);
 
-  // a little less than what it says is lifted indeed
+  // a load a little below the predicted one is lifted
   std::ofstream(work_.path() / "less.yaml")
       << "interpolation: step\ninputs:\n  Input_Lift: [[0 s, 0], [8 s, 1], [14 s, 0]]\n"
       << "parameters:\n  - {at: 1 s, set: Bag.mass, value: " << most * 0.97 << " kg, over: 1 s}\n";

@@ -27,7 +27,7 @@ class Keys : public ::testing::Test {
     arguments.insert(arguments.begin(), "keys");
     return run("slewring", arguments, folder());
   }
-  // what check says by identity; empty: good
+  // problem of each identity in check's output; empty: good
   std::map<std::string, std::string> problems(const std::string& store = "plant") {
     const CommandResult result = keys({"check", store, "--json"});
     std::map<std::string, std::string> said;
@@ -90,7 +90,7 @@ TEST_F(Keys, ExportTakesWhatHoldersNeedAndRevocationMakesItWorthless) {
   ASSERT_EQ(keys({"add", "plant", "--name", "joystick", "--session", "truck_*"}).code, 0);
   EXPECT_EQ(keys({"add", "plant", "--name", "joystick"}).code, 2);
   EXPECT_EQ(keys({"add", "plant", "--name", "a/b"}).code, 2);
-  EXPECT_EQ(keys({"export", "plant", "nobody", "--to", "out"}).code, 2);
+  EXPECT_EQ(keys({"export", "plant", "absent", "--to", "out"}).code, 2);
   EXPECT_FALSE(fs::exists(folder() / "out"));
   ASSERT_EQ(keys({"export", "plant", "joystick", "hydraulics", "--to", "out"}).code, 0);
   EXPECT_FALSE(fs::exists(folder() / "out/identity_ca.key"));
@@ -238,12 +238,12 @@ TEST_F(Keys, ThatHaveExpiredAreRefusedAndTold) {
   const auto expect_refused = [&] {
     const CommandResult refused = start();
     EXPECT_EQ(refused.code, 2) << refused.err;
-    EXPECT_NE(refused.err.find("the keys of this process are not good; nothing was started; 'slewring keys check' "
-                               "tells what is wrong with them"),
+    EXPECT_NE(refused.err.find("the keys of this process are not valid; nothing was started; 'slewring keys check' "
+                               "lists their problems"),
               std::string::npos)
         << refused.err;
   };
-  EXPECT_EQ(start().code, 1) << "good keys, and nobody else";
+  EXPECT_EQ(start().code, 1) << "valid keys, and no other process";
   // permissions whose time is over
   const std::string permissions = text_of(io / "permissions.p7s");
   std::string over = text_of(io / "permissions.xml");
@@ -385,7 +385,7 @@ TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
   };
   const auto with_none = hydraulics({}), with_others = hydraulics({"--keys", "other"}),
              as_guest = hydraulics({"--keys", "plant", "--identity", "guest"}),
-             as_nobody = hydraulics({"--keys", "plant", "--identity", "nobody"});
+             as_absent = hydraulics({"--keys", "plant", "--identity", "absent"});
   const CommandResult none = with_none->wait();
   EXPECT_EQ(none.code, 1);
   EXPECT_NE(none.err.find("no session was found within 2 s"), std::string::npos) << none.err;
@@ -396,9 +396,9 @@ TEST_F(Keys, WhoHasTheWrongOnesOrNoneIsNotHeardAndIsReported) {
   const CommandResult guest = as_guest->wait();
   EXPECT_EQ(guest.code, 2);
   EXPECT_NE(guest.err.find("the keys of this process do not allow it"), std::string::npos) << guest.err;
-  const CommandResult unknown = as_nobody->wait();
+  const CommandResult unknown = as_absent->wait();
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_NE(unknown.err.find("has no keys of 'nobody'"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("has no keys of 'absent'"), std::string::npos) << unknown.err;
   const CommandResult ended = session.wait();
   EXPECT_EQ(ended.code, 1) << ended.err;
   EXPECT_NE(ended.err.find("no hydraulics node has been heard"), std::string::npos) << ended.err;

@@ -17,7 +17,7 @@ class Limits : public ::testing::TestWithParam<std::string> {
   void sweep(const std::vector<std::string>& limits) {
     int refused = 0, code = 0;
     for (const std::string& limit : limits) {
-      // files of who runs the tests do not count
+      // files of the calling program do not count
       const std::string close = "for f in /proc/self/fd/*; do f=${f##*/}; [ $f -gt 2 ] && eval \"exec $f>&-\"; done; ";
       const std::string command = close + "ulimit " + limit + "; exec " + program_file("slewring").string() + ' ' +
                                   GetParam() + " --domain " + std::to_string(domain_.number());

@@ -15,7 +15,7 @@ class MonolithicRun : public ::testing::Test {
  protected:
   CommandResult slewring(const std::vector<std::string>& arguments) { return run("slewring", arguments, work_.path()); }
 
-  // with --monolithic unless `how` says otherwise
+  // `how`: the kind of run, --monolithic by default
   CommandResult run_scene(const std::string& scene, std::vector<std::string> more, const char* how = "--monolithic") {
     more.insert(more.begin(), {"run", scene, how, "--pace", "free", "--json"});
     return slewring(more);

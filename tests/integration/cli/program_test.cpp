@@ -23,7 +23,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// An example that is refused as it is printed helps nobody: beyond this machine there are keys, or none by name.
+// A printed example must not be refused: beyond this machine it has keys, or names their absence.
 void expect_keys_beyond_this_machine(const std::string& help) {
   std::istringstream lines(help);
   for (std::string line; std::getline(lines, line);) {

@@ -1,4 +1,4 @@
-// What somebody without keys can do to those who have them by sending packets in their names: nothing.
+// A process without keys that sends packets in the names of processes with keys: it has no effect on them.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -130,7 +130,7 @@ std::unique_ptr<Stranger> overhear_a_start(std::uint32_t domain, const std::stri
   EXPECT_NE(reader, nullptr);
   transport::Received message;
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(next(*reader, message));
-  // the last of them may still be on their way to who listens
+  // the last packets may still be on their way to the listening process
   EXPECT_TRUE(wait_until([&] { return stranger->has_heard(20); }));
   return stranger;
 }
@@ -143,7 +143,7 @@ TEST_F(AnOnlooker, SeesOfAStartWithKeysNeitherProcessesNorValues) {
   const auto keyed = overhear_a_start(domain_.number(), store(), word);
   if (!keyed->problem().empty()) GTEST_SKIP() << "packets cannot be overheard here: " << keyed->problem();
   for (const std::string& secret : secrets) EXPECT_FALSE(keyed->has_seen(secret)) << secret;
-  // what docs/security.md says is seen all the same
+  // the parts that docs/security.md lists as visible are visible
   std::array<char, 256> host{};
   ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
   for (const std::string& seen : {host.data() + std::string("/"), std::string("slewring/controller_input")}) {

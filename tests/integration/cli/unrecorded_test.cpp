@@ -1,4 +1,4 @@
-// Variables that recording.variables leaves out: told before a run, and by who asks the recording for them.
+// Variables that recording.variables leaves out: the warning before a run, and the message when a recording lacks one.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -62,7 +62,7 @@ class ClientLibrary : public ::testing::Test {
     }
     return false;
   }
-  // a controller in a process of its own, which prints what it is told
+  // a controller in a process of its own, which prints the library's results
   [[nodiscard]] std::unique_ptr<Program> start_probe(const std::string& name, const std::string& output,
                                                      const char* timeout = "20", const char* how = "acquire") const {
     const std::vector<std::string> arguments = {
@@ -114,9 +114,10 @@ TEST_F(ClientLibrary, FindsAVariableOfANodeThatTellsItsNamesLongAfterTheOthers) 
   ASSERT_NE(client, nullptr) << slewring_error(nullptr);
   EXPECT_GE(slewring_find(client.get(), "Input_Lift.value", kSoon), 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Bag.position.x", 0.5), SLEWRING_TIMEOUT);
-  EXPECT_STREQ(slewring_error(client.get()),
-               "session 'late' has not told all its variables within 0.5 s: 'Bag.position.x' is not among 1 so far; it "
-               "is still starting, or its nodes are not all heard here: wait longer, or see `slewring sessions`");
+  EXPECT_STREQ(
+      slewring_error(client.get()),
+      "session 'late' has not published all its variables within 0.5 s: 'Bag.position.x' is not among 1 so far; it "
+      "is still starting, or not all of its nodes reach this process: wait longer, or see `slewring sessions`");
   played.send(SIGUSR1);
   EXPECT_GE(slewring_find(client.get(), "Bag.position.x", kSoon), 0) << slewring_error(client.get());
   EXPECT_EQ(slewring_find(client.get(), "Bag.position.y", 3600), SLEWRING_REFUSED);
@@ -228,7 +229,7 @@ TEST_F(ClientLibrary, TheSupervisorTakesOverAndTheHolderIsTold) {
   stop();
 }
 
-// acquire() asks again while it is not answered, so that a refusal may come more than once
+// acquire() repeats its request while it is not answered, so that a refusal may arrive more than once
 TEST_F(ClientLibrary, ALateAnswerToAcquireIsNoAnswerToTakeOver) {
   start({"--set", "Input_Lift.supervisor=instructor"});
   Observer& observer = session->observer();
@@ -262,7 +263,7 @@ TEST_F(ClientLibrary, WhatIsGrantedAfterItGaveUpIsGivenBack) {
   start();
   const Client hasty = join("hasty"), other = join("other");
   ASSERT_EQ(slewring_step(hasty.get(), kSoon), SLEWRING_OK) << "the session runs: it can be stopped";
-  // the session hears it
+  // the session receives from it
   ASSERT_GE(slewring_acquire(hasty.get(), "Input_Slew", kSoon), 0) << slewring_error(hasty.get());
   // beside other programs the answer may be there all the same
   int code = 0;
@@ -313,25 +314,25 @@ TEST_F(ClientLibrary, WhatCannotBeIsRefusedWithASentence) {
   const TestDomain empty;
   const unsigned domain = empty.number();
   EXPECT_EQ(slewring_join_code(), SLEWRING_OK);
-  EXPECT_EQ(slewring_join("nobody", "pid", domain, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("absent", "pid", domain, "lo", "", 0.2), nullptr);
   EXPECT_EQ(slewring_join_code(), SLEWRING_TIMEOUT);
   EXPECT_EQ(slewring_error(nullptr),
-            "no session 'nobody' was heard in domain " + std::to_string(domain) +
+            "no session 'absent' was found in domain " + std::to_string(domain) +
                 " on lo within 0.2 s; start it first, and compare its name, domain, interface, peers and keys");
-  // who goes on without looking reads that, and no other sentence
+  // a caller that ignores the failure gets this sentence, and no other
   EXPECT_EQ(slewring_find(nullptr, "Cyl_Lift.stroke", 0), SLEWRING_BAD_ARGUMENT);
-  EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'nobody' was heard"), std::string::npos);
-  EXPECT_EQ(slewring_join("nobody", "", domain, "lo", "", 0.2), nullptr);
+  EXPECT_NE(std::string(slewring_error(nullptr)).find("no session 'absent' was found"), std::string::npos);
+  EXPECT_EQ(slewring_join("absent", "", domain, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no name of a controller"), std::string::npos);
   EXPECT_EQ(slewring_join_code(), SLEWRING_BAD_ARGUMENT);
-  EXPECT_EQ(slewring_join("no*body", "pid", domain, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("ab*sent", "pid", domain, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("is no session name"), std::string::npos);
-  EXPECT_EQ(slewring_join("nobody", "pid", 231, "lo", "", 0.2), nullptr);
+  EXPECT_EQ(slewring_join("absent", "pid", 231, "lo", "", 0.2), nullptr);
   EXPECT_NE(std::string(slewring_error(nullptr)).find("DDS domain 231 is out of range"), std::string::npos);
   EXPECT_EQ(slewring_join_code(), SLEWRING_BAD_ARGUMENT);
   try {
     slewring::Options absent;
-    absent.session = "nobody";
+    absent.session = "absent";
     absent.controller = "pid";
     absent.domain = domain;
     absent.timeout = 0.2;
@@ -435,7 +436,7 @@ TEST_F(ClientLibrary, NightlyWhoStoodStillLongerThanTheMiddlewareKnowsItLearnsTh
   const auto probe = start_probe("probe", "probe");
   ASSERT_TRUE(comes_to_say(reader.get(), *probe, "acquired")) << session->said();
   probe->send(SIGSTOP);
-  // nobody hears it for 2 s, and it has been silent for 5 s
+  // no process receives from it for 2 s, and it has been silent for 5 s
   read_to(reader.get(), slewring_present_step(reader.get()) + 7500);
   probe->send(SIGCONT);
   EXPECT_TRUE(comes_to_say(reader.get(), *probe,
@@ -497,7 +498,7 @@ TEST_F(ClientLibrary, OfTwoProcessesOfOneNameTheSecondIsRefusedUntilTheFirstIsGo
   EXPECT_EQ(slewring_value(reader.get(), raw), 0.375);
   first->send(SIGKILL);
   static_cast<void>(first->wait());
-  // the middleware knows it for 2 s more
+  // the middleware keeps it for 2 s more
   std::unique_ptr<Program> third;
   for (int i = 0; i < 100; ++i) {
     third = start_probe("probe", "third" + std::to_string(i));
@@ -513,7 +514,7 @@ TEST_F(ClientLibrary, TwoSessionsOfOneProcessUnderOneNameAreTwoControllers) {
   const Client first = join("pid"), second = join("pid");
   const int lift = slewring_acquire(first.get(), "Input_Lift", kSoon);
   ASSERT_GE(lift, 0) << slewring_error(first.get());
-  // what the first was told has come to the second, whose name it has: it is no answer to what is asked later
+  // a lease for the first has reached the second, which has the same name: it is no answer to a later request
   for (int blocks = 0; blocks < 3; ++blocks) ASSERT_EQ(slewring_step(second.get(), kSoon), SLEWRING_OK);
   EXPECT_EQ(slewring_acquire(second.get(), "Input_Lift", kSoon), SLEWRING_REFUSED);
   EXPECT_NE(std::string(slewring_error(second.get())).find("is held by another process named 'pid'"), std::string::npos)
@@ -542,7 +543,7 @@ TEST_F(ClientLibrary, OfTwoOfOneNameThatAskTogetherOneHasTheChannel) {
       ASSERT_EQ(slewring_write(both[winner].get(), lift, 0.5), SLEWRING_OK) << slewring_error(both[winner].get());
     } while (slewring_value(both[winner].get(), delay[winner]) < 0);
     ASSERT_EQ(slewring_release(both[winner].get(), lift), SLEWRING_OK) << slewring_error(both[winner].get());
-    ASSERT_TRUE(reaches(both[winner].get(), delay[winner], -1)) << "nobody has it when it is asked for again";
+    ASSERT_TRUE(reaches(both[winner].get(), delay[winner], -1)) << "the channel is free when it is requested again";
   }
   stop();
 }
@@ -596,7 +597,7 @@ TEST_F(ClientLibrary, GoesOnWhenANodeIsReplacedAndTheOneThatStoodStillWakesUp) {
   long long before = held_at;
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(slewring_step(client.get(), kSoon), SLEWRING_OK) << slewring_error(client.get());
-    EXPECT_GT(slewring_present_step(client.get()), before) << "a step that was computed again is told once";
+    EXPECT_GT(slewring_present_step(client.get()), before) << "a step that was computed again is reported once";
     before = slewring_present_step(client.get());
   }
   control("stop");
@@ -650,8 +651,8 @@ TEST_F(ClientLibrary, InASessionWithKeysMovesItsChannelAndWithoutThemHearsNothin
     EXPECT_NE(refused(2).find("the keys of this process do not allow it"), std::string::npos);
   }
   {
-    const Environment keys("SLEWRING_KEYS", plant), identity("SLEWRING_IDENTITY", "nobody");
-    EXPECT_NE(refused(2).find("has no keys of 'nobody'"), std::string::npos);
+    const Environment keys("SLEWRING_KEYS", plant), identity("SLEWRING_IDENTITY", "absent");
+    EXPECT_NE(refused(2).find("has no keys of 'absent'"), std::string::npos);
   }
   EXPECT_NE(refused(2).find("compare its name, domain, interface, peers and keys"), std::string::npos);
   slewring({"control", "stop", "--session", session->name(), "--domain", std::to_string(session->domain()), "--keys",

@@ -1,6 +1,6 @@
-// Random faults between the nodes of a session, by seed. Safety: whatever happens on the way, everybody comes to the
-// bits of the session without faults, and nobody says two things of one step. Liveness: when the faults have ended,
-// ticks go on within 100 ms, and the session ends in order.
+// Random faults between the nodes of a session, by seed. Safety: with any losses on the way, all nodes reach the bits
+// of the session without faults, and no node publishes two different messages of one step. Liveness: when the faults
+// have ended, ticks go on within 100 ms, and the session ends in order.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ std::int64_t between(std::mt19937_64& random, std::int64_t low, std::int64_t hig
   return low + static_cast<std::int64_t>(share(random) * static_cast<double>(high - low));
 }
 
-// What its reader never asks for again.
+// Topics that the reader never requests again.
 bool is_dialogue(Topic topic, Role reader) {
   switch (topic) {
     case Topic::flexible:

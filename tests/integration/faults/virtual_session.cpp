@@ -42,19 +42,20 @@ template <typename Message>
 void Auditor::hear(const transport::Received& message) {
   Message heard;
   if (!transport::decode(message.bytes, heard)) {
-    contradiction_ = fmt::format("{} says what cannot be read", node::to_text(message.topic));
+    contradiction_ = fmt::format("{} publishes a message that cannot be decoded", node::to_text(message.topic));
     return;
   }
-  // JOIN repeats its step -1 until it is heard
+  // JOIN repeats its step -1 until it is received
   if (heard.header.phase == wire::Phase::join) return;
-  // whoever says it
+  // independent of the process
   heard.header.incarnation = 0;
   std::vector<std::byte> bytes;
   if (!transport::encode(heard, bytes)) contradiction_ = "a message cannot be encoded again";
   const auto [said, is_new] = said_.try_emplace({message.topic, heard.header.phase, heard.header.step}, bytes);
   const bool is_same = said->second == bytes;
   if (!is_new && !is_same && contradiction_.empty()) {
-    contradiction_ = fmt::format("{} says two things of step {}", node::to_text(message.topic), heard.header.step);
+    contradiction_ =
+        fmt::format("{} publishes two different messages of step {}", node::to_text(message.topic), heard.header.step);
   }
   std::uint64_t hash = 0;
   if constexpr (requires { heard.state.state_hash; }) {
@@ -150,14 +151,14 @@ std::unique_ptr<node::Node> VirtualSession::make_physics(const Place& place) {
       place.role, *place.transport, node::subsystem_factory(maker_of(place.role), SLEWRING_SOURCE_DIR "/scenes"));
 }
 
-// A process that has died says nothing more; the one that a supervisor starts in its place hears what is kept.
+// A process that has died publishes no more; the process in its place receives the kept messages.
 void VirtualSession::kill_and_replace() {
   for (Place& place : places_) {
     if (!place.is_dead) {
       const auto due = std::find_if(kills_.begin(), kills_.end(), [&](const Kill& kill) {
         return kill.role == place.role && kill.at_ns <= clock_.now_ns;
       });
-      // a session that does not tick yet has nothing to give, one that is through needs nobody
+      // a session without ticks has no state yet, one that has ended needs no replacement
       if (due == kills_.end() || io_->next_step() < 1) continue;
       kills_.erase(due);
       if (io_->member().state() >= wire::NodeState::ended || place.node->is_finished()) continue;
@@ -273,7 +274,7 @@ std::uint64_t VirtualSession::resends() const {
 }
 
 std::string VirtualSession::text() const {
-  std::string text = fmt::format("{} lost, {} doubled, {} late, {} asked for again", count_.lost, count_.doubled,
+  std::string text = fmt::format("{} lost, {} doubled, {} late, {} requested again", count_.lost, count_.doubled,
                                  count_.late, resends());
   for (const Place& place : places_) {
     if (place.is_dead) {

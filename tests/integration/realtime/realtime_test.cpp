@@ -38,7 +38,7 @@ class RealTime : public ::testing::Test {
     return wait_until([&] { return command.out().find("  running") != std::string::npos || command.has_ended(); }) &&
            !command.has_ended();
   }
-  // As somebody without these rights ("sys_nice,-ipc_lock", "all"), and with 64 KiB of memory that may be locked.
+  // Runs without these rights ("sys_nice,-ipc_lock", "all"), and with 64 KiB of memory that may be locked.
   CommandResult run_without(const std::string& rights, std::vector<std::string> arguments) const {
     std::vector<std::string> command = {"--memlock=65536:65536", "/usr/bin/setpriv", "--bounding-set=-" + rights,
                                         program_file("slewring").string()};
@@ -99,7 +99,7 @@ TEST_F(RealTime, AProcessorThatIsNotThereIsRefusedByNameOfThoseThatAre) {
   const CommandResult elsewhere =
       run_crane({"--cpu", "mechanics=1000,hydraulics=1001", "--remote", "mechanics", "--duration", "0.1"});
   EXPECT_NE(elsewhere.err.find("hydraulics=1001: there is no processor"), std::string::npos) << elsewhere.err;
-  const CommandResult node = run("mechanics_node", {"--session", "nobody", "--cpu", "1000"}, work_.path());
+  const CommandResult node = run("mechanics_node", {"--session", "absent", "--cpu", "1000"}, work_.path());
   EXPECT_EQ(node.code, 2);
   EXPECT_NE(node.err.find("there is no processor 1000"), std::string::npos) << node.err;
   const CommandResult role = run_crane({"--cpu", "mechanic=0"});
@@ -146,13 +146,13 @@ TEST_F(RealTime, NodesAreScheduledFifoWithLockedMemory) {
 TEST_F(RealTime, ARefusedPermissionIsOneWarningWithTheRemedy) {
   rlimit allowed{};
   getrlimit(RLIMIT_RTPRIO, &allowed);
-  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to everybody here";
+  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to all users here";
   const CommandResult result = run_without("all", arguments({"--rt", "--duration", "0.1", "--quiet", "--no-record"}));
   ASSERT_EQ(result.code, 0) << result.err;
   const std::string refusal = "SCHED_FIFO was refused (";
   const std::size_t first = result.err.find(refusal);
   ASSERT_NE(first, std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "said twice: " << result.err;
+  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "printed twice: " << result.err;
   EXPECT_NE(result.err.find("the run goes on with normal scheduling"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("to allow it, run as root, or set 'rtprio 95' and 'memlock unlimited' for the user in "
                             "/etc/security/limits.conf and log in again"),
@@ -182,13 +182,13 @@ TEST_F(RealTime, StressTellsOnceThatMemoryMayNotBeLocked) {
   const std::string refusal = "locking memory was refused (";
   const std::size_t first = result.err.find(refusal);
   ASSERT_NE(first, std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "said twice: " << result.err;
+  EXPECT_EQ(result.err.find(refusal, first + 1), std::string::npos) << "printed twice: " << result.err;
 }
 
 TEST_F(RealTime, ABoundThatCouldNotBeMeasuredIsNotKept) {
   rlimit allowed{};
   getrlimit(RLIMIT_RTPRIO, &allowed);
-  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to everybody here";
+  if (allowed.rlim_cur > 0) GTEST_SKIP() << "real-time scheduling is allowed to all users here";
   std::vector<std::string> stress = {
       "stress", scene_file("truck_crane.yaml"), "--domain", std::to_string(domain_.number()), "--rt", "--seconds", "2",
       "--quiet"};

@@ -1,4 +1,4 @@
-// `slewring stress`: what it tells and with which code. Bounds are such that they are always or never kept.
+// `slewring stress`: its output and exit codes. Bounds are such that they are always or never kept.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
@@ -50,7 +50,7 @@ class Stress : public ::testing::Test {
   static long judged_and_done(const json& of) {
     return of.at("response").at("count").get<long>() - of.at("skipped").get<long>();
   }
-  // The session has done this step, by what `slewring sessions` says.
+  // The session has done this step, by the output of `slewring sessions`.
   [[nodiscard]] bool wait_until_at(long step) const {
     return wait_until([&] {
       const CommandResult seen =
@@ -89,7 +89,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
       EXPECT_LE(cell.at(who).at("missed"), cell.at(who).at("response").at("count"));
       EXPECT_LE(cell.at(who).at("skipped"), cell.at(who).at("missed"));
       EXPECT_LE(cell.at(who).at("longest_run_of_misses"), cell.at(who).at("missed"));
-      // looks at half a second may find nobody running
+      // looks at half a second may find no running thread
       EXPECT_GE(cell.at(who).at("runnable"), cell.at("load") == "mixed" && who == std::string("session") ? 0.5 : 0)
           << who;
       EXPECT_GT(cell.at(who).at("busy"), 0) << who;
@@ -129,7 +129,7 @@ TEST_F(Stress, MeasuresASessionBesideItsYardstickAndTheBooksBalance) {
   std::ifstream page(work_.path() / "stress.html");
   const std::string text((std::istreambuf_iterator<char>(page)), {});
   EXPECT_NE(text.find("normal, load mixed, 0 us added"), std::string::npos);
-  EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "asks for nothing from elsewhere";
+  EXPECT_EQ(text.find("http://"), text.find("http://www.w3.org")) << "needs no external resource";
   // what came is gone again
   EXPECT_FALSE(std::filesystem::exists(work_.path() / "runs"));
 }
@@ -174,9 +174,10 @@ TEST_F(Stress, ACellThatSomebodyEndsFails) {
   EXPECT_LT(cell.at("steps"), 20000);
   const std::string message = cell.at("messages").at(0);
   EXPECT_NE(message.find("normal, load none, 0 us added: the session ended at step "), std::string::npos) << message;
-  EXPECT_NE(message.find(" of 20000, and a part of a cell is no result; somebody ended it ('slewring control stop'), "
-                         "run it again"),
-            std::string::npos)
+  EXPECT_NE(
+      message.find(" of 20000, and a part of a cell is no result; it was ended from outside ('slewring control stop'), "
+                   "run it again"),
+      std::string::npos)
       << message;
 }
 
@@ -215,7 +216,7 @@ TEST_F(Stress, WorkThatIsAddedIsDone) {
   EXPECT_GE(cell.at("yardstick").at("missed_share"), 0.99);
   EXPECT_GT(cell.at("books").at("skipped"), 0);
   EXPECT_TRUE(cell.at("books").at("balance"));
-  EXPECT_EQ(cell.at("verdict"), "") << "none was asked for";
+  EXPECT_EQ(cell.at("verdict"), "") << "no bound was stated";
 }
 
 TEST_F(Stress, RefusesWhatHasNoDeadline) {

@@ -88,7 +88,7 @@ class WallClock : public ::testing::Test {
     EXPECT_EQ(first_difference(recorded.chain(), undisturbed_chain(kScene, recorded.last_complete_step())), "");
   }
 
-  // nothing is told of a busy machine
+  // no message about a busy machine
   Session session{{"--pace", "real", "--duration", "0", "--set", "session.overrun_lag=60s"}};
   Clocks clocks{session};
   RecordedSession recorded;

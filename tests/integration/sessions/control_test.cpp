@@ -159,7 +159,7 @@ TEST_F(Control, AcceptedParameterEntersTheTickItWasPromisedFor) {
   start({"--pace", "real", "--duration", "1.6s"}, 200);
   const ControlReply reply = observer_->request(ControlAction::set_parameter, 1500, "Bag.mass");
   ASSERT_TRUE(reply.is_accepted) << reply.reason;
-  // also for who did not hear the request, as a recorder that did not know yet who asks
+  // also for readers that did not receive the request, such as a recorder that had not discovered its writer
   EXPECT_EQ(reply.asked, "set Bag.mass to 1500");
   expect_ends_well();
   const RecordedSession recorded = session_->recorded();
@@ -379,9 +379,9 @@ TEST_F(Controller, SilentControllerGoesToNeutral) {
   start_session();
   ASSERT_TRUE(observer_->acquire("a", kChannel).is_granted);
   ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
-  // nobody writes any more
+  // no controller writes any more
   ASSERT_TRUE(observer_->wait_until([this] { return control() == 0; }));
-  // it still holds the channel, and its next word counts again
+  // it still holds the channel, and its next value counts again
   EXPECT_FALSE(observer_->acquire("b", kChannel).is_granted);
   ASSERT_TRUE(write_until("a", 0.5, [this] { return control() == 250; }));
   stop();

@@ -34,7 +34,7 @@ TEST_P(ControllerExampleOptions, HelpHasAnExample) {
 TEST_P(ControllerExampleOptions, WhatIsNoNumberMovesNothing) {
   for (const char* option : {"--target", "--tolerance", "--gain", "--overlap", "--seconds", "--domain"}) {
     for (const char* value : {"abc", "", "0.8m", "nan", "inf"}) {
-      const auto program = controller({"--session", "nobody", option, value});
+      const auto program = controller({"--session", "absent", option, value});
       EXPECT_EQ(program->wait(), 2) << option << " '" << value << "' " << program->out();
       EXPECT_NE(program->err().find(std::string("position_controller: ") + option), std::string::npos)
           << program->err();
@@ -48,9 +48,9 @@ TEST_P(ControllerExampleOptions, WhatIsMissingOrUnknownIsNamed) {
     const char* problem;
   } cases[] = {{{}, "--session: expected the name"},
                {{"--session"}, "--session: expected a value"},
-               {{"--session", "nobody", "--domain", "231"}, "--domain: expected a whole number, 0 to 230"},
-               {{"--session", "nobody", "--domain", "1.5"}, "--domain: expected a whole number, 0 to 230"},
-               {{"--session", "nobody", "--taget", "1"}, "--taget: unknown option"}};
+               {{"--session", "absent", "--domain", "231"}, "--domain: expected a whole number, 0 to 230"},
+               {{"--session", "absent", "--domain", "1.5"}, "--domain: expected a whole number, 0 to 230"},
+               {{"--session", "absent", "--taget", "1"}, "--taget: unknown option"}};
   for (const auto& c : cases) {
     const auto program = controller(c.arguments);
     EXPECT_EQ(program->wait(), 2) << c.problem;
@@ -213,12 +213,12 @@ TEST_F(ClientExamples, TheSameLoopInPython) {
   EXPECT_EQ(python.wait(), 0) << python.out() << python.err();
   EXPECT_NE(python.out().find(": reached"), std::string::npos) << python.out();
 
-  std::vector<std::string> to_nobody = arguments;
-  to_nobody[4] = "nobody";
-  to_nobody.insert(to_nobody.end(), {"--seconds", "1"});
-  Program alone("/usr/bin/env", to_nobody, session->folder() / "alone");
+  std::vector<std::string> to_absent = arguments;
+  to_absent[4] = "absent";
+  to_absent.insert(to_absent.end(), {"--seconds", "1"});
+  Program alone("/usr/bin/env", to_absent, session->folder() / "alone");
   EXPECT_EQ(alone.wait(), 1);
-  EXPECT_NE(alone.err().find("timeout: no session 'nobody' was heard"), std::string::npos) << alone.err();
+  EXPECT_NE(alone.err().find("timeout: no session 'absent' was found"), std::string::npos) << alone.err();
 
   ASSERT_TRUE(session->observer().acquire("somebody_else", "Input_Lift").is_granted);
   Program refused("/usr/bin/env", arguments, session->folder() / "refused");

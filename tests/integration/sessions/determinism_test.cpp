@@ -135,7 +135,7 @@ TEST_P(StartOrder, ChangesNoBit) {
   Session session(kFree);
   for (const Role role : GetParam()) {
     Program& program = session.start(role);
-    // the next one starts when the middleware knows this one
+    // the next one starts when the middleware has discovered this one
     ASSERT_TRUE(session.observer().wait_for_process(program.pid())) << program.err();
   }
   expect_same_as_in_one_process(session);

@@ -1,5 +1,4 @@
-// What happens when something goes wrong in a session: it is named at once, everybody ends with the right code, and
-// the recording is valid.
+// Faults in a session: the fault is named at once, all nodes end with the right code, and the recording is valid.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -27,7 +26,7 @@ namespace failure_test {
 using wire::NodeState;
 using wire::Role;
 
-// The design promises an end within 1 s, ten health messages. An io that waits in vain for somebody sends twenty.
+// The design promises an end within 1 s, ten health messages. An io that waits in vain for a node sends twenty.
 constexpr std::uint64_t kHealthsOfAnEnd = 15;
 
 std::string role_name(const ::testing::TestParamInfo<Role>& role) {
@@ -46,8 +45,8 @@ std::string pid_text(const Program& program) {
 
 class KilledNode : public ::testing::TestWithParam<Role> {};
 
-// At so many steps the recorder may lack what it lost on the way and the victim could not send again; in `real` pace it
-// has time to ask.
+// At this many steps the recorder may lack samples that it lost and the victim could not resend; in `real` pace it has
+// time to request them.
 constexpr StepIndex kLostWithVictim = 128;
 constexpr StepIndex kLostInRealPace = 2;
 
@@ -65,7 +64,7 @@ void expect_named_and_ended(Session& session, Role victim, StepIndex killed_at, 
   }
   const std::filesystem::path path = only_recording(session.runs());
   if (victim == Role::recorder) {
-    // nobody closed it: it is readable up to what was handed over last
+    // no process closed it: it is readable up to the last data handed over
     std::unique_ptr<recording::Reader> reader;
     ASSERT_TRUE(recording::Reader::open(path, reader).is_ok());
     EXPECT_FALSE(reader->has_all_messages());
@@ -206,7 +205,7 @@ TEST(Interrupted, AtAnyMomentOfTheStartEndsInOrder) {
   for (int round = 0; round < testing::rounds(3, 40); ++round) {
     Session session({"--pace", "free", "--duration", "100s"});
     session.start_all();
-    // after so many messages of anybody: name check, JOIN, INIT, first steps
+    // after this many messages of all nodes: name check, JOIN, INIT, first steps
     const std::uint64_t moment = round == 0 ? 0 : random() % 120;
     ASSERT_TRUE(session.observer().wait_until([&] { return session.observer().messages() >= moment; }));
     session.node(Role::io).send(SIGINT);
@@ -236,7 +235,7 @@ TEST_P(KilledNode, AskedToEndByASignalEndsTheSessionInOrder) {
   }
   EXPECT_EQ(session.node(GetParam()).wait(), 143);
   EXPECT_EQ(session.node(Role::io).wait(), 143);
-  // io names the node that was asked; a node that was asked itself has nothing to tell its owner
+  // io names the node that received the signal; that node itself has no fault to report
   for (const Role role : kAllNodes) {
     const bool must_name = role == Role::io && GetParam() != Role::io;
     const std::string named =
@@ -420,7 +419,7 @@ TEST(Assets, ThatDifferAreNamedAndTheNodeDoesNotTakePart) {
   const std::string said = session.node(Role::mechanics).err();
   EXPECT_NE(said.find("asset 'table.csv' differs from the session's (5 bytes here, 4 there)"), std::string::npos)
       << said;
-  // the session cannot take place and says why
+  // the session cannot take place; io reports the reason
   EXPECT_EQ(codes.at(Role::io), 2) << session.said();
   EXPECT_NE(session.node(Role::io).err().find("asset 'table.csv' differs"), std::string::npos) << session.said();
 }

@@ -50,7 +50,7 @@ bool is_in_its_wait(const char* call_file) {
   int status = 0;
   const char word = is_stopped ? 'y' : 'n';
   if (write(told, &word, 1) != 1) _exit(1);
-  // its end is told to the tracer first, and to its parent behind that
+  // the kernel reports its end to the tracer first, and to its parent after that
   while (is_stopped && waitpid(thread, &status, __WALL) == thread && !WIFEXITED(status) && !WIFSIGNALED(status)) {
   }
   _exit(0);
@@ -71,7 +71,7 @@ HeldLoop::HeldLoop(pid_t process) {
   close(told[0]);
 }
 
-// who was traced goes on when its tracer is gone
+// a traced process goes on when its tracer is gone
 void HeldLoop::let_go() {
   if (tracer_ < 0) return;
   kill(tracer_, SIGKILL);

@@ -1,4 +1,4 @@
-// What a session shows to a network that it was not told to use: nothing.
+// A session sends nothing to a network that it is not configured to use.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ class Loopback : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!cable.problem().empty()) GTEST_SKIP() << "network namespaces are not possible here: " << cable.problem();
-    // every refusal is to be told, not six and then one a second
+    // every refusal is to be answered, not six and then one a second
     std::vector<std::string> tell = cable.left().command();
     tell.insert(tell.end(), {"/bin/sh", "-c", "echo 0 > /proc/sys/net/ipv4/icmp_ratelimit"});
     const ScratchFolder folder;
@@ -42,7 +42,7 @@ class Loopback : public ::testing::Test {
       EXPECT_TRUE(code == 130 || (code == 0 && role != Role::io)) << code << session.said();
     }
   }
-  // A datagram to a port that no socket hears is answered so that the next one fails.
+  // A datagram to a closed port is answered so that the next one fails.
   bool is_open(std::uint32_t port) {
     std::vector<std::string> command = cable.right().command();
     const std::string script = fmt::format(
@@ -74,7 +74,7 @@ TEST_F(Loopback, IsNotLeftWithoutKeysByMistake) {
   session.run_under(Role::io, cable.left().command(), {"--interface", cable.left().interface});
   Program& io = session.start(Role::io);
   EXPECT_EQ(io.wait(), 2);
-  EXPECT_NE(io.err().find("say --insecure-lan"), std::string::npos) << io.err();
+  EXPECT_NE(io.err().find("add --insecure-lan"), std::string::npos) << io.err();
   EXPECT_EQ(cable.sent(), 0u);
 }
 

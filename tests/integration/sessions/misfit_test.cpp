@@ -1,4 +1,4 @@
-// What the nodes themselves say of a program that takes part in their session in the wrong way.
+// The nodes' messages about a program that takes part in their session in the wrong way.
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class Endpoint {
         type_(type),
         name_(name),
         told_(std::string(what == What::writer ? "writes" : "reads") + " topic '" + name + "' with " + problem +
-              (what == What::writer ? "; it is not heard" : "; it hears nothing")),
+              (what == What::writer ? "; it is ignored" : "; it receives nothing")),
         qos_(dds_create_qos()) {
     dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
     dds_qset_partition1(qos_, "slewring/s");
@@ -65,7 +65,7 @@ TEST(Misfits, AreNamedByIoAtItsSecondLookAtTheLatest) {
   dds_topic_descriptor_t other_fields = slewring_ControlReply_desc;
   other_fields.m_typename = "slewring::ControllerInput";
   Endpoint best_effort(What::writer, slewring_ControllerInput_desc, input,
-                       "reliability best effort, and reliable is asked for");
+                       "reliability best effort, and the reader requests reliable");
   dds_qset_reliability(best_effort.qos(), DDS_RELIABILITY_BEST_EFFORT, 0);
   Endpoint outside(What::writer, slewring_ControllerInput_desc, input, "partition '', where 'slewring/s' is expected");
   dds_qset_partition(outside.qos(), 0, nullptr);

@@ -40,7 +40,7 @@ class NamespacePair {
     all,
     data,  // those to the odd ports: by the others the sides still discover each other (RTPS 2.5, 9.6.2)
   };
-  // From now on this side hears nothing of the other. False where that is not possible.
+  // From now on this side receives nothing from the other. False where that is not possible.
   [[nodiscard]] bool deafen(const Side& side, Datagrams which = Datagrams::all);
   // Datagrams that a side has lost since lose() or deafen().
   [[nodiscard]] std::uint64_t lost(const Side& side);
@@ -59,7 +59,7 @@ class NamespacePair {
   Side left_, right_;
 };
 
-// These nodes on the left side, the others on the right, with the options that two_machines.md tells the user.
+// These nodes on the left side, the others on the right, with the options of two_machines.md.
 void distribute(Session& session, const NamespacePair& cable,
                 std::initializer_list<wire::Role> on_left = {wire::Role::mechanics, wire::Role::recorder});
 

@@ -32,7 +32,7 @@ class FaultyCable : public ::testing::Test {
     EXPECT_EQ(first_difference(recorded.chain(), undisturbed_chain(kScene, steps)), "");
   }
 
-  // What the nodes of this role said in the recording, one line each.
+  // Published states of the nodes of this role in the recording, one line each.
   static std::string told(const RecordedSession& recorded, Role role) {
     std::string text;
     for (const SaidStatus& said : recorded.statuses) {
@@ -186,7 +186,7 @@ TEST_P(OneWayCable, InMidRunEndsTheSessionWithCode4) {
   }
   for (const auto& [role, code] : session.wait_all())
     EXPECT_EQ(code, 4) << node::to_text(role) << "\n" << session.said();
-  // the side that hears nothing names one of the other side, and the other side says the same or that it hears no more
+  // the deaf side names a node of the other side, and the other side names one too or reports that it was given up
   const Role deaf_side[] = {is_left_deaf ? Role::mechanics : Role::io,
                             is_left_deaf ? Role::recorder : Role::hydraulics};
   const Role other_side[] = {is_left_deaf ? Role::io : Role::mechanics,

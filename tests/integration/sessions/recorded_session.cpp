@@ -22,7 +22,7 @@ HashChain& epoch_of(RecordedSession& session, const wire::Header& header) {
   return session.epochs[header.epoch];
 }
 
-// names by role and index, as the directories tell them
+// names by role and index, from the directories
 using VariableNames = std::map<std::pair<wire::Role, std::size_t>, std::string>;
 
 void take_variables(RecordedSession& session, VariableNames& names, const recording::RecordedMessage& recorded) {

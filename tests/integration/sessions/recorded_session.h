@@ -1,4 +1,4 @@
-// What a test wants to know of a recording: the hash of every state by epoch and step, what the nodes said, losses.
+// A recording's contents for tests: the hash of every state by epoch and step, the nodes' statuses, losses.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,9 @@ struct RecordedSession {
   std::string problem;                         // why the file is not valid; empty: every byte is as it was written
   bool has_all_messages = false;               // closed in order
 
-  std::map<wire::Role, std::vector<std::int64_t>> word_ns;  // wall times at which each role said anything
+  std::map<wire::Role, std::vector<std::int64_t>> word_ns;  // wall times at which each role published
 
-  // When the role said its last word before a wall time; 0: it had said nothing.
+  // Time of the role's last message before a wall time; 0: there was none.
   [[nodiscard]] std::int64_t last_word_before(wire::Role role, std::int64_t time_ns) const;
   [[nodiscard]] const HashChain& chain() const { return epochs.at(0); }
   // Sum of all "<topic>.lost" of the summary; -1 without a summary.

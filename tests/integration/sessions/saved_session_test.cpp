@@ -133,7 +133,7 @@ TEST_F(SavedSession, GoesOnToTheSameBitsAndTakesChangesOfLiveParametersAlone) {
 TEST_F(SavedSession, IsLoadedIntoARunningSessionOfTheSceneAndIntoNoOther) {
   save_in_mid_motion();
   {
-    // who may move an input is no part of the machine
+    // the controllers of an input are not part of the machine
     Session session({"--pace", "real", "--duration", "0", "--set", "Input_Lift.supervisor=boss"});
     Observer& observer = session.observer();
     session.start_all();
@@ -238,12 +238,12 @@ TEST_F(SavedSession, BehindARecordingIsSteeredByAController) {
   EXPECT_EQ(slewring({"replay", recording, "--verify"}, folder_.path() / "verify", &said), 0) << said;
 }
 
-// What was made with a controller that every tick waits for goes on without it: in the hands of the script, or of
-// nobody.
+// A state saved with a controller that every tick waits for can go on without it: the script or no controller moves the
+// input.
 TEST_F(SavedSession, OfALockstepControllerIsHandedOver) {
   Session session({"--pace", "free", "--duration", kDuration, "--set", "Input_Lift.controller=lockstep"});
   session.start_all();
-  // one that takes its channel and says nothing: it is held, then put to neutral
+  // a controller that takes its channel and is silent: the channel is held, then put to neutral
   ASSERT_TRUE(session.observer().acquire("a", "Input_Lift").is_granted) << session.said();
   ASSERT_EQ(session.wait_all(), all_ok()) << session.said();
   const std::string recording = only_recording(session.runs()).string();
@@ -268,8 +268,8 @@ TEST_F(SavedSession, OfALockstepControllerIsHandedOver) {
   const TestDomain domain;
   replay_on("script", {"--set", "Input_Lift.controller=sampled", "--input", "script", "--domain",
                        std::to_string(domain.number())});
-  replay_on("nobody", {"--set", "Input_Lift.controller=sampled", "--set", "Input_Lift.supervisor=boss", "--input",
-                       "none", "--in-process"});
+  replay_on("no_controller", {"--set", "Input_Lift.controller=sampled", "--set", "Input_Lift.supervisor=boss",
+                              "--input", "none", "--in-process"});
   // a saved state alike
   ASSERT_EQ(slewring({"replay", recording, "--until", "0.8s", "--save", file()}, folder_.path() / "save", &said), 0)
       << said;
@@ -328,7 +328,8 @@ TEST_F(LateRecording, BeginsWithTheStatesOfAStepAndReplays) {
 TEST_F(LateRecording, OfASessionThatCanSayAllAgainIsWhole) {
   ASSERT_TRUE(session_.observer().wait_for_step(20)) << session_.said();
   const RecordedSession recorded = record_the_rest();
-  // INIT was said before it came; on a machine so slow that the pause came late it begins with states
+  // INIT was published before the recorder came; on a slow machine where the pause came late the recording begins with
+  // states
   const StepIndex begin =
       paused_at_ < static_cast<StepIndex>(node::kSentDepth / 4) ? 0 : recorded.chain().begin()->first;
   expect_undisturbed_from(begin, recorded.chain());
@@ -366,7 +367,7 @@ TEST_F(SavedSession, IsNeverHalfAFileAndNeverReplacesOneUnasked) {
   EXPECT_EQ(io::read_saved(file(), saved_).text, "");
   EXPECT_TRUE(session.observer().request(wire::ControlAction::stop).is_accepted);
   EXPECT_EQ(session.wait_all(), all_ok()) << session.said();
-  // cut and changed files are told
+  // cut and changed files are reported
   for (const bool is_cut : {true, false}) {
     std::ifstream whole(file(), std::ios::binary);
     std::string bytes((std::istreambuf_iterator<char>(whole)), {});

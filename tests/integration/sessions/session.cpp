@@ -143,7 +143,7 @@ wire::ControlReply Observer::request(wire::ControlAction action, double value, c
   request.value = value;
   request.path = path;
   request.over_ns = over_ns;
-  // the writer may not be known to io yet; an unanswered question is asked again
+  // io may not have discovered the writer yet; an unanswered request is repeated
   for (int attempt = 0; attempt < 20; ++attempt) {
     say(Topic::control_request, request);
     if (wait_until([&] { return replies_.count(request.request) != 0; }, kAskAgainNs)) {

@@ -12,7 +12,7 @@ namespace slew::testing {
 
 struct ClockShift {
   std::atomic<std::int64_t> ns{0};      // added to CLOCK_REALTIME
-  std::atomic<std::uint64_t> reads{0};  // of the shifted clock: the program asked it
+  std::atomic<std::uint64_t> reads{0};  // number of reads of the shifted clock by the program
 };
 
 inline constexpr const char* kClockShiftVariable = "SLEWRING_TEST_CLOCK_SHIFT";

@@ -1,4 +1,4 @@
-// Programs that cannot take part in a session: nothing is started, and they say why and what to do.
+// Programs that cannot take part in a session: nothing is started; the message has the cause and the remedy.
 #include <gtest/gtest.h>
 
 #include <netinet/in.h>
@@ -65,7 +65,7 @@ TEST(Start, AStateThatCannotBeIsRefusedNamingWhatToChange) {
   }
 }
 
-// UDP ports of this host that nobody else can have.
+// UDP ports of this host that no other program can have.
 class TakenPorts {
  public:
   TakenPorts(std::uint32_t first, std::uint32_t count) {

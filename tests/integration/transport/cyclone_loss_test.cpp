@@ -153,7 +153,7 @@ bool hear_the_session(std::uint32_t domain) {
 
 TEST(CycloneLoss, TheLargestSceneReachesALateNode) {
   const testing::TestDomain domain;
-  // the late node starts when told so by a signal, before which nothing of DDS may exist in this process
+  // a signal starts the late node; before that, no part of DDS may exist in this process
   ChildProcess node([&] {
     raise(SIGSTOP);
     return hear_the_session(domain.number());

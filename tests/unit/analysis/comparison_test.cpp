@@ -131,7 +131,7 @@ session: {duration: 2 s, step: 8 ms}
   EXPECT_TRUE(result.rows[0].cost.is_repeatable);
 }
 
-// what this version knows is what the field tables list, and what cannot run says why
+// every formulation of the field table is compared, and a refused one has its reason
 TEST_F(Compare, EveryFormulationThatTheFieldTableListsHasARow) {
   write(kDoublePendulum);
   options.scene.duration = "0.08s";
@@ -253,8 +253,8 @@ TEST_F(Compare, ImpossibleOptionsAreRefusedBeforeAnythingRuns) {
   options.steps = {"1s"};
   EXPECT_TRUE(contains(failure(), "--steps: 1000 ms is out of range; expected 0.001 ms to 20 ms"));
   options.steps.clear();
-  options.variables = {"Nobody.position.x"};
-  EXPECT_TRUE(contains(failure(), "Nobody.position.x"));
+  options.variables = {"Absent.position.x"};
+  EXPECT_TRUE(contains(failure(), "Absent.position.x"));
   options.variables.clear();
   options.scene.duration = "0s";
   EXPECT_TRUE(contains(failure(), "--until"));

@@ -1,4 +1,4 @@
-// What is said about the step and the coupling levels before a run.
+// Warnings about the step and the coupling levels before a run.
 #include "analysis/coupling_check.h"
 
 #include <gtest/gtest.h>

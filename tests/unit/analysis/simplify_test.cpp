@@ -91,7 +91,7 @@ TEST(Simplify, WhatItTakesHolds) {
   ASSERT_TRUE(result.helps()) << "longer steps of one cylinder cost less and change nothing that matters";
   EXPECT_TRUE(holds(result.watched, result.combined));
   EXPECT_LT(result.combined.cost, result.base_cost);
-  // the settings are those of the trials that say so, none of a group twice
+  // the settings come from the trials that are taken, none of a group twice
   std::size_t settings = 0;
   std::vector<std::string> groups;
   for (const Trial& trial : result.trials) {

@@ -1,4 +1,4 @@
-// What a stress test says of a cell, against stated bounds and a yardstick.
+// Verdicts of a stress test on a cell, against stated bounds and a yardstick.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -43,7 +43,7 @@ TEST(StressVerdict, SaysWhichBoundsTheBareLoopsBreakToo) {
   EXPECT_EQ(tell(late, bad).verdict, "over, as the yardstick");
   EXPECT_EQ(tell(bad, good).verdict, "over; the yardstick misses 0.500 %, p99 400 us");
   EXPECT_EQ(tell(late, slow).verdict, "over; the yardstick misses 0.500 %, p99 600 us") << "each is over another bound";
-  EXPECT_EQ(tell(bad, {}).verdict, "over") << "nothing is told of a yardstick that did not run";
+  EXPECT_EQ(tell(bad, {}).verdict, "over") << "no text on a yardstick that did not run";
   EXPECT_EQ(tell(bad, late).verdict, "over, as the yardstick in misses alone");
   EXPECT_EQ(tell(bad, slow).verdict, "over, as the yardstick at p99 alone");
 }
@@ -128,7 +128,7 @@ TEST(StressVerdict, WhatSomebodyEndedIsInterrupted) {
     EXPECT_NE(text.find("interrupted"), std::string::npos) << text;
     EXPECT_EQ(text.find("failed"), std::string::npos) << text;
     EXPECT_EQ(text.find("steps due"), std::string::npos) << text;
-    // of one that had begun there is something to tell
+    // a cell that had begun is reported
     stress.cells.front().steps = 100;
     EXPECT_NE(report_text(stress).find("steps due"), std::string::npos);
   }

@@ -195,7 +195,7 @@ TEST(TradeoffReport, TellsRefusalsInstabilityAndTheAnswer) {
   EXPECT_EQ(json.at("answer").at("row"), 1);
   const std::string csv = report_csv(tradeoff);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
-  // nothing outside of the page is asked for, and names cannot leave their place
+  // the page needs no external resource, and names cannot leave their place
   tradeoff.scene = "</script><b>";
   const std::string page = report_html(tradeoff, std::nullopt);
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);

@@ -27,7 +27,7 @@ wire::Header header() {
   return header;
 }
 
-// What an io node says: at first, and when it is asked.
+// Messages of an io node: at first, and as replies.
 class PlayedIo final : public transport::Transport {
  public:
   PlayedIo() {
@@ -49,7 +49,7 @@ class PlayedIo final : public transport::Transport {
     say(message, when_asked_);
   }
 
-  // It does not know this program's writer yet.
+  // It has not discovered this program's writer yet.
   void lose_requests(int count) { lost_ = count; }
 
   Status publish(Topic topic, std::span<const std::byte>) noexcept override {
@@ -107,7 +107,7 @@ class Asking : public ::testing::Test {
     return reply;
   }
 
-  // "" when io has answered, else what the user is told
+  // "" when io has answered, else the message for the user
   std::string ask(std::uint64_t number = kRequest, SimDuration at_most = milliseconds(10'000)) {
     Observer observer(std::move(io_), "crane");
     wire::ControlRequest request;

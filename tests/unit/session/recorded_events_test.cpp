@@ -1,4 +1,4 @@
-// What `info --events` tells of requests, answers and leases in a recording.
+// Output of `info --events` for requests, answers and leases in a recording.
 #include "session/recorded_events.h"
 
 #include <gtest/gtest.h>

@@ -21,7 +21,7 @@ using wire::Phase;
 using wire::Role;
 using wire::Topic;
 
-// A recording that is said message by message.
+// A recording that is written message by message.
 class Extent : public ::testing::Test {
  protected:
   Extent() {

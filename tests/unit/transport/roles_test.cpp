@@ -20,7 +20,7 @@ TEST(Roles, HaveNamesOfTheirOwnByWhichTheyAreFound) {
     EXPECT_TRUE(names.insert(role.name).second) << role.name;
     EXPECT_EQ(role_of(role.name), role.role);
   }
-  EXPECT_EQ(role_of("nobody"), std::nullopt);
+  EXPECT_EQ(role_of("absent"), std::nullopt);
   for (const Role role : wire::kNodeRoles) {
     EXPECT_EQ(traits(role).name, kNodeNames[static_cast<std::size_t>(role)]);
     EXPECT_NE(traits(role).needed, Needed::never) << traits(role).name;
@@ -38,7 +38,7 @@ TEST(Roles, EverySampleHasOneWriterAndAReader) {
   }
 }
 
-// io asks a physics node for its samples, and looks for them
+// io reads the samples of a physics node, for which it waits
 TEST(Roles, IoReadsTheSamplesThatItWaitsFor) {
   for (const Role role : wire::kPhysicsRoles) {
     EXPECT_TRUE(is_physics(role));
